@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+# Sourced by tests/run.sh and data/demo.sh: installs what a Debian 12 machine lacks, and builds.
+
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+# Installs those of the named packages that are missing; asks nothing, and is quick when none is.
+install_packages() {
+  local missing=() package
+  for package in "$@"; do
+    dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return
+  local as_root=()
+  [ "$(id -u)" -eq 0 ] || as_root=(sudo)
+  echo "Installing ${missing[*]}"
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+build_packages=(g++ cmake ninja-build pkg-config libopenexr-dev libopenimageio-dev openimageio-tools
+  libopencolorio-dev libeigen3-dev libglm-dev libtbb-dev libcli11-dev libfmt-dev nlohmann-json3-dev)
+test_packages=(libgtest-dev libgmock-dev groff)
+
+# build FOLDER [cmake options]: configures and builds into FOLDER.
+build() {
+  local folder=$1
+  shift
+  cmake -S "$root" -B "$folder" -G Ninja "$@" >"$folder.log" 2>&1 || { cat "$folder.log"; return 1; }
+  cmake --build "$folder"
+}
