@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Renders a scene of scenes.py to a multilayer EXR as an artist would set it up for ssdo.
+
+    blender -b -P export.py -- still_life -o still_life.exr --camera still_life.camera.json
+
+Without further options that is a G-buffer. `--samples`, `--world`, `--bounces`, `--ao-radius` and
+`--seed` make it a path-traced render with light passes instead: truth.py uses those.
+"""
+import argparse
+import json
+import sys
+from math import radians, tan
+from pathlib import Path
+
+import bpy
+from mathutils import Vector
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from scenes import SCENES  # noqa: E402  (Blender does not put a script's own folder on the path)
+
+ENVIRONMENTS = Path(__file__).resolve().parent.parent / "environments"
+
+CONVENTIONS = {
+    "camera": "right-handed, x right, y up, looks along -z; column vectors, "
+              "camera = world_to_camera * (x,y,z,1)",
+    "pixel": "pixel (i,j), i right, j down, (0,0) top left, centre at (i+0.5, j+0.5)",
+    "projection": "px = cx + fx*xc/(-zc), py = cy - fy*yc/(-zc)",
+    "depth": "planar, = -zc (not ray distance)",
+    "world": "z up, metres",
+    "env": "lat-long, dir=(x,y,z): u = 0.5 - atan2(y,x)/(2 pi), v_from_top = acos(z)/pi; "
+           "u=0.5 is +X, u=0.25 is +Y, u=0.75 is -Y; no rotation",
+}
+
+
+def add_camera(scene, picture):
+    data = bpy.data.cameras.new("cam")
+    data.sensor_fit, data.angle = "HORIZONTAL", radians(picture.hfov_deg)
+    data.clip_start, data.clip_end = 0.05, 1000.0
+    camera = bpy.data.objects.new("cam", data)
+    camera.location = picture.camera
+    view = Vector(picture.target) - Vector(picture.camera)
+    camera.rotation_euler = view.to_track_quat("-Z", "Y").to_euler()
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+
+
+def add_world(scene, environment=None):
+    """A uniform white world of strength 1, or the lat-long map with importance sampling."""
+    world = scene.world = bpy.data.worlds.new("world")
+    world.use_nodes = True
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    background = nodes["Background"]
+    background.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+    background.inputs["Strength"].default_value = 1.0
+    if environment:
+        texture = nodes.new("ShaderNodeTexEnvironment")
+        texture.image = bpy.data.images.load(str(ENVIRONMENTS / environment))
+        texture.image.colorspace_settings.name = "Linear"
+        links.new(texture.outputs["Color"], background.inputs["Color"])
+    world.cycles.sampling_method = "MANUAL"
+    world.cycles.sample_map_resolution = 1024
+
+
+def set_up_cycles(scene, samples, bounces, seed):
+    """The plain estimator: everything that biases or blurs a pixel is off."""
+    scene.render.engine = "CYCLES"
+    cycles = scene.cycles
+    cycles.samples, cycles.seed = samples, seed
+    cycles.use_adaptive_sampling = cycles.use_denoising = False
+    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
+    cycles.light_sampling_threshold = 0.0
+    cycles.max_bounces = cycles.diffuse_bounces = bounces
+    # One ray through the pixel centre. Blender averages Normal and DiffCol over the pixel filter,
+    # but takes Position and Depth from the first sample: this way all four are of one point.
+    cycles.filter_width = 0.01
+
+
+def set_up_output(scene, picture, path, passes):
+    render = scene.render
+    render.resolution_x, render.resolution_y = picture.width, picture.height
+    render.resolution_percentage = 100
+    render.filepath = str(path.resolve())
+    image = render.image_settings
+    image.file_format = "OPEN_EXR_MULTILAYER"
+    image.color_depth = "32"  # half would round P to millimetres, and far worse away from 0
+    image.exr_codec = "ZIP"
+    for name in passes:
+        setattr(scene.view_layers[0], f"use_pass_{name}", True)
+
+
+def camera_json(name, scene, picture):
+    camera = scene.camera
+    focal_px = picture.width / 2 / tan(camera.data.angle / 2)
+    rows = lambda matrix: [list(row) for row in matrix]
+    return {
+        "scene": name,
+        "env": f"environments/{picture.environment}",
+        "width": picture.width,
+        "height": picture.height,
+        "type": "persp",
+        "camera_to_world": rows(camera.matrix_world),
+        "world_to_camera": rows(camera.matrix_world.inverted()),
+        "location": list(camera.matrix_world.translation),
+        "clip_start": camera.data.clip_start,
+        "clip_end": camera.data.clip_end,
+        "sensor_width_mm": camera.data.sensor_width,
+        "sensor_fit": camera.data.sensor_fit,
+        "focal_length_mm": camera.data.lens,
+        "hfov_deg": picture.hfov_deg,
+        "fx": focal_px,
+        "fy": focal_px,
+        "cx": picture.width / 2,
+        "cy": picture.height / 2,
+        "ao_radius": {"truth_ao_files": list(picture.ao_radii), "unit": "m"},
+        "conventions": CONVENTIONS,
+    }
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(prog="blender -b -P export.py --")
+    parser.add_argument("scene", choices=SCENES)
+    parser.add_argument("-o", "--output", type=Path, required=True)
+    parser.add_argument("--camera", type=Path, help="write the camera there, as JSON")
+    light = parser.add_argument_group("path-traced light passes")
+    light.add_argument("--samples", type=int, help="write light passes, so many samples per pixel")
+    light.add_argument("--world", choices=["white", "environment"], default="white")
+    light.add_argument("--bounces", type=int, default=0)
+    light.add_argument("--ao-radius", type=float, default=1.0)
+    light.add_argument("--seed", type=int, default=0)
+    return parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
+
+
+def main():
+    args = parse_arguments()
+    picture = SCENES[args.scene]
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.name = args.scene
+    picture.build()
+    add_camera(scene, picture)
+    add_world(scene, picture.environment if args.world == "environment" else None)
+    scene.world.light_settings.distance = args.ao_radius  # of the AO pass
+    set_up_cycles(scene, args.samples or 1, args.bounces, args.seed)
+    if args.samples:
+        passes = ["z", "diffuse_direct", "diffuse_indirect", "ambient_occlusion"]
+    else:
+        passes = ["z", "position", "normal", "diffuse_color"]
+    set_up_output(scene, picture, args.output, ["combined", *passes])
+    bpy.ops.render.render(write_still=True)
+    if args.camera:
+        bpy.context.view_layer.update()
+        args.camera.write_text(json.dumps(camera_json(args.scene, scene, picture), indent=1) + "\n")
+
+
+main()
