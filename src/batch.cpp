@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <future>
+#include <nlohmann/json.hpp>
+
+#include "frame.h"
+#include "io/image_file.h"
+#include "parallel/tiles.h"
+#include "pipeline.h"
+#include "progress.h"
+#include "sequence.h"
+#include "statistics.h"
+
+namespace ssdo {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One frame of the job.
+struct Job {
+  std::optional<int> frame;
+  std::string input;
+  std::vector<Target> targets;
+};
+
+std::vector<Job> plan_jobs(const Options& options) {
+  const bool sequence = is_pattern(options.input_file);
+  if (!sequence) {
+    if (!options.batch.frames.empty()) {
+      throw Error(
+          ExitCode::usage,
+          fmt::format("{}: --frames needs a pattern in the input's name, such as shot.####.exr",
+                      options.input_file));
+    }
+    return {{std::nullopt, options.input_file, targets_of(options.output, std::nullopt)}};
+  }
+  const auto frames = options.batch.frames.empty() ? find_frames(options.input_file)
+                                                   : parse_frames(options.batch.frames);
+  if (frames.empty()) {
+    throw Error(ExitCode::input,
+                fmt::format("{}: no frame of this sequence exists", options.input_file));
+  }
+  if (frames.size() > 1) {
+    for (const Target& target : targets_of(options.output, std::nullopt)) {
+      if (!is_pattern(target.path)) {
+        throw Error(
+            ExitCode::usage,
+            fmt::format("{}: {} frames would go to this one file; put a pattern into its name, "
+                        "such as out.####.exr",
+                        target.path, frames.size()));
+      }
+    }
+  }
+  std::vector<Job> jobs;
+  for (int frame : frames) {
+    jobs.push_back(
+        {frame, expand_pattern(options.input_file, frame), targets_of(options.output, frame)});
+  }
+  return jobs;
+}
+
+bool is_readable(const std::string& path) {
+  try {
+    if (is_display_image(path)) {
+      read_image(path);
+    } else {
+      // Every channel shares its chunks with the others: one that decodes speaks for all.
+      const ExrReader file(path);
+      for (const ExrPart& part : file.parts()) {
+        if (!part.deep && !part.channels.empty())
+          file.read_stored(part.index, std::vector{part.channels[0].name});
+      }
+    }
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+bool all_done(const Job& job) {
+  for (const Target& target : job.targets) {
+    if (!fs::exists(target.path) || !is_readable(target.path)) return false;
+  }
+  return !job.targets.empty();
+}
+
+/// Runs the jobs one after another.
+class Batch {
+ public:
+  explicit Batch(const Options& options)
+      : options_(options),
+        threads_(choose_thread_count(options.threads)),
+        limit_(threads_),
+        light_(options.light),
+        jobs_(plan_jobs(options)),
+        progress_(options.batch.progress, options.say.quiet) {}
+
+  ExitCode run() {
+    ExitCode code = ExitCode::done;
+    for (std::size_t i = 0; i < jobs_.size(); ++i) {
+      try {
+        run_job(i);
+      } catch (const Error& e) {
+        // A single frame that fails is the job that fails.
+        if (jobs_.size() == 1) throw;
+        say(e.what());
+        if (code == ExitCode::done) code = e.code;
+        if (options_.batch.on_error == OnError::stop) break;
+      }
+      progress_.tell(double(i + 1) / double(jobs_.size()), jobs_[i].input);
+    }
+    if (options_.command == Command::info && options_.say.json)
+      fmt::print("{}\n", infos_.size() == 1 ? infos_[0].dump(2) : infos_.dump(2));
+    if (!options_.say.stats.empty()) statistics_.write(options_.say.stats);
+    return code;
+  }
+
+ private:
+  void run_job(std::size_t i) {
+    const Job& job = jobs_[i];
+    OutputPolicy policy = options_.output.policy;
+    const bool writes = options_.command == Command::relight && !options_.say.dry_run;
+    if (writes && options_.batch.skip_existing) {
+      if (all_done(job))
+        return say_verbose(fmt::format("{}: skipped, its outputs exist", job.input));
+      policy.overwrite = true;  // what is there cannot be read
+    }
+    if (writes) check_targets(job.targets, job.input, policy);
+    Frame frame = take_frame(i);
+    if (options_.command == Command::info) return show(frame);
+    if (options_.say.dry_run || options_.say.verbose) say(describe(frame));
+    if (!options_.say.verbose && !options_.say.dry_run && !options_.say.quiet) {
+      for (const std::string& warning : frame.warnings())
+        say(fmt::format("{}: warning: {}", job.input, warning));
+    }
+    if (!writes) return;
+    const auto told = [&](double done) {
+      progress_.tell((double(i) + done) / double(jobs_.size()), job.input);
+    };
+    const Relit relit = relight(options_, frame, job.targets, policy, told);
+    for (const std::string& note : relit.notes) say_verbose(note);
+    if (relit.clamped_values > 0 && !options_.say.quiet) {
+      say(
+          fmt::format("{}: warning: {} values were beyond the range of half and clamped to 65504; "
+                      "keep them with "
+                      "--pixel-type float",
+                      job.input, relit.clamped_values));
+    }
+    statistics_.add(frame, job.frame, job.targets, threads_);
+  }
+
+  Frame prepare(std::size_t i) const {
+    const Job& job = jobs_[i];
+    if (job.frame && !fs::exists(job.input)) {
+      throw Error(ExitCode::input,
+                  fmt::format("{}: frame {} of the range is missing", job.input, *job.frame));
+    }
+    return prepare_frame(options_, light_, job.input);
+  }
+
+  /// The frame of job `i`, which may be on its way already; sends for the next one.
+  Frame take_frame(std::size_t i) {
+    auto current = std::move(next_);
+    const bool ahead = current.valid() && next_index_ == i;
+    if (!ahead) return start_next(i, prepare(i));
+    return start_next(i, current.get());
+  }
+
+  Frame start_next(std::size_t i, Frame frame) {
+    if (threads_ > 1 && i + 1 < jobs_.size() && !options_.batch.skip_existing) {
+      next_index_ = i + 1;
+      next_ = std::async(std::launch::async, [this, n = i + 1] { return prepare(n); });
+    }
+    return frame;
+  }
+
+  void show(const Frame& frame) {
+    if (options_.say.json) {
+      infos_.push_back(to_json(frame));
+    } else {
+      fmt::print("{}", describe(frame));
+    }
+  }
+
+  void say(std::string text) {
+    progress_.clear();
+    if (text.empty() || text.back() != '\n') text += '\n';
+    fmt::print(stderr, "{}{}", text.starts_with(options_.input_file) ? "" : "ssdo: ", text);
+  }
+  void say_verbose(const std::string& text) {
+    if (options_.say.verbose) say(text);
+  }
+
+  const Options& options_;
+  int threads_;
+  ThreadLimit limit_;
+  Light light_;
+  std::vector<Job> jobs_;
+  Progress progress_;
+  Statistics statistics_;
+  nlohmann::json infos_ = nlohmann::json::array();
+  std::size_t next_index_ = 0;
+  std::future<Frame> next_;
+};
+
+}  // namespace
+
+ExitCode run_batch(const Options& options) { return Batch(options).run(); }
+
+}  // namespace ssdo

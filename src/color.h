@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace ssdo {
+
+/// What the user says about colour. Empty means: decide.
+struct ColorOptions {
+  std::string ocio;        ///< config file; over $OCIO over the built-in config
+  std::string colorspace;  ///< of the input's colours
+  std::string display, view, look;
+};
+
+/// What a file says about its own colours.
+struct ColorTags {
+  std::filesystem::path path;                          ///< for the config's file rules
+  std::string interop_id;                              ///< attribute `colorInteropID`
+  bool aces_container = false;                         ///< attribute `acesImageContainerFlag` = 1
+  std::optional<std::array<float, 8>> chromaticities;  ///< rx ry gx gy bx by wx wy
+};
+
+/// The way from a frame's scene-linear colours to a display, through OpenColorIO.
+///
+/// The input's colour space is --colorspace, else the tag colorInteropID, else the ACES container
+/// flag, else chromaticities that match a known set, else a file rule of the config other than its
+/// default, else the role scene_linear.
+class DisplayTransform {
+ public:
+  /// Errors: ExitCode::usage for a config, colour space, display, view or look that does not exist
+  /// (the message lists those that do); ExitCode::input for a config that cannot be read.
+  DisplayTransform(const ColorOptions& options, const ColorTags& tags);
+  ~DisplayTransform();
+  DisplayTransform(DisplayTransform&&) noexcept;
+
+  /// Scene-linear to display values, in place. RGB is not premultiplied. Thread-safe.
+  void apply(std::span<glm::vec3> colors) const;
+
+  /// One line: config, input space and the rule that chose it, display, view, look.
+  const std::string& description() const { return description_; }
+
+ private:
+  struct Processor;
+  std::unique_ptr<Processor> processor_;
+  std::string description_;
+};
+
+}  // namespace ssdo

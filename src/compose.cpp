@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compose.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ssdo {
+namespace {
+
+void append_color(std::vector<NamedPlane>& out, const std::string& prefix,
+                  const Plane<glm::vec3>& colors) {
+  for (int c = 0; c < 3; ++c) {
+    NamedPlane named{prefix + "RGB"[c], Plane<float>(colors.width, colors.height)};
+    for (std::size_t i = 0; i < colors.size(); ++i) named.pixels[i] = colors[i][c];
+    out.push_back(std::move(named));
+  }
+}
+
+}  // namespace
+
+Plane<float> coverage(const GBuffer& gbuffer, const Geometry& geometry) {
+  Plane<float> alpha(geometry.position.width, geometry.position.height, 0.0f);
+  for (std::size_t i = 0; i < alpha.size(); ++i) {
+    if (!geometry.is_surface(i)) continue;
+    const float a = gbuffer.alpha.empty() ? 1.0f : gbuffer.alpha[i];
+    alpha[i] = std::isfinite(a) ? std::clamp(a, 0.0f, 1.0f) : 1.0f;
+  }
+  return alpha;
+}
+
+Plane<glm::vec3> composite(const GBuffer& gbuffer, const Products& products) {
+  Plane<glm::vec3> out = products.direct;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (!products.bounce.empty()) out[i] += products.bounce[i];
+    out[i] *= gbuffer.albedo[i];
+  }
+  return out;
+}
+
+std::vector<NamedPlane> product_channels(const std::string& product, const GBuffer& gbuffer,
+                                         const Geometry& geometry, const Products& products) {
+  std::vector<NamedPlane> out;
+  if (product == "ao") {
+    out.push_back({"ao.Y", products.ao});
+  } else if (product == "direct") {
+    append_color(out, "direct.", products.direct);
+  } else if (product == "bounce") {
+    append_color(out, "bounce.", products.bounce);
+  } else {
+    Plane<glm::vec3> color = composite(gbuffer, products);
+    Plane<float> alpha = coverage(gbuffer, geometry);
+    for (std::size_t i = 0; i < color.size(); ++i) color[i] *= alpha[i];
+    append_color(out, "", color);
+    out.push_back({"A", std::move(alpha)});
+  }
+  return out;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+
+#include "frame.h"
+
+namespace ssdo {
+namespace {
+
+using nlohmann::json;
+
+std::string describe_camera(const Frame& frame) {
+  const Camera& c = frame.geometry.camera;
+  const int width = frame.geometry.display.width();
+  std::string text = frame.report.camera_source;
+  if (frame.geometry.median_depth <= 0) return text;
+  text += c.orthographic
+              ? fmt::format(": orthographic, {:.4g} wide", width / c.fx)
+              : fmt::format(": {:.3f} degrees, f {:.2f} px", c.hfov_degrees(width), c.fx);
+  if (std::abs(c.fy - c.fx) > 1e-3 * c.fx) text += fmt::format(" x {:.2f} px", c.fy);
+  text += fmt::format(", centre {:.2f} {:.2f}", c.cx, c.cy);
+  if (const auto& r = frame.report.residual) {
+    text += fmt::format("; P lands {:.2g} px from its pixel (median), {:.2g} px (99 %)",
+                        r->median_px, r->p99_px);
+  }
+  return text;
+}
+
+json camera_json(const Frame& frame) {
+  const Camera& c = frame.geometry.camera;
+  json rows = json::array();
+  const glm::dvec3 translation = -(c.rotation * c.origin);
+  for (int row = 0; row < 3; ++row) {
+    rows.push_back({c.rotation[0][row], c.rotation[1][row], c.rotation[2][row], translation[row]});
+  }
+  rows.push_back({0.0, 0.0, 0.0, 1.0});
+  json j = {{"source", frame.report.camera_source},
+            {"type", c.orthographic ? "ortho" : "persp"},
+            {"fx", c.fx},
+            {"fy", c.fy},
+            {"cx", c.cx},
+            {"cy", c.cy},
+            {"hfov_deg", c.hfov_degrees(frame.geometry.display.width())},
+            {"world_to_camera", rows}};
+  if (const auto& r = frame.report.residual) {
+    j["residual_px"] = {{"median", r->median_px}, {"p99", r->p99_px}, {"max", r->max_px}};
+  }
+  return j;
+}
+
+json window_json(const Window& w) { return {w.x0, w.y0, w.x1 - 1, w.y1 - 1}; }
+
+std::size_t surface_pixels(const Frame& frame) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < frame.geometry.position.size(); ++i)
+    count += frame.geometry.is_surface(i);
+  return count;
+}
+
+json parts_json(const Frame& frame) {
+  json parts = json::array();
+  for (const ExrPart& part : frame.files.front().parts()) {
+    json channels = json::array();
+    for (const ExrChannel& c : part.channels) {
+      channels.push_back({{"name", c.name},
+                          {"type", c.type == Imf::HALF    ? "half"
+                                   : c.type == Imf::FLOAT ? "float"
+                                                          : "uint"}});
+    }
+    parts.push_back({{"name", part.name},
+                     {"view", part.view},
+                     {"deep", part.deep},
+                     {"data_window", window_json(part.data_window)},
+                     {"display_window", window_json(part.display_window)},
+                     {"channels", channels}});
+  }
+  return parts;
+}
+
+json layers_json(const Frame& frame) {
+  json layers = json::object();
+  for (std::size_t i = 0; i < kRoleCount; ++i) {
+    if (const auto& layer = frame.layers.layers[i]) {
+      layers[std::string(role_name(Role(i)))] = {
+          {"layer", layer->name}, {"channels", layer->channels},
+          {"part", layer->part},  {"file", frame.files[std::size_t(layer->file)].path().string()},
+          {"half", layer->half},  {"by_request", layer->by_request}};
+    }
+  }
+  return layers;
+}
+
+}  // namespace
+
+std::string describe(const Frame& frame) {
+  std::size_t channels = 0;
+  for (const ExrPart& part : frame.files.front().parts()) channels += part.channels.size();
+  const Window& display = frame.geometry.display;
+  std::string text =
+      fmt::format("{}: {} x {}, {} part(s), {} channels\n", frame.input, display.width(),
+                  display.height(), frame.files.front().parts().size(), channels);
+  const auto line = [&](std::string_view key, const std::string& value) {
+    text += fmt::format("  {:<10}{}\n", key, value);
+  };
+  if (!(frame.geometry.window == display)) {
+    const Window& w = frame.geometry.window;
+    line("window", fmt::format("data {},{} to {},{}", w.x0, w.y0, w.x1 - 1, w.y1 - 1));
+  }
+  for (std::size_t i = 0; i < kRoleCount; ++i) {
+    const auto& layer = frame.layers.layers[i];
+    if (!layer) continue;
+    std::string value =
+        fmt::format("{} ({}{})", fmt::join(layer->channels, ", "), layer->half ? "half" : "float",
+                    layer->by_request ? ", by --aov" : "");
+    if (Role(i) == Role::normal) {
+      value += fmt::format("; {}, median cosine {:.3f} with P", frame.report.normal_space,
+                           frame.report.normal_agreement);
+    }
+    line(role_name(Role(i)), value);
+  }
+  line("camera", describe_camera(frame));
+  line("surfaces", fmt::format("{} of {} pixels ({} background, {} broken), median depth {:.4g}",
+                               surface_pixels(frame), frame.geometry.position.size(),
+                               frame.gbuffer.background_pixels, frame.gbuffer.bad_pixels,
+                               frame.geometry.median_depth));
+  line("light", frame.light);
+  line("plan", fmt::format("{}: {} ({} samples per pixel, {} bounce(s), filter {})",
+                           fmt::join(frame.plan.write, ", "), frame.plan.method->name,
+                           frame.plan.method->samples_per_pixel(frame.plan.parameters),
+                           frame.plan.bounces, frame.plan.filter ? "geometry" : "none"));
+  for (const std::string& reason : frame.plan.reasons) line("", reason);
+  for (const std::string& warning : frame.warnings()) line("warning", warning);
+  return text;
+}
+
+nlohmann::json to_json(const Frame& frame) {
+  const Geometry& g = frame.geometry;
+  return {{"file", frame.input},
+          {"width", g.display.width()},
+          {"height", g.display.height()},
+          {"data_window", window_json(g.window)},
+          {"display_window", window_json(g.display)},
+          {"parts", parts_json(frame)},
+          {"layers", layers_json(frame)},
+          {"camera", camera_json(frame)},
+          {"normals",
+           {{"space", frame.report.normal_space},
+            {"agreement", frame.report.normal_agreement},
+            {"rebuilt", frame.report.normals_rebuilt},
+            {"turned", frame.report.normals_turned}}},
+          {"pixels", g.position.size()},
+          {"surface_pixels", surface_pixels(frame)},
+          {"background_pixels", frame.gbuffer.background_pixels},
+          {"bad_pixels", frame.gbuffer.bad_pixels},
+          {"median_depth", g.median_depth},
+          {"light", frame.light},
+          {"plan", to_json(frame.plan)},
+          {"warnings", frame.warnings()}};
+}
+
+}  // namespace ssdo

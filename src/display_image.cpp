@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "display_image.h"
+
+#include "compose.h"
+#include "parallel/tiles.h"
+
+namespace ssdo {
+namespace {
+
+/// Calls visit(index in the image, index in the planes) for every pixel that both windows show.
+template <class Visit>
+void for_each_shown_pixel(const Geometry& geometry, const Visit& visit) {
+  const Window &display = geometry.display, &data = geometry.window;
+  for (int y = std::max(display.y0, data.y0); y < std::min(display.y1, data.y1); ++y) {
+    for (int x = std::max(display.x0, data.x0); x < std::min(display.x1, data.x1); ++x) {
+      visit(
+          std::size_t(y - display.y0) * std::size_t(display.width()) + std::size_t(x - display.x0),
+          geometry.position.index(x - data.x0, y - data.y0));
+    }
+  }
+}
+
+void apply_display(Plane<glm::vec3>& colors, const DisplayTransform& display) {
+  for_each_row(colors.height, [&](int y) {
+    display.apply({&colors(0, y), std::size_t(colors.width)});
+  });
+}
+
+}  // namespace
+
+bool needs_display(const std::string& product) { return product != "ao"; }
+
+DisplayImage make_display_image(const std::string& product, const Frame& frame,
+                                const Products& products, const DisplayTransform* display) {
+  const Geometry& geometry = frame.geometry;
+  DisplayImage image;
+  image.width = geometry.display.width();
+  image.height = geometry.display.height();
+  image.pixel_aspect = frame.gbuffer.pixel_aspect;
+  image.channels = product == "ao" ? 1 : product == "composite" ? 4 : 3;
+  const auto channels = std::size_t(image.channels);
+  image.values.assign(geometry.display.area() * channels, 0.0f);
+  if (product == "ao") {
+    for_each_shown_pixel(
+        geometry, [&](std::size_t to, std::size_t from) { image.values[to] = products.ao[from]; });
+    return image;
+  }
+  Plane<glm::vec3> colors = product == "composite" ? composite(frame.gbuffer, products)
+                            : product == "direct"  ? products.direct
+                                                   : products.bounce;
+  const Plane<float> alpha = coverage(frame.gbuffer, geometry);
+  apply_display(colors, *display);
+  for_each_shown_pixel(geometry, [&](std::size_t to, std::size_t from) {
+    if (alpha[from] <= 0) return;
+    for (int c = 0; c < 3; ++c) image.values[to * channels + std::size_t(c)] = colors[from][c];
+    if (channels == 4) image.values[to * 4 + 3] = alpha[from];
+  });
+  return image;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "color.h"
+#include "estimators/estimator.h"
+#include "frame.h"
+#include "io/image_file.h"
+
+namespace ssdo {
+
+/// A product as a display shows it: interleaved values in 0..1 over the display window.
+struct DisplayImage {
+  int width = 0, height = 0, channels = 3;
+  float pixel_aspect = 1;
+  std::vector<float> values;
+
+  ImageSpec spec(int bits) const { return {width, height, channels, bits, pixel_aspect}; }
+};
+
+/// Whether a product is a colour, which goes through the display transform; visibility does not.
+bool needs_display(const std::string& product);
+
+/// The composite comes with its alpha, not premultiplied; direct and bounce as RGB; ao as grey.
+/// What the data window does not cover is empty. `display` may be null where needs_display is
+/// false.
+DisplayImage make_display_image(const std::string& product, const Frame& frame,
+                                const Products& products, const DisplayTransform* display);
+
+}  // namespace ssdo

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "math/plane.h"
+#include "parallel/tiles.h"
+#include "scene/environment.h"
+#include "scene/geometry.h"
+
+namespace ssdo {
+
+/// What a method may be asked for. Definitions: man ssdo, PRODUCTS.
+struct ProductSet {
+  bool ao = false;
+  bool direct = false;
+  bool bounce = false;
+};
+
+/// The planes that were asked for, over the geometry's window; the others are empty. Linear,
+/// without the receiver's albedo. Background: ao 1, direct and bounce 0.
+struct Products {
+  Plane<float> ao;
+  Plane<glm::vec3> direct, bounce;
+};
+
+/// A parameter of one method, set with --set NAME=VALUE.
+struct Parameter {
+  std::string_view name;
+  double value;  ///< default
+  double low, high;
+  std::string_view unit;
+  std::string_view meaning;
+  bool whole = false;  ///< takes whole numbers only
+};
+
+using ParameterValues = std::map<std::string, double, std::less<>>;
+
+/// All that a method looks at.
+struct EstimateInput {
+  const Geometry& geometry;
+  const Plane<glm::vec3>& albedo;    ///< of the senders; needed for a bounce
+  const Plane<glm::vec3>& radiance;  ///< what senders give off, where a layer says so; else empty
+  const Environment& environment;
+  ProductSet products;
+  float radius;  ///< scene units
+  int bounces;
+  unsigned seed;
+  const ParameterValues& parameters;
+  TileProgress progress;
+};
+
+/// A row in the table of methods.
+struct Method {
+  std::string_view name, summary;
+  ProductSet products;  ///< what it can make
+  int pattern_size;     ///< its noise repeats every pattern_size pixels
+  std::vector<Parameter> parameters;
+  int (*samples_per_pixel)(const ParameterValues&);
+  Products (*estimate)(const EstimateInput&);
+};
+
+}  // namespace ssdo

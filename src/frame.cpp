@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frame.h"
+
+#include <ImfChromaticitiesAttribute.h>
+#include <ImfIntAttribute.h>
+#include <ImfStringAttribute.h>
+
+#include "stopwatch.h"
+
+namespace ssdo {
+namespace {
+
+/// Blender's world has z up; it marks its files, and Nuke keeps the mark under a prefix.
+UpAxis up_axis_of(const Imf::Header& header) {
+  for (auto it = header.begin(); it != header.end(); ++it) {
+    if (std::string(it.name()).find("BlenderMultiChannel") != std::string::npos) return UpAxis::z;
+  }
+  const auto* software = header.findTypedAttribute<Imf::StringAttribute>("Software");
+  return software && software->value().find("Blender") != std::string::npos ? UpAxis::z : UpAxis::y;
+}
+
+/// Opens the frame and every file that --aov names, each once.
+void open_files(Frame& frame, const Options& options) {
+  frame.files.emplace_back(frame.input);
+  for (const LayerRequest& request : options.input.aovs) {
+    bool open = request.file.empty();
+    for (const ExrReader& file : frame.files) open |= file.path() == request.file;
+    if (!open) frame.files.emplace_back(request.file);
+  }
+}
+
+}  // namespace
+
+const Layer& Frame::lead() const {
+  return layers[Role::position] ? *layers[Role::position] : *layers[Role::depth];
+}
+
+const ExrPart& Frame::part() const {
+  return files[std::size_t(lead().file)].parts()[std::size_t(lead().part)];
+}
+
+std::vector<std::string> Frame::warnings() const {
+  std::vector<std::string> all = gbuffer.warnings;
+  all.insert(all.end(), report.warnings.begin(), report.warnings.end());
+  return all;
+}
+
+Frame prepare_frame(const Options& options, const Light& light, const std::string& input) {
+  Frame frame;
+  frame.input = input;
+  Stopwatch watch;
+  open_files(frame, options);
+  std::vector<const ExrReader*> files;
+  for (const ExrReader& file : frame.files) files.push_back(&file);
+  frame.layers = find_layers(files, options.input.aovs, options.input.part);
+  frame.gbuffer = read_gbuffer(files, frame.layers, options.input.gbuffer);
+  frame.times.read = watch.lap();
+
+  frame.geometry = build_geometry(frame.gbuffer, options.camera, input, frame.report);
+  // From here on there is one position and one normal: those of the geometry.
+  frame.gbuffer.position = frame.gbuffer.normal = {};
+  frame.gbuffer.depth = {};
+
+  const bool world = frame.geometry.world_known;
+  frame.environment = light.around(world ? up_axis_of(frame.part().header) : UpAxis::y);
+  frame.light = light.description();
+  if (!frame.environment.is_constant()) {
+    frame.light += frame.environment.frame().up == UpAxis::z ? ", z up" : ", y up";
+    if (!world) {
+      frame.report.warnings.push_back(
+          "the frame knows no world space; the environment is taken in "
+          "camera space: give --camera FILE.json to place it");
+    }
+  }
+  frame.plan = make_plan(options.model, options.output, frame.gbuffer, frame.geometry,
+                         frame.environment, input);
+  frame.times.prepare = watch.lap();
+  return frame;
+}
+
+ColorTags color_tags(const Frame& frame) {
+  const Imf::Header& header = frame.part().header;
+  ColorTags tags;
+  tags.path = frame.input;
+  if (const auto* id = header.findTypedAttribute<Imf::StringAttribute>("colorInteropID")) {
+    tags.interop_id = id->value();
+  }
+  if (const auto* flag = header.findTypedAttribute<Imf::IntAttribute>("acesImageContainerFlag")) {
+    tags.aces_container = flag->value() == 1;
+  }
+  if (const auto* c = header.findTypedAttribute<Imf::ChromaticitiesAttribute>("chromaticities")) {
+    const Imf::Chromaticities& v = c->value();
+    tags.chromaticities = {v.red.x,  v.red.y,  v.green.x, v.green.y,
+                           v.blue.x, v.blue.y, v.white.x, v.white.y};
+  }
+  return tags;
+}
+
+}  // namespace ssdo

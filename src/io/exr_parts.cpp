@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/exr_parts.h"
+
+#include <ImfChannelList.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
+#include <ImfThreading.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <fstream>
+
+#include "error.h"
+
+namespace fs = std::filesystem;
+
+namespace ssdo {
+namespace {
+
+[[noreturn]] void fail(const fs::path& file, std::string_view what) {
+  throw Error(ExitCode::input, fmt::format("{}: {}", file.string(), what));
+}
+
+Window window(const Imath::Box2i& box) {
+  return {box.min.x, box.min.y, box.max.x + 1, box.max.y + 1};
+}
+
+int lines_per_chunk(Imf::Compression compression) {
+  switch (compression) {
+    case Imf::ZIP_COMPRESSION:
+    case Imf::PXR24_COMPRESSION:
+      return 16;
+    case Imf::PIZ_COMPRESSION:
+    case Imf::B44_COMPRESSION:
+    case Imf::B44A_COMPRESSION:
+    case Imf::DWAA_COMPRESSION:
+      return 32;
+    case Imf::DWAB_COMPRESSION:
+      return 256;
+    default:
+      return 1;
+  }
+}
+
+double pixels_per_chunk(const ExrPart& part) {
+  if (is_tiled(part)) {
+    const Imf::TileDescription& tiles = part.header.tileDescription();
+    return double(tiles.xSize) * double(tiles.ySize);
+  }
+  return double(part.data_window.width()) * lines_per_chunk(part.header.compression());
+}
+
+}  // namespace
+
+void check_is_exr(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (status.type() == fs::file_type::not_found) {
+    fail(file, "does not exist; check the path and the frame number");
+  }
+  if (fs::is_directory(status)) fail(file, "is a folder, not an EXR file; name a file in it");
+  if (fs::status_known(status) && !fs::is_regular_file(status)) {
+    fail(file, "is a device, pipe or socket; an EXR is read out of order, so name a file");
+  }
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    fail(file, fmt::format("cannot be opened: {}; check its permissions",
+                           std::generic_category().message(errno)));
+  }
+  std::array<char, 4> magic = {};
+  stream.read(magic.data(), magic.size());
+  if (stream.gcount() == 0) fail(file, "is empty; render or copy it again");
+  if (magic != std::array<char, 4>{0x76, 0x2f, 0x31, 0x01}) {
+    fail(file,
+         "is not an EXR file, by its first four bytes; convert it, for example with oiiotool");
+  }
+}
+
+ExrPart describe_part(const Imf::MultiPartInputFile& file, int index) {
+  ExrPart part;
+  part.index = index;
+  part.header = file.header(index);
+  const Imf::Header& header = part.header;
+  if (header.hasName()) part.name = header.name();
+  if (header.hasView()) part.view = header.view();
+  part.deep = header.hasType() && Imf::isDeepData(header.type());
+  part.data_window = window(header.dataWindow());
+  part.display_window = window(header.displayWindow());
+  for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+    part.channels.push_back(
+        {c.name(), c.channel().type, c.channel().xSampling, c.channel().ySampling});
+  }
+  return part;
+}
+
+std::string label(const ExrPart& part) {
+  return part.name.empty() ? fmt::format("part {}", part.index)
+                           : fmt::format("part {} '{}'", part.index, part.name);
+}
+
+bool is_tiled(const ExrPart& part) {
+  return part.header.hasType() && Imf::isTiled(part.header.type());
+}
+
+double decoder_bytes(const ExrPart& part) {
+  double bytes_per_pixel = 0;
+  for (const ExrChannel& c : part.channels) bytes_per_pixel += c.type == Imf::HALF ? 2 : 4;
+  return bytes_per_pixel * pixels_per_chunk(part) * 2 * std::max(1, Imf::globalThreadCount());
+}
+
+}  // namespace ssdo

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "io/exr_reader.h"
+
+namespace ssdo {
+
+/// Throws ExitCode::input, saying what `file` is instead, unless it is a readable EXR by its first
+/// bytes. OpenEXR's own messages do not tell a missing file from a folder.
+void check_is_exr(const std::filesystem::path& file);
+
+/// Unpacks the header of a part.
+ExrPart describe_part(const Imf::MultiPartInputFile& file, int index);
+
+/// How messages name a part: "part 2 'normals'".
+std::string label(const ExrPart& part);
+
+bool is_tiled(const ExrPart& part);
+
+/// The memory in which OpenEXR decodes the chunks of a part: every channel of a chunk, two chunks
+/// for each of its threads.
+double decoder_bytes(const ExrPart& part);
+
+}  // namespace ssdo

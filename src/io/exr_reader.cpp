@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/exr_reader.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfTiledInputPart.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "error.h"
+#include "io/exr_parts.h"
+#include "io/one_line.h"
+#include "io/size_guard.h"
+
+namespace ssdo {
+namespace {
+
+using Names = std::span<const std::string>;
+
+[[noreturn]] void fail(const ExrReader& reader, std::string_view what) {
+  throw Error(ExitCode::input, fmt::format("{}: {}", reader.path().string(), what));
+}
+
+const ExrPart& flat_part(const ExrReader& reader, int index) {
+  const int count = int(reader.parts().size());
+  if (index < 0 || index >= count) {
+    fail(reader, fmt::format("has no part {}; its parts are 0 to {}", index, count - 1));
+  }
+  const ExrPart& part = reader.parts()[std::size_t(index)];
+  if (part.deep) {
+    fail(reader, fmt::format("is a deep image ({}); ssdo reads flat images: flatten it first, for "
+                             "example with oiiotool --flatten",
+                             label(part)));
+  }
+  return part;
+}
+
+const ExrChannel& find_channel(const ExrReader& reader, const ExrPart& part,
+                               const std::string& name) {
+  const auto found = std::find_if(part.channels.begin(), part.channels.end(),
+                                  [&](const ExrChannel& c) { return c.name == name; });
+  if (found != part.channels.end()) return *found;
+  fail(reader,
+       fmt::format("has no channel '{}' in {}; ssdo info lists what it has", name, label(part)));
+}
+
+std::size_t stored_bytes(const ExrPart& part, const ExrChannel& channel) {
+  // OpenEXR allows sampling only where it divides the size of the window.
+  return std::size_t(part.data_window.width() / channel.x_sampling) *
+         std::size_t(part.data_window.height() / channel.y_sampling) *
+         (channel.type == Imf::HALF ? 2 : 4);
+}
+
+void check_size(const ExrReader& reader, const ExrPart& part, std::size_t channels) {
+  check_decoded_size(reader.path(), double(part.data_window.area()) * 4.0 * double(channels),
+                     decoder_bytes(part));
+}
+
+void read_pixels(Imf::MultiPartInputFile& file, const ExrPart& part,
+                 const Imf::FrameBuffer& frame_buffer) {
+  if (is_tiled(part)) {
+    Imf::TiledInputPart tiles(file, part.index);
+    tiles.setFrameBuffer(frame_buffer);
+    tiles.readTiles(0, tiles.numXTiles() - 1, 0, tiles.numYTiles() - 1);
+  } else {
+    Imf::InputPart lines(file, part.index);
+    lines.setFrameBuffer(frame_buffer);
+    lines.readPixels(part.data_window.y0, part.data_window.y1 - 1);
+  }
+}
+
+void read_or_fail(const ExrReader& reader, const ExrPart& part,
+                  const Imf::FrameBuffer& frame_buffer) {
+  try {
+    read_pixels(reader.file(), part, frame_buffer);
+  } catch (const std::exception& error) {
+    const char* state = reader.file().partComplete(part.index)
+                            ? "is damaged or cut short"
+                            : "is incomplete: its writing was interrupted";
+    fail(reader, fmt::format("{} ({}: {}); render or copy it again", state, label(part),
+                             one_line(error.what())));
+  }
+}
+
+/// A frame buffer holds one slice per name, so a channel that is asked for twice was read into its
+/// last place only: copies it to the others.
+template <class Pixels>
+void fill_repeated(Names names, std::vector<Pixels>& read) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto last = std::find(names.rbegin(), names.rend(), names[i]);
+    const std::size_t place = std::size_t(names.rend() - last) - 1;
+    if (place != i) read[i] = read[place];
+  }
+}
+
+}  // namespace
+
+ExrReader::ExrReader(std::filesystem::path path) : path_(std::move(path)) {
+  check_is_exr(path_);
+  try {
+    file_ = std::make_unique<Imf::MultiPartInputFile>(path_.c_str());
+    for (int i = 0; i < file_->parts(); ++i) parts_.push_back(describe_part(*file_, i));
+  } catch (const std::exception& error) {
+    fail(*this, fmt::format("is damaged or cut short in its header ({}); render or copy it again",
+                            one_line(error.what())));
+  }
+}
+
+ExrReader::~ExrReader() = default;
+ExrReader::ExrReader(ExrReader&&) noexcept = default;
+
+std::vector<Plane<float>> ExrReader::read(int index, Names names) const {
+  const ExrPart& part = flat_part(*this, index);
+  check_size(*this, part, names.size());
+  std::vector<Plane<float>> planes;
+  Imf::FrameBuffer frame_buffer;
+  for (const std::string& name : names) {
+    const ExrChannel& channel = find_channel(*this, part, name);
+    if (channel.x_sampling != 1 || channel.y_sampling != 1) {
+      fail(*this, fmt::format("channel '{}' of {} is subsampled {}x{}; ssdo needs a value in every "
+                              "pixel: resample it first",
+                              name, label(part), channel.x_sampling, channel.y_sampling));
+    }
+    planes.emplace_back(part.data_window.width(), part.data_window.height());
+    frame_buffer.insert(
+        name, Imf::Slice::Make(Imf::FLOAT, planes.back().pixels.data(), part.header.dataWindow()));
+  }
+  read_or_fail(*this, part, frame_buffer);
+  fill_repeated(names, planes);
+  return planes;
+}
+
+std::vector<StoredChannel> ExrReader::read_stored(int index, Names names) const {
+  const ExrPart& part = flat_part(*this, index);
+  check_size(*this, part, names.size());
+  std::vector<StoredChannel> stored;
+  Imf::FrameBuffer frame_buffer;
+  for (const std::string& name : names) {
+    const ExrChannel& channel = find_channel(*this, part, name);
+    stored.push_back({channel, std::vector<std::byte>(stored_bytes(part, channel))});
+    frame_buffer.insert(
+        name, Imf::Slice::Make(channel.type, stored.back().pixels.data(), part.header.dataWindow(),
+                               0, 0, channel.x_sampling, channel.y_sampling));
+  }
+  read_or_fail(*this, part, frame_buffer);
+  fill_repeated(names, stored);
+  return stored;
+}
+
+}  // namespace ssdo

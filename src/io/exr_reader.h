@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <ImfHeader.h>
+#include <ImfPixelType.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "math/plane.h"
+
+namespace Imf = OPENEXR_IMF_NAMESPACE;
+
+namespace OPENEXR_IMF_INTERNAL_NAMESPACE {
+class MultiPartInputFile;
+}
+
+namespace ssdo {
+
+/// One channel as the header declares it.
+struct ExrChannel {
+  std::string name;  ///< full name as stored, "ViewLayer.Position.X"
+  Imf::PixelType type = Imf::FLOAT;
+  int x_sampling = 1, y_sampling = 1;
+};
+
+/// One part: its header untouched, and what the header says, unpacked.
+struct ExrPart {
+  int index = 0;
+  std::string name;  ///< empty in a single-part file without a name
+  std::string view;  ///< the part's `view` attribute, or empty
+  bool deep = false;
+  Window data_window, display_window;
+  std::vector<ExrChannel> channels;  ///< in the order of the header (sorted by name)
+  Imf::Header header;
+};
+
+/// The pixels of one channel in the type that the file stores, row by row over the data window.
+struct StoredChannel {
+  ExrChannel channel;
+  std::vector<std::byte> pixels;
+};
+
+/// An EXR of any kind that OpenEXR reads: scanline or tiled, one part or many, any windows.
+/// Opening reads the headers only; pixels are read channel by channel when asked for, so that a
+/// frame with a hundred AOVs costs the four that are used.
+/// Errors: ExitCode::input for a file that is missing, is no EXR, or is damaged.
+class ExrReader {
+ public:
+  explicit ExrReader(std::filesystem::path path);
+  ~ExrReader();
+  ExrReader(ExrReader&&) noexcept;
+
+  const std::filesystem::path& path() const { return path_; }
+  const std::vector<ExrPart>& parts() const { return parts_; }
+
+  /// The named channels of a part as float planes over the part's data window; half and uint
+  /// values are converted. Tiled parts give their full-resolution level. A deep part, a channel
+  /// that does not exist or one that is subsampled is an error.
+  std::vector<Plane<float>> read(int part, std::span<const std::string> channels) const;
+
+  /// The named channels of a part, bit for bit as stored. Subsampled channels are allowed.
+  std::vector<StoredChannel> read_stored(int part, std::span<const std::string> channels) const;
+
+  /// The open file, for copying whole parts without decoding them.
+  Imf::MultiPartInputFile& file() const { return *file_; }
+
+ private:
+  std::filesystem::path path_;
+  std::unique_ptr<Imf::MultiPartInputFile> file_;
+  std::vector<ExrPart> parts_;
+};
+
+}  // namespace ssdo

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/exr_writer.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfStringAttribute.h>
+#include <fmt/format.h>
+#include <half.h>
+
+#include <algorithm>
+
+#include "error.h"
+#include "io/checked_file.h"
+#include "io/exr_copy.h"
+#include "io/exr_stream.h"
+#include "io/one_line.h"
+
+namespace ssdo {
+namespace {
+
+// A whole number of chunks of every compression (1, 16, 32 or 256 lines), and enough of them to
+// keep the thread pool busy.
+constexpr int kStripRows = 256;
+
+constexpr float kLargestHalf = 65504.0f;
+
+const ExrPart& part_of(const ExrOutput& output) {
+  return output.input->parts()[std::size_t(output.part)];
+}
+
+bool is_lossy(Imf::Compression compression) {
+  switch (compression) {
+    case Imf::PXR24_COMPRESSION:
+    case Imf::B44_COMPRESSION:
+    case Imf::B44A_COMPRESSION:
+    case Imf::DWAA_COMPRESSION:
+    case Imf::DWAB_COMPRESSION:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// A channel of the input on its way into the output.
+struct KeptChannel {
+  std::string name;  ///< in the output
+  StoredChannel stored;
+};
+
+bool has_plane(const ExrOutput& output, const std::string& name) {
+  return std::any_of(output.planes.begin(), output.planes.end(),
+                     [&](const ExrPlane& plane) { return plane.name == name; });
+}
+
+bool has_channel(const ExrPart& part, const std::string& name) {
+  return part.header.channels().findChannel(name) != nullptr;
+}
+
+std::vector<KeptChannel> kept_channels(const ExrOutput& output) {
+  if (!output.keep_channels) return {};
+  const ExrPart& part = part_of(output);
+  std::vector<std::string> from, to;
+  for (const ExrChannel& channel : part.channels) {
+    const bool taken = has_plane(output, channel.name);
+    if (taken && has_channel(part, "input." + channel.name)) continue;
+    from.push_back(channel.name);
+    to.push_back(taken ? "input." + channel.name : channel.name);
+  }
+  std::vector<StoredChannel> stored = output.input->read_stored(output.part, from);
+  std::vector<KeptChannel> kept;
+  for (std::size_t i = 0; i < to.size(); ++i) kept.push_back({to[i], std::move(stored[i])});
+  return kept;
+}
+
+Imf::Header header_for(const ExrOutput& output, const std::vector<KeptChannel>& kept) {
+  Imf::Header header = part_of(output).header;
+  for (const char* storage : {"tiles", "chunkCount", "version", "maxSamplesPerPixel"}) {
+    header.erase(storage);
+  }
+  header.setType(Imf::SCANLINEIMAGE);
+  header.lineOrder() = Imf::INCREASING_Y;
+  header.compression() = compression_for(output);
+  header.channels() = Imf::ChannelList();
+  for (const auto& [name, stored] : kept) {
+    header.channels().insert(name, part_of(output).header.channels()[stored.channel.name]);
+  }
+  for (const ExrPlane& plane : output.planes) {
+    header.channels().insert(plane.name, Imf::Channel(plane.type));
+  }
+  for (const auto& [name, text] : output.attributes) {
+    header.erase(name);
+    header.insert(name, Imf::StringAttribute(text));
+  }
+  return header;
+}
+
+std::vector<Imf::Header> headers_for(const ExrOutput& output,
+                                     const std::vector<KeptChannel>& kept) {
+  std::vector<Imf::Header> headers;
+  for (const ExrPart& part : output.input->parts()) {
+    if (part.index == output.part)
+      headers.push_back(header_for(output, kept));
+    else if (output.keep_channels)
+      headers.push_back(part.header);
+  }
+  return headers;
+}
+
+/// Clamps and rounds one strip of a plane. Returns how many values were clamped.
+std::size_t round_to_half(std::span<const float> values, std::vector<half>& strip) {
+  strip.resize(values.size());
+  std::size_t clamped = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const float value = values[i];
+    clamped += std::abs(value) > kLargestHalf;  // false for NaN, which stays
+    strip[i] = half(value > kLargestHalf ? kLargestHalf : std::max(value, -kLargestHalf));
+  }
+  return clamped;
+}
+
+std::size_t write_strips(Imf::OutputPart& part, const ExrOutput& output,
+                         const std::vector<KeptChannel>& kept) {
+  const Imath::Box2i window = part.header().dataWindow();
+  const int width = part_of(output).data_window.width();
+  std::vector<std::vector<half>> strips(output.planes.size());
+  std::size_t clamped = 0;
+  for (int y = window.min.y; y <= window.max.y; y += kStripRows) {
+    const int rows = std::min(kStripRows, window.max.y + 1 - y);
+    const Imath::Box2i strip_window({window.min.x, y}, {window.max.x, y + rows - 1});
+    Imf::FrameBuffer frame_buffer;
+    for (const auto& [name, stored] : kept) {
+      frame_buffer.insert(name,
+                          Imf::Slice::Make(stored.channel.type, stored.pixels.data(), window, 0, 0,
+                                           stored.channel.x_sampling, stored.channel.y_sampling));
+    }
+    for (std::size_t i = 0; i < output.planes.size(); ++i) {
+      const ExrPlane& plane = output.planes[i];
+      const float* values = &(*plane.pixels)(0, y - window.min.y);
+      if (plane.type == Imf::HALF) {
+        clamped += round_to_half({values, std::size_t(rows) * std::size_t(width)}, strips[i]);
+        frame_buffer.insert(plane.name,
+                            Imf::Slice::Make(Imf::HALF, strips[i].data(), strip_window));
+      } else {
+        frame_buffer.insert(plane.name, Imf::Slice::Make(Imf::FLOAT, values, strip_window));
+      }
+    }
+    part.setFrameBuffer(frame_buffer);
+    part.writePixels(rows);
+  }
+  return clamped;
+}
+
+void check_planes(const ExrOutput& output) {
+  const Window window = part_of(output).data_window;
+  for (const ExrPlane& plane : output.planes) {
+    if (plane.pixels->width == window.width() && plane.pixels->height == window.height()) continue;
+    throw Error(ExitCode::failed,
+                fmt::format("{}: plane '{}' is {}x{}, the data window of part {} is {}x{}; this "
+                            "is a defect in ssdo: please report it",
+                            output.input->path().string(), plane.name, plane.pixels->width,
+                            plane.pixels->height, output.part, window.width(), window.height()));
+  }
+}
+
+std::size_t write_parts(CheckedFile& checked, const SafeFile& file, const ExrOutput& output,
+                        const std::vector<KeptChannel>& kept) {
+  const std::vector<Imf::Header> headers = headers_for(output, kept);
+  ExrStream stream(checked, file.temporary().string());
+  Imf::MultiPartOutputFile exr(stream, headers.data(), int(headers.size()));
+  if (!output.keep_channels) {
+    Imf::OutputPart part(exr, 0);
+    return write_strips(part, output, kept);
+  }
+  std::size_t clamped = 0;
+  for (const ExrPart& part : output.input->parts()) {
+    if (part.index == output.part) {
+      Imf::OutputPart written(exr, part.index);
+      clamped = write_strips(written, output, kept);
+    } else {
+      copy_part(*output.input, part, exr);
+    }
+  }
+  return clamped;
+}
+
+}  // namespace
+
+Imf::Compression compression_for(const ExrOutput& output) {
+  const Imf::Compression wanted = output.compression.value_or(part_of(output).header.compression());
+  const bool may_lose = output.compression && !output.keep_channels;
+  return is_lossy(wanted) && !may_lose ? Imf::ZIP_COMPRESSION : wanted;
+}
+
+std::size_t write_exr(const SafeFile& file, const ExrOutput& output) {
+  check_planes(output);
+  const std::vector<KeptChannel> kept = kept_channels(output);
+  CheckedFile checked(file);
+  std::size_t clamped = 0;
+  try {
+    clamped = write_parts(checked, file, output, kept);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    if (checked.failed()) checked.close();
+    throw Error(ExitCode::output, fmt::format("{}: cannot be written as EXR ({})",
+                                              file.target().string(), one_line(error.what())));
+  }
+  // Reports also what OpenEXR's destructors, which write the offset tables, have swallowed.
+  checked.close();
+  return clamped;
+}
+
+}  // namespace ssdo

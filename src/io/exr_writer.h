@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <ImfCompression.h>
+#include <ImfPixelType.h>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/exr_reader.h"
+#include "io/safe_file.h"
+#include "math/plane.h"
+
+namespace ssdo {
+
+/// A channel to write: float pixels over the data window, rounded to `type` (half or float).
+struct ExrPlane {
+  std::string name;
+  Imf::PixelType type = Imf::HALF;
+  const Plane<float>* pixels = nullptr;
+};
+
+/// What goes into an output EXR.
+struct ExrOutput {
+  const ExrReader* input = nullptr;  ///< whose headers are kept
+  int part = 0;                      ///< the part of the input that the planes were made from
+  std::vector<ExrPlane> planes;      ///< all over the data window of that part
+  bool keep_channels = false;        ///< pass the other channels and parts through unchanged
+  std::optional<Imf::Compression> compression;                  ///< the input's where not given
+  std::vector<std::pair<std::string, std::string>> attributes;  ///< string attributes to add
+};
+
+/// What the written part is compressed with. A compression that the input brings along is kept if
+/// it is lossless: one that is lossy suits pictures, not positions and visibilities, so ZIP takes
+/// its place. A lossy `output.compression` is used, except where channels of the input are kept:
+/// they keep their bits, ids above all, so ZIP takes its place there too.
+Imf::Compression compression_for(const ExrOutput& output);
+
+/// Writes `output` to the temporary of `file`; the caller commits it.
+///
+/// The header of the input's part is kept: windows, pixel aspect, view, chromaticities and every
+/// attribute that does not describe the old file's storage. Without `keep_channels` the file has
+/// that one part, in scanlines. With it, the part's other channels keep type and bits (of a tiled
+/// part, its full-resolution level), and the other parts are copied without being decoded.
+///
+/// A kept channel whose name a plane takes moves to "input.NAME". If the input has an "input.NAME"
+/// already, it is an earlier output of this tool: its "input.NAME" stays, and its NAME, an earlier
+/// product, is dropped.
+///
+/// Half values beyond ±65504 are clamped. Returns how many were.
+/// Errors: ExitCode::output if the disk is full or the file cannot be written, ExitCode::input if
+/// what is kept of the input cannot be read.
+std::size_t write_exr(const SafeFile& file, const ExrOutput& output);
+
+}  // namespace ssdo

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/image_file.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "error.h"
+#include "io/checked_file.h"
+#include "io/one_line.h"
+#include "io/size_guard.h"
+
+namespace fs = std::filesystem;
+
+namespace ssdo {
+namespace {
+
+[[noreturn]] void fail(ExitCode code, const fs::path& file, std::string_view what) {
+  throw Error(code, fmt::format("{}: {}", file.string(), what));
+}
+
+std::string ending(const fs::path& path) {
+  std::string text = path.extension().string();
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return text;
+}
+
+bool is_jpeg(const fs::path& path) { return ending(path) == ".jpg" || ending(path) == ".jpeg"; }
+
+void check_exists(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) {
+    fail(ExitCode::input, path, "does not exist; check the path");
+  }
+  if (fs::is_directory(status)) {
+    fail(ExitCode::input, path, "is a folder, not an image; name a file in it");
+  }
+}
+
+std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& path) {
+  check_exists(path);
+  OIIO::ImageSpec as_stored;
+  as_stored.attribute("oiio:UnassociatedAlpha", 1);
+  as_stored.attribute("oiio:RawColor", 1);
+  auto image = OIIO::ImageInput::open(path.string(), &as_stored);
+  if (!image) {
+    fail(ExitCode::input, path,
+         fmt::format("cannot be read as an image ({}); check the file or convert it to EXR",
+                     one_line(OIIO::geterror())));
+  }
+  return image;
+}
+
+/// Interleaved values as unsigned integers of the whole range of T.
+template <class T>
+std::vector<std::byte> quantize(const ImageSpec& spec, int channels,
+                                std::span<const float> values) {
+  constexpr float kLargest = float(std::numeric_limits<T>::max());
+  std::vector<std::byte> bytes(std::size_t(spec.width) * spec.height * channels * sizeof(T));
+  T* out = reinterpret_cast<T*>(bytes.data());
+  for (std::size_t i = 0; i < values.size(); i += std::size_t(spec.channels)) {
+    for (int c = 0; c < channels; ++c) {
+      const float value = values[i + std::size_t(c)];
+      const float clamped = value > 0 ? std::min(value, 1.0f) : 0.0f;  // NaN becomes 0
+      *out++ = T(clamped * kLargest + 0.5f);
+    }
+  }
+  return bytes;
+}
+
+OIIO::ImageSpec stored_spec(const ImageSpec& spec, const fs::path& target) {
+  const bool jpeg = is_jpeg(target);
+  OIIO::ImageSpec stored(spec.width, spec.height, jpeg ? std::min(spec.channels, 3) : spec.channels,
+                         spec.bits == 16 && !jpeg ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
+  stored.attribute("oiio:UnassociatedAlpha", 1);
+  stored.attribute("PixelAspectRatio", spec.pixel_aspect);
+  if (jpeg) {
+    stored.attribute("Compression", "jpeg:95");
+    stored.attribute("jpeg:subsampling", "4:4:4");
+  }
+  return stored;
+}
+
+/// The bytes of the encoded file.
+std::vector<unsigned char> encode(const OIIO::ImageSpec& spec, const fs::path& target,
+                                  const std::vector<std::byte>& pixels) {
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  auto image = OIIO::ImageOutput::create(target.string(), &memory);
+  if (!image) {
+    fail(ExitCode::output, target,
+         fmt::format("cannot be written ({}); use .png, .jpg or .tif", one_line(OIIO::geterror())));
+  }
+  if (!image->open(target.string(), spec) || !image->write_image(spec.format, pixels.data()) ||
+      !image->close()) {
+    fail(
+        ExitCode::output, target,
+        fmt::format("cannot be encoded ({}); use another image kind", one_line(image->geterror())));
+  }
+  return bytes;
+}
+
+}  // namespace
+
+bool is_display_image(const fs::path& path) {
+  const std::string kind = ending(path);
+  return kind == ".png" || kind == ".tif" || kind == ".tiff" || is_jpeg(path);
+}
+
+Plane<glm::vec3> read_image(const fs::path& path) {
+  auto image = open_image(path);
+  const OIIO::ImageSpec& spec = image->spec();
+  if (spec.deep || spec.depth > 1 || spec.nchannels < 1) {
+    fail(ExitCode::input, path, "is not a flat image (it is deep, a volume or has no channels)");
+  }
+  const int channels = spec.nchannels < 3 ? 1 : 3;
+  check_decoded_size(path, double(spec.width) * spec.height * (sizeof(glm::vec3) + 4.0 * channels));
+  std::vector<float> values(std::size_t(spec.width) * spec.height * channels);
+  if (!image->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data())) {
+    fail(ExitCode::input, path,
+         fmt::format("is damaged or cut short ({}); copy it again", one_line(image->geterror())));
+  }
+  Plane<glm::vec3> plane(spec.width, spec.height);
+  const float* value = values.data();
+  for (glm::vec3& pixel : plane.pixels) {
+    pixel = channels == 1 ? glm::vec3(*value) : glm::vec3(value[0], value[1], value[2]);
+    value += channels;
+  }
+  return plane;
+}
+
+void write_image(const SafeFile& file, const ImageSpec& spec, std::span<const float> values) {
+  const OIIO::ImageSpec stored = stored_spec(spec, file.target());
+  const auto pixels = stored.format == OIIO::TypeDesc::UINT16
+                          ? quantize<std::uint16_t>(spec, stored.nchannels, values)
+                          : quantize<std::uint8_t>(spec, stored.nchannels, values);
+  const std::vector<unsigned char> bytes = encode(stored, file.target(), pixels);
+  CheckedFile checked(file);
+  checked.write(bytes.data(), bytes.size());
+  checked.close();
+}
+
+}  // namespace ssdo

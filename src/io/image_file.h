@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "io/safe_file.h"
+#include "math/plane.h"
+
+namespace ssdo {
+
+/// Reads the first three channels (or one, as grey) of any image that OpenImageIO reads: EXR, HDR,
+/// TIFF, PNG. Values are taken as stored, without a colour transform.
+/// Errors: ExitCode::input.
+Plane<glm::vec3> read_image(const std::filesystem::path& path);
+
+/// What a display image is stored as.
+struct ImageSpec {
+  int width = 0, height = 0;
+  int channels = 3;        ///< 1 grey, 3 RGB, 4 RGB and unassociated alpha
+  int bits = 8;            ///< 8 or 16 per channel; JPEG is always 8
+  float pixel_aspect = 1;  ///< width of a pixel over its height
+};
+
+/// Whether the ending of `path` is an image kind that write_image can make: .png .jpg .jpeg .tif
+/// .tiff, in any case.
+bool is_display_image(const std::filesystem::path& path);
+
+/// Writes interleaved values in 0..1 (others are clamped, NaN becomes 0) to the temporary of
+/// `file`; the caller commits it. The kind follows the ending of the target. JPEG drops alpha. The
+/// same values give the same bytes on every run.
+/// Errors: ExitCode::output, also when the disk is full.
+void write_image(const SafeFile& file, const ImageSpec& spec, std::span<const float> values);
+
+}  // namespace ssdo

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+namespace ssdo {
+
+/// The file that a path stands for once symbolic links are followed, also when that file does not
+/// exist yet: an output given as a link is written through it, as cp does, and the link stays.
+/// Unlike std::filesystem::canonical, the folder is left as the user wrote it.
+std::filesystem::path follow_links(std::filesystem::path path);
+
+/// A name for a temporary beside `target`: hidden, unlike any other, with the target's extension
+/// (libraries choose the format by it), and short enough for the file system.
+std::filesystem::path temporary_beside(const std::filesystem::path& target);
+
+}  // namespace ssdo

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace ssdo {
+
+/// A rectangle of whole pixels, x in [x0, x1) and y in [y0, y1), y pointing down, in the pixel
+/// coordinates that the display window and the data window of an EXR share.
+struct Window {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+  std::size_t area() const { return std::size_t(width()) * std::size_t(height()); }
+  bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+  bool operator==(const Window&) const = default;
+};
+
+/// A row-major rectangle of values. (0, 0) is the upper left pixel of the window that the plane
+/// was read from or is written to; the window itself is kept by whoever owns the plane.
+template <class T>
+struct Plane {
+  int width = 0, height = 0;
+  std::vector<T> pixels;
+
+  Plane() = default;
+  Plane(int w, int h, T value = T{})
+      : width(w), height(h), pixels(std::size_t(w) * std::size_t(h), value) {}
+
+  bool empty() const { return pixels.empty(); }
+  std::size_t size() const { return pixels.size(); }
+  std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(width) + x; }
+  T& operator()(int x, int y) { return pixels[index(x, y)]; }
+  const T& operator()(int x, int y) const { return pixels[index(x, y)]; }
+  T& operator[](std::size_t i) { return pixels[i]; }
+  const T& operator[](std::size_t i) const { return pixels[i]; }
+};
+
+}  // namespace ssdo

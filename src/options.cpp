@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "error.h"
+#include "math/number.h"
+
+namespace ssdo {
+namespace {
+
+/// Texts that become values of other types once the line has been read.
+struct RawOptions {
+  std::vector<std::string> aov, save;
+  std::string depth_kind = "planar", env_up = "auto", radius = "auto", filter = "geometry";
+  std::string pixel_type = "half", compression, on_error = "stop", progress = "auto";
+  std::optional<double> background_depth;
+};
+
+[[noreturn]] void throw_usage(const std::string& message) { throw Error(ExitCode::usage, message); }
+
+double parse_positive(const std::string& option, std::string_view text) {
+  const auto value = parse_number(text);
+  if (!value || *value <= 0)
+    throw_usage(fmt::format("{}: '{}' is no positive number", option, text));
+  return *value;
+}
+
+void add_input(CLI::App& app, Options& o, RawOptions& raw) {
+  app.add_option(
+         "--aov", raw.aov,
+         "ROLE=LAYER or ROLE=FILE:LAYER, roles position normal albedo depth alpha beauty radiance")
+      ->type_name("ROLE=LAYER")
+      ->allow_extra_args(false)
+      ->group("Input");
+  app.add_option("--part", o.input.part, "look for layers in this part only")
+      ->type_name("NAME|N")
+      ->group("Input");
+  app.add_option("--depth-kind", raw.depth_kind,
+                 "what a depth layer measures: planar, ray, inverse, normalized:NEAR,FAR")
+      ->type_name("KIND")
+      ->group("Input");
+  app.add_option("--background-depth", raw.background_depth,
+                 "depth from which on a pixel is background")
+      ->type_name("Z")
+      ->check(CLI::PositiveNumber)
+      ->group("Input");
+}
+
+void add_camera(CLI::App& app, Options& o) {
+  app.add_option("--camera", o.camera.file, "camera as JSON; without it, fitted from P")
+      ->type_name("FILE.json")
+      ->group("Camera");
+  auto* fov =
+      app.add_option("--fov", o.camera.fov, "horizontal field of view, where P does not tell")
+          ->type_name("DEG")
+          ->check(CLI::Range(0.01, 179.0))
+          ->group("Camera");
+  app.add_option("--ortho", o.camera.ortho, "width of an orthographic frame in scene units")
+      ->type_name("WIDTH")
+      ->check(CLI::PositiveNumber)
+      ->excludes(fov)
+      ->group("Camera");
+}
+
+void add_light(CLI::App& app, Options& o, RawOptions& raw) {
+  app.add_option("--env", o.light.env, "lat-long map, or a constant colour")
+      ->type_name("FILE|R,G,B")
+      ->capture_default_str()
+      ->group("Light");
+  app.add_option("--env-rotate", o.light.rotate_degrees,
+                 "turn the map about the up axis, counter-clockwise from above")
+      ->type_name("DEG")
+      ->capture_default_str()
+      ->check(CLI::Range(-1e6, 1e6))
+      ->group("Light");
+  app.add_option("--env-up", raw.env_up, "auto, y or z; auto is z for Blender's files, else y")
+      ->type_name("AXIS")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "y", "z"}))
+      ->group("Light");
+  app.add_option("--env-exposure", o.light.exposure_stops, "brighten the environment")
+      ->type_name("STOPS")
+      ->capture_default_str()
+      ->check(CLI::Range(-100.0, 100.0))
+      ->group("Light");
+}
+
+void add_model(CLI::App& app, Options& o, RawOptions& raw) {
+  app.add_option("--method", o.model.method, "estimator; see --list-methods")
+      ->type_name("NAME")
+      ->capture_default_str()
+      ->group("Model");
+  app.add_option("--radius", raw.radius,
+                 "reach of occluders in scene units; auto: chosen from the frame")
+      ->type_name("R|auto")
+      ->capture_default_str()
+      ->group("Model");
+  app.add_option("--bounces", o.model.bounces, "bounces of light between surfaces")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 8))
+      ->group("Model");
+  app.add_option("--seed", o.model.seed, "of the sampling pattern")
+      ->type_name("N")
+      ->capture_default_str()
+      ->group("Model");
+  app.add_option("--set", o.model.set, "a parameter of the method; see --list-methods")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false)
+      ->group("Model");
+  app.add_option("--filter", raw.filter, "none or geometry")
+      ->type_name("NAME")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"none", "geometry"}))
+      ->group("Model");
+}
+
+void add_output(CLI::App& app, Options& o, RawOptions& raw) {
+  app.add_option("-o,--output", o.output.files,
+                 "output, repeatable: .exr holds all products, .png .jpg .tif the composite")
+      ->type_name("OUTPUT")
+      ->allow_extra_args(false)
+      ->group("Output");
+  app.add_option("--products", o.output.products,
+                 "of ao, direct, bounce, composite; default: all that the inputs allow")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->group("Output");
+  app.add_option("--save", raw.save, "a product in a file of its own, repeatable")
+      ->type_name("PRODUCT=FILE")
+      ->allow_extra_args(false)
+      ->group("Output");
+  app.add_option("--pixel-type", raw.pixel_type, "of EXR outputs: half or float")
+      ->type_name("TYPE")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"half", "float"}))
+      ->group("Output");
+  app.add_option(
+         "--compression", raw.compression,
+         "of EXR outputs: none rle zips zip piz pxr24 b44 b44a dwaa dwab; default: the input's")
+      ->type_name("NAME")
+      ->group("Output");
+  app.add_option("--bits", o.output.bits, "per channel of PNG and TIFF outputs: 8 or 16")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(CLI::IsMember({8, 16}))
+      ->group("Output");
+  app.add_flag("--keep-channels", o.output.keep_channels,
+               "pass the input's other channels and parts through")
+      ->group("Output");
+  app.add_flag("--overwrite", o.output.policy.overwrite, "replace outputs that exist")
+      ->group("Output");
+  app.add_flag("--create-dirs", o.output.policy.create_dirs, "make missing folders of outputs")
+      ->group("Output");
+}
+
+void add_color(CLI::App& app, Options& o) {
+  app.add_option("--ocio", o.color.ocio, "OpenColorIO config; over $OCIO over the built-in one")
+      ->type_name("FILE")
+      ->group("Colour");
+  app.add_option("--colorspace", o.color.colorspace, "of the input's colours")
+      ->type_name("NAME")
+      ->group("Colour");
+  app.add_option("--display", o.color.display, "display of PNG, JPEG and TIFF outputs")
+      ->type_name("NAME")
+      ->group("Colour");
+  app.add_option("--view", o.color.view, "view of that display")
+      ->type_name("NAME")
+      ->group("Colour");
+  app.add_option("--look", o.color.look, "look applied before the view")
+      ->type_name("NAME")
+      ->group("Colour");
+}
+
+void add_batch(CLI::App& app, Options& o, RawOptions& raw) {
+  app.add_option("--frames", o.batch.frames,
+                 "frames of a sequence: 1001-1010,1020-1030x2; default: all that exist")
+      ->type_name("RANGE")
+      ->group("Batch");
+  app.add_flag("--skip-existing", o.batch.skip_existing,
+               "skip frames whose outputs exist and can be read")
+      ->group("Batch");
+  app.add_option("--on-error", raw.on_error, "stop or continue with the next frame")
+      ->type_name("WHAT")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"stop", "continue"}))
+      ->group("Batch");
+  app.add_option("--progress", raw.progress,
+                 "auto (a bar on a terminal), none, tractor, alfred or openjd")
+      ->type_name("STYLE")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "none", "tractor", "alfred", "openjd"}))
+      ->group("Batch");
+}
+
+void add_say(CLI::App& app, Options& o) {
+  app.add_option("--threads", o.threads,
+                 "over $SSDO_THREADS, $CUE_THREADS, $SLURM_CPUS_PER_TASK; default: all processors")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096))
+      ->group("Resources");
+  app.add_flag("-v,--verbose", o.say.verbose, "say what was found and decided")->group("Say");
+  app.add_flag("-q,--quiet", o.say.quiet, "say nothing but errors")->group("Say");
+  app.add_flag("--dry-run", o.say.dry_run, "say what would be done, and stop")->group("Say");
+  app.add_option("--stats", o.say.stats,
+                 "write times, memory and the plan of every frame; replaced if it exists")
+      ->type_name("FILE.json")
+      ->group("Say");
+  app.set_config("--config", "", "options from a TOML file; the command line wins")
+      ->type_name("FILE.toml")
+      ->group("Say");
+}
+
+void read_depth_kind(const std::string& text, GBufferOptions& out) {
+  static const std::string normalized = "normalized:";
+  if (text == "planar") {
+    out.depth_kind = DepthKind::planar;
+  } else if (text == "ray") {
+    out.depth_kind = DepthKind::ray;
+  } else if (text == "inverse") {
+    out.depth_kind = DepthKind::inverse;
+  } else {
+    const auto comma = text.find(',');
+    const bool shaped = text.starts_with(normalized) && comma != std::string::npos;
+    const auto near = shaped
+                          ? parse_number(text.substr(normalized.size(), comma - normalized.size()))
+                          : std::nullopt;
+    const auto far = shaped ? parse_number(text.substr(comma + 1)) : std::nullopt;
+    if (!near || !far || *near == *far) {
+      throw_usage(
+          fmt::format("--depth-kind {}: expected planar, ray, inverse or normalized:NEAR,FAR "
+                      "in scene units",
+                      text));
+    }
+    out.depth_kind = DepthKind::normalized;
+    out.depth_near = float(*near);
+    out.depth_far = float(*far);
+  }
+}
+
+Imf::Compression read_compression(const std::string& name) {
+  static const std::vector<std::pair<std::string, Imf::Compression>> names = {
+      {"none", Imf::NO_COMPRESSION},   {"rle", Imf::RLE_COMPRESSION},
+      {"zips", Imf::ZIPS_COMPRESSION}, {"zip", Imf::ZIP_COMPRESSION},
+      {"piz", Imf::PIZ_COMPRESSION},   {"pxr24", Imf::PXR24_COMPRESSION},
+      {"b44", Imf::B44_COMPRESSION},   {"b44a", Imf::B44A_COMPRESSION},
+      {"dwaa", Imf::DWAA_COMPRESSION}, {"dwab", Imf::DWAB_COMPRESSION}};
+  for (const auto& [known, compression] : names) {
+    if (known == name) return compression;
+  }
+  throw_usage(fmt::format(
+      "--compression {}: expected none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab",
+      name));
+}
+
+SaveRequest read_save(const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+    throw_usage(fmt::format("--save {}: expected PRODUCT=FILE", text));
+  }
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+/// Turns texts into values and refuses what does not fit together.
+void finish(Options& o, const RawOptions& raw, bool depth_kind_given) {
+  for (const std::string& text : raw.aov) o.input.aovs.push_back(parse_layer_request(text));
+  for (const std::string& text : raw.save) o.output.saves.push_back(read_save(text));
+  if (depth_kind_given) read_depth_kind(raw.depth_kind, o.input.gbuffer);
+  if (raw.background_depth) o.input.gbuffer.background_depth = float(*raw.background_depth);
+  if (raw.env_up != "auto") o.light.up = raw.env_up == "z" ? UpAxis::z : UpAxis::y;
+  if (raw.radius != "auto") o.model.radius = parse_positive("--radius", raw.radius);
+  o.model.filter = raw.filter == "geometry";
+  o.output.pixel_type = raw.pixel_type == "half" ? Imf::HALF : Imf::FLOAT;
+  if (!raw.compression.empty()) o.output.compression = read_compression(raw.compression);
+  o.batch.on_error = raw.on_error == "stop" ? OnError::stop : OnError::keep_going;
+  o.batch.progress = raw.progress == "none"      ? ProgressStyle::none
+                     : raw.progress == "tractor" ? ProgressStyle::tractor
+                     : raw.progress == "alfred"  ? ProgressStyle::alfred
+                     : raw.progress == "openjd"  ? ProgressStyle::openjd
+                                                 : ProgressStyle::automatic;
+  if (o.command == Command::list_methods) return;
+  if (o.input_file.empty()) throw_usage("no INPUT given; see ssdo --help");
+  if (o.command == Command::relight && o.output.files.empty() && o.output.saves.empty() &&
+      !o.say.dry_run) {
+    throw_usage(fmt::format("{}: no output given; name one with -o OUTPUT", o.input_file));
+  }
+}
+
+}  // namespace
+
+ParsedOptions parse_options(int argc, const char* const* argv) {
+  ParsedOptions parsed;
+  Options& o = parsed.options;
+  RawOptions raw;
+  CLI::App app{
+      "Puts light back into a rendered frame: occlusion, environment light and bounces from a "
+      "G-buffer.",
+      "ssdo"};
+  app.set_version_flag("--version", std::string("ssdo ") + SSDO_VERSION);
+  app.add_option("INPUT", o.input_file, "multilayer EXR, or a sequence: shot.####.exr")->group("");
+  bool list = false;
+  app.add_flag("--list-methods", list, "print the methods, their products and parameters")
+      ->group("Model");
+  add_input(app, o, raw);
+  add_camera(app, o);
+  add_light(app, o, raw);
+  add_model(app, o, raw);
+  add_output(app, o, raw);
+  add_color(app, o);
+  add_batch(app, o, raw);
+  add_say(app, o);
+  CLI::App* info =
+      app.add_subcommand("info", "say what was found, what would be done and why; write nothing")
+          ->fallthrough();
+  info->add_option("INPUT", o.input_file, "as above")->group("");
+  info->add_flag("--json", o.say.json, "as JSON");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    parsed.print = app.help();
+    return parsed;
+  } catch (const CLI::CallForVersion&) {
+    parsed.print = std::string("ssdo ") + SSDO_VERSION + "\n";
+    return parsed;
+  } catch (const CLI::ParseError& e) {
+    std::string message = e.what();
+    for (char& c : message) c = c == '\n' ? ' ' : c;
+    throw_usage(message + "; see ssdo --help");
+  }
+  if (list) o.command = Command::list_methods;
+  if (info->parsed()) o.command = Command::info;
+  finish(o, raw, app.count("--depth-kind") > 0);
+  return parsed;
+}
+
+}  // namespace ssdo

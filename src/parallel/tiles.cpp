@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "parallel/tiles.h"
+
+#include <ImfThreading.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "error.h"
+
+namespace ssdo {
+namespace {
+
+constexpr int kTileSize = 64;  ///< position and normal of 64 x 64 pixels fill half an L2 cache
+
+std::optional<int> from_environment(const char* name) {
+  const char* value = std::getenv(name);
+  if (!value || !*value) return std::nullopt;
+  const std::string_view text = value;
+  int count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (error != std::errc{} || end != text.data() + text.size() || count < 1) {
+    throw Error(ExitCode::usage,
+                fmt::format("${} is '{}'; expected a positive number of threads", name, text));
+  }
+  return count;
+}
+
+/// The quota of control groups v2, rounded up: "200000 100000" are two processors.
+std::optional<int> from_control_group() {
+  std::ifstream in("/sys/fs/cgroup/cpu.max");
+  double quota = 0, period = 0;
+  if (!(in >> quota >> period) || quota <= 0 || period <= 0) return std::nullopt;
+  return std::max(1, int(std::ceil(quota / period)));
+}
+
+int from_affinity() {
+  cpu_set_t set;
+  return sched_getaffinity(0, sizeof set, &set) == 0 ? std::max(1, CPU_COUNT(&set)) : 1;
+}
+
+}  // namespace
+
+void for_each_tile(int width, int height, const std::function<void(const Tile&)>& work,
+                   const TileProgress& progress) {
+  const int columns = (width + kTileSize - 1) / kTileSize;
+  const int rows = (height + kTileSize - 1) / kTileSize;
+  const std::size_t count = std::size_t(columns) * std::size_t(rows);
+  std::mutex mutex;
+  std::size_t done = 0;
+  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
+    const int x0 = int(i % std::size_t(columns)) * kTileSize;
+    const int y0 = int(i / std::size_t(columns)) * kTileSize;
+    work({x0, y0, std::min(x0 + kTileSize, width), std::min(y0 + kTileSize, height)});
+    if (!progress) return;
+    const std::lock_guard lock(mutex);
+    progress(++done, count);
+  });
+}
+
+void for_each_row(int height, const std::function<void(int y)>& work) {
+  tbb::parallel_for(0, height, work);
+}
+
+int choose_thread_count(int requested) {
+  if (requested > 0) return requested;
+  for (const char* name : {"SSDO_THREADS", "CUE_THREADS", "SLURM_CPUS_PER_TASK"}) {
+    if (const auto count = from_environment(name)) return *count;
+  }
+  const int processors = from_affinity();
+  return std::min(processors, from_control_group().value_or(processors));
+}
+
+struct ThreadLimit::Control {
+  tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(int count)
+    : control_(new Control{{tbb::global_control::max_allowed_parallelism, std::size_t(count)}}) {
+  // OpenEXR counts helpers beside the calling thread: 0 makes it work alone.
+  OPENEXR_IMF_NAMESPACE::setGlobalThreadCount(count == 1 ? 0 : count);
+  OIIO::attribute("threads", count);
+  OIIO::attribute("exr_threads", count == 1 ? -1 : count);
+}
+
+ThreadLimit::~ThreadLimit() { delete control_; }
+
+}  // namespace ssdo

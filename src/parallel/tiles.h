@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+namespace ssdo {
+
+/// Rows [y0, y1) and columns [x0, x1) that one task works on.
+struct Tile {
+  int x0, y0, x1, y1;
+};
+
+/// Told after each finished tile how many there are and how many are done. May be called from any
+/// thread, never from two at once.
+using TileProgress = std::function<void(std::size_t done, std::size_t count)>;
+
+/// Calls `work` once for each tile of a picture, from as many threads as ThreadLimit allows. What
+/// a tile writes must depend on its pixels alone, never on the order of tiles.
+void for_each_tile(int width, int height, const std::function<void(const Tile&)>& work,
+                   const TileProgress& progress = {});
+
+/// Calls `work` once for each row.
+void for_each_row(int height, const std::function<void(int y)>& work);
+
+/// How many threads to use: `requested` if positive, else $SSDO_THREADS, else $CUE_THREADS, else
+/// $SLURM_CPUS_PER_TASK, else the CPU quota of the control group, else the processors that this
+/// process may run on. Errors: ExitCode::usage for a variable that is no positive number.
+int choose_thread_count(int requested);
+
+/// Holds the whole process (our loops, OpenEXR and OpenImageIO) to `count` threads while it lives.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int count);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  struct Control;
+  Control* control_;
+};
+
+}  // namespace ssdo

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "compose.h"
+#include "display_image.h"
+#include "error.h"
+#include "filters/geometry_filter.h"
+#include "io/exr_writer.h"
+#include "io/image_file.h"
+#include "io/safe_file.h"
+#include "sequence.h"
+#include "stopwatch.h"
+
+namespace ssdo {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_exr(const fs::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return ending == ".exr";
+}
+
+/// The product that an image file without a --save holds.
+std::string product_of_image(const Target& target, const Plan& plan) {
+  if (target.product) return *target.product;
+  if (plan.composite) return "composite";
+  if (plan.write.size() == 1) return plan.write[0];
+  throw Error(ExitCode::layer,
+              fmt::format("{}: there is no composite to show (it needs an albedo); name a "
+                          "product with --save PRODUCT={}",
+                          target.path, target.path));
+}
+
+void write_exr_target(const SafeFile& file, const Target& target, const Options& options,
+                      const Frame& frame, const Products& products, Relit& relit) {
+  std::vector<NamedPlane> channels;
+  for (const std::string& product :
+       target.product ? std::vector{*target.product} : frame.plan.write) {
+    for (NamedPlane& plane : product_channels(product, frame.gbuffer, frame.geometry, products)) {
+      channels.push_back(std::move(plane));
+    }
+  }
+  ExrOutput output;
+  output.input = &frame.files[std::size_t(frame.lead().file)];
+  output.part = frame.lead().part;
+  output.keep_channels = options.output.keep_channels;
+  output.compression = options.output.compression;
+  output.attributes = {{"ssdo/version", SSDO_VERSION}, {"ssdo/plan", to_json(frame.plan).dump()}};
+  for (const NamedPlane& plane : channels) {
+    output.planes.push_back({plane.channel, options.output.pixel_type, &plane.pixels});
+  }
+  relit.clamped_values += write_exr(file, output);
+}
+
+}  // namespace
+
+std::vector<Target> targets_of(const OutputOptions& output, std::optional<int> frame) {
+  const auto expand = [&](const std::string& path) {
+    return frame ? expand_pattern(path, *frame) : path;
+  };
+  std::vector<Target> targets;
+  for (const std::string& path : output.files) targets.push_back({expand(path), std::nullopt});
+  for (const SaveRequest& save : output.saves) targets.push_back({expand(save.path), save.product});
+  return targets;
+}
+
+void check_targets(const std::vector<Target>& targets, const std::string& input,
+                   const OutputPolicy& policy) {
+  std::vector<fs::path> seen;
+  for (const Target& target : targets) {
+    if (!is_exr(target.path) && !is_display_image(target.path)) {
+      throw Error(
+          ExitCode::usage,
+          fmt::format("{}: unknown kind of output; use .exr, .png, .jpg or .tif", target.path));
+    }
+    const fs::path full = fs::weakly_canonical(target.path);
+    if (std::find(seen.begin(), seen.end(), full) != seen.end()) {
+      throw Error(ExitCode::usage, fmt::format("{}: named twice as an output", target.path));
+    }
+    seen.push_back(full);
+    std::error_code ignored;
+    if (fs::equivalent(target.path, input, ignored)) {
+      throw Error(ExitCode::output,
+                  fmt::format("{}: is the input; write to another file", target.path));
+    }
+    check_output(target.path, policy);
+  }
+}
+
+Relit relight(const Options& options, Frame& frame, const std::vector<Target>& targets,
+              const OutputPolicy& policy, const std::function<void(double)>& told) {
+  const Plan& plan = frame.plan;
+  Relit relit;
+  std::optional<DisplayTransform>
+      display;  // made first: a view that does not exist costs no estimate
+  for (const Target& target : targets) {
+    if (is_exr(target.path) || !needs_display(product_of_image(target, plan)) || display) continue;
+    display.emplace(options.color, color_tags(frame));
+    relit.notes.push_back(display->description());
+  }
+
+  Stopwatch watch;
+  const double passes = 1.0 + plan.bounces;
+  double finished = 0;
+  const auto progress = [&](std::size_t done, std::size_t count) {
+    told((finished + double(done) / double(count)) / passes * 0.8);
+    if (done == count) finished += 1;
+  };
+  Products products = plan.method->estimate(
+      {frame.geometry, frame.gbuffer.albedo, frame.gbuffer.radiance, frame.environment,
+       plan.products, plan.radius, plan.bounces, options.model.seed, plan.parameters, progress});
+  frame.times.estimate = watch.lap();
+  if (plan.filter) products = filter_geometry(products, frame.geometry, plan.method->pattern_size);
+  frame.times.filter = watch.lap();
+  told(0.85);
+
+  std::vector<std::unique_ptr<SafeFile>> files;
+  for (const Target& target : targets) {
+    files.push_back(std::make_unique<SafeFile>(target.path, policy));
+    if (is_exr(target.path)) {
+      write_exr_target(*files.back(), target, options, frame, products, relit);
+      frame.times.write += watch.lap();
+    } else {
+      const DisplayImage image = make_display_image(product_of_image(target, plan), frame, products,
+                                                    display ? &*display : nullptr);
+      frame.times.compose += watch.lap();
+      write_image(*files.back(), image.spec(options.output.bits), image.values);
+      frame.times.write += watch.lap();
+    }
+    told(0.85 + 0.15 * double(files.size()) / double(targets.size()));
+  }
+  for (const auto& file : files) file->commit();
+  frame.times.write += watch.lap();
+  return relit;
+}
+
+}  // namespace ssdo

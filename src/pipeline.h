@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimators/estimator.h"
+#include "frame.h"
+#include "options.h"
+
+namespace ssdo {
+
+/// A file to write: every product of the plan, or one.
+struct Target {
+  std::string path;
+  std::optional<std::string> product;  ///< --save
+};
+
+/// The files of one frame, with `frame` in the place of their patterns.
+std::vector<Target> targets_of(const OutputOptions& output, std::optional<int> frame);
+
+/// Refuses targets that cannot be written, before any work is done: an unknown kind of file, a
+/// name that is used twice, an input that would be replaced, and what check_output refuses.
+/// `unreadable_is_absent` allows to replace a file that --skip-existing found broken.
+void check_targets(const std::vector<Target>& targets, const std::string& input,
+                   const OutputPolicy& policy);
+
+/// The main job on a frame that has been prepared: estimate, filter, compose, colour, write.
+/// All targets appear, or none. `told` hears how far it is, 0..1.
+struct Relit {
+  std::size_t clamped_values = 0;  ///< beyond the range of half
+  std::vector<std::string> notes;  ///< how colours were transformed
+};
+Relit relight(const Options& options, Frame& frame, const std::vector<Target>& targets,
+              const OutputPolicy& policy, const std::function<void(double)>& told);
+
+}  // namespace ssdo

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "estimators/estimator.h"
+#include "options.h"
+#include "scene/environment.h"
+#include "scene/gbuffer.h"
+#include "scene/geometry.h"
+
+namespace ssdo {
+
+/// What will be computed for a frame, and why.
+struct Plan {
+  const Method* method = nullptr;
+  ParameterValues parameters;
+  ProductSet products;     ///< what the method is asked for
+  bool composite = false;  ///< albedo (direct + bounce)
+  float radius = 0;        ///< scene units
+  int bounces = 0;
+  bool filter = true;
+  std::vector<std::string> write;    ///< products that go to the outputs, in their order there
+  std::vector<std::string> reasons;  ///< one line per decision
+
+  bool writes(std::string_view product) const;
+};
+
+/// Decides from what was asked for and what the frame shows: work that cannot change a product
+/// that is written is left out.
+/// Errors: ExitCode::usage for a product that the method does not make; ExitCode::layer for one
+/// whose layer is missing.
+Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBuffer& gbuffer,
+               const Geometry& geometry, const Environment& environment, const std::string& file);
+
+nlohmann::json to_json(const Plan& plan);
+
+}  // namespace ssdo

@@ -1,0 +1,387 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/camera_fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace ssdo {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr std::size_t kMaxSamples = 20000;
+constexpr int kParameters = 10;  // rotation 3, translation 3, fx, fy, cx, cy
+
+struct Sample {
+  Vector3d p;      ///< recentred and scaled
+  Vector2d pixel;  ///< display-window pixels
+};
+
+/// The samples, and how to undo their normalisation: P = centre + scale * p.
+struct Samples {
+  std::vector<Sample> items;
+  Vector3d centre = Vector3d::Zero();
+  double scale = 1;
+  Eigen::Vector3d spread = Vector3d::Zero();  ///< standard deviations along the principal axes
+  Matrix3d axes = Matrix3d::Identity();       ///< the principal axes, in columns, ascending
+};
+
+/// A camera while it is being fitted, in the axes of computer vision (x right, y down, z forward)
+/// and in the normalised space of the samples.
+struct Model {
+  bool orthographic = false;
+  Matrix3d rotation = Matrix3d::Identity();
+  Vector3d translation = Vector3d::Zero();
+  double fx = 1, fy = 1, cx = 0, cy = 0;
+
+  Vector2d project(const Vector3d& p) const {
+    const Vector3d q = rotation * p + translation;
+    const double w = orthographic ? 1.0 : 1.0 / q.z();
+    return {cx + fx * q.x() * w, cy + fy * q.y() * w};
+  }
+};
+
+Samples collect(const Plane<glm::vec3>& positions, const Plane<unsigned char>& valid,
+                const Window& window) {
+  std::size_t count = 0;
+  for (unsigned char v : valid.pixels) count += v != 0;
+  // An odd stride does not fall in step with the rows.
+  const std::size_t stride = (count / kMaxSamples) | 1;
+
+  Samples samples;
+  std::size_t seen = 0;
+  for (int y = 0; y < positions.height; ++y) {
+    for (int x = 0; x < positions.width; ++x) {
+      if (!valid(x, y) || seen++ % stride != 0) continue;
+      const glm::vec3 p = positions(x, y);
+      samples.items.push_back({{p.x, p.y, p.z}, {window.x0 + x + 0.5, window.y0 + y + 0.5}});
+    }
+  }
+  if (samples.items.empty()) return samples;
+
+  for (const Sample& s : samples.items) samples.centre += s.p;
+  samples.centre /= double(samples.items.size());
+  Matrix3d covariance = Matrix3d::Zero();
+  for (Sample& s : samples.items) {
+    s.p -= samples.centre;
+    covariance += s.p * s.p.transpose();
+  }
+  covariance /= double(samples.items.size());
+  samples.scale = std::sqrt(std::max(covariance.trace() / 3, 1e-300));
+  for (Sample& s : samples.items) s.p /= samples.scale;
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
+  samples.spread = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt() / samples.scale;
+  samples.axes = solver.eigenvectors();
+  return samples;
+}
+
+std::vector<double> distances(const Model& model, const Samples& samples) {
+  std::vector<double> out;
+  out.reserve(samples.items.size());
+  for (const Sample& s : samples.items) out.push_back((model.project(s.p) - s.pixel).norm());
+  return out;
+}
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return 0;
+  const std::size_t k = std::min(values.size() - 1, std::size_t(q * double(values.size())));
+  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(k), values.end());
+  return values[k];
+}
+
+/// The samples that agree with the model to within three robust standard deviations.
+Samples inliers(const Model& model, const Samples& samples) {
+  const auto d = distances(model, samples);
+  const double limit = 3 * 1.4826 * quantile(d, 0.5) + 1e-3;
+  Samples kept = samples;
+  kept.items.clear();
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    if (d[i] <= limit) kept.items.push_back(samples.items[i]);
+  }
+  return kept;
+}
+
+double rms(const Model& model, const Samples& samples) {
+  double sum = 0;
+  for (double d : distances(model, samples)) sum += d * d;
+  return std::sqrt(sum / double(std::max<std::size_t>(1, samples.items.size())));
+}
+
+/// The eigenvector of the smallest eigenvalue: the unit x that makes |A x| least, from A^T A.
+Eigen::VectorXd null_vector(const Eigen::MatrixXd& normal_matrix) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal_matrix).eigenvectors().col(0);
+}
+
+/// Direct linear transform: M (3 x 4) with pixel ~ M (p, 1), split by an RQ decomposition into
+/// K [R | t] with a positive diagonal of K and the points in front.
+Model direct_linear_transform(const Samples& samples, const Window& window) {
+  const Vector2d middle(0.5 * (window.x0 + window.x1), 0.5 * (window.y0 + window.y1));
+  const double half = 0.5 * std::hypot(window.width(), window.height());
+  Eigen::MatrixXd ata = Eigen::MatrixXd::Zero(12, 12);
+  for (const Sample& s : samples.items) {
+    const Eigen::Vector4d h(s.p.x(), s.p.y(), s.p.z(), 1);
+    const Vector2d uv = (s.pixel - middle) / half;
+    Eigen::Matrix<double, 2, 12> rows = Eigen::Matrix<double, 2, 12>::Zero();
+    rows.block<1, 4>(0, 0) = h.transpose();
+    rows.block<1, 4>(0, 8) = -uv.x() * h.transpose();
+    rows.block<1, 4>(1, 4) = h.transpose();
+    rows.block<1, 4>(1, 8) = -uv.y() * h.transpose();
+    ata += rows.transpose() * rows;
+  }
+  const Eigen::VectorXd m = null_vector(ata);
+  Eigen::Matrix<double, 3, 4> matrix;
+  for (int i = 0; i < 3; ++i) matrix.row(i) = m.segment<4>(4 * i).transpose();
+  // w of the centroid is the last entry: the points are in front where it is positive.
+  if (matrix(2, 3) < 0) matrix = -matrix;
+
+  // RQ by the QR of the matrix turned upside down.
+  const Matrix3d flip = Vector3d::Ones().asDiagonal().toDenseMatrix().rowwise().reverse();
+  const Eigen::HouseholderQR<Matrix3d> qr((flip * matrix.leftCols<3>()).transpose());
+  Matrix3d k = flip * Matrix3d(qr.matrixQR().triangularView<Eigen::Upper>()).transpose() * flip;
+  Matrix3d r = flip * Matrix3d(qr.householderQ()).transpose();
+  const Matrix3d sign = k.diagonal().cwiseSign().asDiagonal();
+  k = k * sign;
+  r = sign * r;
+
+  Model model;
+  model.rotation = r;
+  model.translation = k.triangularView<Eigen::Upper>().solve(matrix.col(3));
+  k /= k(2, 2);
+  model.fx = half * k(0, 0);
+  model.fy = half * k(1, 1);
+  model.cx = middle.x() + half * k(0, 2);
+  model.cy = middle.y() + half * k(1, 2);
+  return model;
+}
+
+/// J^T J and J^T r of the reprojection error in the ten parameters.
+struct NormalEquations {
+  Eigen::Matrix<double, kParameters, kParameters> jtj;
+  Eigen::Matrix<double, kParameters, 1> jtr;
+};
+
+NormalEquations linearise(const Model& model, const Samples& samples) {
+  NormalEquations eq;
+  eq.jtj.setZero();
+  eq.jtr.setZero();
+  for (const Sample& s : samples.items) {
+    const Vector3d turned = model.rotation * s.p, q = turned + model.translation;
+    const double iz = 1 / q.z(), x = q.x() * iz, y = q.y() * iz;
+    Eigen::Matrix<double, 2, 3> by_point;
+    by_point << model.fx * iz, 0, -model.fx * x * iz, 0, model.fy * iz, -model.fy * y * iz;
+    // A small rotation w moves the turned point by w x turned = -[turned]x w.
+    Matrix3d by_rotation;
+    by_rotation << 0, turned.z(), -turned.y(), -turned.z(), 0, turned.x(), turned.y(), -turned.x(),
+        0;
+    Eigen::Matrix<double, 2, kParameters> j;
+    j.leftCols<3>() = by_point * by_rotation;
+    j.middleCols<3>(3) = by_point;
+    j.rightCols<4>() << x, 0, 1, 0, 0, y, 0, 1;
+    eq.jtj += j.transpose() * j;
+    eq.jtr += j.transpose() * (s.pixel - model.project(s.p));
+  }
+  return eq;
+}
+
+/// Gauss-Newton on all ten parameters, or on the pose alone.
+void refine(Model& model, const Samples& samples, bool pose_only) {
+  const int n = pose_only ? 6 : kParameters;
+  for (int iteration = 0; iteration < 8; ++iteration) {
+    const NormalEquations eq = linearise(model, samples);
+    const Eigen::VectorXd step = eq.jtj.topLeftCorner(n, n).ldlt().solve(eq.jtr.head(n));
+    if (!step.allFinite()) return;
+    Model next = model;
+    const Vector3d w = step.head<3>();
+    if (w.norm() > 0) {
+      next.rotation =
+          Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix() * model.rotation;
+    }
+    next.translation += step.segment<3>(3);
+    if (!pose_only) {
+      next.fx += step(6), next.fy += step(7), next.cx += step(8), next.cy += step(9);
+    }
+    if (!(rms(next, samples) < rms(model, samples))) return;
+    model = next;
+  }
+}
+
+/// Relative standard error of the focal length, from the residuals that are left.
+double focal_uncertainty(const Model& model, const Samples& samples) {
+  const NormalEquations eq = linearise(model, samples);
+  const Eigen::VectorXd scale = eq.jtj.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * eq.jtj * scale.asDiagonal();
+  const double inverse = scaled.inverse()(6, 6) * scale(6) * scale(6);
+  // Positions are never better than about 1e-4 px, however well a few of them agree.
+  const double sigma = std::max(rms(model, samples), 1e-4);
+  const double relative = sigma * std::sqrt(inverse) / model.fx;
+  return std::isfinite(relative) ? relative : 1.0;
+}
+
+/// Whether the samples leave their plane by no more than what moves them within their pixels:
+/// rounding of P far from the origin gives a plane a thickness that tells nothing.
+bool is_flat(const Model& model, const Samples& samples) {
+  const double distance = model.translation.norm();
+  return samples.spread[0] < 3 * rms(model, samples) * distance / model.fx;
+}
+
+/// The affine camera: least squares for pixel = B p + b, its rows made orthogonal.
+Model fit_affine(const Samples& samples) {
+  Eigen::Matrix4d ata = Eigen::Matrix4d::Zero();
+  Eigen::Matrix<double, 4, 2> atb = Eigen::Matrix<double, 4, 2>::Zero();
+  for (const Sample& s : samples.items) {
+    const Eigen::Vector4d h(s.p.x(), s.p.y(), s.p.z(), 1);
+    ata += h * h.transpose();
+    atb += h * s.pixel.transpose();
+  }
+  const Eigen::Matrix<double, 4, 2> solution = ata.ldlt().solve(atb);
+  const Vector3d across = solution.col(0).head<3>(), down = solution.col(1).head<3>();
+  Model model;
+  model.orthographic = true;
+  model.fx = across.norm();
+  model.fy = down.norm();
+  const Vector3d bisector = (across.normalized() + down.normalized()).normalized();
+  const Vector3d other = (across.normalized() - down.normalized()).normalized();
+  model.rotation.row(0) = (bisector + other).normalized();
+  model.rotation.row(1) = (bisector - other).normalized();
+  // Without perspective the picture does not tell the two sides of the axis apart: take the
+  // right-handed one.
+  model.rotation.row(2) = model.rotation.row(0).cross(model.rotation.row(1));
+  model.cx = solution(3, 0);
+  model.cy = solution(3, 1);
+  return model;
+}
+
+/// Computer-vision axes and normalised samples to the tool's camera in the space of P.
+Camera to_camera(const Model& model, const Samples& samples, const Window& window) {
+  Camera camera;
+  camera.orthographic = model.orthographic;
+  const double per_unit = model.orthographic ? 1 / samples.scale : 1;
+  camera.fx = model.fx * per_unit;
+  camera.fy = model.fy * per_unit;
+  camera.cx = model.cx;
+  camera.cy = model.cy;
+  Vector3d translation = model.translation * samples.scale;
+  if (model.orthographic) {
+    // The axis may run anywhere: through the middle of the frame, and behind every sample.
+    camera.cx = 0.5 * (window.x0 + window.x1);
+    camera.cy = 0.5 * (window.y0 + window.y1);
+    double nearest = 0;
+    for (const Sample& s : samples.items) {
+      nearest = std::min(nearest, (model.rotation.row(2) * s.p).value());
+    }
+    translation = {(model.cx - camera.cx) / camera.fx, (model.cy - camera.cy) / camera.fy,
+                   samples.scale * (1 - nearest)};
+  }
+  const Vector3d origin = samples.centre - model.rotation.transpose() * translation;
+  const Matrix3d rotation = Vector3d(1, -1, -1).asDiagonal() * model.rotation;
+  for (int row = 0; row < 3; ++row) {
+    camera.origin[row] = origin[row];
+    for (int column = 0; column < 3; ++column) camera.rotation[column][row] = rotation(row, column);
+  }
+  return camera;
+}
+
+/// A plane seen by a known projection: the homography from the plane to directions holds two
+/// columns of the rotation and the translation (Zhang 2000, section 3.1).
+Model pose_of_plane(const Samples& samples, const Camera& projection) {
+  const Vector3d e1 = samples.axes.col(2), e2 = samples.axes.col(1);
+  Eigen::MatrixXd ata = Eigen::MatrixXd::Zero(9, 9);
+  for (const Sample& s : samples.items) {
+    const Vector3d h(e1.dot(s.p), e2.dot(s.p), 1);
+    const double u = (s.pixel.x() - projection.cx) / projection.fx;
+    const double v = (s.pixel.y() - projection.cy) / projection.fy;
+    Eigen::Matrix<double, 2, 9> rows = Eigen::Matrix<double, 2, 9>::Zero();
+    rows.block<1, 3>(0, 0) = h.transpose();
+    rows.block<1, 3>(0, 6) = -u * h.transpose();
+    rows.block<1, 3>(1, 3) = h.transpose();
+    rows.block<1, 3>(1, 6) = -v * h.transpose();
+    ata += rows.transpose() * rows;
+  }
+  const Eigen::VectorXd m = null_vector(ata);
+  Matrix3d h;
+  for (int i = 0; i < 3; ++i) h.row(i) = m.segment<3>(3 * i).transpose();
+  h *= (h(2, 2) < 0 ? -2 : 2) / (h.col(0).norm() + h.col(1).norm());
+
+  Matrix3d on_plane, in_space;
+  on_plane << h.col(0), h.col(1), h.col(0).cross(h.col(1));
+  in_space << e1, e2, e1.cross(e2);
+  const Eigen::JacobiSVD<Matrix3d> svd(on_plane, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Model model;
+  model.rotation = svd.matrixU() * svd.matrixV().transpose() * in_space.transpose();
+  model.translation = h.col(2);
+  model.fx = projection.fx, model.fy = projection.fy;
+  model.cx = projection.cx, model.cy = projection.cy;
+  return model;
+}
+
+}  // namespace
+
+std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
+                                 const Plane<unsigned char>& valid, const Window& window) {
+  const Samples samples = collect(positions, valid, window);
+  // A plane is flat to the rounding of float: 1e-5 of its extent.
+  if (samples.items.size() < 6 || samples.spread[0] < 1e-5 * samples.spread[2]) return std::nullopt;
+
+  Model affine = fit_affine(samples);
+  affine = fit_affine(inliers(affine, samples));
+  const double affine_rms = rms(affine, inliers(affine, samples));
+
+  Model model = direct_linear_transform(samples, window);
+  Samples used = samples;
+  for (int round = 0; round < 3; ++round) {
+    refine(model, used, false);
+    used = inliers(model, samples);
+    if (used.items.size() < 6) return std::nullopt;
+  }
+  // Perspective contains the affine camera as a limit, so it fits an orthographic frame as well,
+  // with a focal length that means nothing.
+  if (affine_rms < 0.02 || affine_rms <= 1.02 * rms(model, used)) {
+    return to_camera(affine, samples, window);
+  }
+  if (is_flat(model, used) || !(focal_uncertainty(model, used) < 0.01)) return std::nullopt;
+  return to_camera(model, samples, window);
+}
+
+std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>& positions,
+                               const Plane<unsigned char>& valid, const Window& window) {
+  const auto explains = [&](const Camera& camera) {
+    return measure_residual(camera, positions, valid, window).median_px < 0.5;
+  };
+  // P may be in camera space already, with the axes of another tool.
+  for (const glm::dvec3& axes :
+       {glm::dvec3(1, 1, 1), glm::dvec3(1, 1, -1), glm::dvec3(1, -1, 1), glm::dvec3(-1, 1, 1)}) {
+    Camera camera = projection;
+    for (int i = 0; i < 3; ++i) camera.rotation[i][i] = axes[i];
+    if (explains(camera)) return camera;
+  }
+  const Samples samples = collect(positions, valid, window);
+  if (projection.orthographic || samples.items.size() < 4 ||
+      samples.spread[1] < 1e-5 * samples.spread[2]) {
+    return std::nullopt;
+  }
+  Model model = pose_of_plane(samples, projection);
+  refine(model, samples, true);
+  const Camera camera = to_camera(model, samples, window);
+  return explains(camera) ? std::optional(camera) : std::nullopt;
+}
+
+Residual measure_residual(const Camera& camera, const Plane<glm::vec3>& positions,
+                          const Plane<unsigned char>& valid, const Window& window) {
+  std::vector<double> d;
+  for (int y = 0; y < positions.height; ++y) {
+    for (int x = 0; x < positions.width; ++x) {
+      if (!valid(x, y)) continue;
+      const glm::dvec2 at = camera.project(camera.to_camera(glm::dvec3(positions(x, y))));
+      const double miss = std::hypot(at.x - (window.x0 + x + 0.5), at.y - (window.y0 + y + 0.5));
+      d.push_back(std::isfinite(miss) ? miss : 1e30);
+    }
+  }
+  if (d.empty()) return {};
+  return {quantile(d, 0.5), quantile(d, 0.99), *std::max_element(d.begin(), d.end())};
+}
+
+}  // namespace ssdo

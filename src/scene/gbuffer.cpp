@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gbuffer.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "error.h"
+
+namespace ssdo {
+namespace {
+
+constexpr float kFar = 1e9f;  ///< Blender writes 1e10 where a ray meets nothing
+constexpr float kStepHalf = 1.0f / 2048, kStepFloat = 1.0f / 16777216;
+
+bool is_finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Lays planes that cover `from` onto the window `to`; pixels that they do not cover get `fill`.
+Plane<float> lay_onto(const Window& to, const Window& from, Plane<float> plane, float fill) {
+  if (from == to) return plane;
+  Plane<float> out(to.width(), to.height(), fill);
+  for (int y = std::max(to.y0, from.y0); y < std::min(to.y1, from.y1); ++y) {
+    for (int x = std::max(to.x0, from.x0); x < std::min(to.x1, from.x1); ++x) {
+      out(x - to.x0, y - to.y0) = plane(x - from.x0, y - from.y0);
+    }
+  }
+  return out;
+}
+
+/// Reads layers of a frame onto one window.
+class LayerReader {
+ public:
+  LayerReader(const std::vector<const ExrReader*>& files, const Window& window)
+      : files_(files), window_(window) {}
+
+  Plane<float> scalar(const std::optional<Layer>& layer, float fill) const {
+    return layer ? std::move(read(*layer, fill)[0]) : Plane<float>{};
+  }
+
+  Plane<glm::vec3> vector(const std::optional<Layer>& layer, float fill) const {
+    if (!layer) return {};
+    const auto planes = read(*layer, fill);
+    Plane<glm::vec3> out(window_.width(), window_.height());
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      out[i] = {planes[0][i], planes[1][i], planes[2][i]};
+    }
+    return out;
+  }
+
+ private:
+  std::vector<Plane<float>> read(const Layer& layer, float fill) const {
+    const ExrReader& file = *files_[std::size_t(layer.file)];
+    const Window& from = file.parts()[std::size_t(layer.part)].data_window;
+    auto planes = file.read(layer.part, layer.channels);
+    for (auto& plane : planes) plane = lay_onto(window_, from, std::move(plane), fill);
+    return planes;
+  }
+
+  const std::vector<const ExrReader*>& files_;
+  Window window_;
+};
+
+/// Depth as a distance along the axis or the ray.
+void undo_depth_encoding(GBuffer& g, const GBufferOptions& options, const std::string& file) {
+  if (g.depth.empty()) return;
+  const DepthKind kind = options.depth_kind.value_or(DepthKind::planar);
+  if (kind == DepthKind::ray) g.depth_kind = DepthKind::ray;
+  if (kind == DepthKind::inverse) {
+    for (float& z : g.depth.pixels) z = 1 / z;
+  }
+  if (kind == DepthKind::normalized) {
+    for (float& z : g.depth.pixels) {
+      z = options.depth_near + z * (options.depth_far - options.depth_near);
+    }
+  }
+  if (options.depth_kind || !g.position.empty()) return;
+  float largest = 0;
+  for (float z : g.depth.pixels) {
+    if (z < kFar) largest = std::max(largest, z);
+  }
+  if (largest <= 1) {
+    throw Error(ExitCode::layer,
+                fmt::format("{}: depth ends at {:.4g} and seems to be normalised to 0..1; give its "
+                            "meaning with --depth-kind normalized:NEAR,FAR, or say --depth-kind "
+                            "planar if these are scene units",
+                            file, largest));
+  }
+}
+
+/// Normals stored as n/2 + 1/2 have no negative component, and are of unit length after decoding.
+void undo_normal_encoding(GBuffer& g) {
+  double as_stored = 0, decoded = 0;
+  for (std::size_t i = 0; i < g.normal.size(); ++i) {
+    const glm::vec3 n = g.normal[i];
+    if (!g.valid[i] || !is_finite(n)) continue;
+    if (std::min({n.x, n.y, n.z}) < -1e-3f) return;
+    as_stored += std::abs(glm::length(n) - 1);
+    decoded += std::abs(glm::length(2.0f * n - 1.0f) - 1);
+  }
+  if (!(decoded < as_stored)) return;
+  for (glm::vec3& n : g.normal.pixels) n = 2.0f * n - 1.0f;
+  g.warnings.push_back("normals are encoded as 0..1; decoded with 2n - 1");
+}
+
+bool is_background(const GBuffer& g, std::size_t i, float background_depth) {
+  if (!g.alpha.empty() && g.alpha[i] <= 1e-4f) return true;
+  if (!g.depth.empty()) return !(g.depth[i] < background_depth && g.depth[i] > 0);
+  const glm::vec3 p = g.position[i], a = glm::abs(p);
+  if (p == glm::vec3(0) || !(std::max({a.x, a.y, a.z}) < kFar)) return true;
+  return !g.normal.empty() && g.normal[i] == glm::vec3(0);
+}
+
+void classify(GBuffer& g, const GBufferOptions& options) {
+  g.valid = Plane<unsigned char>(g.window.width(), g.window.height(), 1);
+  const float background_depth =
+      options.background_depth ? *options.background_depth * (1 - 1e-6f) : kFar;
+  for (std::size_t i = 0; i < g.valid.size(); ++i) {
+    if (is_background(g, i, background_depth)) {
+      g.valid[i] = 0;
+      ++g.background_pixels;
+    } else if (!g.position.empty() && !is_finite(g.position[i])) {
+      g.valid[i] = 0;
+      ++g.bad_pixels;
+    }
+  }
+}
+
+/// A colour that is not finite becomes black, a negative one zero; the pixel counts as broken once.
+void clean_colors(GBuffer& g, Plane<glm::vec3>& colors) {
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    if (!g.valid[i]) continue;
+    if (!is_finite(colors[i])) {
+      colors[i] = glm::vec3(0);
+      ++g.bad_pixels;
+    }
+    colors[i] = glm::max(colors[i], glm::vec3(0));
+  }
+}
+
+}  // namespace
+
+GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTable& table,
+                     const GBufferOptions& options) {
+  const std::string file = files[0]->path().string();
+  const auto& lead = table[Role::position] ? table[Role::position] : table[Role::depth];
+  if (!lead) {
+    throw Error(ExitCode::layer,
+                fmt::format("{}: no layer for position or depth found by name; name one with --aov "
+                            "position=LAYER or --aov depth=LAYER ('ssdo info' lists the layers)",
+                            file));
+  }
+  const ExrPart& part = files[std::size_t(lead->file)]->parts()[std::size_t(lead->part)];
+  GBuffer g;
+  g.window = part.data_window;
+  g.display = part.display_window;
+  g.pixel_aspect = part.header.pixelAspectRatio();
+  if (!(g.pixel_aspect > 0) || !std::isfinite(g.pixel_aspect)) g.pixel_aspect = 1;
+  g.position_step = lead->half ? kStepHalf : kStepFloat;
+
+  const LayerReader read(files, g.window);
+  g.position = read.vector(table[Role::position], NAN);
+  g.depth = read.scalar(table[Role::depth], NAN);
+  g.normal = read.vector(table[Role::normal], 0);
+  g.albedo = read.vector(table[Role::albedo], 0);
+  g.radiance = read.vector(table[Role::radiance], 0);
+  g.alpha = read.scalar(table[Role::alpha], 0);
+
+  undo_depth_encoding(g, options, file);
+  classify(g, options);
+  undo_normal_encoding(g);
+  clean_colors(g, g.albedo);
+  clean_colors(g, g.radiance);
+  if (lead->half) {
+    g.warnings.push_back(
+        fmt::format("{} is stored in 16 bits: steps of {:.2g} of its magnitude; "
+                    "export 32 bits",
+                    role_name(table[Role::position] ? Role::position : Role::depth), kStepHalf));
+  }
+  return g;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "math/plane.h"
+#include "scene/camera.h"
+#include "scene/gbuffer.h"
+
+namespace ssdo {
+
+/// What the user says about the camera. Empty: fit it from P.
+struct CameraOptions {
+  std::string file;             ///< --camera: JSON with projection and pose
+  std::optional<double> fov;    ///< --fov: horizontal, degrees
+  std::optional<double> ortho;  ///< --ortho: width of the frame in scene units
+};
+
+/// The visible surfaces in camera space, in the scene's unit. Every stage after this one knows one
+/// space and one kind of pixel.
+struct Geometry {
+  Window window, display;
+  Camera camera;
+  Plane<glm::vec4> position;  ///< xyz; w is 1 on a surface, 0 on background and broken pixels
+  Plane<glm::vec4> normal;    ///< xyz: unit, on the viewer's side; w: radius within which P is
+                              ///< uncertain, from the precision it was stored with
+  float median_depth = 0;     ///< along the axis, over the surfaces
+  bool world_known = false;   ///< false where P is in camera space and no pose is known
+  glm::mat3 world_to_camera{1.0f};  ///< of directions; identity where the world is not known
+
+  bool is_surface(std::size_t i) const { return position[i].w != 0; }
+
+  /// Height of the display window at depth `depth`, in scene units.
+  float frame_height_at(float depth) const;
+};
+
+/// How the geometry came about, for `info` and the log.
+struct GeometryReport {
+  std::string camera_source;  ///< "fitted from P", "--camera FILE", "--fov"
+  std::optional<Residual> residual;
+  std::string normal_space;     ///< "space of P", "camera space", "from P"
+  double normal_agreement = 0;  ///< median cosine between N and the gradient of P
+  std::size_t normals_rebuilt = 0, normals_turned = 0;
+  std::vector<std::string> warnings;
+};
+
+/// Finds the camera and brings the frame into camera space, computing in double and rounding once.
+/// P comes from depth where there is none; N from P where it is missing or not usable; normals
+/// that are the back of what P shows are turned to the viewer.
+/// Errors: ExitCode::layer where neither P nor the options determine the camera.
+Geometry build_geometry(const GBuffer& gbuffer, const CameraOptions& options,
+                        const std::string& file, GeometryReport& report);
+
+}  // namespace ssdo

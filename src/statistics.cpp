@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "statistics.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <fstream>
+
+#include "error.h"
+#include "io/safe_file.h"
+
+namespace ssdo {
+namespace {
+
+std::size_t peak_rss_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::size_t(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace
+
+void Statistics::add(const Frame& frame, std::optional<int> number,
+                     const std::vector<Target>& targets, int threads) {
+  const StageTimes& t = frame.times;
+  nlohmann::json outputs = nlohmann::json::array();
+  for (const Target& target : targets) outputs.push_back(target.path);
+  frames_.push_back({
+      {"frame", number ? nlohmann::json(*number) : nlohmann::json()},
+      {"input", frame.input},
+      {"output", targets.size() == 1 ? outputs[0] : outputs},
+      {"width", frame.geometry.window.width()},
+      {"height", frame.geometry.window.height()},
+      {"threads", threads},
+      {"isa", "scalar"},
+      {"method", frame.plan.method->name},
+      {"samples_per_pixel", frame.plan.method->samples_per_pixel(frame.plan.parameters)},
+      {"bounces", frame.plan.bounces},
+      {"stages_ms",
+       {{"read", t.read},
+        {"prepare", t.prepare},
+        {"estimate", t.estimate},
+        {"filter", t.filter},
+        {"compose", t.compose},
+        {"write", t.write},
+        {"total", t.read + t.prepare + t.estimate + t.filter + t.compose + t.write}}},
+      {"peak_rss_bytes", peak_rss_bytes()},
+      {"pixels", frame.geometry.position.size()},
+      {"background_pixels", frame.gbuffer.background_pixels},
+      {"bad_pixels", frame.gbuffer.bad_pixels},
+      {"plan", to_json(frame.plan)},
+  });
+}
+
+void Statistics::write(const std::string& path) const {
+  SafeFile file(path, {.overwrite = true, .create_dirs = false});
+  std::ofstream out(file.temporary());
+  out << frames_.dump(2) << '\n';
+  out.close();
+  if (!out)
+    throw Error(ExitCode::output, fmt::format("{}: the statistics could not be written", path));
+  file.commit();
+}
+
+}  // namespace ssdo

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/ssdo.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/constants.hpp>
+#include <glm/trigonometric.hpp>
+#include <random>
+
+#include "error.h"
+#include "estimators/half_ball.h"
+#include "estimators/registry.h"
+#include "math/frame.h"
+#include "support/analytic_scene.h"
+
+namespace ssdo::test {
+namespace {
+
+const Window kWindow{0, 0, 96, 72};
+
+/// What a test asks of the method; the rest are its defaults.
+struct Request {
+  float radius = 1;
+  Environment environment = Environment::constant(glm::vec3(1));
+  std::vector<std::string> set = {};
+  float albedo = 0.5f;
+  int bounces = 0;
+  unsigned seed = 0;
+  Plane<glm::vec3> radiance = {};
+};
+
+Products run(const Geometry& geometry, const Request& request) {
+  const Method method = ssdo_method();
+  const ParameterValues parameters = resolve_parameters(method, request.set);
+  const Plane<glm::vec3> albedo(geometry.position.width, geometry.position.height,
+                                glm::vec3(request.albedo));
+  return method.estimate({geometry,
+                          albedo,
+                          request.radiance,
+                          request.environment,
+                          {.ao = true, .direct = true, .bounce = request.bounces > 0},
+                          request.radius,
+                          request.bounces,
+                          request.seed,
+                          parameters,
+                          {}});
+}
+
+Camera tilted(Camera projection, double tilt_degrees, double distance = 6) {
+  const double t = glm::radians(tilt_degrees);
+  return look_at(projection, distance * glm::dvec3(0, -std::sin(t), std::cos(t)), {0, 0, 0},
+                 {0, std::cos(t), std::sin(t)});
+}
+
+/// Mean over the 4 x 4 pixels around the middle of the picture: the whole pattern once.
+double middle(const Plane<float>& plane) {
+  double sum = 0;
+  for (int y = -2; y < 2; ++y) {
+    for (int x = -2; x < 2; ++x) sum += plane(plane.width / 2 + x, plane.height / 2 + y);
+  }
+  return sum / 16;
+}
+
+TEST(Ssdo, AnOpenPlaneReadsOneAtEveryTilt) {
+  for (const Camera& projection :
+       {camera_from_fov(60, kWindow, 1), camera_from_ortho_width(6, kWindow, 1)}) {
+    for (const double tilt : {0.0, 30.0, 60.0, 80.0, 85.0}) {
+      const Products out =
+          run(geometry_of(plane({}, {0, 0, 1}), tilted(projection, tilt), kWindow), {});
+      for (const float ao : out.ao.pixels) EXPECT_NEAR(ao, 1, 1e-5) << tilt;
+    }
+  }
+}
+
+TEST(Ssdo, ConstantLightIsThatColourTimesAo) {
+  const Surface scene = all_of({plane({}, {0, 0, 1}), sphere({0, 0, 0.6}, 0.6)});
+  const glm::vec3 color(0.25f, 1, 8);
+  const Products out = run(geometry_of(scene, tilted(camera_from_fov(40, kWindow, 1), 50), kWindow),
+                           {.environment = Environment::constant(color)});
+  double occluded = 0;
+  for (std::size_t i = 0; i < out.ao.size(); ++i) {
+    occluded += 1 - out.ao[i];
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(out.direct[i][c], color[c] * out.ao[i], 1e-5 * color[c]);
+  }
+  EXPECT_GT(occluded, 100) << "the sphere hides something";
+  // The same through a map of one colour, with lookups.
+  const auto map = std::make_shared<Plane<glm::vec3>>(64, 32, color);
+  const Products mapped =
+      run(geometry_of(scene, tilted(camera_from_fov(40, kWindow, 1), 50), kWindow),
+          {.environment = Environment(map, {})});
+  for (std::size_t i = 0; i < out.ao.size(); ++i) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(mapped.direct[i][c], out.direct[i][c], 1e-4 * color[c]);
+  }
+}
+
+/// The method's own expectation beside a wall at distance `d`: every point of the half-ball behind
+/// the wall is hidden. Summed over cosine, azimuth and volume in double.
+double expected_beside_wall(double d) {
+  const int n = 200;
+  double visible = 0, all = 0;
+  for (int i = 0; i < n; ++i) {
+    const double cosine = (i + 0.5) / n, sine = std::sqrt(1 - cosine * cosine);
+    for (int j = 0; j < n; ++j) {
+      const double across = sine * std::cos(glm::pi<double>() * (j + 0.5) / n);
+      for (int k = 0; k < n; ++k) {
+        const double x = std::cbrt((k + 0.5) / n) * across;
+        all += cosine;
+        visible += x < d ? cosine : 0;
+      }
+    }
+  }
+  return visible / all;
+}
+
+TEST(Ssdo, BesideAWallItConvergesToItsOwnExpectation) {
+  // The wall stands at y = 0 and faces the camera; the floor at z = 0 reaches up to it.
+  const Surface scene =
+      all_of({cut(plane({}, {0, 0, 1}), [](const glm::dvec3& p) { return p.y < 0; }),
+              cut(plane({}, {0, -1, 0}), [](const glm::dvec3& p) { return p.z > 0; })});
+  for (const double d : {0.2, 0.4, 0.7}) {
+    const glm::dvec3 at(0, -d, 0);
+    const Camera camera =
+        look_at(camera_from_ortho_width(4, kWindow, 1), at + glm::dvec3(0, -5, 5), at, {0, 0, 1});
+    const Products out =
+        run(geometry_of(scene, camera, kWindow), {.set = {"samples=512", "singularity=100"}});
+    EXPECT_NEAR(middle(out.ao), expected_beside_wall(d), 0.01) << d;
+  }
+  // Rays give 1/2 at the foot; a half-ball whose points behind the wall are hidden does too.
+  EXPECT_NEAR(expected_beside_wall(0), 0.5, 1e-3);
+}
+
+TEST(Ssdo, ADistantForegroundDoesNotOcclude) {
+  const Surface near_strip =
+      cut(plane({0, 0, 4}, {0, 0, 1}), [](const glm::dvec3& p) { return std::abs(p.x) < 0.1; });
+  const Surface floor = plane({}, {0, 0, 1});
+  const Camera camera = tilted(camera_from_fov(60, kWindow, 1), 0);
+  const Products with =
+      run(geometry_of(all_of({floor, near_strip}), camera, kWindow), {.radius = 1});
+  for (const float ao : with.ao.pixels) EXPECT_NEAR(ao, 1, 1e-5);
+  const Products seen = run(geometry_of(all_of({floor, near_strip}), camera, kWindow),
+                            {.radius = 1, .set = {"singularity=100"}});
+  EXPECT_LT(*std::min_element(seen.ao.pixels.begin(), seen.ao.pixels.end()), 0.9f)
+      << "without the window it would";
+}
+
+TEST(Ssdo, BackgroundIsOpenAndUntouched) {
+  const Products out =
+      run(geometry_of(sphere({0, 0, 0}, 1), tilted(camera_from_fov(40, kWindow, 1), 30), kWindow),
+          {.bounces = 1});
+  EXPECT_EQ(out.ao(0, 0), 1);
+  EXPECT_EQ(out.direct(0, 0), glm::vec3(0));
+  EXPECT_EQ(out.bounce(0, 0), glm::vec3(0));
+  EXPECT_EQ(out.ao(48, 36), 1) << "a sphere before nothing is not occluded by the nothing";
+}
+
+/// The listing once more, point by point in double, for one pixel.
+glm::dvec3 slow_bounce(const Geometry& g, int x, int y, const Plane<glm::vec3>& sent, double radius,
+                       int samples) {
+  const auto pattern = half_ball_pattern(4, samples, 0);
+  const glm::dvec3 p(g.position(x, y)), n(g.normal(x, y));
+  const glm::dmat3 frame(frame_about(glm::vec3(n)));
+  glm::dvec3 sum(0);
+  for (const HalfBallSample& s : pattern[std::size_t((y % 4) * 4 + x % 4)]) {
+    const glm::dvec3 point = p + radius * double(s.length) * (frame * glm::dvec3(s.direction));
+    const glm::dvec2 at = g.camera.project(point);
+    if (!g.window.contains(int(std::floor(at.x)), int(std::floor(at.y)))) continue;
+    const int qx = int(at.x), qy = int(at.y);
+    const glm::dvec3 delta = p - glm::dvec3(g.position(qx, qy)), unit = glm::normalize(delta);
+    if (delta == glm::dvec3(0)) continue;
+    const double receiver = std::max(0.0, glm::dot(unit, -n));
+    const double sender = std::max(0.0, glm::dot(unit, glm::dvec3(g.normal(qx, qy))));
+    sum += std::min(1.0, radius * radius * receiver * sender / glm::dot(delta, delta)) *
+           glm::dvec3(sent(qx, qy));
+  }
+  return sum * 2.0 * glm::pi<double>() / double(samples) / glm::pi<double>();
+}
+
+TEST(Ssdo, BounceIsTheListingsSum) {
+  const Surface scene =
+      all_of({cut(plane({}, {0, 0, 1}), [](const glm::dvec3& p) { return p.y < 0; }),
+              cut(plane({}, {0, -1, 0}), [](const glm::dvec3& p) { return p.z > 0; }),
+              sphere({0.4, -0.5, 0.3}, 0.3)});
+  const Geometry g = geometry_of(
+      scene, look_at(camera_from_fov(40, kWindow, 1), {0, -4, 3}, {0, -0.3, 0.3}, {0, 0, 1}),
+      kWindow);
+  Request request{.radius = 0.8f, .bounces = 1};
+  request.radiance = Plane<glm::vec3>(kWindow.width(), kWindow.height());
+  for (std::size_t i = 0; i < request.radiance.size(); ++i)
+    request.radiance[i] = {0.8f, float(i % 7), 0};
+  const Products out = run(g, request);
+  double total = 0;
+  for (int y = 1; y < kWindow.height(); y += 5) {
+    for (int x = 2; x < kWindow.width(); x += 7) {
+      const glm::dvec3 expected = slow_bounce(g, x, y, request.radiance, 0.8, 16);
+      // A point may project onto the edge between two pixels.
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(out.bounce(x, y)[c], expected[c], 1e-4 + 1e-4 * expected[c]) << x << "," << y;
+      total += expected.x;
+    }
+  }
+  EXPECT_GT(total, 10);
+}
+
+TEST(Ssdo, BounceIsProportionalToTheSendersAlbedoAndGrowsWithPasses) {
+  const Surface scene = all_of({plane({}, {0, 0, 1}), plane({0, 1, 0}, {0, -1, 0})});
+  const Geometry g = geometry_of(
+      scene, look_at(camera_from_fov(40, kWindow, 1), {0, -4, 3}, {0, 0, 0.3}, {0, 0, 1}), kWindow);
+  const Products dark = run(g, {.albedo = 0.25f, .bounces = 1}),
+                 light = run(g, {.albedo = 0.5f, .bounces = 1});
+  const Products twice = run(g, {.albedo = 0.5f, .bounces = 2}),
+                 black = run(g, {.albedo = 0, .bounces = 1});
+  double first = 0, second = 0;
+  for (std::size_t i = 0; i < dark.bounce.size(); ++i) {
+    EXPECT_NEAR(light.bounce[i].x, 2 * dark.bounce[i].x, 1e-5);
+    EXPECT_EQ(black.bounce[i].x, 0);
+    EXPECT_GE(twice.bounce[i].x, light.bounce[i].x);
+    first += light.bounce[i].x, second += twice.bounce[i].x;
+  }
+  EXPECT_GT(second, first * 1.01);
+}
+
+TEST(Ssdo, NothingThatComesInMakesANaN) {
+  std::mt19937 random(3);
+  Geometry g =
+      geometry_of(sphere({0, 0, 0}, 2), tilted(camera_from_fov(40, kWindow, 1), 30), kWindow);
+  for (std::size_t i = 0; i < g.position.size(); ++i) {
+    if (random() % 10 == 0) g.position[i] = glm::vec4(0);
+    if (g.is_surface(i) && random() % 10 == 0) g.position[i] *= glm::vec4(1e6f, 1e6f, 1e6f, 1);
+    if (g.is_surface(i) && random() % 10 == 0) g.position[i] = glm::vec4(0, 0, -1e-30f, 1);
+  }
+  for (const float radius : {1e-6f, 1.0f, 1e6f}) {
+    const Products out = run(g, {.radius = radius, .bounces = 3});
+    for (std::size_t i = 0; i < out.ao.size(); ++i) {
+      EXPECT_TRUE(out.ao[i] >= 0 && out.ao[i] <= 1);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_TRUE(std::isfinite(out.direct[i][c]) && std::isfinite(out.bounce[i][c]));
+    }
+  }
+}
+
+TEST(Registry, NamesWhatExists) {
+  EXPECT_EQ(find_method("ssdo").name, "ssdo");
+  EXPECT_THROW(find_method("ssdO"), Error);
+  const Method method = ssdo_method();
+  EXPECT_EQ(resolve_parameters(method, {"samples=32"}).at("samples"), 32);
+  for (const char* bad :
+       {"samples", "samples=", "samples=0", "samples=2.5", "samples=nan", "sample=3", "bias=x"}) {
+    EXPECT_THROW(resolve_parameters(method, {bad}), Error) << bad;
+  }
+}
+
+}  // namespace
+}  // namespace ssdo::test

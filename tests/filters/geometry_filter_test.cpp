@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/geometry_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/trigonometric.hpp>
+
+#include "support/analytic_scene.h"
+
+namespace ssdo::test {
+namespace {
+
+const Window kWindow{0, 0, 64, 48};
+
+Products noise_of_a_pattern(const Geometry& g) {
+  Products p;
+  p.ao = Plane<float>(g.position.width, g.position.height, 1);
+  p.direct = Plane<glm::vec3>(g.position.width, g.position.height);
+  for (int y = 0; y < g.position.height; ++y) {
+    for (int x = 0; x < g.position.width; ++x) {
+      const int member = (y % 4) * 4 + x % 4;
+      p.ao(x, y) = float((member * 7) % 16) / 15;  // mean 1/2
+      p.direct(x, y) = glm::vec3(member, 1, 0);
+    }
+  }
+  return p;
+}
+
+TEST(GeometryFilter, RemovesThePatternOnAPlaneExactly) {
+  for (const double tilt : {0.0, 45.0, 70.0}) {
+    const Camera camera =
+        look_at(camera_from_fov(40, kWindow, 1),
+                {0, -5 * std::sin(glm::radians(tilt)), 5 * std::cos(glm::radians(tilt))}, {0, 0, 0},
+                {0, 1, 0.1});
+    const Geometry g = geometry_of(plane({}, {0, 0, 1}), camera, kWindow);
+    const Products out = filter_geometry(noise_of_a_pattern(g), g, 4);
+    for (int y = 2; y < kWindow.height() - 2; ++y) {
+      for (int x = 2; x < kWindow.width() - 2; ++x) {
+        EXPECT_NEAR(out.ao(x, y), 0.5, 1e-5);
+        EXPECT_NEAR(out.direct(x, y).x, 7.5, 1e-4);
+        EXPECT_NEAR(out.direct(x, y).y, 1, 1e-5);
+      }
+    }
+  }
+}
+
+TEST(GeometryFilter, LeavesLittleOfThePatternOnACurvedSurface) {
+  const Geometry g = geometry_of(
+      sphere({}, 2), look_at(camera_from_fov(40, kWindow, 1), {0, 0, 8}, {}, {0, 1, 0}), kWindow);
+  const Products out = filter_geometry(noise_of_a_pattern(g), g, 4);
+  for (int y = 16; y < 32; ++y) {
+    for (int x = 24; x < 40; ++x) EXPECT_NEAR(out.ao(x, y), 0.5, 0.02);
+  }
+}
+
+TEST(GeometryFilter, DoesNotCrossEdges) {
+  // Left of the middle a box stands out of the floor; both are flat and face the camera.
+  const Surface floor = plane({}, {0, 0, 1});
+  const Surface top =
+      cut(plane({0, 0, 0.5}, {0, 0, 1}), [](const glm::dvec3& p) { return p.x < 0; });
+  const Geometry g =
+      geometry_of(all_of({floor, top}),
+                  look_at(camera_from_fov(40, kWindow, 1), {0, 0, 5}, {}, {0, 1, 0}), kWindow);
+  Products step;
+  step.ao = Plane<float>(kWindow.width(), kWindow.height());
+  for (std::size_t i = 0; i < step.ao.size(); ++i)
+    step.ao[i] = g.position[i].z > -4.75f ? 1.0f : 0.0f;
+  const Products out = filter_geometry(step, g, 4);
+  for (std::size_t i = 0; i < step.ao.size(); ++i) EXPECT_EQ(out.ao[i], step.ao[i]);
+
+  // Two planes that meet at a right angle: near the edge the distance is small, the normals differ.
+  const Geometry corner =
+      geometry_of(all_of({plane({}, {0, 0, 1}), plane({}, {0, -1, 0})}),
+                  look_at(camera_from_fov(40, kWindow, 1), {0, -4, 4}, {}, {0, 0, 1}), kWindow);
+  for (std::size_t i = 0; i < step.ao.size(); ++i)
+    step.ao[i] = corner.normal[i].y > 0.5f ? 1.0f : 0.0f;
+  const Products walls = filter_geometry(step, corner, 4);
+  for (std::size_t i = 0; i < step.ao.size(); ++i) EXPECT_EQ(walls.ao[i], step.ao[i]);
+}
+
+TEST(GeometryFilter, LeavesTheBackgroundAlone) {
+  const Geometry g = geometry_of(
+      sphere({}, 1), look_at(camera_from_fov(40, kWindow, 1), {0, 0, 8}, {}, {0, 1, 0}), kWindow);
+  Products p;
+  p.ao = Plane<float>(kWindow.width(), kWindow.height());
+  for (std::size_t i = 0; i < p.ao.size(); ++i) p.ao[i] = g.is_surface(i) ? 0.25f : 1.0f;
+  const Products out = filter_geometry(p, g, 4);
+  for (std::size_t i = 0; i < p.ao.size(); ++i) EXPECT_FLOAT_EQ(out.ao[i], p.ao[i]);
+}
+
+}  // namespace
+}  // namespace ssdo::test

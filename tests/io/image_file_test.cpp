@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/image_file.h"
+
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <thread>
+
+#include "support/error_matchers.h"
+#include "support/exr_fixture.h"
+#include "support/temp_dir.h"
+
+namespace fs = std::filesystem;
+
+namespace ssdo {
+namespace {
+
+using namespace test;
+
+void save(const fs::path& path, const ImageSpec& spec, const std::vector<float>& values) {
+  SafeFile file(path, {.overwrite = true});
+  write_image(file, spec, values);
+  file.commit();
+}
+
+/// The stored integers of an image, unscaled and with alpha unassociated.
+std::vector<int> stored_values(const fs::path& path, OIIO::ImageSpec& spec) {
+  OIIO::ImageSpec as_stored;
+  as_stored.attribute("oiio:UnassociatedAlpha", 1);
+  const auto image = OIIO::ImageInput::open(path.string(), &as_stored);
+  EXPECT_TRUE(image) << OIIO::geterror();
+  if (!image) return {};
+  spec = image->spec();
+  std::vector<std::uint16_t> values(std::size_t(spec.width) * spec.height * spec.nchannels);
+  EXPECT_TRUE(image->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT16, values.data()));
+  const int divisor = spec.format == OIIO::TypeDesc::UINT8 ? 257 : 1;
+  std::vector<int> result;
+  for (const int value : values) result.push_back(value / divisor);
+  return result;
+}
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(WriteImage, StoresEveryCodeExactly) {
+  const TempDir dir;
+  for (const int bits : {8, 16}) {
+    const int largest = (1 << bits) - 1, step = bits == 8 ? 1 : 37;
+    for (const int channels : {1, 3, 4}) {
+      std::vector<float> values;
+      std::vector<int> codes;
+      for (int code = 0; code <= largest; code += step) {
+        // The last channel counts down: where it is an alpha, it must not touch the colour.
+        for (int c = 0; c < channels; ++c) codes.push_back(c == 3 ? largest - code : code);
+      }
+      for (const int code : codes) values.push_back(float(code) / float(largest));
+      const int width = int(codes.size()) / channels;
+      for (const char* name : {"a.png", "a.tif", "a.TIFF"}) {
+        SCOPED_TRACE(testing::Message() << name << ", " << bits << " bits, " << channels);
+        save(dir / name, {width, 1, channels, bits, 1}, values);
+        OIIO::ImageSpec spec;
+        EXPECT_EQ(stored_values(dir / name, spec), codes);
+        EXPECT_EQ(spec.nchannels, channels);
+        EXPECT_EQ(spec.format, bits == 8 ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16);
+        EXPECT_EQ(spec.alpha_channel, channels == 4 ? 3 : -1);
+      }
+    }
+  }
+}
+
+TEST(WriteImage, RoundsAndClamps) {
+  const TempDir dir;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  save(dir / "a.png", {8, 1, 1, 8, 1},
+       {0.4f / 255, 0.6f / 255, -1, 2, nan, infinity, -infinity, 127.4f / 255});
+  OIIO::ImageSpec spec;
+  EXPECT_EQ(stored_values(dir / "a.png", spec), (std::vector<int>{0, 1, 0, 255, 0, 255, 0, 127}));
+}
+
+TEST(WriteImage, JpegIsEightBitsFullChromaWithoutAlpha) {
+  const TempDir dir;
+  std::vector<float> values;
+  for (int i = 0; i < 16 * 16; ++i) {  // red and blue columns, which subsampled chroma would mix
+    const float red = i % 2 ? 1.0f : 0.0f;
+    values.insert(values.end(), {red, 0, 1 - red, 0.5f});
+  }
+  save(dir / "a.jpg", {16, 16, 4, 16, 1}, values);
+  OIIO::ImageSpec spec;
+  const std::vector<int> stored = stored_values(dir / "a.jpg", spec);
+  EXPECT_EQ(spec.nchannels, 3);
+  EXPECT_EQ(spec.format, OIIO::TypeDesc::UINT8);
+  ASSERT_EQ(stored.size(), 16u * 16u * 3u);
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    const int expected = i % 3 == 1 ? 0 : ((i / 3) % 2 == (i % 3 == 0 ? 1u : 0u)) ? 255 : 0;
+    EXPECT_NEAR(stored[i], expected, 24) << i;
+  }
+}
+
+TEST(WriteImage, KeepsThePixelAspect) {
+  const TempDir dir;
+  for (const char* name : {"a.png", "a.tif"}) {
+    save(dir / name, {2, 1, 1, 8, 2.0f}, {0, 1});
+    OIIO::ImageSpec spec;
+    stored_values(dir / name, spec);
+    EXPECT_EQ(spec.get_float_attribute("PixelAspectRatio"), 2.0f) << name;
+  }
+}
+
+TEST(WriteImage, SameValuesGiveSameBytesAtAnyTime) {
+  const TempDir dir;
+  const char* names[] = {"a.png", "a.jpg", "a.tif"};
+  std::string first[3];
+  for (int i = 0; i < 3; ++i) {
+    save(dir / names[i], {2, 1, 3, 8, 1}, {0, 1, 0, 1, 0, 1});
+    first[i] = bytes_of(dir / names[i]);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // dates count whole seconds
+  for (int i = 0; i < 3; ++i) {
+    save(dir / names[i], {2, 1, 3, 8, 1}, {0, 1, 0, 1, 0, 1});
+    EXPECT_EQ(bytes_of(dir / names[i]), first[i]) << names[i];
+  }
+}
+
+TEST(WriteImage, SaysWhatCannotBeWritten) {
+  const TempDir dir;
+  EXPECT_THAT(error_of([&] {
+                save(dir / "a.jpg", {70'000, 1, 1, 8, 1}, std::vector<float>(70'000));
+              }),
+              IsError(ExitCode::output, "a.jpg: cannot be encoded"));
+  EXPECT_FALSE(fs::exists(dir / "a.jpg"));
+}
+
+TEST(IsDisplayImage, GoesByTheEnding) {
+  for (const char* name : {"a.png", "a.PNG", "a.jpg", "a.Jpeg", "a.tif", "b/a.1001.tiff"}) {
+    EXPECT_TRUE(is_display_image(name)) << name;
+  }
+  for (const char* name : {"a.exr", "a", "png", ".png", "a.png.exr", "a.hdr"}) {
+    EXPECT_FALSE(is_display_image(name)) << name;
+  }
+}
+
+void write_floats(const fs::path& path, const OIIO::ImageSpec& spec,
+                  const std::vector<float>& values) {
+  const auto image = OIIO::ImageOutput::create(path.string());
+  ASSERT_TRUE(image && image->open(path.string(), spec) &&
+              image->write_image(OIIO::TypeDesc::FLOAT, values.data()) && image->close());
+}
+
+TEST(ReadImage, ReadsColourAndGrey) {
+  const TempDir dir;
+  const std::vector<float> rgb = {0.5f, 1, 2, 4, 8, 16};
+  for (const char* name : {"a.exr", "a.hdr", "a.tif"}) {
+    write_floats(dir / name, OIIO::ImageSpec(2, 1, 3, OIIO::TypeDesc::FLOAT), rgb);
+    const Plane<glm::vec3> image = read_image(dir / name);
+    ASSERT_EQ(image.width, 2) << name;
+    ASSERT_EQ(image.height, 1) << name;
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(image[0][c], rgb[std::size_t(c)], 0.02f) << name;
+      EXPECT_NEAR(image[1][c], rgb[std::size_t(c) + 3], 0.2f) << name;
+    }
+  }
+  write_floats(dir / "grey.exr", OIIO::ImageSpec(2, 1, 1, OIIO::TypeDesc::FLOAT), {0.25f, 3});
+  EXPECT_EQ(read_image(dir / "grey.exr")[1], glm::vec3(3));
+}
+
+TEST(ReadImage, TakesValuesAsStored) {
+  const TempDir dir;
+  save(dir / "a.png", {1, 1, 4, 8, 1}, {1, 0.2f, 0.4f, 0.2f});
+  const glm::vec3 pixel = read_image(dir / "a.png")[0];
+  EXPECT_FLOAT_EQ(pixel.x, 1);
+  EXPECT_FLOAT_EQ(pixel.y, 51 / 255.0f);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  write_floats(dir / "a.exr", OIIO::ImageSpec(1, 1, 3, OIIO::TypeDesc::FLOAT), {nan, infinity, -1});
+  const glm::vec3 wild = read_image(dir / "a.exr")[0];
+  EXPECT_TRUE(std::isnan(wild.x));
+  EXPECT_EQ(wild.y, infinity);
+  EXPECT_EQ(wild.z, -1);
+}
+
+TEST(ReadImage, TakesTheFirstPartOfMany) {
+  const TempDir dir;
+  const Imath::Box2i box({0, 0}, {3, 2});
+  write_test_exr(dir / "a.exr", {named(test_header(box, {{"B"}, {"G"}, {"R"}}), "one"),
+                                 named(test_header(box, {{"Z"}}), "two")});
+  const Plane<glm::vec3> image = read_image(dir / "a.exr");
+  EXPECT_EQ(image(2, 1), glm::vec3(test_value(2, 2, 1), test_value(1, 2, 1), test_value(0, 2, 1)));
+}
+
+TEST(ReadImage, SaysWhatIsWrong) {
+  const TempDir dir;
+  EXPECT_THAT(error_of([&] { read_image(dir / "none.hdr"); }),
+              IsError(ExitCode::input, "none.hdr: does not exist"));
+  EXPECT_THAT(error_of([&] { read_image(dir.path()); }), IsError(ExitCode::input, "is a folder"));
+  std::ofstream(dir / "text.png") << "a text";
+  EXPECT_THAT(error_of([&] { read_image(dir / "text.png"); }),
+              IsError(ExitCode::input, "text.png: cannot be read as an image"));
+  Imf::Header deep = test_header(Imath::Box2i({0, 0}, {7, 7}), {{"A"}, {"Z"}});
+  deep.compression() = Imf::ZIPS_COMPRESSION;
+  deep.setType(Imf::DEEPSCANLINE);
+  write_test_exr(dir / "deep.exr", {deep});
+  EXPECT_THAT(error_of([&] { read_image(dir / "deep.exr"); }),
+              IsError(ExitCode::input, "is not a flat image"));
+  write_test_exr(dir / "cut.exr", {test_header(Imath::Box2i({0, 0}, {63, 63}), {{"R"}, {"G"}})});
+  fs::resize_file(dir / "cut.exr", fs::file_size(dir / "cut.exr") / 2);
+  EXPECT_EQ(error_of([&] { read_image(dir / "cut.exr"); }).code, ExitCode::input);
+}
+
+}  // namespace
+}  // namespace ssdo

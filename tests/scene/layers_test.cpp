@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/layers.h"
+
+#include <gtest/gtest.h>
+
+#include "support/error_matchers.h"
+#include "support/exr_fixture.h"
+#include "support/temp_dir.h"
+
+namespace ssdo::test {
+namespace {
+
+using Channels = std::vector<std::string>;
+
+const Imath::Box2i kBox({0, 0}, {1, 1});
+
+Imf::Header header_of(const Channels& names) {
+  std::vector<TestChannel> channels;
+  for (const std::string& name : names) channels.push_back({name});
+  return test_header(kBox, channels);
+}
+
+/// A file of one part, or of several with names.
+class File {
+ public:
+  explicit File(const Channels& names) { write({header_of(names)}); }
+  explicit File(const std::vector<std::pair<std::string, Channels>>& parts) {
+    std::vector<Imf::Header> headers;
+    for (const auto& [name, channels] : parts) headers.push_back(named(header_of(channels), name));
+    write(headers);
+  }
+  LayerTable find(const std::vector<std::string>& aov = {}, const std::string& part = "") const {
+    const ExrReader reader(path());
+    std::vector<LayerRequest> requests;
+    for (const std::string& text : aov) requests.push_back(parse_layer_request(text));
+    return find_layers({&reader}, requests, part);
+  }
+  std::filesystem::path path() const { return dir_ / "frame.exr"; }
+
+ private:
+  void write(const std::vector<Imf::Header>& headers) {
+    Imf::MultiPartOutputFile file(path().c_str(), headers.data(), int(headers.size()));
+    for (int i = 0; i < int(headers.size()); ++i) {
+      const TestPixels pixels(headers[std::size_t(i)], kBox);
+      Imf::OutputPart part(file, i);
+      part.setFrameBuffer(pixels.frame_buffer());
+      part.writePixels(2);
+    }
+  }
+  TempDir dir_;
+};
+
+Channels channels_of(const LayerTable& table, Role role) {
+  return table[role] ? table[role]->channels : Channels{};
+}
+
+TEST(Layers, FindsBlender) {
+  const auto t = File({"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B",
+                       "ViewLayer.Combined.A", "ViewLayer.Depth.Z", "ViewLayer.Position.X",
+                       "ViewLayer.Position.Y", "ViewLayer.Position.Z", "ViewLayer.Normal.X",
+                       "ViewLayer.Normal.Y", "ViewLayer.Normal.Z", "ViewLayer.DiffCol.R",
+                       "ViewLayer.DiffCol.G", "ViewLayer.DiffCol.B", "ViewLayer.Mist.Z"})
+                     .find();
+  EXPECT_EQ(channels_of(t, Role::position),
+            (Channels{"ViewLayer.Position.X", "ViewLayer.Position.Y", "ViewLayer.Position.Z"}));
+  EXPECT_EQ(channels_of(t, Role::albedo),
+            (Channels{"ViewLayer.DiffCol.R", "ViewLayer.DiffCol.G", "ViewLayer.DiffCol.B"}));
+  EXPECT_EQ(channels_of(t, Role::depth), Channels{"ViewLayer.Depth.Z"});
+  EXPECT_EQ(channels_of(t, Role::alpha), Channels{"ViewLayer.Combined.A"});
+}
+
+TEST(Layers, FindsBlender5InParts) {
+  const auto t =
+      File(std::vector<std::pair<std::string, Channels>>{
+               {"ViewLayer.Combined",
+                {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B",
+                 "ViewLayer.Combined.A"}},
+               {"ViewLayer.Position",
+                {"ViewLayer.Position.X", "ViewLayer.Position.Y", "ViewLayer.Position.Z"}},
+               {"ViewLayer.Diffuse Color",
+                {"ViewLayer.Diffuse Color.R", "ViewLayer.Diffuse Color.G",
+                 "ViewLayer.Diffuse Color.B"}}})
+          .find();
+  EXPECT_EQ(t[Role::position]->part, 1);
+  EXPECT_EQ(t[Role::albedo]->part, 2);
+  EXPECT_EQ(t[Role::albedo]->name, "ViewLayer.Diffuse Color");
+}
+
+TEST(Layers, FindsArnold) {
+  const auto t = File({"R",
+                       "G",
+                       "B",
+                       "A",
+                       "P.X",
+                       "P.Y",
+                       "P.Z",
+                       "N.X",
+                       "N.Y",
+                       "N.Z",
+                       "Z",
+                       "Pref.X",
+                       "Pref.Y",
+                       "Pref.Z",
+                       "N_noice.X",
+                       "N_noice.Y",
+                       "N_noice.Z",
+                       "diffuse_albedo.R",
+                       "diffuse_albedo.G",
+                       "diffuse_albedo.B",
+                       "diffuse.R",
+                       "diffuse.G",
+                       "diffuse.B"})
+                     .find();
+  EXPECT_EQ(channels_of(t, Role::position), (Channels{"P.X", "P.Y", "P.Z"}));
+  EXPECT_EQ(channels_of(t, Role::normal), (Channels{"N.X", "N.Y", "N.Z"}));
+  EXPECT_EQ(channels_of(t, Role::albedo)[0], "diffuse_albedo.R");
+  EXPECT_EQ(channels_of(t, Role::depth), Channels{"Z"});
+  EXPECT_EQ(channels_of(t, Role::beauty), (Channels{"R", "G", "B"}));
+  EXPECT_EQ(channels_of(t, Role::alpha), Channels{"A"});
+}
+
+TEST(Layers, FindsRenderManWithLowerCaseChannels) {
+  const auto t = File({"__Pworld.r", "__Pworld.g", "__Pworld.b", "__Nworld.r", "__Nworld.g",
+                       "__Nworld.b", "albedo.r", "albedo.g", "albedo.b", "__depth.r", "__depth.g",
+                       "__depth.b", "Ci.r", "Ci.g", "Ci.b"})
+                     .find();
+  EXPECT_EQ(channels_of(t, Role::position)[2], "__Pworld.b");
+  EXPECT_EQ(channels_of(t, Role::normal)[0], "__Nworld.r");
+  EXPECT_EQ(channels_of(t, Role::depth), Channels{"__depth.r"});
+}
+
+TEST(Layers, FindsNukeSpellings) {
+  const auto t =
+      File({"position.red", "position.green", "position.blue", "normals.red", "normals.green",
+            "normals.blue", "albedo.red", "albedo.green", "albedo.blue", "depth.Z"})
+          .find();
+  EXPECT_EQ(channels_of(t, Role::position),
+            (Channels{"position.red", "position.green", "position.blue"}));
+  EXPECT_EQ(channels_of(t, Role::depth), Channels{"depth.Z"});
+}
+
+TEST(Layers, FindsNukePartsWhoseChannelsHaveNoLayer) {
+  const auto t = File(std::vector<std::pair<std::string, Channels>>{{"rgba", {"R", "G", "B", "A"}},
+                                                                    {"P", {"X", "Y", "Z"}},
+                                                                    {"N", {"X", "Y", "Z"}},
+                                                                    {"depth", {"Z"}}})
+                     .find();
+  EXPECT_EQ(t[Role::position]->part, 1);
+  EXPECT_EQ(t[Role::normal]->part, 2);
+  EXPECT_EQ(t[Role::depth]->part, 3);
+  EXPECT_EQ(t[Role::beauty]->part, 0);
+}
+
+TEST(Layers, FindsBareNormalComponentsAndFileOutputDepth) {
+  const auto t =
+      File({"NX", "NY", "NZ", "Depth.V", "Position.X", "Position.Y", "Position.Z"}).find();
+  EXPECT_EQ(channels_of(t, Role::normal), (Channels{"NX", "NY", "NZ"}));
+  EXPECT_EQ(channels_of(t, Role::depth), Channels{"Depth.V"});
+}
+
+TEST(Layers, PrefersWorldAndTakesDenoiserNormalsLast) {
+  const auto t =
+      File({"P.X", "P.Y", "P.Z", "Pworld.X", "Pworld.Y", "Pworld.Z", "Denoising Normal.X",
+            "Denoising Normal.Y", "Denoising Normal.Z", "Normal.X", "Normal.Y", "Normal.Z"})
+          .find();
+  EXPECT_EQ(t[Role::position]->name, "Pworld");
+  EXPECT_EQ(t[Role::normal]->name, "Normal");
+}
+
+TEST(Layers, AnEqualClaimIsAnErrorThatListsTheCandidates) {
+  const File file({"A.Position.X", "A.Position.Y", "A.Position.Z", "B.Position.X", "B.Position.Y",
+                   "B.Position.Z"});
+  const Error error = error_of([&] { file.find(); });
+  EXPECT_THAT(error, IsError(ExitCode::layer, "'A.Position', 'B.Position'"));
+  EXPECT_THAT(error, IsError(ExitCode::layer, "--aov position=LAYER"));
+  EXPECT_EQ(file.find({"position=B.Position"})[Role::position]->name, "B.Position");
+  EXPECT_TRUE(file.find({"position=b.position"})[Role::position]->by_request);
+}
+
+TEST(Layers, ARequestForWhatIsNotThereNamesWhatIs) {
+  const File file({"foo.X", "foo.Y", "foo.Z", "bar.Z"});
+  EXPECT_THAT(error_of([&] { file.find({"position=baz"}); }), IsError(ExitCode::layer, "'foo'"));
+  EXPECT_EQ(file.find({"depth=bar"})[Role::depth]->channels, Channels{"bar.Z"});
+  EXPECT_EQ(file.find({"depth=bar.Z"})[Role::depth]->channels, Channels{"bar.Z"});
+}
+
+TEST(Layers, APartRestrictsTheSearch) {
+  const File file(std::vector<std::pair<std::string, Channels>>{{"left", {"P.X", "P.Y", "P.Z"}},
+                                                                {"right", {"P.X", "P.Y", "P.Z"}}});
+  EXPECT_THAT(error_of([&] { file.find(); }), IsError(ExitCode::layer, "could be position"));
+  EXPECT_EQ(file.find({}, "right")[Role::position]->part, 1);
+  EXPECT_EQ(file.find({}, "0")[Role::position]->part, 0);
+  EXPECT_THAT(error_of([&] { file.find({}, "middle"); }),
+              IsError(ExitCode::layer, "0 'left', 1 'right'"));
+}
+
+TEST(Layers, RequestsAreParsed) {
+  EXPECT_EQ(parse_layer_request("normal=my:layer").layer, "my:layer")
+      << "no such file: the colon is the layer's";
+  for (const char* bad : {"normal", "normal=", "colour=x", "=x"}) {
+    EXPECT_THAT(error_of([&] { parse_layer_request(bad); }),
+                IsError(ExitCode::usage, "ROLE=LAYER"));
+  }
+  const File file({"P.X", "P.Y", "P.Z"});
+  const LayerRequest request = parse_layer_request("position=" + file.path().string() + ":P");
+  EXPECT_EQ(request.file, file.path());
+  EXPECT_EQ(request.layer, "P");
+}
+
+}  // namespace
+}  // namespace ssdo::test

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <string>
+
+#include "error.h"
+
+namespace ssdo::test {
+
+/// What `action` throws as an ssdo::Error; a failure if it throws none, or a message of many lines.
+inline Error error_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    return error;
+  }
+  ADD_FAILURE() << "expected an ssdo::Error";
+  return Error(ExitCode::done, "");
+}
+
+/// Matches an ssdo::Error by its exit code and a part of its message.
+MATCHER_P2(IsError, code, text, "") {
+  *result_listener << "exit code " << int(arg.code) << ", message '" << arg.what() << "'";
+  return arg.code == code && std::string(arg.what()).find(text) != std::string::npos;
+}
+
+}  // namespace ssdo::test
