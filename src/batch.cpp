@@ -36,6 +36,13 @@ std::vector<Job> plan_jobs(const Options& options) {
           fmt::format("{}: --frames needs a pattern in the input's name, such as shot.####.exr",
                       options.input_file));
     }
+    for (const Target& target : targets_of(options.output, std::nullopt)) {
+      if (is_pattern(target.path)) {
+        throw Error(ExitCode::usage,
+                    fmt::format("{}: has a frame pattern, but the input {} has none", target.path,
+                                options.input_file));
+      }
+    }
     return {{std::nullopt, options.input_file, targets_of(options.output, std::nullopt)}};
   }
   const auto frames = options.batch.frames.empty() ? find_frames(options.input_file)

@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <glm/common.hpp>
 #include <sstream>
+#include <system_error>
 #include <vector>
 
 #include "color_space.h"
@@ -28,6 +31,9 @@ constexpr const char* kBuiltInConfig =
 
 constexpr int kFirstVersionWithUris = 0x02020000;
 
+/// Of a half float. The ACES transforms take values far beyond it for black, infinite ones for NaN.
+constexpr float kLargest = 65504.0f;
+
 struct LabelledConfig {
   OCIO::ConstConfigRcPtr config;
   std::string label;  ///< for messages
@@ -45,6 +51,10 @@ LabelledConfig load_config(const std::string& file, const std::string& source) {
                 fmt::format("{}: OpenColorIO {} has no configs of its own (2.2 and later do); pass "
                             "--ocio FILE, or unset OCIO for the built-in config",
                             label, OCIO::GetVersion()));
+  }
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    throw Error(ExitCode::input, label + ": is a folder; name the config.ocio in it");
   }
   try {
     return {OCIO::Config::CreateFromFile(file.c_str()), label};
@@ -84,8 +94,8 @@ Names looks_of(const OCIO::Config& config) {
   return names;
 }
 
-/// The one of `names` that the option asks for, as the config spells it: OpenColorIO's names do not
-/// depend on case. `owner` is what has the names.
+/// The one of `names` that the option asks for, as the config spells it: case does not matter to
+/// OpenColorIO. `owner` is what has the names.
 std::string pick(const std::string& option, const std::string& wanted, const Names& names,
                  const std::string& owner) {
   const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
@@ -100,8 +110,9 @@ std::string pick(const std::string& option, const std::string& wanted, const Nam
 View choose_view(const LabelledConfig& from, const ColorOptions& options) {
   const OCIO::Config& config = *from.config;
   View v{config.getDefaultDisplay(), "", ""};
-  if (!options.display.empty())
+  if (!options.display.empty()) {
     v.display = pick("--display", options.display, displays_of(config), from.label);
+  }
   v.view = config.getDefaultView(v.display.c_str());
   if (!options.view.empty()) {
     v.view = pick("--view", options.view, views_of(config, v.display),
@@ -161,6 +172,7 @@ DisplayTransform::DisplayTransform(DisplayTransform&&) noexcept = default;
 void DisplayTransform::apply(std::span<glm::vec3> colors) const {
   static_assert(sizeof(glm::vec3) == 3 * sizeof(float), "colours are packed RGB");
   if (colors.empty()) return;
+  for (glm::vec3& color : colors) color = glm::clamp(color, -kLargest, kLargest);
   OCIO::PackedImageDesc image(colors.data(), long(colors.size()), 1, 3);
   processor_->cpu->apply(image);
 }

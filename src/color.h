@@ -13,36 +13,40 @@ namespace ssdo {
 
 /// What the user says about colour. Empty means: decide.
 struct ColorOptions {
-  std::string ocio;        ///< config file; over $OCIO over the built-in config
-  std::string colorspace;  ///< of the input's colours
-  std::string display, view, look;
+  std::string ocio{};        ///< config file; over $OCIO over the built-in config
+  std::string colorspace{};  ///< of the input's colours
+  std::string display{}, view{}, look{};
 };
 
 /// What a file says about its own colours.
 struct ColorTags {
-  std::filesystem::path path;                          ///< for the config's file rules
-  std::string interop_id;                              ///< attribute `colorInteropID`
-  bool aces_container = false;                         ///< attribute `acesImageContainerFlag` = 1
-  std::optional<std::array<float, 8>> chromaticities;  ///< rx ry gx gy bx by wx wy
+  std::filesystem::path path{};                          ///< for the config's file rules
+  std::string interop_id{};                              ///< attribute `colorInteropID`
+  bool aces_container = false;                           ///< attribute `acesImageContainerFlag` = 1
+  std::optional<std::array<float, 8>> chromaticities{};  ///< rx ry gx gy bx by wx wy
 };
 
 /// The way from a frame's scene-linear colours to a display, through OpenColorIO.
 ///
 /// The input's colour space is --colorspace, else the tag colorInteropID, else the ACES container
 /// flag, else chromaticities that match a known set, else a file rule of the config other than its
-/// default, else the role scene_linear.
+/// default, else the role scene_linear. A tag that names data, or a space that the config lacks, is
+/// passed over. A look takes the place of those that the view brings along.
 class DisplayTransform {
  public:
-  /// Errors: ExitCode::usage for a config, colour space, display, view or look that does not exist
-  /// (the message lists those that do); ExitCode::input for a config that cannot be read.
+  /// Errors: ExitCode::usage for a colour space, display, view or look that the config does not
+  /// have (the message lists those it has); ExitCode::input for a config that is missing, cannot be
+  /// read, or does not lead from the colour space to the view.
   DisplayTransform(const ColorOptions& options, const ColorTags& tags);
   ~DisplayTransform();
   DisplayTransform(DisplayTransform&&) noexcept;
 
-  /// Scene-linear to display values, in place. RGB is not premultiplied. Thread-safe.
+  /// Scene-linear to display values, in place. RGB is not premultiplied. Thread-safe. What does not
+  /// fit a half float counts as the largest one. Results are not clipped to 0..1.
   void apply(std::span<glm::vec3> colors) const;
 
-  /// One line: config, input space and the rule that chose it, display, view, look.
+  /// One line: config, input space and the rule that chose it, display, view, look, and what tags
+  /// were passed over.
   const std::string& description() const { return description_; }
 
  private:

@@ -24,8 +24,8 @@ struct KnownSpace {
   Names names;                          ///< what the configs in use call it
 };
 
-/// Chromaticities: ITU-R BT.709-6, SMPTE S-2014-004 (AP1), ST 2065-1 (AP0), EG 432-1, BT.2020-2.
-/// Names: of the ACES 1.0.3, CG, Studio and Blender configs, and of OpenColorIO's own examples.
+/// Chromaticities: ITU-R BT.709, Academy S-2014-004 (AP1), SMPTE ST 2065-1 (AP0) and EG 432-1 (P3),
+/// ITU-R BT.2020. Names: of the ACES 1, CG, Studio and Blender configs.
 const std::vector<KnownSpace>& known_spaces() {
   static const std::vector<KnownSpace> spaces = {
       {"lin_rec709_scene",

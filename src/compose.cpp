@@ -19,7 +19,7 @@ void append_color(std::vector<NamedPlane>& out, const std::string& prefix,
 }  // namespace
 
 Plane<float> coverage(const GBuffer& gbuffer, const Geometry& geometry) {
-  Plane<float> alpha(geometry.position.width, geometry.position.height, 0.0f);
+  Plane<float> alpha(geometry.surfel.width, geometry.surfel.height, 0.0f);
   for (std::size_t i = 0; i < alpha.size(); ++i) {
     if (!geometry.is_surface(i)) continue;
     const float a = gbuffer.alpha.empty() ? 1.0f : gbuffer.alpha[i];

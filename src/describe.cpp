@@ -54,7 +54,7 @@ json window_json(const Window& w) { return {w.x0, w.y0, w.x1 - 1, w.y1 - 1}; }
 
 std::size_t surface_pixels(const Frame& frame) {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < frame.geometry.position.size(); ++i)
+  for (std::size_t i = 0; i < frame.geometry.surfel.size(); ++i)
     count += frame.geometry.is_surface(i);
   return count;
 }
@@ -122,7 +122,7 @@ std::string describe(const Frame& frame) {
   }
   line("camera", describe_camera(frame));
   line("surfaces", fmt::format("{} of {} pixels ({} background, {} broken), median depth {:.4g}",
-                               surface_pixels(frame), frame.geometry.position.size(),
+                               surface_pixels(frame), frame.geometry.surfel.size(),
                                frame.gbuffer.background_pixels, frame.gbuffer.bad_pixels,
                                frame.geometry.median_depth));
   line("light", frame.light);
@@ -150,7 +150,7 @@ nlohmann::json to_json(const Frame& frame) {
             {"agreement", frame.report.normal_agreement},
             {"rebuilt", frame.report.normals_rebuilt},
             {"turned", frame.report.normals_turned}}},
-          {"pixels", g.position.size()},
+          {"pixels", g.surfel.size()},
           {"surface_pixels", surface_pixels(frame)},
           {"background_pixels", frame.gbuffer.background_pixels},
           {"bad_pixels", frame.gbuffer.bad_pixels},

@@ -15,7 +15,7 @@ void for_each_shown_pixel(const Geometry& geometry, const Visit& visit) {
     for (int x = std::max(display.x0, data.x0); x < std::min(display.x1, data.x1); ++x) {
       visit(
           std::size_t(y - display.y0) * std::size_t(display.width()) + std::size_t(x - display.x0),
-          geometry.position.index(x - data.x0, y - data.y0));
+          geometry.surfel.index(x - data.x0, y - data.y0));
     }
   }
 }

@@ -58,7 +58,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(FrameList{"1-3,5,7-20:4", {1, 2, 3, 5, 7, 11, 15, 19}},
                     FrameList{"1001-1003,1020-1030x5", {1001, 1002, 1003, 1020, 1025, 1030}},
                     FrameList{"1-3 7", {1, 2, 3, 7}}, FrameList{"1-2 -5--4", {1, 2, -5, -4}},
-                    FrameList{"3,1,2", {3, 1, 2}}, FrameList{"1\n2\n3\n", {1, 2, 3}}));
+                    FrameList{"3,1,2", {3, 1, 2}}, FrameList{"7 9", {7, 9}},
+                    FrameList{"1 , 2 3", {1, 2, 3}}, FrameList{"1\n2\n3\n", {1, 2, 3}}));
 
 INSTANTIATE_TEST_SUITE_P(Spaces, Frames,
                          testing::Values(FrameList{"1 - 3 , 5", {1, 2, 3, 5}},
@@ -105,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Refusal{"1\na", "at 'a'"}, Refusal{"0x10-0x20", "at 'x10"}));
 
 INSTANTIATE_TEST_SUITE_P(Ambiguous, RefusedFrames,
-                         testing::Values(Refusal{"1 -3", "write 1-3 or 1,-3"},
+                         testing::Values(Refusal{"1 -3", "at ' -3': may be a range"},
                                          Refusal{"-5 -3 -1", "write 1-3 or 1,-3"}));
 
 INSTANTIATE_TEST_SUITE_P(Steps, RefusedFrames,
@@ -160,7 +161,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(Negative, Expansions,
                          testing::Values(Expansion{"a.####.exr", -7, "a.-0007.exr"},
-                                         Expansion{"a.%04d.exr", -7, "a.-0007.exr"},
+                                         Expansion{"a.%04d.exr", -7, "a.-007.exr"},
+                                         Expansion{"a.%04d.exr", -1234, "a.-1234.exr"},
+                                         Expansion{"a.@@.exr", -7, "a.-07.exr"},
                                          Expansion{"a.@.exr", -7, "a.-7.exr"},
                                          Expansion{"a.%d.exr", INT_MIN, "a.-2147483648.exr"}));
 
@@ -189,8 +192,8 @@ TEST(Pattern, IsNoneWithoutASign) {
 
 TEST(Pattern, RefusesOtherConversions) {
   for (const std::string bad :
-       {"%4d", "%f", "%04f", "%04", "%-4d", "%i", "%+d", "%ld", "%00d", "%0d", "%", "% d", "%.4d",
-        "%s", "%x", "%0100d", "%99999999999d", "%%%"}) {
+       {"%4d", "%12d", "%f", "%04f", "%04", "%-4d", "%i", "%+d", "%ld", "%00d", "%0d", "%", "% d",
+        "%.4d", "%s", "%x", "%0100d", "%99999999999d", "%%%"}) {
     for (const std::string& path :
          {bad + ".exr", "a.####." + bad, "no_such" + bad + "/a.####.exr"}) {
       for (const auto& use : std::vector<std::function<void()>>{[&] { is_pattern(path); },
@@ -272,9 +275,16 @@ TEST_F(Found, FramesAscendWithNegativeOnes) {
   for (const std::string n : {"0010", "-0002", "0001", "-0010", "0000", "0009"})
     touch("a." + n + ".exr");
   EXPECT_THAT(find("a.####.exr"), ElementsAre(-10, -2, 0, 1, 9, 10));
-  EXPECT_THAT(find("a.%04d.exr"), ElementsAre(-10, -2, 0, 1, 9, 10));
   EXPECT_THAT(find("a.#.exr"), ElementsAre(-10, -2, 0, 1, 9, 10));
   EXPECT_THAT(find("a.@@@@.exr"), ElementsAre(-10, -2, 0, 1, 9, 10));
+}
+
+TEST_F(Found, NegativeFramesOfPrintfCountTheirSign) {
+  for (const std::string n : {"-001", "-0002", "-1234", "-99", "0003"}) touch("a." + n + ".exr");
+  EXPECT_THAT(find("a.%04d.exr"), ElementsAre(-1234, -1, 3));
+  EXPECT_THAT(find("a.####.exr"), ElementsAre(-1234, -2, 3));
+  EXPECT_THAT(find("a.###.exr"), ElementsAre(-1234, -1));
+  EXPECT_THAT(find("a.%d.exr"), ElementsAre(-1234, -99));
 }
 
 TEST_F(Found, PaddingIsStrict) {
@@ -297,8 +307,9 @@ TEST_F(Found, NumbersAreInts) {
 }
 
 TEST_F(Found, TextAroundIsStrict) {
-  for (const std::string name : {"a.0001.exr", "a.0002.exr.tmp", "xa.0003.exr", "a_0004.exr",
-                                 "a.0005.EXR", "axb.0006.exr", "a.0007xexr", "a.0008"}) {
+  for (const std::string name :
+       {"a.0001.exr", "a.0001", "a.0002.exr.tmp", "xa.0003.exr", "a_0004.exr", "a.0005.EXR",
+        "axb.0006.exr", "a.0007xexr", "a.0008"}) {
     touch(name);
   }
   EXPECT_THAT(find("a.####.exr"), ElementsAre(1));
@@ -332,7 +343,7 @@ TEST_F(Found, SeveralNumbersOfANameAreTheSame) {
 TEST_F(Found, FolderAndNameAreTheSameFrame) {
   for (const std::string name :
        {"s/0002/b.0002.exr", "s/0001/b.0001.exr", "s/0003/b.0004.exr", "s/5/b.0005.exr",
-        "s/0006/c.0006.exr", "s/-0007/b.-0007.exr", "s/b.0008.exr"}) {
+        "s/0006/c.0006.exr", "s/-007/b.-007.exr", "s/b.0008.exr"}) {
     touch(name);
   }
   make_folder("s/0009/b.0009.exr");

@@ -27,6 +27,7 @@
 #include "estimators/ssdo.h"
 
 #include <algorithm>
+#include <array>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
@@ -39,8 +40,6 @@ namespace {
 
 constexpr int kPatternSize = 4;
 constexpr float kPi = glm::pi<float>();
-
-using Pattern = std::vector<std::vector<HalfBallSample>>;
 
 struct Settings {
   int samples;
@@ -61,74 +60,115 @@ struct Settings {
         bounce_singularity(float(in.parameters.at("bounce-singularity"))) {}
 };
 
-/// Camera space to the pixels of a plane, in float.
-struct Projection {
-  float fx, fy, cx, cy;
-  bool orthographic;
+/// The points of one member of the pattern, as arrays.
+struct SampleSet {
+  std::vector<float> x, y, cosine, length;
 
-  explicit Projection(const Geometry& g)
-      : fx(float(g.camera.fx)),
-        fy(float(g.camera.fy)),
-        cx(float(g.camera.cx - g.window.x0)),
-        cy(float(g.camera.cy - g.window.y0)),
-        orthographic(g.camera.orthographic) {}
-
-  glm::vec2 operator()(const glm::vec3& p) const {
-    const float w = orthographic ? 1.0f : 1.0f / -p.z;
-    return {cx + fx * p.x * w, cy - fy * p.y * w};
+  explicit SampleSet(const std::vector<HalfBallSample>& samples) {
+    for (const HalfBallSample& s : samples) {
+      x.push_back(s.direction.x);
+      y.push_back(s.direction.y);
+      cosine.push_back(s.direction.z);
+      length.push_back(s.length);
+    }
   }
 };
 
-/// One pixel that gathers, and how to place its samples.
+/// One pixel that gathers.
 struct Receiver {
   glm::vec3 position, normal;
   glm::mat3 frame;
-  const std::vector<HalfBallSample>& samples;
+  const SampleSet& samples;
   float bias;
 };
 
-/// Walks the samples of a pixel: both passes see the same points and the same surfaces.
+constexpr int kBatch = 16;
+
+/// Some samples of a receiver after projection, as arrays that the compiler fills lane by lane.
+struct Batch {
+  int count;
+  std::array<float, kBatch> direction_x, direction_y, direction_z;  ///< unit, camera space
+  std::array<float, kBatch> x, y, z;                                ///< the points
+  std::array<int, kBatch> pixel;  ///< index of the pixel that shows the point; -1 outside the frame
+
+  glm::vec3 direction(int k) const {
+    const auto i = std::size_t(k);
+    return {direction_x[i], direction_y[i], direction_z[i]};
+  }
+  glm::vec3 point(int k) const {
+    const auto i = std::size_t(k);
+    return {x[i], y[i], z[i]};
+  }
+};
+
+/// Places the samples of a pixel: both passes see the same points and the same surfaces.
 class Sampler {
  public:
-  Sampler(const Geometry& geometry, const Settings& settings, const Pattern& pattern)
-      : geometry_(geometry), settings_(settings), pattern_(pattern), project_(geometry) {}
+  Sampler(const Geometry& geometry, const Settings& settings, unsigned seed)
+      : geometry_(geometry),
+        settings_(settings),
+        fx_(float(geometry.camera.fx)),
+        fy_(float(geometry.camera.fy)),
+        cx_(float(geometry.camera.cx - geometry.window.x0)),
+        cy_(float(geometry.camera.cy - geometry.window.y0)),
+        orthographic_(geometry.camera.orthographic) {
+    for (const auto& samples : half_ball_pattern(kPatternSize, settings.samples, seed)) {
+      pattern_.emplace_back(samples);
+    }
+  }
 
   Receiver receiver(int x, int y) const {
-    const std::size_t i = geometry_.position.index(x, y);
-    const glm::vec4 n = geometry_.normal[i];
+    const Surfel& s = geometry_.surfel(x, y);
+    const glm::vec3 n(s.normal);
     // The pattern is fixed to the display window: a crop sees the same.
     const int row = (y + geometry_.window.y0) & (kPatternSize - 1);
     const int column = (x + geometry_.window.x0) & (kPatternSize - 1);
-    return {glm::vec3(geometry_.position[i]), glm::vec3(n), frame_about(glm::vec3(n)),
-            pattern_[std::size_t(row * kPatternSize + column)], settings_.bias + n.w};
+    return {glm::vec3(s.position), n, frame_about(n),
+            pattern_[std::size_t(row * kPatternSize + column)], settings_.bias + s.normal.w};
   }
 
-  /// The pixel that hides the point `x` from the eye or lies behind it; -1 outside the frame, on
-  /// the background and behind the camera.
-  std::ptrdiff_t pixel_of(const glm::vec3& x) const {
-    if (x.z >= 0) return -1;
-    const glm::vec2 at = project_(x);
-    if (!(at.x >= 0 && at.y >= 0 && at.x < float(geometry_.position.width) &&
-          at.y < float(geometry_.position.height))) {
-      return -1;
+  /// Samples `first` to `first + kBatch` of the receiver, or as many as there are.
+  void place(const Receiver& p, int first, Batch& out) const {
+    out.count = std::min(kBatch, settings_.samples - first);
+    const auto n = std::size_t(out.count), at = std::size_t(first);
+    const float *sx = &p.samples.x[at], *sy = &p.samples.y[at], *sz = &p.samples.cosine[at];
+    const float* length = &p.samples.length[at];
+    const glm::mat3& f = p.frame;
+    const float width = float(geometry_.surfel.width), height = float(geometry_.surfel.height);
+    for (std::size_t k = 0; k < n; ++k) {
+      out.direction_x[k] = f[0].x * sx[k] + f[1].x * sy[k] + f[2].x * sz[k];
+      out.direction_y[k] = f[0].y * sx[k] + f[1].y * sy[k] + f[2].y * sz[k];
+      out.direction_z[k] = f[0].z * sx[k] + f[1].z * sy[k] + f[2].z * sz[k];
+      const float reach = settings_.radius * length[k];
+      out.x[k] = p.position.x + reach * out.direction_x[k];
+      out.y[k] = p.position.y + reach * out.direction_y[k];
+      out.z[k] = p.position.z + reach * out.direction_z[k];
     }
-    const std::size_t i = geometry_.position.index(int(at.x), int(at.y));
-    return geometry_.is_surface(i) ? std::ptrdiff_t(i) : -1;
+    for (std::size_t k = 0; k < n; ++k) {
+      const float w = orthographic_ ? 1.0f : -1.0f / out.z[k];
+      const float column = cx_ + fx_ * out.x[k] * w, row = cy_ - fy_ * out.y[k] * w;
+      const bool inside =
+          (out.z[k] < 0) & (column >= 0) & (row >= 0) & (column < width) & (row < height);
+      // Not evaluated as an index unless it is inside: a huge value has no int.
+      const int px = int(inside ? column : 0.0f), py = int(inside ? row : 0.0f);
+      out.pixel[k] = inside ? py * geometry_.surfel.width + px : -1;
+    }
   }
 
-  /// Whether the surface at pixel `i` is in front of `x` by more than the bias and nearer to it
-  /// than the singularity.
-  bool is_occluded(const glm::vec3& x, std::size_t i, float bias) const {
-    const glm::vec3 to_x = x - glm::vec3(geometry_.position[i]);
-    return glm::dot(to_x, glm::vec3(geometry_.normal[i])) < -bias &&
-           std::abs(to_x.z) < settings_.singularity;
+  /// Whether the surface is in front of the point `x` by more than the bias and nearer to it than
+  /// the singularity. The background is in front of nothing.
+  bool is_in_front(const Surfel& s, const glm::vec3& x, float bias) const {
+    const glm::vec3 to_x = x - glm::vec3(s.position);
+    return (s.position.w != 0) & (glm::dot(to_x, glm::vec3(s.normal)) < -bias) &
+           (std::abs(to_x.z) < settings_.singularity);
   }
 
  private:
   const Geometry& geometry_;
   const Settings& settings_;
-  const Pattern& pattern_;
-  Projection project_;
+  std::vector<SampleSet> pattern_;
+  float fx_, fy_, cx_, cy_;
+  bool orthographic_;
 };
 
 /// The environment as the samples see it, for directions in camera space.
@@ -159,17 +199,21 @@ void gather_direct(const EstimateInput& in, const Settings& settings, const Samp
         const Receiver p = sampler.receiver(x, y);
         float visible = 0;
         glm::vec3 lit(0), light(0);
-        for (const HalfBallSample& sample : p.samples) {
-          const glm::vec3 direction = p.frame * sample.direction;
-          const glm::vec3 point = p.position + settings.radius * sample.length * direction;
-          const std::ptrdiff_t q = sampler.pixel_of(point);
-          const bool hidden = q >= 0 && sampler.is_occluded(point, std::size_t(q), p.bias);
-          const float share = hidden ? 1 - settings.strength : 1.0f;
-          visible += share * sample.direction.z;
-          if (!sky) continue;
-          const glm::vec3 arriving = sample.direction.z * sky->radiance(direction);
-          light += arriving;
-          lit += share * arriving;
+        Batch batch;
+        for (int first = 0; first < settings.samples; first += kBatch) {
+          sampler.place(p, first, batch);
+          for (int k = 0; k < batch.count; ++k) {
+            const int q = batch.pixel[std::size_t(k)];
+            const bool hidden = q >= 0 && sampler.is_in_front(in.geometry.surfel[std::size_t(q)],
+                                                              batch.point(k), p.bias);
+            const float cosine = p.samples.cosine[std::size_t(first + k)];
+            const float share = hidden ? 1 - settings.strength : 1.0f;
+            visible += share * cosine;
+            if (!sky) continue;
+            const glm::vec3 arriving = cosine * sky->radiance(batch.direction(k));
+            light += arriving;
+            lit += share * arriving;
+          }
         }
         // 2 pi / N over pi; a strength above 1 takes more than there is.
         out.ao[i] = std::clamp(visible * 2.0f / float(settings.samples), 0.0f, 1.0f);
@@ -195,19 +239,21 @@ Plane<glm::vec3> gather_bounce(const EstimateInput& in, const Settings& settings
         if (!in.geometry.is_surface(i)) continue;
         const Receiver p = sampler.receiver(x, y);
         glm::vec3 sum(0);
-        for (const HalfBallSample& sample : p.samples) {
-          const glm::vec3 point =
-              p.position + settings.radius * sample.length * (p.frame * sample.direction);
-          const std::ptrdiff_t q = sampler.pixel_of(point);
-          if (q < 0) continue;
-          const glm::vec3 to_q = glm::vec3(in.geometry.position[std::size_t(q)]) - p.position;
-          const float d2 = std::max(glm::dot(to_q, to_q), 1e-20f);
-          const float cos_p = std::max(0.0f, glm::dot(to_q, p.normal));
-          const float cos_q =
-              std::max(0.0f, -glm::dot(to_q, glm::vec3(in.geometry.normal[std::size_t(q)])));
-          // The cosines still carry the length of to_q.
-          const float form_factor = radius2 * cos_p * cos_q / (d2 * d2);
-          sum += std::min(form_factor, settings.bounce_singularity) * sent[std::size_t(q)];
+        Batch batch;
+        for (int first = 0; first < settings.samples; first += kBatch) {
+          sampler.place(p, first, batch);
+          for (int k = 0; k < batch.count; ++k) {
+            const int q = batch.pixel[std::size_t(k)];
+            if (q < 0) continue;
+            const Surfel& sender = in.geometry.surfel[std::size_t(q)];
+            const glm::vec3 to_q = glm::vec3(sender.position) - p.position;
+            const float d2 = std::max(glm::dot(to_q, to_q), 1e-20f);
+            const float cos_p = std::max(0.0f, glm::dot(to_q, p.normal));
+            const float cos_q = std::max(0.0f, -glm::dot(to_q, glm::vec3(sender.normal)));
+            // The cosines still carry the length of to_q.
+            const float form_factor = radius2 * cos_p * cos_q / (d2 * d2);
+            sum += std::min(form_factor, settings.bounce_singularity) * sent[std::size_t(q)];
+          }
         }
         bounce[i] = sum * per_sample;
       }
@@ -229,9 +275,8 @@ Plane<glm::vec3> sender_radiance(const EstimateInput& in, const Products& so_far
 
 Products estimate(const EstimateInput& in) {
   const Settings settings(in);
-  const Pattern pattern = half_ball_pattern(kPatternSize, settings.samples, in.seed);
-  const Sampler sampler(in.geometry, settings, pattern);
-  const int width = in.geometry.position.width, height = in.geometry.position.height;
+  const Sampler sampler(in.geometry, settings, in.seed);
+  const int width = in.geometry.surfel.width, height = in.geometry.surfel.height;
 
   Products out;
   out.ao = Plane<float>(width, height, 1.0f);

@@ -45,17 +45,17 @@ class SurfaceWindow {
 
   template <class Visit>
   void visit(int x, int y, const Visit& visit_tap) const {
-    const glm::vec4 p = geometry_.position(x, y), n = geometry_.normal(x, y);
+    const glm::vec4 p = geometry_.surfel(x, y).position, n = geometry_.surfel(x, y).normal;
     for (int dy = -half_; dy <= half_; ++dy) {
       for (int dx = -half_; dx <= half_; ++dx) {
         const int qx = x + dx, qy = y + dy;
-        if (qx < 0 || qy < 0 || qx >= geometry_.position.width || qy >= geometry_.position.height)
+        if (qx < 0 || qy < 0 || qx >= geometry_.surfel.width || qy >= geometry_.surfel.height)
           continue;
-        const std::size_t i = geometry_.position.index(qx, qy);
+        const std::size_t i = geometry_.surfel.index(qx, qy);
         if (!geometry_.is_surface(i)) continue;
         const float border =
             (std::abs(dx) == half_ ? 0.5f : 1.0f) * (std::abs(dy) == half_ ? 0.5f : 1.0f);
-        const float weight = border * similarity(p, n, geometry_.position[i], geometry_.normal[i]);
+        const float weight = border * similarity(p, n, geometry_.surfel[i].position, geometry_.surfel[i].normal);
         if (weight > 0) visit_tap(Tap{i, weight});
       }
     }
@@ -81,10 +81,10 @@ class SurfaceWindow {
 Products filter_geometry(const Products& noisy, const Geometry& geometry, int pattern_size) {
   Products out = noisy;
   const SurfaceWindow window(geometry, pattern_size);
-  for_each_tile(geometry.position.width, geometry.position.height, [&](const Tile& tile) {
+  for_each_tile(geometry.surfel.width, geometry.surfel.height, [&](const Tile& tile) {
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
-        const std::size_t i = geometry.position.index(x, y);
+        const std::size_t i = geometry.surfel.index(x, y);
         if (!geometry.is_surface(i)) continue;
         float weights = 0, ao = 0;
         glm::vec3 direct(0), bounce(0);

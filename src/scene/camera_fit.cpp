@@ -6,110 +6,14 @@
 #include <cmath>
 #include <vector>
 
+#include "scene/projection_model.h"
+
 namespace ssdo {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr std::size_t kMaxSamples = 20000;
-constexpr int kParameters = 10;  // rotation 3, translation 3, fx, fy, cx, cy
-
-struct Sample {
-  Vector3d p;      ///< recentred and scaled
-  Vector2d pixel;  ///< display-window pixels
-};
-
-/// The samples, and how to undo their normalisation: P = centre + scale * p.
-struct Samples {
-  std::vector<Sample> items;
-  Vector3d centre = Vector3d::Zero();
-  double scale = 1;
-  Eigen::Vector3d spread = Vector3d::Zero();  ///< standard deviations along the principal axes
-  Matrix3d axes = Matrix3d::Identity();       ///< the principal axes, in columns, ascending
-};
-
-/// A camera while it is being fitted, in the axes of computer vision (x right, y down, z forward)
-/// and in the normalised space of the samples.
-struct Model {
-  bool orthographic = false;
-  Matrix3d rotation = Matrix3d::Identity();
-  Vector3d translation = Vector3d::Zero();
-  double fx = 1, fy = 1, cx = 0, cy = 0;
-
-  Vector2d project(const Vector3d& p) const {
-    const Vector3d q = rotation * p + translation;
-    const double w = orthographic ? 1.0 : 1.0 / q.z();
-    return {cx + fx * q.x() * w, cy + fy * q.y() * w};
-  }
-};
-
-Samples collect(const Plane<glm::vec3>& positions, const Plane<unsigned char>& valid,
-                const Window& window) {
-  std::size_t count = 0;
-  for (unsigned char v : valid.pixels) count += v != 0;
-  // An odd stride does not fall in step with the rows.
-  const std::size_t stride = (count / kMaxSamples) | 1;
-
-  Samples samples;
-  std::size_t seen = 0;
-  for (int y = 0; y < positions.height; ++y) {
-    for (int x = 0; x < positions.width; ++x) {
-      if (!valid(x, y) || seen++ % stride != 0) continue;
-      const glm::vec3 p = positions(x, y);
-      samples.items.push_back({{p.x, p.y, p.z}, {window.x0 + x + 0.5, window.y0 + y + 0.5}});
-    }
-  }
-  if (samples.items.empty()) return samples;
-
-  for (const Sample& s : samples.items) samples.centre += s.p;
-  samples.centre /= double(samples.items.size());
-  Matrix3d covariance = Matrix3d::Zero();
-  for (Sample& s : samples.items) {
-    s.p -= samples.centre;
-    covariance += s.p * s.p.transpose();
-  }
-  covariance /= double(samples.items.size());
-  samples.scale = std::sqrt(std::max(covariance.trace() / 3, 1e-300));
-  for (Sample& s : samples.items) s.p /= samples.scale;
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
-  samples.spread = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt() / samples.scale;
-  samples.axes = solver.eigenvectors();
-  return samples;
-}
-
-std::vector<double> distances(const Model& model, const Samples& samples) {
-  std::vector<double> out;
-  out.reserve(samples.items.size());
-  for (const Sample& s : samples.items) out.push_back((model.project(s.p) - s.pixel).norm());
-  return out;
-}
-
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) return 0;
-  const std::size_t k = std::min(values.size() - 1, std::size_t(q * double(values.size())));
-  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(k), values.end());
-  return values[k];
-}
-
-/// The samples that agree with the model to within three robust standard deviations.
-Samples inliers(const Model& model, const Samples& samples) {
-  const auto d = distances(model, samples);
-  const double limit = 3 * 1.4826 * quantile(d, 0.5) + 1e-3;
-  Samples kept = samples;
-  kept.items.clear();
-  for (std::size_t i = 0; i < d.size(); ++i) {
-    if (d[i] <= limit) kept.items.push_back(samples.items[i]);
-  }
-  return kept;
-}
-
-double rms(const Model& model, const Samples& samples) {
-  double sum = 0;
-  for (double d : distances(model, samples)) sum += d * d;
-  return std::sqrt(sum / double(std::max<std::size_t>(1, samples.items.size())));
-}
 
 /// The eigenvector of the smallest eigenvalue: the unit x that makes |A x| least, from A^T A.
 Eigen::VectorXd null_vector(const Eigen::MatrixXd& normal_matrix) {
@@ -118,7 +22,7 @@ Eigen::VectorXd null_vector(const Eigen::MatrixXd& normal_matrix) {
 
 /// Direct linear transform: M (3 x 4) with pixel ~ M (p, 1), split by an RQ decomposition into
 /// K [R | t] with a positive diagonal of K and the points in front.
-Model direct_linear_transform(const Samples& samples, const Window& window) {
+ProjectionModel direct_linear_transform(const Samples& samples, const Window& window) {
   const Vector2d middle(0.5 * (window.x0 + window.x1), 0.5 * (window.y0 + window.y1));
   const double half = 0.5 * std::hypot(window.width(), window.height());
   Eigen::MatrixXd ata = Eigen::MatrixXd::Zero(12, 12);
@@ -147,7 +51,7 @@ Model direct_linear_transform(const Samples& samples, const Window& window) {
   k = k * sign;
   r = sign * r;
 
-  Model model;
+  ProjectionModel model;
   model.rotation = r;
   model.translation = k.triangularView<Eigen::Upper>().solve(matrix.col(3));
   k /= k(2, 2);
@@ -158,78 +62,15 @@ Model direct_linear_transform(const Samples& samples, const Window& window) {
   return model;
 }
 
-/// J^T J and J^T r of the reprojection error in the ten parameters.
-struct NormalEquations {
-  Eigen::Matrix<double, kParameters, kParameters> jtj;
-  Eigen::Matrix<double, kParameters, 1> jtr;
-};
-
-NormalEquations linearise(const Model& model, const Samples& samples) {
-  NormalEquations eq;
-  eq.jtj.setZero();
-  eq.jtr.setZero();
-  for (const Sample& s : samples.items) {
-    const Vector3d turned = model.rotation * s.p, q = turned + model.translation;
-    const double iz = 1 / q.z(), x = q.x() * iz, y = q.y() * iz;
-    Eigen::Matrix<double, 2, 3> by_point;
-    by_point << model.fx * iz, 0, -model.fx * x * iz, 0, model.fy * iz, -model.fy * y * iz;
-    // A small rotation w moves the turned point by w x turned = -[turned]x w.
-    Matrix3d by_rotation;
-    by_rotation << 0, turned.z(), -turned.y(), -turned.z(), 0, turned.x(), turned.y(), -turned.x(),
-        0;
-    Eigen::Matrix<double, 2, kParameters> j;
-    j.leftCols<3>() = by_point * by_rotation;
-    j.middleCols<3>(3) = by_point;
-    j.rightCols<4>() << x, 0, 1, 0, 0, y, 0, 1;
-    eq.jtj += j.transpose() * j;
-    eq.jtr += j.transpose() * (s.pixel - model.project(s.p));
-  }
-  return eq;
-}
-
-/// Gauss-Newton on all ten parameters, or on the pose alone.
-void refine(Model& model, const Samples& samples, bool pose_only) {
-  const int n = pose_only ? 6 : kParameters;
-  for (int iteration = 0; iteration < 8; ++iteration) {
-    const NormalEquations eq = linearise(model, samples);
-    const Eigen::VectorXd step = eq.jtj.topLeftCorner(n, n).ldlt().solve(eq.jtr.head(n));
-    if (!step.allFinite()) return;
-    Model next = model;
-    const Vector3d w = step.head<3>();
-    if (w.norm() > 0) {
-      next.rotation =
-          Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix() * model.rotation;
-    }
-    next.translation += step.segment<3>(3);
-    if (!pose_only) {
-      next.fx += step(6), next.fy += step(7), next.cx += step(8), next.cy += step(9);
-    }
-    if (!(rms(next, samples) < rms(model, samples))) return;
-    model = next;
-  }
-}
-
-/// Relative standard error of the focal length, from the residuals that are left.
-double focal_uncertainty(const Model& model, const Samples& samples) {
-  const NormalEquations eq = linearise(model, samples);
-  const Eigen::VectorXd scale = eq.jtj.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * eq.jtj * scale.asDiagonal();
-  const double inverse = scaled.inverse()(6, 6) * scale(6) * scale(6);
-  // Positions are never better than about 1e-4 px, however well a few of them agree.
-  const double sigma = std::max(rms(model, samples), 1e-4);
-  const double relative = sigma * std::sqrt(inverse) / model.fx;
-  return std::isfinite(relative) ? relative : 1.0;
-}
-
 /// Whether the samples leave their plane by no more than what moves them within their pixels:
 /// rounding of P far from the origin gives a plane a thickness that tells nothing.
-bool is_flat(const Model& model, const Samples& samples) {
+bool is_flat(const ProjectionModel& model, const Samples& samples) {
   const double distance = model.translation.norm();
-  return samples.spread[0] < 3 * rms(model, samples) * distance / model.fx;
+  return samples.spread[0] < 3 * reprojection_rms(model, samples) * distance / model.fx;
 }
 
 /// The affine camera: least squares for pixel = B p + b, its rows made orthogonal.
-Model fit_affine(const Samples& samples) {
+ProjectionModel fit_affine(const Samples& samples) {
   Eigen::Matrix4d ata = Eigen::Matrix4d::Zero();
   Eigen::Matrix<double, 4, 2> atb = Eigen::Matrix<double, 4, 2>::Zero();
   for (const Sample& s : samples.items) {
@@ -239,7 +80,7 @@ Model fit_affine(const Samples& samples) {
   }
   const Eigen::Matrix<double, 4, 2> solution = ata.ldlt().solve(atb);
   const Vector3d across = solution.col(0).head<3>(), down = solution.col(1).head<3>();
-  Model model;
+  ProjectionModel model;
   model.orthographic = true;
   model.fx = across.norm();
   model.fy = down.norm();
@@ -256,7 +97,7 @@ Model fit_affine(const Samples& samples) {
 }
 
 /// Computer-vision axes and normalised samples to the tool's camera in the space of P.
-Camera to_camera(const Model& model, const Samples& samples, const Window& window) {
+Camera to_camera(const ProjectionModel& model, const Samples& samples, const Window& window) {
   Camera camera;
   camera.orthographic = model.orthographic;
   const double per_unit = model.orthographic ? 1 / samples.scale : 1;
@@ -287,7 +128,7 @@ Camera to_camera(const Model& model, const Samples& samples, const Window& windo
 
 /// A plane seen by a known projection: the homography from the plane to directions holds two
 /// columns of the rotation and the translation (Zhang 2000, section 3.1).
-Model pose_of_plane(const Samples& samples, const Camera& projection) {
+ProjectionModel pose_of_plane(const Samples& samples, const Camera& projection) {
   const Vector3d e1 = samples.axes.col(2), e2 = samples.axes.col(1);
   Eigen::MatrixXd ata = Eigen::MatrixXd::Zero(9, 9);
   for (const Sample& s : samples.items) {
@@ -310,7 +151,7 @@ Model pose_of_plane(const Samples& samples, const Camera& projection) {
   on_plane << h.col(0), h.col(1), h.col(0).cross(h.col(1));
   in_space << e1, e2, e1.cross(e2);
   const Eigen::JacobiSVD<Matrix3d> svd(on_plane, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Model model;
+  ProjectionModel model;
   model.rotation = svd.matrixU() * svd.matrixV().transpose() * in_space.transpose();
   model.translation = h.col(2);
   model.fx = projection.fx, model.fy = projection.fy;
@@ -322,15 +163,15 @@ Model pose_of_plane(const Samples& samples, const Camera& projection) {
 
 std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
                                  const Plane<unsigned char>& valid, const Window& window) {
-  const Samples samples = collect(positions, valid, window);
+  const Samples samples = collect_samples(positions, valid, window);
   // A plane is flat to the rounding of float: 1e-5 of its extent.
   if (samples.items.size() < 6 || samples.spread[0] < 1e-5 * samples.spread[2]) return std::nullopt;
 
-  Model affine = fit_affine(samples);
+  ProjectionModel affine = fit_affine(samples);
   affine = fit_affine(inliers(affine, samples));
-  const double affine_rms = rms(affine, inliers(affine, samples));
+  const double affine_rms = reprojection_rms(affine, inliers(affine, samples));
 
-  Model model = direct_linear_transform(samples, window);
+  ProjectionModel model = direct_linear_transform(samples, window);
   Samples used = samples;
   for (int round = 0; round < 3; ++round) {
     refine(model, used, false);
@@ -339,7 +180,7 @@ std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
   }
   // Perspective contains the affine camera as a limit, so it fits an orthographic frame as well,
   // with a focal length that means nothing.
-  if (affine_rms < 0.02 || affine_rms <= 1.02 * rms(model, used)) {
+  if (affine_rms < 0.02 || affine_rms <= 1.02 * reprojection_rms(model, used)) {
     return to_camera(affine, samples, window);
   }
   if (is_flat(model, used) || !(focal_uncertainty(model, used) < 0.01)) return std::nullopt;
@@ -358,12 +199,12 @@ std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>&
     for (int i = 0; i < 3; ++i) camera.rotation[i][i] = axes[i];
     if (explains(camera)) return camera;
   }
-  const Samples samples = collect(positions, valid, window);
+  const Samples samples = collect_samples(positions, valid, window);
   if (projection.orthographic || samples.items.size() < 4 ||
       samples.spread[1] < 1e-5 * samples.spread[2]) {
     return std::nullopt;
   }
-  Model model = pose_of_plane(samples, projection);
+  ProjectionModel model = pose_of_plane(samples, projection);
   refine(model, samples, true);
   const Camera camera = to_camera(model, samples, window);
   return explains(camera) ? std::optional(camera) : std::nullopt;

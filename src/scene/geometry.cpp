@@ -91,9 +91,9 @@ Camera find_camera(const GBuffer& g, const CameraOptions& options, const std::st
 /// Camera-space positions, and the radius by which rounding may have moved each of them.
 void place_positions(const GBuffer& g, Geometry& out) {
   const Camera& camera = out.camera;
-  for_each_row(out.position.height, [&](int y) {
-    for (int x = 0; x < out.position.width; ++x) {
-      const std::size_t i = out.position.index(x, y);
+  for_each_row(out.surfel.height, [&](int y) {
+    for (int x = 0; x < out.surfel.width; ++x) {
+      const std::size_t i = out.surfel.index(x, y);
       if (!g.valid[i]) continue;
       glm::dvec3 p;
       double magnitude;
@@ -109,17 +109,17 @@ void place_positions(const GBuffer& g, Geometry& out) {
         magnitude = std::max(
             {std::abs(g.position[i].x), std::abs(g.position[i].y), std::abs(g.position[i].z)});
       }
-      out.position[i] = glm::vec4(glm::vec3(p), 1.0f);
-      out.normal[i].w = float(magnitude) * g.position_step;
+      out.surfel[i].position = glm::vec4(glm::vec3(p), 1.0f);
+      out.surfel[i].normal.w = float(magnitude) * g.position_step;
     }
   });
 }
 
 void drop_pixels_behind_camera(Geometry& out, GeometryReport& report) {
   std::size_t behind = 0;
-  for (glm::vec4& p : out.position.pixels) {
-    if (p.w == 0 || p.z < 0) continue;
-    p = glm::vec4(0);
+  for (Surfel& s : out.surfel.pixels) {
+    if (s.position.w == 0 || s.position.z < 0) continue;
+    s = {};
     ++behind;
   }
   if (behind > 0) {
@@ -132,7 +132,7 @@ void place_normals(const GBuffer& g, Geometry& out, GeometryReport& report) {
   const bool orthographic = out.camera.orthographic;
   NormalSpace space{glm::mat3(1), "rebuilt from P", 0};
   if (!g.normal.empty()) {
-    space = find_normal_space(g.normal, out.position, glm::mat3(out.camera.rotation), orthographic);
+    space = find_normal_space(g.normal, out.surfel, glm::mat3(out.camera.rotation), orthographic);
     if (space.agreement < 0.3) {
       report.warnings.push_back(
           fmt::format("normals do not belong to P (median cosine {:.2f} at "
@@ -145,28 +145,28 @@ void place_normals(const GBuffer& g, Geometry& out, GeometryReport& report) {
   report.normal_space = space.name;
   report.normal_agreement = space.agreement;
 
-  Plane<unsigned char> fate(out.normal.width, out.normal.height);  // 1 rebuilt, 2 turned
-  for_each_row(out.normal.height, [&](int y) {
-    for (int x = 0; x < out.normal.width; ++x) {
-      const std::size_t i = out.normal.index(x, y);
+  Plane<unsigned char> fate(out.surfel.width, out.surfel.height);  // 1 rebuilt, 2 turned
+  for_each_row(out.surfel.height, [&](int y) {
+    for (int x = 0; x < out.surfel.width; ++x) {
+      const std::size_t i = out.surfel.index(x, y);
       if (!out.is_surface(i)) continue;
-      const glm::vec3 view = direction_to_viewer(glm::vec3(out.position[i]), orthographic);
+      const glm::vec3 view = direction_to_viewer(glm::vec3(out.surfel[i].position), orthographic);
       glm::vec3 n = rebuild_all ? glm::vec3(0) : space.to_camera * g.normal[i];
       const float length = glm::length(n);
       if (length > 1e-4f && length < 1e4f) {
         n /= length;
         // A smooth normal may lean away from the viewer at a silhouette; one that is opposite to
         // what P shows is the back of the surface.
-        if (glm::dot(n, view) < 0 && glm::dot(n, gradient_normal(out.position, x, y, view)) < 0) {
+        if (glm::dot(n, view) < 0 && glm::dot(n, gradient_normal(out.surfel, x, y, view)) < 0) {
           n = -n;
           fate[i] = 2;
         }
       } else {
-        n = gradient_normal(out.position, x, y, view);
+        n = gradient_normal(out.surfel, x, y, view);
         if (n == glm::vec3(0)) n = view;
         fate[i] = 1;
       }
-      out.normal[i] = glm::vec4(n, out.normal[i].w);
+      out.surfel[i].normal = glm::vec4(n, out.surfel[i].normal.w);
     }
   });
   for (unsigned char f : fate.pixels) {
@@ -177,8 +177,8 @@ void place_normals(const GBuffer& g, Geometry& out, GeometryReport& report) {
 
 float median_depth(const Geometry& geometry) {
   std::vector<float> depths;
-  for (const glm::vec4& p : geometry.position.pixels) {
-    if (p.w != 0) depths.push_back(-p.z);
+  for (const Surfel& s : geometry.surfel.pixels) {
+    if (s.position.w != 0) depths.push_back(-s.position.z);
   }
   if (depths.empty()) return 0;
   const auto middle = depths.begin() + std::ptrdiff_t(depths.size() / 2);
@@ -197,8 +197,7 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
   Geometry out;
   out.window = g.window;
   out.display = g.display;
-  out.position = Plane<glm::vec4>(g.window.width(), g.window.height(), glm::vec4(0));
-  out.normal = Plane<glm::vec4>(g.window.width(), g.window.height(), glm::vec4(0));
+  out.surfel = Plane<Surfel>(g.window.width(), g.window.height());
   if (g.background_pixels + g.bad_pixels >= g.valid.size() &&
       std::none_of(g.valid.pixels.begin(), g.valid.pixels.end(), [](auto v) { return v != 0; })) {
     report.camera_source = "none: the frame shows no surface";

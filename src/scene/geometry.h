@@ -11,6 +11,7 @@
 #include "math/plane.h"
 #include "scene/camera.h"
 #include "scene/gbuffer.h"
+#include "scene/surfel.h"
 
 namespace ssdo {
 
@@ -26,14 +27,12 @@ struct CameraOptions {
 struct Geometry {
   Window window, display;
   Camera camera;
-  Plane<glm::vec4> position;  ///< xyz; w is 1 on a surface, 0 on background and broken pixels
-  Plane<glm::vec4> normal;    ///< xyz: unit, on the viewer's side; w: radius within which P is
-                              ///< uncertain, from the precision it was stored with
-  float median_depth = 0;     ///< along the axis, over the surfaces
-  bool world_known = false;   ///< false where P is in camera space and no pose is known
+  Plane<Surfel> surfel;
+  float median_depth = 0;           ///< along the axis, over the surfaces
+  bool world_known = false;         ///< false where P is in camera space and no pose is known
   glm::mat3 world_to_camera{1.0f};  ///< of directions; identity where the world is not known
 
-  bool is_surface(std::size_t i) const { return position[i].w != 0; }
+  bool is_surface(std::size_t i) const { return surfel[i].position.w != 0; }
 
   /// Height of the display window at depth `depth`, in scene units.
   float frame_height_at(float depth) const;

@@ -32,7 +32,7 @@ struct Request {
 Products run(const Geometry& geometry, const Request& request) {
   const Method method = ssdo_method();
   const ParameterValues parameters = resolve_parameters(method, request.set);
-  const Plane<glm::vec3> albedo(geometry.position.width, geometry.position.height,
+  const Plane<glm::vec3> albedo(geometry.surfel.width, geometry.surfel.height,
                                 glm::vec3(request.albedo));
   return method.estimate({geometry,
                           albedo,
@@ -158,7 +158,7 @@ TEST(Ssdo, BackgroundIsOpenAndUntouched) {
 glm::dvec3 slow_bounce(const Geometry& g, int x, int y, const Plane<glm::vec3>& sent, double radius,
                        int samples) {
   const auto pattern = half_ball_pattern(4, samples, 0);
-  const glm::dvec3 p(g.position(x, y)), n(g.normal(x, y));
+  const glm::dvec3 p(g.surfel(x, y).position), n(g.surfel(x, y).normal);
   const glm::dmat3 frame(frame_about(glm::vec3(n)));
   glm::dvec3 sum(0);
   for (const HalfBallSample& s : pattern[std::size_t((y % 4) * 4 + x % 4)]) {
@@ -166,10 +166,10 @@ glm::dvec3 slow_bounce(const Geometry& g, int x, int y, const Plane<glm::vec3>& 
     const glm::dvec2 at = g.camera.project(point);
     if (!g.window.contains(int(std::floor(at.x)), int(std::floor(at.y)))) continue;
     const int qx = int(at.x), qy = int(at.y);
-    const glm::dvec3 delta = p - glm::dvec3(g.position(qx, qy)), unit = glm::normalize(delta);
+    const glm::dvec3 delta = p - glm::dvec3(g.surfel(qx, qy).position), unit = glm::normalize(delta);
     if (delta == glm::dvec3(0)) continue;
     const double receiver = std::max(0.0, glm::dot(unit, -n));
-    const double sender = std::max(0.0, glm::dot(unit, glm::dvec3(g.normal(qx, qy))));
+    const double sender = std::max(0.0, glm::dot(unit, glm::dvec3(g.surfel(qx, qy).normal)));
     sum += std::min(1.0, radius * radius * receiver * sender / glm::dot(delta, delta)) *
            glm::dvec3(sent(qx, qy));
   }
@@ -224,10 +224,10 @@ TEST(Ssdo, NothingThatComesInMakesANaN) {
   std::mt19937 random(3);
   Geometry g =
       geometry_of(sphere({0, 0, 0}, 2), tilted(camera_from_fov(40, kWindow, 1), 30), kWindow);
-  for (std::size_t i = 0; i < g.position.size(); ++i) {
-    if (random() % 10 == 0) g.position[i] = glm::vec4(0);
-    if (g.is_surface(i) && random() % 10 == 0) g.position[i] *= glm::vec4(1e6f, 1e6f, 1e6f, 1);
-    if (g.is_surface(i) && random() % 10 == 0) g.position[i] = glm::vec4(0, 0, -1e-30f, 1);
+  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+    if (random() % 10 == 0) g.surfel[i].position = glm::vec4(0);
+    if (g.is_surface(i) && random() % 10 == 0) g.surfel[i].position *= glm::vec4(1e6f, 1e6f, 1e6f, 1);
+    if (g.is_surface(i) && random() % 10 == 0) g.surfel[i].position = glm::vec4(0, 0, -1e-30f, 1);
   }
   for (const float radius : {1e-6f, 1.0f, 1e6f}) {
     const Products out = run(g, {.radius = radius, .bounces = 3});

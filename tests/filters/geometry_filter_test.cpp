@@ -14,10 +14,10 @@ const Window kWindow{0, 0, 64, 48};
 
 Products noise_of_a_pattern(const Geometry& g) {
   Products p;
-  p.ao = Plane<float>(g.position.width, g.position.height, 1);
-  p.direct = Plane<glm::vec3>(g.position.width, g.position.height);
-  for (int y = 0; y < g.position.height; ++y) {
-    for (int x = 0; x < g.position.width; ++x) {
+  p.ao = Plane<float>(g.surfel.width, g.surfel.height, 1);
+  p.direct = Plane<glm::vec3>(g.surfel.width, g.surfel.height);
+  for (int y = 0; y < g.surfel.height; ++y) {
+    for (int x = 0; x < g.surfel.width; ++x) {
       const int member = (y % 4) * 4 + x % 4;
       p.ao(x, y) = float((member * 7) % 16) / 15;  // mean 1/2
       p.direct(x, y) = glm::vec3(member, 1, 0);
@@ -64,7 +64,7 @@ TEST(GeometryFilter, DoesNotCrossEdges) {
   Products step;
   step.ao = Plane<float>(kWindow.width(), kWindow.height());
   for (std::size_t i = 0; i < step.ao.size(); ++i)
-    step.ao[i] = g.position[i].z > -4.75f ? 1.0f : 0.0f;
+    step.ao[i] = g.surfel[i].position.z > -4.75f ? 1.0f : 0.0f;
   const Products out = filter_geometry(step, g, 4);
   for (std::size_t i = 0; i < step.ao.size(); ++i) EXPECT_EQ(out.ao[i], step.ao[i]);
 
@@ -73,7 +73,7 @@ TEST(GeometryFilter, DoesNotCrossEdges) {
       geometry_of(all_of({plane({}, {0, 0, 1}), plane({}, {0, -1, 0})}),
                   look_at(camera_from_fov(40, kWindow, 1), {0, -4, 4}, {}, {0, 0, 1}), kWindow);
   for (std::size_t i = 0; i < step.ao.size(); ++i)
-    step.ao[i] = corner.normal[i].y > 0.5f ? 1.0f : 0.0f;
+    step.ao[i] = corner.surfel[i].normal.y > 0.5f ? 1.0f : 0.0f;
   const Products walls = filter_geometry(step, corner, 4);
   for (std::size_t i = 0; i < step.ao.size(); ++i) EXPECT_EQ(walls.ao[i], step.ao[i]);
 }

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/layer_names.h"
+
+#include <fnmatch.h>
+
+#include <array>
+#include <cctype>
+
+namespace ssdo {
+namespace {
+
+/// Names in order of preference, normalised: lower case, no spaces, underscores or dashes; `*`
+/// stands for anything. A name with a dot is compared with the whole path of a layer, one without
+/// with its last segment too. "" is a layer without a name. Plain `diffuse` is missing on purpose
+/// (it is lit), `pref` and `rest` too (another space), `mist` too (no distance). `radiance` has no
+/// name that could be trusted: it is used on request only.
+const std::vector<std::string>& known_names(Role role) {
+  static const std::array<std::vector<std::string>, kRoleCount> names = {{
+      {"pworld", "p.world", "p", "position", "worldposition", "worldpos", "posw", "wp", "ppass",
+       "cgeometryworldposition"},
+      {"nworld", "n.world", "n", "normal", "normals", "nn", "shnormal", "normw", "worldnormal",
+       "ns", "vraynormals", "cgeometrynormalsshading", "bumpnormals", "denoisingnormal"},
+      {"albedo", "diffusealbedo", "diffcol", "diffusecolor", "diffusefilter", "vraydiffusefilter",
+       "cshadingalbedo", "cshadingsourcecolor", "diffuseopacity", "denoisealbedo",
+       "denoisingalbedo", "basecolor"},
+      {"depth", "z", "pz", "lineardepth", "linearz", "zfiltered", "*worlddepth", "zdepth",
+       "vrayzdepth", "cgeometryzdepth"},
+      {"alpha"},
+      {"", "rgba", "beauty", "combined", "ci", "c", "finalimage*beauty"},
+      {},
+  }};
+  return names[std::size_t(role)];
+}
+
+}  // namespace
+
+std::string lower(std::string_view text) {
+  std::string out;
+  for (char c : text) out += char(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+std::string normalise(std::string_view text) {
+  std::string out;
+  for (char c : lower(text)) {
+    if (c != ' ' && c != '_' && c != '-') out += c;
+  }
+  return out;
+}
+
+std::optional<std::size_t> rank_of(Role role, const std::vector<std::string>& keys) {
+  const auto& names = known_names(role);
+  for (std::size_t rank = 0; rank < names.size(); ++rank) {
+    for (const std::string& key : keys) {
+      if (fnmatch(names[rank].c_str(), key.c_str(), 0) == 0) return rank;
+    }
+  }
+  return std::nullopt;
+}
+
+const std::vector<Components>& component_sets(Role role) {
+  static const std::vector<Components> vector = {
+      {"x", "y", "z"}, {"r", "g", "b"}, {"red", "green", "blue"}, {"nx", "ny", "nz"}};
+  static const std::vector<Components> color = {{"r", "g", "b"}, {"red", "green", "blue"}};
+  static const std::vector<Components> depth = {{"z"}, {"v"}, {"y"}, {"r"}, {"t"}, {"depth"}};
+  static const std::vector<Components> alpha = {{"a"}, {"alpha"}};
+  switch (role) {
+    case Role::position:
+    case Role::normal:
+      return vector;
+    case Role::depth:
+      return depth;
+    case Role::alpha:
+      return alpha;
+    default:
+      return color;
+  }
+}
+
+}  // namespace ssdo
