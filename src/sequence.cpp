@@ -2,8 +2,7 @@
 //
 // Nothing of OpenImageIO's Filesystem is used here. Measured with 2.4.7:
 //   enumerate_sequence           ignores the step of "1-10:3", takes "1-10x0" for a step of 1,
-//   drops
-//                                the 7 of "1-3 7", accepts "1-3a" and "", clamps what overflows
+//                                drops the 7 of "1-3 7", accepts "1-3a", clamps what overflows
 //   parse_pattern                makes "####" 16 digits wide, takes the digits of "sh010####" for a
 //                                range, replaces the first of two patterns only
 //   enumerate_file_sequence      ends the process at "%04d/beauty.%04d.exr"

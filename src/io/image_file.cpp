@@ -82,6 +82,8 @@ OIIO::ImageSpec stored_spec(const ImageSpec& spec, const fs::path& target) {
                          spec.bits == 16 && !jpeg ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
   stored.attribute("oiio:UnassociatedAlpha", 1);
   stored.attribute("PixelAspectRatio", spec.pixel_aspect);
+  // TIFF would get the time of writing. This is how EXIF spells a time that is not known.
+  stored.attribute("DateTime", "    :  :     :  :  ");
   if (jpeg) {
     stored.attribute("Compression", "jpeg:95");
     stored.attribute("jpeg:subsampling", "4:4:4");
@@ -89,9 +91,17 @@ OIIO::ImageSpec stored_spec(const ImageSpec& spec, const fs::path& target) {
   return stored;
 }
 
+/// JPEG's own limit. libjpeg ends the process where it is exceeded.
+constexpr int kLargestJpeg = 65500;
+
 /// The bytes of the encoded file.
 std::vector<unsigned char> encode(const OIIO::ImageSpec& spec, const fs::path& target,
                                   const std::vector<std::byte>& pixels) {
+  if (is_jpeg(target) && std::max(spec.width, spec.height) > kLargestJpeg) {
+    fail(ExitCode::output, target,
+         fmt::format("cannot be encoded: {} x {} is more than the {} pixels of JPEG; use .png or .tif",
+                     spec.width, spec.height, kLargestJpeg));
+  }
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   auto image = OIIO::ImageOutput::create(target.string(), &memory);
