@@ -128,16 +128,18 @@ void classify(GBuffer& g, const GBufferOptions& options) {
   }
 }
 
-/// A colour that is not finite becomes black, a negative one zero; the pixel counts as broken once.
-void clean_colors(GBuffer& g, Plane<glm::vec3>& colors) {
-  for (std::size_t i = 0; i < colors.size(); ++i) {
-    if (!g.valid[i]) continue;
-    if (!is_finite(colors[i])) {
-      colors[i] = glm::vec3(0);
-      ++g.bad_pixels;
-    }
-    colors[i] = glm::max(colors[i], glm::vec3(0));
+/// A vector that is not finite becomes 0: black, or a normal to be rebuilt. The pixel counts as
+/// broken.
+void clear_broken(GBuffer& g, Plane<glm::vec3>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (is_finite(values[i])) continue;
+    g.bad_pixels += g.valid[i];
+    values[i] = glm::vec3(0);
   }
+}
+
+void clear_negative(Plane<glm::vec3>& colors) {
+  for (glm::vec3& color : colors.pixels) color = glm::max(color, glm::vec3(0));
 }
 
 }  // namespace
@@ -171,8 +173,9 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   undo_depth_encoding(g, options, file);
   classify(g, options);
   undo_normal_encoding(g);
-  clean_colors(g, g.albedo);
-  clean_colors(g, g.radiance);
+  for (Plane<glm::vec3>* values : {&g.normal, &g.albedo, &g.radiance}) clear_broken(g, *values);
+  clear_negative(g.albedo);
+  clear_negative(g.radiance);
   if (lead->half) {
     g.warnings.push_back(
         fmt::format("{} is stored in 16 bits: steps of {:.2g} of its magnitude; "

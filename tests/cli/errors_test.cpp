@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Every way to be refused: the exit code, and one line that names the thing and the way out.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "support/exr_fixture.h"
+#include "support/frame_file.h"
+#include "support/run_tool.h"
+
+namespace ssdo::test {
+namespace {
+
+using testing::HasSubstr;
+
+void expect_refused(const std::vector<std::string>& arguments, int code, const std::string& says,
+                    const Surroundings& around = {}) {
+  const Finished done = run_tool(arguments, around);
+  EXPECT_EQ(done.code, code) << testing::PrintToString(arguments) << done.err;
+  EXPECT_THAT(done.error_line(), HasSubstr(says)) << testing::PrintToString(arguments);
+  EXPECT_THAT(done.error_line(), testing::StartsWith("ssdo: "));
+  EXPECT_EQ(done.out, "");
+}
+
+TEST(Refusals, OfTheCommandLine) {
+  const TempDir dir;
+  const std::string in = dir / "in.exr", out = dir / "out.exr";
+  write_frame(in, frame_of(small_picture()));
+  expect_refused({}, 2, "no INPUT");
+  expect_refused({in}, 2, "-o OUTPUT");
+  expect_refused({"info"}, 2, "no INPUT");
+  expect_refused({in, "-o"}, 2, "ssdo --help");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> bad = {
+      {{"--nonsense"}, "--nonsense"},
+      {{"--radius", "0"}, "--radius"},
+      {{"--radius", "-1"}, "--radius"},
+      {{"--radius", "nan"}, "--radius"},
+      {{"--radius", "wide"}, "--radius"},
+      {{"--bounces", "9"}, "--bounces"},
+      {{"--bounces", "-1"}, "--bounces"},
+      {{"--fov", "180"}, "--fov"},
+      {{"--fov", "0"}, "--fov"},
+      {{"--ortho", "0"}, "--ortho"},
+      {{"--fov", "40", "--ortho", "3"}, "--fov"},
+      {{"--env-up", "x"}, "--env-up"},
+      {{"--env", "-1,0,0"}, "--env"},
+      {{"--env-exposure", "1e9"}, "--env-exposure"},
+      {{"--method", "magic"}, "there is ssdo"},
+      {{"--set", "samples"}, "samples, bias"},
+      {{"--set", "samples=0"}, "from 1 to 1024"},
+      {{"--set", "sample=4"}, "samples, bias"},
+      {{"--filter", "blur"}, "--filter"},
+      {{"--products", "ao,glow"}, "'glow'"},
+      {{"--save", "ao"}, "PRODUCT=FILE"},
+      {{"--save", "glow=a.exr"}, "'glow'"},
+      {{"--aov", "position"}, "ROLE=LAYER"},
+      {{"--aov", "height=P"}, "ROLE=LAYER"},
+      {{"--depth-kind", "near"}, "--depth-kind"},
+      {{"--depth-kind", "normalized:1"}, "--depth-kind"},
+      {{"--background-depth", "-3"}, "--background-depth"},
+      {{"--pixel-type", "uint"}, "--pixel-type"},
+      {{"--compression", "gzip"}, "--compression"},
+      {{"--bits", "10"}, "--bits"},
+      {{"--threads", "0"}, "--threads"},
+      {{"--seed", "-1"}, "--seed"},
+      {{"--on-error", "wait"}, "--on-error"},
+      {{"--progress", "loud"}, "--progress"},
+      {{"--frames", "1-3"}, "pattern"},
+      {{"-o", "relit.gif"}, ".exr, .png, .jpg or .tif"},
+      {{"-o", out}, "named twice"},
+      {{"-o", std::string(dir / "a.####.exr")}, "has none"},
+      {{"-o", std::string(dir / "p.png"), "--view", "Sepia"}, "ACES SDR Video"},
+  };
+  for (const auto& [flags, says] : bad) {
+    std::vector<std::string> arguments = {in, "-o", out};
+    arguments.insert(arguments.end(), flags.begin(), flags.end());
+    expect_refused(arguments, 2, says);
+  }
+  expect_refused({in, "-o", out}, 2, "SSDO_THREADS", {.variables = {{"SSDO_THREADS", "many"}}});
+  EXPECT_THAT(listing(dir.path()), testing::ElementsAre("in.exr"));
+}
+
+TEST(Refusals, OfWhatCannotBeRead) {
+  const TempDir dir;
+  const std::string good = dir / "good.exr", out = dir / "out.exr";
+  write_frame(good, frame_of(small_picture()));
+  std::ofstream(dir / "text.exr") << "not an image";
+  std::ofstream(dir / "empty.exr");
+  const std::string bytes = read_file(good);
+  std::ofstream(dir / "cut.exr", std::ios::binary) << bytes.substr(0, bytes.size() / 2);
+  std::ofstream(dir / "text.json") << "{ \"fx\": ";
+  std::ofstream(dir / "scale.json")
+      << R"({"fx": 100, "world_to_camera": [[2,0,0,0],[0,1,0,0],[0,0,1,0]]})";
+  std::ofstream(dir / "text.hdr") << "not a map";
+  expect_refused({dir / "none.exr", "-o", out}, 3, "none.exr");
+  expect_refused({dir.path(), "-o", out}, 3, "folder");
+  for (const char* name : {"text.exr", "empty.exr", "cut.exr"})
+    expect_refused({dir / name, "-o", out}, 3, name);
+  expect_refused({good, "-o", out, "--env", dir / "none.hdr"}, 3, "none.hdr");
+  expect_refused({good, "-o", out, "--env", dir / "text.hdr"}, 3, "text.hdr");
+  expect_refused({good, "-o", out, "--camera", dir / "none.json"}, 3, "none.json");
+  expect_refused({good, "-o", out, "--camera", dir / "text.json"}, 3, "text.json");
+  expect_refused({good, "-o", out, "--camera", dir / "scale.json"}, 3, "rotation");
+  expect_refused({good, "-o", dir / "out.png", "--ocio", dir / "none.ocio"}, 3, "none.ocio");
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST(Refusals, OfDeepImages) {
+  const TempDir dir;
+  Imf::Header header = test_header({{0, 0}, {3, 3}}, {{"Z"}, {"A"}}, Imf::ZIPS_COMPRESSION);
+  header.setType(Imf::DEEPSCANLINE);
+  header.setName("main");
+  {
+    Imf::MultiPartOutputFile file((dir / "deep.exr").c_str(), &header, 1);
+    write_deep_lines(file, 0);
+  }
+  expect_refused({dir / "deep.exr", "-o", dir / "out.exr"}, 3, "deep");
+}
+
+TEST(Refusals, OfMissingAndAmbiguousLayers) {
+  const TempDir dir;
+  const FramePart part = frame_of(small_picture());
+  FramePart two = part;
+  for (const auto& [name, plane] : frame_of(small_picture(), "Other.").channels)
+    two.channels[name] = plane;
+  write_frame(dir / "two.exr", two);
+  expect_refused({dir / "two.exr", "-o", dir / "out.exr"}, 4,
+                 "'Other.Position', 'ViewLayer.Position'");
+  expect_refused({dir / "two.exr", "-o", dir / "out.exr", "--aov", "position=Third"}, 4,
+                 "'Other.Position'");
+  expect_refused({dir / "two.exr", "-o", dir / "out.exr", "--part", "3"}, 4, "no flat part '3'");
+
+  FramePart none = part;
+  std::erase_if(none.channels,
+                [](const auto& c) { return !c.first.starts_with("ViewLayer.DiffCol"); });
+  write_frame(dir / "none.exr", none);
+  expect_refused({dir / "none.exr", "-o", dir / "out.exr"}, 4, "--aov position=LAYER");
+
+  FramePart white = part;
+  std::erase_if(white.channels,
+                [](const auto& c) { return c.first.starts_with("ViewLayer.DiffCol"); });
+  write_frame(dir / "white.exr", white);
+  expect_refused({dir / "white.exr", "-o", dir / "out.exr", "--products", "bounce"}, 4,
+                 "--aov albedo=LAYER");
+  expect_refused({dir / "white.exr", "-o", dir / "out.png"}, 4, "--save PRODUCT=");
+  EXPECT_EQ(run_tool({dir / "white.exr", "-o", dir / "out.exr"}).code, 0)
+      << "ao and direct need no albedo";
+  EXPECT_THAT(channel_names(dir / "out.exr"),
+              testing::ElementsAre("ao.Y", "direct.B", "direct.G", "direct.R"));
+}
+
+TEST(Help, GoesToStandardOutput) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
+                                                    {"info", "--help"},
+                                                    {"--version"},
+                                                    {"--list-methods"}}) {
+    const Finished done = run_tool(arguments);
+    EXPECT_EQ(done.code, 0);
+    EXPECT_EQ(done.err, "");
+    EXPECT_GT(done.out.size(), 8u);
+  }
+  EXPECT_THAT(run_tool({"--list-methods"}).out, HasSubstr("bounce-singularity"));
+}
+
+}  // namespace
+}  // namespace ssdo::test
