@@ -136,7 +136,7 @@ class Batch {
         return say_verbose(fmt::format("{}: skipped, its outputs exist", job.input));
       policy.overwrite = true;  // what is there cannot be read
     }
-    if (writes) check_targets(job.targets, job.input, policy);
+    if (writes) check_targets(job.targets, inputs_of(options_, job.input), policy);
     Frame frame = take_frame(i);
     if (options_.command == Command::info) return show(frame);
     if (options_.say.dry_run || options_.say.verbose) say(describe(frame));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <exception>
 #include <new>
 
@@ -25,19 +26,26 @@ ssdo::ExitCode run(int argc, char** argv) {
   return ssdo::run_batch(parsed.options);
 }
 
+/// The last words of a process that fails; what cannot be said (standard error is closed, or its
+/// disk is full) does not change the exit code.
+ssdo::ExitCode fail(ssdo::ExitCode code, const char* message) {
+  std::fprintf(stderr, "ssdo: %s\n", message);
+  return code;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   ssdo::remove_temporaries_on_signals();
+  ssdo::ExitCode code = ssdo::ExitCode::failed;
   try {
-    return int(run(argc, argv));
+    code = run(argc, argv);
   } catch (const ssdo::Error& e) {
-    fmt::print(stderr, "ssdo: {}\n", e.what());
-    return int(e.code);
+    code = fail(e.code, e.what());
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "ssdo: not enough memory for this frame\n");
+    code = fail(code, "not enough memory for this frame");
   } catch (const std::exception& e) {
-    fmt::print(stderr, "ssdo: unexpected: {}\n", e.what());
+    code = fail(code, e.what());
   }
-  return int(ssdo::ExitCode::failed);
+  return int(code);
 }

@@ -75,7 +75,14 @@ std::vector<Target> targets_of(const OutputOptions& output, std::optional<int> f
   return targets;
 }
 
-void check_targets(const std::vector<Target>& targets, const std::string& input,
+std::vector<std::string> inputs_of(const Options& options, const std::string& frame) {
+  std::vector<std::string> inputs = {frame, options.light.env, options.camera.file,
+                                     options.color.ocio};
+  for (const LayerRequest& request : options.input.aovs) inputs.push_back(request.file);
+  return inputs;
+}
+
+void check_targets(const std::vector<Target>& targets, const std::vector<std::string>& inputs,
                    const OutputPolicy& policy) {
   std::vector<fs::path> seen;
   for (const Target& target : targets) {
@@ -89,10 +96,12 @@ void check_targets(const std::vector<Target>& targets, const std::string& input,
       throw Error(ExitCode::usage, fmt::format("{}: named twice as an output", target.path));
     }
     seen.push_back(full);
-    std::error_code ignored;
-    if (fs::equivalent(target.path, input, ignored)) {
-      throw Error(ExitCode::output,
-                  fmt::format("{}: is the input; write to another file", target.path));
+    for (const std::string& input : inputs) {
+      std::error_code ignored;
+      if (fs::equivalent(target.path, input, ignored)) {
+        throw Error(ExitCode::output,
+                    fmt::format("{}: is an input; write to another file", target.path));
+      }
     }
     check_output(target.path, policy);
   }

@@ -21,10 +21,13 @@ struct Target {
 /// The files of one frame, with `frame` in the place of their patterns.
 std::vector<Target> targets_of(const OutputOptions& output, std::optional<int> frame);
 
+/// Every file that a frame is made from: the frame, those of --aov, --env, --camera and --ocio.
+std::vector<std::string> inputs_of(const Options& options, const std::string& frame);
+
 /// Refuses targets that cannot be written, before any work is done: an unknown kind of file, a
 /// name that is used twice, an input that would be replaced, and what check_output refuses.
-/// `unreadable_is_absent` allows to replace a file that --skip-existing found broken.
-void check_targets(const std::vector<Target>& targets, const std::string& input,
+/// Errors: ExitCode::usage and ExitCode::output.
+void check_targets(const std::vector<Target>& targets, const std::vector<std::string>& inputs,
                    const OutputPolicy& policy);
 
 /// The main job on a frame that has been prepared: estimate, filter, compose, colour, write.

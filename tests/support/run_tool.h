@@ -13,6 +13,7 @@
 #include <functional>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -49,23 +50,39 @@ struct Surroundings {
   std::function<bool()> kill_when = {};
 };
 
-/// Runs the real binary without a shell, its output going to files.
+/// One direction of a child's output. A pipe's buffer is enough for what the tool says.
+struct Pipe {
+  int ends[2];
+  Pipe() {
+    if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+  }
+  ~Pipe() { close(ends[0]); }
+  std::string drain() {
+    close(ends[1]);
+    std::string text;
+    char buffer[4096];
+    for (ssize_t n; (n = read(ends[0], buffer, sizeof buffer)) > 0;)
+      text.append(buffer, std::size_t(n));
+    return text;
+  }
+};
+
+/// Runs the real binary without a shell.
 inline Finished run_tool(const std::vector<std::string>& arguments,
                          const Surroundings& around = {}) {
-  const TempDir dir;
   std::vector<std::string> words = {SSDO_BINARY};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  const std::string out = dir / "out", err = dir / "err";
+  Pipe out, err;
 
   const pid_t child = fork();
   if (child == 0) {
     for (const auto& [name, value] : around.variables) setenv(name.c_str(), value.c_str(), 1);
     if (!around.folder.empty() && chdir(around.folder.c_str()) != 0) _exit(126);
-    dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
-    dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+    dup2(out.ends[1], STDOUT_FILENO);
+    dup2(err.ends[1], STDERR_FILENO);
     const rlimit limit{around.file_size, around.file_size};
     if (around.file_size != RLIM_INFINITY) setrlimit(RLIMIT_FSIZE, &limit);
     execv(argv[0], argv.data());
@@ -85,7 +102,7 @@ inline Finished run_tool(const std::vector<std::string>& arguments,
     waitpid(child, &status, 0);
   }
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return {code, read_file(out), read_file(err)};
+  return {code, out.drain(), err.drain()};
 }
 
 /// What a folder holds, hidden files too.

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "support/frame_file.h"
+#include "support/run_tool.h"
+
+namespace ssdo::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// A shot of frames 1, 2, 4 and 5: the third is missing, as happens.
+class Shot : public testing::Test {
+ protected:
+  Shot() {
+    for (const int frame : {1, 2, 4, 5}) write_frame(file("in", frame), frame_of(small_picture()));
+  }
+  std::string file(const std::string& name, int frame) const {
+    return dir_ / (name + ".000" + std::to_string(frame) + ".exr");
+  }
+  Finished run(std::vector<std::string> flags, const Surroundings& around = {}) const {
+    flags.insert(flags.begin(), {dir_ / "in.####.exr", "-o", dir_ / "out.####.exr"});
+    return run_tool(flags, around);
+  }
+  std::vector<int> done() const {
+    std::vector<int> frames;
+    for (int frame = 1; frame <= 6; ++frame) {
+      if (fs::exists(file("out", frame))) frames.push_back(frame);
+    }
+    return frames;
+  }
+  json stats() const { return json::parse(read_file(dir_ / "stats.json")); }
+  TempDir dir_;
+};
+
+TEST_F(Shot, WithoutARangeEveryFrameThatExistsIsDone) {
+  EXPECT_EQ(run({}).code, 0);
+  EXPECT_THAT(done(), ElementsAre(1, 2, 4, 5));
+}
+
+TEST_F(Shot, ARangeIsDoneInItsOrder) {
+  EXPECT_EQ(run({"--frames", "5-1x4,2", "--stats", dir_ / "stats.json"}).code, 0);
+  EXPECT_THAT(done(), ElementsAre(1, 2, 5));
+  std::vector<int> order;
+  for (const json& frame : stats()) order.push_back(frame["frame"]);
+  EXPECT_THAT(order, ElementsAre(5, 1, 2));
+}
+
+TEST_F(Shot, AMissingFrameIsNamedAndStopsOrNot) {
+  const Finished stopped = run({"--frames", "1-5"});
+  EXPECT_EQ(stopped.code, 3);
+  EXPECT_THAT(stopped.error_line(), HasSubstr("in.0003.exr: frame 3 of the range is missing"));
+  EXPECT_THAT(done(), ElementsAre(1, 2));
+  std::ofstream(file("in", 4)) << "no image";
+  const Finished went_on = run(
+      {"--frames", "1-5", "--overwrite", "--on-error", "continue", "--stats", dir_ / "stats.json"});
+  EXPECT_EQ(went_on.code, 3) << "the first failure's";
+  EXPECT_THAT(done(), ElementsAre(1, 2, 5));
+  EXPECT_THAT(went_on.err, HasSubstr("in.0003.exr"));
+  EXPECT_THAT(went_on.err, HasSubstr("in.0004.exr"));
+  EXPECT_EQ(std::count(went_on.err.begin(), went_on.err.end(), '\n'), 2)
+      << "one line for each: " << went_on.err;
+  EXPECT_EQ(stats().size(), 3u);
+}
+
+TEST_F(Shot, FramesThatAreDoneAreSkippedUnlessBroken) {
+  EXPECT_EQ(run({"--frames", "1,2"}).code, 0);
+  const std::string first = read_file(file("out", 1)), second = read_file(file("out", 2));
+  fs::last_write_time(file("out", 1), fs::file_time_type::min());
+  const auto age = fs::last_write_time(file("out", 1));
+  fs::resize_file(file("out", 2), second.size() - 500);
+  EXPECT_EQ(run({"--frames", "1,2,4"}).code, 5) << "without the flag they are in the way";
+  EXPECT_EQ(run({"--frames", "1,2,4", "--skip-existing"}).code, 0);
+  EXPECT_EQ(fs::last_write_time(file("out", 1)), age) << "not written again";
+  EXPECT_TRUE(read_file(file("out", 2)) == second) << "cut short, so made again";
+  EXPECT_THAT(done(), ElementsAre(1, 2, 4));
+}
+
+TEST_F(Shot, ManyFramesDoNotGoToOneFile) {
+  const Finished refused = run_tool({dir_ / "in.####.exr", "-o", dir_ / "out.exr"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.error_line(), HasSubstr("pattern"));
+  const Finished none = run_tool({dir_ / "other.####.exr", "-o", dir_ / "out.####.exr"});
+  EXPECT_EQ(none.code, 3);
+  EXPECT_EQ(run({"--frames", "1-"}).code, 2);
+}
+
+TEST_F(Shot, StatisticsHoldWhatTheContractSays) {
+  EXPECT_EQ(run({"--frames", "4", "--stats", dir_ / "stats.json", "--threads", "2"}).code, 0);
+  const json frame = stats().at(0);
+  for (const char* key : {"frame", "input", "output", "width", "height", "threads", "isa", "method",
+                          "samples_per_pixel", "bounces", "stages_ms", "peak_rss_bytes", "pixels",
+                          "background_pixels", "bad_pixels", "plan"}) {
+    EXPECT_TRUE(frame.contains(key)) << key;
+  }
+  for (const char* stage : {"read", "prepare", "estimate", "filter", "compose", "write", "total"}) {
+    EXPECT_GE(frame["stages_ms"].at(stage).get<double>(), 0) << stage;
+  }
+  EXPECT_EQ(frame["frame"], 4);
+  EXPECT_EQ(frame["input"], file("in", 4));
+  EXPECT_EQ(frame["output"], file("out", 4));
+  EXPECT_EQ(frame["threads"], 2);
+  EXPECT_EQ(frame["width"], 64);
+  EXPECT_EQ(frame["pixels"], 64 * 48);
+}
+
+TEST_F(Shot, SchedulersReadTheirOwnProgress) {
+  for (const auto& [style, line] :
+       {std::pair<std::string, std::string>{"tractor", "TR_PROGRESS 100%\n"},
+        {"alfred", "ALF_PROGRESS 100%\n"},
+        {"openjd", "openjd_progress: 100\n"}}) {
+    const Finished told = run({"--overwrite", "--progress", style});
+    EXPECT_EQ(told.code, 0);
+    EXPECT_THAT(told.out, testing::EndsWith(line));
+    EXPECT_GE(std::count(told.out.begin(), told.out.end(), '\n'), 4)
+        << "a line for each frame at least";
+    EXPECT_EQ(told.err, "");
+  }
+  const Finished silent = run({"--overwrite", "--progress", "auto"});
+  EXPECT_EQ(silent.out + silent.err, "") << "no bar without a terminal";
+}
+
+TEST_F(Shot, ThreadsComeFromTheFlagThenTheSchedulerThenTheMachine) {
+  const auto threads = [&](std::vector<std::string> flags,
+                           std::map<std::string, std::string> variables) {
+    flags.insert(flags.end(), {"--frames", "1", "--overwrite", "--stats", dir_ / "stats.json"});
+    EXPECT_EQ(run(flags, {.variables = std::move(variables)}).code, 0);
+    return stats().at(0).at("threads").get<int>();
+  };
+  EXPECT_EQ(threads({"--threads", "3"}, {{"SSDO_THREADS", "4"}}), 3);
+  EXPECT_EQ(threads({}, {{"SSDO_THREADS", "4"}, {"CUE_THREADS", "5"}}), 4);
+  EXPECT_EQ(threads({}, {{"CUE_THREADS", "5"}, {"SLURM_CPUS_PER_TASK", "6"}}), 5);
+  EXPECT_EQ(threads({}, {{"SLURM_CPUS_PER_TASK", "6"}}), 6);
+}
+
+TEST_F(Shot, ADryRunAndAVerboseRunSayWhatTheyDo) {
+  const Finished dry = run({"--frames", "1", "--dry-run"});
+  EXPECT_EQ(dry.code, 0);
+  EXPECT_TRUE(done().empty());
+  EXPECT_THAT(dry.err, HasSubstr("fitted from P"));
+  EXPECT_THAT(run({"--frames", "1", "-v"}).err, HasSubstr("fitted from P"));
+}
+
+TEST_F(Shot, OptionsMayComeFromAFile) {
+  std::ofstream(dir_ / "options.toml") << "radius = \"0.25\"\nbounces = 3\n";
+  EXPECT_EQ(run({"--frames", "1", "--config", dir_ / "options.toml", "--bounces", "2", "--stats",
+                 dir_ / "stats.json"})
+                .code,
+            0);
+  EXPECT_NEAR(stats().at(0)["plan"]["radius"].get<double>(), 0.25, 1e-6);
+  EXPECT_EQ(stats().at(0)["bounces"], 2) << "the command line wins";
+}
+
+}  // namespace
+}  // namespace ssdo::test
