@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
 
 #include "error.h"
 
@@ -19,7 +21,7 @@ bool is_finite(const glm::vec3& v) {
 }
 
 /// Lays planes that cover `from` onto the window `to`; pixels that they do not cover get `fill`.
-Plane<float> lay_onto(const Window& to, const Window& from, Plane<float> plane, float fill) {
+Plane<float> lay_onto(const Window& to, const Window& from, const Plane<float>& plane, float fill) {
   if (from == to) return plane;
   Plane<float> out(to.width(), to.height(), fill);
   for (int y = std::max(to.y0, from.y0); y < std::min(to.y1, from.y1); ++y) {
@@ -30,37 +32,52 @@ Plane<float> lay_onto(const Window& to, const Window& from, Plane<float> plane, 
   return out;
 }
 
-/// Reads layers of a frame onto one window.
+/// The channels of the layers that are used, each part read once: its channels share their chunks,
+/// which would be decompressed again for every layer.
 class LayerReader {
  public:
-  LayerReader(const std::vector<const ExrReader*>& files, const Window& window)
-      : files_(files), window_(window) {}
+  LayerReader(const std::vector<const ExrReader*>& files, const LayerTable& table,
+              const std::vector<Role>& roles, const Window& window)
+      : files_(files), window_(window) {
+    std::map<Part, std::vector<std::string>> channels;
+    for (const Role role : roles) {
+      if (!table[role]) continue;
+      auto& names = channels[{table[role]->file, table[role]->part}];
+      for (const std::string& name : table[role]->channels) {
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+      }
+    }
+    for (const auto& [part, names] : channels) {
+      auto planes = files[std::size_t(part.first)]->read(part.second, names);
+      for (std::size_t i = 0; i < names.size(); ++i) planes_[part][names[i]] = std::move(planes[i]);
+    }
+  }
 
   Plane<float> scalar(const std::optional<Layer>& layer, float fill) const {
-    return layer ? std::move(read(*layer, fill)[0]) : Plane<float>{};
+    return layer ? plane(*layer, 0, fill) : Plane<float>{};
   }
 
   Plane<glm::vec3> vector(const std::optional<Layer>& layer, float fill) const {
     if (!layer) return {};
-    const auto planes = read(*layer, fill);
+    const Plane<float> x = plane(*layer, 0, fill), y = plane(*layer, 1, fill),
+                       z = plane(*layer, 2, fill);
     Plane<glm::vec3> out(window_.width(), window_.height());
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      out[i] = {planes[0][i], planes[1][i], planes[2][i]};
-    }
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {x[i], y[i], z[i]};
     return out;
   }
 
  private:
-  std::vector<Plane<float>> read(const Layer& layer, float fill) const {
-    const ExrReader& file = *files_[std::size_t(layer.file)];
-    const Window& from = file.parts()[std::size_t(layer.part)].data_window;
-    auto planes = file.read(layer.part, layer.channels);
-    for (auto& plane : planes) plane = lay_onto(window_, from, std::move(plane), fill);
-    return planes;
+  using Part = std::pair<int, int>;  ///< file and part
+
+  Plane<float> plane(const Layer& layer, std::size_t component, float fill) const {
+    const ExrPart& part = files_[std::size_t(layer.file)]->parts()[std::size_t(layer.part)];
+    const auto& planes = planes_.at({layer.file, layer.part});
+    return lay_onto(window_, part.data_window, planes.at(layer.channels[component]), fill);
   }
 
   const std::vector<const ExrReader*>& files_;
   Window window_;
+  std::map<Part, std::map<std::string, Plane<float>>> planes_;
 };
 
 /// Depth as a distance along the axis or the ray.
@@ -162,7 +179,10 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   if (!(g.pixel_aspect > 0) || !std::isfinite(g.pixel_aspect)) g.pixel_aspect = 1;
   g.position_step = lead->half ? kStepHalf : kStepFloat;
 
-  const LayerReader read(files, g.window);
+  const LayerReader read(
+      files, table,
+      {Role::position, Role::depth, Role::normal, Role::albedo, Role::radiance, Role::alpha},
+      g.window);
   g.position = read.vector(table[Role::position], NAN);
   g.depth = read.scalar(table[Role::depth], NAN);
   g.normal = read.vector(table[Role::normal], 0);
