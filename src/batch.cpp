@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <future>
+#include <new>
 #include <nlohmann/json.hpp>
 
 #include "frame.h"
@@ -107,26 +109,56 @@ class Batch {
         progress_(options.batch.progress, options.say.quiet) {}
 
   ExitCode run() {
+    if (!options_.say.stats.empty()) check_statistics_file();
     ExitCode code = ExitCode::done;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
-      try {
-        run_job(i);
-      } catch (const Error& e) {
+      const std::optional<Error> error = error_of_job(i);
+      if (error) {
         // A single frame that fails is the job that fails.
-        if (jobs_.size() == 1) throw;
-        say(e.what());
-        if (code == ExitCode::done) code = e.code;
+        if (jobs_.size() == 1) throw *error;
+        say(error->what());
+        if (code == ExitCode::done) code = error->code;
         if (options_.batch.on_error == OnError::stop) break;
       }
       progress_.tell(double(i + 1) / double(jobs_.size()), jobs_[i].input);
     }
-    if (options_.command == Command::info && options_.say.json)
+    if (options_.command == Command::info && options_.say.json) {
       fmt::print("{}\n", infos_.size() == 1 ? infos_[0].dump(2) : infos_.dump(2));
+    }
     if (!options_.say.stats.empty()) statistics_.write(options_.say.stats);
     return code;
   }
 
  private:
+  std::optional<Error> error_of_job(std::size_t i) {
+    try {
+      run_job(i);
+      return std::nullopt;
+    } catch (const Error& e) {
+      return e;
+    } catch (const std::bad_alloc&) {
+      return Error(ExitCode::failed,
+                   fmt::format("{}: not enough memory for this frame", jobs_[i].input));
+    } catch (const std::exception& e) {
+      return Error(ExitCode::failed, fmt::format("{}: {}", jobs_[i].input, e.what()));
+    }
+  }
+
+  /// Refused before any work is done: a path that cannot be written, or that is an input.
+  void check_statistics_file() const {
+    for (const Job& job : jobs_) {
+      for (const std::string& input : inputs_of(options_, job.input)) {
+        std::error_code ignored;
+        if (fs::equivalent(options_.say.stats, input, ignored)) {
+          throw Error(
+              ExitCode::output,
+              fmt::format("{}: is an input; write the statistics elsewhere", options_.say.stats));
+        }
+      }
+    }
+    check_output(options_.say.stats, Statistics::policy());
+  }
+
   void run_job(std::size_t i) {
     const Job& job = jobs_[i];
     OutputPolicy policy = options_.output.policy;
@@ -134,15 +166,17 @@ class Batch {
     if (writes && options_.batch.skip_existing) {
       if (all_done(job))
         return say_verbose(fmt::format("{}: skipped, its outputs exist", job.input));
-      policy.overwrite = true;  // what is there cannot be read
+      policy.overwrite = true;  // what is there is incomplete: the frame is made anew
     }
     if (writes) check_targets(job.targets, inputs_of(options_, job.input), policy);
     Frame frame = take_frame(i);
     if (options_.command == Command::info) return show(frame);
-    if (options_.say.dry_run || options_.say.verbose) say(describe(frame));
-    if (!options_.say.verbose && !options_.say.dry_run && !options_.say.quiet) {
-      for (const std::string& warning : frame.warnings())
+    if (options_.say.dry_run || options_.say.verbose) {
+      print(describe(frame));
+    } else if (!options_.say.quiet) {
+      for (const std::string& warning : frame.warnings()) {
         say(fmt::format("{}: warning: {}", job.input, warning));
+      }
     }
     if (!writes) return;
     const auto told = [&](double done) {
@@ -153,8 +187,7 @@ class Batch {
     if (relit.clamped_values > 0 && !options_.say.quiet) {
       say(
           fmt::format("{}: warning: {} values were beyond the range of half and clamped to 65504; "
-                      "keep them with "
-                      "--pixel-type float",
+                      "keep them with --pixel-type float",
                       job.input, relit.clamped_values));
     }
     statistics_.add(frame, job.frame, job.targets, threads_);
@@ -193,10 +226,11 @@ class Batch {
     }
   }
 
-  void say(std::string text) {
+  /// One line on standard error. A terminal that is gone does not stop the work.
+  void say(const std::string& line) { print("ssdo: " + line + "\n"); }
+  void print(const std::string& text) {
     progress_.clear();
-    if (text.empty() || text.back() != '\n') text += '\n';
-    fmt::print(stderr, "{}{}", text.starts_with(options_.input_file) ? "" : "ssdo: ", text);
+    std::fputs(text.c_str(), stderr);
   }
   void say_verbose(const std::string& text) {
     if (options_.say.verbose) say(text);

@@ -19,31 +19,36 @@ void Progress::tell(double done, const std::string& what) {
   const int percent = std::clamp(int(100 * done + 0.5), 0, 100);
   if (percent == last_percent_) return;
   last_percent_ = percent;
+  std::string line;
   switch (style_) {
     case ProgressStyle::automatic:
-      if (!bar_) return;
-      fmt::print(stderr, "\r\033[K[{:<25}] {:3d}% {}", std::string(std::size_t(percent / 4), '#'),
-                 percent, what);
-      std::fflush(stderr);
-      drawn_ = true;
+      if (bar_) draw(percent, what);
       return;
     case ProgressStyle::none:
       return;
     case ProgressStyle::tractor:
-      fmt::print("TR_PROGRESS {:03d}%\n", percent);
+      line = fmt::format("TR_PROGRESS {:03d}%\n", percent);
       break;
     case ProgressStyle::alfred:
-      fmt::print("ALF_PROGRESS {}%\n", percent);
+      line = fmt::format("ALF_PROGRESS {}%\n", percent);
       break;
     case ProgressStyle::openjd:
-      fmt::print("openjd_progress: {}\n", percent);
+      line = fmt::format("openjd_progress: {}\n", percent);
       break;
   }
+  std::fputs(line.c_str(), stdout);
   std::fflush(stdout);
 }
 
+void Progress::draw(int percent, const std::string& what) {
+  const std::string filled(std::size_t(percent / 4), '#');
+  std::fputs(fmt::format("\r\033[K[{:<25}] {:3d}% {}", filled, percent, what).c_str(), stderr);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
 void Progress::clear() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
+  if (drawn_) std::fputs("\r\033[K", stderr);
   std::fflush(stderr);
   drawn_ = false;
 }

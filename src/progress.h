@@ -21,6 +21,8 @@ class Progress {
   void clear();
 
  private:
+  void draw(int percent, const std::string& what);
+
   ProgressStyle style_;
   bool bar_ = false, drawn_ = false;
   int last_percent_ = -1;

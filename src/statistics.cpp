@@ -53,7 +53,7 @@ void Statistics::add(const Frame& frame, std::optional<int> number,
 }
 
 void Statistics::write(const std::string& path) const {
-  SafeFile file(path, {.overwrite = true, .create_dirs = false});
+  SafeFile file(path, policy());
   std::ofstream out(file.temporary());
   out << frames_.dump(2) << '\n';
   out.close();

@@ -17,6 +17,9 @@ class Statistics {
   void add(const Frame& frame, std::optional<int> number, const std::vector<Target>& targets,
            int threads);
 
+  /// A log is replaced where an image would not be.
+  static OutputPolicy policy() { return {.overwrite = true, .create_dirs = false}; }
+
   /// Writes what has been added, replacing `path`. Errors: ExitCode::output.
   void write(const std::string& path) const;
 

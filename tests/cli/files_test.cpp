@@ -63,6 +63,7 @@ TEST_F(Files, TheInputIsNeverAnOutput) {
   fs::copy_file(data("environments/sky.exr"), path("sky.exr"));
   EXPECT_EQ(run_tool({in(), "--env", path("sky.exr"), "-o", path("sky.exr"), "--overwrite"}).code,
             5);
+  EXPECT_EQ(run_tool({in(), "-o", path("out.exr"), "--stats", in()}).code, 5);
   EXPECT_TRUE(read_file(in()) == before);
   EXPECT_TRUE(read_file(path("other.exr")) == before);
 }
