@@ -26,8 +26,16 @@ namespace fs = std::filesystem;
 struct Job {
   std::optional<int> frame;
   std::string input;
+  std::vector<LayerRequest> aovs;
   std::vector<Target> targets;
 };
+
+Job job_of_frame(const Options& options, int frame) {
+  Job job{frame, expand_pattern(options.input_file, frame), options.input.aovs,
+          targets_of(options.output, frame)};
+  for (LayerRequest& request : job.aovs) request.file = expand_pattern(request.file, frame);
+  return job;
+}
 
 std::vector<Job> plan_jobs(const Options& options) {
   const bool sequence = is_pattern(options.input_file);
@@ -45,7 +53,8 @@ std::vector<Job> plan_jobs(const Options& options) {
                                 options.input_file));
       }
     }
-    return {{std::nullopt, options.input_file, targets_of(options.output, std::nullopt)}};
+    return {{std::nullopt, options.input_file, options.input.aovs,
+             targets_of(options.output, std::nullopt)}};
   }
   const auto frames = options.batch.frames.empty() ? find_frames(options.input_file)
                                                    : parse_frames(options.batch.frames);
@@ -66,8 +75,7 @@ std::vector<Job> plan_jobs(const Options& options) {
   }
   std::vector<Job> jobs;
   for (int frame : frames) {
-    jobs.push_back(
-        {frame, expand_pattern(options.input_file, frame), targets_of(options.output, frame)});
+    jobs.push_back(job_of_frame(options, frame));
   }
   return jobs;
 }
@@ -147,7 +155,7 @@ class Batch {
   /// Refused before any work is done: a path that cannot be written, or that is an input.
   void check_statistics_file() const {
     for (const Job& job : jobs_) {
-      for (const std::string& input : inputs_of(options_, job.input)) {
+      for (const std::string& input : inputs_of(options_, job.input, job.aovs)) {
         std::error_code ignored;
         if (fs::equivalent(options_.say.stats, input, ignored)) {
           throw Error(
@@ -168,7 +176,7 @@ class Batch {
         return say_verbose(fmt::format("{}: skipped, its outputs exist", job.input));
       policy.overwrite = true;  // what is there is incomplete: the frame is made anew
     }
-    if (writes) check_targets(job.targets, inputs_of(options_, job.input), policy);
+    if (writes) check_targets(job.targets, inputs_of(options_, job.input, job.aovs), policy);
     Frame frame = take_frame(i);
     if (options_.command == Command::info) return show(frame);
     if (options_.say.dry_run || options_.say.verbose) {
@@ -199,7 +207,7 @@ class Batch {
       throw Error(ExitCode::input,
                   fmt::format("{}: frame {} of the range is missing", job.input, *job.frame));
     }
-    return prepare_frame(options_, light_, job.input);
+    return prepare_frame(options_, light_, job.input, job.aovs);
   }
 
   /// The frame of job `i`, which may be on its way already; sends for the next one.

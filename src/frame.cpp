@@ -20,9 +20,9 @@ UpAxis up_axis_of(const Imf::Header& header) {
 }
 
 /// Opens the frame and every file that --aov names, each once.
-void open_files(Frame& frame, const Options& options) {
+void open_files(Frame& frame, const std::vector<LayerRequest>& aovs) {
   frame.files.emplace_back(frame.input);
-  for (const LayerRequest& request : options.input.aovs) {
+  for (const LayerRequest& request : aovs) {
     bool open = request.file.empty();
     for (const ExrReader& file : frame.files) open |= file.path() == request.file;
     if (!open) frame.files.emplace_back(request.file);
@@ -45,14 +45,15 @@ std::vector<std::string> Frame::warnings() const {
   return all;
 }
 
-Frame prepare_frame(const Options& options, const Light& light, const std::string& input) {
+Frame prepare_frame(const Options& options, const Light& light, const std::string& input,
+                    const std::vector<LayerRequest>& aovs) {
   Frame frame;
   frame.input = input;
   Stopwatch watch;
-  open_files(frame, options);
+  open_files(frame, aovs);
   std::vector<const ExrReader*> files;
   for (const ExrReader& file : frame.files) files.push_back(&file);
-  frame.layers = find_layers(files, options.input.aovs, options.input.part);
+  frame.layers = find_layers(files, aovs, options.input.part);
   frame.gbuffer = read_gbuffer(files, frame.layers, options.input.gbuffer);
   frame.times.read = watch.lap();
 

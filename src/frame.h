@@ -41,8 +41,10 @@ struct Frame {
 };
 
 /// Reads the layers of `input` and decides what to do with them: read, layers, gbuffer, camera,
-/// geometry, plan. Errors: those of the stages.
-Frame prepare_frame(const Options& options, const Light& light, const std::string& input);
+/// geometry, plan. `aovs` are the requests for layers, with files of this very frame.
+/// Errors: those of the stages.
+Frame prepare_frame(const Options& options, const Light& light, const std::string& input,
+                    const std::vector<LayerRequest>& aovs);
 
 /// What the header of the frame's part says about colour.
 ColorTags color_tags(const Frame& frame);

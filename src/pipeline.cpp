@@ -31,15 +31,8 @@ bool is_exr(const fs::path& path) {
   return ending == ".exr";
 }
 
-/// The product that an image file without a --save holds.
-std::string product_of_image(const Target& target, const Plan& plan) {
-  if (target.product) return *target.product;
-  if (plan.composite) return "composite";
-  if (plan.write.size() == 1) return plan.write[0];
-  throw Error(ExitCode::layer,
-              fmt::format("{}: there is no composite to show (it needs an albedo); name a "
-                          "product with --save PRODUCT={}",
-                          target.path, target.path));
+const std::string& product_of_picture(const Target& target, const Plan& plan) {
+  return target.product ? *target.product : plan.show;
 }
 
 void write_exr_target(const SafeFile& file, const Target& target, const Options& options,
@@ -75,10 +68,11 @@ std::vector<Target> targets_of(const OutputOptions& output, std::optional<int> f
   return targets;
 }
 
-std::vector<std::string> inputs_of(const Options& options, const std::string& frame) {
+std::vector<std::string> inputs_of(const Options& options, const std::string& frame,
+                                   const std::vector<LayerRequest>& aovs) {
   std::vector<std::string> inputs = {frame, options.light.env, options.camera.file,
                                      options.color.ocio};
-  for (const LayerRequest& request : options.input.aovs) inputs.push_back(request.file);
+  for (const LayerRequest& request : aovs) inputs.push_back(request.file);
   return inputs;
 }
 
@@ -114,7 +108,8 @@ Relit relight(const Options& options, Frame& frame, const std::vector<Target>& t
   std::optional<DisplayTransform>
       display;  // made first: a view that does not exist costs no estimate
   for (const Target& target : targets) {
-    if (is_exr(target.path) || !needs_display(product_of_image(target, plan)) || display) continue;
+    if (is_exr(target.path) || !needs_display(product_of_picture(target, plan)) || display)
+      continue;
     display.emplace(options.color, color_tags(frame));
     relit.notes.push_back(display->description());
   }
@@ -141,8 +136,8 @@ Relit relight(const Options& options, Frame& frame, const std::vector<Target>& t
       write_exr_target(*files.back(), target, options, frame, products, relit);
       frame.times.write += watch.lap();
     } else {
-      const DisplayImage image = make_display_image(product_of_image(target, plan), frame, products,
-                                                    display ? &*display : nullptr);
+      const DisplayImage image = make_display_image(product_of_picture(target, plan), frame,
+                                                    products, display ? &*display : nullptr);
       frame.times.compose += watch.lap();
       write_image(*files.back(), image.spec(options.output.bits), image.values);
       frame.times.write += watch.lap();

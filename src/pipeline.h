@@ -22,7 +22,8 @@ struct Target {
 std::vector<Target> targets_of(const OutputOptions& output, std::optional<int> frame);
 
 /// Every file that a frame is made from: the frame, those of --aov, --env, --camera and --ocio.
-std::vector<std::string> inputs_of(const Options& options, const std::string& frame);
+std::vector<std::string> inputs_of(const Options& options, const std::string& frame,
+                                   const std::vector<LayerRequest>& aovs);
 
 /// Refuses targets that cannot be written, before any work is done: an unknown kind of file, a
 /// name that is used twice, an input that would be replaced, and what check_output refuses.

@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "estimators/registry.h"
+#include "io/image_file.h"
 
 namespace ssdo {
 namespace {
@@ -24,44 +25,71 @@ bool has_albedo(const GBuffer& gbuffer) {
                      [](const glm::vec3& c) { return c != glm::vec3(0); });
 }
 
-/// The products that the user names, or all that the frame allows.
-std::vector<std::string> wanted_products(const OutputOptions& output, bool albedo,
-                                         const std::string& file, Plan& plan) {
-  std::vector<std::string> wanted = output.products;
-  for (const SaveRequest& save : output.saves) wanted.push_back(save.product);
-  for (const std::string& name : wanted) {
-    if (std::find(kProducts.begin(), kProducts.end(), name) == kProducts.end()) {
-      throw Error(ExitCode::usage,
-                  fmt::format("product '{}': method {} makes ao, direct, bounce and "
-                              "composite",
-                              name, plan.method->name));
-    }
-    if (!albedo && (name == "composite" || name == "bounce")) {
-      throw Error(ExitCode::layer,
-                  fmt::format("{}: {} needs a layer for albedo and none was found by "
-                              "name; name one with --aov albedo=LAYER",
-                              file, name));
-    }
+using Names = std::vector<std::string>;
+
+bool contains(const Names& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void check_product(const std::string& name, bool albedo, const std::string& file) {
+  if (std::find(kProducts.begin(), kProducts.end(), name) == kProducts.end()) {
+    throw Error(ExitCode::usage,
+                fmt::format("product '{}': there are ao, direct, bounce and composite", name));
   }
-  if (output.products.empty()) {
-    for (const std::string_view name : kProducts) {
-      const bool possible = albedo || name == "ao" || name == "direct";
-      if (possible) wanted.emplace_back(name);
-    }
-    if (!albedo) plan.reasons.push_back("no bounce and no composite: there is no albedo");
+  if (!albedo && (name == "composite" || name == "bounce")) {
+    throw Error(ExitCode::layer,
+                fmt::format("{}: {} needs a layer for albedo and none was found by name; name one "
+                            "with --aov albedo=LAYER, or another product with --save PRODUCT=FILE",
+                            file, name));
   }
-  std::vector<std::string> ordered;
+}
+
+/// What an EXR holds: the products that the user names, or all that the frame allows.
+Names exr_products(const OutputOptions& output, bool albedo) {
+  Names names;
   for (const std::string_view name : kProducts) {
-    if (std::find(wanted.begin(), wanted.end(), name) != wanted.end()) ordered.emplace_back(name);
+    const bool possible = albedo || name == "ao" || name == "direct";
+    if (output.products.empty() ? possible : contains(output.products, name))
+      names.emplace_back(name);
   }
-  return ordered;
+  return names;
+}
+
+/// What a picture shows: the composite, or the only product that the user names.
+std::string shown_product(const OutputOptions& output) {
+  if (output.products.empty() || contains(output.products, "composite")) return "composite";
+  if (output.products.size() == 1) return output.products[0];
+  throw Error(ExitCode::usage,
+              "a picture shows one product, and --products names several without "
+              "the composite; give each a file with --save PRODUCT=FILE");
+}
+
+void choose_products(Plan& plan, const OutputOptions& output, bool albedo,
+                     const std::string& file) {
+  const auto is_picture = [](const std::string& path) { return is_display_image(path); };
+  const auto pictures = std::count_if(output.files.begin(), output.files.end(), is_picture);
+  const bool only_saves = output.files.empty() && !output.saves.empty();
+  if (std::size_t(pictures) < output.files.size() || (output.files.empty() && !only_saves)) {
+    plan.write = exr_products(output, albedo);
+    if (output.products.empty() && !albedo) {
+      plan.reasons.push_back("no bounce and no composite: there is no albedo");
+    }
+  }
+  Names wanted = output.products;
+  wanted.insert(wanted.end(), plan.write.begin(), plan.write.end());
+  for (const SaveRequest& save : output.saves) wanted.push_back(save.product);
+  if (pictures > 0) wanted.push_back(plan.show = shown_product(output));
+  for (const std::string& name : wanted) check_product(name, albedo, file);
+  for (const std::string_view name : kProducts) {
+    if (contains(wanted, name)) plan.make.emplace_back(name);
+  }
+  const bool composite = contains(wanted, "composite");
+  plan.products.ao = contains(wanted, "ao");
+  plan.products.direct = contains(wanted, "direct") || composite;
+  plan.products.bounce = contains(wanted, "bounce") || composite;
 }
 
 }  // namespace
-
-bool Plan::writes(std::string_view product) const {
-  return std::find(write.begin(), write.end(), product) != write.end();
-}
 
 Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBuffer& gbuffer,
                const Geometry& geometry, const Environment& environment, const std::string& file) {
@@ -69,11 +97,7 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBu
   plan.method = &find_method(model.method);
   plan.parameters = resolve_parameters(*plan.method, model.set);
   plan.filter = model.filter;
-  plan.write = wanted_products(output, !gbuffer.albedo.empty(), file, plan);
-  plan.composite = plan.writes("composite");
-  plan.products.ao = plan.writes("ao");
-  plan.products.direct = plan.writes("direct") || plan.composite;
-  plan.products.bounce = plan.writes("bounce") || plan.composite;
+  choose_products(plan, output, !gbuffer.albedo.empty(), file);
 
   plan.bounces = plan.products.bounce ? model.bounces : 0;
   if (plan.bounces > 0 && gbuffer.radiance.empty() && !has_albedo(gbuffer)) {
@@ -97,7 +121,7 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBu
 
 nlohmann::json to_json(const Plan& plan) {
   nlohmann::json j = {{"method", plan.method->name}, {"parameters", plan.parameters},
-                      {"products", plan.write},      {"radius", plan.radius},
+                      {"products", plan.make},       {"radius", plan.radius},
                       {"bounces", plan.bounces},     {"filter", plan.filter ? "geometry" : "none"},
                       {"reasons", plan.reasons}};
   return j;

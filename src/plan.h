@@ -17,21 +17,20 @@ namespace ssdo {
 struct Plan {
   const Method* method = nullptr;
   ParameterValues parameters;
-  ProductSet products;     ///< what the method is asked for
-  bool composite = false;  ///< albedo (direct + bounce)
-  float radius = 0;        ///< scene units
+  ProductSet products;  ///< what the method is asked for
+  float radius = 0;     ///< scene units
   int bounces = 0;
   bool filter = true;
-  std::vector<std::string> write;    ///< products that go to the outputs, in their order there
+  std::vector<std::string> make;     ///< products for any of the outputs
+  std::vector<std::string> write;    ///< those that every EXR of -o holds, in their order there
+  std::string show;                  ///< the one that every picture of -o holds
   std::vector<std::string> reasons;  ///< one line per decision
-
-  bool writes(std::string_view product) const;
 };
 
 /// Decides from what was asked for and what the frame shows: work that cannot change a product
 /// that is written is left out.
-/// Errors: ExitCode::usage for a product that the method does not make; ExitCode::layer for one
-/// whose layer is missing.
+/// Errors: ExitCode::usage for a product that the method does not make, or several for one
+/// picture; ExitCode::layer for one whose layer is missing.
 Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBuffer& gbuffer,
                const Geometry& geometry, const Environment& environment, const std::string& file);
 

@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "scene/layer_names.h"
+#include "sequence.h"
 
 namespace ssdo {
 namespace {
@@ -231,10 +232,12 @@ LayerRequest parse_layer_request(const std::string& text) {
                             text, fmt::join(kRoleNames, ", ")));
   }
   LayerRequest request{*role, "", text.substr(equals + 1)};
-  // A colon may stand in a layer's name: it separates a file only where such a file exists.
+  // A colon may stand in a layer's name: it ends a file's where that is a file, or a sequence.
   const auto colon = request.layer.rfind(':');
-  if (colon != std::string::npos && std::filesystem::exists(request.layer.substr(0, colon))) {
-    request.file = request.layer.substr(0, colon);
+  if (colon == std::string::npos) return request;
+  const std::string file = request.layer.substr(0, colon);
+  if (std::filesystem::exists(file) || is_pattern(file)) {
+    request.file = file;
     request.layer = request.layer.substr(colon + 1);
   }
   return request;

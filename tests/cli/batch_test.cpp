@@ -140,6 +140,16 @@ TEST_F(Shot, ThreadsComeFromTheFlagThenTheSchedulerThenTheMachine) {
   EXPECT_EQ(threads({}, {{"SLURM_CPUS_PER_TASK", "6"}}), 6);
 }
 
+TEST_F(Shot, LayersOfAnotherSequenceFollowTheFrame) {
+  for (const int frame : {1, 2}) write_frame(file("extra", frame), frame_of(small_picture()));
+  const std::string aov = "normal=" + std::string(dir_ / "extra.####.exr") + ":ViewLayer.Normal";
+  EXPECT_EQ(run({"--frames", "1-2", "--aov", aov}).code, 0);
+  EXPECT_THAT(done(), ElementsAre(1, 2));
+  const Finished missing = run({"--frames", "4", "--aov", aov});
+  EXPECT_EQ(missing.code, 3);
+  EXPECT_THAT(missing.error_line(), HasSubstr("extra.0004.exr"));
+}
+
 TEST_F(Shot, ADryRunAndAVerboseRunSayWhatTheyDo) {
   const Finished dry = run({"--frames", "1", "--dry-run"});
   EXPECT_EQ(dry.code, 0);

@@ -53,6 +53,7 @@ TEST(Refusals, OfTheCommandLine) {
       {{"--set", "sample=4"}, "samples, bias"},
       {{"--filter", "blur"}, "--filter"},
       {{"--products", "ao,glow"}, "'glow'"},
+      {{"--products", "ao,direct", "-o", std::string(dir / "p.png")}, "--save PRODUCT=FILE"},
       {{"--save", "ao"}, "PRODUCT=FILE"},
       {{"--save", "glow=a.exr"}, "'glow'"},
       {{"--aov", "position"}, "ROLE=LAYER"},
@@ -144,7 +145,7 @@ TEST(Refusals, OfMissingAndAmbiguousLayers) {
   write_frame(dir / "white.exr", white);
   expect_refused({dir / "white.exr", "-o", dir / "out.exr", "--products", "bounce"}, 4,
                  "--aov albedo=LAYER");
-  expect_refused({dir / "white.exr", "-o", dir / "out.png"}, 4, "--save PRODUCT=");
+  expect_refused({dir / "white.exr", "-o", dir / "out.png"}, 4, "--save PRODUCT=FILE");
   EXPECT_EQ(run_tool({dir / "white.exr", "-o", dir / "out.exr"}).code, 0)
       << "ao and direct need no albedo";
   EXPECT_THAT(channel_names(dir / "out.exr"),

@@ -77,7 +77,7 @@ Result run(const Scene& scene, const std::string& environment, std::optional<dou
   Options options;
   options.model.radius = radius;
   options.light.env = environment;
-  Frame frame = prepare_frame(options, Light(options.light), kData + scene.name + ".exr");
+  Frame frame = prepare_frame(options, Light(options.light), kData + scene.name + ".exr", {});
   const Plan& plan = frame.plan;
   const Products raw = plan.method->estimate({frame.geometry,
                                               frame.gbuffer.albedo,
