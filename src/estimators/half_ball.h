@@ -14,9 +14,10 @@ struct HalfBallSample {
 
 /// `size` x `size` sets of `count` points, row by row, each uniform in the volume of the half-ball.
 ///
-/// The cosines of every set are the midpoints of `count` equal strata: uniform solid angle is
-/// uniform in the cosine, and the mean cosine of each set is exactly 1/2, so that an open surface
-/// reads 1 whatever `count` is. Azimuth and volume follow the additive recurrence R2 of Roberts
+/// Every set has one cosine in each of `count` equal strata: uniform solid angle is uniform in the
+/// cosine. From set to set they move through their strata, neighbours in opposite directions, so
+/// that the mean cosine of each set stays exactly 1/2 and an open surface reads 1 whatever `count`
+/// is. Azimuth and volume follow the additive recurrence R2 of Roberts
 /// (2018), one sequence through all sets.
 std::vector<std::vector<HalfBallSample>> half_ball_pattern(int size, int count, unsigned seed);
 
