@@ -13,6 +13,7 @@
 #include "io/safe_file.h"
 #include "scene/environment.h"
 #include "scene/geometry.h"
+#include "scene/read_gbuffer.h"
 
 namespace ssdo {
 

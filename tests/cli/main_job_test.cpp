@@ -166,6 +166,32 @@ TEST(MainJob, ProductsGoWhereTheyAreAskedFor) {
     ASSERT_NEAR(values[i], ao[i], 1e-3) << "no display transform on visibility";
 }
 
+TEST(MainJob, PicturesGoThroughTheColourPipeline) {
+  const TempDir dir;
+  FramePart part = frame_of(small_picture());
+  part.channels["A"] = Plane<float>(64, 48, 0.5f);
+  for (const char* c : {"R", "G", "B"}) part.channels[c] = Plane<float>(64, 48, 0);
+  write_frame(dir / "in.exr", part);
+  // Open ground of albedo 1/2 under 0.36 gives 0.18, whatever its alpha.
+  const auto ground = [&](std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {dir / "in.exr", "-o", dir / "out.png", "--overwrite", "--env",
+                                 "0.36", "--bounces", "0"});
+    relight(flags);
+    const auto image = OIIO::ImageInput::open((dir / "out.png").string());
+    std::vector<float> values(64 * 48 * 4);
+    EXPECT_TRUE(image && image->read_image(0, 0, 0, 4, OIIO::TypeDesc::FLOAT, values.data()));
+    // OpenImageIO multiplies by alpha on the way in.
+    EXPECT_NEAR(values[3], 0.5, 0.003);
+    return values[0] / values[3];
+  };
+  EXPECT_NEAR(ground({"--bits", "16"}), 0.3560, 5e-4) << "ACES, SDR";
+  EXPECT_NEAR(ground({}), 0.3560, 0.005);
+  EXPECT_NEAR(ground({"--view", "Un-tone-mapped", "--bits", "16"}), 0.4614, 5e-4) << "sRGB";
+  EXPECT_NEAR(
+      ground({"--view", "Un-tone-mapped", "--bits", "16", "--ocio", data("color/config.ocio")}),
+      0.4614, 5e-4);
+}
+
 TEST(MainJob, WritesEveryCompressionAndBothTypes) {
   const TempDir dir;
   write_frame(dir / "in.exr", frame_of(small_picture()));

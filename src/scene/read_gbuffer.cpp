@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/gbuffer.h"
+#include "scene/read_gbuffer.h"
 
 #include <fmt/format.h>
 

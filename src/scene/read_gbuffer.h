@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "io/exr_reader.h"
+#include "scene/gbuffer.h"
+#include "scene/layers.h"
+
+namespace ssdo {
+
+/// How to read the layers; all of it has defaults that fit most files.
+struct GBufferOptions {
+  std::optional<DepthKind> depth_kind;    ///< planar where not given
+  float depth_near = 0, depth_far = 1;    ///< what 0 and 1 mean in a normalized depth
+  std::optional<float> background_depth;  ///< depth from which on a pixel is background
+};
+
+/// Reads the layers of `table` and finds background and broken pixels: background where alpha is
+/// 0, or else by depth (>= 1e9, infinite, NaN, <= 0) where there is one, or else by P (0, >= 1e9,
+/// not finite) or a normal of 0.
+/// Errors: ExitCode::layer when there is neither position nor depth, or the depth has no unit.
+GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTable& table,
+                     const GBufferOptions& options);
+
+}  // namespace ssdo
