@@ -128,12 +128,17 @@ void drop_pixels_behind_camera(Geometry& out, GeometryReport& report) {
   }
 }
 
+/// Least median cosine between N and the gradient of P. Stored normals are better than those of a
+/// rough P, so little is asked; but where P was made from depth, no rotation to a world is known,
+/// and normals of a world that is tilted against the camera must not pass.
+constexpr double kAgreementOfP = 0.3, kAgreementOfDepth = 0.9;
+
 void place_normals(const GBuffer& g, Geometry& out, GeometryReport& report) {
   const bool orthographic = out.camera.orthographic;
   NormalSpace space{glm::mat3(1), "rebuilt from P", 0};
   if (!g.normal.empty()) {
     space = find_normal_space(g.normal, out.surfel, glm::mat3(out.camera.rotation), orthographic);
-    if (space.agreement < 0.3) {
+    if (space.agreement < (g.position.empty() ? kAgreementOfDepth : kAgreementOfP)) {
       report.warnings.push_back(
           fmt::format("normals do not belong to P (median cosine {:.2f} at "
                       "best); rebuilt from P",

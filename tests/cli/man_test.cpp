@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The man page against the binary: both know the same flags, and the page renders.
+#include <gmock/gmock.h>
+
+#include <cstdio>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "support/run_tool.h"
+
+namespace ssdo::test {
+namespace {
+
+using Flags = std::set<std::string>;
+
+const std::string kPage = std::string(SSDO_SOURCE_DIR) + "/man/ssdo.1";
+
+/// The page as groff reads it, with \- for a dash turned into one.
+std::string page() { return std::regex_replace(read_file(kPage), std::regex(R"(\\-)"), "-"); }
+
+/// The flags that a help text declares: those that begin a line, not those that a text mentions.
+Flags flags_of_help(const std::vector<std::string>& arguments) {
+  const Finished done = run_tool(arguments);
+  EXPECT_EQ(done.code, 0) << done.err;
+  static const std::regex declared(R"(^  (?:-\w,)?(--[a-z][a-z-]*))");
+  Flags flags;
+  std::istringstream lines(done.out);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch found;
+    if (std::regex_search(line, found, declared)) flags.insert(found[1]);
+  }
+  return flags;
+}
+
+Flags flags_of_binary() {
+  Flags flags = flags_of_help({"--help"});
+  flags.merge(flags_of_help({"info", "--help"}));
+  return flags;
+}
+
+/// The flags in the tags of the page's paragraphs: the lines after .TP and .TQ.
+Flags flags_of_headings() {
+  static const std::regex flag("--[a-z][a-z-]*");
+  Flags flags;
+  std::istringstream lines(page());
+  bool is_tag = false;
+  for (std::string line; std::getline(lines, line);) {
+    for (std::sregex_iterator it(line.begin(), line.end(), flag), end; is_tag && it != end; ++it) {
+      flags.insert(it->str());
+    }
+    is_tag = line.starts_with(".TP") || line.starts_with(".TQ");
+  }
+  return flags;
+}
+
+/// How groff ended, and what it complained of.
+struct Rendered {
+  int status = -1;
+  std::string warnings;
+};
+
+Rendered render() {
+  Rendered rendered;
+  const std::string command = "groff -man -Tutf8 -ww '" + kPage + "' 2>&1 >/dev/null";
+  FILE* groff = popen(command.c_str(), "r");
+  if (!groff) return rendered;
+  for (int c; (c = std::fgetc(groff)) != EOF;) rendered.warnings += char(c);
+  rendered.status = pclose(groff);
+  return rendered;
+}
+
+TEST(ManPage, HasTheFlagsOfTheHelpAndNoOthers) {
+  const Flags binary = flags_of_binary();
+  for (const char* known : {"--help", "--output", "--method", "--stats", "--json"}) {
+    EXPECT_THAT(binary, testing::Contains(known)) << "the help is not read as it should be";
+  }
+  EXPECT_EQ(flags_of_headings(), binary);
+}
+
+TEST(ManPage, MentionsNoFlagThatDoesNotExist) {
+  const Flags binary = flags_of_binary();
+  static const std::regex flag("(?:^|[^-\\w])(--[a-z][a-z-]*)");
+  const std::string text = page();
+  for (std::sregex_iterator it(text.begin(), text.end(), flag), end; it != end; ++it) {
+    EXPECT_THAT(binary, testing::Contains((*it)[1].str()));
+  }
+}
+
+TEST(ManPage, HasTheParametersOfTheMethods) {
+  const Finished done = run_tool({"--list-methods"});
+  static const std::regex parameter(R"(\n  ([a-z-]+) +([0-9.e+]+)  )");
+  const std::string text = page();
+  int count = 0;
+  for (std::sregex_iterator it(done.out.begin(), done.out.end(), parameter), end; it != end; ++it) {
+    const std::string heading = ".BR " + (*it)[1].str() + " \" = " + (*it)[2].str() + "\"\n";
+    EXPECT_THAT(text, testing::HasSubstr(heading));
+    ++count;
+  }
+  EXPECT_GT(count, 0);
+}
+
+TEST(ManPage, RendersWithoutWarnings) {
+  const Rendered rendered = render();
+  EXPECT_EQ(rendered.status, 0) << rendered.warnings;
+  EXPECT_EQ(rendered.warnings, "");
+}
+
+}  // namespace
+}  // namespace ssdo::test
