@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <exception>
@@ -26,6 +28,15 @@ ssdo::ExitCode run(int argc, char** argv) {
   return ssdo::run_batch(parsed.options);
 }
 
+/// Opens the standard streams that the caller has closed: the first file to be written would take
+/// the place of standard output, and progress would go into it.
+void open_standard_streams() {
+  int descriptor;
+  while ((descriptor = open("/dev/null", O_RDWR)) >= 0 && descriptor <= STDERR_FILENO) {
+  }
+  close(descriptor);
+}
+
 /// The last words of a process that fails; what cannot be said (standard error is closed, or its
 /// disk is full) does not change the exit code.
 ssdo::ExitCode fail(ssdo::ExitCode code, const char* message) {
@@ -36,6 +47,7 @@ ssdo::ExitCode fail(ssdo::ExitCode code, const char* message) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_streams();
   ssdo::remove_temporaries_on_signals();
   ssdo::ExitCode code = ssdo::ExitCode::failed;
   try {
@@ -46,6 +58,9 @@ int main(int argc, char** argv) {
     code = fail(code, "not enough memory for this frame");
   } catch (const std::exception& e) {
     code = fail(code, e.what());
+  }
+  if (std::fflush(stdout) != 0 && code == ssdo::ExitCode::done) {
+    code = fail(ssdo::ExitCode::output, "standard output cannot be written; is its disk full?");
   }
   return int(code);
 }

@@ -13,6 +13,7 @@
 #include <fstream>
 
 #include "error.h"
+#include "io/size_guard.h"
 
 namespace fs = std::filesystem;
 
@@ -103,6 +104,21 @@ std::string label(const ExrPart& part) {
 
 bool is_tiled(const ExrPart& part) {
   return part.header.hasType() && Imf::isTiled(part.header.type());
+}
+
+double largest_ratio(const ExrPart& part) {
+  constexpr double kFloatOverHalf = 2;
+  switch (part.header.compression()) {
+    case Imf::NO_COMPRESSION:
+      return kFloatOverHalf;
+    case Imf::RLE_COMPRESSION:
+      return kFloatOverHalf * 64;  // a run of 128 in two bytes
+    case Imf::ZIPS_COMPRESSION:
+    case Imf::ZIP_COMPRESSION:
+      return kFloatOverHalf * 1032;  // deflate
+    default:
+      return kLargestRatio;
+  }
 }
 
 double decoder_bytes(const ExrPart& part) {

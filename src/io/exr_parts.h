@@ -20,6 +20,9 @@ std::string label(const ExrPart& part);
 
 bool is_tiled(const ExrPart& part);
 
+/// How many bytes of float pixels a byte of the part's chunks can hold at best.
+double largest_ratio(const ExrPart& part);
+
 /// The memory in which OpenEXR decodes the chunks of a part: every channel of a chunk, two chunks
 /// for each of its threads.
 double decoder_bytes(const ExrPart& part);

@@ -56,7 +56,7 @@ std::size_t stored_bytes(const ExrPart& part, const ExrChannel& channel) {
 
 void check_size(const ExrReader& reader, const ExrPart& part, std::size_t channels) {
   check_decoded_size(reader.path(), double(part.data_window.area()) * 4.0 * double(channels),
-                     decoder_bytes(part));
+                     decoder_bytes(part), largest_ratio(part));
 }
 
 void read_pixels(Imf::MultiPartInputFile& file, const ExrPart& part,

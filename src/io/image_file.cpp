@@ -99,8 +99,9 @@ std::vector<unsigned char> encode(const OIIO::ImageSpec& spec, const fs::path& t
                                   const std::vector<std::byte>& pixels) {
   if (is_jpeg(target) && std::max(spec.width, spec.height) > kLargestJpeg) {
     fail(ExitCode::output, target,
-         fmt::format("cannot be encoded: {} x {} is more than the {} pixels of JPEG; use .png or .tif",
-                     spec.width, spec.height, kLargestJpeg));
+         fmt::format(
+             "cannot be encoded: {} x {} is more than the {} pixels of JPEG; use .png or .tif",
+             spec.width, spec.height, kLargestJpeg));
   }
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);

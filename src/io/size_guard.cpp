@@ -9,21 +9,17 @@
 namespace ssdo {
 namespace {
 
-// Deflate packs 1032:1 at best, and DWAA deflates the one coefficient that is left of a constant
-// block of 64 pixels: no codec goes further than their product, 66048:1 in half, twice in float.
-constexpr double kLargestRatio = 1 << 18;
-
 constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
 
 double physical_memory() { return double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)); }
 
 }  // namespace
 
-void check_decoded_size(const std::filesystem::path& file, double pixel_bytes,
-                        double working_bytes) {
+void check_decoded_size(const std::filesystem::path& file, double pixel_bytes, double working_bytes,
+                        double largest_ratio) {
   std::error_code unknown;
   const auto file_bytes = std::filesystem::file_size(file, unknown);
-  if (!unknown && pixel_bytes > double(file_bytes) * kLargestRatio) {
+  if (!unknown && pixel_bytes > double(file_bytes) * largest_ratio) {
     throw Error(ExitCode::input,
                 fmt::format("{}: is damaged: its header claims {:.1f} GiB of pixels, which a file "
                             "of {} bytes cannot hold; render or copy it again",

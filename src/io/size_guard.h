@@ -5,10 +5,14 @@
 
 namespace ssdo {
 
+/// Deflate packs 1032:1 at best, and DWAA deflates the one coefficient that is left of a constant
+/// block of 64 pixels: no codec goes further than their product, 66048:1 in half, twice in float.
+inline constexpr double kLargestRatio = 1 << 18;
+
 /// Refuses to allocate what a damaged header claims. Throws ExitCode::input if `pixel_bytes`, the
-/// decoded pixels, are more than a file of the size of `file` can hold, or if they and
-/// `working_bytes` exceed the machine's memory.
+/// decoded pixels, are more than a file of the size of `file` can hold at `largest_ratio`, or if
+/// they and `working_bytes` exceed the machine's memory.
 void check_decoded_size(const std::filesystem::path& file, double pixel_bytes,
-                        double working_bytes = 0);
+                        double working_bytes = 0, double largest_ratio = kLargestRatio);
 
 }  // namespace ssdo
