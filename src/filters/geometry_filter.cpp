@@ -55,7 +55,8 @@ class SurfaceWindow {
         if (!geometry_.is_surface(i)) continue;
         const float border =
             (std::abs(dx) == half_ ? 0.5f : 1.0f) * (std::abs(dy) == half_ ? 0.5f : 1.0f);
-        const float weight = border * similarity(p, n, geometry_.surfel[i].position, geometry_.surfel[i].normal);
+        const float weight =
+            border * similarity(p, n, geometry_.surfel[i].position, geometry_.surfel[i].normal);
         if (weight > 0) visit_tap(Tap{i, weight});
       }
     }

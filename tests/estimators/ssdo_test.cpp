@@ -166,7 +166,8 @@ glm::dvec3 slow_bounce(const Geometry& g, int x, int y, const Plane<glm::vec3>& 
     const glm::dvec2 at = g.camera.project(point);
     if (!g.window.contains(int(std::floor(at.x)), int(std::floor(at.y)))) continue;
     const int qx = int(at.x), qy = int(at.y);
-    const glm::dvec3 delta = p - glm::dvec3(g.surfel(qx, qy).position), unit = glm::normalize(delta);
+    const glm::dvec3 delta = p - glm::dvec3(g.surfel(qx, qy).position),
+                     unit = glm::normalize(delta);
     if (delta == glm::dvec3(0)) continue;
     const double receiver = std::max(0.0, glm::dot(unit, -n));
     const double sender = std::max(0.0, glm::dot(unit, glm::dvec3(g.surfel(qx, qy).normal)));
@@ -226,7 +227,8 @@ TEST(Ssdo, NothingThatComesInMakesANaN) {
       geometry_of(sphere({0, 0, 0}, 2), tilted(camera_from_fov(40, kWindow, 1), 30), kWindow);
   for (std::size_t i = 0; i < g.surfel.size(); ++i) {
     if (random() % 10 == 0) g.surfel[i].position = glm::vec4(0);
-    if (g.is_surface(i) && random() % 10 == 0) g.surfel[i].position *= glm::vec4(1e6f, 1e6f, 1e6f, 1);
+    if (g.is_surface(i) && random() % 10 == 0)
+      g.surfel[i].position *= glm::vec4(1e6f, 1e6f, 1e6f, 1);
     if (g.is_surface(i) && random() % 10 == 0) g.surfel[i].position = glm::vec4(0, 0, -1e-30f, 1);
   }
   for (const float radius : {1e-6f, 1.0f, 1e6f}) {

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What is said, where and how loudly.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+
+#include "support/frame_file.h"
+#include "support/run_tool.h"
+#include "support/terminal.h"
+
+namespace ssdo::test {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+class Messages : public testing::Test {
+ protected:
+  Messages() {
+    FramePart part = frame_of(small_picture());
+    write_frame(path("in.exr"), part);
+    part.type = Imf::HALF;
+    for (float& z : part.channels["ViewLayer.Depth.Z"].pixels) z = z > 1e9f ? INFINITY : z;
+    write_frame(path("half.exr"), part);
+  }
+  std::string path(const std::string& name) const { return dir_ / name; }
+  Finished run(const std::string& in, std::vector<std::string> flags) const {
+    flags.insert(flags.begin(), {path(in), "-o", path("out.exr"), "--overwrite"});
+    return run_tool(flags);
+  }
+  TempDir dir_;
+};
+
+TEST_F(Messages, NothingIsSaidOfASuccess) {
+  const Finished done = run("in.exr", {});
+  EXPECT_EQ(done.code, 0);
+  EXPECT_EQ(done.out, "");
+  EXPECT_EQ(done.err, "");
+}
+
+TEST_F(Messages, AWarningIsOneLineOnStandardError) {
+  const Finished done = run("half.exr", {});
+  EXPECT_EQ(done.code, 0);
+  EXPECT_EQ(done.out, "");
+  EXPECT_THAT(done.error_line(), testing::StartsWith("ssdo: " + path("half.exr") + ": warning: "));
+  EXPECT_EQ(run("half.exr", {"-q"}).err, "");
+  const Finished failed = run("none.exr", {"-q"});
+  EXPECT_EQ(failed.code, 3);
+  EXPECT_THAT(failed.error_line(), HasSubstr("none.exr")) << "errors are said all the same";
+}
+
+TEST_F(Messages, AVerboseRunNamesWhatItChose) {
+  const Finished done =
+      run("half.exr", {"-v", "-o", path("out.png"), "--env", data("environments/studio.exr")});
+  EXPECT_EQ(done.code, 0);
+  EXPECT_EQ(done.out, "");
+  for (const char* word : {"ViewLayer.Position.X", "ViewLayer.DiffCol.R", "fitted from P", "radius",
+                           "16 samples", "studio.exr", "16 bits", "ACES SDR Video"}) {
+    EXPECT_THAT(done.err, HasSubstr(word));
+  }
+}
+
+TEST_F(Messages, WithoutATerminalThereIsNoTerminalControl) {
+  for (const std::vector<std::string>& flags :
+       {std::vector<std::string>{}, {"-v"}, {"--progress", "auto"}, {"--radius", "x"}}) {
+    const Finished done = run("half.exr", flags);
+    EXPECT_GT(done.err.size(), 10u);
+    EXPECT_EQ(done.err.find_first_of("\r\033\b\t"), std::string::npos) << done.err;
+  }
+  EXPECT_EQ(run_tool({"--help"}).out.find_first_of("\r\033\b"), std::string::npos);
+}
+
+TEST_F(Messages, ATerminalSeesABarThatGoesAway) {
+  const std::vector<std::string> words = {data("room_corner.exr"), "-o", path("out.exr"),
+                                          "--overwrite"};
+  const Finished seen = run_on_terminal(words);
+  EXPECT_EQ(seen.code, 0);
+  EXPECT_THAT(seen.out, HasSubstr("[#"));
+  EXPECT_THAT(seen.out, HasSubstr("%"));
+  EXPECT_THAT(seen.out, testing::EndsWith("\r\033[K")) << "the line is left empty";
+  for (const std::vector<std::string>& flags :
+       {std::vector<std::string>{"-q"}, {"--progress", "none"}}) {
+    std::vector<std::string> quiet = words;
+    quiet.insert(quiet.end(), flags.begin(), flags.end());
+    EXPECT_EQ(run_on_terminal(quiet).out, "") << flags[0];
+  }
+}
+
+/// The numbers in the lines of a progress style, each of which has to match it whole.
+std::vector<int> percents(const std::string& text, const std::regex& style) {
+  std::vector<int> found;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch match;
+    EXPECT_TRUE(std::regex_match(line, match, style)) << line;
+    if (!match.empty()) found.push_back(std::stoi(match[1]));
+  }
+  return found;
+}
+
+TEST_F(Messages, ProgressRisesToAHundred) {
+  for (const auto& [style, line] :
+       {std::pair<std::string, std::string>{"tractor", "TR_PROGRESS ([0-9]{3})%"},
+        {"alfred", "ALF_PROGRESS ([0-9]+)%"},
+        {"openjd", "openjd_progress: ([0-9]+)"}}) {
+    const Finished done = run_tool(
+        {data("room_corner.exr"), "-o", path("out.exr"), "--overwrite", "--progress", style});
+    EXPECT_EQ(done.code, 0);
+    EXPECT_EQ(done.err, "");
+    const std::vector<int> told = percents(done.out, std::regex(line));
+    ASSERT_GT(told.size(), 5u) << "not at the end alone";
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end())) << done.out;
+    EXPECT_EQ(std::adjacent_find(told.begin(), told.end()), told.end()) << "no line twice";
+    EXPECT_EQ(told.back(), 100);
+  }
+  EXPECT_EQ(run("in.exr", {"--progress", "none"}).out, "");
+}
+
+TEST_F(Messages, ADryRunAndInfoWriteNothing) {
+  const std::vector<std::string> before = listing(dir_.path());
+  const Finished dry = run_tool({path("in.exr"), "--dry-run"});
+  EXPECT_EQ(dry.code, 0) << "needs no output";
+  EXPECT_EQ(dry.out, "");
+  EXPECT_EQ(run("in.exr", {"--dry-run"}).code, 0);
+  const Finished info = run_tool({"info", path("in.exr"), "-o", path("out.exr")});
+  EXPECT_EQ(info.code, 0);
+  EXPECT_EQ(info.err, "");
+  EXPECT_EQ(info.out, dry.err) << "both say the same";
+  EXPECT_EQ(listing(dir_.path()), before);
+}
+
+TEST_F(Messages, InfoListsEveryChannelWithItsType) {
+  const Finished done = run_tool({"info", path("half.exr"), "--json"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const json j = json::parse(done.out);
+  EXPECT_EQ(j["file"], path("half.exr"));
+  EXPECT_EQ(j["width"], 64);
+  EXPECT_EQ(j["height"], 48);
+  EXPECT_EQ(j["parts"].size(), 1u);
+  EXPECT_EQ(j["parts"][0]["channels"].size(), 10u);
+  EXPECT_EQ(j["parts"][0]["channels"][0]["name"], "ViewLayer.Depth.Z");
+  EXPECT_EQ(j["parts"][0]["channels"][0]["type"], "half");
+  EXPECT_EQ(j["layers"]["position"]["half"], true);
+  EXPECT_EQ(j["bad_pixels"], 0);
+}
+
+}  // namespace
+}  // namespace ssdo::test

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the writer passes through from unusual inputs, and what a full disk leaves behind.
+#include <ImfDeepScanLineInputPart.h>
+#include <ImfHeader.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfMultiView.h>
+#include <ImfPreviewImageAttribute.h>
+#include <ImfStandardAttributes.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "io/exr_writer.h"
+#include "support/error_matchers.h"
+#include "support/exr_fixture.h"
+#include "support/temp_dir.h"
+
+namespace fs = std::filesystem;
+
+namespace ssdo {
+namespace {
+
+using namespace test;
+using Imath::Box2i;
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+Plane<float> ramp(const Window& window) {
+  Plane<float> plane(window.width(), window.height());
+  for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = float(i % 2048);
+  return plane;
+}
+
+/// Adds the plane "new" to part 0 of `input` and keeps all else.
+void pass_through(const ExrReader& input, const fs::path& output, Imf::PixelType type = Imf::HALF) {
+  const Plane<float> plane = ramp(input.parts()[0].data_window);
+  ExrOutput out;
+  out.input = &input;
+  out.planes = {{"new", type, &plane}};
+  out.keep_channels = true;
+  SafeFile file(output, {.overwrite = true});
+  write_exr(file, out);
+  file.commit();
+}
+
+void expect_same_channels(const ExrReader& before, const ExrReader& after, int part) {
+  std::vector<std::string> names;
+  for (const ExrChannel& c : before.parts()[std::size_t(part)].channels) names.push_back(c.name);
+  const auto old_bits = before.read_stored(part, names), new_bits = after.read_stored(part, names);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    EXPECT_EQ(old_bits[i].channel.type, new_bits[i].channel.type) << names[i];
+    EXPECT_EQ(old_bits[i].channel.x_sampling, new_bits[i].channel.x_sampling) << names[i];
+    EXPECT_TRUE(old_bits[i].pixels == new_bits[i].pixels) << names[i];
+  }
+}
+
+TEST(PassThrough, KeepsAttributesOfEveryType) {
+  const TempDir dir;
+  Imf::Header header = test_header(Box2i({0, 0}, {7, 7}), {{"R", Imf::HALF}});
+  const Imf::PreviewRgba green(1, 200, 3, 255);
+  header.setPreviewImage(Imf::PreviewImage(1, 1, &green));
+  header.insert("studio/custom", Imf::StringAttribute("12345"));
+  header.insert(std::string(200, 'n'), Imf::StringAttribute("a long name"));
+  Imf::addMultiView(header, {"left", "right"});
+  write_test_exr(dir / "in.exr", {header});
+  // A type that OpenEXR does not know, of the same length as the one that it wrote.
+  std::string bytes = bytes_of(dir / "in.exr");
+  const std::string custom_type(
+      "studio/custom\0studio\0\5\0\0\0"
+      "12345",
+      30);
+  bytes.replace(bytes.find("studio/custom"), custom_type.size(), custom_type);
+  std::ofstream(dir / "in.exr", std::ios::binary) << bytes;
+  pass_through(ExrReader(dir / "in.exr"), dir / "out.exr");
+
+  const ExrReader written(dir / "out.exr");
+  const Imf::Header& kept = written.parts()[0].header;
+  ASSERT_TRUE(kept.hasPreviewImage());
+  EXPECT_EQ(kept.previewImage().pixels()[0].g, 200);
+  EXPECT_STREQ(kept["studio/custom"].typeName(), "studio");
+  EXPECT_NE(bytes_of(dir / "out.exr").find(custom_type), std::string::npos);
+  EXPECT_EQ(kept.typedAttribute<Imf::StringAttribute>(std::string(200, 'n')).value(),
+            "a long name");
+  EXPECT_EQ(Imf::multiView(kept), (Imf::StringVector{"left", "right"}));
+}
+
+TEST(PassThrough, AddsNoAttributeOfItsOwn) {
+  const TempDir dir;
+  write_test_exr(dir / "in.exr",
+                 {tiled(test_header(Box2i({0, 0}, {7, 7}), {{"R", Imf::HALF}}), 4)});
+  const ExrReader input(dir / "in.exr");
+  pass_through(input, dir / "out.exr");
+  const ExrReader written(dir / "out.exr");
+  const Imf::Header& before = input.parts()[0].header;
+  for (auto a = written.parts()[0].header.begin(); a != written.parts()[0].header.end(); ++a) {
+    EXPECT_NE(before.find(a.name()), before.end()) << a.name();
+  }
+  EXPECT_EQ(written.parts()[0].header.find("tiles"), written.parts()[0].header.end());
+}
+
+TEST(PassThrough, CopiesDeepPartsBitForBit) {
+  const TempDir dir;
+  Imf::Header deep = named(test_header(Box2i({0, 0}, {20, 9}), {{"A"}, {"Z"}}), "deep");
+  deep.compression() = Imf::ZIPS_COMPRESSION;
+  deep.setType(Imf::DEEPSCANLINE);
+  Imf::Header flat = named(test_header(Box2i({2, 3}, {9, 9}), {{"R", Imf::HALF}}), "flat");
+  flat.displayWindow() = deep.displayWindow();
+  write_test_exr(dir / "in.exr", {flat, deep});
+  pass_through(ExrReader(dir / "in.exr"), dir / "out.exr");
+
+  const ExrReader input(dir / "in.exr"), written(dir / "out.exr");
+  ASSERT_EQ(written.parts().size(), 2u);
+  EXPECT_TRUE(written.parts()[1].deep);
+  Imf::DeepScanLineInputPart before(input.file(), 1), after(written.file(), 1);
+  for (int y = 0; y < 10; ++y) {
+    std::uint64_t old_size = 0, new_size = 0;
+    before.rawPixelData(y, nullptr, old_size);
+    after.rawPixelData(y, nullptr, new_size);
+    ASSERT_EQ(old_size, new_size);
+    std::string old_chunk(old_size, 'o'), new_chunk(new_size, 'n');
+    before.rawPixelData(y, old_chunk.data(), old_size);
+    after.rawPixelData(y, new_chunk.data(), new_size);
+    EXPECT_EQ(old_chunk, new_chunk) << "line " << y;
+  }
+}
+
+TEST(PassThrough, CopiesEveryCompressionAndLineOrder) {
+  const TempDir dir;
+  const std::vector<TestChannel> channels = {
+      {"R", Imf::HALF}, {"Z", Imf::FLOAT}, {"id", Imf::UINT}};
+  const Box2i box({-3, -4}, {30, 290});
+  for (int compression = 0; compression < Imf::NUM_COMPRESSION_METHODS; ++compression) {
+    for (const auto order : {Imf::INCREASING_Y, Imf::DECREASING_Y}) {
+      SCOPED_TRACE(testing::Message() << "compression " << compression << ", order " << order);
+      Imf::Header lines = named(test_header(box, channels, Imf::Compression(compression)), "lines");
+      lines.lineOrder() = order;
+      const Imf::Header tiles = named(tiled(lines, 16, Imf::RIPMAP_LEVELS), "tiles");
+      write_test_exr(dir / "in.exr", {lines, named(lines, "more"), tiles});
+      const ExrReader input(dir / "in.exr");
+      pass_through(input, dir / "out.exr");
+      const ExrReader written(dir / "out.exr");
+      for (int part = 0; part < 3; ++part) expect_same_channels(input, written, part);
+      EXPECT_EQ(written.parts()[1].header.compression(), Imf::Compression(compression));
+    }
+  }
+}
+
+TEST(PassThrough, KeepsSubsampledChannels) {
+  const TempDir dir;
+  write_test_exr(dir / "in.exr", {test_header(Box2i({-4, -6}, {27, 601}),
+                                              {{"BY", Imf::HALF, 2}, {"Y", Imf::HALF}})});
+  const ExrReader input(dir / "in.exr");
+  pass_through(input, dir / "out.exr");
+  expect_same_channels(input, ExrReader(dir / "out.exr"), 0);
+}
+
+TEST(PassThrough, WritesWindowsAnywhereInManyStrips) {
+  const TempDir dir;
+  const int far = 1'000'000'000;
+  for (const Box2i& box :
+       {Box2i({0, 0}, {0, 0}), Box2i({-5, -7}, {0, 600}), Box2i({far, far}, {far + 3, far + 299}),
+        Box2i({-far, -far}, {3 - far, 299 - far})}) {
+    for (const auto type : {Imf::HALF, Imf::FLOAT}) {
+      SCOPED_TRACE(testing::Message() << "from " << box.min.x << ", type " << type);
+      write_test_exr(dir / "in.exr", {test_header(box, {{"Z"}, {"id", Imf::UINT}})});
+      const ExrReader input(dir / "in.exr");
+      pass_through(input, dir / "out.exr", type);
+      const ExrReader written(dir / "out.exr");
+      EXPECT_EQ(written.parts()[0].data_window, input.parts()[0].data_window);
+      const std::vector<std::string> added = {"new"};
+      EXPECT_EQ(written.read(0, added)[0].pixels, ramp(input.parts()[0].data_window).pixels);
+      expect_same_channels(input, written, 0);
+    }
+  }
+}
+
+TEST(PassThrough, NaNStaysAndIsNotCounted) {
+  const TempDir dir;
+  write_test_exr(dir / "in.exr", {test_header(Box2i({0, 0}, {1, 0}), {{"Z"}})});
+  const ExrReader input(dir / "in.exr");
+  Plane<float> plane(2, 1);
+  plane[0] = std::numeric_limits<float>::quiet_NaN();
+  ExrOutput out;
+  out.input = &input;
+  out.planes = {{"new", Imf::HALF, &plane}};
+  {
+    SafeFile file(dir / "out.exr", {});
+    EXPECT_EQ(write_exr(file, out), 0u);
+    file.commit();
+  }
+  const std::vector<std::string> names = {"new"};
+  EXPECT_TRUE(std::isnan(ExrReader(dir / "out.exr").read(0, names)[0][0]));
+}
+
+TEST(PassThrough, SameInputGivesSameBytes) {
+  const TempDir dir;
+  write_test_exr(dir / "in.exr", {test_header(Box2i({0, 0}, {99, 299}), {{"Z"}})});
+  const ExrReader input(dir / "in.exr");
+  pass_through(input, dir / "a.exr");
+  pass_through(input, dir / "b.exr");
+  EXPECT_TRUE(bytes_of(dir / "a.exr") == bytes_of(dir / "b.exr"));
+}
+
+/// Writes an EXR in a child process that may write files of `bytes` at most. Gives its exit code.
+int write_with_limit(const fs::path& input_path, const fs::path& output, rlim_t bytes) {
+  const pid_t child = fork();
+  if (child == 0) {
+    remove_temporaries_on_signals();
+    const rlimit limit = {bytes, bytes};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    int code = 0;
+    try {
+      pass_through(ExrReader(input_path), output);
+    } catch (const Error& error) {
+      const bool named = std::strstr(error.what(), "out.exr: cannot be written: File too large");
+      code = named ? int(error.code) : 99;
+    }
+    _exit(code);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+}
+
+TEST(PassThrough, AFullDiskIsFoundWhereverItStrikes) {
+  const TempDir dir;
+  const Box2i box({0, 0}, {63, 63});
+  write_test_exr(dir / "in.exr", {named(test_header(box, {{"Z"}}, Imf::NO_COMPRESSION), "one"),
+                                  named(test_header(box, {{"Z"}}, Imf::NO_COMPRESSION), "two")});
+  ASSERT_EQ(write_with_limit(dir / "in.exr", dir / "out.exr", RLIM_INFINITY), 0);
+  const rlim_t size = fs::file_size(dir / "out.exr");
+  fs::remove(dir / "out.exr");
+  // In the header, in the written part, in the copied part, and in its very last byte.
+  for (const rlim_t limit : {rlim_t(0), rlim_t(100), size / 4, size * 3 / 4, size - 1}) {
+    EXPECT_EQ(write_with_limit(dir / "in.exr", dir / "out.exr", limit), int(ExitCode::output))
+        << "limit of " << limit << " of " << size << " bytes";
+    EXPECT_EQ(std::distance(fs::directory_iterator(dir.path()), {}), 1) << "only in.exr stays";
+  }
+}
+
+}  // namespace
+}  // namespace ssdo
