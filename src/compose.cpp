@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 namespace ssdo {
 namespace {
@@ -42,6 +43,19 @@ std::vector<NamedPlane> product_channels(const std::string& product, const GBuff
   std::vector<NamedPlane> out;
   if (product == "ao") {
     out.push_back({"ao.Y", products.ao});
+  } else if (product == "error") {
+    out.push_back({"error.Y", products.error});
+  } else if (product == "bent") {
+    for (int c = 0; c < 3; ++c) {
+      NamedPlane named{std::string("bent.") + "XYZ"[c],
+                       Plane<float>(products.bent.width, products.bent.height)};
+      // The space of the input's normals is turned against camera space, so its transpose is its
+      // inverse.
+      const glm::vec3 axis = geometry.normals_to_camera[c];
+      for (std::size_t i = 0; i < named.pixels.size(); ++i)
+        named.pixels[i] = glm::dot(axis, products.bent[i]);
+      out.push_back(std::move(named));
+    }
   } else if (product == "direct") {
     append_color(out, "direct.", products.direct);
   } else if (product == "bounce") {

@@ -128,7 +128,7 @@ std::string describe(const Frame& frame) {
   line("light", frame.light);
   line("plan", fmt::format("{}: {} ({} samples per pixel, {} bounce(s), filter {})",
                            fmt::join(frame.plan.make, ", "), frame.plan.method->name,
-                           frame.plan.method->samples_per_pixel(frame.plan.parameters),
+                           frame.plan.samples_per_pixel(),
                            frame.plan.bounces, frame.plan.filter ? "geometry" : "none"));
   for (const std::string& reason : frame.plan.reasons) line("", reason);
   for (const std::string& warning : frame.warnings()) line("warning", warning);

@@ -28,7 +28,9 @@ void apply_display(Plane<glm::vec3>& colors, const DisplayTransform& display) {
 
 }  // namespace
 
-bool needs_display(const std::string& product) { return product != "ao"; }
+bool needs_display(const std::string& product) {
+  return product != "ao" && product != "error" && product != "bent";
+}
 
 DisplayImage make_display_image(const std::string& product, const Frame& frame,
                                 const Products& products, const DisplayTransform* display) {
@@ -37,12 +39,19 @@ DisplayImage make_display_image(const std::string& product, const Frame& frame,
   image.width = geometry.display.width();
   image.height = geometry.display.height();
   image.pixel_aspect = frame.gbuffer.pixel_aspect;
-  image.channels = product == "ao" ? 1 : product == "composite" ? 4 : 3;
+  const bool grey = product == "ao" || product == "error";
+  image.channels = grey ? 1 : product == "composite" ? 4 : 3;
   const auto channels = std::size_t(image.channels);
   image.values.assign(geometry.display.area() * channels, 0.0f);
-  if (product == "ao") {
-    for_each_shown_pixel(
-        geometry, [&](std::size_t to, std::size_t from) { image.values[to] = products.ao[from]; });
+  if (!needs_display(product)) {
+    // Data as they are; directions as colours usually show them, -1..1 in 0..1.
+    const float scale = grey ? 1.0f : 0.5f, offset = grey ? 0.0f : 0.5f;
+    const std::vector<NamedPlane> planes =
+        product_channels(product, frame.gbuffer, geometry, products);
+    for_each_shown_pixel(geometry, [&](std::size_t to, std::size_t from) {
+      for (std::size_t c = 0; c < channels; ++c)
+        image.values[to * channels + c] = scale * planes[c].pixels[from] + offset;
+    });
     return image;
   }
   Plane<glm::vec3> colors = product == "composite" ? composite(frame.gbuffer, products)

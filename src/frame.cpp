@@ -73,8 +73,15 @@ Frame prepare_frame(const Options& options, const Light& light, const std::strin
           "camera space: give --camera FILE.json to place it");
     }
   }
+  if (!frame.environment.is_constant())
+    frame.light_model = model_light(frame.environment, frame.geometry.world_to_camera);
   frame.plan = make_plan(options.model, options.output, frame.gbuffer, frame.geometry,
-                         frame.environment, input);
+                         frame.light_model ? &*frame.light_model : nullptr, input);
+  if (frame.plan.method->marches) {
+    const auto& thickness = options.model.thickness;
+    frame.hidden = thickness ? constant_thickness(frame.geometry, float(*thickness))
+                             : find_hidden_geometry(frame.geometry);
+  }
   frame.times.prepare = watch.lap();
   return frame;
 }

@@ -30,6 +30,8 @@ struct Frame {
   Geometry geometry;
   GeometryReport report;
   Environment environment = Environment::constant(glm::vec3(1));
+  std::optional<LightModel> light_model;  ///< of an environment that is no constant
+  HiddenGeometry hidden;                  ///< for methods that march
   std::string light;  ///< one line
   Plan plan;
   StageTimes times;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <limits>
 
 #include "error.h"
 #include "math/number.h"
@@ -15,17 +16,32 @@ namespace {
 struct RawOptions {
   std::vector<std::string> aov, save;
   std::string depth_kind = "planar", env_up = "auto", radius = "auto", filter = "geometry";
+  std::string thickness = "auto", offscreen = "extend", quality = "standard";
   std::string pixel_type = "half", compression, on_error = "stop", progress = "auto";
   std::optional<double> background_depth;
 };
 
 [[noreturn]] void throw_usage(const std::string& message) { throw Error(ExitCode::usage, message); }
 
-double parse_positive(const std::string& option, std::string_view text) {
+/// A length in scene units: a positive number or inf; nothing for auto.
+std::optional<double> parse_length(const std::string& option, std::string_view text) {
+  if (text == "auto") return std::nullopt;
+  if (text == "inf") return std::numeric_limits<double>::infinity();
   const auto value = parse_number(text);
   if (!value || *value <= 0)
-    throw_usage(fmt::format("{}: '{}' is no positive number", option, text));
-  return *value;
+    throw_usage(fmt::format("{}: '{}' is no positive number, nor auto or inf", option, text));
+  return value;
+}
+
+std::string describe_qualities() {
+  std::string text = "slices x steps per side: ";
+  for (const auto& [name, level] : {std::pair{"draft", Quality::draft},
+                                    {"standard", Quality::standard},
+                                    {"final", Quality::final}}) {
+    text += fmt::format("{}{} {} x {}", level == Quality::draft ? "" : ", ", name,
+                        slices_of(level), steps_of(level));
+  }
+  return text;
 }
 
 void add_input(CLI::App& app, Options& o, RawOptions& raw) {
@@ -95,8 +111,38 @@ void add_model(CLI::App& app, Options& o, RawOptions& raw) {
       ->group("Model");
   app.add_option("--radius", raw.radius,
                  "reach of occluders in scene units; auto: chosen from the frame")
-      ->type_name("R|auto")
+      ->type_name("R|auto|inf")
       ->capture_default_str()
+      ->group("Model");
+  app.add_option("--thickness", raw.thickness,
+                 "of what is seen, in scene units; auto: from the width of its picture")
+      ->type_name("T|auto|inf")
+      ->capture_default_str()
+      ->group("Model");
+  app.add_option("--offscreen", raw.offscreen,
+                 "beyond the frame surfaces go on (extend) or end (open)")
+      ->type_name("WHAT")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"extend", "open"}))
+      ->group("Model");
+  app.add_option("--quality", raw.quality, describe_qualities())
+      ->type_name("LEVEL")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"draft", "standard", "final"}))
+      ->group("Model");
+  app.add_option("--slices", o.model.slices, "slices of each pixel, in place of the quality's")
+      ->type_name("K")
+      ->check(CLI::Range(1, 256))
+      ->group("Model");
+  app.add_option("--steps", o.model.steps,
+                 "steps from a pixel to the frame's diagonal, in place of the quality's")
+      ->type_name("S")
+      ->check(CLI::Range(1, 256))
+      ->group("Model");
+  app.add_option("--error", o.model.error,
+                 "go on until the standard error of direct + bounce is below E, on average")
+      ->type_name("E")
+      ->check(CLI::PositiveNumber)
       ->group("Model");
   app.add_option("--bounces", o.model.bounces, "bounces of light between surfaces")
       ->type_name("N")
@@ -125,7 +171,7 @@ void add_output(CLI::App& app, Options& o, RawOptions& raw) {
       ->allow_extra_args(false)
       ->group("Output");
   app.add_option("--products", o.output.products,
-                 "of ao, direct, bounce, composite; default: all that the inputs allow")
+                 "of ao, bent, direct, bounce, error, composite; default: all that the inputs allow")
       ->type_name("LIST")
       ->delimiter(',')
       ->allow_extra_args(false)
@@ -272,7 +318,12 @@ void finish(Options& o, const RawOptions& raw, bool depth_kind_given) {
   if (depth_kind_given) read_depth_kind(raw.depth_kind, o.input.gbuffer);
   if (raw.background_depth) o.input.gbuffer.background_depth = float(*raw.background_depth);
   if (raw.env_up != "auto") o.light.up = raw.env_up == "z" ? UpAxis::z : UpAxis::y;
-  if (raw.radius != "auto") o.model.radius = parse_positive("--radius", raw.radius);
+  o.model.radius = parse_length("--radius", raw.radius);
+  o.model.thickness = parse_length("--thickness", raw.thickness);
+  o.model.extend_offscreen = raw.offscreen == "extend";
+  o.model.quality = raw.quality == "draft"   ? Quality::draft
+                    : raw.quality == "final" ? Quality::final
+                                             : Quality::standard;
   o.model.filter = raw.filter == "geometry";
   o.output.pixel_type = raw.pixel_type == "half" ? Imf::HALF : Imf::FLOAT;
   if (!raw.compression.empty()) o.output.compression = read_compression(raw.compression);

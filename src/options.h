@@ -33,9 +33,23 @@ struct LightOptions {
   double exposure_stops = 0;  ///< -100 to 100
 };
 
+/// Slices per pixel, and steps on each side of a slice out to the frame's diagonal.
+enum class Quality { draft, standard, final };
+constexpr int slices_of(Quality q) {
+  return q == Quality::draft ? 2 : q == Quality::standard ? 3 : 8;
+}
+constexpr int steps_of(Quality q) {
+  return q == Quality::draft ? 8 : q == Quality::standard ? 12 : 24;
+}
+
 struct ModelOptions {
-  std::string method = "ssdo";
-  std::optional<double> radius;  ///< scene units; chosen from the frame where not given
+  std::string method = "bitmask";
+  std::optional<double> radius;     ///< scene units or infinity; chosen from the frame if not given
+  std::optional<double> thickness;  ///< scene units or infinity; found in the frame if not given
+  bool extend_offscreen = true;     ///< surfaces go on beyond the frame
+  Quality quality = Quality::standard;
+  std::optional<int> slices, steps;  ///< in place of those of the quality
+  std::optional<double> error;       ///< largest standard error of direct + bounce
   int bounces = 1;               ///< 0 to 8
   unsigned seed = 0;
   std::vector<std::string> set;  ///< NAME=VALUE of the method

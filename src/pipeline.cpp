@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -31,6 +32,30 @@ bool is_exr(const fs::path& path) {
   return ending == ".exr";
 }
 
+constexpr int kMostSlices = 256;
+
+double mean_over_surfaces(const Plane<float>& plane, const Geometry& geometry) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < plane.size(); ++i) {
+    if (!geometry.is_surface(i)) continue;
+    sum += plane[i];
+    count += 1;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+/// The difference of two halves of the samples, filtered like all else, is one draw of the error
+/// of each pixel; their root mean square among neighbours is its size.
+Plane<float> standard_error(const Plane<float>& difference, const Geometry& geometry,
+                            const Plan& plan) {
+  Products squares;
+  squares.error = difference;
+  for (float& e : squares.error.pixels) e *= e;
+  if (plan.filter) squares = filter_geometry(squares, geometry, plan.method->pattern_size);
+  for (float& e : squares.error.pixels) e = std::sqrt(std::max(e, 0.0f));
+  return std::move(squares.error);
+}
+
 const std::string& product_of_picture(const Target& target, const Plan& plan) {
   return target.product ? *target.product : plan.show;
 }
@@ -54,6 +79,48 @@ void write_exr_target(const SafeFile& file, const Target& target, const Options&
     output.planes.push_back({plane.channel, options.output.pixel_type, &plane.pixels});
   }
   relit.clamped_values += write_exr(file, output);
+}
+
+/// Estimates and filters once.
+Products estimate(const Options& options, Frame& frame, const std::function<void(double)>& told) {
+  const Plan& plan = frame.plan;
+  Stopwatch watch;
+  const double passes = 1.0 + plan.bounces;
+  double finished = 0;
+  const auto progress = [&](std::size_t done, std::size_t count) {
+    told(std::min((finished + double(done) / double(count)) / passes, 1.0) * 0.8);
+    if (done == count) finished += 1;
+  };
+  Products products = plan.method->estimate(
+      {frame.geometry, frame.gbuffer.albedo, frame.gbuffer.radiance, frame.environment,
+       plan.products, plan.radius, plan.bounces, options.model.seed, plan.parameters, progress,
+       plan.slices, plan.steps, &frame.hidden,
+       frame.light_model ? &*frame.light_model : nullptr, plan.extend_offscreen});
+  frame.times.estimate += watch.lap();
+  if (plan.filter) products = filter_geometry(products, frame.geometry, plan.method->pattern_size);
+  if (!products.error.empty())
+    products.error = standard_error(products.error, frame.geometry, plan);
+  frame.times.filter += watch.lap();
+  return products;
+}
+
+/// Estimates with more and more slices until the mean standard error is what the plan asks for.
+Products make_products(const Options& options, Frame& frame, Relit& relit,
+                       const std::function<void(double)>& told) {
+  Plan& plan = frame.plan;
+  for (;;) {
+    Products products = estimate(options, frame, told);
+    if (!plan.error) return products;
+    const double found = mean_over_surfaces(products.error, frame.geometry);
+    if (found <= *plan.error || plan.slices >= kMostSlices) {
+      relit.notes.push_back(fmt::format("standard error {:.2g} with {} slices{}", found, plan.slices,
+                                        found <= *plan.error ? "" : ", the most there are"));
+      return products;
+    }
+    // The error falls a little slower than 1 / slices; a step too short costs another round.
+    const double factor = std::clamp(std::pow(found / *plan.error, 1.3), 1.5, 8.0);
+    plan.slices = std::min(kMostSlices, int(std::ceil(plan.slices * factor)));
+  }
 }
 
 }  // namespace
@@ -114,19 +181,8 @@ Relit relight(const Options& options, Frame& frame, const std::vector<Target>& t
     relit.notes.push_back(display->description());
   }
 
+  const Products products = make_products(options, frame, relit, told);
   Stopwatch watch;
-  const double passes = 1.0 + plan.bounces;
-  double finished = 0;
-  const auto progress = [&](std::size_t done, std::size_t count) {
-    told((finished + double(done) / double(count)) / passes * 0.8);
-    if (done == count) finished += 1;
-  };
-  Products products = plan.method->estimate(
-      {frame.geometry, frame.gbuffer.albedo, frame.gbuffer.radiance, frame.environment,
-       plan.products, plan.radius, plan.bounces, options.model.seed, plan.parameters, progress});
-  frame.times.estimate = watch.lap();
-  if (plan.filter) products = filter_geometry(products, frame.geometry, plan.method->pattern_size);
-  frame.times.filter = watch.lap();
   told(0.85);
 
   std::vector<std::unique_ptr<SafeFile>> files;

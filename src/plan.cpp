@@ -5,25 +5,28 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include "error.h"
 #include "estimators/registry.h"
 #include "io/image_file.h"
+#include "math/luminance.h"
+#include "parallel/isa.h"
 
 namespace ssdo {
 namespace {
 
-constexpr std::array<std::string_view, 4> kProducts = {"ao", "direct", "bounce", "composite"};
+constexpr std::array<std::string_view, 6> kProducts = {"ao",     "bent",  "direct",
+                                                       "bounce", "error", "composite"};
 
-/// Share of the frame's height at the median depth. Of 0.1 to 2, the one with the least error of
-/// direct light against a path tracer on five of seven frames, and close to it on the others.
+/// Share of the frame's height at the median depth, of methods that need a limit. Of 0.1 to 2, the
+/// one with the least error of direct light against a path tracer on five of seven frames.
 constexpr float kAutoRadius = 0.3f;
 
-bool has_albedo(const GBuffer& gbuffer) {
-  return std::any_of(gbuffer.albedo.pixels.begin(), gbuffer.albedo.pixels.end(),
-                     [](const glm::vec3& c) { return c != glm::vec3(0); });
-}
+/// A bounce from surfaces that are darker than this everywhere is below 1 % of the light.
+constexpr float kDarkAlbedo = 0.01f;
 
 using Names = std::vector<std::string>;
 
@@ -31,99 +34,219 @@ bool contains(const Names& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-void check_product(const std::string& name, bool albedo, const std::string& file) {
-  if (std::find(kProducts.begin(), kProducts.end(), name) == kProducts.end()) {
-    throw Error(ExitCode::usage,
-                fmt::format("product '{}': there are ao, direct, bounce and composite", name));
-  }
-  if (!albedo && (name == "composite" || name == "bounce")) {
-    throw Error(ExitCode::layer,
-                fmt::format("{}: {} needs a layer for albedo and none was found by name; name one "
-                            "with --aov albedo=LAYER, or another product with --save PRODUCT=FILE",
-                            file, name));
-  }
+bool makes(const Method& method, std::string_view product) {
+  const ProductSet& can = method.products;
+  return product == "ao"       ? can.ao
+         : product == "bent"   ? can.bent
+         : product == "bounce" ? can.bounce
+         : product == "error"  ? can.error
+                               : can.direct;
 }
 
-/// What an EXR holds: the products that the user names, or all that the frame allows.
-Names exr_products(const OutputOptions& output, bool albedo) {
-  Names names;
-  for (const std::string_view name : kProducts) {
-    const bool possible = albedo || name == "ao" || name == "direct";
-    if (output.products.empty() ? possible : contains(output.products, name))
-      names.emplace_back(name);
+bool needs_albedo(std::string_view product) {
+  return product == "composite" || product == "bounce";
+}
+
+std::string methods_that_make(std::string_view product) {
+  std::string names;
+  for (const Method& method : methods()) {
+    if (makes(method, product)) names += (names.empty() ? "" : ", ") + std::string(method.name);
   }
   return names;
 }
 
-/// What a picture shows: the composite, or the only product that the user names.
-std::string shown_product(const OutputOptions& output) {
-  if (output.products.empty() || contains(output.products, "composite")) return "composite";
-  if (output.products.size() == 1) return output.products[0];
-  throw Error(ExitCode::usage,
-              "a picture shows one product, and --products names several without "
-              "the composite; give each a file with --save PRODUCT=FILE");
-}
+/// Decides what is made, and in which files it goes.
+class ProductChoice {
+ public:
+  ProductChoice(const Method& method, const OutputOptions& output, bool albedo,
+                const std::string& file)
+      : method_(method), output_(output), albedo_(albedo), file_(file) {}
 
-void choose_products(Plan& plan, const OutputOptions& output, bool albedo,
-                     const std::string& file) {
-  const auto is_picture = [](const std::string& path) { return is_display_image(path); };
-  const auto pictures = std::count_if(output.files.begin(), output.files.end(), is_picture);
-  const bool only_saves = output.files.empty() && !output.saves.empty();
-  if (std::size_t(pictures) < output.files.size() || (output.files.empty() && !only_saves)) {
-    plan.write = exr_products(output, albedo);
-    if (output.products.empty() && !albedo) {
-      plan.reasons.push_back("no bounce and no composite: there is no albedo");
+  void choose(Plan& plan) const {
+    const auto is_picture = [](const std::string& path) { return is_display_image(path); };
+    const auto pictures = std::count_if(output_.files.begin(), output_.files.end(), is_picture);
+    const bool only_saves = output_.files.empty() && !output_.saves.empty();
+    if (std::size_t(pictures) < output_.files.size() || (output_.files.empty() && !only_saves)) {
+      plan.write = of_exr();
+      if (output_.products.empty() && !albedo_)
+        plan.reasons.push_back("no bounce and no composite: there is no albedo");
+    }
+    Names wanted = output_.products;
+    wanted.insert(wanted.end(), plan.write.begin(), plan.write.end());
+    for (const SaveRequest& save : output_.saves) wanted.push_back(save.product);
+    if (pictures > 0) wanted.push_back(plan.show = of_picture());
+    for (const std::string& name : wanted) check(name);
+    for (const std::string_view name : kProducts) {
+      if (contains(wanted, name)) plan.make.emplace_back(name);
+    }
+    const bool composite = contains(wanted, "composite");
+    const bool error = contains(wanted, "error") || plan.error;
+    plan.products.ao = contains(wanted, "ao");
+    plan.products.bent = contains(wanted, "bent");
+    plan.products.error = error;
+    plan.products.direct = contains(wanted, "direct") || composite || error;
+    plan.products.bounce = contains(wanted, "bounce") || composite || (error && albedo_);
+  }
+
+ private:
+  /// What an EXR holds: the products that the user names, or all that frame and method allow.
+  Names of_exr() const {
+    Names names;
+    for (const std::string_view name : kProducts) {
+      const bool possible = makes(method_, name) && (albedo_ || !needs_albedo(name));
+      if (output_.products.empty() ? possible : contains(output_.products, name))
+        names.emplace_back(name);
+    }
+    return names;
+  }
+
+  /// What a picture shows: the composite, or the only product that the user names.
+  std::string of_picture() const {
+    if (output_.products.empty() || contains(output_.products, "composite")) return "composite";
+    if (output_.products.size() == 1) return output_.products[0];
+    throw Error(ExitCode::usage,
+                "a picture shows one product, and --products names several without "
+                "the composite; give each a file with --save PRODUCT=FILE");
+  }
+
+  void check(const std::string& name) const {
+    if (std::find(kProducts.begin(), kProducts.end(), name) == kProducts.end()) {
+      throw Error(ExitCode::usage,
+                  fmt::format("product '{}': there are ao, bent, direct, bounce, error and composite",
+                              name));
+    }
+    if (!makes(method_, name)) {
+      throw Error(ExitCode::usage, fmt::format("method {} makes no {}; these do: {}", method_.name,
+                                               name, methods_that_make(name)));
+    }
+    if (!albedo_ && needs_albedo(name)) {
+      throw Error(
+          ExitCode::layer,
+          fmt::format("{}: {} needs a layer for albedo and none was found by name; name one "
+                      "with --aov albedo=LAYER, or another product with --save PRODUCT=FILE",
+                      file_, name));
     }
   }
-  Names wanted = output.products;
-  wanted.insert(wanted.end(), plan.write.begin(), plan.write.end());
-  for (const SaveRequest& save : output.saves) wanted.push_back(save.product);
-  if (pictures > 0) wanted.push_back(plan.show = shown_product(output));
-  for (const std::string& name : wanted) check_product(name, albedo, file);
-  for (const std::string_view name : kProducts) {
-    if (contains(wanted, name)) plan.make.emplace_back(name);
-  }
-  const bool composite = contains(wanted, "composite");
-  plan.products.ao = contains(wanted, "ao");
-  plan.products.direct = contains(wanted, "direct") || composite;
-  plan.products.bounce = contains(wanted, "bounce") || composite;
+
+  const Method& method_;
+  const OutputOptions& output_;
+  bool albedo_;
+  const std::string& file_;
+};
+
+void choose_bounces(Plan& plan, int wanted, const GBuffer& gbuffer) {
+  plan.bounces = plan.products.bounce ? wanted : 0;
+  if (plan.bounces == 0 || !gbuffer.radiance.empty()) return;
+  float brightest = 0;
+  for (const glm::vec3& c : gbuffer.albedo.pixels)
+    brightest = std::max({brightest, c.x, c.y, c.z});
+  if (brightest >= kDarkAlbedo) return;
+  plan.bounces = 0;
+  plan.reasons.push_back(
+      fmt::format("no bounce: the albedo is {:.2g} at most", double(brightest)));
 }
 
-}  // namespace
-
-Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBuffer& gbuffer,
-               const Geometry& geometry, const Environment& environment, const std::string& file) {
-  Plan plan;
-  plan.method = &find_method(model.method);
-  plan.parameters = resolve_parameters(*plan.method, model.set);
-  plan.filter = model.filter;
-  choose_products(plan, output, !gbuffer.albedo.empty(), file);
-
-  plan.bounces = plan.products.bounce ? model.bounces : 0;
-  if (plan.bounces > 0 && gbuffer.radiance.empty() && !has_albedo(gbuffer)) {
-    plan.bounces = 0;
-    plan.reasons.push_back("no bounce: the albedo is black everywhere");
+void explain_light(Plan& plan, const LightModel* light) {
+  if (!plan.products.direct) return;
+  if (!light) {
+    plan.reasons.push_back("direct is ao times the environment's one colour: no directions");
+    return;
   }
-  if (plan.products.direct && environment.is_constant()) {
-    plan.reasons.push_back("direct is ao times the environment's one colour: no lookups");
+  for (const Sun& sun : light->suns) {
+    plan.reasons.push_back(fmt::format("a sun {:.2g} degrees wide, {:.3g} of light, by itself",
+                                       2 * glm::degrees(sun.angular_radius),
+                                       luminance(sun.irradiance)));
   }
+  std::string energy;
+  for (const double share : light->band_energy) energy += fmt::format(" {:.1f}", 100 * share);
+  plan.reasons.push_back(
+      fmt::format("light in spherical harmonics to order {}: bands hold{} % of its energy, and "
+                  "those left out {:.1f} % of what a lobe sees",
+                  light->order, energy, 100 * light->residual()));
+}
+
+void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geometry) {
   if (model.radius) {
     plan.radius = float(*model.radius);
+    if (std::isinf(plan.radius) && !plan.method->marches) {
+      throw Error(ExitCode::usage,
+                  fmt::format("--radius inf: method {} needs a limit", plan.method->name));
+    }
     plan.reasons.push_back(fmt::format("radius {:.4g}: as given", plan.radius));
+  } else if (plan.method->marches) {
+    plan.radius = INFINITY;
+    plan.reasons.push_back("radius inf: light is stopped by whatever the frame shows or suggests");
   } else {
     plan.radius = kAutoRadius * geometry.frame_height_at(geometry.median_depth);
     plan.reasons.push_back(
         fmt::format("radius {:.4g}: {:g} of the frame's height at the median depth {:.4g}",
                     plan.radius, kAutoRadius, geometry.median_depth));
   }
+}
+
+void choose_march(Plan& plan, const ModelOptions& model) {
+  if (!plan.method->marches) {
+    const bool asked = model.slices || model.steps || model.thickness || model.error;
+    if (asked) {
+      throw Error(ExitCode::usage,
+                  fmt::format("method {} takes no --slices, --steps, --thickness or --error; see "
+                              "--list-methods for its parameters",
+                              plan.method->name));
+    }
+    plan.isa = "scalar";
+    return;
+  }
+  plan.isa = choose_isa();
+  plan.slices = model.slices.value_or(slices_of(model.quality));
+  plan.steps = model.steps.value_or(steps_of(model.quality));
+  plan.extend_offscreen = model.extend_offscreen;
+  if ((plan.products.error || plan.error) && plan.slices < 2) {
+    plan.slices = 2;
+    plan.reasons.push_back("2 slices: an error is the difference of two halves");
+  }
+  plan.reasons.push_back(model.thickness
+                             ? fmt::format("thickness {:.4g}: as given", *model.thickness)
+                             : std::string("thickness: as wide as it looks, and what is covered "
+                                           "goes on behind"));
+  if (!plan.extend_offscreen) plan.reasons.push_back("surfaces end with the frame: as asked");
+}
+
+}  // namespace
+
+int Plan::samples_per_pixel() const {
+  return method->marches ? 2 * slices * steps : method->samples_per_pixel(parameters);
+}
+
+Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBuffer& gbuffer,
+               const Geometry& geometry, const LightModel* light, const std::string& file) {
+  Plan plan;
+  plan.method = &find_method(model.method);
+  plan.parameters = resolve_parameters(*plan.method, model.set);
+  plan.filter = model.filter;
+  plan.error = model.error;
+  ProductChoice(*plan.method, output, !gbuffer.albedo.empty(), file).choose(plan);
+  choose_bounces(plan, model.bounces, gbuffer);
+  explain_light(plan, light);
+  choose_radius(plan, model, geometry);
+  choose_march(plan, model);
   return plan;
 }
 
 nlohmann::json to_json(const Plan& plan) {
-  nlohmann::json j = {{"method", plan.method->name}, {"parameters", plan.parameters},
-                      {"products", plan.make},       {"radius", plan.radius},
-                      {"bounces", plan.bounces},     {"filter", plan.filter ? "geometry" : "none"},
+  nlohmann::json j = {{"method", plan.method->name},
+                      {"parameters", plan.parameters},
+                      {"products", plan.make},
+                      {"bounces", plan.bounces},
+                      {"samples_per_pixel", plan.samples_per_pixel()},
+                      {"filter", plan.filter ? "geometry" : "none"},
                       {"reasons", plan.reasons}};
+  // JSON knows no infinity.
+  j["radius"] = std::isinf(plan.radius) ? nlohmann::json("inf") : nlohmann::json(plan.radius);
+  if (plan.method->marches) {
+    j["slices"] = plan.slices;
+    j["steps"] = plan.steps;
+    j["offscreen"] = plan.extend_offscreen ? "extend" : "open";
+  }
   return j;
 }
 

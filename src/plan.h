@@ -2,12 +2,13 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "estimators/estimator.h"
 #include "options.h"
-#include "scene/environment.h"
+#include "scene/light_model.h"
 #include "scene/gbuffer.h"
 #include "scene/geometry.h"
 
@@ -20,19 +21,26 @@ struct Plan {
   ProductSet products;  ///< what the method is asked for
   float radius = 0;     ///< scene units
   int bounces = 0;
+  int slices = 0, steps = 0;     ///< of methods that march
+  bool extend_offscreen = true;
+  std::optional<double> error;   ///< to stay below
+  std::string isa;               ///< instruction set of the inner loops
   bool filter = true;
   std::vector<std::string> make;     ///< products for any of the outputs
   std::vector<std::string> write;    ///< those that every EXR of -o holds, in their order there
   std::string show;                  ///< the one that every picture of -o holds
   std::vector<std::string> reasons;  ///< one line per decision
+
+  int samples_per_pixel() const;
 };
 
 /// Decides from what was asked for and what the frame shows: work that cannot change a product
 /// that is written is left out.
 /// Errors: ExitCode::usage for a product that the method does not make, or several for one
 /// picture; ExitCode::layer for one whose layer is missing.
+/// `light` is that of the environment; null where it is constant.
 Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBuffer& gbuffer,
-               const Geometry& geometry, const Environment& environment, const std::string& file);
+               const Geometry& geometry, const LightModel* light, const std::string& file);
 
 nlohmann::json to_json(const Plan& plan);
 

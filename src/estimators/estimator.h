@@ -11,6 +11,8 @@
 #include "parallel/tiles.h"
 #include "scene/environment.h"
 #include "scene/geometry.h"
+#include "scene/hidden_geometry.h"
+#include "scene/light_model.h"
 
 namespace ssdo {
 
@@ -19,13 +21,17 @@ struct ProductSet {
   bool ao = false;
   bool direct = false;
   bool bounce = false;
+  bool bent = false;
+  bool error = false;
 };
 
 /// The planes that were asked for, over the geometry's window; the others are empty. Linear,
-/// without the receiver's albedo. Background: ao 1, direct and bounce 0.
+/// without the receiver's albedo. Background: ao 1, all else 0.
 struct Products {
   Plane<float> ao;
   Plane<glm::vec3> direct, bounce;
+  Plane<glm::vec3> bent;  ///< unit, camera space
+  Plane<float> error;     ///< standard error of the luminance of direct + bounce
 };
 
 /// A parameter of one method, set with --set NAME=VALUE.
@@ -47,11 +53,18 @@ struct EstimateInput {
   const Plane<glm::vec3>& radiance;  ///< what senders give off, where a layer says so; else empty
   const Environment& environment;
   ProductSet products;
-  float radius;  ///< scene units
+  float radius;  ///< scene units; infinity: without limit
   int bounces;
   unsigned seed;
   const ParameterValues& parameters;
   TileProgress progress;
+
+  // Of methods that march through slices of the frame.
+  int slices = 3;  ///< per pixel
+  int steps = 12;  ///< per side of a slice, from one pixel to the frame's diagonal
+  const HiddenGeometry* hidden = nullptr;  ///< null: all that is seen is endless
+  const LightModel* light = nullptr;       ///< of the environment; null: it is constant
+  bool extend_offscreen = true;             ///< surfaces go on beyond the frame
 };
 
 /// A row in the table of methods.
@@ -60,7 +73,8 @@ struct Method {
   ProductSet products;  ///< what it can make
   int pattern_size;     ///< its noise repeats every pattern_size pixels
   std::vector<Parameter> parameters;
-  int (*samples_per_pixel)(const ParameterValues&);
+  bool marches;  ///< through slices of the frame, as --slices, --steps and --thickness say
+  int (*samples_per_pixel)(const ParameterValues&);  ///< null where it marches
   Products (*estimate)(const EstimateInput&);
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "error.h"
+#include "estimators/bitmask.h"
 #include "estimators/ssdo.h"
 #include "math/number.h"
 
@@ -23,7 +24,7 @@ std::string parameter_names(const Method& method) {
 }  // namespace
 
 std::span<const Method> methods() {
-  static const std::array<Method, 1> all = {ssdo_method()};
+  static const std::array<Method, 2> all = {bitmask_method(), ssdo_method()};
   return all;
 }
 

@@ -311,6 +311,7 @@ Method ssdo_method() {
           {"bounce-strength", 1, 0, 100, "", "gain of the bounce", false},
           {"bounce-singularity", 1, 0, 1e6, "", "largest form factor of a sample", false},
       },
+      false,
       [](const ParameterValues& p) { return int(p.at("samples")); },
       estimate,
   };

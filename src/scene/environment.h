@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <vector>
@@ -33,9 +34,29 @@ class Environment {
   /// A lat-long map of finite values, two to one or not.
   Environment(std::shared_ptr<const Plane<glm::vec3>> lat_long, const EnvironmentFrame& frame);
 
+  /// A piece of sky: where its light comes from, and its radiance times its solid angle.
+  struct Patch {
+    glm::vec3 direction{0}, power{0};
+    float solid_angle = 0;
+  };
+
   bool is_constant() const { return !map_; }
   const glm::vec3& constant_radiance() const { return constant_; }
   const EnvironmentFrame& frame() const { return frame_; }
+
+  /// The texels before the exposure; null for a constant.
+  const std::shared_ptr<const Plane<glm::vec3>>& map() const { return map_; }
+
+  /// What turns a texel into radiance.
+  float gain() const { return gain_; }
+
+  /// World direction of a texel's centre, and the place in texels, centres at halves, that lies in
+  /// a unit direction.
+  glm::vec3 texel_direction(int x, int y) const;
+  glm::vec2 texel_at(const glm::vec3& direction_world) const;
+
+  /// Steradians of a texel in row `y`.
+  float texel_solid_angle(int y) const;
 
   /// Bilinear radiance from a unit direction in world space.
   glm::vec3 radiance(const glm::vec3& direction_world) const;
@@ -47,18 +68,19 @@ class Environment {
   /// falls linearly in the cosine and has the weight of a cone of `solid_angle` steradians.
   OctahedralMap blurred(float solid_angle, const glm::mat3& world_to_camera) const;
 
+  /// The map in at most columns x columns / 2 blocks of texels, in camera space, row by row. A
+  /// block's direction is the mean over its light, so that a sun of one texel keeps its place and
+  /// its irradiance. Not for a constant.
+  std::vector<Patch> patches(const glm::mat3& world_to_camera, int columns) const;
+
  private:
-  /// A piece of sky: where its light comes from, and its radiance times its solid angle.
-  struct Patch {
-    glm::vec3 direction{0}, power{0};
-    float solid_angle = 0;
-  };
-
   Environment() = default;
-  std::vector<Patch> patches(const glm::mat3& world_to_camera) const;
 
-  /// World direction at a place of the map, u and v in 0..1 from the upper left corner.
-  glm::vec3 direction_at(float u, float v) const;
+  /// World direction from the angle to the up axis and the one around it.
+  glm::vec3 direction_at(float polar, float azimuth) const;
+
+  /// Angle around the up axis of a column's centre.
+  float azimuth_of(int x) const;
 
   std::shared_ptr<const Plane<glm::vec3>> map_;
   EnvironmentFrame frame_;

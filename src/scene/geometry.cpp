@@ -147,6 +147,7 @@ void place_normals(const GBuffer& g, Geometry& out, GeometryReport& report) {
     }
   }
   const bool rebuild_all = space.name == "rebuilt from P";
+  out.normals_to_camera = rebuild_all ? glm::mat3(out.camera.rotation) : space.to_camera;
   report.normal_space = space.name;
   report.normal_agreement = space.agreement;
 

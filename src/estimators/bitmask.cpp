@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/bitmask.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <limits>
+#include <optional>
+
+#include "estimators/bitmask_march.h"
+#include "math/frame.h"
+#include "math/luminance.h"
+#include "math/sequence_numbers.h"
+#include "parallel/isa.h"
+#include "scene/light_model.h"
+
+namespace ssdo {
+namespace {
+
+constexpr int kPeriod = Interleaving::kPeriod;
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+
+/// A shadow's edge shows single steps, where slices average them.
+constexpr int kSunSteps = 2;
+
+/// What is endless, in the units of MarchScene: within 1e-4 of the direction of the view ray.
+constexpr float kEndlessShare = 1e4f, kEndlessLength = 1e15f;
+
+template <class Value>
+BorderValues border_values(int width, int height, const Value& value) {
+  BorderValues values;
+  for (int y : {0, height - 1})
+    for (int x = 0; x < width; ++x) values.push_back(value(x, y));
+  for (int x : {0, width - 1})
+    for (int y = 0; y < height; ++y) values.push_back(value(x, y));
+  return values;
+}
+
+MarchScene make_scene(const Geometry& g, const HiddenGeometry* hidden) {
+  const bool orthographic = g.camera.orthographic;
+  const Interleaving layout(g.surfel.width, g.surfel.height, g.window.x0 & (kPeriod - 1));
+  const auto plane = [&] { return InterleavedPlane(layout); };
+  MarchScene scene{layout,  orthographic, float(g.camera.fx), float(g.camera.fy),
+                   plane(), plane(),      plane(),            plane(),
+                   plane(), plane(),      plane(),            plane(),
+                   plane(), plane(),      {},                 {}, {}};
+  const float endless = orthographic ? kEndlessLength : kEndlessShare;
+  for_each_row(g.surfel.height, [&](int y) {
+    for (InterleavedPlane* p : {&scene.x, &scene.y, &scene.z, &scene.nx, &scene.ny, &scene.nz,
+                                &scene.rounding, &scene.thickness, &scene.behind,
+                                &scene.behind_thickness}) {
+      p->fill_row(layout, y, kNothing);
+    }
+    for (int x = 0; x < g.surfel.width; ++x) {
+      const std::size_t from = g.surfel.index(x, y);
+      if (!g.is_surface(from)) continue;
+      const Surfel& s = g.surfel[from];
+      const std::ptrdiff_t i = layout.index(x, y);
+      scene.x[i] = s.position.x, scene.y[i] = s.position.y, scene.z[i] = s.position.z;
+      scene.nx[i] = s.normal.x, scene.ny[i] = s.normal.y, scene.nz[i] = s.normal.z;
+      scene.rounding[i] = s.normal.w;
+      scene.thickness[i] = endless;
+      if (!hidden) continue;
+      const float distance = orthographic ? 1.0f : glm::length(glm::vec3(s.position));
+      scene.thickness[i] = std::min(hidden->thickness[from] / distance, endless);
+      if (hidden->behind.empty() || hidden->behind_source[from] < 0) continue;
+      scene.behind[i] = std::min(hidden->behind[from] / distance, endless);
+      const float distance_behind = orthographic ? 1.0f : distance * (1 + scene.behind[i]);
+      scene.behind_thickness[i] =
+          std::min(hidden->thickness[std::size_t(hidden->behind_source[from])] / distance_behind,
+                   endless);
+    }
+  });
+  for (int c = 0; c < 3; ++c) {
+    const auto of_surfaces = [&](const glm::vec4 Surfel::* member) {
+      return border_values(g.surfel.width, g.surfel.height, [&](int x, int y) {
+        const Surfel& s = g.surfel(x, y);
+        return s.position.w == 0 ? kNothing : (s.*member)[c];
+      });
+    };
+    scene.border_position[c] = of_surfaces(&Surfel::position);
+    scene.border_normal[c] = of_surfaces(&Surfel::normal);
+  }
+  scene.border_thickness = border_values(g.surfel.width, g.surfel.height, [&](int x, int y) {
+    return hidden ? std::min(hidden->thickness(x, y), kEndlessLength) : kEndlessLength;
+  });
+  return scene;
+}
+
+/// One colour for each pixel, in the order of the march.
+InterleavedColor make_color(const Interleaving& layout) {
+  return {InterleavedPlane(layout), InterleavedPlane(layout), InterleavedPlane(layout)};
+}
+
+glm::vec3 color_at(const InterleavedColor& color, std::ptrdiff_t i) {
+  return {color[0][i], color[1][i], color[2][i]};
+}
+
+/// What the light's coefficients weigh the polynomials of add_basis with, channel by channel: these
+/// lack the constants that make spherical harmonics orthonormal. Without light, band 0 alone.
+std::vector<float> basis_weights(const LightModel* light, int order) {
+  const int count = sh_count(order);
+  std::vector<float> weights(std::size_t(3 * count), 0.0f);
+  for (int c = 0; c < 3; ++c) {
+    float* channel = &weights[std::size_t(c * count)];
+    if (!light) channel[0] = 1;
+    for (int i = 0; light && i < count; ++i)
+      channel[i] = kShConstants[std::size_t(i)] * light->coefficients[std::size_t(i)][c];
+  }
+  return weights;
+}
+
+/// The method on one frame.
+class Bitmask {
+ public:
+  explicit Bitmask(const EstimateInput& in)
+      : in_(in),
+        scene_(make_scene(in.geometry, in.hidden)),
+        layout_(scene_.layout),
+        pattern_(layout_, in.geometry.display, in.slices, in.steps, in.seed),
+        march_{scene_, pattern_, in.geometry.window.y0, in.radius, in.extend_offscreen} {
+    choose_isa();
+  }
+
+  Products run() {
+    gather_visibility();
+    if (in_.products.bounce) {
+      out_.bounce = Plane<glm::vec3>(width(), height(), glm::vec3(0));
+      for (int pass = 1; pass <= in_.bounces; ++pass) gather_bounce(pass == in_.bounces);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  int width() const { return layout_.width(); }
+  int height() const { return layout_.height(); }
+
+  template <class Work>
+  void for_each_block(const Work& work) const {
+    const int phase = layout_.phase();
+    for_each_tile(width() + phase, height(), [&](const Tile& t) {
+      work(t.x0 - phase, t.x1 - phase, t.y0, t.y1);
+    }, in_.progress);
+  }
+
+  /// Calls `work(pixel, index)` for each pixel that shows a surface; index is that of the march.
+  template <class Work>
+  void for_each_surface(const Work& work) const {
+    for_each_row(height(), [&](int y) {
+      for (int x = 0; x < width(); ++x) {
+        const std::size_t pixel = in_.geometry.surfel.index(x, y);
+        if (in_.geometry.is_surface(pixel)) work(pixel, layout_.index(x, y));
+      }
+    });
+  }
+
+  void gather_visibility() {
+    const bool wants_light = in_.products.direct || in_.products.bounce || in_.products.error;
+    const LightModel* light = wants_light ? in_.light : nullptr;
+    const bool directional = light && light->order > 0;
+
+    InterleavedPlane ao(layout_);
+    InterleavedColor bent, share, difference;
+    VisibilityJob job{march_, 0, nullptr, &ao, nullptr, nullptr, nullptr};
+    std::vector<float> weights;
+    if (in_.products.bent) {
+      bent = make_color(layout_);
+      job.bent = &bent;
+      job.order = 1;
+    }
+    if (directional || (wants_light && in_.products.error)) {
+      job.order = std::max(directional ? light->order : 0, 1);
+      weights = basis_weights(directional ? light : nullptr, job.order);
+      job.light = weights.data();
+      share = make_color(layout_);
+      job.share = &share;
+    }
+    if (in_.products.error) {
+      difference = make_color(layout_);
+      job.share_difference = &difference;
+    }
+    for_each_block([&](int x0, int x1, int y0, int y1) { march_visibility(job, x0, x1, y0, y1); });
+
+    out_.ao = Plane<float>(width(), height(), 1.0f);
+    if (in_.products.bent) out_.bent = Plane<glm::vec3>(width(), height(), glm::vec3(0));
+    if (in_.products.error) out_.error = Plane<float>(width(), height(), 0.0f);
+    if (wants_light) out_.direct = Plane<glm::vec3>(width(), height(), glm::vec3(0));
+    for_each_surface([&](std::size_t pixel, std::ptrdiff_t i) {
+      out_.ao[pixel] = ao[i];
+      const glm::vec3 normal(in_.geometry.surfel[pixel].normal);
+      if (in_.products.bent) {
+        const glm::vec3 sum = color_at(bent, i);
+        const float length = glm::length(sum);
+        out_.bent[pixel] = length > 0 ? sum / length : normal;
+      }
+      if (!wants_light) return;
+      const glm::vec3 unoccluded =
+          light ? light->irradiance(normal) : in_.environment.constant_radiance();
+      out_.direct[pixel] = unoccluded * (directional ? color_at(share, i) : glm::vec3(ao[i]));
+      if (in_.products.error) out_.error[pixel] = luminance(unoccluded * color_at(difference, i));
+    });
+    if (light) {
+      for (const Sun& sun : light->suns) add_sun(sun);
+    }
+  }
+
+  /// Adds the light of a sun where it is seen. Members of the pattern look at different points of
+  /// its disc.
+  void add_sun(const Sun& sun) {
+    InterleavedPlane visible(layout_);
+    SunJob job{march_, {}, {}, &visible};
+    const glm::mat3 frame = frame_about(sun.direction);
+    const double diagonal = std::hypot(in_.geometry.display.width(), in_.geometry.display.height());
+    const int members = kPeriod * kPeriod, steps = kSunSteps * in_.steps;
+    for (int m = 0; m < members; ++m) {
+      const int rank = SlicePattern::rank(m);
+      const float angle = float(2 * glm::pi<double>() * fraction(rank * kR2First)),
+                  off = sun.angular_radius * std::sqrt((float(rank) + 0.5f) / float(members));
+      const glm::vec3 to = glm::normalize(frame * glm::vec3(off * std::cos(angle), off * std::sin(angle), 1));
+      job.directions[std::size_t(m)] = {to.x, to.y, to.z};
+      const double start = fraction(rank * kR2Second);
+      for (int i = 0; i < steps; ++i)
+        job.distances_px[std::size_t(m)].push_back(float(std::pow(diagonal, (i + start) / steps)));
+    }
+    for_each_block([&](int x0, int x1, int y0, int y1) { march_sun(job, x0, x1, y0, y1); });
+    for_each_surface([&](std::size_t pixel, std::ptrdiff_t i) {
+      const glm::vec3 normal(in_.geometry.surfel[pixel].normal);
+      out_.direct[pixel] += visible[i] * std::max(0.0f, glm::dot(normal, sun.direction)) * sun.irradiance;
+    });
+  }
+
+  /// What each pixel sends: its albedo times all the light that arrives, or the layer that says so.
+  glm::vec3 sent_by(std::size_t pixel) const {
+    if (!in_.radiance.empty()) return in_.radiance[pixel];
+    return in_.albedo[pixel] * (out_.direct[pixel] + out_.bounce[pixel]);
+  }
+
+  /// What the unseen side of a pixel's surface sends: it has the light from its side, as far as the
+  /// seen side is open.
+  glm::vec3 sent_by_back(std::size_t pixel) const {
+    const glm::vec3 normal = -glm::vec3(in_.geometry.surfel[pixel].normal);
+    glm::vec3 light = in_.light->irradiance(normal);
+    for (const Sun& sun : in_.light->suns)
+      light += std::max(0.0f, glm::dot(normal, sun.direction)) * sun.irradiance;
+    return in_.albedo[pixel] * (out_.ao[pixel] * light + out_.bounce[pixel]);
+  }
+
+  static void put(InterleavedColor& color, std::ptrdiff_t i, const glm::vec3& value) {
+    for (int c = 0; c < 3; ++c) color[std::size_t(c)][i] = value[c];
+  }
+
+  /// The pixel that shows what goes on behind this one; -1 where nothing does.
+  int source_behind(std::size_t pixel) const {
+    const bool known = in_.hidden && !in_.hidden->behind_source.empty();
+    return known ? in_.hidden->behind_source[pixel] : -1;
+  }
+
+  void gather_bounce(bool last) {
+    const bool two_sided = in_.light && in_.radiance.empty();
+    InterleavedColor sent = make_color(layout_), sent_behind = make_color(layout_),
+                     bounce = make_color(layout_), sent_back;
+    if (two_sided) sent_back = make_color(layout_);
+    for_each_row(height(), [&](int y) {
+      for (InterleavedColor* color : {&sent, &sent_behind, &sent_back}) {
+        for (InterleavedPlane& plane : *color) {
+          if (plane.data()) plane.fill_row(layout_, y, 0);
+        }
+      }
+      for (int x = 0; x < width(); ++x) {
+        const std::size_t pixel = in_.geometry.surfel.index(x, y);
+        if (!in_.geometry.is_surface(pixel)) continue;
+        const std::ptrdiff_t i = layout_.index(x, y);
+        put(sent, i, sent_by(pixel));
+        if (two_sided) put(sent_back, i, sent_by_back(pixel));
+        const int source = source_behind(pixel);
+        if (source >= 0) put(sent_behind, i, sent_by(std::size_t(source)));
+      }
+    });
+    BorderValues sent_border[3];
+    for (int c = 0; c < 3; ++c) {
+      sent_border[c] = border_values(width(), height(), [&](int x, int y) {
+        return sent[std::size_t(c)][layout_.index(x, y)];
+      });
+    }
+    InterleavedColor difference;
+    if (in_.products.error) difference = make_color(layout_);
+    const BounceJob job{march_,  &sent, two_sided ? &sent_back : nullptr, &sent_behind,
+                        sent_border, &bounce, in_.products.error ? &difference : nullptr};
+    for_each_block([&](int x0, int x1, int y0, int y1) { march_bounce(job, x0, x1, y0, y1); });
+    for_each_surface([&](std::size_t pixel, std::ptrdiff_t i) {
+      out_.bounce[pixel] = color_at(bounce, i);
+      if (last && in_.products.error) out_.error[pixel] += luminance(color_at(difference, i));
+    });
+  }
+
+  const EstimateInput& in_;
+  MarchScene scene_;
+  const Interleaving& layout_;
+  SlicePattern pattern_;
+  March march_;
+  Products out_;
+};
+
+Products estimate(const EstimateInput& in) { return Bitmask(in).run(); }
+
+}  // namespace
+
+Method bitmask_method() {
+  return {"bitmask",
+          "slices with a visibility bitmask; light and bounce from the same march",
+          {.ao = true, .direct = true, .bounce = true, .bent = true, .error = true},
+          kPeriod,
+          {},
+          true,
+          nullptr,
+          estimate};
+}
+
+}  // namespace ssdo

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "estimators/slice_pattern.h"
+#include "parallel/interleaved.h"
+
+namespace ssdo {
+
+using InterleavedColor = std::array<InterleavedPlane, 3>;
+
+/// Values of the pixels at the frame's border: its first row, its last row, its first column, its
+/// last column.
+using BorderValues = std::vector<float>;
+
+/// The frame as a march reads it. Planes are not-a-number where there is nothing.
+///
+/// Depths behind something are a share of its distance to the viewer, or a length in scene units
+/// where the camera is orthographic.
+struct MarchScene {
+  Interleaving layout;
+  bool orthographic;
+  float fx, fy;  ///< pixels per unit of slope, or per scene unit
+  InterleavedPlane x, y, z;     ///< position, camera space
+  InterleavedPlane nx, ny, nz;  ///< unit normal
+  InterleavedPlane rounding;    ///< distance by which storing P may have moved it
+  InterleavedPlane thickness;   ///< from the front to the back
+  InterleavedPlane behind;      ///< from the front to the surface that it covers
+  InterleavedPlane behind_thickness;
+  BorderValues border_position[3], border_normal[3];
+  BorderValues border_thickness;  ///< in scene units
+};
+
+/// What all marches share.
+struct March {
+  const MarchScene& scene;
+  const SlicePattern& pattern;
+  int first_row;     ///< row of the display window that row 0 of the scene is
+  float radius;      ///< scene units, or infinity
+  bool extend;       ///< surfaces go on beyond the frame
+};
+
+/// How open each pixel is, and to which light.
+struct VisibilityJob {
+  March march;
+  /// Bands of spherical harmonics that light is gathered in, up to 4; 0: no direction matters.
+  int order;
+  /// Weights of the basis polynomials, (order + 1)^2 for red, then green, then blue.
+  const float* light;
+
+  InterleavedPlane* ao;
+  InterleavedColor* bent;              ///< not normalised; null: not wanted
+  InterleavedColor* share;             ///< of the unoccluded light, 0..1; null: not wanted
+  InterleavedColor* share_difference;  ///< standard error of share, signed; null: not wanted
+};
+
+/// What each pixel receives from the first surface in every direction.
+struct BounceJob {
+  March march;
+  const InterleavedColor* sent;         ///< radiance of what is seen
+  const InterleavedColor* sent_back;    ///< of its other side; null: the same
+  const InterleavedColor* sent_behind;  ///< of what is covered
+  const BorderValues* sent_border;      ///< of what goes on beyond the frame, three
+  InterleavedColor* bounce;
+  InterleavedColor* difference;  ///< its standard error, signed; null: not wanted
+};
+
+/// Whether each pixel sees a sun.
+struct SunJob {
+  struct Direction {
+    float x, y, z;
+  };
+  March march;
+  /// For each member of the pattern a unit direction to a point of the sun, and where on the way
+  /// there the march looks, near to far.
+  std::array<Direction, Interleaving::kPeriod * Interleaving::kPeriod> directions;
+  std::array<std::vector<float>, Interleaving::kPeriod * Interleaving::kPeriod> distances_px;
+  InterleavedPlane* visible;  ///< 0 or 1
+};
+
+/// All work on rows y0 to y1 and pixels x0 to x1 of the picture; x0 + phase is a multiple of 64.
+void march_visibility(const VisibilityJob& job, int x0, int x1, int y0, int y1);
+void march_bounce(const BounceJob& job, int x0, int x1, int y0, int y1);
+void march_sun(const SunJob& job, int x0, int x1, int y0, int y1);
+
+}  // namespace ssdo

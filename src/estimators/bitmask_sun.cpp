@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Whether each pixel sees a sun: a march along the one slice that holds it, compiled once for
+// every instruction set. Here lanes look at different offsets, so that samples are gathered.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "estimators/bitmask_sun.cpp"
+#include <hwy/foreach_target.h>
+
+#include "estimators/bitmask_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace ssdo::HWY_NAMESPACE {
+
+/// How far a thing goes on beyond the frame before a sun, in widths of its own. What hides a sun is
+/// all or nothing, where slices average many guesses, so that the guess has to be a safer one.
+constexpr float kSunWidths = 8;
+
+/// The way to the sun from a receiver.
+struct SunRay {
+  V s, v;                 ///< its direction in the slice
+  V step_x, step_y;       ///< unit, pixels: its picture
+  V end_px;               ///< where its picture ends: at the horizon
+};
+
+HWY_INLINE SunRay sun_ray(const MarchScene& scene, const Receiver& p, const SunJob::Direction& to,
+                          Half& half) {
+  const D d;
+  const V lx = hn::Set(d, to.x), ly = hn::Set(d, to.y), lz = hn::Set(d, to.z);
+  SunRay ray;
+  ray.v = dot3(lx, ly, lz, p.vx, p.vy, p.vz);
+  const V tx = hn::NegMulAdd(ray.v, p.vx, lx), ty = hn::NegMulAdd(ray.v, p.vy, ly),
+          tz = hn::NegMulAdd(ray.v, p.vz, lz);
+  ray.s = hn::Sqrt(dot3(tx, ty, tz, tx, ty, tz));
+  const V scale = hn::Set(d, 1.0f) / hn::Max(ray.s, hn::Set(d, 1e-6f));
+  half.tx = tx * scale, half.ty = ty * scale, half.tz = tz * scale;
+  half.n_t = dot3(p.nx, p.ny, p.nz, half.tx, half.ty, half.tz);
+  half.slope = half.n_t * p.inverse_facing;
+  half.origin = dot3(half.tx, half.ty, half.tz, p.px, p.py, p.pz);
+
+  const V depth = hn::Zero(d) - p.pz;
+  V dx = hn::Set(d, scene.fx) * lx, dy = hn::Set(d, -scene.fy) * ly;
+  ray.end_px = hn::Set(d, 1e9f);
+  if (!scene.orthographic) {
+    // The derivative of the projection, times the square of the depth.
+    dx = hn::Set(d, scene.fx) * hn::MulAdd(lx, depth, lz * p.px);
+    dy = hn::Set(d, -scene.fy) * hn::MulAdd(ly, depth, lz * p.py);
+  }
+  const V length = hn::Sqrt(dot2(dx, dy, dx, dy));
+  if (!scene.orthographic && to.z < 0) ray.end_px = length / (depth * hn::Set(d, -to.z));
+  const V unit = hn::Set(d, 1.0f) / hn::Max(length, hn::Set(d, 1e-20f));
+  ray.step_x = dx * unit, ray.step_y = dy * unit;
+  return ray;
+}
+
+/// Whether what lies at (s, v), `above` the receiver's tangent plane and reaching back by `depth`,
+/// stands in the ray.
+template <bool kOrthographic>
+HWY_INLINE M blocks(const Receiver& p, const Half& half, const SunRay& ray, V s, V above, V depth,
+                    float radius) {
+  const D d;
+  const V v = hn::MulSub(above, p.inverse_facing, s * half.slope);
+  const V back_s = kOrthographic ? s : hn::MulAdd(depth, s, s);
+  const V back_v = kOrthographic ? v - depth : hn::MulAdd(depth, v - p.distance, v);
+  const M near = hn::And(above > hn::Zero(d), dot2(s, v, s, v) <= hn::Set(d, radius * radius));
+  return hn::And(near, hn::And(s * ray.v <= v * ray.s, back_s * ray.v >= back_v * ray.s));
+}
+
+template <bool kOrthographic>
+void sun(const SunJob& job, int x0, int x1, int y0, int y1) {
+  const MarchScene& scene = job.march.scene;
+  for_each_vector(scene, x0, x1, y0, y1, [&](std::ptrdiff_t at, int y, int comb, int column) HWY_ATTR {
+    const D d;
+    const DI di;
+    constexpr int kPeriod = Interleaving::kPeriod;
+    const Interleaving& layout = scene.layout;
+    const V zero = hn::Zero(d);
+    const int member = ((y + job.march.first_row) & (kPeriod - 1)) * kPeriod + comb;
+    const Receiver p = load_receiver(scene, at);
+    Half half;
+    const SunRay ray = sun_ray(scene, p, job.directions[std::size_t(member)], half);
+    const V x = lane_columns(layout, comb, column);
+    const V row = hn::Set(d, float(y)), right = hn::Set(d, float(layout.width() - 1)),
+            bottom = hn::Set(d, float(layout.height() - 1));
+    const float reach = reach_px(scene, p, job.march.radius);
+    M open = hn::And(p.valid, dot2(half.n_t, p.facing, ray.s, ray.v) > zero);
+    for (const float distance : job.distances_px[std::size_t(member)]) {
+      const V t = hn::Set(d, distance);
+      const V qx_px = hn::Round(hn::MulAdd(t, ray.step_x, x)),
+              qy_px = hn::Round(hn::MulAdd(t, ray.step_y, row));
+      const M inside = hn::And(hn::And(qx_px >= zero, qx_px <= right),
+                               hn::And(hn::And(qy_px >= zero, qy_px <= bottom), t < ray.end_px));
+      const M looks = hn::And(inside, open);
+      if (distance > reach || hn::AllFalse(d, looks)) break;
+      const auto shifted = hn::ConvertTo(di, hn::IfThenElseZero(looks, qx_px)) + hn::Set(di, layout.phase());
+      const auto line = hn::ConvertTo(di, hn::IfThenElseZero(looks, qy_px)) * hn::Set(di, kPeriod) +
+                        hn::And(shifted, hn::Set(di, kPeriod - 1));
+      const auto index = line * hn::Set(di, int(layout.stride())) + hn::ShiftRight<2>(shifted) +
+                         hn::Set(di, Interleaving::kPad);
+      const auto gather = [&](const InterleavedPlane& plane)
+                              HWY_ATTR { return hn::GatherIndex(d, plane.data(), index); };
+      const V qx = gather(scene.x), qy = gather(scene.y), qz = gather(scene.z);
+      const V height = dot3(qx, qy, qz, p.nx, p.ny, p.nz), above = height - p.plane;
+      V s = dot3(qx, qy, qz, half.tx, half.ty, half.tz);
+      if constexpr (kOrthographic) s = s - half.origin;
+      const M front = blocks<kOrthographic>(p, half, ray, s, above, gather(scene.thickness),
+                                            job.march.radius);
+      const V behind = gather(scene.behind);
+      const V above_behind = kOrthographic ? hn::NegMulAdd(behind, p.facing, above)
+                                           : hn::MulAdd(behind, height, above);
+      if constexpr (!kOrthographic) s = hn::MulAdd(behind, s, s);
+      const M covered = blocks<kOrthographic>(p, half, ray, s, above_behind,
+                                              gather(scene.behind_thickness), job.march.radius);
+      open = hn::AndNot(hn::And(looks, hn::Or(front, covered)), open);
+    }
+    if (job.march.extend && !hn::AllFalse(d, open)) {
+      const Border border = border_along(layout, ray.step_x, ray.step_y, x, row);
+      const Extension e = extend<kOrthographic>(job.march, p, half, border, reach, kSunWidths);
+      // The ray passes between both ends of the piece.
+      const V here = e.s * ray.v - e.v * ray.s, there = e.end_s * ray.v - e.end_v * ray.s;
+      const M crosses = hn::And(hn::And(e.exists, border.distance_px < ray.end_px), here * there <= zero);
+      const M rises = hn::Or(e.above > zero, e.end_above > zero);
+      open = hn::AndNot(hn::And(crosses, rises), open);
+    }
+    hn::StoreU(hn::IfThenElseZero(open, hn::Set(d, 1.0f)), d, job.visible->data() + at);
+  });
+}
+
+void sun_of_pixels(const SunJob& job, int x0, int x1, int y0, int y1) {
+  job.march.scene.orthographic ? sun<true>(job, x0, x1, y0, y1) : sun<false>(job, x0, x1, y0, y1);
+}
+
+}  // namespace ssdo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ssdo {
+
+HWY_EXPORT(sun_of_pixels);
+
+void march_sun(const SunJob& job, int x0, int x1, int y0, int y1) {
+  HWY_DYNAMIC_DISPATCH(sun_of_pixels)(job, x0, x1, y0, y1);
+}
+
+}  // namespace ssdo
+#endif

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/slice_pattern.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <glm/gtc/constants.hpp>
+
+#include "math/sequence_numbers.h"
+
+namespace ssdo {
+namespace {
+
+constexpr int kPeriod = Interleaving::kPeriod;
+
+/// An ordering of the 4 x 4 pattern in which neighbours are far apart (Bayer's matrix, 1973).
+constexpr int kOrder[kPeriod * kPeriod] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+
+/// Distances grow geometrically; `start` in 0..1 places each of them in its stratum.
+SliceSide make_side(const Interleaving& layout, int comb, double dx, double dy, int steps,
+                    double diagonal, double start, float phase) {
+  SliceSide side;
+  side.phase = phase;
+  for (int i = 0; i < steps; ++i) {
+    const double distance = std::pow(diagonal, (i + start) / steps);
+    SliceStep step;
+    step.dx = int(std::lround(distance * dx));
+    step.dy = int(std::lround(distance * dy));
+    const bool repeated = !side.steps.empty() && side.steps.back().dx == step.dx &&
+                          side.steps.back().dy == step.dy;
+    if (repeated || (step.dx == 0 && step.dy == 0)) continue;
+    const int column = comb + step.dx;
+    step.column_shift = column >> 2;
+    step.offset =
+        layout.index(step.dy, column & (kPeriod - 1), step.column_shift) - layout.index(0, comb, 0);
+    step.distance_px = float(std::hypot(step.dx, step.dy));
+    side.steps.push_back(step);
+  }
+  return side;
+}
+
+}  // namespace
+
+int SlicePattern::rank(int member) { return kOrder[member]; }
+
+SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, int slices,
+                           int steps, unsigned seed)
+    : members_(kPeriod * kPeriod) {
+  const double diagonal = std::max(2.0, std::hypot(display.width(), display.height()));
+  const double turn = start_of(3 * std::uint64_t(seed)),
+               start1 = start_of(3 * std::uint64_t(seed) + 1),
+               start2 = start_of(3 * std::uint64_t(seed) + 2);
+  for (int row = 0; row < kPeriod; ++row) {
+    for (int column = 0; column < kPeriod; ++column) {
+      const int member = row * kPeriod + column;
+      const double place = (kOrder[member] + fraction(turn)) / (kPeriod * kPeriod);
+      for (int k = 0; k < slices; ++k) {
+        const double angle = glm::pi<double>() * (k + place) / slices;
+        Slice slice{float(std::cos(angle)), float(std::sin(angle)), {}};
+        for (int s = 0; s < 2; ++s) {
+          const double n = (kOrder[member] * slices + k) * 2 + s;
+          const double sign = s == 0 ? 1 : -1;
+          slice.sides[s] = make_side(layout, column, sign * slice.dx, sign * slice.dy, steps,
+                                     diagonal, fraction(start1 + n * kR2First),
+                                     float(fraction(start2 + n * kR2Second)));
+        }
+        members_[std::size_t(member)].push_back(std::move(slice));
+      }
+    }
+  }
+}
+
+}  // namespace ssdo

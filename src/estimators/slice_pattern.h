@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "math/plane.h"
+#include "parallel/interleaved.h"
+
+namespace ssdo {
+
+/// A pixel that a march looks at, seen from the pixel where it starts.
+struct SliceStep {
+  int dx, dy;             ///< pixels, y down
+  int column_shift;       ///< of the entry, within its interleaved row
+  std::ptrdiff_t offset;  ///< of the index
+  float distance_px;
+};
+
+/// One half of a slice.
+struct SliceSide {
+  std::vector<SliceStep> steps;  ///< near to far
+  float phase;                   ///< in 0..1: where in every sector the point lies that stands for it
+};
+
+/// A plane through the view ray, given by its line in the picture.
+struct Slice {
+  float dx, dy;  ///< unit, pixels, y down
+  SliceSide sides[2];  ///< along (dx, dy) and against it
+};
+
+/// The slices of every member of the 4 x 4 pattern, row by row. All members together divide the
+/// half-circle evenly.
+class SlicePattern {
+ public:
+  /// `steps` per side, from one pixel to the diagonal of `display`.
+  SlicePattern(const Interleaving& layout, const Window& display, int slices, int steps,
+               unsigned seed);
+
+  /// The rank of each member in an order in which neighbours are far apart, 0..15.
+  static int rank(int member);
+
+  const std::vector<Slice>& member(int column, int row) const {
+    return members_[std::size_t(row * Interleaving::kPeriod + column)];
+  }
+
+ private:
+  std::vector<std::vector<Slice>> members_;
+};
+
+}  // namespace ssdo

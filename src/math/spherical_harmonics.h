@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Real orthonormal spherical harmonics up to order 4, after Ramamoorthi and Hanrahan 2001, An
+// Efficient Representation for Irradiance Environment Maps, and Sloan 2008, Stupid Spherical
+// Harmonics Tricks (without the sign (-1)^m of Condon and Shortley). Function l, m is at
+// l * l + l + m; negative m are the sines of the azimuth.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+
+namespace ssdo {
+
+constexpr int kShOrder = 4;
+constexpr int kShCount = (kShOrder + 1) * (kShOrder + 1);
+
+/// How many functions the orders 0..order have.
+constexpr int sh_count(int order) { return (order + 1) * (order + 1); }
+
+/// What the clamped cosine over pi leaves of each band: A_l / pi in the paper. Odd bands above 1
+/// have no irradiance at all, and what band 6 has is 1/64.
+constexpr std::array<float, kShOrder + 1> kCosineFactors = {1, 2.0f / 3, 0.25f, 0, -1.0f / 24};
+
+/// What the lobe max(0, cos - edge), scaled to an integral of 1, leaves of each band; edge in
+/// [-1, 1). Edge 0 gives kCosineFactors.
+std::array<double, kShOrder + 1> sh_lobe_factors(double edge);
+
+/// What makes the polynomials in sh_basis orthonormal over the sphere.
+constexpr std::array<float, kShCount> kShConstants = {
+    0.2820947918f, 0.4886025119f, 0.4886025119f, 0.4886025119f, 1.0925484306f,
+    1.0925484306f, 0.3153915653f, 1.0925484306f, 0.5462742153f, 0.5900435899f,
+    2.8906114426f, 0.4570457995f, 0.3731763326f, 0.4570457995f, 1.4453057213f,
+    0.5900435899f, 2.5033429418f, 1.7701307698f, 0.9461746958f, 0.6690465436f,
+    0.1057855469f, 0.6690465436f, 0.4730873479f, 1.7701307698f, 0.6258357354f};
+
+/// All functions in the unit direction `d`.
+inline std::array<float, kShCount> sh_basis(const glm::vec3& d) {
+  const float x = d.x, y = d.y, z = d.z;
+  const float xx = x * x, yy = y * y, zz = z * z;
+  // Cosine and sine of m times the azimuth, times sin(polar)^m; sin2 is half of it.
+  const float cos2 = xx - yy, sin2 = x * y;
+  const float cos3 = x * (xx - 3 * yy), sin3 = y * (3 * xx - yy);
+  const std::array<float, kShCount> polynomials = {1,
+                                                   y,
+                                                   z,
+                                                   x,
+                                                   sin2,
+                                                   y * z,
+                                                   3 * zz - 1,
+                                                   x * z,
+                                                   cos2,
+                                                   sin3,
+                                                   sin2 * z,
+                                                   y * (5 * zz - 1),
+                                                   z * (5 * zz - 3),
+                                                   x * (5 * zz - 1),
+                                                   cos2 * z,
+                                                   cos3,
+                                                   sin2 * cos2,
+                                                   sin3 * z,
+                                                   sin2 * (7 * zz - 1),
+                                                   y * z * (7 * zz - 3),
+                                                   zz * (35 * zz - 30) + 3,
+                                                   x * z * (7 * zz - 3),
+                                                   cos2 * (7 * zz - 1),
+                                                   cos3 * z,
+                                                   x * cos3 - y * sin3};
+  std::array<float, kShCount> basis;
+  for (int i = 0; i < kShCount; ++i) basis[i] = kShConstants[i] * polynomials[i];
+  return basis;
+}
+
+}  // namespace ssdo

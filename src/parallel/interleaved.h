@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+
+namespace ssdo {
+
+/// Where the pixels of a picture lie when every row is stored as four rows of every fourth pixel.
+/// Pixels that are four apart then are neighbours in memory, and the same offset from each of them
+/// leads to neighbours again: a whole vector of pixels reads its samples with one load.
+///
+/// Rows are padded by kPad entries on both sides, so that a vector of which one lane lies in the
+/// picture may be read whole.
+class Interleaving {
+ public:
+  static constexpr int kPeriod = 4;
+  static constexpr int kPad = 16;  ///< the widest vector
+
+  /// `phase` is the column of the display window that the first pixel has, modulo kPeriod.
+  Interleaving(int width, int height, int phase)
+      : width_(width),
+        height_(height),
+        phase_(phase),
+        columns_((width + phase + kPeriod - 1) / kPeriod),
+        stride_((columns_ + kPad - 1) / kPad * kPad + 2 * kPad) {}
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int phase() const { return phase_; }
+  int columns() const { return columns_; }  ///< entries of each of the four rows
+  std::ptrdiff_t stride() const { return stride_; }
+  std::size_t size() const { return std::size_t(stride_) * std::size_t(height_) * kPeriod; }
+
+  /// Index of entry `column` of the row that holds every fourth pixel of row `y` from `comb` on.
+  std::ptrdiff_t index(int y, int comb, int column) const {
+    return (std::ptrdiff_t(y) * kPeriod + comb) * stride_ + kPad + column;
+  }
+  /// Index of a pixel.
+  std::ptrdiff_t index(int x, int y) const {
+    const int shifted = x + phase_;
+    return index(y, shifted & (kPeriod - 1), shifted >> 2);
+  }
+
+ private:
+  int width_, height_, phase_, columns_;
+  std::ptrdiff_t stride_;
+};
+
+/// Values of a picture in that order, not initialised.
+class InterleavedPlane {
+ public:
+  InterleavedPlane() = default;
+  explicit InterleavedPlane(const Interleaving& layout)
+      : values_(std::make_unique_for_overwrite<float[]>(layout.size())) {}
+
+  float* data() { return values_.get(); }
+  const float* data() const { return values_.get(); }
+  float& operator[](std::ptrdiff_t i) { return values_[std::size_t(i)]; }
+  float operator[](std::ptrdiff_t i) const { return values_[std::size_t(i)]; }
+
+  /// Sets a whole row, with what is outside the picture.
+  void fill_row(const Interleaving& layout, int y, float value) {
+    float* first = data() + layout.index(y, 0, -Interleaving::kPad);
+    std::fill(first, first + Interleaving::kPeriod * layout.stride(), value);
+  }
+
+ private:
+  std::unique_ptr<float[]> values_;
+};
+
+}  // namespace ssdo

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// One depth layer does not know how thick things are, nor what they cover, and that is the largest
+// error of all screen-space light: an order above sampling noise. Two guesses, both from runs of
+// pixels along a line of the frame that lie on one surface:
+//
+// - Things are as thick as they are wide. The width at a pixel is the least length, in space, of
+//   the runs through it in four directions (rows, columns, diagonals). A run that ends where
+//   something nearer begins tells only how much of the thing is seen: it counts kPartlySeen times;
+//   one with both ends covered, or at the frame's border, tells nothing. So walls and grounds are
+//   endless, blades of grass are thin, and a box is as deep as it is wide.
+//
+// - What is covered goes on behind. Where a run ends and something farther begins, the farther
+//   surface continues behind the run as its tangent plane. Each pixel takes the surface that
+//   reaches it from the nearest end of its runs.
+//
+// Measured against path-traced occlusion on the seven frames that this was developed with: see the
+// man page, ACCURACY.
+#include "scene/hidden_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "parallel/tiles.h"
+
+namespace ssdo {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Neighbours are on one surface when neither lies farther than this from the other's tangent
+/// plane, in pixel footprints.
+constexpr float kGap = 4;
+
+/// What a run that is covered at one end counts for.
+constexpr float kPartlySeen = 3;
+
+/// The lines of pixels in one of four directions.
+struct Direction {
+  int dx, dy;
+};
+constexpr Direction kDirections[] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
+
+/// How a pixel meets a neighbour.
+enum class Meets : unsigned char { same_surface, ends, covered, border };
+
+/// Pixels (x, y), (x + dx, y + dy), ... of one surface, and what is before and after them.
+struct Run {
+  int x, y, length;
+  Direction direction;
+  Meets before, after;
+
+  int x_at(int i) const { return x + i * direction.dx; }
+  int y_at(int i) const { return y + i * direction.dy; }
+  float step_px() const { return direction.dx != 0 && direction.dy != 0 ? 1.41421356f : 1.0f; }
+};
+
+class Runs {
+ public:
+  explicit Runs(const Geometry& geometry)
+      : geometry_(geometry),
+        per_pixel_(float(1 / std::min(geometry.camera.fx, geometry.camera.fy))) {}
+
+  /// Calls `work(run)` for all runs of one direction. Runs do not overlap.
+  template <class Work>
+  void for_each(const Direction& direction, const Work& work) const {
+    const int w = geometry_.surfel.width, h = geometry_.surfel.height;
+    // Every line begins in the first row, or in the column that it comes from.
+    const int in_first_row = direction.dy == 0 ? 0 : w;
+    const int in_first_column = direction.dx == 0 ? 0 : direction.dy == 0 ? h : h - 1;
+    for_each_row(in_first_row + in_first_column, [&](int line) {
+      if (line < in_first_row) return walk(line, 0, direction, work);
+      const int row = line - in_first_row + (direction.dy == 0 ? 0 : 1);
+      walk(direction.dx > 0 ? 0 : w - 1, row, direction, work);
+    });
+  }
+
+  /// Width of what a pixel shows, in scene units.
+  float footprint(const Surfel& s) const {
+    return geometry_.camera.orthographic ? per_pixel_ : -s.position.z * per_pixel_;
+  }
+
+  bool contains(int x, int y) const {
+    return x >= 0 && y >= 0 && x < geometry_.surfel.width && y < geometry_.surfel.height;
+  }
+
+ private:
+  template <class Work>
+  void walk(int x, int y, const Direction& d, const Work& work) const {
+    Meets before = Meets::border;
+    while (contains(x, y)) {
+      if (geometry_.surfel(x, y).position.w == 0) {
+        before = Meets::ends;
+        x += d.dx, y += d.dy;
+        continue;
+      }
+      Run run{x, y, 1, d, before, Meets::border};
+      for (;; ++run.length) {
+        const int next_x = x + d.dx, next_y = y + d.dy;
+        run.after = contains(next_x, next_y)
+                        ? meet(geometry_.surfel(x, y), geometry_.surfel(next_x, next_y))
+                        : Meets::border;
+        x = next_x, y = next_y;
+        if (run.after != Meets::same_surface) break;
+      }
+      work(run);
+      before = run.after == Meets::ends ? Meets::covered : Meets::ends;
+    }
+  }
+
+  Meets meet(const Surfel& a, const Surfel& b) const {
+    if (b.position.w == 0) return Meets::ends;
+    const glm::vec3 step(b.position - a.position);
+    const float gap = std::max(std::abs(glm::dot(step, glm::vec3(a.normal))),
+                               std::abs(glm::dot(step, glm::vec3(b.normal))));
+    if (gap <= kGap * std::min(footprint(a), footprint(b))) return Meets::same_surface;
+    return a.position.z > b.position.z ? Meets::ends : Meets::covered;
+  }
+
+  const Geometry& geometry_;
+  float per_pixel_;  ///< footprint per unit of depth
+};
+
+float width_of(const Run& run, const Geometry& geometry, const Runs& runs) {
+  const int unknown_ends = (run.before != Meets::ends) + (run.after != Meets::ends);
+  if (unknown_ends == 2) return kInfinity;
+  const Surfel& first = geometry.surfel(run.x, run.y);
+  const Surfel& last = geometry.surfel(run.x_at(run.length - 1), run.y_at(run.length - 1));
+  const float between = glm::distance(glm::vec3(first.position), glm::vec3(last.position));
+  const float ends = 0.5f * run.step_px() * (runs.footprint(first) + runs.footprint(last));
+  return (between + ends) * (unknown_ends == 1 ? kPartlySeen : 1.0f);
+}
+
+/// Continues the surface beyond one end of a run behind it. `distance_px` holds how far away the
+/// surface is that each pixel has so far.
+void continue_behind(const Run& run, bool at_start, const Geometry& geometry, const Runs& runs,
+                     Plane<float>& distance_px, HiddenGeometry& out) {
+  if ((at_start ? run.before : run.after) != Meets::ends) return;
+  const int beyond = at_start ? -1 : run.length;
+  const int source_x = run.x_at(beyond), source_y = run.y_at(beyond);
+  if (!runs.contains(source_x, source_y)) return;
+  const std::size_t source = geometry.surfel.index(source_x, source_y);
+  if (!geometry.is_surface(source)) return;
+  const glm::vec3 point(geometry.surfel[source].position), normal(geometry.surfel[source].normal);
+  for (int k = 0; k < run.length; ++k) {
+    const int i = at_start ? k : run.length - 1 - k;
+    const std::size_t pixel = geometry.surfel.index(run.x_at(i), run.y_at(i));
+    const float away_px = float(k + 1) * run.step_px();
+    if (away_px >= distance_px[pixel]) continue;
+    const glm::vec3 front(geometry.surfel[pixel].position);
+    const glm::vec3 along =
+        geometry.camera.orthographic ? glm::vec3(0, 0, -1) : glm::normalize(front);
+    const float depth = glm::dot(normal, point - front) / glm::dot(normal, along);
+    if (!(depth > 0 && depth < kInfinity)) continue;
+    distance_px[pixel] = away_px;
+    out.behind[pixel] = depth;
+    out.behind_source[pixel] = int(source);
+  }
+}
+
+}  // namespace
+
+HiddenGeometry constant_thickness(const Geometry& geometry, float thickness) {
+  return {Plane<float>(geometry.surfel.width, geometry.surfel.height, thickness), {}, {}};
+}
+
+HiddenGeometry find_hidden_geometry(const Geometry& geometry) {
+  const int w = geometry.surfel.width, h = geometry.surfel.height;
+  HiddenGeometry out{Plane<float>(w, h, kInfinity), Plane<float>(w, h, kInfinity),
+                     Plane<int>(w, h, -1)};
+  const Runs runs(geometry);
+  Plane<float> distance_px(w, h, kInfinity);
+  for (const Direction& direction : kDirections) {
+    runs.for_each(direction, [&](const Run& run) {
+      const float width = width_of(run, geometry, runs);
+      for (int i = 0; i < run.length; ++i) {
+        float& thickness = out.thickness(run.x_at(i), run.y_at(i));
+        thickness = std::min(thickness, width);
+      }
+      continue_behind(run, true, geometry, runs, distance_px, out);
+      continue_behind(run, false, geometry, runs, distance_px, out);
+    });
+  }
+  return out;
+}
+
+}  // namespace ssdo

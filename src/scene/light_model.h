@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "math/octahedral_map.h"
+#include "math/spherical_harmonics.h"
+#include "scene/environment.h"
+#include "scene/sun.h"
+
+namespace ssdo {
+
+/// A model keeps the smallest order that misses no more than this of the smoothed environment.
+constexpr double kLightResidual = 0.02;
+
+/// What an estimator needs to know about the environment, in camera space.
+struct LightModel {
+  std::vector<Sun> suns;  ///< strongest first, at most 4
+
+  /// Of the radiance without the suns, by spherical harmonic. All orders are filled.
+  std::array<glm::vec3, kShCount> coefficients{};
+
+  int order = 0;  ///< 0..4: bands above it are not worth computing
+
+  /// Share that each band has of the energy without the suns: the brightness squared, over the
+  /// sphere, seen in patches of 1.4 degrees. Zeros for a black map.
+  std::array<double, kShOrder + 1> band_energy{};
+
+  /// For each order, what the bands above it hold: RMS over directions and channels after a blur
+  /// by a lobe as wide as a cone of 30 degrees about its axis, relative to the mean brightness.
+  std::array<double, kShOrder + 1> residuals{};
+  double residual() const { return residuals[order]; }
+
+  /// Unoccluded irradiance over pi without the suns, by normal. From the map, not from the bands.
+  OctahedralMap irradiance{2};
+};
+
+/// Errors: none; maps that are black or have negative texels give finite models.
+LightModel model_light(const Environment& environment, const glm::mat3& world_to_camera);
+
+}  // namespace ssdo
