@@ -19,74 +19,9 @@ namespace ssdo {
 namespace {
 
 constexpr int kPeriod = Interleaving::kPeriod;
-constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
 /// A shadow's edge shows single steps, where slices average them.
 constexpr int kSunSteps = 2;
-
-/// What is endless, in the units of MarchScene: within 1e-4 of the direction of the view ray.
-constexpr float kEndlessShare = 1e4f, kEndlessLength = 1e15f;
-
-template <class Value>
-BorderValues border_values(int width, int height, const Value& value) {
-  BorderValues values;
-  for (int y : {0, height - 1})
-    for (int x = 0; x < width; ++x) values.push_back(value(x, y));
-  for (int x : {0, width - 1})
-    for (int y = 0; y < height; ++y) values.push_back(value(x, y));
-  return values;
-}
-
-MarchScene make_scene(const Geometry& g, const HiddenGeometry* hidden) {
-  const bool orthographic = g.camera.orthographic;
-  const Interleaving layout(g.surfel.width, g.surfel.height, g.window.x0 & (kPeriod - 1));
-  const auto plane = [&] { return InterleavedPlane(layout); };
-  MarchScene scene{layout,  orthographic, float(g.camera.fx), float(g.camera.fy),
-                   plane(), plane(),      plane(),            plane(),
-                   plane(), plane(),      plane(),            plane(),
-                   plane(), plane(),      {},                 {}, {}};
-  const float endless = orthographic ? kEndlessLength : kEndlessShare;
-  for_each_row(g.surfel.height, [&](int y) {
-    for (InterleavedPlane* p : {&scene.x, &scene.y, &scene.z, &scene.nx, &scene.ny, &scene.nz,
-                                &scene.rounding, &scene.thickness, &scene.behind,
-                                &scene.behind_thickness}) {
-      p->fill_row(layout, y, kNothing);
-    }
-    for (int x = 0; x < g.surfel.width; ++x) {
-      const std::size_t from = g.surfel.index(x, y);
-      if (!g.is_surface(from)) continue;
-      const Surfel& s = g.surfel[from];
-      const std::ptrdiff_t i = layout.index(x, y);
-      scene.x[i] = s.position.x, scene.y[i] = s.position.y, scene.z[i] = s.position.z;
-      scene.nx[i] = s.normal.x, scene.ny[i] = s.normal.y, scene.nz[i] = s.normal.z;
-      scene.rounding[i] = s.normal.w;
-      scene.thickness[i] = endless;
-      if (!hidden) continue;
-      const float distance = orthographic ? 1.0f : glm::length(glm::vec3(s.position));
-      scene.thickness[i] = std::min(hidden->thickness[from] / distance, endless);
-      if (hidden->behind.empty() || hidden->behind_source[from] < 0) continue;
-      scene.behind[i] = std::min(hidden->behind[from] / distance, endless);
-      const float distance_behind = orthographic ? 1.0f : distance * (1 + scene.behind[i]);
-      scene.behind_thickness[i] =
-          std::min(hidden->thickness[std::size_t(hidden->behind_source[from])] / distance_behind,
-                   endless);
-    }
-  });
-  for (int c = 0; c < 3; ++c) {
-    const auto of_surfaces = [&](const glm::vec4 Surfel::* member) {
-      return border_values(g.surfel.width, g.surfel.height, [&](int x, int y) {
-        const Surfel& s = g.surfel(x, y);
-        return s.position.w == 0 ? kNothing : (s.*member)[c];
-      });
-    };
-    scene.border_position[c] = of_surfaces(&Surfel::position);
-    scene.border_normal[c] = of_surfaces(&Surfel::normal);
-  }
-  scene.border_thickness = border_values(g.surfel.width, g.surfel.height, [&](int x, int y) {
-    return hidden ? std::min(hidden->thickness(x, y), kEndlessLength) : kEndlessLength;
-  });
-  return scene;
-}
 
 /// One colour for each pixel, in the order of the march.
 InterleavedColor make_color(const Interleaving& layout) {
@@ -116,7 +51,7 @@ class Bitmask {
  public:
   explicit Bitmask(const EstimateInput& in)
       : in_(in),
-        scene_(make_scene(in.geometry, in.hidden)),
+        scene_(make_march_scene(in.geometry, in.hidden)),
         layout_(scene_.layout),
         pattern_(layout_, in.geometry.display, in.slices, in.steps, in.seed),
         march_{scene_, pattern_, in.geometry.window.y0, in.radius, in.extend_offscreen} {

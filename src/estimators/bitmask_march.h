@@ -4,34 +4,13 @@
 #include <array>
 #include <vector>
 
+#include "estimators/march_scene.h"
 #include "estimators/slice_pattern.h"
 #include "parallel/interleaved.h"
 
 namespace ssdo {
 
 using InterleavedColor = std::array<InterleavedPlane, 3>;
-
-/// Values of the pixels at the frame's border: its first row, its last row, its first column, its
-/// last column.
-using BorderValues = std::vector<float>;
-
-/// The frame as a march reads it. Planes are not-a-number where there is nothing.
-///
-/// Depths behind something are a share of its distance to the viewer, or a length in scene units
-/// where the camera is orthographic.
-struct MarchScene {
-  Interleaving layout;
-  bool orthographic;
-  float fx, fy;  ///< pixels per unit of slope, or per scene unit
-  InterleavedPlane x, y, z;     ///< position, camera space
-  InterleavedPlane nx, ny, nz;  ///< unit normal
-  InterleavedPlane rounding;    ///< distance by which storing P may have moved it
-  InterleavedPlane thickness;   ///< from the front to the back
-  InterleavedPlane behind;      ///< from the front to the surface that it covers
-  InterleavedPlane behind_thickness;
-  BorderValues border_position[3], border_normal[3];
-  BorderValues border_thickness;  ///< in scene units
-};
 
 /// What all marches share.
 struct March {

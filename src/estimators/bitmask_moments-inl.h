@@ -77,29 +77,29 @@ struct Moments {
   static constexpr int kGroups = 4;  ///< of eight sectors: each group is one direction
 
   V open = hn::Zero(D()), whole = hn::Zero(D());
-  V visible[kCount], all[kCount];
+  V visible[kCount], hidden[kCount];
 
   HWY_INLINE Moments() {
-    for (int i = 0; kOrder > 0 && i < kCount; ++i) visible[i] = all[i] = hn::Zero(D());
+    for (int i = 0; kOrder > 0 && i < kCount; ++i) visible[i] = hidden[i] = hn::Zero(D());
   }
 
-  HWY_INLINE void add(const Receiver& p, const Half& half, VU hidden, V slice_weight, float phase) {
+  HWY_INLINE void add(const Receiver& p, const Half& half, VU bits, V slice_weight, float phase) {
     const D d;
     const V weight = slice_weight * half.measure;
     whole = hn::MulAdd(weight, hn::Set(d, kSectors), whole);
-    open = hn::MulAdd(weight, hn::Set(d, kSectors) - hwy_count(hidden), open);
-    if constexpr (kOrder > 0) add_directions(p, half, hidden, weight, phase);
+    open = hn::MulAdd(weight, hn::Set(d, kSectors) - hn::ConvertTo(d, hn::BitCast(DI(), hn::PopulationCount(bits))), open);
+    if constexpr (kOrder > 0) add_directions(p, half, bits, weight, phase);
   }
 
-  /// The part of the light with these weights that is visible. Both sums run over the same
-  /// directions, so that their noise cancels: what is open has all of it.
+  /// The part of the light with these weights that is visible. Part and whole are sums over the
+  /// same directions, so that their noise cancels: what is open has all of it.
   HWY_INLINE V share_of_light(const float* light, V otherwise) const {
     const D d;
     V part = hn::Zero(d), total = hn::Zero(d);
     for (int i = 0; i < kCount; ++i) {
       const V l = hn::Set(d, light[i]);
       part = hn::MulAdd(l, visible[i], part);
-      total = hn::MulAdd(l, all[i], total);
+      total = hn::MulAdd(l, visible[i] + hidden[i], total);
     }
     const V share = hn::Clamp(part / total, hn::Zero(d), hn::Set(d, 1.0f));
     return hn::IfThenElse(total > hn::Zero(d), share, otherwise);
@@ -109,15 +109,13 @@ struct Moments {
     Moments rest = *this;
     for (int i = 0; i < kCount; ++i) {
       rest.visible[i] = visible[i] - other.visible[i];
-      rest.all[i] = all[i] - other.all[i];
+      rest.hidden[i] = hidden[i] - other.hidden[i];
     }
     return rest;
   }
 
  private:
-  static HWY_INLINE V hwy_count(VU bits) { return HWY_NAMESPACE::count(bits); }
-
-  HWY_INLINE void add_directions(const Receiver& p, const Half& half, VU hidden, V weight,
+  HWY_INLINE void add_directions(const Receiver& p, const Half& half, VU bits, V weight,
                                  float phase) {
     const D d;
     const DI di;
@@ -129,7 +127,7 @@ struct Moments {
                       hn::Zero(d), hn::Set(d, SectorDirections::kAngles - 1.0f)));
     const auto row_start = hn::ShiftLeft<6>(row);
     static_assert(SectorDirections::kShares == 64);
-    const ByteCounts counts = count_bytes(hidden);
+    const ByteCounts counts = count_bytes(bits);
     // `number` sectors of group g, whose places have the sum `places`.
     const auto direction = [&](int g, V number, V places) HWY_ATTR {
       struct Direction {
@@ -155,11 +153,10 @@ struct Moments {
         const auto to = direction(g, eight - number, all_places - places);
         const V share = weight * (eight - number);
         add_basis<kOrder>(to.x, to.y, to.z, share, visible);
-        add_basis<kOrder>(to.x, to.y, to.z, share, all);
       }
       if (!hn::AllFalse(d, number > hn::Zero(d))) {
         const auto to = direction(g, number, places);
-        add_basis<kOrder>(to.x, to.y, to.z, weight * number, all);
+        add_basis<kOrder>(to.x, to.y, to.z, weight * number, hidden);
       }
     }
   }

@@ -15,16 +15,29 @@ constexpr int kPeriod = Interleaving::kPeriod;
 /// An ordering of the 4 x 4 pattern in which neighbours are far apart (Bayer's matrix, 1973).
 constexpr int kOrder[kPeriod * kPeriod] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
 
-/// Distances grow geometrically; `start` in 0..1 places each of them in its stratum.
-SliceSide make_side(const Interleaving& layout, int comb, double dx, double dy, int steps,
+/// From this distance on every sixteenth pixel serves all members of the pattern: one in each block
+/// of 4 x 4. Of the whole frame these are few enough to stay in the cache, where the pixels that
+/// each member would choose for itself come from memory every time.
+constexpr double kFar = 64;
+
+/// The whole number nearest to `x` that leads from `place` to the middle of a block.
+int to_block(double x, int place) {
+  const int middle = kPeriod / 2;
+  return int(std::lround((x + place - middle) / kPeriod)) * kPeriod + middle - place;
+}
+
+/// The side that starts at column `comb` and row `line` of a block. Distances grow geometrically;
+/// `start` in 0..1 places each of them in its stratum.
+SliceSide make_side(const Interleaving& layout, int comb, int line, double dx, double dy, int steps,
                     double diagonal, double start, float phase) {
   SliceSide side;
   side.phase = phase;
   for (int i = 0; i < steps; ++i) {
     const double distance = std::pow(diagonal, (i + start) / steps);
     SliceStep step;
-    step.dx = int(std::lround(distance * dx));
-    step.dy = int(std::lround(distance * dy));
+    const bool far = distance >= kFar;
+    step.dx = far ? to_block(distance * dx, comb) : int(std::lround(distance * dx));
+    step.dy = far ? to_block(distance * dy, line) : int(std::lround(distance * dy));
     const bool repeated = !side.steps.empty() && side.steps.back().dx == step.dx &&
                           side.steps.back().dy == step.dy;
     if (repeated || (step.dx == 0 && step.dy == 0)) continue;
@@ -59,7 +72,7 @@ SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, in
         for (int s = 0; s < 2; ++s) {
           const double n = (kOrder[member] * slices + k) * 2 + s;
           const double sign = s == 0 ? 1 : -1;
-          slice.sides[s] = make_side(layout, column, sign * slice.dx, sign * slice.dy, steps,
+          slice.sides[s] = make_side(layout, column, row, sign * slice.dx, sign * slice.dy, steps,
                                      diagonal, fraction(start1 + n * kR2First),
                                      float(fraction(start2 + n * kR2Second)));
         }

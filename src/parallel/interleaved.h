@@ -12,7 +12,8 @@ namespace ssdo {
 /// leads to neighbours again: a whole vector of pixels reads its samples with one load.
 ///
 /// Rows are padded by kPad entries on both sides, so that a vector of which one lane lies in the
-/// picture may be read whole.
+/// picture may be read whole. The length of a row is an odd number of cache lines: at a power of two,
+/// pixels below each other would share a few places of the cache.
 class Interleaving {
  public:
   static constexpr int kPeriod = 4;
@@ -24,7 +25,7 @@ class Interleaving {
         height_(height),
         phase_(phase),
         columns_((width + phase + kPeriod - 1) / kPeriod),
-        stride_((columns_ + kPad - 1) / kPad * kPad + 2 * kPad) {}
+        stride_((((columns_ + kPad - 1) / kPad + 2) | 1) * kPad) {}
 
   int width() const { return width_; }
   int height() const { return height_; }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/light_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
+#include <memory>
 
 #include "parallel/tiles.h"
 
@@ -67,6 +69,20 @@ class Sky {
   std::vector<Block> blocks_;
 };
 
+/// Each texel of a small map as several: seen as points, large texels would fill bands that they
+/// do not have.
+Environment refined(const Environment& environment) {
+  const Plane<glm::vec3>& map = *environment.map();
+  const int across = std::max(1, kBandColumns / map.width);
+  const int down = std::max(1, kBandColumns / 2 / map.height);
+  if (across == 1 && down == 1) return environment;
+  auto fine = std::make_shared<Plane<glm::vec3>>(map.width * across, map.height * down);
+  for (int y = 0; y < fine->height; ++y) {
+    for (int x = 0; x < fine->width; ++x) (*fine)(x, y) = map(x / across, y / down);
+  }
+  return Environment(fine, environment.frame());
+}
+
 /// The bands first..last of the model in direction `d`.
 glm::vec3 bands(const LightModel& model, const glm::vec3& d, int first, int last) {
   const std::array<float, kShCount> basis = sh_basis(d);
@@ -121,7 +137,9 @@ void measure_residuals(const std::vector<Patch>& patches, const Sky& sky, LightM
     for (const auto& node : squares) sum += node[l];
     model.residuals[l] = std::sqrt(sum / kResidualNodes) / mean;
   }
-  while (model.order < kShOrder && model.residual() > kLightResidual) ++model.order;
+  const double bound =
+      model.residuals[kShOrder] <= kBandLimited ? kBandLimited : kLightResidual;
+  while (model.order < kShOrder && model.residual() > bound) ++model.order;
 }
 
 /// max(0, x) is (x + |x|) / 2. The first half sees band 1 alone. The second is the same for
@@ -169,7 +187,7 @@ LightModel model_light(const Environment& environment, const glm::mat3& world_to
   SunsAndRest parts = take_suns(environment);
   model.suns = std::move(parts.suns);
   for (Sun& sun : model.suns) sun.direction = world_to_camera * sun.direction;
-  const Environment& rest = parts.rest;
+  const Environment rest = refined(parts.rest);
   project(rest.patches(world_to_camera, kBandColumns), model);
   const std::vector<Patch> patches = rest.patches(world_to_camera, kLobeColumns);
   const Sky sky(patches);

@@ -13,8 +13,10 @@
 
 namespace ssdo {
 
-/// A model keeps the smallest order that misses no more than this of the smoothed environment.
-constexpr double kLightResidual = 0.02;
+/// A light that some order holds but for this share of it counts as limited to these bands, and
+/// keeps them all. Else a model keeps the smallest order that misses no more than kLightResidual:
+/// on seven frames lit by four maps, direct light with order 4 is no closer to a path tracer.
+constexpr double kBandLimited = 0.005, kLightResidual = 0.1;
 
 /// What an estimator needs to know about the environment, in camera space.
 struct LightModel {

@@ -7,6 +7,7 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/trigonometric.hpp>
 #include <glm/vec2.hpp>
+#include <memory>
 #include <optional>
 
 namespace ssdo {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "bitmask_request.h"
+#include "estimators/bitmask_request.h"
 
 namespace ssdo::test {
 namespace {
@@ -54,7 +54,7 @@ TEST(BitmaskClosedForms, BesideAWall) {
 TEST(BitmaskClosedForms, BesideAWallOffTheAxis) {
   const Formula wall = [](const glm::dvec3& p) { return 1 - disc_segment(-p.y); };
   for (const double x : {0.1, 0.4}) {
-    for (const glm::dvec2 slope : {glm::dvec2(1, 0), {-1, 0}, {0, 1}, {0, -1}, {0.7, -0.7}}) {
+    for (const glm::dvec2& slope : {glm::dvec2(1, 0), {-1, 0}, {0, 1}, {0, -1}, {0.7, -0.7}}) {
       const Camera camera = off_axis(pinhole(45, {0, -x, 0}, 9), kWindow, slope);
       expect_closed_form(fmt::format("wall, x/R {}, slope {:g} {:g}", x, slope.x, slope.y),
                          floor_and_wall(), camera, {}, wall);
@@ -98,7 +98,7 @@ TEST(BitmaskClosedForms, InACorner) {
   const Formula corner = [](const glm::dvec3& p) {
     return 1 - disc_segment(-p.x) - disc_segment(-p.y) + both_segments(-p.x, -p.y);
   };
-  for (const glm::dvec2 x : {glm::dvec2(0.08, 0.08), {0.3, 0.3}, {0.2, 0.6}, {0.65, 0.65}}) {
+  for (const glm::dvec2& x : {glm::dvec2(0.08, 0.08), {0.3, 0.3}, {0.2, 0.6}, {0.65, 0.65}}) {
     const glm::dvec3 at(-x, 0), from = at + glm::dvec3(-3, -3, 4);
     const std::string name = fmt::format("corner, {} and {} from its walls", x.x, x.y);
     expect_closed_form(name, scene,

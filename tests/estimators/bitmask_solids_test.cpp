@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "bitmask_request.h"
+#include "estimators/bitmask_request.h"
 
 namespace ssdo::test {
 namespace {
@@ -57,7 +57,7 @@ void expect_ball(const std::string& name, const Ball& ball, const Camera& camera
 
 TEST(BitmaskSolids, ASphereHidesItsFormFactor) {
   for (const double lift : {0.0, 0.3}) {
-    for (const glm::dvec2 place : {glm::dvec2(0, 0.6), {0.6, 0}, {-0.4, 0.6}}) {
+    for (const glm::dvec2& place : {glm::dvec2(0, 0.6), {0.6, 0}, {-0.4, 0.6}}) {
       const Ball ball{glm::dvec3(place, 0.4 + lift), 0.4};
       for (const double tilt : {15.0, 45.0}) {
         const std::string name = fmt::format("sphere at {:g} {:g}, lifted {:g}, tilt {:g}", place.x,

@@ -39,9 +39,9 @@ Environment paint(int width, const std::function<glm::vec3(const glm::vec3&)>& r
 /// A disc of one degree in a sky that darkens towards the ground.
 const glm::vec3 kSunDirection = glm::normalize(glm::vec3(0.6f, -0.3f, 0.5f));
 const float kSunRadius = glm::radians(1.0f);
+glm::vec3 clear(const glm::vec3& d) { return (1.2f + d.z) * glm::vec3(0.3f, 0.4f, 0.6f); }
 glm::vec3 sunny(const glm::vec3& d) {
-  const glm::vec3 sky = (1.2f + d.z) * glm::vec3(0.3f, 0.4f, 0.6f);
-  return glm::distance(d, kSunDirection) < kSunRadius ? glm::vec3(3000, 2500, 2000) : sky;
+  return glm::distance(d, kSunDirection) < kSunRadius ? glm::vec3(3000, 2500, 2000) : clear(d);
 }
 
 /// One function of band `l` on a mean of 1.
@@ -54,7 +54,7 @@ Environment single_band(int index, float amplitude) {
 TEST(LightModel, ConstantNeedsOneCoefficient) {
   const glm::vec3 color(0.25f, 1, 4);
   for (const Environment& env :
-       {Environment::constant(color), paint(100, [&](const glm::vec3&) { return color; })}) {
+       {Environment::constant(color), paint(6, [&](const glm::vec3&) { return color; })}) {
     const LightModel model = model_light(env, glm::mat3(1));
     EXPECT_TRUE(model.suns.empty());
     EXPECT_EQ(model.order, 0);
@@ -93,14 +93,18 @@ TEST(LightModel, SunAndRestAreTheWhole) {
 
 TEST(LightModel, FindsADisc) {
   for (const int width : {128, 512}) {
-    const LightModel model = model_light(paint(width, sunny, 2048 / width), glm::mat3(1));
+    const Environment env = paint(width, sunny, 2048 / width);
+    const LightModel model = model_light(env, glm::mat3(1));
     ASSERT_EQ(model.suns.size(), 1u) << width;
     const Sun& sun = model.suns[0];
     EXPECT_LT(glm::degrees(glm::distance(sun.direction, kSunDirection)), 0.3) << width;
-    const double share = kSunRadius * kSunRadius;  // of a disc over pi
-    const glm::vec3 excess = sunny(kSunDirection) - sunny(kSunDirection * 0.9f);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(sun.irradiance[c] / (excess[c] * share), 1, 5e-3);
-    if (width == 512) EXPECT_NEAR(glm::degrees(sun.angular_radius), 1, 0.15);
+    // The painted disc has the steps of its samples: 2 % off its area, 0.5 % off what was painted.
+    EXPECT_NEAR(sun.irradiance.x / (3000 * kSunRadius * kSunRadius), 1, 0.02) << width;
+    const glm::vec3 painted = 4.0f * (env.mean() - paint(width, clear, 2048 / width).mean());
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(sun.irradiance[c] / painted[c], 1, 5e-3) << width;
+    if (width == 512) {
+      EXPECT_NEAR(glm::degrees(sun.angular_radius), 1, 0.15);
+    }
     EXPECT_GE(sun.angular_radius, kPi / float(width));
   }
 }
@@ -176,7 +180,7 @@ TEST(LightModel, StaysFiniteForAnyMap) {
              noise, black, negative, lobes}) {
       const LightModel model = model_light(paint(width, radiance), glm::mat3(1));
       for (const glm::vec3& c : model.coefficients) EXPECT_TRUE(std::isfinite(c.x + c.y + c.z));
-      for (const double share : model.band_energy) EXPECT_TRUE(share >= 0 && share < 1.1);
+      for (const double share : model.band_energy) EXPECT_TRUE(share >= 0 && share < 1.001);
       EXPECT_TRUE(std::isfinite(model.residual()));
       for (const Sun& sun : model.suns) {
         EXPECT_GE(std::min({sun.irradiance.x, sun.irradiance.y, sun.irradiance.z}), 0);

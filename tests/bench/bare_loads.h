@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "estimators/bitmask_march.h"
+
+namespace ssdo::bench {
+
+/// What march_visibility loads for every sample, and nothing else: the machine's limit for it.
+/// Gives the sum of all that was loaded.
+float bare_loads(const March& march, int x0, int x1, int y0, int y1);
+
+}  // namespace ssdo::bench

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Method bitmask and its filter on a synthetic frame: 200 spheres on a ground. Times are CPU time
+// of all threads; "ns/sample" counts the samples that a pixel can take, "x loads" is the ratio to
+// the same loads and nothing else, measured in the same run.
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
+#include <glm/gtc/constants.hpp>
+#include <map>
+
+#include "bench/bare_loads.h"
+#include "estimators/bitmask.h"
+#include "filters/geometry_filter.h"
+#include "parallel/isa.h"
+#include "scene/hidden_geometry.h"
+#include "support/analytic_scene.h"
+
+namespace ssdo::bench {
+namespace {
+
+using namespace test;
+
+/// Of the middle of the frame, in scene units.
+constexpr float kDepth = 11;
+
+const Geometry& frame_of(int width, int height) {
+  static std::map<int, Geometry> frames;
+  auto [it, added] = frames.try_emplace(width);
+  if (!added) return it->second;
+  // Rasterised by hand: a list of surfaces would be asked 200 times for each pixel.
+  std::vector<std::pair<glm::dvec3, double>> spheres;
+  for (int i = 0; i < 200; ++i) {
+    const double r = 0.1 + 0.4 * ((i * 37) % 100) / 100.0;
+    spheres.push_back({{-6 + 12 * ((i * 61) % 200) / 200.0, -4 + 12 * ((i * 113) % 200) / 200.0, r}, r});
+  }
+  const Window window{0, 0, width, height};
+  const Camera camera =
+      look_at(camera_from_fov(50, window, 1), {0, -10, 5}, {0, 0, 0}, {0, 0, 1});
+  const Surface ground = plane({}, {0, 0, 1});
+  it->second = geometry_of([&](const Ray& ray) -> std::optional<Hit> {
+    auto nearest = ground(ray);
+    for (const auto& [centre, radius] : spheres) {
+      const glm::dvec3 o = ray.origin - centre;
+      const double b = glm::dot(o, ray.direction), c = glm::dot(o, o) - radius * radius;
+      if (b * b < c) continue;
+      const double t = -b - std::sqrt(b * b - c);
+      if (t > 0 && (!nearest || t < nearest->distance))
+        nearest = Hit{t, (o + t * ray.direction) / radius};
+    }
+    return nearest;
+  }, camera, window);
+  return it->second;
+}
+
+std::shared_ptr<Plane<glm::vec3>> sky_with_a_sun() {
+  auto map = std::make_shared<Plane<glm::vec3>>(256, 128);
+  for (int y = 0; y < 128; ++y) {
+    for (int x = 0; x < 256; ++x) (*map)(x, y) = glm::vec3(0.4f, 0.6f, 1) * (y < 64 ? 1.0f : 0.2f);
+  }
+  (*map)(60, 30) = glm::vec3(8000);
+  return map;
+}
+
+void force_isa(const std::string& isa) {
+  setenv("SSDO_ISA", isa.c_str(), 1);
+  choose_isa();
+}
+
+/// Bare loads of the visibility pass in CPU seconds, on one thread.
+double bare_seconds(const Geometry& g, const HiddenGeometry& hidden, int slices, int steps) {
+  const MarchScene scene = make_march_scene(g, &hidden);
+  const SlicePattern pattern(scene.layout, g.display, slices, steps, 0);
+  const March march{scene, pattern, 0, INFINITY, true};
+  double best = 1e9;
+  for (int run = 0; run < 3; ++run) {
+    const std::clock_t start = std::clock();
+    benchmark::DoNotOptimize(bare_loads(march, 0, scene.layout.columns() * 4, 0, g.surfel.height));
+    best = std::min(best, double(std::clock() - start) / CLOCKS_PER_SEC);
+  }
+  return best;
+}
+
+struct Size {
+  const char* name;
+  int width, height;
+};
+constexpr Size kSizes[] = {{"1080p", 1920, 1080}, {"4K", 3840, 2160}, {"8K", 7680, 4320}};
+
+struct Job {
+  ProductSet products;
+  int slices, steps, bounces;
+  float radius_px;  ///< 0: no limit
+};
+
+void estimate(benchmark::State& state, const std::string& isa, const Size& size, const Job& job,
+              int threads) {
+  force_isa(isa);
+  const ThreadLimit limit(threads);
+  const Geometry& g = frame_of(size.width, size.height);
+  const HiddenGeometry hidden = find_hidden_geometry(g);
+  const Environment sky(sky_with_a_sun(), {});
+  const LightModel light = model_light(sky, g.world_to_camera);
+  const Plane<glm::vec3> albedo(size.width, size.height, glm::vec3(0.5f)), none;
+  const ParameterValues parameters;
+  const float radius =
+      job.radius_px > 0 ? job.radius_px * kDepth / float(g.camera.fy) : INFINITY;
+  EstimateInput in{g, albedo, none, sky, job.products, radius, job.bounces, 0, parameters, {}};
+  in.slices = job.slices, in.steps = job.steps, in.hidden = &hidden, in.light = &light;
+  for (auto _ : state) benchmark::DoNotOptimize(bitmask_method().estimate(in));
+  const double samples = double(g.surfel.size()) * job.slices * job.steps * 2;
+  using benchmark::Counter;
+  state.counters["ns/sample"] =
+      Counter(samples * 1e-9, Counter::kIsIterationInvariantRate | Counter::kInvert);
+  if (threads == 1 && size.width == 1920) {
+    state.counters["bare ns/sample"] =
+        bare_seconds(g, hidden, job.slices, job.steps) / samples * 1e9;
+  }
+}
+
+void filter(benchmark::State& state, const std::string& isa, const Size& size, int threads) {
+  force_isa(isa);
+  const ThreadLimit limit(threads);
+  const Geometry& g = frame_of(size.width, size.height);
+  Products products;
+  products.ao = Plane<float>(size.width, size.height, 0.5f);
+  products.bent = products.direct = products.bounce =
+      Plane<glm::vec3>(size.width, size.height, glm::vec3(0.5f));
+  for (auto _ : state) benchmark::DoNotOptimize(filter_geometry(products, g, 4));
+  using benchmark::Counter;
+  state.counters["ns/pixel"] =
+      Counter(double(g.surfel.size()) * 1e-9, Counter::kIsIterationInvariantRate | Counter::kInvert);
+}
+
+void hidden_geometry(benchmark::State& state, const Size& size) {
+  const ThreadLimit limit(1);
+  const Geometry& g = frame_of(size.width, size.height);
+  for (auto _ : state) benchmark::DoNotOptimize(find_hidden_geometry(g));
+}
+
+void add(const std::string& name, const auto& run) {
+  benchmark::RegisterBenchmark(name.c_str(), run)
+      ->Unit(benchmark::kMillisecond)
+      ->MeasureProcessCPUTime()
+      ->UseRealTime();
+}
+
+void add_all() {
+  const Job ao{{.ao = true}, 3, 12, 0, 0};
+  const Job standard{{.ao = true, .direct = true, .bounce = true, .bent = true}, 3, 12, 1, 0};
+  for (const std::string isa : {"avx512", "avx2", "scalar"}) {
+    for (const Size& size : kSizes) {
+      if (isa == "scalar" && size.width > 1920) continue;
+      for (const int threads : {1, 2}) {
+        const std::string where = isa + "/" + size.name + "/threads:" + std::to_string(threads);
+        add("ao/" + where, [=](auto& s) { estimate(s, isa, size, ao, threads); });
+        add("default/" + where, [=](auto& s) { estimate(s, isa, size, standard, threads); });
+        add("filter/" + where, [=](auto& s) { filter(s, isa, size, threads); });
+      }
+    }
+    for (const float radius : {32.0f, 128.0f, 512.0f}) {
+      Job limited = ao;
+      limited.radius_px = radius;
+      add("ao/" + isa + "/1080p/radius:" + std::to_string(int(radius)),
+          [=](auto& s) { estimate(s, isa, kSizes[0], limited, 1); });
+    }
+  }
+  add("hidden_geometry/1080p", [](auto& s) { hidden_geometry(s, kSizes[0]); });
+}
+
+}  // namespace
+}  // namespace ssdo::bench
+
+int main(int argc, char** argv) {
+  ssdo::bench::add_all();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+}
