@@ -36,10 +36,10 @@ struct LightOptions {
 /// Slices per pixel, and steps on each side of a slice out to the frame's diagonal.
 enum class Quality { draft, standard, final };
 constexpr int slices_of(Quality q) {
-  return q == Quality::draft ? 2 : q == Quality::standard ? 3 : 8;
+  return q == Quality::final ? 6 : 2;
 }
 constexpr int steps_of(Quality q) {
-  return q == Quality::draft ? 8 : q == Quality::standard ? 12 : 24;
+  return q == Quality::draft ? 10 : q == Quality::standard ? 24 : 48;
 }
 
 struct ModelOptions {

@@ -156,7 +156,7 @@ class Bitmask {
       job.directions[std::size_t(m)] = {to.x, to.y, to.z};
       const double start = fraction(rank * kR2Second);
       for (int i = 0; i < steps; ++i)
-        job.distances_px[std::size_t(m)].push_back(float(std::pow(diagonal, (i + start) / steps)));
+        job.distances_px[std::size_t(m)].push_back(float(march_distance((i + start) / steps, diagonal)));
     }
     for_each_block([&](int x0, int x1, int y0, int y1) { march_sun(job, x0, x1, y0, y1); });
     for_each_surface([&](std::size_t pixel, std::ptrdiff_t i) {

@@ -270,6 +270,7 @@ constexpr float kExtension = 3;
 struct Extension {
   V s, v, above, distance2;  ///< at the border
   V end_s, end_v, end_above;
+  V depth;  ///< from front to back at the border
   M exists;
 };
 
@@ -304,7 +305,13 @@ HWY_INLINE Extension extend(const March& march, const Receiver& p, const Half& h
   line_s = line_s * scale, line_v = line_v * scale;
   const V frame = hn::Set(d, kExtension * float(scene.layout.height()) / scene.fy);
   V length = kOrthographic ? frame : zero - frame * qz;
-  length = hn::Min(length, gather(scene.border_thickness) * hn::Set(d, widths));
+  const V thickness = gather(scene.border_thickness);
+  length = hn::Min(length, thickness * hn::Set(d, widths));
+  e.depth = thickness;
+  if constexpr (!kOrthographic) {
+    const V distance = hn::Sqrt(dot3(qx, qy, qz, qx, qy, qz));
+    e.depth = hn::Min(thickness / distance, hn::Set(d, kEndlessShare));
+  }
   if (march.radius < 1e18f) {
     const V along = dot2(e.s, e.v, line_s, line_v);
     length =
@@ -315,7 +322,7 @@ HWY_INLINE Extension extend(const March& march, const Receiver& p, const Half& h
   return e;
 }
 
-/// The sectors that it hides.
+/// The sectors that it hides, and those that the last pixel before it hides.
 template <bool kOrthographic>
 HWY_INLINE VU extend_side(const March& march, const Receiver& p, const Half& half,
                           const Border& border, float reach) {
@@ -329,8 +336,11 @@ HWY_INLINE VU extend_side(const March& march, const Receiver& p, const Half& hal
   there = hn::IfThenElse(e.end_above > zero, there, all);
   there = hn::IfThenZeroElse(e.end_s < zero, there);  // it leans across the view ray
   const VU from = nearest_whole(hn::Min(here, there)), to = nearest_whole(hn::Max(here, there));
-  return hn::IfThenElseZero(hn::RebindMask(du, e.exists),
-                            hn::AndNot(bits_from(to), bits_from(from)));
+  const VU beyond = hn::IfThenElseZero(hn::RebindMask(du, e.exists),
+                                       hn::AndNot(bits_from(to), bits_from(from)));
+  // The border is a sample too: the last step may be far from it.
+  return hn::Or(beyond, sectors_behind<kOrthographic>(p, half, e.s, e.above, e.depth,
+                                                      march.radius, 0));
 }
 
 /// The frame of a slice at a receiver: T, the normal's share in it, and the weight that makes

@@ -14,9 +14,6 @@ namespace {
 constexpr int kPeriod = Interleaving::kPeriod;
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
-/// What is endless, in the units of MarchScene: within 1e-4 of the direction of the view ray.
-constexpr float kEndlessShare = 1e4f, kEndlessLength = 1e15f;
-
 }  // namespace
 
 MarchScene make_march_scene(const Geometry& g, const HiddenGeometry* hidden) {

@@ -31,6 +31,9 @@ struct MarchScene {
   BorderValues border_thickness;  ///< in scene units
 };
 
+/// What is endless, in the units of MarchScene: within 1e-4 of the direction of the view ray.
+constexpr float kEndlessShare = 1e4f, kEndlessLength = 1e15f;
+
 /// Values of all pixels at the frame's border, in the order of BorderValues.
 template <class Value>
 BorderValues border_values(int width, int height, const Value& value) {

@@ -15,6 +15,10 @@ constexpr int kPeriod = Interleaving::kPeriod;
 /// An ordering of the 4 x 4 pattern in which neighbours are far apart (Bayer's matrix, 1973).
 constexpr int kOrder[kPeriod * kPeriod] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
 
+/// Steps that grow in proportion to the distance are longest where the frame's largest things are
+/// met. This much less than 1, and they grow less; the error against many steps fell by a third.
+constexpr double kFarther = 0.7;
+
 /// From this distance on every sixteenth pixel serves all members of the pattern: one in each block
 /// of 4 x 4. Of the whole frame these are few enough to stay in the cache, where the pixels that
 /// each member would choose for itself come from memory every time.
@@ -26,14 +30,14 @@ int to_block(double x, int place) {
   return int(std::lround((x + place - middle) / kPeriod)) * kPeriod + middle - place;
 }
 
-/// The side that starts at column `comb` and row `line` of a block. Distances grow geometrically;
-/// `start` in 0..1 places each of them in its stratum.
+/// The side that starts at column `comb` and row `line` of a block. `start` in 0..1 places each
+/// distance in its stratum.
 SliceSide make_side(const Interleaving& layout, int comb, int line, double dx, double dy, int steps,
                     double diagonal, double start, float phase) {
   SliceSide side;
   side.phase = phase;
   for (int i = 0; i < steps; ++i) {
-    const double distance = std::pow(diagonal, (i + start) / steps);
+    const double distance = march_distance((i + start) / steps, diagonal);
     SliceStep step;
     const bool far = distance >= kFar;
     step.dx = far ? to_block(distance * dx, comb) : int(std::lround(distance * dx));
@@ -52,6 +56,10 @@ SliceSide make_side(const Interleaving& layout, int comb, int line, double dx, d
 }
 
 }  // namespace
+
+double march_distance(double t, double diagonal) {
+  return std::pow(diagonal, std::pow(t, kFarther));
+}
 
 int SlicePattern::rank(int member) { return kOrder[member]; }
 

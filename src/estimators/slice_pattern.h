@@ -8,6 +8,9 @@
 
 namespace ssdo {
 
+/// Pixels from 1 to `diagonal` for t from 0 to 1, dense at the start.
+double march_distance(double t, double diagonal);
+
 /// A pixel that a march looks at, seen from the pixel where it starts.
 struct SliceStep {
   int dx, dy;             ///< pixels, y down
