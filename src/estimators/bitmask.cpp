@@ -54,7 +54,8 @@ class Bitmask {
         scene_(make_march_scene(in.geometry, in.hidden)),
         layout_(scene_.layout),
         pattern_(layout_, in.geometry.display, in.slices, in.steps, in.seed),
-        march_{scene_, pattern_, in.geometry.window.y0, in.radius, in.extend_offscreen} {
+        march_{scene_, pattern_, in.geometry.window.y0 - in.geometry.display.y0, in.radius,
+               in.extend_offscreen} {
     choose_isa();
   }
 
@@ -71,6 +72,8 @@ class Bitmask {
   int width() const { return layout_.width(); }
   int height() const { return layout_.height(); }
 
+  bool is_surface(std::ptrdiff_t i) const { return !std::isnan(scene_.z[i]); }
+
   template <class Work>
   void for_each_block(const Work& work) const {
     const int phase = layout_.phase();
@@ -85,7 +88,8 @@ class Bitmask {
     for_each_row(height(), [&](int y) {
       for (int x = 0; x < width(); ++x) {
         const std::size_t pixel = in_.geometry.surfel.index(x, y);
-        if (in_.geometry.is_surface(pixel)) work(pixel, layout_.index(x, y));
+        const std::ptrdiff_t i = layout_.index(x, y);
+        if (is_surface(i)) work(pixel, i);
       }
     });
   }
@@ -204,8 +208,8 @@ class Bitmask {
       }
       for (int x = 0; x < width(); ++x) {
         const std::size_t pixel = in_.geometry.surfel.index(x, y);
-        if (!in_.geometry.is_surface(pixel)) continue;
         const std::ptrdiff_t i = layout_.index(x, y);
+        if (!is_surface(i)) continue;
         put(sent, i, sent_by(pixel));
         if (two_sided) put(sent_back, i, sent_by_back(pixel));
         const int source = source_behind(pixel);

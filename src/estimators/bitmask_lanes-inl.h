@@ -32,6 +32,9 @@ constexpr float kSectors = 32;  ///< of a side
 /// Least cosine between normal and view: a smooth normal that leans away from the viewer is bent
 /// back to here. A plane tilted by 89.9 degrees has 0.0017.
 constexpr float kLeastFacing = 1e-3f;
+/// Error of a dot product of a position and a unit vector, over the position's length: 4 units in
+/// the last place.
+constexpr float kDotError = 2.4e-7f;
 
 HWY_INLINE V dot2(V ax, V ay, V bx, V by) { return hn::MulAdd(ax, bx, ay * by); }
 HWY_INLINE V dot3(V ax, V ay, V az, V bx, V by, V bz) {
@@ -39,15 +42,15 @@ HWY_INLINE V dot3(V ax, V ay, V az, V bx, V by, V bz) {
 }
 
 /// theta - sin theta cos theta, theta in 0..pi, from both. Over sin^3 theta it is smooth; a
-/// polynomial in the cosine, off by 2.4e-4 at most.
+/// polynomial in the cosine, off by 4.4e-5 at most.
 HWY_INLINE V cap_measure(V sine, V cosine) {
   const D d;
   const V c = hn::Abs(cosine);
-  V p = hn::Set(d, 0.57636349f);
-  p = hn::MulAdd(p, c, hn::Set(d, -1.6147795f));
-  p = hn::MulAdd(p, c, hn::Set(d, 2.1280569f));
-  p = hn::MulAdd(p, c, hn::Set(d, -1.9816043f));
-  p = hn::MulAdd(p, c, hn::Set(d, 1.5705548f));
+  V p = hn::MulAdd(hn::Set(d, -0.4309997f), c, hn::Set(d, 1.4231141f));
+  p = hn::MulAdd(p, c, hn::Set(d, -2.1847912f));
+  p = hn::MulAdd(p, c, hn::Set(d, 2.2808718f));
+  p = hn::MulAdd(p, c, hn::Set(d, -1.995549f));
+  p = hn::MulAdd(p, c, hn::Set(d, 1.5707532f));
   const V g = sine * sine * sine * p;
   return hn::IfThenElse(cosine < hn::Zero(d), hn::Set(d, kPi) - g, g);
 }
@@ -88,7 +91,7 @@ struct Receiver {
   V nx, ny, nz;     ///< normal, bent to face the viewer
   V vx, vy, vz;     ///< unit, to the viewer
   V distance;       ///< to the viewer
-  V plane;          ///< N.x of the points x that lie on its tangent plane, and the rounding of P
+  V plane;          ///< N.x of the points x of its tangent plane, and what rounding may add to it
   V facing, inverse_facing;  ///< N.V
   M valid;
 };
@@ -123,7 +126,7 @@ HWY_INLINE Receiver load_receiver(const MarchScene& scene, std::ptrdiff_t i) {
   }
   p.inverse_facing = hn::Set(d, 1.0f) / p.facing;
   p.plane = dot3(p.nx, p.ny, p.nz, p.px, p.py, p.pz) +
-            hn::LoadU(d, scene.rounding.data() + i);
+            hn::MulAdd(p.distance, hn::Set(d, kDotError), hn::LoadU(d, scene.rounding.data() + i));
   return p;
 }
 
@@ -153,8 +156,17 @@ struct Half {
   V gamma;           ///< angle of the normal from V, towards T
 };
 
+/// 1 / sqrt(x), off by 4e-4 at most.
+HWY_INLINE V reciprocal_sqrt(V x) {
+#if HWY_TARGET == HWY_SCALAR
+  return hn::Set(D(), 1.0f) / hn::Sqrt(x);  // Highway's own is off by 2e-3 here
+#else
+  return hn::ApproximateReciprocalSqrt(x);
+#endif
+}
+
 HWY_INLINE V sectors_of(const Half& half, V s, V v, V distance2) {
-  const V inverse = hn::ApproximateReciprocalSqrt(distance2);
+  const V inverse = reciprocal_sqrt(distance2);
   const V sine = s * inverse, cosine = v * inverse;
   return hn::MulAdd(half.cap_scale, cap_measure(sine, cosine), half.sine_scale * sine * sine);
 }
@@ -325,22 +337,28 @@ HWY_INLINE Extension extend(const March& march, const Receiver& p, const Half& h
 /// The sectors that it hides, and those that the last pixel before it hides.
 template <bool kOrthographic>
 HWY_INLINE VU extend_side(const March& march, const Receiver& p, const Half& half,
-                          const Border& border, float reach) {
+                          const Border& border, float reach, float phase) {
   const D d;
   const DU du;
   const V zero = hn::Zero(d), all = hn::Set(d, kSectors);
   const Extension e = extend<kOrthographic>(march, p, half, border, reach, 1e9f);
   if (hn::AllFalse(d, e.exists)) return hn::Zero(du);
   const V here = hn::IfThenElse(e.above > zero, sectors_of(half, e.s, e.v, e.distance2), all);
-  V there = sectors_of(half, e.end_s, e.end_v, dot2(e.end_s, e.end_v, e.end_s, e.end_v));
-  there = hn::IfThenElse(e.end_above > zero, there, all);
+  const V end_distance2 = dot2(e.end_s, e.end_v, e.end_s, e.end_v);
+  V there = sectors_of(half, e.end_s, e.end_v, end_distance2);
+  // The far end of a plane lies on the horizon but for rounding.
+  const M end_rises = e.end_above > hn::Sqrt(end_distance2) * hn::Set(d, 1e-5f);
+  there = hn::IfThenElse(end_rises, there, all);
   there = hn::IfThenZeroElse(e.end_s < zero, there);  // it leans across the view ray
-  const VU from = nearest_whole(hn::Min(here, there)), to = nearest_whole(hn::Max(here, there));
+  const float to_first = 0.5f - phase;
+  const V first = hn::Set(d, to_first);
+  const VU from = nearest_whole(hn::Min(here, there) + first),
+           to = nearest_whole(hn::Max(here, there) + first);
   const VU beyond = hn::IfThenElseZero(hn::RebindMask(du, e.exists),
                                        hn::AndNot(bits_from(to), bits_from(from)));
   // The border is a sample too: the last step may be far from it.
   return hn::Or(beyond, sectors_behind<kOrthographic>(p, half, e.s, e.above, e.depth,
-                                                      march.radius, 0));
+                                                      march.radius, to_first));
 }
 
 /// The frame of a slice at a receiver: T, the normal's share in it, and the weight that makes

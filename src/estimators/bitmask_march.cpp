@@ -50,7 +50,8 @@ void visibility(const VisibilityJob& job, int x0, int x1, int y0, int y1) {
           const Border border =
               border_along(scene.layout, hn::Set(d, sign * slice.dx), hn::Set(d, sign * slice.dy),
                            x, hn::Set(d, float(y)));
-          hidden = hn::Or(hidden, extend_side<kOrthographic>(job.march, p, half, border, reach));
+          hidden = hn::Or(hidden, extend_side<kOrthographic>(job.march, p, half, border, reach,
+                                                             slice.sides[side].phase));
         }
         sum.add(p, half, hidden, f.weight, slice.sides[side].phase);
       }
@@ -60,10 +61,10 @@ void visibility(const VisibilityJob& job, int x0, int x1, int y0, int y1) {
     hn::StoreU(ao, d, job.ao->data() + i);
     if constexpr (kOrder > 0) {
       if (job.bent) {
-        for (int c = 0; c < 3; ++c) {
-          // Bands of order 1 are y, z, x.
-          hn::StoreU(sum.visible[1 + (c + 2) % 3], d, (*job.bent)[std::size_t(c)].data() + i);
-        }
+        V bent[3];
+        sum.bent_normal(p, ao, bent);
+        for (int c = 0; c < 3; ++c)
+          hn::StoreU(bent[c], d, (*job.bent)[std::size_t(c)].data() + i);
       }
       for (int c = 0; job.share && c < 3; ++c) {
         const float* light = job.light + c * Moments<kOrder>::kCount;
@@ -143,7 +144,8 @@ void bounce(const BounceJob& job, int x0, int x1, int y0, int y1) {
               border_along(scene.layout, hn::Set(d, sign * slice.dx), hn::Set(d, sign * slice.dy),
                            x, hn::Set(d, float(y)));
           const VU bits = hn::AndNot(
-              hidden, extend_side<kOrthographic>(job.march, p, half, border, reach));
+              hidden, extend_side<kOrthographic>(job.march, p, half, border, reach,
+                                                             slice.sides[side].phase));
           if (!hn::AllTrue(du, bits == hn::Zero(du))) {
             const auto gather = [&](int c) HWY_ATTR {
               return hn::GatherIndex(d, job.sent_border[c].data(), border.index);

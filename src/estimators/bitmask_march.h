@@ -16,7 +16,7 @@ using InterleavedColor = std::array<InterleavedPlane, 3>;
 struct March {
   const MarchScene& scene;
   const SlicePattern& pattern;
-  int first_row;     ///< row of the display window that row 0 of the scene is
+  int first_row;     ///< row of the display window, from its top, that row 0 of the scene is
   float radius;      ///< scene units, or infinity
   bool extend;       ///< surfaces go on beyond the frame
 };

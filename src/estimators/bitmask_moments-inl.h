@@ -49,32 +49,28 @@ HWY_INLINE void add_basis(V x, V y, V z, V weight, V* sum) {
   }
 }
 
-/// In each byte of `bits`: how many are set, and the sum of their places.
-struct ByteCounts {
+/// In each group of four of `bits`: how many are set, and the sum of their places.
+struct GroupCounts {
   VU count, places;
 };
 
-HWY_INLINE ByteCounts count_bytes(VU bits) {
+HWY_INLINE GroupCounts count_groups(VU bits) {
   const DU du;
   const auto fold = [&](VU v, unsigned mask, int shift) HWY_ATTR {
     return hn::And(hn::ShiftRightSame(v, shift), hn::Set(du, mask));
   };
-  const VU odd1 = fold(bits, 0x55555555u, 1);
-  const VU count1 = fold(bits, 0x55555555u, 0) + odd1;
-  const VU high2 = fold(count1, 0x33333333u, 2);
-  const VU count2 = fold(count1, 0x33333333u, 0) + high2;
-  const VU places2 =
-      fold(odd1, 0x33333333u, 0) + fold(odd1, 0x33333333u, 2) + high2 + high2;
-  const VU high4 = fold(count2, 0x0f0f0f0fu, 4);
-  const VU places4 = fold(places2, 0x0f0f0f0fu, 0) + fold(places2, 0x0f0f0f0fu, 4);
-  return {fold(count2, 0x0f0f0f0fu, 0) + high4, places4 + hn::ShiftLeft<2>(high4)};
+  const VU odd = fold(bits, 0x55555555u, 1);
+  const VU pairs = fold(bits, 0x55555555u, 0) + odd;
+  const VU high = fold(pairs, 0x33333333u, 2);
+  return {fold(pairs, 0x33333333u, 0) + high,
+          fold(odd, 0x33333333u, 0) + fold(odd, 0x33333333u, 2) + high + high};
 }
 
 /// Sums over slices: of what is open, and of its moments.
 template <int kOrder>
 struct Moments {
   static constexpr int kCount = (kOrder + 1) * (kOrder + 1);
-  static constexpr int kGroups = 4;  ///< of eight sectors: each group is one direction
+  static constexpr int kGroups = 8;  ///< of four sectors: each group is one direction
 
   V open = hn::Zero(D()), whole = hn::Zero(D());
   V visible[kCount], hidden[kCount];
@@ -105,6 +101,17 @@ struct Moments {
     return hn::IfThenElse(total > hn::Zero(d), share, otherwise);
   }
 
+  /// The mean open direction, not normalised. Of an open surface it is the normal, whatever the
+  /// slices: what their sum over all directions lacks of it is added as far as the surface is open.
+  HWY_INLINE void bent_normal(const Receiver& p, V ao, V bent[3]) const {
+    const V normal[3] = {p.nx, p.ny, p.nz};
+    for (int c = 0; c < 3; ++c) {
+      const int band = 1 + (c + 2) % 3;  // bands of order 1 are y, z, x
+      const V expected = hn::Set(D(), 2.0f / 3) * (visible[0] + hidden[0]) * normal[c];
+      bent[c] = hn::MulAdd(ao, expected - (visible[band] + hidden[band]), visible[band]);
+    }
+  }
+
   HWY_INLINE Moments minus(const Moments& other) const {
     Moments rest = *this;
     for (int i = 0; i < kCount; ++i) {
@@ -125,16 +132,16 @@ struct Moments {
         di, hn::Clamp(hn::MulAdd(half.gamma, hn::Set(d, SectorDirections::kAngles / kPi),
                                  hn::Set(d, SectorDirections::kAngles / 2.0f)),
                       hn::Zero(d), hn::Set(d, SectorDirections::kAngles - 1.0f)));
-    const auto row_start = hn::ShiftLeft<6>(row);
-    static_assert(SectorDirections::kShares == 64);
-    const ByteCounts counts = count_bytes(bits);
+    const auto row_start = hn::ShiftLeft<7>(row);
+    static_assert(SectorDirections::kShares == 128 && kSectors == 32);
+    const GroupCounts counts = count_groups(bits);
     // `number` sectors of group g, whose places have the sum `places`.
     const auto direction = [&](int g, V number, V places) HWY_ATTR {
       struct Direction {
         V x, y, z;
       };
-      const V place = places / hn::Max(number, hn::Set(d, 1.0f)) + hn::Set(d, 8.0f * float(g) + phase);
-      const auto column = hn::Min(hn::ConvertTo(di, place + place), hn::Set(di, 63));
+      const V place = places / hn::Max(number, hn::Set(d, 1.0f)) + hn::Set(d, 4.0f * float(g) + phase);
+      const auto column = hn::Min(hn::ConvertTo(di, place * hn::Set(d, 4.0f)), hn::Set(di, 127));
       const auto packed = hn::GatherIndex(di, table.packed.data(), row_start + column);
       const V scale = hn::Set(d, 1 / 32767.0f);
       const V cosine = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(packed))) * scale,
@@ -144,14 +151,15 @@ struct Moments {
                        hn::MulAdd(cosine, p.vz, sine * half.tz)};
     };
     for (int g = 0; g < kGroups; ++g) {
-      const auto byte = [&](VU v) HWY_ATTR {
-        return hn::ConvertTo(d, hn::BitCast(di, hn::And(hn::ShiftRightSame(v, 8 * g), hn::Set(du, 255u))));
+      const auto of_group = [&](VU v) HWY_ATTR {
+        return hn::ConvertTo(
+            d, hn::BitCast(di, hn::And(hn::ShiftRightSame(v, 4 * g), hn::Set(du, 15u))));
       };
-      const V number = byte(counts.count), places = byte(counts.places);
-      const V eight = hn::Set(d, 8.0f), all_places = hn::Set(d, 28.0f);
-      if (!hn::AllFalse(d, number < eight)) {
-        const auto to = direction(g, eight - number, all_places - places);
-        const V share = weight * (eight - number);
+      const V number = of_group(counts.count), places = of_group(counts.places);
+      const V four = hn::Set(d, 4.0f), all_places = hn::Set(d, 6.0f);
+      if (!hn::AllFalse(d, number < four)) {
+        const auto to = direction(g, four - number, all_places - places);
+        const V share = weight * (four - number);
         add_basis<kOrder>(to.x, to.y, to.z, share, visible);
       }
       if (!hn::AllFalse(d, number > hn::Zero(d))) {

@@ -14,11 +14,17 @@ namespace {
 constexpr int kPeriod = Interleaving::kPeriod;
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
+/// In front of the viewer, and nothing in it that arithmetic would carry into its neighbours.
+bool is_usable(const Surfel& s) {
+  return s.position.z < -1e-15f && std::isfinite(glm::dot(s.position, s.position)) &&
+         std::isfinite(glm::dot(s.normal, s.normal));
+}
+
 }  // namespace
 
 MarchScene make_march_scene(const Geometry& g, const HiddenGeometry* hidden) {
   const bool orthographic = g.camera.orthographic;
-  const Interleaving layout(g.surfel.width, g.surfel.height, g.window.x0 & (kPeriod - 1));
+  const Interleaving layout(g.surfel.width, g.surfel.height, (g.window.x0 - g.display.x0) & (kPeriod - 1));
   const auto plane = [&] { return InterleavedPlane(layout); };
   MarchScene scene{layout,  orthographic, float(g.camera.fx), float(g.camera.fy),
                    plane(), plane(),      plane(),            plane(),
@@ -33,8 +39,8 @@ MarchScene make_march_scene(const Geometry& g, const HiddenGeometry* hidden) {
     }
     for (int x = 0; x < g.surfel.width; ++x) {
       const std::size_t from = g.surfel.index(x, y);
-      if (!g.is_surface(from)) continue;
       const Surfel& s = g.surfel[from];
+      if (!g.is_surface(from) || !is_usable(s)) continue;
       const std::ptrdiff_t i = layout.index(x, y);
       scene.x[i] = s.position.x, scene.y[i] = s.position.y, scene.z[i] = s.position.z;
       scene.nx[i] = s.normal.x, scene.ny[i] = s.normal.y, scene.nz[i] = s.normal.z;

@@ -19,10 +19,14 @@ constexpr int kOrder[kPeriod * kPeriod] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 
 /// met. This much less than 1, and they grow less; the error against many steps fell by a third.
 constexpr double kFarther = 0.7;
 
-/// From this distance on every sixteenth pixel serves all members of the pattern: one in each block
-/// of 4 x 4. Of the whole frame these are few enough to stay in the cache, where the pixels that
-/// each member would choose for itself come from memory every time.
-constexpr double kFar = 64;
+/// Where steps are longer than this, in pixels, one pixel in each block of 4 x 4 serves all members
+/// of the pattern. Of the whole frame these are few enough to stay in the cache, where the pixels
+/// that each member would choose for itself come from memory every time.
+constexpr double kLongStep = 32;
+
+/// Phases stay away from the edges of sectors: on a plane, rounding moves the horizon by a little,
+/// and no sector may notice.
+float phase_in(double t) { return float(0.02 + 0.96 * t); }
 
 /// The whole number nearest to `x` that leads from `place` to the middle of a block.
 int to_block(double x, int place) {
@@ -39,7 +43,7 @@ SliceSide make_side(const Interleaving& layout, int comb, int line, double dx, d
   for (int i = 0; i < steps; ++i) {
     const double distance = march_distance((i + start) / steps, diagonal);
     SliceStep step;
-    const bool far = distance >= kFar;
+    const bool far = march_distance((i + 1 + start) / steps, diagonal) - distance > kLongStep;
     step.dx = far ? to_block(distance * dx, comb) : int(std::lround(distance * dx));
     step.dy = far ? to_block(distance * dy, line) : int(std::lround(distance * dy));
     const bool repeated = !side.steps.empty() && side.steps.back().dx == step.dx &&
@@ -82,7 +86,7 @@ SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, in
           const double sign = s == 0 ? 1 : -1;
           slice.sides[s] = make_side(layout, column, row, sign * slice.dx, sign * slice.dy, steps,
                                      diagonal, fraction(start1 + n * kR2First),
-                                     float(fraction(start2 + n * kR2Second)));
+                                     phase_in(fraction(start2 + n * kR2Second)));
         }
         members_[std::size_t(member)].push_back(std::move(slice));
       }

@@ -121,8 +121,8 @@ class Sampler {
     const Surfel& s = geometry_.surfel(x, y);
     const glm::vec3 n(s.normal);
     // The pattern is fixed to the display window: a crop sees the same.
-    const int row = (y + geometry_.window.y0) & (kPatternSize - 1);
-    const int column = (x + geometry_.window.x0) & (kPatternSize - 1);
+    const int row = (y + geometry_.window.y0 - geometry_.display.y0) & (kPatternSize - 1);
+    const int column = (x + geometry_.window.x0 - geometry_.display.x0) & (kPatternSize - 1);
     return {glm::vec3(s.position), n, frame_about(n),
             pattern_[std::size_t(row * kPatternSize + column)], settings_.bias + s.normal.w};
   }

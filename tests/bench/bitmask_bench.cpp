@@ -146,8 +146,8 @@ void add(const std::string& name, const auto& run) {
 }
 
 void add_all() {
-  const Job ao{{.ao = true}, 3, 12, 0, 0};
-  const Job standard{{.ao = true, .direct = true, .bounce = true, .bent = true}, 3, 12, 1, 0};
+  const Job ao{{.ao = true}, 2, 24, 0, 0};
+  const Job standard{{.ao = true, .direct = true, .bounce = true, .bent = true}, 2, 24, 1, 0};
   for (const std::string isa : {"avx512", "avx2", "scalar"}) {
     for (const Size& size : kSizes) {
       if (isa == "scalar" && size.width > 1920) continue;
