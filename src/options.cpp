@@ -38,8 +38,8 @@ std::string describe_qualities() {
   for (const auto& [name, level] : {std::pair{"draft", Quality::draft},
                                     {"standard", Quality::standard},
                                     {"final", Quality::final}}) {
-    text += fmt::format("{}{} {} x {}", level == Quality::draft ? "" : ", ", name,
-                        slices_of(level), steps_of(level));
+    text += fmt::format("{}{} {} x {}", level == Quality::draft ? "" : ", ", name, slices_of(level),
+                        steps_of(level));
   }
   return text;
 }
@@ -170,8 +170,9 @@ void add_output(CLI::App& app, Options& o, RawOptions& raw) {
       ->type_name("OUTPUT")
       ->allow_extra_args(false)
       ->group("Output");
-  app.add_option("--products", o.output.products,
-                 "of ao, bent, direct, bounce, error, composite; default: all that the inputs allow")
+  app.add_option(
+         "--products", o.output.products,
+         "of ao, bent, direct, bounce, error, composite; default: all that the inputs allow")
       ->type_name("LIST")
       ->delimiter(',')
       ->allow_extra_args(false)

@@ -35,9 +35,7 @@ struct LightOptions {
 
 /// Slices per pixel, and steps on each side of a slice out to the frame's diagonal.
 enum class Quality { draft, standard, final };
-constexpr int slices_of(Quality q) {
-  return q == Quality::final ? 6 : 2;
-}
+constexpr int slices_of(Quality q) { return q == Quality::final ? 6 : 2; }
 constexpr int steps_of(Quality q) {
   return q == Quality::draft ? 10 : q == Quality::standard ? 24 : 48;
 }
@@ -50,7 +48,7 @@ struct ModelOptions {
   Quality quality = Quality::standard;
   std::optional<int> slices, steps;  ///< in place of those of the quality
   std::optional<double> error;       ///< largest standard error of direct + bounce
-  int bounces = 1;               ///< 0 to 8
+  int bounces = 1;                   ///< 0 to 8
   unsigned seed = 0;
   std::vector<std::string> set;  ///< NAME=VALUE of the method
   bool filter = true;            ///< geometry filter after the estimate

@@ -94,8 +94,8 @@ Products estimate(const Options& options, Frame& frame, const std::function<void
   Products products = plan.method->estimate(
       {frame.geometry, frame.gbuffer.albedo, frame.gbuffer.radiance, frame.environment,
        plan.products, plan.radius, plan.bounces, options.model.seed, plan.parameters, progress,
-       plan.slices, plan.steps, &frame.hidden,
-       frame.light_model ? &*frame.light_model : nullptr, plan.extend_offscreen});
+       plan.slices, plan.steps, &frame.hidden, frame.light_model ? &*frame.light_model : nullptr,
+       plan.extend_offscreen});
   frame.times.estimate += watch.lap();
   if (plan.filter) products = filter_geometry(products, frame.geometry, plan.method->pattern_size);
   if (!products.error.empty())
@@ -113,7 +113,8 @@ Products make_products(const Options& options, Frame& frame, Relit& relit,
     if (!plan.error) return products;
     const double found = mean_over_surfaces(products.error, frame.geometry);
     if (found <= *plan.error || plan.slices >= kMostSlices) {
-      relit.notes.push_back(fmt::format("standard error {:.2g} with {} slices{}", found, plan.slices,
+      relit.notes.push_back(fmt::format("standard error {:.2g} with {} slices{}", found,
+                                        plan.slices,
                                         found <= *plan.error ? "" : ", the most there are"));
       return products;
     }

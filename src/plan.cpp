@@ -111,9 +111,10 @@ class ProductChoice {
 
   void check(const std::string& name) const {
     if (std::find(kProducts.begin(), kProducts.end(), name) == kProducts.end()) {
-      throw Error(ExitCode::usage,
-                  fmt::format("product '{}': there are ao, bent, direct, bounce, error and composite",
-                              name));
+      throw Error(
+          ExitCode::usage,
+          fmt::format("product '{}': there are ao, bent, direct, bounce, error and composite",
+                      name));
     }
     if (!makes(method_, name)) {
       throw Error(ExitCode::usage, fmt::format("method {} makes no {}; these do: {}", method_.name,
@@ -138,12 +139,10 @@ void choose_bounces(Plan& plan, int wanted, const GBuffer& gbuffer) {
   plan.bounces = plan.products.bounce ? wanted : 0;
   if (plan.bounces == 0 || !gbuffer.radiance.empty()) return;
   float brightest = 0;
-  for (const glm::vec3& c : gbuffer.albedo.pixels)
-    brightest = std::max({brightest, c.x, c.y, c.z});
+  for (const glm::vec3& c : gbuffer.albedo.pixels) brightest = std::max({brightest, c.x, c.y, c.z});
   if (brightest >= kDarkAlbedo) return;
   plan.bounces = 0;
-  plan.reasons.push_back(
-      fmt::format("no bounce: the albedo is {:.2g} at most", double(brightest)));
+  plan.reasons.push_back(fmt::format("no bounce: the albedo is {:.2g} at most", double(brightest)));
 }
 
 void explain_light(Plan& plan, const LightModel* light) {

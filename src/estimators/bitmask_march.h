@@ -16,9 +16,9 @@ using InterleavedColor = std::array<InterleavedPlane, 3>;
 struct March {
   const MarchScene& scene;
   const SlicePattern& pattern;
-  int first_row;     ///< row of the display window, from its top, that row 0 of the scene is
-  float radius;      ///< scene units, or infinity
-  bool extend;       ///< surfaces go on beyond the frame
+  int first_row;  ///< row of the display window, from its top, that row 0 of the scene is
+  float radius;   ///< scene units, or infinity
+  bool extend;    ///< surfaces go on beyond the frame
 };
 
 /// How open each pixel is, and to which light.

@@ -83,7 +83,10 @@ struct Moments {
     const D d;
     const V weight = slice_weight * half.measure;
     whole = hn::MulAdd(weight, hn::Set(d, kSectors), whole);
-    open = hn::MulAdd(weight, hn::Set(d, kSectors) - hn::ConvertTo(d, hn::BitCast(DI(), hn::PopulationCount(bits))), open);
+    open = hn::MulAdd(
+        weight,
+        hn::Set(d, kSectors) - hn::ConvertTo(d, hn::BitCast(DI(), hn::PopulationCount(bits))),
+        open);
     if constexpr (kOrder > 0) add_directions(p, half, bits, weight, phase);
   }
 
@@ -140,7 +143,8 @@ struct Moments {
       struct Direction {
         V x, y, z;
       };
-      const V place = places / hn::Max(number, hn::Set(d, 1.0f)) + hn::Set(d, 4.0f * float(g) + phase);
+      const V place =
+          places / hn::Max(number, hn::Set(d, 1.0f)) + hn::Set(d, 4.0f * float(g) + phase);
       const auto column = hn::Min(hn::ConvertTo(di, place * hn::Set(d, 4.0f)), hn::Set(di, 127));
       const auto packed = hn::GatherIndex(di, table.packed.data(), row_start + column);
       const V scale = hn::Set(d, 1 / 32767.0f);

@@ -6,7 +6,7 @@
 #define HWY_TARGET_INCLUDE "estimators/bitmask_sun.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/bitmask_lanes-inl.h"
+#include "estimators/bitmask_extension-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -17,9 +17,9 @@ constexpr float kSunWidths = 8;
 
 /// The way to the sun from a receiver.
 struct SunRay {
-  V s, v;                 ///< its direction in the slice
-  V step_x, step_y;       ///< unit, pixels: its picture
-  V end_px;               ///< where its picture ends: at the horizon
+  V s, v;            ///< its direction in the slice
+  V step_x, step_y;  ///< unit, pixels: its picture
+  V end_px;          ///< where its picture ends: at the horizon
 };
 
 HWY_INLINE SunRay sun_ray(const MarchScene& scene, const Receiver& p, const SunJob::Direction& to,
@@ -68,61 +68,66 @@ HWY_INLINE M blocks(const Receiver& p, const Half& half, const SunRay& ray, V s,
 template <bool kOrthographic>
 void sun(const SunJob& job, int x0, int x1, int y0, int y1) {
   const MarchScene& scene = job.march.scene;
-  for_each_vector(scene, x0, x1, y0, y1, [&](std::ptrdiff_t at, int y, int comb, int column) HWY_ATTR {
-    const D d;
-    const DI di;
-    constexpr int kPeriod = Interleaving::kPeriod;
-    const Interleaving& layout = scene.layout;
-    const V zero = hn::Zero(d);
-    const int member = ((y + job.march.first_row) & (kPeriod - 1)) * kPeriod + comb;
-    const Receiver p = load_receiver(scene, at);
-    Half half;
-    const SunRay ray = sun_ray(scene, p, job.directions[std::size_t(member)], half);
-    const V x = lane_columns(layout, comb, column);
-    const V row = hn::Set(d, float(y)), right = hn::Set(d, float(layout.width() - 1)),
-            bottom = hn::Set(d, float(layout.height() - 1));
-    const float reach = reach_px(scene, p, job.march.radius);
-    M open = hn::And(p.valid, dot2(half.n_t, p.facing, ray.s, ray.v) > zero);
-    for (const float distance : job.distances_px[std::size_t(member)]) {
-      const V t = hn::Set(d, distance);
-      const V qx_px = hn::Round(hn::MulAdd(t, ray.step_x, x)),
-              qy_px = hn::Round(hn::MulAdd(t, ray.step_y, row));
-      const M inside = hn::And(hn::And(qx_px >= zero, qx_px <= right),
-                               hn::And(hn::And(qy_px >= zero, qy_px <= bottom), t < ray.end_px));
-      const M looks = hn::And(inside, open);
-      if (distance > reach || hn::AllFalse(d, looks)) break;
-      const auto shifted = hn::ConvertTo(di, hn::IfThenElseZero(looks, qx_px)) + hn::Set(di, layout.phase());
-      const auto line = hn::ConvertTo(di, hn::IfThenElseZero(looks, qy_px)) * hn::Set(di, kPeriod) +
-                        hn::And(shifted, hn::Set(di, kPeriod - 1));
-      const auto index = line * hn::Set(di, int(layout.stride())) + hn::ShiftRight<2>(shifted) +
-                         hn::Set(di, Interleaving::kPad);
-      const auto gather = [&](const InterleavedPlane& plane)
-                              HWY_ATTR { return hn::GatherIndex(d, plane.data(), index); };
-      const V qx = gather(scene.x), qy = gather(scene.y), qz = gather(scene.z);
-      const V height = dot3(qx, qy, qz, p.nx, p.ny, p.nz), above = height - p.plane;
-      V s = dot3(qx, qy, qz, half.tx, half.ty, half.tz);
-      if constexpr (kOrthographic) s = s - half.origin;
-      const M front = blocks<kOrthographic>(p, half, ray, s, above, gather(scene.thickness),
-                                            job.march.radius);
-      const V behind = gather(scene.behind);
-      const V above_behind = kOrthographic ? hn::NegMulAdd(behind, p.facing, above)
-                                           : hn::MulAdd(behind, height, above);
-      if constexpr (!kOrthographic) s = hn::MulAdd(behind, s, s);
-      const M covered = blocks<kOrthographic>(p, half, ray, s, above_behind,
-                                              gather(scene.behind_thickness), job.march.radius);
-      open = hn::AndNot(hn::And(looks, hn::Or(front, covered)), open);
-    }
-    if (job.march.extend && !hn::AllFalse(d, open)) {
-      const Border border = border_along(layout, ray.step_x, ray.step_y, x, row);
-      const Extension e = extend<kOrthographic>(job.march, p, half, border, reach, kSunWidths);
-      // The ray passes between both ends of the piece.
-      const V here = e.s * ray.v - e.v * ray.s, there = e.end_s * ray.v - e.end_v * ray.s;
-      const M crosses = hn::And(hn::And(e.exists, border.distance_px < ray.end_px), here * there <= zero);
-      const M rises = hn::Or(e.above > zero, e.end_above > zero);
-      open = hn::AndNot(hn::And(crosses, rises), open);
-    }
-    hn::StoreU(hn::IfThenElseZero(open, hn::Set(d, 1.0f)), d, job.visible->data() + at);
-  });
+  for_each_vector(
+      scene, x0, x1, y0, y1, [&](std::ptrdiff_t at, int y, int comb, int column) HWY_ATTR {
+        const D d;
+        const DI di;
+        constexpr int kPeriod = Interleaving::kPeriod;
+        const Interleaving& layout = scene.layout;
+        const V zero = hn::Zero(d);
+        const int member = ((y + job.march.first_row) & (kPeriod - 1)) * kPeriod + comb;
+        const Receiver p = load_receiver(scene, at);
+        Half half;
+        const SunRay ray = sun_ray(scene, p, job.directions[std::size_t(member)], half);
+        const V x = lane_columns(layout, comb, column);
+        const V row = hn::Set(d, float(y)), right = hn::Set(d, float(layout.width() - 1)),
+                bottom = hn::Set(d, float(layout.height() - 1));
+        const float reach = reach_px(scene, p, job.march.radius);
+        M open = hn::And(p.valid, dot2(half.n_t, p.facing, ray.s, ray.v) > zero);
+        for (const float distance : job.distances_px[std::size_t(member)]) {
+          const V t = hn::Set(d, distance);
+          const V qx_px = hn::Round(hn::MulAdd(t, ray.step_x, x)),
+                  qy_px = hn::Round(hn::MulAdd(t, ray.step_y, row));
+          const M inside =
+              hn::And(hn::And(qx_px >= zero, qx_px <= right),
+                      hn::And(hn::And(qy_px >= zero, qy_px <= bottom), t < ray.end_px));
+          const M looks = hn::And(inside, open);
+          if (distance > reach || hn::AllFalse(d, looks)) break;
+          const auto shifted =
+              hn::ConvertTo(di, hn::IfThenElseZero(looks, qx_px)) + hn::Set(di, layout.phase());
+          const auto line =
+              hn::ConvertTo(di, hn::IfThenElseZero(looks, qy_px)) * hn::Set(di, kPeriod) +
+              hn::And(shifted, hn::Set(di, kPeriod - 1));
+          const auto index = line * hn::Set(di, int(layout.stride())) + hn::ShiftRight<2>(shifted) +
+                             hn::Set(di, Interleaving::kPad);
+          const auto gather = [&](const InterleavedPlane& plane)
+                                  HWY_ATTR { return hn::GatherIndex(d, plane.data(), index); };
+          const V qx = gather(scene.x), qy = gather(scene.y), qz = gather(scene.z);
+          const V height = dot3(qx, qy, qz, p.nx, p.ny, p.nz), above = height - p.plane;
+          V s = dot3(qx, qy, qz, half.tx, half.ty, half.tz);
+          if constexpr (kOrthographic) s = s - half.origin;
+          const M front = blocks<kOrthographic>(p, half, ray, s, above, gather(scene.thickness),
+                                                job.march.radius);
+          const V behind = gather(scene.behind);
+          const V above_behind = kOrthographic ? hn::NegMulAdd(behind, p.facing, above)
+                                               : hn::MulAdd(behind, height, above);
+          if constexpr (!kOrthographic) s = hn::MulAdd(behind, s, s);
+          const M covered = blocks<kOrthographic>(p, half, ray, s, above_behind,
+                                                  gather(scene.behind_thickness), job.march.radius);
+          open = hn::AndNot(hn::And(looks, hn::Or(front, covered)), open);
+        }
+        if (job.march.extend && !hn::AllFalse(d, open)) {
+          const Border border = border_along(layout, ray.step_x, ray.step_y, x, row);
+          const Extension e = extend<kOrthographic>(job.march, p, half, border, reach, kSunWidths);
+          // The ray passes between both ends of the piece.
+          const V here = e.s * ray.v - e.v * ray.s, there = e.end_s * ray.v - e.end_v * ray.s;
+          const M crosses =
+              hn::And(hn::And(e.exists, border.distance_px < ray.end_px), here * there <= zero);
+          const M rises = hn::Or(e.above > zero, e.end_above > zero);
+          open = hn::AndNot(hn::And(crosses, rises), open);
+        }
+        hn::StoreU(hn::IfThenElseZero(open, hn::Set(d, 1.0f)), d, job.visible->data() + at);
+      });
 }
 
 void sun_of_pixels(const SunJob& job, int x0, int x1, int y0, int y1) {

@@ -64,7 +64,7 @@ struct EstimateInput {
   int steps = 24;  ///< per side of a slice, from one pixel to the frame's diagonal
   const HiddenGeometry* hidden = nullptr;  ///< null: all that is seen is endless
   const LightModel* light = nullptr;       ///< of the environment; null: it is constant
-  bool extend_offscreen = true;             ///< surfaces go on beyond the frame
+  bool extend_offscreen = true;            ///< surfaces go on beyond the frame
 };
 
 /// A row in the table of methods.

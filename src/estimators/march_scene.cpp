@@ -24,17 +24,31 @@ bool is_usable(const Surfel& s) {
 
 MarchScene make_march_scene(const Geometry& g, const HiddenGeometry* hidden) {
   const bool orthographic = g.camera.orthographic;
-  const Interleaving layout(g.surfel.width, g.surfel.height, (g.window.x0 - g.display.x0) & (kPeriod - 1));
+  const Interleaving layout(g.surfel.width, g.surfel.height,
+                            (g.window.x0 - g.display.x0) & (kPeriod - 1));
   const auto plane = [&] { return InterleavedPlane(layout); };
-  MarchScene scene{layout,  orthographic, float(g.camera.fx), float(g.camera.fy),
-                   plane(), plane(),      plane(),            plane(),
-                   plane(), plane(),      plane(),            plane(),
-                   plane(), plane(),      {},                 {}, {}};
+  MarchScene scene{layout,
+                   orthographic,
+                   float(g.camera.fx),
+                   float(g.camera.fy),
+                   plane(),
+                   plane(),
+                   plane(),
+                   plane(),
+                   plane(),
+                   plane(),
+                   plane(),
+                   plane(),
+                   plane(),
+                   plane(),
+                   {},
+                   {},
+                   {}};
   const float endless = orthographic ? kEndlessLength : kEndlessShare;
   for_each_row(g.surfel.height, [&](int y) {
-    for (InterleavedPlane* p : {&scene.x, &scene.y, &scene.z, &scene.nx, &scene.ny, &scene.nz,
-                                &scene.rounding, &scene.thickness, &scene.behind,
-                                &scene.behind_thickness}) {
+    for (InterleavedPlane* p :
+         {&scene.x, &scene.y, &scene.z, &scene.nx, &scene.ny, &scene.nz, &scene.rounding,
+          &scene.thickness, &scene.behind, &scene.behind_thickness}) {
       p->fill_row(layout, y, kNothing);
     }
     for (int x = 0; x < g.surfel.width; ++x) {
@@ -52,13 +66,12 @@ MarchScene make_march_scene(const Geometry& g, const HiddenGeometry* hidden) {
       if (hidden->behind.empty() || hidden->behind_source[from] < 0) continue;
       scene.behind[i] = std::min(hidden->behind[from] / distance, endless);
       const float distance_behind = orthographic ? 1.0f : distance * (1 + scene.behind[i]);
-      scene.behind_thickness[i] =
-          std::min(hidden->thickness[std::size_t(hidden->behind_source[from])] / distance_behind,
-                   endless);
+      scene.behind_thickness[i] = std::min(
+          hidden->thickness[std::size_t(hidden->behind_source[from])] / distance_behind, endless);
     }
   });
   for (int c = 0; c < 3; ++c) {
-    const auto of_surfaces = [&](const glm::vec4 Surfel::* member) {
+    const auto of_surfaces = [&](const glm::vec4 Surfel::*member) {
       return border_values(g.surfel.width, g.surfel.height, [&](int x, int y) {
         const Surfel& s = g.surfel(x, y);
         return s.position.w == 0 ? kNothing : (s.*member)[c];

@@ -20,7 +20,7 @@ using BorderValues = std::vector<float>;
 struct MarchScene {
   Interleaving layout;
   bool orthographic;
-  float fx, fy;  ///< pixels per unit of slope, or per scene unit
+  float fx, fy;                 ///< pixels per unit of slope, or per scene unit
   InterleavedPlane x, y, z;     ///< position, camera space
   InterleavedPlane nx, ny, nz;  ///< unit normal
   InterleavedPlane rounding;    ///< distance by which storing P may have moved it

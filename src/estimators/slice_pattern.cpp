@@ -46,8 +46,8 @@ SliceSide make_side(const Interleaving& layout, int comb, int line, double dx, d
     const bool far = march_distance((i + 1 + start) / steps, diagonal) - distance > kLongStep;
     step.dx = far ? to_block(distance * dx, comb) : int(std::lround(distance * dx));
     step.dy = far ? to_block(distance * dy, line) : int(std::lround(distance * dy));
-    const bool repeated = !side.steps.empty() && side.steps.back().dx == step.dx &&
-                          side.steps.back().dy == step.dy;
+    const bool repeated =
+        !side.steps.empty() && side.steps.back().dx == step.dx && side.steps.back().dy == step.dy;
     if (repeated || (step.dx == 0 && step.dy == 0)) continue;
     const int column = comb + step.dx;
     step.column_shift = column >> 2;
@@ -67,8 +67,8 @@ double march_distance(double t, double diagonal) {
 
 int SlicePattern::rank(int member) { return kOrder[member]; }
 
-SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, int slices,
-                           int steps, unsigned seed)
+SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, int slices, int steps,
+                           unsigned seed)
     : members_(kPeriod * kPeriod) {
   const double diagonal = std::max(2.0, std::hypot(display.width(), display.height()));
   const double turn = start_of(3 * std::uint64_t(seed)),

@@ -22,12 +22,12 @@ struct SliceStep {
 /// One half of a slice.
 struct SliceSide {
   std::vector<SliceStep> steps;  ///< near to far
-  float phase;                   ///< in 0..1: where in every sector the point lies that stands for it
+  float phase;  ///< in 0..1: where in every sector the point lies that stands for it
 };
 
 /// A plane through the view ray, given by its line in the picture.
 struct Slice {
-  float dx, dy;  ///< unit, pixels, y down
+  float dx, dy;        ///< unit, pixels, y down
   SliceSide sides[2];  ///< along (dx, dy) and against it
 };
 

@@ -31,8 +31,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/geometry_filter.cpp"
-#include <hwy/foreach_target.h>
 #include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -70,18 +70,17 @@ HWY_INLINE V plane_ramp(V off_plane, V distance2) {
   constexpr float kFlat = kPlaneTolerance / 2;
   if (hn::AllTrue(d, off_plane * off_plane <= distance2 * hn::Set(d, kFlat * kFlat))) return one;
   const V sine = off_plane / hn::Sqrt(distance2);
-  return hn::IfThenElse(distance2 > hn::Zero(d),
-                        clamp01(hn::NegMulAdd(sine, hn::Set(d, 2 / kPlaneTolerance),
-                                              hn::Set(d, 2.0f))),
-                        one);
+  return hn::IfThenElse(
+      distance2 > hn::Zero(d),
+      clamp01(hn::NegMulAdd(sine, hn::Set(d, 2 / kPlaneTolerance), hn::Set(d, 2.0f))), one);
 }
 
 /// w(p, q), 0 where one of them has no normal.
 HWY_INLINE V similarity(const Lanes& p, const Lanes& q) {
   const D d;
   const V x = q.x - p.x, y = q.y - p.y, z = q.z - p.z;
-  const V off_plane = hn::Max(
-      hn::Zero(d), hn::Abs(dot3(x, y, z, p.nx, p.ny, p.nz)) - (p.rounding + q.rounding));
+  const V off_plane =
+      hn::Max(hn::Zero(d), hn::Abs(dot3(x, y, z, p.nx, p.ny, p.nz)) - (p.rounding + q.rounding));
   // 2 - 2 (1 - cosine) / (1 - c)
   constexpr float kSlope = 2 / (1 - kNormalCosine);
   const V cosine = dot3(p.nx, p.ny, p.nz, q.nx, q.ny, q.nz);
@@ -171,7 +170,8 @@ class TileFilter {
       std::fill(row(y, 0), row(y, 0) + channels() * stride_, 0.0f);
       return;
     }
-    const int x0 = std::max(tile_.x0 - half_, 0), count = std::min(tile_.x1 + half_, surfel_.width) - x0,
+    const int x0 = std::max(tile_.x0 - half_, 0),
+              count = std::min(tile_.x1 + half_, surfel_.width) - x0,
               left = x0 - (tile_.x0 - half_);
     const std::size_t first = surfel_.index(x0, y);
     gather_surfels(&surfel_[first], count, row(y, 0) + left);
@@ -351,8 +351,7 @@ class TileFilter {
       float* third = second + stride_;
       const V y = hn::LoadU(d, second), z = hn::LoadU(d, third), zero = hn::Zero(d);
       const V length2 = dot3(x, y, z, x, y, z);
-      const V scale =
-          hn::IfThenElse(length2 > zero, hn::Set(d, 1.0f) / hn::Sqrt(length2), zero);
+      const V scale = hn::IfThenElse(length2 > zero, hn::Set(d, 1.0f) / hn::Sqrt(length2), zero);
       hn::StoreU(x * scale, d, values + i);
       hn::StoreU(y * scale, d, second);
       hn::StoreU(z * scale, d, third);
@@ -364,11 +363,11 @@ class TileFilter {
   const Tile tile_;
   const std::vector<Part> parts_;
   const int stride_;
-  int products_ = 0;             ///< components of all parts
-  std::vector<float> rows_;      ///< by row modulo the window, channel and column
-  std::vector<float> weights_;   ///< of a vector of pixels, by neighbour
-  std::vector<float> result_;    ///< of a row, by component and column; then the sum of weights
-  std::vector<float> surface_;   ///< 1 on a surface, of the row that is gathered
+  int products_ = 0;            ///< components of all parts
+  std::vector<float> rows_;     ///< by row modulo the window, channel and column
+  std::vector<float> weights_;  ///< of a vector of pixels, by neighbour
+  std::vector<float> result_;   ///< of a row, by component and column; then the sum of weights
+  std::vector<float> surface_;  ///< 1 on a surface, of the row that is gathered
 };
 
 void filter_tile(const Products& noisy, const Geometry& geometry, int pattern_size,

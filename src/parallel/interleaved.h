@@ -12,8 +12,8 @@ namespace ssdo {
 /// leads to neighbours again: a whole vector of pixels reads its samples with one load.
 ///
 /// Rows are padded by kPad entries on both sides, so that a vector of which one lane lies in the
-/// picture may be read whole. The length of a row is an odd number of cache lines: at a power of two,
-/// pixels below each other would share a few places of the cache.
+/// picture may be read whole. The length of a row is an odd number of cache lines: at a power of
+/// two, pixels below each other would share a few places of the cache.
 class Interleaving {
  public:
   static constexpr int kPeriod = 4;

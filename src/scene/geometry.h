@@ -28,9 +28,9 @@ struct Geometry {
   Window window, display;
   Camera camera;
   Plane<Surfel> surfel;
-  float median_depth = 0;           ///< along the axis, over the surfaces
-  bool world_known = false;         ///< false where P is in camera space and no pose is known
-  glm::mat3 world_to_camera{1.0f};  ///< of directions; identity where the world is not known
+  float median_depth = 0;             ///< along the axis, over the surfaces
+  bool world_known = false;           ///< false where P is in camera space and no pose is known
+  glm::mat3 world_to_camera{1.0f};    ///< of directions; identity where the world is not known
   glm::mat3 normals_to_camera{1.0f};  ///< from the space of the input's normals; orthogonal
 
   bool is_surface(std::size_t i) const { return surfel[i].position.w != 0; }

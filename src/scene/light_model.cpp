@@ -137,8 +137,7 @@ void measure_residuals(const std::vector<Patch>& patches, const Sky& sky, LightM
     for (const auto& node : squares) sum += node[l];
     model.residuals[l] = std::sqrt(sum / kResidualNodes) / mean;
   }
-  const double bound =
-      model.residuals[kShOrder] <= kBandLimited ? kBandLimited : kLightResidual;
+  const double bound = model.residuals[kShOrder] <= kBandLimited ? kBandLimited : kLightResidual;
   while (model.order < kShOrder && model.residual() > bound) ++model.order;
 }
 

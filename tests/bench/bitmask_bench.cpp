@@ -32,24 +32,26 @@ const Geometry& frame_of(int width, int height) {
   std::vector<std::pair<glm::dvec3, double>> spheres;
   for (int i = 0; i < 200; ++i) {
     const double r = 0.1 + 0.4 * ((i * 37) % 100) / 100.0;
-    spheres.push_back({{-6 + 12 * ((i * 61) % 200) / 200.0, -4 + 12 * ((i * 113) % 200) / 200.0, r}, r});
+    spheres.push_back(
+        {{-6 + 12 * ((i * 61) % 200) / 200.0, -4 + 12 * ((i * 113) % 200) / 200.0, r}, r});
   }
   const Window window{0, 0, width, height};
-  const Camera camera =
-      look_at(camera_from_fov(50, window, 1), {0, -10, 5}, {0, 0, 0}, {0, 0, 1});
+  const Camera camera = look_at(camera_from_fov(50, window, 1), {0, -10, 5}, {0, 0, 0}, {0, 0, 1});
   const Surface ground = plane({}, {0, 0, 1});
-  it->second = geometry_of([&](const Ray& ray) -> std::optional<Hit> {
-    auto nearest = ground(ray);
-    for (const auto& [centre, radius] : spheres) {
-      const glm::dvec3 o = ray.origin - centre;
-      const double b = glm::dot(o, ray.direction), c = glm::dot(o, o) - radius * radius;
-      if (b * b < c) continue;
-      const double t = -b - std::sqrt(b * b - c);
-      if (t > 0 && (!nearest || t < nearest->distance))
-        nearest = Hit{t, (o + t * ray.direction) / radius};
-    }
-    return nearest;
-  }, camera, window);
+  it->second = geometry_of(
+      [&](const Ray& ray) -> std::optional<Hit> {
+        auto nearest = ground(ray);
+        for (const auto& [centre, radius] : spheres) {
+          const glm::dvec3 o = ray.origin - centre;
+          const double b = glm::dot(o, ray.direction), c = glm::dot(o, o) - radius * radius;
+          if (b * b < c) continue;
+          const double t = -b - std::sqrt(b * b - c);
+          if (t > 0 && (!nearest || t < nearest->distance))
+            nearest = Hit{t, (o + t * ray.direction) / radius};
+        }
+        return nearest;
+      },
+      camera, window);
   return it->second;
 }
 
@@ -103,8 +105,7 @@ void estimate(benchmark::State& state, const std::string& isa, const Size& size,
   const LightModel light = model_light(sky, g.world_to_camera);
   const Plane<glm::vec3> albedo(size.width, size.height, glm::vec3(0.5f)), none;
   const ParameterValues parameters;
-  const float radius =
-      job.radius_px > 0 ? job.radius_px * kDepth / float(g.camera.fy) : INFINITY;
+  const float radius = job.radius_px > 0 ? job.radius_px * kDepth / float(g.camera.fy) : INFINITY;
   EstimateInput in{g, albedo, none, sky, job.products, radius, job.bounces, 0, parameters, {}};
   in.slices = job.slices, in.steps = job.steps, in.hidden = &hidden, in.light = &light;
   for (auto _ : state) benchmark::DoNotOptimize(bitmask_method().estimate(in));
@@ -128,8 +129,8 @@ void filter(benchmark::State& state, const std::string& isa, const Size& size, i
       Plane<glm::vec3>(size.width, size.height, glm::vec3(0.5f));
   for (auto _ : state) benchmark::DoNotOptimize(filter_geometry(products, g, 4));
   using benchmark::Counter;
-  state.counters["ns/pixel"] =
-      Counter(double(g.surfel.size()) * 1e-9, Counter::kIsIterationInvariantRate | Counter::kInvert);
+  state.counters["ns/pixel"] = Counter(double(g.surfel.size()) * 1e-9,
+                                       Counter::kIsIterationInvariantRate | Counter::kInvert);
 }
 
 void hidden_geometry(benchmark::State& state, const Size& size) {
