@@ -47,10 +47,22 @@ TEST(Refusals, OfTheCommandLine) {
       {{"--env-up", "x"}, "--env-up"},
       {{"--env", "-1,0,0"}, "--env"},
       {{"--env-exposure", "1e9"}, "--env-exposure"},
-      {{"--method", "magic"}, "there is ssdo"},
-      {{"--set", "samples"}, "samples, bias"},
-      {{"--set", "samples=0"}, "from 1 to 1024"},
-      {{"--set", "sample=4"}, "samples, bias"},
+      {{"--method", "magic"}, "bitmask, ssdo"},
+      {{"--method", "ssdo", "--set", "samples"}, "samples, bias"},
+      {{"--method", "ssdo", "--set", "samples=0"}, "from 1 to 1024"},
+      {{"--method", "ssdo", "--set", "sample=4"}, "samples, bias"},
+      {{"--set", "samples=4"}, "--set samples=4"},
+      {{"--method", "ssdo", "--radius", "inf"}, "needs a limit"},
+      {{"--method", "ssdo", "--slices", "3"}, "--slices"},
+      {{"--method", "ssdo", "--error", "0.1"}, "--error"},
+      {{"--method", "ssdo", "--products", "bent"}, "these do: bitmask"},
+      {{"--thickness", "0"}, "--thickness"},
+      {{"--thickness", "thin"}, "--thickness"},
+      {{"--offscreen", "shut"}, "--offscreen"},
+      {{"--quality", "best"}, "--quality"},
+      {{"--slices", "0"}, "--slices"},
+      {{"--steps", "257"}, "--steps"},
+      {{"--error", "0"}, "--error"},
       {{"--filter", "blur"}, "--filter"},
       {{"--products", "ao,glow"}, "'glow'"},
       {{"--products", "ao,direct", "-o", std::string(dir / "p.png")}, "--save PRODUCT=FILE"},
@@ -147,9 +159,10 @@ TEST(Refusals, OfMissingAndAmbiguousLayers) {
                  "--aov albedo=LAYER");
   expect_refused({dir / "white.exr", "-o", dir / "out.png"}, 4, "--save PRODUCT=FILE");
   EXPECT_EQ(run_tool({dir / "white.exr", "-o", dir / "out.exr"}).code, 0)
-      << "ao and direct need no albedo";
+      << "ao, bent, direct and its error need no albedo";
   EXPECT_THAT(channel_names(dir / "out.exr"),
-              testing::ElementsAre("ao.Y", "direct.B", "direct.G", "direct.R"));
+              testing::ElementsAre("ao.Y", "bent.X", "bent.Y", "bent.Z", "direct.B", "direct.G",
+                                   "direct.R", "error.Y"));
 }
 
 TEST(Help, GoesToStandardOutput) {

@@ -103,15 +103,18 @@ TEST_F(Farm, StatisticsOfAChunkThatBreaksOffHoldWhatWasDone) {
 
 TEST_F(Farm, SeveralOutputsOfAFrameAreAllInItsStatistics) {
   EXPECT_EQ(run({"-o", path("out.####.png"), "--frames", "2", "--stats", path("stats.json"),
-                 "--set", "samples=8", "--bounces", "2"})
+                 "--slices", "3", "--steps", "4", "--bounces", "2"})
                 .code,
             0);
   const json frame = json::parse(read_file(path("stats.json"))).at(0);
   EXPECT_EQ(frame["output"], json({out(2), path("out.0002.png")}));
-  EXPECT_EQ(frame["samples_per_pixel"], 8);
+  EXPECT_EQ(frame["samples_per_pixel"], 2 * 3 * 4);
+  EXPECT_THAT(frame["isa"].get<std::string>(), testing::AnyOf("avx512", "avx2", "scalar"));
   EXPECT_EQ(frame["bounces"], 2);
-  EXPECT_EQ(frame["plan"]["parameters"]["samples"], 8);
-  EXPECT_EQ(frame["plan"]["products"], json({"ao", "direct", "bounce", "composite"}));
+  EXPECT_EQ(frame["plan"]["slices"], 3);
+  EXPECT_EQ(frame["plan"]["radius"], "inf");
+  EXPECT_EQ(frame["plan"]["products"],
+            json({"ao", "bent", "direct", "bounce", "error", "composite"}));
   EXPECT_GT(frame["peak_rss_bytes"].get<double>(), 1e6);
   const json& ms = frame["stages_ms"];
   double sum = 0;

@@ -99,9 +99,9 @@ TEST_F(Files, ASignalLeavesNothingBehind) {
   }
   // In the midst of the estimate.
   const auto at_once = [n = 0]() mutable { return ++n > 300; };
-  const Finished done =
-      run_tool({data("still_life.exr"), "-o", path("new.exr"), "--set", "samples=1024"},
-               {.kill_with = SIGTERM, .kill_when = at_once});
+  const Finished done = run_tool(
+      {data("still_life.exr"), "-o", path("new.exr"), "--method", "ssdo", "--set", "samples=1024"},
+      {.kill_with = SIGTERM, .kill_when = at_once});
   EXPECT_EQ(done.code, 143);
   EXPECT_FALSE(fs::exists(path("new.exr")));
 }

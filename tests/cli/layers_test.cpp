@@ -82,12 +82,18 @@ TEST(Info, SaysWhatItFoundAndWouldDo) {
   const Finished done = run_tool({"info", data("still_life.exr")});
   EXPECT_EQ(done.code, 0);
   for (const char* word : {"ViewLayer.Position.X", "fitted from P", "45.000 degrees", "background",
-                           "radius", "ssdo"}) {
+                           "radius inf", "bitmask", "goes on behind"}) {
     EXPECT_THAT(done.out, HasSubstr(word));
   }
   const json j = info(data("still_life.exr"));
-  EXPECT_EQ(j["plan"]["method"], "ssdo");
-  EXPECT_GT(j["plan"]["radius"].get<double>(), 0.1);
+  EXPECT_EQ(j["plan"]["method"], "bitmask");
+  EXPECT_EQ(j["plan"]["radius"], "inf");
+  const json old = info(data("still_life.exr"), {"--method", "ssdo"});
+  EXPECT_GT(old["plan"]["radius"].get<double>(), 0.1);
+  const Finished sky =
+      run_tool({"info", data("still_life.exr"), "--env", data("environments/sky.exr")});
+  EXPECT_THAT(sky.out,
+              testing::AllOf(HasSubstr("a sun"), HasSubstr("spherical harmonics to order")));
   EXPECT_EQ(j["surface_pixels"].get<int>() + j["background_pixels"].get<int>(), 576 * 324);
 }
 

@@ -36,11 +36,12 @@ TEST(MainJob, RelightsTheStillLifeWithoutFurtherFlags) {
   EXPECT_EQ(done.out, "");
   EXPECT_EQ(done.err, "");
   EXPECT_THAT(listing(dir.path()), ElementsAre("out.exr", "out.png"));
-  EXPECT_THAT(channel_names(exr), ElementsAre("A", "B", "G", "R", "ao.Y", "bounce.B", "bounce.G",
-                                              "bounce.R", "direct.B", "direct.G", "direct.R"));
+  EXPECT_THAT(channel_names(exr),
+              ElementsAre("A", "B", "G", "R", "ao.Y", "bent.X", "bent.Y", "bent.Z", "bounce.B",
+                          "bounce.G", "bounce.R", "direct.B", "direct.G", "direct.R", "error.Y"));
   EXPECT_EQ(string_attribute(exr, "Scene"), "still_life") << "the input's header is kept";
   EXPECT_NE(string_attribute(exr, "ssdo/version"), "");
-  EXPECT_EQ(nlohmann::json::parse(string_attribute(exr, "ssdo/plan")).at("method"), "ssdo");
+  EXPECT_EQ(nlohmann::json::parse(string_attribute(exr, "ssdo/plan")).at("method"), "bitmask");
 
   const auto image = OIIO::ImageInput::open(png);
   ASSERT_TRUE(image);
@@ -98,11 +99,12 @@ TEST(MainJob, ACropSeesWhatTheWholeFrameSees) {
   std::ofstream(dir / "camera.json") << info.at("camera");
   for (const std::string name : {"whole", "crop"}) {
     relight({dir / (name + ".exr"), "-o", dir / (name + "_out.exr"), "--camera",
-             dir / "camera.json", "--radius", "0.15", "--pixel-type", "float", kSky[0], kSky[1]});
+             dir / "camera.json", "--radius", "0.3", "--thickness", "1", "--pixel-type", "float",
+             kSky[0], kSky[1]});
   }
-  const int margin =
-      16;  // the radius is 5 to 8 pixels wide, once for direct light and once more for the bounce
-  for (const std::string c : {"ao.Y", "direct.R", "R"}) {
+  // The radius is 10 to 16 pixels wide. R takes it twice, for light and for its bounce.
+  const int margin = 18;
+  for (const std::string c : {"ao.Y", "bent.X", "direct.R"}) {
     const Plane<float> a = channel(dir / "whole_out.exr", c), b = channel(dir / "crop_out.exr", c);
     double occluded = 0;
     for (int y = crop.y0 + margin; y < crop.y1 - margin; ++y) {

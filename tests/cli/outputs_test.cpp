@@ -41,6 +41,8 @@ double sum(const Plane<float>& plane) {
 TEST_F(Outputs, AnExrHoldsTheProductsThatAreNamedAndTheirValuesDoNotDependOnIt) {
   const std::map<std::string, std::vector<std::string>> channels = {
       {"ao", {"ao.Y"}},
+      {"bent", {"bent.X", "bent.Y", "bent.Z"}},
+      {"error", {"error.Y"}},
       {"direct", {"direct.R", "direct.G", "direct.B"}},
       {"bounce", {"bounce.R", "bounce.G", "bounce.B"}},
       {"composite", {"R", "G", "B", "A"}}};
@@ -49,9 +51,14 @@ TEST_F(Outputs, AnExrHoldsTheProductsThatAreNamedAndTheirValuesDoNotDependOnIt) 
   std::map<std::string, Plane<float>> all;
   for (const std::string& name : channel_names(path("out.exr")))
     all[name] = channel(path("out.exr"), name);
-  EXPECT_EQ(all.size(), 11u);
-  for (const std::vector<std::string>& wanted :
-       {std::vector<std::string>{"ao"}, {"direct"}, {"bounce"}, {"composite"}, {"bounce", "ao"}}) {
+  EXPECT_EQ(all.size(), 15u);
+  for (const std::vector<std::string>& wanted : {std::vector<std::string>{"ao"},
+                                                 {"direct"},
+                                                 {"bounce"},
+                                                 {"composite"},
+                                                 {"bent"},
+                                                 {"error"},
+                                                 {"bounce", "ao"}}) {
     std::string list;
     std::vector<std::string> expected;
     for (const std::string& product : wanted) {
@@ -123,9 +130,55 @@ TEST_F(Outputs, EveryBounceAddsLight) {
 
 TEST_F(Outputs, EveryFlagOfTheModelMatters) {
   const std::vector<float> plain = run({}).pixels;
-  EXPECT_EQ(run({"--method", "ssdo", "--seed", "0", "--filter", "geometry", "--radius", "auto",
-                 "--set", "samples=16", "--set", "strength=1"})
+  EXPECT_EQ(run({"--method", "bitmask", "--seed", "0", "--filter", "geometry", "--radius", "auto",
+                 "--thickness", "auto", "--offscreen", "extend", "--quality", "standard",
+                 "--slices", "2", "--steps", "24"})
                 .pixels,
+            plain)
+      << "these are the defaults";
+  for (const std::vector<std::string>& flags : {std::vector<std::string>{"--seed", "1"},
+                                                {"--filter", "none"},
+                                                {"--radius", "0.2"},
+                                                {"--thickness", "0.05"},
+                                                {"--thickness", "inf"},
+                                                {"--offscreen", "open"},
+                                                {"--quality", "draft"},
+                                                {"--quality", "final"},
+                                                {"--slices", "5"},
+                                                {"--steps", "9"},
+                                                {"--method", "ssdo"}}) {
+    EXPECT_NE(run(flags).pixels, plain) << flags[0] << " " << flags[1];
+  }
+}
+
+TEST_F(Outputs, BentNormalsAreUnitOnSurfacesAndNothingElsewhere) {
+  const Plane<float> alpha = run({}, "A");
+  const Plane<float> x = channel(path("out.exr"), "bent.X"), y = channel(path("out.exr"), "bent.Y"),
+                     z = channel(path("out.exr"), "bent.Z");
+  for (std::size_t i = 0; i < x.size(); ++i)
+    ASSERT_NEAR(x[i] * x[i] + y[i] * y[i] + z[i] * z[i], alpha[i], 1e-4);
+}
+
+TEST_F(Outputs, AnErrorThatIsAskedForIsReached) {
+  const std::string sky = data("environments/sky.exr");
+  const auto mean = [&](const std::vector<std::string>& flags) {
+    const Plane<float> error = run(flags, "error.Y");
+    return sum(error) / sum(channel(path("out.exr"), "A"));
+  };
+  const double usual = mean({"--env", sky});
+  EXPECT_GT(usual, 1e-4);
+  const std::string wanted = std::to_string(usual / 3);
+  EXPECT_LE(mean({"--env", sky, "--error", wanted}), usual / 3);
+}
+
+TEST_F(Outputs, EveryParameterOfMethodSsdoMatters) {
+  const auto ssdo = [&](std::vector<std::string> flags, const std::string& name = "ao.Y") {
+    flags.insert(flags.end(), {"--method", "ssdo"});
+    return run(flags, name).pixels;
+  };
+  const std::vector<float> plain = ssdo({});
+  EXPECT_EQ(ssdo({"--seed", "0", "--filter", "geometry", "--radius", "auto", "--set", "samples=16",
+                  "--set", "strength=1"}),
             plain)
       << "these are the defaults";
   for (const std::vector<std::string>& flags : {std::vector<std::string>{"--seed", "1"},
@@ -136,12 +189,12 @@ TEST_F(Outputs, EveryFlagOfTheModelMatters) {
                                                 {"--set", "singularity=0.2"},
                                                 {"--set", "bias=0.3"},
                                                 {"--set", "strength=0.5"}}) {
-    EXPECT_NE(run(flags).pixels, plain) << flags[0] << " " << flags[1];
+    EXPECT_NE(ssdo(flags), plain) << flags[0] << " " << flags[1];
   }
-  const std::vector<float> bounce = run({}, "bounce.R").pixels;
-  EXPECT_NE(run({"--set", "bounce-strength=2"}, "bounce.R").pixels, bounce);
-  EXPECT_NE(run({"--set", "bounce-singularity=0.1"}, "bounce.R").pixels, bounce);
-  EXPECT_EQ(run({"--set", "bounce-strength=2"}).pixels, plain) << "occlusion is not its business";
+  const std::vector<float> bounce = ssdo({}, "bounce.R");
+  EXPECT_NE(ssdo({"--set", "bounce-strength=2"}, "bounce.R"), bounce);
+  EXPECT_NE(ssdo({"--set", "bounce-singularity=0.1"}, "bounce.R"), bounce);
+  EXPECT_EQ(ssdo({"--set", "bounce-strength=2"}), plain) << "occlusion is not its business";
 }
 
 TEST_F(Outputs, ARadianceLayerSendsInPlaceOfTheAlbedo) {

@@ -22,7 +22,7 @@ struct Bounds {
 };
 
 struct Scene {
-  std::string name, environment;
+  std::string name, environment, method;
   double radius_small, radius_large;  ///< of the occlusion truth
   Bounds bounds;
 };
@@ -75,6 +75,7 @@ struct Result {
 
 Result run(const Scene& scene, const std::string& environment, std::optional<double> radius) {
   Options options;
+  options.model.method = scene.method;
   options.model.radius = radius;
   options.light.env = environment;
   Frame frame = prepare_frame(options, Light(options.light), kData + scene.name + ".exr", {});
@@ -88,7 +89,11 @@ Result run(const Scene& scene, const std::string& environment, std::optional<dou
                                               plan.bounces,
                                               0,
                                               plan.parameters,
-                                              {}});
+                                              {},
+                                              plan.slices,
+                                              plan.steps,
+                                              &frame.hidden,
+                                              frame.light_model ? &*frame.light_model : nullptr});
   Products filtered = filter_geometry(raw, frame.geometry, plan.method->pattern_size);
   return {std::move(frame.geometry), std::move(filtered)};
 }
@@ -101,8 +106,8 @@ TEST_P(Truth, AoDirectAndBounceStayWithinWhatWasMeasured) {
     const Result r = run(scene, "1", radius);
     const Error2 e = compare(r.geometry, read_truth(scene, fmt::format("ao_{:g}", radius), "AO"), 1,
                              [&](std::size_t i, int) { return r.products.ao[i]; });
-    fmt::print("{:<12} ao, radius {:<5g} RMSE {:.3f}  bias {:+.3f}\n", scene.name, radius, e.rmse,
-               e.bias);
+    fmt::print("{:<8} {:<12} ao, radius {:<5g} RMSE {:.3f}  bias {:+.3f}\n", scene.method,
+               scene.name, radius, e.rmse, e.bias);
     EXPECT_LT(e.rmse, radius == scene.radius_small ? scene.bounds.ao_small : scene.bounds.ao_large);
   }
   const Result r = run(scene, kData + "environments/" + scene.environment, std::nullopt);
@@ -110,19 +115,22 @@ TEST_P(Truth, AoDirectAndBounceStayWithinWhatWasMeasured) {
                                 [&](std::size_t i, int c) { return r.products.direct[i][c]; });
   const Error2 bounce = compare(r.geometry, read_truth(scene, "env_bounce1", "DiffInd"), 4,
                                 [&](std::size_t i, int c) { return r.products.bounce[i][c]; });
-  fmt::print("{:<12} direct           relative RMSE {:.3f}  bias {:+.3f}\n", scene.name,
-             direct.rmse / direct.mean, direct.bias / direct.mean);
-  fmt::print("{:<12} bounce, 4x4      relative RMSE {:.3f}  bias {:+.3f}\n", scene.name,
-             bounce.rmse / bounce.mean, bounce.bias / bounce.mean);
+  fmt::print("{:<8} {:<12} direct           relative RMSE {:.3f}  bias {:+.3f}\n", scene.method,
+             scene.name, direct.rmse / direct.mean, direct.bias / direct.mean);
+  fmt::print("{:<8} {:<12} bounce, 4x4      relative RMSE {:.3f}  bias {:+.3f}\n", scene.method,
+             scene.name, bounce.rmse / bounce.mean, bounce.bias / bounce.mean);
   EXPECT_LT(direct.rmse / direct.mean, scene.bounds.direct);
   EXPECT_LT(bounce.rmse / bounce.mean, scene.bounds.bounce);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Frames, Truth,
-    testing::Values(Scene{"still_life", "sky.exr", 0.5, 2, {0.124, 0.232, 0.26, 1.15}},
-                    Scene{"room_corner", "studio.exr", 0.25, 1, {0.069, 0.132, 0.18, 0.75}}),
-    [](const auto& scene) { return scene.param.name; });
+    testing::Values(
+        Scene{"still_life", "sky.exr", "bitmask", 0.5, 2, {0.052, 0.053, 0.15, 0.39}},
+        Scene{"room_corner", "studio.exr", "bitmask", 0.25, 1, {0.039, 0.037, 0.19, 0.31}},
+        Scene{"still_life", "sky.exr", "ssdo", 0.5, 2, {0.124, 0.232, 0.26, 1.15}},
+        Scene{"room_corner", "studio.exr", "ssdo", 0.25, 1, {0.069, 0.132, 0.18, 0.75}}),
+    [](const auto& scene) { return scene.param.method + "_" + scene.param.name; });
 
 }  // namespace
 }  // namespace ssdo::test

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Rows of a tile, held apart by component for vector loops; compiled once for every instruction
+// set.
+#if defined(SSDO_TILE_ROWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SSDO_TILE_ROWS_INL_H_
+#undef SSDO_TILE_ROWS_INL_H_
+#else
+#define SSDO_TILE_ROWS_INL_H_
+#endif
+
+#include <hwy/aligned_allocator.h>
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "estimators/estimator.h"
+#include "parallel/tiles.h"
+#include "scene/geometry.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace ssdo::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, 16>;
+using V = hn::Vec<D>;
+using AlignedFloats = hwy::AlignedFreeUniquePtr<float[]>;
+
+constexpr int kLanes = int(hn::MaxLanes(D()));
+constexpr int kLine = 16;  ///< floats in a cache line
+
+constexpr int round_up(int count, int unit) { return (count + unit - 1) / unit * unit; }
+
+inline AlignedFloats zeros(int count) {
+  AlignedFloats values = hwy::AllocateAligned<float>(std::size_t(count));
+  std::fill_n(values.get(), count, 0.0f);
+  return values;
+}
+
+/// Calls `whole(i)` for vectors that together cover entries 0 to count - 1, some of them twice;
+/// `single(i)` for each entry where there are fewer than a vector holds.
+template <class Whole, class Single>
+HWY_INLINE void cover(int count, const Whole& whole, const Single& single) {
+  if (count < kLanes) {
+    for (int i = 0; i < count; ++i) single(i);
+  } else {
+    for (int i = 0; i < count; i += kLanes) whole(std::min(i, count - kLanes));
+  }
+}
+
+/// What is done to an average.
+enum class Finish { none, clamp, normalise };
+
+/// A plane of one or three components per pixel.
+struct Part {
+  const float* noisy;
+  float* out;
+  int components;
+  Finish finish;
+};
+
+/// Those planes that exist.
+inline std::vector<Part> parts_of(const Products& noisy, Products& out) {
+  std::vector<Part> parts;
+  const auto add = [&](const Plane<float>& from, Plane<float>& to, Finish finish) {
+    if (!from.empty()) parts.push_back({from.pixels.data(), to.pixels.data(), 1, finish});
+  };
+  const auto add3 = [&](const Plane<glm::vec3>& from, Plane<glm::vec3>& to, Finish finish) {
+    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+    if (!from.empty()) parts.push_back({&from.pixels[0].x, &to.pixels[0].x, 3, finish});
+  };
+  add3(noisy.direct, out.direct, Finish::none);
+  add3(noisy.bounce, out.bounce, Finish::none);
+  add3(noisy.bent, out.bent, Finish::normalise);
+  add(noisy.ao, out.ao, Finish::clamp);
+  add(noisy.error, out.error, Finish::none);
+  return parts;
+}
+
+/// The latest rows of a tile and its halo. Channels 0 to 6 are the position, the normal and the
+/// rounding of Surfel, the others are the components of the products; all are 0 for what is not a
+/// surface, be it outside the picture.
+class TileRows {
+ public:
+  static constexpr int kSurfelChannels = 7;
+
+  /// Holds `height` rows; the halo is `half` pixels wide.
+  TileRows(const Products& noisy, const Plane<Surfel>& surfel, const Tile& tile, int half,
+           int height, Products& out)
+      : surfel_(surfel),
+        tile_(tile),
+        half_(half),
+        height_(height),
+        parts_(parts_of(noisy, out)),
+        stride_(round_up(round_up(tile.x1 - tile.x0, kLanes) + 2 * half, kLine)) {
+    for (const Part& part : parts_) components_ += part.components;
+    rows_ = zeros(height_ * channels() * stride_);
+    surface_ = zeros(stride_);
+  }
+
+  int components() const { return components_; }  ///< of all products
+  int stride() const { return stride_; }          ///< from a channel to the next
+
+  /// Channel `c` of picture row `y`; its entry 0 lies half a window left of the tile.
+  const float* row(int y, int c) const { return rows_.get() + offset(y, c); }
+
+  /// Takes row `y` in, in place of the row that was taken in `height` rows ago.
+  void gather(int y) {
+    float* to = rows_.get() + offset(y, 0);
+    if (y < 0 || y >= surfel_.height) {
+      std::fill_n(to, channels() * stride_, 0.0f);
+      return;
+    }
+    const int left = tile_.x0 - half_, x0 = std::max(left, 0),
+              count = std::min(tile_.x1 + half_, surfel_.width) - x0;
+    const std::size_t first = surfel_.index(x0, y);
+    if (y + kAhead < surfel_.height) fetch(surfel_.index(x0, y + kAhead), count);
+    to += x0 - left;
+    gather_surfels(&surfel_[first], count, to);
+    to += kSurfelChannels * stride_;
+    for (const Part& part : parts_) {
+      gather_part(part, first, count, to);
+      to += part.components * stride_;
+    }
+  }
+
+  /// Writes row `y` of the tile where `weight` is more than 0, from averages by component, which
+  /// it finishes.
+  void write(int y, float* averages, const float* weight) const {
+    const std::size_t first = surfel_.index(tile_.x0, y);
+    const int count = tile_.x1 - tile_.x0;
+    for (const Part& part : parts_) {
+      finish(part.finish, averages, count);
+      write_part(part, first, count, averages, weight);
+      averages += part.components * stride_;
+    }
+  }
+
+ private:
+  static constexpr int kAhead = 2;  ///< rows; measured
+
+  int channels() const { return kSurfelChannels + components_; }
+  int offset(int y, int c) const {
+    const int slot = (y - tile_.y0 + half_) % height_;
+    return (slot * channels() + c) * stride_;
+  }
+
+  /// Tells the processor that these pixels are needed soon; a tile's rows are too short for it to
+  /// find out. Inlined, as g++ 12 drops calls of a function that does nothing else.
+  HWY_INLINE void fetch(std::size_t first, int count) const {
+    const auto each_line = [](const float* from, int floats) {
+      for (int i = 0; i < floats; i += kLine) hwy::Prefetch(from + i);
+    };
+    each_line(&surfel_[first].position.x, count * int(sizeof(Surfel) / sizeof(float)));
+    for (const Part& part : parts_)
+      each_line(part.noisy + first * std::size_t(part.components), count * part.components);
+  }
+
+  void gather_surfels(const Surfel* from, int count, float* to) {
+    const auto single = [&](int i) {
+      const glm::vec4 p = from[i].position, n = from[i].normal;
+      const bool surface = p.w != 0;
+      const float values[kSurfelChannels] = {p.x, p.y, p.z, n.x, n.y, n.z, n.w};
+      surface_[std::size_t(i)] = surface;
+      for (int c = 0; c < kSurfelChannels; ++c) to[c * stride_ + i] = surface ? values[c] : 0.0f;
+    };
+#if HWY_TARGET == HWY_SCALAR
+    for (int i = 0; i < count; ++i) single(i);
+#else
+    static_assert(sizeof(Surfel) == 8 * sizeof(float));
+    const auto whole = [&](int i) HWY_ATTR {
+      const D d;
+      // Position, normal, position, normal, ... of two halves of the vector.
+      V x0, y0, z0, w0, x1, y1, z1, w1;
+      hn::LoadInterleaved4(d, &from[i].position.x, x0, y0, z0, w0);
+      hn::LoadInterleaved4(d, &from[i + kLanes / 2].position.x, x1, y1, z1, w1);
+      const auto surface = hn::ConcatEven(d, w1, w0) != hn::Zero(d);
+      hn::StoreU(hn::IfThenElseZero(surface, hn::Set(d, 1.0f)), d, surface_.get() + i);
+      const auto store = [&](V values, int c) HWY_ATTR {
+        hn::StoreU(hn::IfThenElseZero(surface, values), d, to + c * stride_ + i);
+      };
+      store(hn::ConcatEven(d, x1, x0), 0);
+      store(hn::ConcatEven(d, y1, y0), 1);
+      store(hn::ConcatEven(d, z1, z0), 2);
+      store(hn::ConcatOdd(d, x1, x0), 3);
+      store(hn::ConcatOdd(d, y1, y0), 4);
+      store(hn::ConcatOdd(d, z1, z0), 5);
+      store(hn::ConcatOdd(d, w1, w0), 6);
+    };
+    cover(count, whole, single);
+#endif
+  }
+
+  void gather_part(const Part& part, std::size_t first, int count, float* to) const {
+    const float* from = part.noisy + first * std::size_t(part.components);
+    const auto whole = [&](int i) HWY_ATTR {
+      const D d;
+      const auto surface = hn::LoadU(d, surface_.get() + i) != hn::Zero(d);
+      const auto store = [&](V values, int c) HWY_ATTR {
+        hn::StoreU(hn::IfThenElseZero(surface, values), d, to + c * stride_ + i);
+      };
+      if (part.components == 1) return store(hn::LoadU(d, from + i), 0);
+      V x, y, z;
+      hn::LoadInterleaved3(d, from + 3 * i, x, y, z);
+      store(x, 0), store(y, 1), store(z, 2);
+    };
+    cover(count, whole, [&](int i) {
+      const bool surface = surface_[std::size_t(i)] != 0;
+      for (int c = 0; c < part.components; ++c)
+        to[c * stride_ + i] = surface ? from[i * part.components + c] : 0.0f;
+    });
+  }
+
+  void finish(Finish how, float* averages, int count) const {
+    const D d;
+    const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    if (how == Finish::none) return;
+    for (int i = 0; i < count; i += kLanes) {
+      float *xs = averages + i, *ys = xs + stride_, *zs = ys + stride_;
+      const V x = hn::Load(d, xs);
+      if (how == Finish::clamp) {
+        hn::Store(hn::Min(hn::Max(x, zero), one), d, xs);
+        continue;
+      }
+      const V y = hn::Load(d, ys), z = hn::Load(d, zs);
+      const V length2 = hn::MulAdd(x, x, hn::MulAdd(y, y, z * z));
+      const V scale = hn::IfThenElse(length2 > zero, one / hn::Sqrt(length2), zero);
+      hn::Store(x * scale, d, xs);
+      hn::Store(y * scale, d, ys);
+      hn::Store(z * scale, d, zs);
+    }
+  }
+
+  void write_part(const Part& part, std::size_t first, int count, const float* from,
+                  const float* weight) const {
+    float* to = part.out + first * std::size_t(part.components);
+    const auto single = [&](int i) {
+      if (!(weight[i] > 0)) return;
+      for (int c = 0; c < part.components; ++c) to[i * part.components + c] = from[c * stride_ + i];
+    };
+    const auto whole = [&](int i) HWY_ATTR {
+      const D d;
+      if (!hn::AllTrue(d, hn::LoadU(d, weight + i) > hn::Zero(d))) {
+        for (int k = i; k < i + kLanes; ++k) single(k);
+      } else if (part.components == 1) {
+        hn::StoreU(hn::LoadU(d, from + i), d, to + i);
+      } else {
+        hn::StoreInterleaved3(hn::LoadU(d, from + i), hn::LoadU(d, from + stride_ + i),
+                              hn::LoadU(d, from + 2 * stride_ + i), d, to + 3 * i);
+      }
+    };
+    cover(count, whole, single);
+  }
+
+  const Plane<Surfel>& surfel_;
+  const Tile tile_;
+  const int half_, height_;
+  const std::vector<Part> parts_;
+  const int stride_;
+  int components_ = 0;
+  AlignedFloats rows_;     ///< by row modulo the height, channel and column
+  AlignedFloats surface_;  ///< 1 on a surface, of the row that is gathered
+};
+
+}  // namespace ssdo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

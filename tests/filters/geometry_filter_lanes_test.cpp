@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The vector loops of the filter against a slow reference, against each other, and what must hold
+// for each product.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+#include <random>
+#include <string>
+
+#include "error.h"
+#include "filters/geometry_filter.h"
+#include "parallel/isa.h"
+#include "parallel/tiles.h"
+
+namespace ssdo::test {
+namespace {
+
+/// Sets $SSDO_ISA while it lives.
+class IsaVariable {
+ public:
+  explicit IsaVariable(const char* value) {
+    if (const char* before = std::getenv("SSDO_ISA")) before_ = before;
+    setenv("SSDO_ISA", value, 1);
+  }
+  ~IsaVariable() {
+    before_ ? setenv("SSDO_ISA", before_->c_str(), 1) : unsetenv("SSDO_ISA");
+    choose_isa();
+  }
+
+ private:
+  std::optional<std::string> before_;
+};
+
+bool has_isa(const char* name) {
+  const IsaVariable variable(name);
+  try {
+    return choose_isa() == name;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+using Random = std::mt19937;
+
+float between(Random& random, float low, float high) {
+  return std::uniform_real_distribution<float>(low, high)(random);
+}
+
+glm::vec3 vector_of(Random& random, float size) {
+  const float x = between(random, -size, size), y = between(random, -size, size);
+  return {x, y, between(random, -size, size)};
+}
+
+/// Uneven surfaces with steps between them, a tenth of them missing.
+Geometry random_geometry(int width, int height, unsigned seed) {
+  Random random(seed);
+  Geometry g;
+  g.window = g.display = {0, 0, width, height};
+  g.surfel = Plane<Surfel>(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (between(random, 0, 1) < 0.1f) continue;
+      const int step = (x / 7 + y / 5) % 3;
+      const glm::vec3 p = glm::vec3(0.1f * float(x), -0.1f * float(y), -5 - float(step)) +
+                          vector_of(random, 0.01f),
+                      n = glm::vec3(0.3f * float(step), 0, 1) + vector_of(random, 0.25f);
+      g.surfel(x, y).position = glm::vec4(p, 1);
+      g.surfel(x, y).normal = glm::vec4(glm::normalize(n), 1e-3f * between(random, 0, 1));
+    }
+  }
+  return g;
+}
+
+/// All products, with values on the background too.
+Products random_products(const Geometry& g, unsigned seed) {
+  Random random(seed);
+  const int w = g.surfel.width, h = g.surfel.height;
+  Products p;
+  p.ao = p.error = Plane<float>(w, h);
+  p.direct = p.bounce = p.bent = Plane<glm::vec3>(w, h);
+  for (std::size_t i = 0; i < p.ao.size(); ++i) {
+    p.ao[i] = between(random, 0, 1);
+    p.direct[i] = vector_of(random, 1);
+    p.bounce[i] = vector_of(random, 1);
+    p.bent[i] = glm::normalize(glm::vec3(0, 0, 1.5f) + vector_of(random, 1));
+    p.error[i] = between(random, -1, 1);
+  }
+  return p;
+}
+
+double reference_weight(const Surfel& p, const Surfel& q) {
+  const auto ramp = [](double x) { return std::clamp(2 - 2 * x, 0.0, 1.0); };
+  const glm::dvec3 step = glm::dvec3(q.position) - glm::dvec3(p.position), n(p.normal);
+  const double distance = glm::length(step),
+               off_plane = std::max(0.0, std::abs(glm::dot(step, n)) - p.normal.w - q.normal.w),
+               turn = 1 - glm::dot(n, glm::dvec3(q.normal));
+  return ramp(distance > 0 ? off_plane / (0.3 * distance) : 0) * ramp(turn / 0.2);
+}
+
+/// The sum at the top of geometry_filter.cpp, in double.
+template <class Value, class T>
+Value reference(const Plane<T>& in, const Geometry& g, int pattern_size, int x, int y) {
+  const int half = pattern_size / 2;
+  double weights = 0;
+  Value sum(0);
+  for (int dy = -half; dy <= half; ++dy) {
+    for (int dx = -half; dx <= half; ++dx) {
+      const int qx = x + dx, qy = y + dy;
+      if (qx < 0 || qy < 0 || qx >= g.surfel.width || qy >= g.surfel.height) continue;
+      if (!g.is_surface(g.surfel.index(qx, qy))) continue;
+      const double border = (std::abs(dx) == half ? 0.5 : 1) * (std::abs(dy) == half ? 0.5 : 1),
+                   weight = border * reference_weight(g.surfel(x, y), g.surfel(qx, qy));
+      weights += weight;
+      sum += weight * Value(in(qx, qy));
+    }
+  }
+  return sum / weights;
+}
+
+double difference(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b); }
+
+struct Size {
+  int width, height;
+};
+const Size kSizes[] = {{1, 1}, {1, 9}, {3, 2}, {5, 70}, {16, 16}, {17, 33}, {67, 5}, {131, 65}};
+
+TEST(GeometryFilterLanes, AreTheReference) {
+  for (const Size size : kSizes) {
+    const Geometry g = random_geometry(size.width, size.height, 1);
+    const Products in = random_products(g, 2);
+    for (const int pattern_size : {2, 4, 8}) {
+      const Products out = filter_geometry(in, g, pattern_size);
+      for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) {
+          SCOPED_TRACE(testing::Message() << size.width << "x" << size.height << " T "
+                                          << pattern_size << " at " << x << ", " << y);
+          if (!g.is_surface(g.surfel.index(x, y))) {
+            EXPECT_EQ(out.ao(x, y), in.ao(x, y));
+            EXPECT_EQ(out.error(x, y), in.error(x, y));
+            EXPECT_EQ(out.direct(x, y), in.direct(x, y));
+            EXPECT_EQ(out.bent(x, y), in.bent(x, y));
+            continue;
+          }
+          const auto expected3 = [&](const Plane<glm::vec3>& plane) {
+            return reference<glm::dvec3>(plane, g, pattern_size, x, y);
+          };
+          const auto expected = [&](const Plane<float>& plane) {
+            return reference<double>(plane, g, pattern_size, x, y);
+          };
+          EXPECT_NEAR(out.ao(x, y), expected(in.ao), 1e-4);
+          EXPECT_NEAR(out.error(x, y), expected(in.error), 1e-4);
+          EXPECT_LT(difference(out.direct(x, y), expected3(in.direct)), 1e-4);
+          EXPECT_LT(difference(out.bounce(x, y), expected3(in.bounce)), 1e-4);
+          EXPECT_LT(difference(out.bent(x, y), glm::normalize(expected3(in.bent))), 1e-4);
+          EXPECT_NEAR(glm::length(out.bent(x, y)), 1, 1e-6);
+        }
+      }
+    }
+  }
+}
+
+TEST(GeometryFilterLanes, AgreeAmongInstructionSets) {
+  const Geometry g = random_geometry(131, 65, 3);
+  const Products in = random_products(g, 4);
+  const auto run = [&](const char* isa) {
+    const IsaVariable variable(isa);
+    return filter_geometry(in, g, 4);
+  };
+  const Products scalar = run("scalar");
+  for (const char* isa : {"avx2", "avx512"}) {
+    if (!has_isa(isa)) continue;
+    SCOPED_TRACE(isa);
+    const Products vector = run(isa);
+    for (std::size_t i = 0; i < in.ao.size(); ++i) {
+      EXPECT_NEAR(vector.ao[i], scalar.ao[i], 1e-5);
+      EXPECT_NEAR(vector.error[i], scalar.error[i], 1e-5);
+      EXPECT_LT(difference(vector.direct[i], scalar.direct[i]), 1e-5);
+      EXPECT_LT(difference(vector.bounce[i], scalar.bounce[i]), 1e-5);
+      EXPECT_LT(difference(vector.bent[i], scalar.bent[i]), 1e-5);
+    }
+  }
+}
+
+/// The part of a plane that `window` cuts out.
+template <class T>
+Plane<T> crop(const Plane<T>& from, const Window& window) {
+  Plane<T> to(window.width(), window.height());
+  for (int y = 0; y < to.height; ++y)
+    for (int x = 0; x < to.width; ++x) to(x, y) = from(window.x0 + x, window.y0 + y);
+  return to;
+}
+
+TEST(GeometryFilterLanes, GiveTheSameBitsInACropAndOnAnyNumberOfThreads) {
+  const Geometry g = random_geometry(150, 140, 5);
+  const Products in = random_products(g, 6);
+  const Products whole = [&] {
+    const ThreadLimit one(1);
+    return filter_geometry(in, g, 4);
+  }();
+  const ThreadLimit several(4);
+  const Products again = filter_geometry(in, g, 4);
+  EXPECT_EQ(again.ao.pixels, whole.ao.pixels);
+  EXPECT_EQ(again.bounce.pixels, whole.bounce.pixels);
+
+  const Window window{13, 7, 124, 130};
+  Geometry part;
+  part.surfel = crop(g.surfel, window);
+  Products part_in;
+  part_in.ao = crop(in.ao, window);
+  part_in.bent = crop(in.bent, window);
+  const Products out = filter_geometry(part_in, part, 4);
+  for (int y = 2; y < window.height() - 2; ++y) {
+    for (int x = 2; x < window.width() - 2; ++x) {
+      EXPECT_EQ(out.ao(x, y), whole.ao(window.x0 + x, window.y0 + y));
+      EXPECT_EQ(out.bent(x, y), whole.bent(window.x0 + x, window.y0 + y));
+    }
+  }
+}
+
+TEST(GeometryFilter, IsOddInTheErrorAndLinear) {
+  const Geometry g = random_geometry(40, 30, 7);
+  Products a, b, minus, sum;
+  a.error = random_products(g, 8).error;
+  b.error = random_products(g, 9).error;
+  minus = sum = a;
+  for (float& e : minus.error.pixels) e = -e;
+  for (std::size_t i = 0; i < sum.error.size(); ++i) sum.error[i] += b.error[i];
+  const Products of_a = filter_geometry(a, g, 4), of_b = filter_geometry(b, g, 4),
+                 of_minus = filter_geometry(minus, g, 4), of_sum = filter_geometry(sum, g, 4);
+  for (std::size_t i = 0; i < a.error.size(); ++i) {
+    EXPECT_EQ(of_minus.error[i], -of_a.error[i]);
+    EXPECT_NEAR(of_sum.error[i], of_a.error[i] + of_b.error[i], 1e-5);
+  }
+  EXPECT_TRUE(of_a.ao.empty() && of_a.direct.empty() && of_a.bounce.empty() && of_a.bent.empty());
+}
+
+TEST(GeometryFilter, LeavesNoDirectionWithoutLength) {
+  const Geometry g = random_geometry(40, 30, 10);
+  Products p;
+  p.bent = Plane<glm::vec3>(40, 30);
+  const Products out = filter_geometry(p, g, 4);
+  for (const glm::vec3& bent : out.bent.pixels) EXPECT_EQ(bent, glm::vec3(0));
+}
+
+TEST(GeometryFilter, TakesNothingFromTheBackgroundBeItBroken) {
+  const Geometry g = random_geometry(70, 30, 11);
+  const Products clean = random_products(g, 12);
+  Products broken = clean;
+  Geometry holes = g;
+  for (std::size_t i = 0; i < broken.ao.size(); ++i) {
+    if (g.is_surface(i)) continue;
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    broken.ao[i] = nan;
+    broken.direct[i] = glm::vec3(nan);
+    holes.surfel[i].position = glm::vec4(glm::vec3(nan), 0);
+    holes.surfel[i].normal = glm::vec4(nan);
+  }
+  const Products expected = filter_geometry(clean, g, 4), out = filter_geometry(broken, holes, 4);
+  for (std::size_t i = 0; i < broken.ao.size(); ++i) {
+    if (!g.is_surface(i)) continue;
+    EXPECT_EQ(out.ao[i], expected.ao[i]);
+    EXPECT_EQ(out.direct[i], expected.direct[i]);
+  }
+}
+
+}  // namespace
+}  // namespace ssdo::test
