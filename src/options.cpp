@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <limits>
 
 #include "error.h"
-#include "math/number.h"
+#include "option_values.h"
 
 namespace ssdo {
 namespace {
@@ -20,18 +19,6 @@ struct RawOptions {
   std::string pixel_type = "half", compression, on_error = "stop", progress = "auto";
   std::optional<double> background_depth;
 };
-
-[[noreturn]] void throw_usage(const std::string& message) { throw Error(ExitCode::usage, message); }
-
-/// A length in scene units: a positive number or inf; nothing for auto.
-std::optional<double> parse_length(const std::string& option, std::string_view text) {
-  if (text == "auto") return std::nullopt;
-  if (text == "inf") return std::numeric_limits<double>::infinity();
-  const auto value = parse_number(text);
-  if (!value || *value <= 0)
-    throw_usage(fmt::format("{}: '{}' is no positive number, nor auto or inf", option, text));
-  return value;
-}
 
 std::string describe_qualities() {
   std::string text = "slices x steps per side: ";
@@ -61,7 +48,7 @@ void add_input(CLI::App& app, Options& o, RawOptions& raw) {
   app.add_option("--background-depth", raw.background_depth,
                  "depth from which on a pixel is background")
       ->type_name("Z")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->group("Input");
 }
 
@@ -72,11 +59,11 @@ void add_camera(CLI::App& app, Options& o) {
   auto* fov =
       app.add_option("--fov", o.camera.fov, "horizontal field of view, where P does not tell")
           ->type_name("DEG")
-          ->check(CLI::Range(0.01, 179.0))
+          ->check(between(0.01, 179))
           ->group("Camera");
   app.add_option("--ortho", o.camera.ortho, "width of an orthographic frame in scene units")
       ->type_name("WIDTH")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->excludes(fov)
       ->group("Camera");
 }
@@ -90,7 +77,7 @@ void add_light(CLI::App& app, Options& o, RawOptions& raw) {
                  "turn the map about the up axis, counter-clockwise from above")
       ->type_name("DEG")
       ->capture_default_str()
-      ->check(CLI::Range(-1e6, 1e6))
+      ->check(between(-1e6, 1e6))
       ->group("Light");
   app.add_option("--env-up", raw.env_up, "auto, y or z; auto is z for Blender's files, else y")
       ->type_name("AXIS")
@@ -100,7 +87,7 @@ void add_light(CLI::App& app, Options& o, RawOptions& raw) {
   app.add_option("--env-exposure", o.light.exposure_stops, "brighten the environment")
       ->type_name("STOPS")
       ->capture_default_str()
-      ->check(CLI::Range(-100.0, 100.0))
+      ->check(between(-100, 100))
       ->group("Light");
 }
 
@@ -142,7 +129,7 @@ void add_model(CLI::App& app, Options& o, RawOptions& raw) {
   app.add_option("--error", o.model.error,
                  "go on until the standard error of direct + bounce is below E, on average")
       ->type_name("E")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->group("Model");
   app.add_option("--bounces", o.model.bounces, "bounces of light between surfaces")
       ->type_name("N")
@@ -262,56 +249,6 @@ void add_say(CLI::App& app, Options& o) {
       ->group("Say");
 }
 
-void read_depth_kind(const std::string& text, GBufferOptions& out) {
-  static const std::string normalized = "normalized:";
-  if (text == "planar") {
-    out.depth_kind = DepthKind::planar;
-  } else if (text == "ray") {
-    out.depth_kind = DepthKind::ray;
-  } else if (text == "inverse") {
-    out.depth_kind = DepthKind::inverse;
-  } else {
-    const auto comma = text.find(',');
-    const bool shaped = text.starts_with(normalized) && comma != std::string::npos;
-    const auto near = shaped
-                          ? parse_number(text.substr(normalized.size(), comma - normalized.size()))
-                          : std::nullopt;
-    const auto far = shaped ? parse_number(text.substr(comma + 1)) : std::nullopt;
-    if (!near || !far || *near == *far) {
-      throw_usage(
-          fmt::format("--depth-kind {}: expected planar, ray, inverse or normalized:NEAR,FAR "
-                      "in scene units",
-                      text));
-    }
-    out.depth_kind = DepthKind::normalized;
-    out.depth_near = float(*near);
-    out.depth_far = float(*far);
-  }
-}
-
-Imf::Compression read_compression(const std::string& name) {
-  static const std::vector<std::pair<std::string, Imf::Compression>> names = {
-      {"none", Imf::NO_COMPRESSION},   {"rle", Imf::RLE_COMPRESSION},
-      {"zips", Imf::ZIPS_COMPRESSION}, {"zip", Imf::ZIP_COMPRESSION},
-      {"piz", Imf::PIZ_COMPRESSION},   {"pxr24", Imf::PXR24_COMPRESSION},
-      {"b44", Imf::B44_COMPRESSION},   {"b44a", Imf::B44A_COMPRESSION},
-      {"dwaa", Imf::DWAA_COMPRESSION}, {"dwab", Imf::DWAB_COMPRESSION}};
-  for (const auto& [known, compression] : names) {
-    if (known == name) return compression;
-  }
-  throw_usage(fmt::format(
-      "--compression {}: expected none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab",
-      name));
-}
-
-SaveRequest read_save(const std::string& text) {
-  const auto equals = text.find('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
-    throw_usage(fmt::format("--save {}: expected PRODUCT=FILE", text));
-  }
-  return {text.substr(0, equals), text.substr(equals + 1)};
-}
-
 /// Turns texts into values and refuses what does not fit together.
 void finish(Options& o, const RawOptions& raw, bool depth_kind_given) {
   for (const std::string& text : raw.aov) o.input.aovs.push_back(parse_layer_request(text));
@@ -319,8 +256,8 @@ void finish(Options& o, const RawOptions& raw, bool depth_kind_given) {
   if (depth_kind_given) read_depth_kind(raw.depth_kind, o.input.gbuffer);
   if (raw.background_depth) o.input.gbuffer.background_depth = float(*raw.background_depth);
   if (raw.env_up != "auto") o.light.up = raw.env_up == "z" ? UpAxis::z : UpAxis::y;
-  o.model.radius = parse_length("--radius", raw.radius);
-  o.model.thickness = parse_length("--thickness", raw.thickness);
+  o.model.radius = read_length("--radius", raw.radius);
+  o.model.thickness = read_length("--thickness", raw.thickness);
   o.model.extend_offscreen = raw.offscreen == "extend";
   o.model.quality = raw.quality == "draft"   ? Quality::draft
                     : raw.quality == "final" ? Quality::final
@@ -335,10 +272,11 @@ void finish(Options& o, const RawOptions& raw, bool depth_kind_given) {
                      : raw.progress == "openjd"  ? ProgressStyle::openjd
                                                  : ProgressStyle::automatic;
   if (o.command == Command::list_methods) return;
-  if (o.input_file.empty()) throw_usage("no INPUT given; see ssdo --help");
+  if (o.input_file.empty()) throw Error(ExitCode::usage, "no INPUT given; see ssdo --help");
   if (o.command == Command::relight && o.output.files.empty() && o.output.saves.empty() &&
       !o.say.dry_run) {
-    throw_usage(fmt::format("{}: no output given; name one with -o OUTPUT", o.input_file));
+    throw Error(ExitCode::usage,
+                fmt::format("{}: no output given; name one with -o OUTPUT", o.input_file));
   }
 }
 
@@ -381,7 +319,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& e) {
     std::string message = e.what();
     for (char& c : message) c = c == '\n' ? ' ' : c;
-    throw_usage(message + "; see ssdo --help");
+    throw Error(ExitCode::usage, message + "; see ssdo --help");
   }
   if (list) o.command = Command::list_methods;
   if (info->parsed()) o.command = Command::info;
