@@ -67,9 +67,10 @@ ParameterValues resolve_parameters(const Method& method, const std::vector<std::
 std::string describe_methods() {
   std::string text;
   for (const Method& method : methods()) {
-    text += fmt::format("{}  {}\n  products: {}{}{}\n", method.name, method.summary,
-                        method.products.ao ? "ao" : "", method.products.direct ? ", direct" : "",
-                        method.products.bounce ? ", bounce" : "");
+    const ProductSet& can = method.products;
+    text += fmt::format("{}  {}\n  products: ao{}{}{}{}\n", method.name, method.summary,
+                        can.bent ? ", bent" : "", can.direct ? ", direct" : "",
+                        can.bounce ? ", bounce" : "", can.error ? ", error" : "");
     for (const Parameter& p : method.parameters) {
       text += fmt::format("  {:<20} {:>8g}  {:g} to {:g} {}  {}\n", p.name, p.value, p.low, p.high,
                           p.unit, p.meaning);

@@ -55,7 +55,17 @@ TEST(Refusals, OfTheCommandLine) {
       {{"--method", "ssdo", "--radius", "inf"}, "needs a limit"},
       {{"--method", "ssdo", "--slices", "3"}, "--slices"},
       {{"--method", "ssdo", "--error", "0.1"}, "--error"},
+      {{"--method", "ssdo", "--steps", "3"}, "--steps"},
+      {{"--method", "ssdo", "--thickness", "inf"}, "--thickness"},
       {{"--method", "ssdo", "--products", "bent"}, "these do: bitmask"},
+      {{"--method", "ssdo", "--products", "error"}, "these do: bitmask"},
+      {{"--method", "ssdo", "--save", "bent=b.exr"}, "these do: bitmask"},
+      {{"--radius", "infinity"}, "--radius"},
+      {{"--thickness", "nan"}, "--thickness"},
+      {{"--thickness", "-inf"}, "--thickness"},
+      {{"--slices", "257"}, "--slices"},
+      {{"--slices", "2.5"}, "--slices"},
+      {{"--steps", "0"}, "--steps"},
       {{"--thickness", "0"}, "--thickness"},
       {{"--thickness", "thin"}, "--thickness"},
       {{"--offscreen", "shut"}, "--offscreen"},
@@ -100,6 +110,8 @@ TEST(Refusals, OfTheCommandLine) {
     expect_refused(arguments, 2, says);
   }
   expect_refused({in, "-o", out}, 2, "SSDO_THREADS", {.variables = {{"SSDO_THREADS", "many"}}});
+  expect_refused({in, "-o", out}, 2, "$SSDO_ISA is 'nonsense'",
+                 {.variables = {{"SSDO_ISA", "nonsense"}}});
   EXPECT_THAT(listing(dir.path()), testing::ElementsAre("in.exr"));
 }
 

@@ -4,7 +4,9 @@
 #include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "support/frame_file.h"
 #include "support/run_tool.h"
@@ -152,11 +154,32 @@ TEST_F(Outputs, EveryFlagOfTheModelMatters) {
 }
 
 TEST_F(Outputs, BentNormalsAreUnitOnSurfacesAndNothingElsewhere) {
-  const Plane<float> alpha = run({}, "A");
-  const Plane<float> x = channel(path("out.exr"), "bent.X"), y = channel(path("out.exr"), "bent.Y"),
-                     z = channel(path("out.exr"), "bent.Z");
-  for (std::size_t i = 0; i < x.size(); ++i)
-    ASSERT_NEAR(x[i] * x[i] + y[i] * y[i] + z[i] * z[i], alpha[i], 1e-4);
+  std::filesystem::copy_file(data("still_life.exr"), path("in.exr"),
+                             std::filesystem::copy_options::overwrite_existing);
+  const Plane<float> x = run({}, "bent.X"), y = channel(path("out.exr"), "bent.Y"),
+                     z = channel(path("out.exr"), "bent.Z"),
+                     depth = channel(path("in.exr"), "ViewLayer.Depth.Z");
+  int outside = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const bool is_outside = depth[i] > 1e9f;
+    ASSERT_NEAR(x[i] * x[i] + y[i] * y[i] + z[i] * z[i], is_outside ? 0 : 1, 1e-4);
+    outside += is_outside;
+  }
+  EXPECT_GT(outside, 10000);
+}
+
+TEST_F(Outputs, APictureOfBentShowsDirectionsAsColours) {
+  run({"--products", "bent", "-o", path("bent.png"), "--bits", "16"}, "bent.X");
+  const auto image = OIIO::ImageInput::open(path("bent.png"));
+  ASSERT_TRUE(image);
+  ASSERT_EQ(image->spec().nchannels, 3);
+  std::vector<float> values(64 * 48 * 3);
+  ASSERT_TRUE(image->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, values.data()));
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Plane<float> bent = channel(path("out.exr"), std::string("bent.") + "XYZ"[c]);
+    for (std::size_t i = 0; i < bent.size(); ++i)
+      ASSERT_NEAR(values[3 * i + c], 0.5f + 0.5f * bent[i], 1e-4) << "XYZ"[c];
+  }
 }
 
 TEST_F(Outputs, AnErrorThatIsAskedForIsReached) {
@@ -169,6 +192,26 @@ TEST_F(Outputs, AnErrorThatIsAskedForIsReached) {
   EXPECT_GT(usual, 1e-4);
   const std::string wanted = std::to_string(usual / 3);
   EXPECT_LE(mean({"--env", sky, "--error", wanted}), usual / 3);
+}
+
+TEST_F(Outputs, AnErrorIsReachedOrThereAreAsManySlicesAsThereCanBe) {
+  std::filesystem::copy_file(data("room_corner.exr"), path("in.exr"),
+                             std::filesystem::copy_options::overwrite_existing);
+  const std::string stats = path("stats.json");
+  const auto relit = [&](const std::string& error, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> flags = {"--error", error, "--stats", stats};
+    flags.insert(flags.end(), more.begin(), more.end());
+    const double found = sum(run(flags, "error.Y")) / sum(channel(path("out.exr"), "A"));
+    return std::pair(found,
+                     nlohmann::json::parse(read_file(stats))[0]["plan"]["slices"].get<int>());
+  };
+  const auto [reached, slices] = relit("0.01");
+  EXPECT_LE(reached, 0.01);
+  EXPECT_GT(slices, 2);
+  EXPECT_LT(slices, 256);
+  const auto [missed, most] = relit("1e-9", {"--steps", "1", "--bounces", "0"});
+  EXPECT_GT(missed, 1e-9);
+  EXPECT_EQ(most, 256);
 }
 
 TEST_F(Outputs, EveryParameterOfMethodSsdoMatters) {
