@@ -107,7 +107,7 @@ class Bitmask {
   int width() const { return layout_.width(); }
   int height() const { return layout_.height(); }
 
-  bool is_surface(std::ptrdiff_t i) const { return !std::isnan(scene_.z[i]); }
+  bool is_surface(std::ptrdiff_t i) const { return !std::isnan(scene_.depth[i]); }
 
   template <class Work>
   void for_each_block(const Work& work) const {
@@ -256,9 +256,8 @@ class Bitmask {
     });
     BorderValues sent_border[3];
     for (int c = 0; c < 3; ++c) {
-      sent_border[c] = border_values(width(), height(), [&](int x, int y) {
-        return sent[std::size_t(c)][layout_.index(x, y)];
-      });
+      sent_border[c] = scene_.border.gather(
+          [&](int x, int y) { return sent[std::size_t(c)][layout_.index(x, y)]; });
     }
     InterleavedColor difference;
     if (in_.products.error) difference = make_color(layout_);

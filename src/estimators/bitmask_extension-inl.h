@@ -15,35 +15,67 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// Where lanes leave the frame along (dx, dy), a unit vector in pixels.
+/// Where lanes leave the frame.
 struct Border {
-  hn::Vec<DI> index;  ///< of the last pixel, in BorderValues
+  V dx, dy;  ///< pixels from the receiver to the last pixel before
   V distance_px;
+  bool in_one_row;       ///< all lanes leave through the same row, at neighbours
+  std::ptrdiff_t first;  ///< of the values at the border that belong to the lanes, in that case
+  hn::Vec<DI> index;     ///< of the values, in the other
+
+  HWY_INLINE V operator()(const BorderValues& values) const {
+    const D d;
+    return in_one_row ? hn::LoadU(d, values.data() + first)
+                      : hn::GatherIndex(d, values.data(), index);
+  }
 };
 
-/// Columns of the picture that the lanes stand for.
-HWY_INLINE V lane_columns(const Interleaving& layout, int comb, int column) {
-  const DI di;
-  constexpr int kPeriod = Interleaving::kPeriod;
-  return hn::ConvertTo(D(), hn::Iota(di, 0) * hn::Set(di, kPeriod) +
-                                hn::Set(di, column * kPeriod + comb - layout.phase()));
-}
-
-HWY_INLINE Border border_along(const Interleaving& layout, V dx, V dy, V x, V y) {
+/// The way out along (dx, dy), a unit vector in pixels; `shared` by all lanes or not.
+HWY_INLINE Border border_along(const MarchScene& scene, const Receiver& p, int comb, int column,
+                               V dx, V dy, bool shared) {
   const D d;
-  const int w = layout.width(), h = layout.height();
+  const DI di;
+  const Interleaving& layout = scene.layout;
+  constexpr int kPeriod = Interleaving::kPeriod;
+  const int w = layout.width(), h = layout.height(), phase = layout.phase();
   const V zero = hn::Zero(d), right = hn::Set(d, float(w - 1)), bottom = hn::Set(d, float(h - 1)),
-          tiny = hn::Set(d, 1e-9f);
+          tiny = hn::Set(d, 1e-5f);
   const M rightwards = dx > zero, downwards = dy > zero;
-  const V to_side = hn::IfThenElse(rightwards, right - x, x) / hn::Max(hn::Abs(dx), tiny),
-          to_end = hn::IfThenElse(downwards, bottom - y, y) / hn::Max(hn::Abs(dy), tiny);
-  const V t = hn::Max(hn::Min(to_side, to_end), zero);
-  const V edge_x = hn::Clamp(hn::MulAdd(t, dx, x), zero, right),
-          edge_y = hn::Clamp(hn::MulAdd(t, dy, y), zero, bottom);
-  const V at_end = edge_x + hn::IfThenElseZero(downwards, hn::Set(d, float(w))),
-          at_side = edge_y + hn::Set(d, 2.0f * float(w)) +
-                    hn::IfThenElseZero(rightwards, hn::Set(d, float(h)));
-  return {hn::NearestInt(hn::IfThenElse(to_side < to_end, at_side, at_end)), t};
+  const V to_side = hn::IfThenElse(rightwards, right - p.x, p.x) / hn::Max(hn::Abs(dx), tiny),
+          to_end = hn::IfThenElse(downwards, bottom - p.y, p.y) / hn::Max(hn::Abs(dy), tiny);
+  const M through_side = to_side < to_end;
+  const V aside = hn::Round(to_end * dx);
+  Border border;
+  border.distance_px = hn::Min(to_side, to_end);
+  border.in_one_row = shared && hn::AllFalse(d, hn::And(through_side, p.valid));
+  if (border.in_one_row) {
+    const int column_of_lane_0 = comb + int(hn::GetLane(aside));
+    border.dx = aside;
+    border.dy = hn::IfThenElse(downwards, bottom, zero) - p.y;
+    border.first = scene.border.in_row(hn::GetLane(dy) > 0, column_of_lane_0 & (kPeriod - 1),
+                                       column + (column_of_lane_0 >> 2));
+    return border;
+  }
+  const V edge_x = hn::IfThenElse(through_side, hn::IfThenElse(rightwards, right, zero),
+                                  hn::Clamp(p.x + aside, zero, right)),
+          edge_y =
+              hn::IfThenElse(through_side, hn::Clamp(p.y + hn::Round(to_side * dy), zero, bottom),
+                             hn::IfThenElse(downwards, bottom, zero));
+  border.dx = edge_x - p.x, border.dy = edge_y - p.y;
+  const auto shifted = hn::ConvertTo(di, edge_x) + hn::Set(di, phase);
+  const auto offset = [&](M later, std::ptrdiff_t first, std::ptrdiff_t second) HWY_ATTR {
+    return hn::IfThenElse(hn::RebindMask(di, later), hn::Set(di, int(second)),
+                          hn::Set(di, int(first)));
+  };
+  const auto in_row =
+      hn::And(shifted, hn::Set(di, kPeriod - 1)) * hn::Set(di, int(layout.stride())) +
+      hn::ShiftRight<2>(shifted) +
+      offset(downwards, scene.border.in_row(false, 0, 0), scene.border.in_row(true, 0, 0));
+  const auto in_column =
+      hn::ConvertTo(di, edge_y) +
+      offset(rightwards, scene.border.in_column(false, 0), scene.border.in_column(true, 0));
+  border.index = hn::IfThenElse(hn::RebindMask(di, through_side), in_column, in_row);
+  return border;
 }
 
 /// How far a surface goes on beyond the frame, in heights of the frame at its depth.
@@ -66,42 +98,44 @@ HWY_INLINE Extension extend(const March& march, const Receiver& p, const Half& h
   const D d;
   const MarchScene& scene = march.scene;
   const V zero = hn::Zero(d);
-  const auto gather = [&](const BorderValues& values)
-                          HWY_ATTR { return hn::GatherIndex(d, values.data(), border.index); };
-  const V qx = gather(scene.border_position[0]), qy = gather(scene.border_position[1]),
-          qz = gather(scene.border_position[2]);
+  const V depth = border(scene.border_depth);
+  const V rise = hn::MulAdd(border.dx, p.rise_x, hn::MulAdd(border.dy, p.rise_y, p.rise));
   Extension e;
-  e.above = dot3(qx, qy, qz, p.nx, p.ny, p.nz) - p.plane;
-  e.s = dot3(qx, qy, qz, half.tx, half.ty, half.tz);
-  if constexpr (kOrthographic) e.s = e.s - half.origin;
-  e.v = hn::MulSub(e.above, p.inverse_facing, e.s * half.slope);
+  e.above = height_above<kOrthographic>(p, rise, depth);
+  e.s = dot2(border.dx, border.dy, half.across_x, half.across_y);
+  if constexpr (!kOrthographic) e.s = e.s * depth;
+  e.v = hn::NegMulAdd(e.s, half.slope, e.above);
   e.distance2 = dot2(e.s, e.v, e.s, e.v);
   const V radius2 = hn::Set(d, march.radius * march.radius);
   e.exists = hn::And(e.distance2 < radius2, border.distance_px <= hn::Set(d, reach));
   if (hn::AllFalse(d, e.exists)) return e;
 
   // The line in which the tangent plane cuts the slice, away from the frame.
-  const V mx = gather(scene.border_normal[0]), my = gather(scene.border_normal[1]),
-          mz = gather(scene.border_normal[2]);
+  const V mx = border(scene.border_normal[0]), my = border(scene.border_normal[1]),
+          mz = border(scene.border_normal[2]);
   V line_s = dot3(mx, my, mz, p.vx, p.vy, p.vz);
   V line_v = zero - dot3(mx, my, mz, half.tx, half.ty, half.tz);
-  const V scale = hn::Set(d, 1.0f) / hn::Sqrt(dot2(line_s, line_v, line_s, line_v));
+  const V scale = reciprocal_sqrt(dot2(line_s, line_v, line_s, line_v));
   line_s = line_s * scale, line_v = line_v * scale;
   const V frame = hn::Set(d, kExtension * float(scene.layout.height()) / scene.fy);
-  V length = kOrthographic ? frame : zero - frame * qz;
-  const V thickness = gather(scene.border_thickness);
+  V length = kOrthographic ? frame : frame * depth;
+  const V thickness = border(scene.border_thickness);
   length = hn::Min(length, thickness * hn::Set(d, widths));
   e.depth = thickness;
   if constexpr (!kOrthographic) {
-    const V distance = hn::Sqrt(dot3(qx, qy, qz, qx, qy, qz));
-    e.depth = hn::Min(thickness / distance, hn::Set(d, kEndlessShare));
+    const V slope_x = hn::MulAdd(border.dx, hn::Set(d, 1 / scene.fx), zero - p.vx / p.vz),
+            slope_y = hn::NegMulAdd(border.dy, hn::Set(d, 1 / scene.fy), zero - p.vy / p.vz);
+    const V share = thickness / depth *
+                    reciprocal_sqrt(dot3(slope_x, slope_y, hn::Set(d, 1.0f), slope_x, slope_y,
+                                         hn::Set(d, 1.0f)));
+    e.depth = hn::Min(share, hn::Set(d, kEndlessShare));
   }
   if (march.radius < 1e18f) {
     const V along = dot2(e.s, e.v, line_s, line_v);
     length = hn::Min(length, hn::Sqrt(hn::MulAdd(along, along, radius2 - e.distance2)) - along);
   }
   e.end_s = hn::MulAdd(length, line_s, e.s), e.end_v = hn::MulAdd(length, line_v, e.v);
-  e.end_above = dot2(half.n_t, p.facing, e.end_s, e.end_v);
+  e.end_above = hn::MulAdd(e.end_s, half.slope, e.end_v);
   return e;
 }
 
@@ -111,25 +145,19 @@ HWY_INLINE VU extend_side(const March& march, const Receiver& p, const Half& hal
                           const Border& border, float reach, float phase) {
   const D d;
   const DU du;
-  const V zero = hn::Zero(d), all = hn::Set(d, kSectors);
   const Extension e = extend<kOrthographic>(march, p, half, border, reach, 1e9f);
   if (hn::AllFalse(d, e.exists)) return hn::Zero(du);
-  const V here = hn::IfThenElse(e.above > zero, sectors_of(half, e.s, e.v, e.distance2), all);
-  const V end_distance2 = dot2(e.end_s, e.end_v, e.end_s, e.end_v);
-  V there = sectors_of(half, e.end_s, e.end_v, end_distance2);
-  // The far end of a plane lies on the horizon but for rounding.
-  const M end_rises = e.end_above > hn::Sqrt(end_distance2) * hn::Set(d, 1e-5f);
-  there = hn::IfThenElse(end_rises, there, all);
-  there = hn::IfThenZeroElse(e.end_s < zero, there);  // it leans across the view ray
-  const float to_first = 0.5f - phase;
-  const V first = hn::Set(d, to_first);
-  const VU from = nearest_whole(hn::Min(here, there) + first),
-           to = nearest_whole(hn::Max(here, there) + first);
-  const VU beyond =
-      hn::IfThenElseZero(hn::RebindMask(du, e.exists), hn::AndNot(bits_from(to), bits_from(from)));
+  const V start = start_of_sectors(phase);
+  const VU here = sector_of(e.v, e.distance2, start);
+  const VU leans_across = hn::VecFromMask(du, hn::RebindMask(du, e.end_s < hn::Zero(d)));
+  const VU there =
+      hn::AndNot(leans_across, sector_of(e.end_v, dot2(e.end_s, e.end_v, e.end_s, e.end_v), start));
+  const VU beyond = hn::IfThenElseZero(
+      hn::RebindMask(du, e.exists),
+      hn::AndNot(bits_from(hn::Max(here, there)), bits_from(hn::Min(here, there))));
   // The border is a sample too: the last step may be far from it.
-  return hn::Or(beyond, sectors_behind<kOrthographic>(p, half, e.s, e.above, e.depth, march.radius,
-                                                      to_first));
+  return hn::Or(beyond,
+                sectors_behind<kOrthographic>(p, half, e.s, e.above, e.depth, march.radius, start));
 }
 
 }  // namespace ssdo::HWY_NAMESPACE

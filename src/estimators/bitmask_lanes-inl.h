@@ -14,6 +14,7 @@
 #include <cmath>
 
 #include "estimators/bitmask_march.h"
+#include "estimators/slice_sectors.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -27,41 +28,28 @@ using V = hn::Vec<D>;
 using VU = hn::Vec<DU>;
 using M = hn::Mask<D>;
 
-constexpr float kPi = 3.14159265f;
-constexpr float kSectors = 32;  ///< of a side
 /// Least cosine between normal and view: a smooth normal that leans away from the viewer is bent
 /// back to here. A plane tilted by 89.9 degrees has 0.0017.
 constexpr float kLeastFacing = 1e-3f;
-/// Error of a dot product of a position and a unit vector, over the position's length: 4 units in
-/// the last place.
-constexpr float kDotError = 2.4e-7f;
+/// Error of a height above a tangent plane, over the distance to the viewer: 4 units in the last
+/// place.
+constexpr float kHeightError = 2.4e-7f;
 
 HWY_INLINE V dot2(V ax, V ay, V bx, V by) { return hn::MulAdd(ax, bx, ay * by); }
 HWY_INLINE V dot3(V ax, V ay, V az, V bx, V by, V bz) {
   return hn::MulAdd(ax, bx, hn::MulAdd(ay, by, az * bz));
 }
 
-/// theta - sin theta cos theta, theta in 0..pi, from both. Over sin^3 theta it is smooth; a
-/// polynomial in the cosine, off by 4.4e-5 at most.
-HWY_INLINE V cap_measure(V sine, V cosine) {
-  const D d;
-  const V c = hn::Abs(cosine);
-  V p = hn::MulAdd(hn::Set(d, -0.4309997f), c, hn::Set(d, 1.4231141f));
-  p = hn::MulAdd(p, c, hn::Set(d, -2.1847912f));
-  p = hn::MulAdd(p, c, hn::Set(d, 2.2808718f));
-  p = hn::MulAdd(p, c, hn::Set(d, -1.995549f));
-  p = hn::MulAdd(p, c, hn::Set(d, 1.5707532f));
-  const V g = sine * sine * sine * p;
-  return hn::IfThenElse(cosine < hn::Zero(d), hn::Set(d, kPi) - g, g);
-}
+/// Error of the difference of two cosines from reciprocal_sqrt().
+constexpr float kCosineError = 8e-4f;
 
-/// acos on 0..1 (Abramowitz and Stegun 4.4.45), off by 7e-5 at most.
-HWY_INLINE V arc_cosine(V c) {
-  const D d;
-  V p = hn::MulAdd(hn::Set(d, -0.0187293f), c, hn::Set(d, 0.0742610f));
-  p = hn::MulAdd(p, c, hn::Set(d, -0.2121144f));
-  p = hn::MulAdd(p, c, hn::Set(d, 1.5707288f));
-  return hn::Sqrt(hn::Max(hn::Set(d, 1.0f) - c, hn::Zero(d))) * p;
+/// 1 / sqrt(x), off by 4e-4 of it at most.
+HWY_INLINE V reciprocal_sqrt(V x) {
+#if HWY_TARGET == HWY_SCALAR
+  return hn::Set(D(), 1.0f) / hn::Sqrt(x);  // Highway's own is off by 2e-3 here
+#else
+  return hn::ApproximateReciprocalSqrt(x);
+#endif
 }
 
 /// The bits from `first` (0..32 or more) on.
@@ -75,43 +63,58 @@ HWY_INLINE VU bits_from(VU first) {
 #endif
 }
 
-/// The whole number nearest to x, 0 for what is negative, for x up to 63: between 2^23 and 2^24 a
-/// float's unit is one and its low bits are the number.
-HWY_INLINE VU nearest_whole(V x) {
-  const D d;
-  const DU du;
-  const V binade = hn::Set(d, 8388608.0f);
-  return hn::And(hn::BitCast(du, hn::Max(x, hn::Zero(d)) + binade), hn::Set(du, 63u));
+HWY_INLINE V count(VU bits) {
+  return hn::ConvertTo(D(), hn::BitCast(DI(), hn::PopulationCount(bits)));
+}
+
+/// Columns of the picture that the lanes stand for.
+HWY_INLINE V lane_columns(const Interleaving& layout, int comb, int column) {
+  const DI di;
+  constexpr int kPeriod = Interleaving::kPeriod;
+  return hn::ConvertTo(D(), hn::Iota(di, 0) * hn::Set(di, kPeriod) +
+                                hn::Set(di, column * kPeriod + comb - layout.phase()));
 }
 
 /// One lane's pixel that gathers.
 struct Receiver {
-  V px, py, pz;
+  V x, y;        ///< pixel
+  V px, py, pz;  ///< position
   V nx, ny, nz;  ///< normal, bent to face the viewer
   V vx, vy, vz;  ///< unit, to the viewer
   V distance;    ///< to the viewer
-  V plane;       ///< N.x of the points x of its tangent plane, and what rounding may add to it
-  V facing, inverse_facing;  ///< N.V
+  V facing;      ///< N.V
+  /// Height of what a pixel shows above the tangent plane, along V and less what rounding may have
+  /// added: depth (rise + rise_x dx + rise_y dy) + plane, for a pixel that lies (dx, dy) from this.
+  V rise, rise_x, rise_y, plane;
   M valid;
 };
 
-HWY_INLINE Receiver load_receiver(const MarchScene& scene, std::ptrdiff_t i) {
+HWY_INLINE Receiver load_receiver(const MarchScene& scene, std::ptrdiff_t i, int y, int comb,
+                                  int column) {
   const D d;
   Receiver p;
-  p.px = hn::LoadU(d, scene.x.data() + i);
-  p.py = hn::LoadU(d, scene.y.data() + i);
-  p.pz = hn::LoadU(d, scene.z.data() + i);
+  const V depth = hn::LoadU(d, scene.depth.data() + i);
+  p.x = lane_columns(scene.layout, comb, column), p.y = hn::Set(d, float(y));
   p.nx = hn::LoadU(d, scene.nx.data() + i);
   p.ny = hn::LoadU(d, scene.ny.data() + i);
   p.nz = hn::LoadU(d, scene.nz.data() + i);
-  p.valid = p.pz == p.pz;
-  p.distance = hn::Sqrt(dot3(p.px, p.py, p.pz, p.px, p.py, p.pz));
+  p.valid = depth == depth;
+  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+  const V slope_x = (p.x - hn::Set(d, scene.axis_x)) * hn::Set(d, 1 / scene.fx),
+          slope_y = (hn::Set(d, scene.axis_y) - p.y) * hn::Set(d, 1 / scene.fy);
+  p.pz = zero - depth;
   if (scene.orthographic) {
-    p.vx = p.vy = hn::Zero(d);
-    p.vz = hn::Set(d, 1.0f);
+    p.px = slope_x, p.py = slope_y;
+    p.vx = p.vy = zero, p.vz = one;
+    p.rise = zero;
+    p.distance = depth;
   } else {
-    const V scale = hn::Set(d, -1.0f) / p.distance;
-    p.vx = p.px * scale, p.vy = p.py * scale, p.vz = p.pz * scale;
+    p.px = slope_x * depth, p.py = slope_y * depth;
+    const V length = hn::Sqrt(hn::MulAdd(slope_x, slope_x, hn::MulAdd(slope_y, slope_y, one)));
+    p.vz = one / length;
+    p.vx = zero - slope_x * p.vz, p.vy = zero - slope_y * p.vz;
+    p.rise = zero - length;  // N.V / facing is 1
+    p.distance = depth * length;
   }
   p.facing = dot3(p.nx, p.ny, p.nz, p.vx, p.vy, p.vz);
   const V least = hn::Set(d, kLeastFacing);
@@ -123,10 +126,20 @@ HWY_INLINE Receiver load_receiver(const MarchScene& scene, std::ptrdiff_t i) {
     p.nz = hn::MulAdd(lift, p.vz, p.nz);
     p.facing = hn::Max(p.facing, least);
   }
-  p.inverse_facing = hn::Set(d, 1.0f) / p.facing;
-  p.plane = dot3(p.nx, p.ny, p.nz, p.px, p.py, p.pz) +
-            hn::MulAdd(p.distance, hn::Set(d, kDotError), hn::LoadU(d, scene.rounding.data() + i));
+  const V along_view = one / p.facing;
+  p.rise_x = p.nx * along_view * hn::Set(d, 1 / scene.fx);
+  p.rise_y = p.ny * along_view * hn::Set(d, -1 / scene.fy);
+  const V margin =
+      hn::MulAdd(p.distance, hn::Set(d, kHeightError), hn::LoadU(d, scene.rounding.data() + i));
+  p.plane = hn::NegMulAdd(margin, along_view, p.distance);
   return p;
+}
+
+/// Height of the surface at `depth`, (dx, dy) pixels from the receiver.
+template <bool kOrthographic>
+HWY_INLINE V height_above(const Receiver& p, V rise, V depth) {
+  if constexpr (kOrthographic) return rise + (p.plane - depth);
+  return hn::MulAdd(depth, rise, p.plane);
 }
 
 /// Distance in the picture beyond which nothing can be within `radius` of a receiver: seen from
@@ -135,118 +148,110 @@ HWY_INLINE Receiver load_receiver(const MarchScene& scene, std::ptrdiff_t i) {
 HWY_INLINE float reach_px(const MarchScene& scene, const Receiver& p, float radius) {
   const D d;
   const float f = scene.fx > scene.fy ? scene.fx : scene.fy;
-  if (scene.orthographic) return radius * f;
+  if (scene.orthographic || radius > 1e18f) return radius * f;
   const V depth = hn::Zero(d) - p.pz, r = hn::Set(d, radius);
   const V slope = r * p.distance / (depth * (depth - r));
   const V all = hn::IfThenElse(depth > r, slope, hn::Set(d, 1e30f));
   return f * hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(p.valid, all)));
 }
 
-/// Half of a slice, seen from the receiver. Points of the slice have coordinates (s, v) along T
-/// and V; a direction at angle theta from V has the measure n_t (theta - sin theta cos theta) +
-/// n_v sin^2 theta, half of which is the integral of |sin theta| cos(theta, N) from V on.
+/// Half of a slice, seen from the receiver. Its points have coordinates (s, v) along T and V.
 struct Half {
-  V tx, ty, tz;  ///< unit, perpendicular to V
-  V origin;      ///< T.p
-  V slope;       ///< n_t / n_v
+  V tx, ty, tz;          ///< unit, perpendicular to V
+  V across_x, across_y;  ///< s of a point of a ray is its depth times across_x dx + across_y dy
+  V slope;               ///< n_t / n_v
   V n_t;
-  V cap_scale, sine_scale;  ///< measure to sectors
-  V measure;                ///< of all sectors
-  V gamma;                  ///< angle of the normal from V, towards T
+  VU above;        ///< the sectors above the tangent plane, whose number is
+  VU above_count;  ///< 0..31: the last sector leads away from the viewer
 };
 
-/// 1 / sqrt(x), off by 4e-4 at most.
-HWY_INLINE V reciprocal_sqrt(V x) {
-#if HWY_TARGET == HWY_SCALAR
-  return hn::Set(D(), 1.0f) / hn::Sqrt(x);  // Highway's own is off by 2e-3 here
-#else
-  return hn::ApproximateReciprocalSqrt(x);
-#endif
+/// The number of the first sector whose point lies behind a direction with the cosine c to V. The
+/// point of sector i is at i + phase; `start` is start_of_sectors(phase).
+HWY_INLINE VU sector_at(V c, V start) {
+  const D d;
+  // Around 1.5 * 2^23 a float's unit is one, and its low bits are the whole number nearest to it.
+  const V x = hn::NegMulAdd(c, hn::Set(d, SliceSectors::kPerCosine), start);
+  return hn::And(hn::BitCast(DU(), x + hn::Set(d, 12582912.0f)), hn::Set(DU(), 63u));
 }
 
-HWY_INLINE V sectors_of(const Half& half, V s, V v, V distance2) {
-  const V inverse = reciprocal_sqrt(distance2);
-  const V sine = s * inverse, cosine = v * inverse;
-  return hn::MulAdd(half.cap_scale, cap_measure(sine, cosine), half.sine_scale * sine * sine);
+HWY_INLINE V start_of_sectors(float phase) {
+  return hn::Set(D(), SliceSectors::kPerCosine + 0.5f - phase);
 }
 
-/// The sectors that a surface hides which lies at (s, v) and reaches back by `depth`. It is
-/// `above` the tangent plane of the receiver.
+HWY_INLINE VU sector_of(V v, V distance2, V start) {
+  return sector_at(v * reciprocal_sqrt(distance2), start);
+}
+
+/// The sectors that a surface hides which lies at s, `above` the receiver's tangent plane, and
+/// reaches back by `depth`.
 template <bool kOrthographic>
 HWY_INLINE VU sectors_behind(const Receiver& p, const Half& half, V s, V above, V depth,
-                             float radius, float to_first) {
+                             float radius, V start) {
   const D d;
-  const DU du;
-  const V zero = hn::Zero(d), first = hn::Set(d, to_first);
   // The pixel's centre lies beside the slice. Moved into it along the receiver's tangent plane, a
   // sample keeps its height above that plane: a plane stays open whatever its tilt.
-  const V v = hn::MulSub(above, p.inverse_facing, s * half.slope);
+  const V v = hn::NegMulAdd(s, half.slope, above);
   const V distance2 = dot2(s, v, s, v);
-  const M meets = hn::And(above > zero, distance2 <= hn::Set(d, radius * radius));
-  const VU from = nearest_whole(sectors_of(half, s, v, distance2) + first);
-
+  const M meets = hn::And(above > hn::Zero(d), distance2 <= hn::Set(d, radius * radius));
+  const VU from = sector_of(v, distance2, start);
   const V back_s = kOrthographic ? s : hn::MulAdd(depth, s, s);
   const V back_v = kOrthographic ? v - depth : hn::MulAdd(depth, v - p.distance, v);
-  const M back_above = dot2(half.n_t, p.facing, back_s, back_v) > zero;
-  const V back = sectors_of(half, back_s, back_v, dot2(back_s, back_v, back_s, back_v));
-  const VU to = nearest_whole(hn::IfThenElse(back_above, back, hn::Set(d, kSectors)) + first);
-  return hn::IfThenElseZero(hn::RebindMask(du, meets), hn::AndNot(bits_from(to), bits_from(from)));
+  const VU to = sector_of(back_v, dot2(back_s, back_v, back_s, back_v), start);
+  return hn::IfThenElseZero(hn::RebindMask(DU(), meets),
+                            hn::AndNot(bits_from(to), bits_from(from)));
 }
 
-/// Marches from near to far and gives the sectors that are hidden. `seen` and `covered` hear of
-/// samples of what is seen and of what it covers: their index, and the sectors in which they are
-/// the first.
+/// Marches from near to far and gives the sectors that stay open. `seen` and `covered` hear of
+/// samples of what is seen and of what it covers: their index, how far in pixels they lie from the
+/// receiver, and the sectors in which they are the first.
 template <bool kOrthographic, class Seen, class Covered>
 HWY_INLINE VU march_side(const March& march, const Receiver& p, const Half& half,
                          const SliceSide& side, std::ptrdiff_t at, int y, int column, float reach,
                          const Seen& seen, const Covered& covered) {
   const D d;
-  const DU du;
   const MarchScene& scene = march.scene;
-  const V zero = hn::Zero(d);
-  // Sector i is hidden when i + phase lies in the interval.
-  const float to_first = 0.5f - side.phase;
+  const V zero = hn::Zero(d), start = start_of_sectors(side.phase);
   const int height = scene.layout.height(), columns = scene.layout.columns();
   const int lanes = int(hn::Lanes(d));
-  VU hidden = hn::Zero(du);
+  VU open = half.above;
   for (const SliceStep& step : side.steps) {
-    const int row = y + step.dy, first = column + step.column_shift;
+    const int row = y + step.row, first = column + step.column_shift;
     if (step.distance_px > reach || row < 0 || row >= height || first >= columns ||
         first + lanes <= 0)
       break;
     const std::ptrdiff_t i = at + step.offset;
     const auto load = [&](const InterleavedPlane& plane)
                           HWY_ATTR { return hn::LoadU(d, plane.data() + i); };
-    const V qx = load(scene.x), qy = load(scene.y), qz = load(scene.z);
-    const V height_q = dot3(qx, qy, qz, p.nx, p.ny, p.nz), above = height_q - p.plane;
-    const V behind = load(scene.behind);
-    const V above_behind = kOrthographic ? hn::NegMulAdd(behind, p.facing, above)
-                                         : hn::MulAdd(behind, height_q, above);
+    const V dx = hn::Set(d, step.dx), dy = hn::Set(d, step.dy);
+    const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise));
+    const V depth = load(scene.depth), behind = load(scene.behind);
+    const V above = height_above<kOrthographic>(p, rise, depth),
+            above_behind = height_above<kOrthographic>(p, rise, behind);
     const M rises_behind = above_behind > zero;
     if (hn::AllFalse(d, hn::Or(above > zero, rises_behind))) continue;
-    V s = dot3(qx, qy, qz, half.tx, half.ty, half.tz);
-    if constexpr (kOrthographic) s = s - half.origin;
+    const V across = dot2(dx, dy, half.across_x, half.across_y);
     {
-      const VU bits = sectors_behind<kOrthographic>(p, half, s, above, load(scene.thickness),
-                                                    march.radius, to_first);
-      seen(i, hn::AndNot(hidden, bits));
-      hidden = hn::Or(hidden, bits);
+      const VU bits =
+          sectors_behind<kOrthographic>(p, half, kOrthographic ? across : depth * across, above,
+                                        load(scene.thickness), march.radius, start);
+      seen(i, step, hn::And(open, bits));
+      open = hn::AndNot(bits, open);
     }
     if (!hn::AllFalse(d, rises_behind)) {
-      if constexpr (!kOrthographic) s = hn::MulAdd(behind, s, s);
       const VU bits = sectors_behind<kOrthographic>(
-          p, half, s, above_behind, load(scene.behind_thickness), march.radius, to_first);
-      covered(i, hn::AndNot(hidden, bits));
-      hidden = hn::Or(hidden, bits);
+          p, half, kOrthographic ? across : behind * across, above_behind,
+          load(scene.behind_thickness), march.radius, start);
+      covered(i, step, hn::And(open, bits));
+      open = hn::AndNot(bits, open);
     }
   }
-  return hidden;
+  return open;
 }
 
 /// The frame of a slice at a receiver: T, the normal's share in it, and the weight that makes
 /// slices which are uniform in the picture uniform around V.
 struct SliceFrame {
-  V tx, ty, tz, n_t, gamma, weight;
+  V tx, ty, tz, n_t, weight;
 };
 
 HWY_INLINE SliceFrame slice_frame(const MarchScene& scene, const Receiver& p, const Slice& slice) {
@@ -261,31 +266,30 @@ HWY_INLINE SliceFrame slice_frame(const MarchScene& scene, const Receiver& p, co
   f.tx = tx * scale, f.ty = ty * scale, f.tz = tz * scale;
   // The weight has the unit of f^2; only ratios matter.
   f.n_t = dot3(p.nx, p.ny, p.nz, f.tx, f.ty, f.tz);
-  const V length = hn::Sqrt(dot2(f.n_t, p.facing, f.n_t, p.facing));
-  f.gamma = hn::CopySign(arc_cosine(hn::Min(p.facing / length, hn::Set(d, 1.0f))), f.n_t);
   return f;
 }
 
-HWY_INLINE Half half_of(const Receiver& p, const SliceFrame& f, bool forward) {
+HWY_INLINE Half half_of(const MarchScene& scene, const Receiver& p, const SliceFrame& f,
+                        bool forward, float phase) {
   const D d;
+  const DU du;
   const auto turn = [&](V v) HWY_ATTR { return forward ? v : hn::Zero(d) - v; };
   Half half;
   half.tx = turn(f.tx), half.ty = turn(f.ty), half.tz = turn(f.tz);
   half.n_t = turn(f.n_t);
-  half.gamma = turn(f.gamma);
-  half.origin = dot3(half.tx, half.ty, half.tz, p.px, p.py, p.pz);
-  half.slope = half.n_t * p.inverse_facing;
-  // Twice the integral up to gamma + pi/2, where the cosine ends.
-  half.measure =
-      hn::Max(hn::MulAdd(half.n_t, half.gamma + hn::Set(d, kPi / 2), p.facing), hn::Zero(d));
-  const V to_sectors = hn::Set(d, kSectors) / hn::Max(half.measure, hn::Set(d, 1e-6f));
-  half.cap_scale = half.n_t * to_sectors;
-  half.sine_scale = p.facing * to_sectors;
+  half.across_x = half.tx * hn::Set(d, 1 / scene.fx);
+  half.across_y = half.ty * hn::Set(d, -1 / scene.fy);
+  half.slope = half.n_t / p.facing;
+  // In the slice the tangent plane leads away from V by pi/2 more than the normal does. Points
+  // that rounding could lift above it do not count, nor does a sector that lies more below it than
+  // above: its integral is negative.
+  const V cosine =
+      hn::NegMulAdd(half.n_t, reciprocal_sqrt(dot2(half.n_t, p.facing, half.n_t, p.facing)),
+                    hn::Set(d, kCosineError));
+  const V start = start_of_sectors(phase > 0.5f ? phase : 0.5f);
+  half.above_count = hn::Min(sector_at(cosine, start), hn::Set(du, 31u));
+  half.above = hn::Not(bits_from(half.above_count));
   return half;
-}
-
-HWY_INLINE V count(VU bits) {
-  return hn::ConvertTo(D(), hn::BitCast(DI(), hn::PopulationCount(bits)));
 }
 
 /// Calls `work(index, y, comb, column)` for each vector of pixels that shows a surface.
@@ -301,8 +305,8 @@ HWY_INLINE void for_each_vector(const MarchScene& scene, int x0, int x1, int y0,
     for (int comb = 0; comb < kPeriod; ++comb) {
       for (int column = first; column < last; column += int(hn::Lanes(d))) {
         const std::ptrdiff_t i = layout.index(y, comb, column);
-        const V z = hn::LoadU(d, scene.z.data() + i);
-        if (!hn::AllFalse(d, z == z)) work(i, y, comb, column);
+        const V depth = hn::LoadU(d, scene.depth.data() + i);
+        if (!hn::AllFalse(d, depth == depth)) work(i, y, comb, column);
       }
     }
   }

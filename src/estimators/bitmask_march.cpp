@@ -24,42 +24,77 @@ HWY_INLINE float error_of_difference(int first, int count) {
   return std::sqrt(float(first) * float(count - first)) / float(count);
 }
 
+/// A vector of receivers in the frame.
+struct Place {
+  std::ptrdiff_t index;
+  int y, comb, column;
+};
+
+/// Marches one half of a slice, on the side `forward` or not, in the frame and beyond it, and gives
+/// the sectors that stay open. `beyond` hears of those that are hidden beyond the frame.
+template <bool kOrthographic, class Seen, class Covered, class Beyond>
+HWY_INLINE VU march_half(const March& march, const Receiver& p, const Half& half,
+                         const Slice& slice, bool forward, const Place& place, float reach,
+                         const Seen& seen, const Covered& covered, const Beyond& beyond) {
+  const D d;
+  const SliceSide& side = slice.sides[forward ? 0 : 1];
+  const VU open = march_side<kOrthographic>(march, p, half, side, place.index, place.y,
+                                            place.column, reach, seen, covered);
+  if (!march.extend || hn::AllTrue(DU(), open == hn::Zero(DU()))) return open;
+  const float sign = forward ? 1.0f : -1.0f;
+  const Border border =
+      border_along(march.scene, p, place.comb, place.column, hn::Set(d, sign * slice.dx),
+                   hn::Set(d, sign * slice.dy), true);
+  const VU bits = extend_side<kOrthographic>(march, p, half, border, reach, side.phase);
+  beyond(border, hn::And(open, bits));
+  return hn::AndNot(bits, open);
+}
+
+/// Calls `work(place, receiver, slices, reach_px)` for each vector of pixels that shows a surface.
+template <class Work>
+HWY_INLINE void for_each_receiver(const March& march, int x0, int x1, int y0, int y1,
+                                  const Work& work) {
+  for_each_vector(march.scene, x0, x1, y0, y1,
+                  [&](std::ptrdiff_t i, int y, int comb, int column) HWY_ATTR {
+                    const Receiver p = load_receiver(march.scene, i, y, comb, column);
+                    const int row = (y + march.first_row) & (Interleaving::kPeriod - 1);
+                    work(Place{i, y, comb, column}, p, march.pattern.member(comb, row),
+                         reach_px(march.scene, p, march.radius));
+                  });
+}
+
 template <bool kOrthographic, int kOrder>
 void visibility(const VisibilityJob& job, int x0, int x1, int y0, int y1) {
-  const MarchScene& scene = job.march.scene;
-  for_each_vector(
-      scene, x0, x1, y0, y1, [&](std::ptrdiff_t i, int y, int comb, int column) HWY_ATTR {
+  const March& march = job.march;
+  for_each_receiver(
+      march, x0, x1, y0, y1,
+      [&](const Place& place, const Receiver& p, const std::vector<Slice>& slices,
+          float reach) HWY_ATTR {
         const D d;
-        const auto ignore = [](std::ptrdiff_t, VU) HWY_ATTR {};
-        const Receiver p = load_receiver(scene, i);
-        const V x = lane_columns(scene.layout, comb, column);
-        const float reach = reach_px(scene, p, job.march.radius);
-        const std::vector<Slice>& slices =
-            job.march.pattern.member(comb, (y + job.march.first_row) & (Interleaving::kPeriod - 1));
+        const DU du;
+        const auto ignore = [](auto&&...) HWY_ATTR {};
         const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
         Moments<kOrder> sum, first_half;
         for (int k = 0; k < count_of_slices; ++k) {
           if (k == firsts) first_half = sum;
           const Slice& slice = slices[std::size_t(slice_at(k, count_of_slices))];
-          const SliceFrame f = slice_frame(scene, p, slice);
-          for (int side = 0; side < 2; ++side) {
-            const Half half = half_of(p, f, side == 0);
-            VU hidden = march_side<kOrthographic>(job.march, p, half, slice.sides[side], i, y,
-                                                  column, reach, ignore, ignore);
-            if (job.march.extend) {
-              const float sign = side == 0 ? 1.0f : -1.0f;
-              const Border border =
-                  border_along(scene.layout, hn::Set(d, sign * slice.dx),
-                               hn::Set(d, sign * slice.dy), x, hn::Set(d, float(y)));
-              hidden = hn::Or(hidden, extend_side<kOrthographic>(job.march, p, half, border, reach,
-                                                                 slice.sides[side].phase));
-            }
-            sum.add(p, half, hidden, f.weight, slice.sides[side].phase);
+          const SliceFrame f = slice_frame(march.scene, p, slice);
+          CircleMoments<kOrder> hidden, whole;
+          for (const bool forward : {true, false}) {
+            const Half half =
+                half_of(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
+            const VU open = march_half<kOrthographic>(march, p, half, slice, forward, place, reach,
+                                                      ignore, ignore, ignore);
+            const VU bits = hn::AndNot(open, half.above);
+            whole.add(moments_of_first<kOrder + 1>(half.above_count), p.facing, half.n_t, forward);
+            if (hn::AllTrue(du, bits == hn::Zero(du))) continue;
+            hidden.add(moments_of_bits<kOrder + 1>(bits), p.facing, half.n_t, forward);
           }
+          sum.add(p, f, hidden, whole);
         }
-        const V one = hn::Set(d, 1.0f);
-        const V ao = hn::IfThenElse(p.valid, hn::Min(sum.open / sum.whole, one), one);
-        hn::StoreU(ao, d, job.ao->data() + i);
+        const std::ptrdiff_t i = place.index;
+        const V ao = sum.open_share();
+        hn::StoreU(hn::IfThenElse(p.valid, ao, hn::Set(d, 1.0f)), d, job.ao->data() + i);
         if constexpr (kOrder > 0) {
           if (job.bent) {
             V bent[3];
@@ -93,82 +128,106 @@ struct Light {
   V operator[](int c) const { return c == 0 ? r : c == 1 ? g : b; }
 };
 
-/// Whether the surface at `q` shows its seen side to the receiver.
-HWY_INLINE M faces(const MarchScene& scene, std::ptrdiff_t q, const Receiver& p) {
+/// Whether the surface at `q`, `step` away from the receiver, shows its seen side to it.
+template <bool kOrthographic>
+HWY_INLINE M faces(const MarchScene& scene, std::ptrdiff_t q, const SliceStep& step,
+                   const Receiver& p) {
   const D d;
   const auto load = [&](const InterleavedPlane& plane)
                         HWY_ATTR { return hn::LoadU(d, plane.data() + q); };
-  return dot3(load(scene.nx), load(scene.ny), load(scene.nz), p.px - load(scene.x),
-              p.py - load(scene.y), p.pz - load(scene.z)) > hn::Zero(d);
+  const V depth = load(scene.depth);
+  const V step_x = hn::Set(d, step.dx / scene.fx), step_y = hn::Set(d, step.dy / scene.fy);
+  const V slope_x = kOrthographic ? p.px : hn::Zero(d) - p.vx / p.vz,
+          slope_y = kOrthographic ? p.py : hn::Zero(d) - p.vy / p.vz;
+  V qx = slope_x + step_x, qy = slope_y - step_y;
+  if constexpr (!kOrthographic) qx = qx * depth, qy = qy * depth;
+  return dot3(load(scene.nx), load(scene.ny), load(scene.nz), p.px - qx, p.py - qy, p.pz + depth) >
+         hn::Zero(d);
+}
+
+/// Measure of a set of sectors, of one piece: the integral of the cosine to the normal.
+HWY_INLINE V measure_of_run(const Receiver& p, const Half& half, VU bits) {
+  const DU du;
+  const VU one = hn::Set(du, 1u), last = hn::Set(du, 31u);
+  const VU first = hn::PopulationCount(hn::AndNot(bits, bits - one));
+  const VU end = hn::And(first + hn::PopulationCount(bits), last), begin = hn::And(first, last);
+  const auto moment = [&](int m) HWY_ATTR {
+    const float* table = slice_sectors().of_first[std::size_t(m)].data();
+    return lookup32(table, end) - lookup32(table, begin);
+  };
+  return dot2(p.facing, half.n_t, moment(1), moment(SliceSectors::sine_moment(1)));
 }
 
 template <bool kOrthographic>
 void bounce(const BounceJob& job, int x0, int x1, int y0, int y1) {
-  const MarchScene& scene = job.march.scene;
-  for_each_vector(
-      scene, x0, x1, y0, y1, [&](std::ptrdiff_t i, int y, int comb, int column) HWY_ATTR {
+  const March& march = job.march;
+  for_each_receiver(
+      march, x0, x1, y0, y1,
+      [&](const Place& place, const Receiver& p, const std::vector<Slice>& slices,
+          float reach) HWY_ATTR {
         const D d;
         const DU du;
         const V zero = hn::Zero(d);
-        const Receiver p = load_receiver(scene, i);
-        const V x = lane_columns(scene.layout, comb, column);
-        const float reach = reach_px(scene, p, job.march.radius);
-        const std::vector<Slice>& slices =
-            job.march.pattern.member(comb, (y + job.march.first_row) & (Interleaving::kPeriod - 1));
         const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
         Light sum{zero, zero, zero}, first_half = sum;
         V whole = zero, first_whole = zero;
         for (int k = 0; k < count_of_slices; ++k) {
           if (k == firsts) first_half = sum, first_whole = whole;
           const Slice& slice = slices[std::size_t(slice_at(k, count_of_slices))];
-          const SliceFrame f = slice_frame(scene, p, slice);
-          for (int side = 0; side < 2; ++side) {
-            const Half half = half_of(p, f, side == 0);
+          const SliceFrame f = slice_frame(march.scene, p, slice);
+          for (const bool forward : {true, false}) {
+            const Half half =
+                half_of(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
             Light light{zero, zero, zero};
-            const auto receive = [&](const InterleavedColor& from, std::ptrdiff_t q,
-                                     VU bits) HWY_ATTR {
+            V given = zero;
+            const auto receive = [&](VU bits, const auto& sent) HWY_ATTR {
               if (hn::AllTrue(du, bits == hn::Zero(du))) return;
-              light.add(count(bits), hn::LoadU(d, from[0].data() + q),
-                        hn::LoadU(d, from[1].data() + q), hn::LoadU(d, from[2].data() + q));
+              const V measure = measure_of_run(p, half, bits);
+              given = given + measure;
+              light.add(measure, sent(0), sent(1), sent(2));
             };
-            const auto receive_seen = [&](std::ptrdiff_t q, VU bits) HWY_ATTR {
-              if (!job.sent_back) return receive(*job.sent, q, bits);
-              const M front = faces(scene, q, p);
-              const VU front_bits = hn::IfThenElseZero(hn::RebindMask(du, front), bits);
-              receive(*job.sent, q, front_bits);
-              receive(*job.sent_back, q, hn::AndNot(front_bits, bits));
-            };
-            VU hidden = march_side<kOrthographic>(
-                job.march, p, half, slice.sides[side], i, y, column, reach, receive_seen,
-                [&](std::ptrdiff_t q, VU bits) HWY_ATTR { receive(*job.sent_behind, q, bits); });
-            if (job.march.extend) {
-              const float sign = side == 0 ? 1.0f : -1.0f;
-              const Border border =
-                  border_along(scene.layout, hn::Set(d, sign * slice.dx),
-                               hn::Set(d, sign * slice.dy), x, hn::Set(d, float(y)));
-              const VU bits =
-                  hn::AndNot(hidden, extend_side<kOrthographic>(job.march, p, half, border, reach,
-                                                                slice.sides[side].phase));
-              if (!hn::AllTrue(du, bits == hn::Zero(du))) {
-                const auto gather = [&](int c) HWY_ATTR {
-                  return hn::GatherIndex(d, job.sent_border[c].data(), border.index);
-                };
-                light.add(count(bits), gather(0), gather(1), gather(2));
-              }
-            }
-            const V weight = f.weight * half.measure;
-            whole = hn::MulAdd(weight, hn::Set(d, kSectors), whole);
-            sum.add(weight, light.r, light.g, light.b);
+            const auto receive_from = [&](const InterleavedColor& sent, std::ptrdiff_t q, VU bits)
+                                          HWY_ATTR {
+                                            receive(bits, [&](int c) HWY_ATTR {
+                                              return hn::LoadU(d, sent[std::size_t(c)].data() + q);
+                                            });
+                                          };
+            const VU open = march_half<kOrthographic>(
+                march, p, half, slice, forward, place, reach,
+                [&](std::ptrdiff_t q, const SliceStep& step, VU bits) HWY_ATTR {
+                  if (!job.sent_back || hn::AllTrue(du, bits == hn::Zero(du)))
+                    return receive_from(*job.sent, q, bits);
+                  const M front = faces<kOrthographic>(march.scene, q, step, p);
+                  const VU front_bits = hn::IfThenElseZero(hn::RebindMask(du, front), bits);
+                  receive_from(*job.sent, q, front_bits);
+                  receive_from(*job.sent_back, q, hn::AndNot(front_bits, bits));
+                },
+                [&](std::ptrdiff_t q, const SliceStep&, VU bits)
+                    HWY_ATTR { receive_from(*job.sent_behind, q, bits); },
+                [&](const Border& border, VU bits) HWY_ATTR {
+                  receive(bits, [&](int c) HWY_ATTR { return border(job.sent_border[c]); });
+                });
+            // What hides the sectors may be in more pieces than one. Together they have the measure
+            // of all that is hidden.
+            const VU hidden = hn::AndNot(open, half.above);
+            const auto all = moments_of_first<1>(half.above_count),
+                       lost = moments_of_bits<1>(hidden);
+            whole =
+                hn::MulAdd(f.weight, dot2(p.facing, half.n_t, all.cosine[1], all.sine[1]), whole);
+            const V measure = dot2(p.facing, half.n_t, lost.cosine[1], lost.sine[1]);
+            const V scale = hn::IfThenElseZero(given > zero, f.weight * measure / given);
+            sum.add(scale, light.r, light.g, light.b);
           }
         }
         for (int c = 0; c < 3; ++c) {
           const auto at = std::size_t(c);
-          hn::StoreU(hn::IfThenElseZero(p.valid, sum[c] / whole), d, (*job.bounce)[at].data() + i);
+          hn::StoreU(hn::IfThenElseZero(hn::And(p.valid, whole > zero), sum[c] / whole), d,
+                     (*job.bounce)[at].data() + place.index);
           if (job.difference) {
             const V difference =
                 first_half[c] / first_whole - (sum[c] - first_half[c]) / (whole - first_whole);
             hn::StoreU(difference * hn::Set(d, error_of_difference(firsts, count_of_slices)), d,
-                       (*job.difference)[at].data() + i);
+                       (*job.difference)[at].data() + place.index);
           }
         }
       });

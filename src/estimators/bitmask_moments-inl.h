@@ -2,6 +2,10 @@
 //
 // Which directions are open, in spherical harmonics: the visible set of a pixel against the light
 // of the environment, for a vector of pixels.
+//
+// On the circle of a slice, harmonics of order L are sums of cos(k theta) and sin(k theta) up to
+// k = L. So the moments of a set of sectors up to L say all that they will ever be asked, and
+// 2 L + 1 equally spaced directions, weighted to have the same moments, stand for the set.
 #if defined(SSDO_BITMASK_MOMENTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_MOMENTS_INL_H_
 #undef SSDO_BITMASK_MOMENTS_INL_H_
@@ -12,19 +16,140 @@
 #include <hwy/highway.h>
 
 #include "estimators/bitmask_lanes-inl.h"
-#include "estimators/sector_directions.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// Adds `weight` times each basis polynomial in the unit direction (x, y, z): the real spherical
-/// harmonics up to kOrder without their constants, l*l + l + m.
-template <int kOrder>
-HWY_INLINE void add_basis(V x, V y, V z, V weight, V* sum) {
+/// table[index], index in 0..15.
+HWY_INLINE V lookup16(const float* HWY_RESTRICT table, VU index) {
   const D d;
-  const auto add = [&](int i, V value) HWY_ATTR { sum[i] = hn::MulAdd(weight, value, sum[i]); };
+  const DI di;
+  if constexpr (hn::MaxLanes(d) == 16) {
+    return hn::TableLookupLanes(hn::Load(d, table), hn::IndicesFromVec(d, index));
+  } else if constexpr (hn::MaxLanes(d) == 8) {
+    const auto low = hn::IndicesFromVec(d, hn::And(index, hn::Set(DU(), 7u)));
+    const M upper = hn::RebindMask(d, index > hn::Set(DU(), 7u));
+    return hn::IfThenElse(upper, hn::TableLookupLanes(hn::Load(d, table + 8), low),
+                          hn::TableLookupLanes(hn::Load(d, table), low));
+  } else {
+    return hn::GatherIndex(d, table, hn::BitCast(di, index));
+  }
+}
+
+/// table[index], index in 0..31.
+HWY_INLINE V lookup32(const float* HWY_RESTRICT table, VU index) {
+  const D d;
+  const DU du;
+  if constexpr (hn::MaxLanes(d) == 16) {
+    const auto low = hn::IndicesFromVec(d, hn::And(index, hn::Set(du, 15u)));
+    return hn::IfThenElse(hn::RebindMask(d, index > hn::Set(du, 15u)),
+                          hn::TableLookupLanes(hn::Load(d, table + 16), low),
+                          hn::TableLookupLanes(hn::Load(d, table), low));
+  } else {
+    return hn::GatherIndex(d, table, hn::BitCast(DI(), index));
+  }
+}
+
+/// Moments of a set of sectors with respect to the angle from V; sine(0) is 0.
+template <int kDegree>
+struct RawMoments {
+  V cosine[kDegree + 1], sine[kDegree + 1];
+};
+
+/// Calls `moment(k, of)` for the cosine, `sine(k, of)` for the sine moments.
+template <int kDegree, class Lookup>
+HWY_INLINE RawMoments<kDegree> raw_moments(const Lookup& lookup) {
+  RawMoments<kDegree> m;
+  // Moment 0 is not asked for where only the cosine with the normal is: degree 1.
+  m.cosine[0] = kDegree > 1 ? lookup(0) : hn::Zero(D());
+  m.sine[0] = hn::Zero(D());
+  for (int k = 1; k <= kDegree; ++k) {
+    m.cosine[k] = lookup(k);
+    m.sine[k] = lookup(SliceSectors::sine_moment(k));
+  }
+  return m;
+}
+
+template <int kDegree>
+HWY_INLINE RawMoments<kDegree> moments_of_first(VU count) {
+  const SliceSectors& sectors = slice_sectors();
+  return raw_moments<kDegree>(
+      [&](int m) HWY_ATTR { return lookup32(sectors.of_first[std::size_t(m)].data(), count); });
+}
+
+template <int kDegree>
+HWY_INLINE RawMoments<kDegree> moments_of_bits(VU bits) {
+  const SliceSectors& sectors = slice_sectors();
+  VU groups[8];
+  for (int g = 0; g < 8; ++g)
+    groups[g] = hn::And(hn::ShiftRightSame(bits, 4 * g), hn::Set(DU(), 15u));
+  return raw_moments<kDegree>([&](int m) HWY_ATTR {
+    const float* table = sectors.of_group[std::size_t(m)].data();
+    V sum = lookup16(table, groups[0]);
+    for (int g = 1; g < 8; ++g) sum = sum + lookup16(table + 16 * g, groups[g]);
+    return sum;
+  });
+}
+
+/// The same with the cosine to the normal as a weight, around the circle of a slice.
+template <int kOrder>
+struct CircleMoments {
+  V cosine[kOrder + 1], sine[kOrder + 1];
+
+  HWY_INLINE CircleMoments() {
+    for (int k = 0; k <= kOrder; ++k) cosine[k] = sine[k] = hn::Zero(D());
+  }
+
+  /// Adds sectors of one half: (n_v cos + n_t sin) cos(k theta), and with sin(k theta), whose sign
+  /// is the other half's turned round.
+  HWY_INLINE void add(const RawMoments<kOrder + 1>& m, V n_v, V n_t, bool forward) {
+    const D d;
+    const V half = hn::Set(d, 0.5f);
+    cosine[0] = hn::MulAdd(n_v, m.cosine[1], hn::MulAdd(n_t, m.sine[1], cosine[0]));
+    const V v = n_v * half, t = n_t * half;
+    for (int k = 1; k <= kOrder; ++k) {
+      const V c = dot2(v, t, m.cosine[k + 1] + m.cosine[k - 1], m.sine[k + 1] - m.sine[k - 1]);
+      const V s = dot2(v, t, m.sine[k + 1] + m.sine[k - 1], m.cosine[k - 1] - m.cosine[k + 1]);
+      cosine[k] = cosine[k] + c;
+      sine[k] = forward ? sine[k] + s : sine[k] - s;
+    }
+  }
+
+  /// Weight of the direction at this angle, one of 2 kOrder + 1.
+  HWY_INLINE V at(const float* cosines, const float* sines) const {
+    const D d;
+    V sum = cosine[0] * hn::Set(d, 0.5f);
+    for (int k = 1; k <= kOrder; ++k) {
+      sum = hn::MulAdd(cosine[k], hn::Set(d, cosines[k]), sum);
+      sum = hn::MulAdd(sine[k], hn::Set(d, sines[k]), sum);
+    }
+    return sum * hn::Set(d, 2.0f / (2 * kOrder + 1));
+  }
+};
+
+/// cos and sin of k times each of 2 kOrder + 1 equally spaced angles.
+template <int kOrder>
+struct CircleDirections {
+  static constexpr int kCount = 2 * kOrder + 1;
+  float cosine[kCount][kOrder + 1], sine[kCount][kOrder + 1];
+
+  CircleDirections() {
+    for (int j = 0; j < kCount; ++j) {
+      for (int k = 0; k <= kOrder; ++k) {
+        const double angle = 2 * 3.14159265358979324 * j * k / kCount;
+        cosine[j][k] = float(std::cos(angle)), sine[j][k] = float(std::sin(angle));
+      }
+    }
+  }
+};
+
+/// Calls `add(i, value)` for each basis polynomial in the unit direction (x, y, z): the real
+/// spherical harmonics up to kOrder without their constants, l*l + l + m.
+template <int kOrder, class Add>
+HWY_INLINE void for_each_basis(V x, V y, V z, const Add& add) {
+  const D d;
   const auto number = [&](float value) HWY_ATTR { return hn::Set(d, value); };
-  sum[0] = sum[0] + weight;
+  add(0, number(1));
   add(1, y), add(2, z), add(3, x);
   if constexpr (kOrder >= 2) {
     const V xx = x * x, yy = y * y, zz = z * z, xy = x * y;
@@ -49,58 +174,59 @@ HWY_INLINE void add_basis(V x, V y, V z, V weight, V* sum) {
   }
 }
 
-/// In each group of four of `bits`: how many are set, and the sum of their places.
-struct GroupCounts {
-  VU count, places;
-};
-
-HWY_INLINE GroupCounts count_groups(VU bits) {
-  const DU du;
-  const auto fold = [&](VU v, unsigned mask, int shift) HWY_ATTR {
-    return hn::And(hn::ShiftRightSame(v, shift), hn::Set(du, mask));
-  };
-  const VU odd = fold(bits, 0x55555555u, 1);
-  const VU pairs = fold(bits, 0x55555555u, 0) + odd;
-  const VU high = fold(pairs, 0x33333333u, 2);
-  return {fold(pairs, 0x33333333u, 0) + high,
-          fold(odd, 0x33333333u, 0) + fold(odd, 0x33333333u, 2) + high + high};
-}
-
-/// Sums over slices: of what is open, and of its moments.
+/// Sums over slices, of what is hidden and of all that is above the tangent plane.
 template <int kOrder>
 struct Moments {
   static constexpr int kCount = (kOrder + 1) * (kOrder + 1);
-  static constexpr int kGroups = 8;  ///< of four sectors: each group is one direction
 
-  V open = hn::Zero(D()), whole = hn::Zero(D());
-  V visible[kCount], hidden[kCount];
+  V hidden[kCount], whole[kCount];
 
   HWY_INLINE Moments() {
-    for (int i = 0; kOrder > 0 && i < kCount; ++i) visible[i] = hidden[i] = hn::Zero(D());
+    for (int i = 0; i < kCount; ++i) hidden[i] = whole[i] = hn::Zero(D());
   }
 
-  HWY_INLINE void add(const Receiver& p, const Half& half, VU bits, V slice_weight, float phase) {
+  HWY_INLINE void add(const Receiver& p, const SliceFrame& f,
+                      const CircleMoments<kOrder>& hidden_of_slice,
+                      const CircleMoments<kOrder>& whole_of_slice) {
     const D d;
-    const V weight = slice_weight * half.measure;
-    whole = hn::MulAdd(weight, hn::Set(d, kSectors), whole);
-    open = hn::MulAdd(
-        weight,
-        hn::Set(d, kSectors) - hn::ConvertTo(d, hn::BitCast(DI(), hn::PopulationCount(bits))),
-        open);
-    if constexpr (kOrder > 0) add_directions(p, half, bits, weight, phase);
+    if constexpr (kOrder == 0) {
+      hidden[0] = hn::MulAdd(f.weight, hidden_of_slice.cosine[0], hidden[0]);
+      whole[0] = hn::MulAdd(f.weight, whole_of_slice.cosine[0], whole[0]);
+    } else {
+      static const CircleDirections<kOrder> directions;
+      for (int j = 0; j < CircleDirections<kOrder>::kCount; ++j) {
+        const float *cosines = directions.cosine[j], *sines = directions.sine[j];
+        const V c = hn::Set(d, cosines[1]), s = hn::Set(d, sines[1]);
+        const V h = f.weight * hidden_of_slice.at(cosines, sines),
+                w = f.weight * whole_of_slice.at(cosines, sines);
+        for_each_basis<kOrder>(dot2(c, s, p.vx, f.tx), dot2(c, s, p.vy, f.ty),
+                               dot2(c, s, p.vz, f.tz), [&](int i, V value) HWY_ATTR {
+                                 hidden[i] = hn::MulAdd(h, value, hidden[i]);
+                                 whole[i] = hn::MulAdd(w, value, whole[i]);
+                               });
+      }
+    }
+  }
+
+  /// Share of the hemisphere, weighted by the cosine, that is open.
+  HWY_INLINE V open_share() const {
+    const D d;
+    const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    return hn::IfThenElse(whole[0] > zero, hn::Clamp(one - hidden[0] / whole[0], zero, one), one);
   }
 
   /// The part of the light with these weights that is visible. Part and whole are sums over the
   /// same directions, so that their noise cancels: what is open has all of it.
   HWY_INLINE V share_of_light(const float* light, V otherwise) const {
     const D d;
-    V part = hn::Zero(d), total = hn::Zero(d);
+    V lost = hn::Zero(d), total = hn::Zero(d);
     for (int i = 0; i < kCount; ++i) {
       const V l = hn::Set(d, light[i]);
-      part = hn::MulAdd(l, visible[i], part);
-      total = hn::MulAdd(l, visible[i] + hidden[i], total);
+      lost = hn::MulAdd(l, hidden[i], lost);
+      total = hn::MulAdd(l, whole[i], total);
     }
-    const V share = hn::Clamp(part / total, hn::Zero(d), hn::Set(d, 1.0f));
+    const V one = hn::Set(d, 1.0f);
+    const V share = hn::Clamp(one - lost / total, hn::Zero(d), one);
     return hn::IfThenElse(total > hn::Zero(d), share, otherwise);
   }
 
@@ -110,67 +236,18 @@ struct Moments {
     const V normal[3] = {p.nx, p.ny, p.nz};
     for (int c = 0; c < 3; ++c) {
       const int band = 1 + (c + 2) % 3;  // bands of order 1 are y, z, x
-      const V expected = hn::Set(D(), 2.0f / 3) * (visible[0] + hidden[0]) * normal[c];
-      bent[c] = hn::MulAdd(ao, expected - (visible[band] + hidden[band]), visible[band]);
+      const V expected = hn::Set(D(), 2.0f / 3) * whole[0] * normal[c];
+      bent[c] = hn::MulAdd(ao, expected - whole[band], whole[band] - hidden[band]);
     }
   }
 
   HWY_INLINE Moments minus(const Moments& other) const {
     Moments rest = *this;
     for (int i = 0; i < kCount; ++i) {
-      rest.visible[i] = visible[i] - other.visible[i];
       rest.hidden[i] = hidden[i] - other.hidden[i];
+      rest.whole[i] = whole[i] - other.whole[i];
     }
     return rest;
-  }
-
- private:
-  HWY_INLINE void add_directions(const Receiver& p, const Half& half, VU bits, V weight,
-                                 float phase) {
-    const D d;
-    const DI di;
-    const DU du;
-    const SectorDirections& table = sector_directions();
-    const auto row = hn::ConvertTo(
-        di, hn::Clamp(hn::MulAdd(half.gamma, hn::Set(d, SectorDirections::kAngles / kPi),
-                                 hn::Set(d, SectorDirections::kAngles / 2.0f)),
-                      hn::Zero(d), hn::Set(d, SectorDirections::kAngles - 1.0f)));
-    const auto row_start = hn::ShiftLeft<7>(row);
-    static_assert(SectorDirections::kShares == 128 && kSectors == 32);
-    const GroupCounts counts = count_groups(bits);
-    // `number` sectors of group g, whose places have the sum `places`.
-    const auto direction = [&](int g, V number, V places) HWY_ATTR {
-      struct Direction {
-        V x, y, z;
-      };
-      const V place =
-          places / hn::Max(number, hn::Set(d, 1.0f)) + hn::Set(d, 4.0f * float(g) + phase);
-      const auto column = hn::Min(hn::ConvertTo(di, place * hn::Set(d, 4.0f)), hn::Set(di, 127));
-      const auto packed = hn::GatherIndex(di, table.packed.data(), row_start + column);
-      const V scale = hn::Set(d, 1 / 32767.0f);
-      const V cosine = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(packed))) * scale,
-              sine = hn::ConvertTo(d, hn::ShiftRight<16>(packed)) * scale;
-      return Direction{hn::MulAdd(cosine, p.vx, sine * half.tx),
-                       hn::MulAdd(cosine, p.vy, sine * half.ty),
-                       hn::MulAdd(cosine, p.vz, sine * half.tz)};
-    };
-    for (int g = 0; g < kGroups; ++g) {
-      const auto of_group = [&](VU v) HWY_ATTR {
-        return hn::ConvertTo(
-            d, hn::BitCast(di, hn::And(hn::ShiftRightSame(v, 4 * g), hn::Set(du, 15u))));
-      };
-      const V number = of_group(counts.count), places = of_group(counts.places);
-      const V four = hn::Set(d, 4.0f), all_places = hn::Set(d, 6.0f);
-      if (!hn::AllFalse(d, number < four)) {
-        const auto to = direction(g, four - number, all_places - places);
-        const V share = weight * (four - number);
-        add_basis<kOrder>(to.x, to.y, to.z, share, visible);
-      }
-      if (!hn::AllFalse(d, number > hn::Zero(d))) {
-        const auto to = direction(g, number, places);
-        add_basis<kOrder>(to.x, to.y, to.z, weight * number, hidden);
-      }
-    }
   }
 };
 

@@ -34,8 +34,9 @@ HWY_INLINE SunRay sun_ray(const MarchScene& scene, const Receiver& p, const SunJ
   const V scale = hn::Set(d, 1.0f) / hn::Max(ray.s, hn::Set(d, 1e-6f));
   half.tx = tx * scale, half.ty = ty * scale, half.tz = tz * scale;
   half.n_t = dot3(p.nx, p.ny, p.nz, half.tx, half.ty, half.tz);
-  half.slope = half.n_t * p.inverse_facing;
-  half.origin = dot3(half.tx, half.ty, half.tz, p.px, p.py, p.pz);
+  half.slope = half.n_t / p.facing;
+  half.across_x = half.tx * hn::Set(d, 1 / scene.fx);
+  half.across_y = half.ty * hn::Set(d, -1 / scene.fy);
 
   const V depth = hn::Zero(d) - p.pz;
   V dx = hn::Set(d, scene.fx) * lx, dy = hn::Set(d, -scene.fy) * ly;
@@ -58,7 +59,7 @@ template <bool kOrthographic>
 HWY_INLINE M blocks(const Receiver& p, const Half& half, const SunRay& ray, V s, V above, V depth,
                     float radius) {
   const D d;
-  const V v = hn::MulSub(above, p.inverse_facing, s * half.slope);
+  const V v = hn::NegMulAdd(s, half.slope, above);
   const V back_s = kOrthographic ? s : hn::MulAdd(depth, s, s);
   const V back_v = kOrthographic ? v - depth : hn::MulAdd(depth, v - p.distance, v);
   const M near = hn::And(above > hn::Zero(d), dot2(s, v, s, v) <= hn::Set(d, radius * radius));
@@ -76,18 +77,17 @@ void sun(const SunJob& job, int x0, int x1, int y0, int y1) {
         const Interleaving& layout = scene.layout;
         const V zero = hn::Zero(d);
         const int member = ((y + job.march.first_row) & (kPeriod - 1)) * kPeriod + comb;
-        const Receiver p = load_receiver(scene, at);
+        const Receiver p = load_receiver(scene, at, y, comb, column);
         Half half;
         const SunRay ray = sun_ray(scene, p, job.directions[std::size_t(member)], half);
-        const V x = lane_columns(layout, comb, column);
-        const V row = hn::Set(d, float(y)), right = hn::Set(d, float(layout.width() - 1)),
+        const V right = hn::Set(d, float(layout.width() - 1)),
                 bottom = hn::Set(d, float(layout.height() - 1));
         const float reach = reach_px(scene, p, job.march.radius);
         M open = hn::And(p.valid, dot2(half.n_t, p.facing, ray.s, ray.v) > zero);
         for (const float distance : job.distances_px[std::size_t(member)]) {
           const V t = hn::Set(d, distance);
-          const V qx_px = hn::Round(hn::MulAdd(t, ray.step_x, x)),
-                  qy_px = hn::Round(hn::MulAdd(t, ray.step_y, row));
+          const V qx_px = hn::Round(hn::MulAdd(t, ray.step_x, p.x)),
+                  qy_px = hn::Round(hn::MulAdd(t, ray.step_y, p.y));
           const M inside =
               hn::And(hn::And(qx_px >= zero, qx_px <= right),
                       hn::And(hn::And(qy_px >= zero, qy_px <= bottom), t < ray.end_px));
@@ -102,22 +102,20 @@ void sun(const SunJob& job, int x0, int x1, int y0, int y1) {
                              hn::Set(di, Interleaving::kPad);
           const auto gather = [&](const InterleavedPlane& plane)
                                   HWY_ATTR { return hn::GatherIndex(d, plane.data(), index); };
-          const V qx = gather(scene.x), qy = gather(scene.y), qz = gather(scene.z);
-          const V height = dot3(qx, qy, qz, p.nx, p.ny, p.nz), above = height - p.plane;
-          V s = dot3(qx, qy, qz, half.tx, half.ty, half.tz);
-          if constexpr (kOrthographic) s = s - half.origin;
-          const M front = blocks<kOrthographic>(p, half, ray, s, above, gather(scene.thickness),
-                                                job.march.radius);
-          const V behind = gather(scene.behind);
-          const V above_behind = kOrthographic ? hn::NegMulAdd(behind, p.facing, above)
-                                               : hn::MulAdd(behind, height, above);
-          if constexpr (!kOrthographic) s = hn::MulAdd(behind, s, s);
-          const M covered = blocks<kOrthographic>(p, half, ray, s, above_behind,
-                                                  gather(scene.behind_thickness), job.march.radius);
+          const V dx = qx_px - p.x, dy = qy_px - p.y;
+          const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise)),
+                  across = dot2(dx, dy, half.across_x, half.across_y);
+          const auto surface_blocks = [&](V depth, const InterleavedPlane& thickness) HWY_ATTR {
+            return blocks<kOrthographic>(p, half, ray, kOrthographic ? across : depth * across,
+                                         height_above<kOrthographic>(p, rise, depth),
+                                         gather(thickness), job.march.radius);
+          };
+          const M front = surface_blocks(gather(scene.depth), scene.thickness),
+                  covered = surface_blocks(gather(scene.behind), scene.behind_thickness);
           open = hn::AndNot(hn::And(looks, hn::Or(front, covered)), open);
         }
         if (job.march.extend && !hn::AllFalse(d, open)) {
-          const Border border = border_along(layout, ray.step_x, ray.step_y, x, row);
+          const Border border = border_along(scene, p, comb, column, ray.step_x, ray.step_y, false);
           const Extension e = extend<kOrthographic>(job.march, p, half, border, reach, kSunWidths);
           // The ray passes between both ends of the piece.
           const V here = e.s * ray.v - e.v * ray.s, there = e.end_s * ray.v - e.end_v * ray.s;

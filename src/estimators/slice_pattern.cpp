@@ -42,18 +42,19 @@ SliceSide make_side(const Interleaving& layout, int comb, int line, double dx, d
   side.phase = phase;
   for (int i = 0; i < steps; ++i) {
     const double distance = march_distance((i + start) / steps, diagonal);
-    SliceStep step;
     const bool far = march_distance((i + 1 + start) / steps, diagonal) - distance > kLongStep;
-    step.dx = far ? to_block(distance * dx, comb) : int(std::lround(distance * dx));
-    step.dy = far ? to_block(distance * dy, line) : int(std::lround(distance * dy));
+    const int x = far ? to_block(distance * dx, comb) : int(std::lround(distance * dx)),
+              y = far ? to_block(distance * dy, line) : int(std::lround(distance * dy));
     const bool repeated =
-        !side.steps.empty() && side.steps.back().dx == step.dx && side.steps.back().dy == step.dy;
-    if (repeated || (step.dx == 0 && step.dy == 0)) continue;
-    const int column = comb + step.dx;
-    step.column_shift = column >> 2;
+        !side.steps.empty() && side.steps.back().dx == float(x) && side.steps.back().row == y;
+    if (repeated || (x == 0 && y == 0)) continue;
+    SliceStep step;
+    step.dx = float(x), step.dy = float(y);
+    step.row = y;
+    step.column_shift = (comb + x) >> 2;
     step.offset =
-        layout.index(step.dy, column & (kPeriod - 1), step.column_shift) - layout.index(0, comb, 0);
-    step.distance_px = float(std::hypot(step.dx, step.dy));
+        layout.index(y, (comb + x) & (kPeriod - 1), step.column_shift) - layout.index(0, comb, 0);
+    step.distance_px = float(std::hypot(x, y));
     side.steps.push_back(step);
   }
   return side;

@@ -13,7 +13,8 @@ double march_distance(double t, double diagonal);
 
 /// A pixel that a march looks at, seen from the pixel where it starts.
 struct SliceStep {
-  int dx, dy;             ///< pixels, y down
+  float dx, dy;           ///< pixels, y down
+  int row;                ///< dy as a whole number
   int column_shift;       ///< of the entry, within its interleaved row
   std::ptrdiff_t offset;  ///< of the index
   float distance_px;

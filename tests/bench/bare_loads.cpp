@@ -20,12 +20,12 @@ float bare_loads_of_pixels(const March& march, int x0, int x1, int y0, int y1) {
         for (const Slice& slice : march.pattern.member(comb, row)) {
           for (const SliceSide& side : slice.sides) {
             for (const SliceStep& step : side.steps) {
-              const int q_row = y + step.dy, first = column + step.column_shift;
+              const int q_row = y + step.row, first = column + step.column_shift;
               if (q_row < 0 || q_row >= scene.layout.height() || first >= scene.layout.columns() ||
                   first + int(hn::Lanes(d)) <= 0)
                 break;
               const std::ptrdiff_t i = at + step.offset;
-              for (const InterleavedPlane* plane : {&scene.x, &scene.y, &scene.z, &scene.behind})
+              for (const InterleavedPlane* plane : {&scene.depth, &scene.behind})
                 sum = sum + hn::LoadU(d, plane->data() + i);
             }
           }
