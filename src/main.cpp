@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <malloc.h>
 #include <unistd.h>
 
+#include <climits>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -37,6 +39,13 @@ void open_standard_streams() {
   close(descriptor);
 }
 
+/// Keeps the memory of planes that are freed for those of the next stage and frame. What goes back
+/// to the system comes again page by page, at 0.4 ms of CPU time per MB.
+void keep_freed_memory() {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that there is
+  mallopt(M_TRIM_THRESHOLD, INT_MAX);
+}
+
 /// The last words of a process that fails; what cannot be said (standard error is closed, or its
 /// disk is full) does not change the exit code.
 ssdo::ExitCode fail(ssdo::ExitCode code, const char* message) {
@@ -48,6 +57,7 @@ ssdo::ExitCode fail(ssdo::ExitCode code, const char* message) {
 
 int main(int argc, char** argv) {
   open_standard_streams();
+  keep_freed_memory();
   ssdo::remove_temporaries_on_signals();
   ssdo::ExitCode code = ssdo::ExitCode::failed;
   try {

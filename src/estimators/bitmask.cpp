@@ -109,14 +109,6 @@ class Bitmask {
 
   bool is_surface(std::ptrdiff_t i) const { return !std::isnan(scene_.depth[i]); }
 
-  template <class Work>
-  void for_each_block(const Work& work) const {
-    const int phase = layout_.phase();
-    for_each_tile(
-        width() + phase, height(),
-        [&](const Tile& t) { work(t.x0 - phase, t.x1 - phase, t.y0, t.y1); }, in_.progress);
-  }
-
   /// Calls `work(pixel, index)` for each pixel that shows a surface; index is that of the march.
   template <class Work>
   void for_each_surface(const Work& work) const {
@@ -154,7 +146,8 @@ class Bitmask {
       difference = make_color(layout_);
       job.share_difference = &difference;
     }
-    for_each_block([&](int x0, int x1, int y0, int y1) { march_visibility(job, x0, x1, y0, y1); });
+    for_each_band(
+        height(), [&](int y0, int y1) { march_visibility(job, y0, y1); }, in_.progress);
 
     out_.ao = Plane<float>(width(), height(), 1.0f);
     if (in_.products.bent) out_.bent = Plane<glm::vec3>(width(), height(), glm::vec3(0));
@@ -199,7 +192,8 @@ class Bitmask {
         job.distances_px[std::size_t(m)].push_back(
             float(march_distance((i + start) / steps, diagonal)));
     }
-    for_each_block([&](int x0, int x1, int y0, int y1) { march_sun(job, x0, x1, y0, y1); });
+    for_each_band(
+        height(), [&](int y0, int y1) { march_sun(job, y0, y1); }, in_.progress);
     for_each_surface([&](std::size_t pixel, std::ptrdiff_t i) {
       const glm::vec3 normal(in_.geometry.surfel[pixel].normal);
       out_.direct[pixel] +=
@@ -264,7 +258,8 @@ class Bitmask {
     const BounceJob job{
         march_,      &sent,   two_sided ? &sent_back : nullptr,          &sent_behind,
         sent_border, &bounce, in_.products.error ? &difference : nullptr};
-    for_each_block([&](int x0, int x1, int y0, int y1) { march_bounce(job, x0, x1, y0, y1); });
+    for_each_band(
+        height(), [&](int y0, int y1) { march_bounce(job, y0, y1); }, in_.progress);
     for_each_surface([&](std::size_t pixel, std::ptrdiff_t i) {
       out_.bounce[pixel] = color_at(bounce, i);
       if (last && in_.products.error) out_.error[pixel] += luminance(color_at(difference, i));

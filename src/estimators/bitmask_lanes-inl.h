@@ -9,6 +9,7 @@
 #define SSDO_BITMASK_LANES_INL_H_
 #endif
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <cmath>
@@ -222,6 +223,8 @@ HWY_INLINE VU march_side(const March& march, const Receiver& p, const Half& half
     const std::ptrdiff_t i = at + step.offset;
     const auto load = [&](const InterleavedPlane& plane)
                           HWY_ATTR { return hn::LoadU(d, plane.data() + i); };
+    hwy::Prefetch(scene.depth.data() + i + 2 * lanes - 1);
+    hwy::Prefetch(scene.behind.data() + i + 2 * lanes - 1);
     const V dx = hn::Set(d, step.dx), dy = hn::Set(d, step.dy);
     const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise));
     const V depth = load(scene.depth), behind = load(scene.behind);
@@ -294,16 +297,13 @@ HWY_INLINE Half half_of(const MarchScene& scene, const Receiver& p, const SliceF
 
 /// Calls `work(index, y, comb, column)` for each vector of pixels that shows a surface.
 template <class Work>
-HWY_INLINE void for_each_vector(const MarchScene& scene, int x0, int x1, int y0, int y1,
-                                const Work& work) {
+HWY_INLINE void for_each_vector(const MarchScene& scene, int y0, int y1, const Work& work) {
   const D d;
   const Interleaving& layout = scene.layout;
   constexpr int kPeriod = Interleaving::kPeriod;
-  const int first = (x0 + layout.phase()) / kPeriod,
-            last = (x1 + layout.phase() + kPeriod - 1) / kPeriod;
   for (int y = y0; y < y1; ++y) {
     for (int comb = 0; comb < kPeriod; ++comb) {
-      for (int column = first; column < last; column += int(hn::Lanes(d))) {
+      for (int column = 0; column < layout.columns(); column += int(hn::Lanes(d))) {
         const std::ptrdiff_t i = layout.index(y, comb, column);
         const V depth = hn::LoadU(d, scene.depth.data() + i);
         if (!hn::AllFalse(d, depth == depth)) work(i, y, comb, column);

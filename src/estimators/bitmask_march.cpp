@@ -52,22 +52,20 @@ HWY_INLINE VU march_half(const March& march, const Receiver& p, const Half& half
 
 /// Calls `work(place, receiver, slices, reach_px)` for each vector of pixels that shows a surface.
 template <class Work>
-HWY_INLINE void for_each_receiver(const March& march, int x0, int x1, int y0, int y1,
-                                  const Work& work) {
-  for_each_vector(march.scene, x0, x1, y0, y1,
-                  [&](std::ptrdiff_t i, int y, int comb, int column) HWY_ATTR {
-                    const Receiver p = load_receiver(march.scene, i, y, comb, column);
-                    const int row = (y + march.first_row) & (Interleaving::kPeriod - 1);
-                    work(Place{i, y, comb, column}, p, march.pattern.member(comb, row),
-                         reach_px(march.scene, p, march.radius));
-                  });
+HWY_INLINE void for_each_receiver(const March& march, int y0, int y1, const Work& work) {
+  for_each_vector(march.scene, y0, y1, [&](std::ptrdiff_t i, int y, int comb, int column) HWY_ATTR {
+    const Receiver p = load_receiver(march.scene, i, y, comb, column);
+    const int row = (y + march.first_row) & (Interleaving::kPeriod - 1);
+    work(Place{i, y, comb, column}, p, march.pattern.member(comb, row),
+         reach_px(march.scene, p, march.radius));
+  });
 }
 
 template <bool kOrthographic, int kOrder>
-void visibility(const VisibilityJob& job, int x0, int x1, int y0, int y1) {
+void visibility(const VisibilityJob& job, int y0, int y1) {
   const March& march = job.march;
   for_each_receiver(
-      march, x0, x1, y0, y1,
+      march, y0, y1,
       [&](const Place& place, const Receiver& p, const std::vector<Slice>& slices,
           float reach) HWY_ATTR {
         const D d;
@@ -159,10 +157,10 @@ HWY_INLINE V measure_of_run(const Receiver& p, const Half& half, VU bits) {
 }
 
 template <bool kOrthographic>
-void bounce(const BounceJob& job, int x0, int x1, int y0, int y1) {
+void bounce(const BounceJob& job, int y0, int y1) {
   const March& march = job.march;
   for_each_receiver(
-      march, x0, x1, y0, y1,
+      march, y0, y1,
       [&](const Place& place, const Receiver& p, const std::vector<Slice>& slices,
           float reach) HWY_ATTR {
         const D d;
@@ -234,29 +232,28 @@ void bounce(const BounceJob& job, int x0, int x1, int y0, int y1) {
 }
 
 template <bool kOrthographic>
-void visibility_in_order(const VisibilityJob& job, int x0, int x1, int y0, int y1) {
+void visibility_in_order(const VisibilityJob& job, int y0, int y1) {
   switch (job.order) {
     case 0:
-      return visibility<kOrthographic, 0>(job, x0, x1, y0, y1);
+      return visibility<kOrthographic, 0>(job, y0, y1);
     case 1:
-      return visibility<kOrthographic, 1>(job, x0, x1, y0, y1);
+      return visibility<kOrthographic, 1>(job, y0, y1);
     case 2:
-      return visibility<kOrthographic, 2>(job, x0, x1, y0, y1);
+      return visibility<kOrthographic, 2>(job, y0, y1);
     case 3:
-      return visibility<kOrthographic, 3>(job, x0, x1, y0, y1);
+      return visibility<kOrthographic, 3>(job, y0, y1);
     default:
-      return visibility<kOrthographic, 4>(job, x0, x1, y0, y1);
+      return visibility<kOrthographic, 4>(job, y0, y1);
   }
 }
 
-void visibility_of_pixels(const VisibilityJob& job, int x0, int x1, int y0, int y1) {
-  job.march.scene.orthographic ? visibility_in_order<true>(job, x0, x1, y0, y1)
-                               : visibility_in_order<false>(job, x0, x1, y0, y1);
+void visibility_of_pixels(const VisibilityJob& job, int y0, int y1) {
+  job.march.scene.orthographic ? visibility_in_order<true>(job, y0, y1)
+                               : visibility_in_order<false>(job, y0, y1);
 }
 
-void bounce_of_pixels(const BounceJob& job, int x0, int x1, int y0, int y1) {
-  job.march.scene.orthographic ? bounce<true>(job, x0, x1, y0, y1)
-                               : bounce<false>(job, x0, x1, y0, y1);
+void bounce_of_pixels(const BounceJob& job, int y0, int y1) {
+  job.march.scene.orthographic ? bounce<true>(job, y0, y1) : bounce<false>(job, y0, y1);
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -268,12 +265,12 @@ namespace ssdo {
 HWY_EXPORT(visibility_of_pixels);
 HWY_EXPORT(bounce_of_pixels);
 
-void march_visibility(const VisibilityJob& job, int x0, int x1, int y0, int y1) {
-  HWY_DYNAMIC_DISPATCH(visibility_of_pixels)(job, x0, x1, y0, y1);
+void march_visibility(const VisibilityJob& job, int y0, int y1) {
+  HWY_DYNAMIC_DISPATCH(visibility_of_pixels)(job, y0, y1);
 }
 
-void march_bounce(const BounceJob& job, int x0, int x1, int y0, int y1) {
-  HWY_DYNAMIC_DISPATCH(bounce_of_pixels)(job, x0, x1, y0, y1);
+void march_bounce(const BounceJob& job, int y0, int y1) {
+  HWY_DYNAMIC_DISPATCH(bounce_of_pixels)(job, y0, y1);
 }
 
 }  // namespace ssdo

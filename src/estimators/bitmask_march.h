@@ -59,9 +59,9 @@ struct SunJob {
   InterleavedPlane* visible;  ///< 0 or 1
 };
 
-/// All work on rows y0 to y1 and pixels x0 to x1 of the picture; x0 + phase is a multiple of 64.
-void march_visibility(const VisibilityJob& job, int x0, int x1, int y0, int y1);
-void march_bounce(const BounceJob& job, int x0, int x1, int y0, int y1);
-void march_sun(const SunJob& job, int x0, int x1, int y0, int y1);
+/// All work on rows y0 to y1 of the picture.
+void march_visibility(const VisibilityJob& job, int y0, int y1);
+void march_bounce(const BounceJob& job, int y0, int y1);
+void march_sun(const SunJob& job, int y0, int y1);
 
 }  // namespace ssdo

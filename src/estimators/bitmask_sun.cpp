@@ -67,69 +67,66 @@ HWY_INLINE M blocks(const Receiver& p, const Half& half, const SunRay& ray, V s,
 }
 
 template <bool kOrthographic>
-void sun(const SunJob& job, int x0, int x1, int y0, int y1) {
+void sun(const SunJob& job, int y0, int y1) {
   const MarchScene& scene = job.march.scene;
-  for_each_vector(
-      scene, x0, x1, y0, y1, [&](std::ptrdiff_t at, int y, int comb, int column) HWY_ATTR {
-        const D d;
-        const DI di;
-        constexpr int kPeriod = Interleaving::kPeriod;
-        const Interleaving& layout = scene.layout;
-        const V zero = hn::Zero(d);
-        const int member = ((y + job.march.first_row) & (kPeriod - 1)) * kPeriod + comb;
-        const Receiver p = load_receiver(scene, at, y, comb, column);
-        Half half;
-        const SunRay ray = sun_ray(scene, p, job.directions[std::size_t(member)], half);
-        const V right = hn::Set(d, float(layout.width() - 1)),
-                bottom = hn::Set(d, float(layout.height() - 1));
-        const float reach = reach_px(scene, p, job.march.radius);
-        M open = hn::And(p.valid, dot2(half.n_t, p.facing, ray.s, ray.v) > zero);
-        for (const float distance : job.distances_px[std::size_t(member)]) {
-          const V t = hn::Set(d, distance);
-          const V qx_px = hn::Round(hn::MulAdd(t, ray.step_x, p.x)),
-                  qy_px = hn::Round(hn::MulAdd(t, ray.step_y, p.y));
-          const M inside =
-              hn::And(hn::And(qx_px >= zero, qx_px <= right),
-                      hn::And(hn::And(qy_px >= zero, qy_px <= bottom), t < ray.end_px));
-          const M looks = hn::And(inside, open);
-          if (distance > reach || hn::AllFalse(d, looks)) break;
-          const auto shifted =
-              hn::ConvertTo(di, hn::IfThenElseZero(looks, qx_px)) + hn::Set(di, layout.phase());
-          const auto line =
-              hn::ConvertTo(di, hn::IfThenElseZero(looks, qy_px)) * hn::Set(di, kPeriod) +
-              hn::And(shifted, hn::Set(di, kPeriod - 1));
-          const auto index = line * hn::Set(di, int(layout.stride())) + hn::ShiftRight<2>(shifted) +
-                             hn::Set(di, Interleaving::kPad);
-          const auto gather = [&](const InterleavedPlane& plane)
-                                  HWY_ATTR { return hn::GatherIndex(d, plane.data(), index); };
-          const V dx = qx_px - p.x, dy = qy_px - p.y;
-          const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise)),
-                  across = dot2(dx, dy, half.across_x, half.across_y);
-          const auto surface_blocks = [&](V depth, const InterleavedPlane& thickness) HWY_ATTR {
-            return blocks<kOrthographic>(p, half, ray, kOrthographic ? across : depth * across,
-                                         height_above<kOrthographic>(p, rise, depth),
-                                         gather(thickness), job.march.radius);
-          };
-          const M front = surface_blocks(gather(scene.depth), scene.thickness),
-                  covered = surface_blocks(gather(scene.behind), scene.behind_thickness);
-          open = hn::AndNot(hn::And(looks, hn::Or(front, covered)), open);
-        }
-        if (job.march.extend && !hn::AllFalse(d, open)) {
-          const Border border = border_along(scene, p, comb, column, ray.step_x, ray.step_y, false);
-          const Extension e = extend<kOrthographic>(job.march, p, half, border, reach, kSunWidths);
-          // The ray passes between both ends of the piece.
-          const V here = e.s * ray.v - e.v * ray.s, there = e.end_s * ray.v - e.end_v * ray.s;
-          const M crosses =
-              hn::And(hn::And(e.exists, border.distance_px < ray.end_px), here * there <= zero);
-          const M rises = hn::Or(e.above > zero, e.end_above > zero);
-          open = hn::AndNot(hn::And(crosses, rises), open);
-        }
-        hn::StoreU(hn::IfThenElseZero(open, hn::Set(d, 1.0f)), d, job.visible->data() + at);
-      });
+  for_each_vector(scene, y0, y1, [&](std::ptrdiff_t at, int y, int comb, int column) HWY_ATTR {
+    const D d;
+    const DI di;
+    constexpr int kPeriod = Interleaving::kPeriod;
+    const Interleaving& layout = scene.layout;
+    const V zero = hn::Zero(d);
+    const int member = ((y + job.march.first_row) & (kPeriod - 1)) * kPeriod + comb;
+    const Receiver p = load_receiver(scene, at, y, comb, column);
+    Half half;
+    const SunRay ray = sun_ray(scene, p, job.directions[std::size_t(member)], half);
+    const V right = hn::Set(d, float(layout.width() - 1)),
+            bottom = hn::Set(d, float(layout.height() - 1));
+    const float reach = reach_px(scene, p, job.march.radius);
+    M open = hn::And(p.valid, dot2(half.n_t, p.facing, ray.s, ray.v) > zero);
+    for (const float distance : job.distances_px[std::size_t(member)]) {
+      const V t = hn::Set(d, distance);
+      const V qx_px = hn::Round(hn::MulAdd(t, ray.step_x, p.x)),
+              qy_px = hn::Round(hn::MulAdd(t, ray.step_y, p.y));
+      const M inside = hn::And(hn::And(qx_px >= zero, qx_px <= right),
+                               hn::And(hn::And(qy_px >= zero, qy_px <= bottom), t < ray.end_px));
+      const M looks = hn::And(inside, open);
+      if (distance > reach || hn::AllFalse(d, looks)) break;
+      const auto shifted =
+          hn::ConvertTo(di, hn::IfThenElseZero(looks, qx_px)) + hn::Set(di, layout.phase());
+      const auto line = hn::ConvertTo(di, hn::IfThenElseZero(looks, qy_px)) * hn::Set(di, kPeriod) +
+                        hn::And(shifted, hn::Set(di, kPeriod - 1));
+      const auto index = line * hn::Set(di, int(layout.stride())) + hn::ShiftRight<2>(shifted) +
+                         hn::Set(di, Interleaving::kPad);
+      const auto gather = [&](const InterleavedPlane& plane)
+                              HWY_ATTR { return hn::GatherIndex(d, plane.data(), index); };
+      const V dx = qx_px - p.x, dy = qy_px - p.y;
+      const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise)),
+              across = dot2(dx, dy, half.across_x, half.across_y);
+      const auto surface_blocks = [&](V depth, const InterleavedPlane& thickness) HWY_ATTR {
+        return blocks<kOrthographic>(p, half, ray, kOrthographic ? across : depth * across,
+                                     height_above<kOrthographic>(p, rise, depth), gather(thickness),
+                                     job.march.radius);
+      };
+      const M front = surface_blocks(gather(scene.depth), scene.thickness),
+              covered = surface_blocks(gather(scene.behind), scene.behind_thickness);
+      open = hn::AndNot(hn::And(looks, hn::Or(front, covered)), open);
+    }
+    if (job.march.extend && !hn::AllFalse(d, open)) {
+      const Border border = border_along(scene, p, comb, column, ray.step_x, ray.step_y, false);
+      const Extension e = extend<kOrthographic>(job.march, p, half, border, reach, kSunWidths);
+      // The ray passes between both ends of the piece.
+      const V here = e.s * ray.v - e.v * ray.s, there = e.end_s * ray.v - e.end_v * ray.s;
+      const M crosses =
+          hn::And(hn::And(e.exists, border.distance_px < ray.end_px), here * there <= zero);
+      const M rises = hn::Or(e.above > zero, e.end_above > zero);
+      open = hn::AndNot(hn::And(crosses, rises), open);
+    }
+    hn::StoreU(hn::IfThenElseZero(open, hn::Set(d, 1.0f)), d, job.visible->data() + at);
+  });
 }
 
-void sun_of_pixels(const SunJob& job, int x0, int x1, int y0, int y1) {
-  job.march.scene.orthographic ? sun<true>(job, x0, x1, y0, y1) : sun<false>(job, x0, x1, y0, y1);
+void sun_of_pixels(const SunJob& job, int y0, int y1) {
+  job.march.scene.orthographic ? sun<true>(job, y0, y1) : sun<false>(job, y0, y1);
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -140,8 +137,8 @@ namespace ssdo {
 
 HWY_EXPORT(sun_of_pixels);
 
-void march_sun(const SunJob& job, int x0, int x1, int y0, int y1) {
-  HWY_DYNAMIC_DISPATCH(sun_of_pixels)(job, x0, x1, y0, y1);
+void march_sun(const SunJob& job, int y0, int y1) {
+  HWY_DYNAMIC_DISPATCH(sun_of_pixels)(job, y0, y1);
 }
 
 }  // namespace ssdo

@@ -24,6 +24,7 @@ namespace ssdo {
 namespace {
 
 constexpr int kTileSize = 64;  ///< position and normal of 64 x 64 pixels fill half an L2 cache
+constexpr int kBandHeight = 16;
 
 std::optional<int> from_environment(const char* name) {
   const char* value = std::getenv(name);
@@ -51,23 +52,40 @@ int from_affinity() {
   return sched_getaffinity(0, sizeof set, &set) == 0 ? std::max(1, CPU_COUNT(&set)) : 1;
 }
 
+/// Calls `work(i)` for i from 0 to count - 1.
+void for_each_task(std::size_t count, const std::function<void(std::size_t)>& work,
+                   const TileProgress& progress) {
+  std::mutex mutex;
+  std::size_t done = 0;
+  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
+    work(i);
+    if (!progress) return;
+    const std::lock_guard lock(mutex);
+    progress(++done, count);
+  });
+}
+
 }  // namespace
 
 void for_each_tile(int width, int height, const std::function<void(const Tile&)>& work,
                    const TileProgress& progress) {
   const int columns = (width + kTileSize - 1) / kTileSize;
   const int rows = (height + kTileSize - 1) / kTileSize;
-  const std::size_t count = std::size_t(columns) * std::size_t(rows);
-  std::mutex mutex;
-  std::size_t done = 0;
-  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
+  const auto one = [&](std::size_t i) {
     const int x0 = int(i % std::size_t(columns)) * kTileSize;
     const int y0 = int(i / std::size_t(columns)) * kTileSize;
     work({x0, y0, std::min(x0 + kTileSize, width), std::min(y0 + kTileSize, height)});
-    if (!progress) return;
-    const std::lock_guard lock(mutex);
-    progress(++done, count);
-  });
+  };
+  for_each_task(std::size_t(columns) * std::size_t(rows), one, progress);
+}
+
+void for_each_band(int height, const std::function<void(int y0, int y1)>& work,
+                   const TileProgress& progress) {
+  const auto one = [&](std::size_t i) {
+    const int y0 = int(i) * kBandHeight;
+    work(y0, std::min(y0 + kBandHeight, height));
+  };
+  for_each_task(std::size_t((height + kBandHeight - 1) / kBandHeight), one, progress);
 }
 
 void for_each_row(int height, const std::function<void(int y)>& work) {

@@ -10,27 +10,26 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-float bare_loads_of_pixels(const March& march, int x0, int x1, int y0, int y1) {
+float bare_loads_of_pixels(const March& march, int y0, int y1) {
   const D d;
   const MarchScene& scene = march.scene;
   V sum = hn::Zero(d);
-  for_each_vector(
-      scene, x0, x1, y0, y1, [&](std::ptrdiff_t at, int y, int comb, int column) HWY_ATTR {
-        const int row = (y + march.first_row) & (Interleaving::kPeriod - 1);
-        for (const Slice& slice : march.pattern.member(comb, row)) {
-          for (const SliceSide& side : slice.sides) {
-            for (const SliceStep& step : side.steps) {
-              const int q_row = y + step.row, first = column + step.column_shift;
-              if (q_row < 0 || q_row >= scene.layout.height() || first >= scene.layout.columns() ||
-                  first + int(hn::Lanes(d)) <= 0)
-                break;
-              const std::ptrdiff_t i = at + step.offset;
-              for (const InterleavedPlane* plane : {&scene.depth, &scene.behind})
-                sum = sum + hn::LoadU(d, plane->data() + i);
-            }
-          }
+  for_each_vector(scene, y0, y1, [&](std::ptrdiff_t at, int y, int comb, int column) HWY_ATTR {
+    const int row = (y + march.first_row) & (Interleaving::kPeriod - 1);
+    for (const Slice& slice : march.pattern.member(comb, row)) {
+      for (const SliceSide& side : slice.sides) {
+        for (const SliceStep& step : side.steps) {
+          const int q_row = y + step.row, first = column + step.column_shift;
+          if (q_row < 0 || q_row >= scene.layout.height() || first >= scene.layout.columns() ||
+              first + int(hn::Lanes(d)) <= 0)
+            break;
+          const std::ptrdiff_t i = at + step.offset;
+          for (const InterleavedPlane* plane : {&scene.depth, &scene.behind})
+            sum = sum + hn::LoadU(d, plane->data() + i);
         }
-      });
+      }
+    }
+  });
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
@@ -42,8 +41,8 @@ namespace ssdo {
 HWY_EXPORT(bare_loads_of_pixels);
 }
 namespace ssdo::bench {
-float bare_loads(const March& march, int x0, int x1, int y0, int y1) {
-  return HWY_DYNAMIC_DISPATCH(bare_loads_of_pixels)(march, x0, x1, y0, y1);
+float bare_loads(const March& march, int y0, int y1) {
+  return HWY_DYNAMIC_DISPATCH(bare_loads_of_pixels)(march, y0, y1);
 }
 }  // namespace ssdo::bench
 #endif

@@ -4,7 +4,9 @@
 // of all threads; "ns/sample" counts the samples that a pixel can take, "x loads" is the ratio to
 // the same loads and nothing else, measured in the same run.
 #include <benchmark/benchmark.h>
+#include <malloc.h>
 
+#include <climits>
 #include <cstdlib>
 #include <glm/gtc/constants.hpp>
 #include <map>
@@ -77,7 +79,7 @@ double bare_seconds(const Geometry& g, const HiddenGeometry& hidden, int slices,
   double best = 1e9;
   for (int run = 0; run < 3; ++run) {
     const std::clock_t start = std::clock();
-    benchmark::DoNotOptimize(bare_loads(march, 0, scene.layout.columns() * 4, 0, g.surfel.height));
+    benchmark::DoNotOptimize(bare_loads(march, 0, g.surfel.height));
     best = std::min(best, double(std::clock() - start) / CLOCKS_PER_SEC);
   }
   return best;
@@ -173,6 +175,8 @@ void add_all() {
 }  // namespace ssdo::bench
 
 int main(int argc, char** argv) {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // as the tool does
+  mallopt(M_TRIM_THRESHOLD, INT_MAX);
   ssdo::bench::add_all();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
