@@ -6,25 +6,28 @@
 //
 // A slice is a plane through the view ray; its two halves are marched over the frame. In the half
 // along T, a unit vector perpendicular to V, a direction at angle t from V has the cosine
-// n_v cos t + n_t sin t and, as slices turn about V, the measure |sin t|:
+// n_v cos t + n_t sin t to the normal and, as slices turn about V, the measure |sin t| dt:
 //
-//   M(t) = 2 int_0^t sin u (n_v cos u + n_t sin u) du = n_t (t - sin t cos t) + n_v sin^2 t
+//   M(S) = int_S (n_v c + n_t s) dc,   c = cos t, s = sin t
 //
-// 32 sectors divide a half equally in M. What is seen in a pixel hides those between its front and
-// its back, which lies behind it on its own view ray; `hidden` gathers them near to far. Then
+// 32 sectors divide a half equally in c, which is in solid angle. What is seen in a pixel hides
+// those between its front and its back, which lies behind it on its own view ray; a mask gathers
+// them near to far. Then
 //
-//   ao      = sum w M open / sum w M 32                    over the halves of all slices
-//   direct  = E(N)/pi * sum w M sum_open L / sum w M sum_all L      channel by channel
-//   bounce  = sum w M sum_q newly_hidden(q) L_out(q) / sum w M 32
+//   ao      = 1 - sum w M(hidden) / sum w M(all)               over the halves of all slices
+//   direct  = E(N)/pi * (1 - sum w int_hidden L dM / sum w int_all L dM)    channel by channel
+//   bounce  = sum w sum_q M(newly hidden by q) L_out(q) / sum w M(all)
 //
 // What differs from the sources, and why:
 // - w = 1 / |T~|^2, T~ the part of the slice's picture direction that is perpendicular to V. Slices
 //   that are uniform in the picture are not uniform around V off the optical axis: without w a true
 //   0.5 reads from 0.41 to 0.60 at 45 degrees.
 // - Sums are divided by what they are for an open surface, so that this reads exactly 1.
-// - Sectors are equal in M, not in angle, and each half has its own: a set of bits is a share of
-//   the cosine, and a pit seen from the side reads what it reads from above. The point that stands
-//   for a sector differs from slice to slice, or a gentle curve would show the sectors as bands.
+// - Sectors of equal angle that count alike read a pit of 0.75 as 0.38 when seen from the side.
+//   Here they count by the integral of the cosine over them. Equal steps of c are cheap to find
+//   (no arc function) and the same for all pixels, so that moments of masks come from tables
+//   (slice_sectors.cpp). The point that stands for a sector differs from slice to slice, or a
+//   gentle curve would show the sectors as bands.
 // - direct is a ratio to the exact unoccluded irradiance E(N): the noise of a few directions
 //   cancels. L is taken in spherical harmonics, of the environment without its suns; each sun is a
 //   direction of its own, tested along the slice that holds it (bitmask_sun.cpp).
@@ -54,6 +57,10 @@ namespace ssdo {
 namespace {
 
 constexpr int kPeriod = Interleaving::kPeriod;
+
+/// Light that bounces is a small part of all light on most surfaces: with two thirds of the steps
+/// it adds less noise than direct light has. Measured on seven frames.
+constexpr int bounce_steps(int steps) { return (2 * steps + 2) / 3; }
 
 /// A shadow's edge shows single steps, where slices average them.
 constexpr int kSunSteps = 2;
@@ -89,8 +96,10 @@ class Bitmask {
         scene_(make_march_scene(in.geometry, in.hidden)),
         layout_(scene_.layout),
         pattern_(layout_, in.geometry.display, in.slices, in.steps, in.seed),
+        bounce_pattern_(layout_, in.geometry.display, in.slices, bounce_steps(in.steps), in.seed),
         march_{scene_, pattern_, in.geometry.window.y0 - in.geometry.display.y0, in.radius,
-               in.extend_offscreen} {
+               in.extend_offscreen},
+        bounce_march_{scene_, bounce_pattern_, march_.first_row, in.radius, in.extend_offscreen} {
     choose_isa();
   }
 
@@ -256,8 +265,8 @@ class Bitmask {
     InterleavedColor difference;
     if (in_.products.error) difference = make_color(layout_);
     const BounceJob job{
-        march_,      &sent,   two_sided ? &sent_back : nullptr,          &sent_behind,
-        sent_border, &bounce, in_.products.error ? &difference : nullptr};
+        bounce_march_, &sent,   two_sided ? &sent_back : nullptr,          &sent_behind,
+        sent_border,   &bounce, in_.products.error ? &difference : nullptr};
     for_each_band(
         height(), [&](int y0, int y1) { march_bounce(job, y0, y1); }, in_.progress);
     for_each_surface([&](std::size_t pixel, std::ptrdiff_t i) {
@@ -269,8 +278,8 @@ class Bitmask {
   const EstimateInput& in_;
   MarchScene scene_;
   const Interleaving& layout_;
-  SlicePattern pattern_;
-  March march_;
+  SlicePattern pattern_, bounce_pattern_;
+  March march_, bounce_march_;
   Products out_;
 };
 

@@ -123,8 +123,8 @@ HWY_INLINE Extension extend(const March& march, const Receiver& p, const Half& h
   length = hn::Min(length, thickness * hn::Set(d, widths));
   e.depth = thickness;
   if constexpr (!kOrthographic) {
-    const V slope_x = hn::MulAdd(border.dx, hn::Set(d, 1 / scene.fx), zero - p.vx / p.vz),
-            slope_y = hn::NegMulAdd(border.dy, hn::Set(d, 1 / scene.fy), zero - p.vy / p.vz);
+    const V slope_x = hn::MulAdd(border.dx, hn::Set(d, 1 / scene.fx), p.slope_x),
+            slope_y = hn::NegMulAdd(border.dy, hn::Set(d, 1 / scene.fy), p.slope_y);
     const V share = thickness / depth *
                     reciprocal_sqrt(dot3(slope_x, slope_y, hn::Set(d, 1.0f), slope_x, slope_y,
                                          hn::Set(d, 1.0f)));

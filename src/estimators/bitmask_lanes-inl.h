@@ -78,12 +78,13 @@ HWY_INLINE V lane_columns(const Interleaving& layout, int comb, int column) {
 
 /// One lane's pixel that gathers.
 struct Receiver {
-  V x, y;        ///< pixel
-  V px, py, pz;  ///< position
-  V nx, ny, nz;  ///< normal, bent to face the viewer
-  V vx, vy, vz;  ///< unit, to the viewer
-  V distance;    ///< to the viewer
-  V facing;      ///< N.V
+  V x, y;              ///< pixel
+  V slope_x, slope_y;  ///< of the ray through it, or its place where the camera is orthographic
+  V px, py, pz;        ///< position
+  V nx, ny, nz;        ///< normal, bent to face the viewer
+  V vx, vy, vz;        ///< unit, to the viewer
+  V distance;          ///< to the viewer
+  V facing;            ///< N.V
   /// Height of what a pixel shows above the tangent plane, along V and less what rounding may have
   /// added: depth (rise + rise_x dx + rise_y dy) + plane, for a pixel that lies (dx, dy) from this.
   V rise, rise_x, rise_y, plane;
@@ -101,19 +102,20 @@ HWY_INLINE Receiver load_receiver(const MarchScene& scene, std::ptrdiff_t i, int
   p.nz = hn::LoadU(d, scene.nz.data() + i);
   p.valid = depth == depth;
   const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-  const V slope_x = (p.x - hn::Set(d, scene.axis_x)) * hn::Set(d, 1 / scene.fx),
-          slope_y = (hn::Set(d, scene.axis_y) - p.y) * hn::Set(d, 1 / scene.fy);
+  p.slope_x = (p.x - hn::Set(d, scene.axis_x)) * hn::Set(d, 1 / scene.fx);
+  p.slope_y = (hn::Set(d, scene.axis_y) - p.y) * hn::Set(d, 1 / scene.fy);
   p.pz = zero - depth;
   if (scene.orthographic) {
-    p.px = slope_x, p.py = slope_y;
+    p.px = p.slope_x, p.py = p.slope_y;
     p.vx = p.vy = zero, p.vz = one;
     p.rise = zero;
     p.distance = depth;
   } else {
-    p.px = slope_x * depth, p.py = slope_y * depth;
-    const V length = hn::Sqrt(hn::MulAdd(slope_x, slope_x, hn::MulAdd(slope_y, slope_y, one)));
+    p.px = p.slope_x * depth, p.py = p.slope_y * depth;
+    const V length =
+        hn::Sqrt(hn::MulAdd(p.slope_x, p.slope_x, hn::MulAdd(p.slope_y, p.slope_y, one)));
     p.vz = one / length;
-    p.vx = zero - slope_x * p.vz, p.vy = zero - slope_y * p.vz;
+    p.vx = zero - p.slope_x * p.vz, p.vy = zero - p.slope_y * p.vz;
     p.rise = zero - length;  // N.V / facing is 1
     p.distance = depth * length;
   }
@@ -225,6 +227,7 @@ HWY_INLINE VU march_side(const March& march, const Receiver& p, const Half& half
                           HWY_ATTR { return hn::LoadU(d, plane.data() + i); };
     hwy::Prefetch(scene.depth.data() + i + 2 * lanes - 1);
     hwy::Prefetch(scene.behind.data() + i + 2 * lanes - 1);
+    hwy::Prefetch(scene.thickness.data() + i + 2 * lanes - 1);
     const V dx = hn::Set(d, step.dx), dy = hn::Set(d, step.dy);
     const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise));
     const V depth = load(scene.depth), behind = load(scene.behind);

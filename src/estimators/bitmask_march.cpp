@@ -134,10 +134,8 @@ HWY_INLINE M faces(const MarchScene& scene, std::ptrdiff_t q, const SliceStep& s
   const auto load = [&](const InterleavedPlane& plane)
                         HWY_ATTR { return hn::LoadU(d, plane.data() + q); };
   const V depth = load(scene.depth);
-  const V step_x = hn::Set(d, step.dx / scene.fx), step_y = hn::Set(d, step.dy / scene.fy);
-  const V slope_x = kOrthographic ? p.px : hn::Zero(d) - p.vx / p.vz,
-          slope_y = kOrthographic ? p.py : hn::Zero(d) - p.vy / p.vz;
-  V qx = slope_x + step_x, qy = slope_y - step_y;
+  V qx = hn::MulAdd(hn::Set(d, step.dx), hn::Set(d, 1 / scene.fx), p.slope_x),
+    qy = hn::MulAdd(hn::Set(d, step.dy), hn::Set(d, -1 / scene.fy), p.slope_y);
   if constexpr (!kOrthographic) qx = qx * depth, qy = qy * depth;
   return dot3(load(scene.nx), load(scene.ny), load(scene.nz), p.px - qx, p.py - qy, p.pz + depth) >
          hn::Zero(d);
@@ -184,24 +182,23 @@ void bounce(const BounceJob& job, int y0, int y1) {
               given = given + measure;
               light.add(measure, sent(0), sent(1), sent(2));
             };
-            const auto receive_from = [&](const InterleavedColor& sent, std::ptrdiff_t q, VU bits)
-                                          HWY_ATTR {
-                                            receive(bits, [&](int c) HWY_ATTR {
-                                              return hn::LoadU(d, sent[std::size_t(c)].data() + q);
-                                            });
-                                          };
+            const auto load = [&](const InterleavedColor& sent, int c, std::ptrdiff_t q) HWY_ATTR {
+              return hn::LoadU(d, sent[std::size_t(c)].data() + q);
+            };
             const VU open = march_half<kOrthographic>(
                 march, p, half, slice, forward, place, reach,
                 [&](std::ptrdiff_t q, const SliceStep& step, VU bits) HWY_ATTR {
-                  if (!job.sent_back || hn::AllTrue(du, bits == hn::Zero(du)))
-                    return receive_from(*job.sent, q, bits);
+                  if (hn::AllTrue(du, bits == hn::Zero(du))) return;
+                  if (!job.sent_back)
+                    return receive(bits, [&](int c) HWY_ATTR { return load(*job.sent, c, q); });
                   const M front = faces<kOrthographic>(march.scene, q, step, p);
-                  const VU front_bits = hn::IfThenElseZero(hn::RebindMask(du, front), bits);
-                  receive_from(*job.sent, q, front_bits);
-                  receive_from(*job.sent_back, q, hn::AndNot(front_bits, bits));
+                  receive(bits, [&](int c) HWY_ATTR {
+                    return hn::IfThenElse(front, load(*job.sent, c, q), load(*job.sent_back, c, q));
+                  });
                 },
-                [&](std::ptrdiff_t q, const SliceStep&, VU bits)
-                    HWY_ATTR { receive_from(*job.sent_behind, q, bits); },
+                [&](std::ptrdiff_t q, const SliceStep&, VU bits) HWY_ATTR {
+                  receive(bits, [&](int c) HWY_ATTR { return load(*job.sent_behind, c, q); });
+                },
                 [&](const Border& border, VU bits) HWY_ATTR {
                   receive(bits, [&](int c) HWY_ATTR { return border(job.sent_border[c]); });
                 });

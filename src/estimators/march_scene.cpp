@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <limits>
 
 #include "parallel/tiles.h"
@@ -25,19 +26,64 @@ bool is_usable(const Surfel& s) {
 /// 0.0017.
 constexpr float kLeastFacing = 1e-3f;
 
-/// Depth at which a ray with the direction (slope_x, slope_y, -1), or along the axis from there,
-/// meets the tangent plane of a surfel that lies near it.
-float depth_on_ray(const Surfel& s, float slope_x, float slope_y, bool orthographic) {
-  const glm::vec3 position(s.position), normal(s.normal);
-  const float depth = -position.z;
-  const glm::vec3 ray(slope_x, slope_y, orthographic ? 0.0f : -1.0f),
-      on_ray = orthographic ? glm::vec3(slope_x, slope_y, position.z) : depth * ray;
-  const float facing = orthographic ? normal.z : -glm::dot(normal, ray) / glm::length(ray);
-  if (!(facing > kLeastFacing)) return depth;
-  const float per_depth = orthographic ? -normal.z : glm::dot(normal, ray);
-  const float moved = depth + glm::dot(normal, position - on_ray) / per_depth;
-  return moved > 0.5f * depth && moved < 2 * depth ? moved : depth;
-}
+/// What a pixel holds in the planes of MarchScene.
+struct Cell {
+  float depth = kNothing, thickness = kNothing, behind = kNothing, behind_thickness = kNothing;
+  glm::vec4 normal{kNothing};  ///< and the rounding
+};
+
+/// The cells of a frame.
+class Cells {
+ public:
+  Cells(const Geometry& g, const HiddenGeometry* hidden, const MarchScene& scene)
+      : g_(g),
+        hidden_(hidden),
+        scene_(scene),
+        endless_(scene.orthographic ? kEndlessLength : kEndlessShare) {}
+
+  Cell at(int x, int y) const {
+    Cell cell;
+    const std::size_t from = g_.surfel.index(x, y);
+    const Surfel& s = g_.surfel[from];
+    if (!is_usable(s)) return cell;
+    const glm::vec2 slope((float(x) - scene_.axis_x) / scene_.fx,
+                          (scene_.axis_y - float(y)) / scene_.fy);
+    const float length = scene_.orthographic ? 1.0f : std::sqrt(1 + glm::dot(slope, slope));
+    cell.depth = depth_on_ray(s, slope, length);
+    cell.normal = s.normal;
+    cell.thickness = endless_;
+    if (!hidden_) return cell;
+    const float per_distance = scene_.orthographic ? 1.0f : 1 / (cell.depth * length);
+    cell.thickness = std::min(hidden_->thickness[from] * per_distance, endless_);
+    if (hidden_->behind.empty() || hidden_->behind_source[from] < 0) return cell;
+    const float behind = std::min(hidden_->behind[from] * per_distance, endless_);
+    const float thickness =
+        hidden_->thickness[std::size_t(hidden_->behind_source[from])] * per_distance;
+    cell.behind = scene_.orthographic ? cell.depth + behind : cell.depth * (1 + behind);
+    cell.behind_thickness =
+        std::min(scene_.orthographic ? thickness : thickness / (1 + behind), endless_);
+    return cell;
+  }
+
+ private:
+  /// Depth at which the ray through a pixel's middle, which has this slope and length per unit of
+  /// depth, meets the tangent plane of what the pixel shows.
+  float depth_on_ray(const Surfel& s, const glm::vec2& slope, float length) const {
+    const glm::vec3 position(s.position), normal(s.normal);
+    const float depth = -position.z;
+    const glm::vec3 ray(slope, scene_.orthographic ? 0.0f : -1.0f),
+        on_ray = scene_.orthographic ? glm::vec3(slope, position.z) : depth * ray;
+    const float per_depth = scene_.orthographic ? -normal.z : glm::dot(normal, ray);
+    if (!(-per_depth > kLeastFacing * length)) return depth;
+    const float moved = depth + glm::dot(normal, position - on_ray) / per_depth;
+    return moved > 0.5f * depth && moved < 2 * depth ? moved : depth;
+  }
+
+  const Geometry& g_;
+  const HiddenGeometry* hidden_;
+  const MarchScene& scene_;
+  const float endless_;
+};
 
 }  // namespace
 
@@ -64,35 +110,20 @@ MarchScene make_march_scene(const Geometry& g, const HiddenGeometry* hidden) {
                    {},
                    {},
                    {}};
-  const float endless = orthographic ? kEndlessLength : kEndlessShare;
+  const Cells cells(g, hidden, scene);
   for_each_row(g.surfel.height, [&](int y) {
-    for (InterleavedPlane* p :
-         {&scene.depth, &scene.thickness, &scene.behind, &scene.behind_thickness, &scene.nx,
-          &scene.ny, &scene.nz, &scene.rounding}) {
-      p->fill_row(layout, y, kNothing);
-    }
-    const float slope_y = (scene.axis_y - float(y)) / scene.fy;
-    for (int x = 0; x < g.surfel.width; ++x) {
-      const std::size_t from = g.surfel.index(x, y);
-      const Surfel& s = g.surfel[from];
-      if (!is_usable(s)) continue;
-      const std::ptrdiff_t i = layout.index(x, y);
-      const float slope_x = (float(x) - scene.axis_x) / scene.fx;
-      const float depth = depth_on_ray(s, slope_x, slope_y, orthographic);
-      scene.depth[i] = depth;
-      scene.nx[i] = s.normal.x, scene.ny[i] = s.normal.y, scene.nz[i] = s.normal.z;
-      scene.rounding[i] = s.normal.w;
-      scene.thickness[i] = endless;
-      if (!hidden) continue;
-      const float distance =
-          orthographic ? 1.0f : depth * std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
-      scene.thickness[i] = std::min(hidden->thickness[from] / distance, endless);
-      if (hidden->behind.empty() || hidden->behind_source[from] < 0) continue;
-      const float behind = std::min(hidden->behind[from] / distance, endless);
-      scene.behind[i] = orthographic ? depth + behind : depth * (1 + behind);
-      const float distance_behind = orthographic ? 1.0f : distance * (1 + behind);
-      scene.behind_thickness[i] = std::min(
-          hidden->thickness[std::size_t(hidden->behind_source[from])] / distance_behind, endless);
+    constexpr int kPad = Interleaving::kPad;
+    for (int comb = 0; comb < kPeriod; ++comb) {
+      const std::ptrdiff_t row = layout.index(y, comb, 0);
+      for (int column = -kPad; column < int(layout.stride()) - kPad; ++column) {
+        const int x = column * kPeriod + comb - layout.phase();
+        const Cell cell = x >= 0 && x < g.surfel.width ? cells.at(x, y) : Cell();
+        const std::ptrdiff_t i = row + column;
+        scene.depth[i] = cell.depth, scene.thickness[i] = cell.thickness;
+        scene.behind[i] = cell.behind, scene.behind_thickness[i] = cell.behind_thickness;
+        scene.nx[i] = cell.normal.x, scene.ny[i] = cell.normal.y, scene.nz[i] = cell.normal.z;
+        scene.rounding[i] = cell.normal.w;
+      }
     }
   });
   scene.border_depth =

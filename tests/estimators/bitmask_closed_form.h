@@ -59,7 +59,8 @@ inline void expect_closed_form(const std::string& name, const Surface& scene, co
   fmt::print("{:<46} expected {:.4f}  by rays {:.4f}  off by {:+.4f}, {:+.4f}; limit {:+.4f}\n",
              name, expected, by_rays, coarse, fine, limit);
   EXPECT_NEAR(by_rays, expected, 5e-4) << name;
-  EXPECT_NEAR(limit, 0, 2.5e-3) << name;
+  EXPECT_NEAR(fine, 0, 4e-3) << name;
+  EXPECT_NEAR(limit, 0, 3e-3) << name;
 }
 
 }  // namespace ssdo::test
