@@ -8,6 +8,8 @@
 
 #include "error.h"
 #include "estimators/bitmask.h"
+#include "estimators/msvo.h"
+#include "estimators/sao.h"
 #include "estimators/ssdo.h"
 #include "math/number.h"
 
@@ -24,7 +26,7 @@ std::string parameter_names(const Method& method) {
 }  // namespace
 
 std::span<const Method> methods() {
-  static const std::array<Method, 2> all = {bitmask_method(), ssdo_method()};
+  static const std::array all = {bitmask_method(), ssdo_method(), sao_method(), msvo_method()};
   return all;
 }
 
