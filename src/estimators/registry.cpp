@@ -8,6 +8,9 @@
 
 #include "error.h"
 #include "estimators/bitmask.h"
+#include "estimators/ssao.h"
+#include "estimators/ssao_fade.h"
+#include "estimators/ssao_range.h"
 #include "estimators/ssdo.h"
 #include "math/number.h"
 
@@ -24,7 +27,8 @@ std::string parameter_names(const Method& method) {
 }  // namespace
 
 std::span<const Method> methods() {
-  static const std::array<Method, 2> all = {bitmask_method(), ssdo_method()};
+  static const std::array<Method, 5> all = {bitmask_method(), ssdo_method(), ssao_method(),
+                                            ssao_range_method(), ssao_fade_method()};
   return all;
 }
 

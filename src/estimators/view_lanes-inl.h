@@ -52,6 +52,11 @@ HWY_INLINE V3 normalise(const V3& a) {
   return a * hn::IfThenElseZero(length2 > set(0), set(1) / hn::Sqrt(length2));
 }
 
+/// What is left of `a` across the unit vector `n`, made unit: Gram-Schmidt.
+HWY_INLINE V3 unit_across(const V3& a, const V3& n) {
+  return normalise(mul_add(n, hn::Neg(dot(a, n)), a));
+}
+
 HWY_INLINE V saturate(V x) { return hn::Min(hn::Max(x, set(0)), set(1)); }
 
 /// t^2 (3 - 2t), t = 0..1 from `from` to `to`, as in GLSL.
