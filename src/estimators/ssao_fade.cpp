@@ -210,7 +210,7 @@ Method ssao_fade_method() {
       },
       false,
       // At half resolution 3.5 for each pixel of the frame.
-      [](const ParameterValues& p) { return p.at("upsampling") == kNone ? 14 : 4; },
+      [](const ParameterValues& p) { return int(p.at("upsampling")) == kNone ? 14 : 4; },
       estimate_ssao_fade,
   };
 }
