@@ -52,6 +52,11 @@ HWY_INLINE V3 normalise(const V3& a) {
   return a * hn::IfThenElseZero(length2 > set(0), set(1) / hn::Sqrt(length2));
 }
 
+/// What is left of `a` across the unit vector `n`, made unit: Gram-Schmidt.
+HWY_INLINE V3 unit_across(const V3& a, const V3& n) {
+  return normalise(mul_add(n, hn::Neg(dot(a, n)), a));
+}
+
 HWY_INLINE V saturate(V x) { return hn::Min(hn::Max(x, set(0)), set(1)); }
 
 /// t^2 (3 - 2t), t = 0..1 from `from` to `to`, as in GLSL.
@@ -106,16 +111,13 @@ HWY_INLINE Pixels pixels_at(const ViewPlanes& planes, V x, V y) {
 /// The pixels that show the camera-space points `p`, hidden or not. What is not in front of the
 /// viewer is outside.
 HWY_INLINE Pixels project(const ViewPlanes& planes, const V3& p) {
-  const V fx = set(planes.fx), fy = set(planes.fy), cx = set(planes.cx), cy = set(planes.cy);
-  const M front = p.z < set(0);
-  Pixels pixels;
-  if (planes.orthographic) {
-    pixels = pixels_at(planes, hn::MulAdd(fx, p.x, cx), hn::NegMulAdd(fy, p.y, cy));
-  } else {
-    const V w = set(-1) / p.z;
-    pixels = pixels_at(planes, hn::MulAdd(fx, p.x * w, cx), hn::NegMulAdd(fy, p.y * w, cy));
-  }
-  pixels.inside = hn::And(pixels.inside, front);
+  const V w = planes.orthographic ? set(1) : set(-1) / p.z;
+  // Whole pixels of the display window first: a crop then rounds like the whole.
+  const V x = hn::Floor(hn::MulAdd(set(planes.fx), p.x * w, set(planes.cx)));
+  const V y = hn::Floor(hn::NegMulAdd(set(planes.fy), p.y * w, set(planes.cy)));
+  Pixels pixels =
+      pixels_at(planes, x - set(float(planes.first_column)), y - set(float(planes.first_row)));
+  pixels.inside = hn::And(pixels.inside, p.z < set(0));
   return pixels;
 }
 

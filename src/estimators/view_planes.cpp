@@ -10,10 +10,10 @@ namespace ssdo {
 namespace {
 
 /// Rays of the pixels' centres along one axis of the picture, in double and rounded once.
-std::vector<float> rays(int count, double centre, double scale) {
+std::vector<float> rays(int first, int count, double centre, double scale) {
   std::vector<float> values;
   for (int i = -PaddedLayout::kPad; i < count + 2 * PaddedLayout::kPad; ++i)
-    values.push_back(float((i + 0.5 - centre) * scale));
+    values.push_back(float((first + i + 0.5 - centre) * scale));
   return values;
 }
 
@@ -45,13 +45,13 @@ ViewPlanes make_view_planes(const Geometry& g) {
   const Camera& camera = g.camera;
   planes.orthographic = camera.orthographic;
   planes.fx = float(camera.fx), planes.fy = float(camera.fy);
-  planes.cx = float(camera.cx - g.window.x0), planes.cy = float(camera.cy - g.window.y0);
+  planes.cx = float(camera.cx - g.display.x0), planes.cy = float(camera.cy - g.display.y0);
   planes.first_column = g.window.x0 - g.display.x0;
   planes.first_row = g.window.y0 - g.display.y0;
   // Depth is -z: a perspective ray is the slope times -1.
   const double sign = camera.orthographic ? 1 : -1;
-  planes.rays_x = rays(planes.width(), camera.cx - g.window.x0, sign / camera.fx);
-  planes.rays_y = rays(planes.height(), camera.cy - g.window.y0, -sign / camera.fy);
+  planes.rays_x = rays(g.window.x0, planes.width(), camera.cx, sign / camera.fx);
+  planes.rays_y = rays(g.window.y0, planes.height(), camera.cy, -sign / camera.fy);
   for_each_row(planes.height(), [&](int y) {
     planes.z.fill_row(y, kBackgroundDepth);
     for (PaddedPlane* p : {&planes.nx, &planes.ny, &planes.nz, &planes.rounding})

@@ -60,7 +60,8 @@ struct ViewPlanes {
   PaddedLayout layout;
   bool orthographic;
   float fx, fy;  ///< pixels per unit of slope, or per scene unit
-  float cx, cy;  ///< principal point in pixels
+  float cx, cy;  ///< principal point in pixels from the display window's upper left corner: what is
+                 ///< computed from it is the same for every crop
   /// The pixel (0, 0) in the display window, which patterns are fixed to. May be negative.
   int first_column, first_row;
 
