@@ -124,27 +124,28 @@ HalfResolution::HalfResolution(const ViewPlanes& full)
   receivers_.orthographic = full.orthographic;
   receivers_.first_column = full.first_column >> 1;
   receivers_.first_row = full.first_row >> 1;
-  const auto column = [&](int x) { return sampled_pixel(x, full.width(), full.first_column); };
+  std::vector<int> columns;
+  for (int x = 0; x < width; ++x)
+    columns.push_back(sampled_pixel(x, full.width(), full.first_column));
   const auto row = [&](int y) { return sampled_pixel(y, full.height(), full.first_row); };
   receivers_.rays_x.assign(std::size_t(receivers_.layout.stride), 0.0f);
   receivers_.rays_y.assign(std::size_t(height) + PaddedLayout::kPad, 0.0f);
   for (int x = 0; x < width; ++x)
-    receivers_.rays_x[std::size_t(x + PaddedLayout::kPad)] = full.ray_x()[column(x)];
+    receivers_.rays_x[std::size_t(x + PaddedLayout::kPad)] = full.ray_x()[columns[std::size_t(x)]];
   for (int y = 0; y < height; ++y)
     receivers_.rays_y[std::size_t(y + PaddedLayout::kPad)] = full.ray_y()[row(y)];
   for_each_row(height, [&](int y) {
-    receivers_.z.fill_row(y, kBackgroundDepth);
-    const auto copy = [&](PaddedPlane ViewPlanes::*plane) {
+    const auto copy = [&](PaddedPlane ViewPlanes::*plane, float outside) {
+      (receivers_.*plane).fill_row(y, outside);
       float* to = (receivers_.*plane).row(y);
       const float* from = (full.*plane).row(row(y));
-      for (int x = 0; x < width; ++x) to[x] = from[column(x)];
+      for (int x = 0; x < width; ++x) to[x] = from[columns[std::size_t(x)]];
     };
+    copy(&ViewPlanes::z, kBackgroundDepth);
     for (PaddedPlane ViewPlanes::*plane :
          {&ViewPlanes::nx, &ViewPlanes::ny, &ViewPlanes::nz, &ViewPlanes::rounding}) {
-      (receivers_.*plane).fill_row(y, 0.0f);
-      copy(plane);
+      copy(plane, 0.0f);
     }
-    copy(&ViewPlanes::z);
   });
 }
 
