@@ -114,7 +114,7 @@ HalfResolution::Taps make_taps(int count, int first) {
 
 }  // namespace
 
-HalfResolution::HalfResolution(const ViewPlanes& full)
+HalfResolution::HalfResolution(const Geometry& geometry, const ViewPlanes& full)
     : full_(full),
       columns_(make_taps(full.width(), full.first_column)),
       rows_(make_taps(full.height(), full.first_row)),
@@ -135,17 +135,9 @@ HalfResolution::HalfResolution(const ViewPlanes& full)
   for (int y = 0; y < height; ++y)
     receivers_.rays_y[std::size_t(y + PaddedLayout::kPad)] = full.ray_y()[row(y)];
   for_each_row(height, [&](int y) {
-    const auto copy = [&](PaddedPlane ViewPlanes::*plane, float outside) {
-      (receivers_.*plane).fill_row(y, outside);
-      float* to = (receivers_.*plane).row(y);
-      const float* from = (full.*plane).row(row(y));
-      for (int x = 0; x < width; ++x) to[x] = from[columns[std::size_t(x)]];
-    };
-    copy(&ViewPlanes::z, kBackgroundDepth);
-    for (PaddedPlane ViewPlanes::*plane :
-         {&ViewPlanes::nx, &ViewPlanes::ny, &ViewPlanes::nz, &ViewPlanes::rounding}) {
-      copy(plane, 0.0f);
-    }
+    receivers_.clear_row(y);
+    const Surfel* surfel = &geometry.surfel(0, row(y));
+    for (int x = 0; x < width; ++x) receivers_.set(x, y, surfel[columns[std::size_t(x)]]);
   });
 }
 

@@ -155,10 +155,11 @@ void shape(const ParameterValues& parameters, const ViewPlanes& planes, Plane<fl
 Products estimate_ssao_fade(const EstimateInput& in) {
   choose_isa();
   const auto value = [&](const char* name) { return float(in.parameters.at(name)); };
-  const ViewPlanes planes = make_view_planes(in.geometry);
   const int upsampling = int(in.parameters.at("upsampling"));
+  const ViewPlanes planes =
+      upsampling == kBilinear ? make_depth_planes(in.geometry) : make_view_planes(in.geometry);
   std::optional<HalfResolution> half;
-  if (upsampling != kNone) half.emplace(planes);
+  if (upsampling != kNone) half.emplace(in.geometry, planes);
   const ViewPlanes& receivers = half ? half->receivers() : planes;
   const auto noise = fade_noise(in.seed);
   Plane<float> access(receivers.width(), receivers.height(), 1.0f);
@@ -175,8 +176,11 @@ Products estimate_ssao_fade(const EstimateInput& in) {
                     access};
   for_each_tile(
       receivers.width(), receivers.height(),
-      [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(access_of_tile)
-                              (job, tile); }, in.progress);
+      [&](const Tile& tile) {
+        HWY_DYNAMIC_DISPATCH(access_of_tile)
+        (job, tile);
+      },
+      in.progress);
   shape(in.parameters, receivers, access);
   Products out;
   out.ao = !half                     ? std::move(access)

@@ -77,11 +77,19 @@ struct ViewPlanes {
 
   /// Planes of a size, not initialised, without a camera.
   ViewPlanes(int width, int height);
+
+  /// Makes a row background.
+  void clear_row(int y);
+  /// Has a pixel of such a row show a surface, if that is usable.
+  void set(int x, int y, const Surfel& surfel);
 };
 
 /// Whether an estimator may count with it: a surface in front of the viewer, every number finite.
 bool is_usable(const Surfel& surfel);
 
 ViewPlanes make_view_planes(const Geometry& geometry);
+
+/// The same without normals and rounding, for methods that receive elsewhere.
+ViewPlanes make_depth_planes(const Geometry& geometry);
 
 }  // namespace ssdo

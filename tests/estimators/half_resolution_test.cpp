@@ -34,7 +34,7 @@ TEST(HalfResolution, TakesTheLowerRightOfEveryFourPixelsOfTheDisplayWindow) {
   for (const int first : {0, 1, -3}) {
     g.display = {-first, -first, 30, 30};
     const ViewPlanes planes = make_view_planes(g);
-    const HalfResolution half(planes);
+    const HalfResolution half(g, planes);
     const ViewPlanes& r = half.receivers();
     for (int y = 0; y < r.height(); ++y) {
       for (int x = 0; x < r.width(); ++x) {
@@ -54,7 +54,7 @@ TEST(HalfResolution, TakesTheLowerRightOfEveryFourPixelsOfTheDisplayWindow) {
 TEST(HalfResolution, AlongSurfacesNothingCrossesAnEdge) {
   const Geometry g = step({0, 0, 42, 10}, 50);
   const ViewPlanes planes = make_view_planes(g);
-  const HalfResolution half(planes);
+  const HalfResolution half(g, planes);
   Plane<float> values(half.receivers().width(), half.receivers().height());
   for (int y = 0; y < values.height; ++y) {
     for (int x = 0; x < values.width; ++x)
@@ -77,7 +77,7 @@ TEST(HalfResolution, OnOnePlaneBothAreBilinear) {
   const Geometry g =
       geometry_of(plane({}, {0, 0, 1}), tilted(camera_from_fov(40, window, 1), 70), window);
   const ViewPlanes planes = make_view_planes(g);
-  const HalfResolution half(planes);
+  const HalfResolution half(g, planes);
   Plane<float> values(half.receivers().width(), half.receivers().height());
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = float(i * 37 % 11) / 11;
   const Plane<float> along = half.upsample_along_surfaces(values),
@@ -91,7 +91,7 @@ TEST(HalfResolution, APixelAloneOnItsSurfaceHasTheValueNearestInDepth) {
   g.surfel(6, 6).position.z = -90;
   g.surfel(7, 7).position.z = -91;
   const ViewPlanes planes = make_view_planes(g);
-  const HalfResolution half(planes);
+  const HalfResolution half(g, planes);
   Plane<float> values(4, 4, 0.2f);
   values(3, 3) = 0.6f;
   EXPECT_NEAR(half.upsample_along_surfaces(values)(6, 6), 0.6f, 1e-6);
@@ -102,7 +102,7 @@ TEST(HalfResolution, WorksForFramesOfOnePixel) {
   const Geometry g =
       geometry_of(plane({}, {0, 0, 1}), tilted(camera_from_fov(40, one, 1), 20), one);
   const ViewPlanes planes = make_view_planes(g);
-  const HalfResolution half(planes);
+  const HalfResolution half(g, planes);
   const Plane<float> value(1, 1, 0.5f);
   EXPECT_EQ(half.upsample_bilinear(value)[0], 0.5f);
   EXPECT_EQ(half.upsample_along_surfaces(value)[0], 0.5f);
