@@ -149,10 +149,13 @@ Plane<float> HalfResolution::upsample_bilinear(const Plane<float>& half) const {
     std::vector<float> between(std::size_t(half.width));
     for (std::size_t x = 0; x < between.size(); ++x)
       between[x] = above[x] + rows_.share[at] * (below[x] - above[x]);
+    const float* z = full_.z.row(y);
     float* to = &out(0, y);
     for (std::size_t x = 0; x < std::size_t(out.width); ++x) {
       const float before = between[std::size_t(columns_.before[x])];
-      to[x] = before + columns_.share[x] * (between[std::size_t(columns_.after[x])] - before);
+      const float value =
+          before + columns_.share[x] * (between[std::size_t(columns_.after[x])] - before);
+      to[x] = z[x] == kBackgroundDepth ? 1.0f : value;
     }
   });
   return out;

@@ -20,7 +20,7 @@ class HalfResolution {
   const ViewPlanes& receivers() const { return receivers_; }
 
   /// Bilinear upsampling of values at half resolution, as textures have it: it takes a value to
-  /// lie in the middle of its 2 x 2 pixels and knows nothing of edges.
+  /// lie in the middle of its 2 x 2 pixels and knows nothing of edges. Background: 1.
   Plane<float> upsample_bilinear(const Plane<float>& half) const;
 
   /// The same four values, each weighted by how well its pixel's position lies on the tangent

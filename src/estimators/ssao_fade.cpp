@@ -89,7 +89,6 @@ void access_of_tile(const FadeJob& job, const Tile& tile) {
       const V z = gather_depth(planes, project(planes, q));
       const V nearer = z - p.position.z;
       const M counts = hn::And(nearer > epsilon, nearer < end);
-      if (hn::AllFalse(d, counts)) continue;
       const V3 to_r = at_depth(planes, q, z) - p.position;
       const V facing = hn::Max(dot(to_r, p.normal), set(0)) / hn::Sqrt(dot(to_r, to_r));
       const V fade = saturate((end - nearer) * per_length);
@@ -186,9 +185,6 @@ Products estimate_ssao_fade(const EstimateInput& in) {
   out.ao = !half                     ? std::move(access)
            : upsampling == kBilinear ? half->upsample_bilinear(access)
                                      : half->upsample_along_surfaces(access);
-  for (std::size_t i = 0; i < out.ao.size(); ++i) {
-    if (!in.geometry.is_surface(i)) out.ao[i] = 1;
-  }
   if (in.products.direct) out.direct = ambient_light(in, out.ao);
   return out;
 }
