@@ -114,7 +114,7 @@ HalfResolution::Taps make_taps(int count, int first) {
 
 }  // namespace
 
-HalfResolution::HalfResolution(const ViewPlanes& full)
+HalfResolution::HalfResolution(const Geometry& geometry, const ViewPlanes& full)
     : full_(full),
       columns_(make_taps(full.width(), full.first_column)),
       rows_(make_taps(full.height(), full.first_row)),
@@ -124,27 +124,20 @@ HalfResolution::HalfResolution(const ViewPlanes& full)
   receivers_.orthographic = full.orthographic;
   receivers_.first_column = full.first_column >> 1;
   receivers_.first_row = full.first_row >> 1;
-  const auto column = [&](int x) { return sampled_pixel(x, full.width(), full.first_column); };
+  std::vector<int> columns;
+  for (int x = 0; x < width; ++x)
+    columns.push_back(sampled_pixel(x, full.width(), full.first_column));
   const auto row = [&](int y) { return sampled_pixel(y, full.height(), full.first_row); };
   receivers_.rays_x.assign(std::size_t(receivers_.layout.stride), 0.0f);
   receivers_.rays_y.assign(std::size_t(height) + PaddedLayout::kPad, 0.0f);
   for (int x = 0; x < width; ++x)
-    receivers_.rays_x[std::size_t(x + PaddedLayout::kPad)] = full.ray_x()[column(x)];
+    receivers_.rays_x[std::size_t(x + PaddedLayout::kPad)] = full.ray_x()[columns[std::size_t(x)]];
   for (int y = 0; y < height; ++y)
     receivers_.rays_y[std::size_t(y + PaddedLayout::kPad)] = full.ray_y()[row(y)];
   for_each_row(height, [&](int y) {
-    receivers_.z.fill_row(y, kBackgroundDepth);
-    const auto copy = [&](PaddedPlane ViewPlanes::*plane) {
-      float* to = (receivers_.*plane).row(y);
-      const float* from = (full.*plane).row(row(y));
-      for (int x = 0; x < width; ++x) to[x] = from[column(x)];
-    };
-    for (PaddedPlane ViewPlanes::*plane :
-         {&ViewPlanes::nx, &ViewPlanes::ny, &ViewPlanes::nz, &ViewPlanes::rounding}) {
-      (receivers_.*plane).fill_row(y, 0.0f);
-      copy(plane);
-    }
-    copy(&ViewPlanes::z);
+    receivers_.clear_row(y);
+    const Surfel* surfel = &geometry.surfel(0, row(y));
+    for (int x = 0; x < width; ++x) receivers_.set(x, y, surfel[columns[std::size_t(x)]]);
   });
 }
 
@@ -156,10 +149,13 @@ Plane<float> HalfResolution::upsample_bilinear(const Plane<float>& half) const {
     std::vector<float> between(std::size_t(half.width));
     for (std::size_t x = 0; x < between.size(); ++x)
       between[x] = above[x] + rows_.share[at] * (below[x] - above[x]);
+    const float* z = full_.z.row(y);
     float* to = &out(0, y);
     for (std::size_t x = 0; x < std::size_t(out.width); ++x) {
       const float before = between[std::size_t(columns_.before[x])];
-      to[x] = before + columns_.share[x] * (between[std::size_t(columns_.after[x])] - before);
+      const float value =
+          before + columns_.share[x] * (between[std::size_t(columns_.after[x])] - before);
+      to[x] = z[x] == kBackgroundDepth ? 1.0f : value;
     }
   });
   return out;

@@ -12,20 +12,20 @@ namespace ssdo {
 /// ends before it, its neighbour in the window.
 class HalfResolution {
  public:
-  /// `full` has to live as long as this.
-  explicit HalfResolution(const ViewPlanes& full);
+  /// `full` are planes of the frame; they have to live as long as this.
+  HalfResolution(const Geometry& geometry, const ViewPlanes& full);
 
   /// The pixels that are evaluated, with their own rays. Only receivers: points are projected to
   /// the full planes.
   const ViewPlanes& receivers() const { return receivers_; }
 
   /// Bilinear upsampling of values at half resolution, as textures have it: it takes a value to
-  /// lie in the middle of its 2 x 2 pixels and knows nothing of edges.
+  /// lie in the middle of its 2 x 2 pixels and knows nothing of edges. Background: 1.
   Plane<float> upsample_bilinear(const Plane<float>& half) const;
 
   /// The same four values, each weighted by how well its pixel's position lies on the tangent
   /// plane of the pixel that asks; where none does, the value of the pixel nearest in depth.
-  /// Background: 1.
+  /// Background: 1. Needs the normals of the full planes.
   Plane<float> upsample_along_surfaces(const Plane<float>& half) const;
 
   /// The entries of the half frame around the pixels of the full one, along one axis; padded at

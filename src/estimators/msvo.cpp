@@ -142,7 +142,7 @@ std::array<ChordPair, 18> checkerboard() {
 Products estimate(const EstimateInput& in) {
   choose_isa();
   const auto parameter = [&](const char* name) { return in.parameters.find(name)->second; };
-  const ViewPlanes planes = make_view_planes(in.geometry);
+  const ViewPlanes planes = make_depth_planes(in.geometry);
   std::vector<DepthScale> scales = make_depth_scales(planes, kCoarsest);
   for (int k = 1; k <= kCoarsest; ++k) {
     DepthScale& scale = scales[std::size_t(k)];

@@ -89,7 +89,6 @@ void access_of_tile(const FadeJob& job, const Tile& tile) {
       const V z = gather_depth(planes, project(planes, q));
       const V nearer = z - p.position.z;
       const M counts = hn::And(nearer > epsilon, nearer < end);
-      if (hn::AllFalse(d, counts)) continue;
       const V3 to_r = at_depth(planes, q, z) - p.position;
       const V facing = hn::Max(dot(to_r, p.normal), set(0)) / hn::Sqrt(dot(to_r, to_r));
       const V fade = saturate((end - nearer) * per_length);
@@ -155,10 +154,11 @@ void shape(const ParameterValues& parameters, const ViewPlanes& planes, Plane<fl
 Products estimate_ssao_fade(const EstimateInput& in) {
   choose_isa();
   const auto value = [&](const char* name) { return float(in.parameters.at(name)); };
-  const ViewPlanes planes = make_view_planes(in.geometry);
   const int upsampling = int(in.parameters.at("upsampling"));
+  const ViewPlanes planes =
+      upsampling == kBilinear ? make_depth_planes(in.geometry) : make_view_planes(in.geometry);
   std::optional<HalfResolution> half;
-  if (upsampling != kNone) half.emplace(planes);
+  if (upsampling != kNone) half.emplace(in.geometry, planes);
   const ViewPlanes& receivers = half ? half->receivers() : planes;
   const auto noise = fade_noise(in.seed);
   Plane<float> access(receivers.width(), receivers.height(), 1.0f);
@@ -175,16 +175,16 @@ Products estimate_ssao_fade(const EstimateInput& in) {
                     access};
   for_each_tile(
       receivers.width(), receivers.height(),
-      [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(access_of_tile)
-                              (job, tile); }, in.progress);
+      [&](const Tile& tile) {
+        HWY_DYNAMIC_DISPATCH(access_of_tile)
+        (job, tile);
+      },
+      in.progress);
   shape(in.parameters, receivers, access);
   Products out;
   out.ao = !half                     ? std::move(access)
            : upsampling == kBilinear ? half->upsample_bilinear(access)
                                      : half->upsample_along_surfaces(access);
-  for (std::size_t i = 0; i < out.ao.size(); ++i) {
-    if (!in.geometry.is_surface(i)) out.ao[i] = 1;
-  }
   if (in.products.direct) out.direct = ambient_light(in, out.ao);
   return out;
 }

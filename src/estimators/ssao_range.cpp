@@ -21,7 +21,7 @@
 //
 // Known fault, kept: the surface is compared with the depth of p, not of x_i. Whatever lies nearer
 // to the viewer than p occludes, in front of x_i or behind it: a plane that does not face the
-// viewer hides itself, by up to a half.
+// viewer hides itself in part.
 #include "estimators/ssao_range.h"
 
 #include "estimators/ambient_light.h"

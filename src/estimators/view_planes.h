@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <memory>
 #include <vector>
 
 #include "math/plane.h"
+#include "parallel/page_array.h"
 #include "scene/geometry.h"
 
 namespace ssdo {
@@ -32,7 +32,7 @@ struct PaddedLayout {
 class PaddedPlane {
  public:
   explicit PaddedPlane(const PaddedLayout& layout)
-      : values_(std::make_unique_for_overwrite<float[]>(layout.size())), stride_(layout.stride) {}
+      : values_(make_page_array(layout.size())), stride_(layout.stride) {}
 
   /// The pixel (0, y). May be read from -kPad to width + kPad.
   float* row(int y) { return values_.get() + y * stride_ + PaddedLayout::kPad; }
@@ -42,7 +42,7 @@ class PaddedPlane {
   void fill_row(int y, float value) { std::fill_n(row(y) - PaddedLayout::kPad, stride_, value); }
 
  private:
-  std::unique_ptr<float[]> values_;
+  PageArray values_;
   std::ptrdiff_t stride_;
 };
 
@@ -77,11 +77,19 @@ struct ViewPlanes {
 
   /// Planes of a size, not initialised, without a camera.
   ViewPlanes(int width, int height);
+
+  /// Makes a row background.
+  void clear_row(int y);
+  /// Has a pixel of such a row show a surface, if that is usable.
+  void set(int x, int y, const Surfel& surfel);
 };
 
 /// Whether an estimator may count with it: a surface in front of the viewer, every number finite.
 bool is_usable(const Surfel& surfel);
 
 ViewPlanes make_view_planes(const Geometry& geometry);
+
+/// The same without normals and rounding, for methods that receive elsewhere.
+ViewPlanes make_depth_planes(const Geometry& geometry);
 
 }  // namespace ssdo

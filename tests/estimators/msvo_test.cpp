@@ -8,7 +8,6 @@
 
 #include "estimators/obscurance_request.h"
 #include "estimators/slow_msvo.h"
-#include "parallel/tiles.h"
 
 namespace ssdo::test {
 namespace {
@@ -147,35 +146,11 @@ TEST(Msvo, ConstantLightIsThatColourTimesAo) {
     EXPECT_EQ(out.direct[i], g.is_surface(i) ? out.ao[i] * color : glm::vec3(0));
 }
 
-TEST(Msvo, VectorsGiveWhatTheScalarBuildGives) {
+TEST(Msvo, InstructionSetsAndThreadsDoNotMatter) {
   const Geometry g = still_life_in(kWindow, camera_from_fov(50, kWindow, 1));
-  Plane<float> scalar;
-  {
-    const ForcedIsa isa("scalar");
-    scalar = run(g).ao;
-  }
-  for (const char* name : {"avx2", "avx512"}) {
-    const ForcedIsa isa(name);
-    if (!isa.exists()) continue;
-    const Plane<float> vector = run(g).ao;
-    int off = 0;
-    for (std::size_t i = 0; i < scalar.size(); ++i) off += std::abs(vector[i] - scalar[i]) > 1e-5;
-    EXPECT_LE(off, int(scalar.size()) / 500) << name;
-  }
-}
-
-TEST(Msvo, ThreadsDoNotMatter) {
-  const Geometry g = still_life_in(kWindow, camera_from_fov(50, kWindow, 1));
-  Plane<float> one, two;
-  {
-    const ThreadLimit limit(1);
-    one = run(g).ao;
-  }
-  {
-    const ThreadLimit limit(2);
-    two = run(g).ao;
-  }
-  EXPECT_EQ(one.pixels, two.pixels);
+  const auto ao = [&] { return run(g).ao; };
+  expect_the_same_from_every_isa(ao);
+  expect_the_same_from_any_threads(ao);
 }
 
 TEST(Msvo, ACropFarEnoughInsideIsThatPartOfTheWhole) {

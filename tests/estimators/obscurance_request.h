@@ -1,34 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdlib>
-#include <glm/trigonometric.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "error.h"
-#include "estimators/registry.h"
-#include "parallel/isa.h"
-#include "support/analytic_scene.h"
+#include "estimators/point_method_request.h"
+#include "parallel/tiles.h"
 
 namespace ssdo::test {
 
-/// What a test asks of a method; the rest are its defaults.
 inline Products obscure(const Method& method, const Geometry& g, float radius,
                         const std::vector<std::string>& set = {},
                         const Environment& sky = Environment::constant(glm::vec3(1))) {
-  const ParameterValues parameters = resolve_parameters(method, set);
-  const Plane<glm::vec3> none;
-  return method.estimate(
-      {g, none, none, sky, {.ao = true, .direct = true}, radius, 0, 0, parameters, {}});
-}
-
-/// A camera `distance` away from the origin, the plane z = 0 tilted to it.
-inline Camera tilted(const Camera& projection, double tilt_degrees, double distance = 6) {
-  const double t = glm::radians(tilt_degrees);
-  return look_at(projection, distance * glm::dvec3(0, -std::sin(t), std::cos(t)), {0, 0, 0},
-                 {0, std::cos(t), std::sin(t)});
+  return run(method, g, {.radius = radius, .set = set, .direct = true, .environment = sky});
 }
 
 /// A floor before a wall, and a sphere.
@@ -76,23 +67,32 @@ inline void expect_usable(const Products& out) {
   }
 }
 
-/// Runs vector loops on an instruction set while it lives.
-class ForcedIsa {
- public:
-  explicit ForcedIsa(const std::string& isa) { setenv("SSDO_ISA", isa.c_str(), 1); }
-  ~ForcedIsa() {
-    unsetenv("SSDO_ISA");
-    choose_isa();
-  }
-  /// Whether this machine has it.
-  bool exists() const {
+/// ao on each instruction set that this machine has, against the scalar build: 1 pixel of 500 may
+/// differ, by a sample that rounding moves.
+inline void expect_the_same_from_every_isa(const std::function<Plane<float>()>& ao) {
+  Plane<float> scalar;
+  for (const char* name : {"scalar", "avx2", "avx512"}) {
+    const ChosenIsa isa(name);
+    Plane<float> found;
     try {
-      choose_isa();
-      return true;
+      found = ao();
     } catch (const Error&) {
-      return false;
+      continue;
     }
+    if (scalar.empty()) scalar = found;
+    int off = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) off += std::abs(found[i] - scalar[i]) > 1e-5f;
+    EXPECT_LE(off, int(found.size()) / 500) << name;
   }
-};
+  EXPECT_LT(*std::min_element(scalar.pixels.begin(), scalar.pixels.end()), 0.8f);
+}
+
+inline void expect_the_same_from_any_threads(const std::function<Plane<float>()>& ao) {
+  const auto with = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return ao();
+  };
+  EXPECT_EQ(with(1).pixels, with(3).pixels);
+}
 
 }  // namespace ssdo::test

@@ -9,7 +9,6 @@
 
 #include "estimators/obscurance_request.h"
 #include "estimators/slow_depth_mips.h"
-#include "parallel/tiles.h"
 
 namespace ssdo::test {
 namespace {
@@ -185,40 +184,13 @@ TEST(Sao, ConstantLightIsThatColourTimesAo) {
     EXPECT_EQ(out.direct[i], g.is_surface(i) ? out.ao[i] * color : glm::vec3(0));
 }
 
-TEST(Sao, VectorsGiveWhatTheScalarBuildGives) {
+TEST(Sao, InstructionSetsAndThreadsDoNotMatter) {
   const Geometry g = geometry_of(
       still_life(), look_at(camera_from_fov(50, kWindow, 1), {1, -4, 3}, {0, 0.2, 0.4}, {0, 0, 1}),
       kWindow);
-  const auto run = [&] { return obscure(sao_method(), g, 0.8f).ao; };
-  Plane<float> scalar;
-  {
-    const ForcedIsa isa("scalar");
-    scalar = run();
-  }
-  for (const char* name : {"avx2", "avx512"}) {
-    const ForcedIsa isa(name);
-    if (!isa.exists()) continue;
-    const Plane<float> vector = run();
-    int off = 0;
-    for (std::size_t i = 0; i < scalar.size(); ++i) off += std::abs(vector[i] - scalar[i]) > 1e-5;
-    // A tap on the edge between two pixels may land in the other one.
-    EXPECT_LE(off, int(scalar.size()) / 500) << name;
-  }
-}
-
-TEST(Sao, ThreadsDoNotMatter) {
-  const Geometry g =
-      geometry_of(still_life(), tilted(camera_from_fov(40, kWindow, 1), 50), kWindow);
-  Plane<float> one, two;
-  {
-    const ThreadLimit limit(1);
-    one = obscure(sao_method(), g, 1).ao;
-  }
-  {
-    const ThreadLimit limit(2);
-    two = obscure(sao_method(), g, 1).ao;
-  }
-  EXPECT_EQ(one.pixels, two.pixels);
+  const auto ao = [&] { return obscure(sao_method(), g, 0.8f).ao; };
+  expect_the_same_from_every_isa(ao);
+  expect_the_same_from_any_threads(ao);
 }
 
 TEST(Sao, ACropFarEnoughInsideIsThatPartOfTheWhole) {
