@@ -3,18 +3,18 @@
 // Multi-Scale Volumetric Obscurance, as in Unity's post-processing package, which has it from
 // Microsoft's MiniEngine. It needs depth alone.
 //
-// The idea is that of Loos and Sloan, "Volumetric Obscurance", I3D 2010: how much of a sphere about
-// p is free, from the free parts of chords along the view axis. A chord at distance r from
-// the axis of a sphere of radius 1 is t = sqrt(1 - r^2) long on each side; the surface that is seen
-// at depth Z there leaves free
+// The idea is the paper's, Loos and Sloan, "Volumetric Obscurance", I3D 2010: how much of a sphere
+// about p is free, summed over chords along the view axis. A chord at distance r R from the centre
+// has the half length t R, t = sqrt(1 - r^2); the surface that is seen there at depth Z leaves free
 //
-//   D = 1/2 + (Z - Z_p) / (2 t R),   clamped to 0..1,   ao(p) = sum t D / sum t.
+//   D = 1/2 + (Z - Z_p) / (2 t R),   clamped to 0..1,   ao(p) = 2 sum t D / sum t.
 //
 // What is Unity's:
-// - Samples come in pairs, p + o and p - o, that share what is free: saturate(D + D'), since on a
-//   tilted plane one side gains what the other loses. A pair is half free at best twice.
-// - What is in front of the sphere is forgiven: it counts q = saturate(-D / T), T the thickness
-//   modifier, and a pair is saturate(clamp(D, q', 1) + clamp(D', q, 1) - q q').
+// - Samples come in pairs, p + o and p - o, that share what is free: saturate(D + D'). A plane
+//   leaves half of each chord free where it faces the viewer; where it is tilted, one side gains
+//   what the other loses. Either way the pair is open.
+// - What is in front of the sphere, D < 0, is forgiven by q = saturate(-D / T), T the thickness
+//   modifier: its pair is saturate(clamp(D, q', 1) + clamp(D', q, 1) - q q'), open where q is 1.
 // - 36 samples on the points of a checkerboard with distances below 5 steps. The sphere's radius
 //   is 5 steps of 4 pixels at a half, a quarter, an eighth and a sixteenth of the resolution: 40,
 //   80, 160 and 320 pixels wherever it is, so that --radius has no say.
