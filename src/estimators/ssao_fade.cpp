@@ -88,7 +88,7 @@ void access_of_tile(const FadeJob& job, const Tile& tile) {
       const V3 q = mul_add(o, hn::CopySign(radius, dot(o, p.normal)), p.position);
       const V z = gather_depth(planes, project(planes, q));
       const V nearer = z - p.position.z;
-      const M counts = hn::And(nearer > epsilon, nearer < end);
+      const M counts = nearer > epsilon;
       const V3 to_r = at_depth(planes, q, z) - p.position;
       const V facing = hn::Max(dot(to_r, p.normal), set(0)) / hn::Sqrt(dot(to_r, to_r));
       const V fade = saturate((end - nearer) * per_length);
