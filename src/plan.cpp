@@ -184,6 +184,7 @@ void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geomet
 }
 
 void choose_march(Plan& plan, const ModelOptions& model) {
+  plan.isa = choose_isa();
   if (!plan.method->marches) {
     const bool asked = model.slices || model.steps || model.thickness || model.error;
     if (asked) {
@@ -192,10 +193,8 @@ void choose_march(Plan& plan, const ModelOptions& model) {
                               "--list-methods for its parameters",
                               plan.method->name));
     }
-    plan.isa = "scalar";
     return;
   }
-  plan.isa = choose_isa();
   plan.slices = model.slices.value_or(slices_of(model.quality));
   plan.steps = model.steps.value_or(steps_of(model.quality));
   plan.extend_offscreen = model.extend_offscreen;

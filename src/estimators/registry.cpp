@@ -8,6 +8,11 @@
 
 #include "error.h"
 #include "estimators/bitmask.h"
+#include "estimators/msvo.h"
+#include "estimators/sao.h"
+#include "estimators/ssao.h"
+#include "estimators/ssao_fade.h"
+#include "estimators/ssao_range.h"
 #include "estimators/ssdo.h"
 #include "math/number.h"
 
@@ -24,7 +29,9 @@ std::string parameter_names(const Method& method) {
 }  // namespace
 
 std::span<const Method> methods() {
-  static const std::array<Method, 2> all = {bitmask_method(), ssdo_method()};
+  static const std::array all = {bitmask_method(),    ssdo_method(),      ssao_method(),
+                                 ssao_range_method(), ssao_fade_method(), sao_method(),
+                                 msvo_method()};
   return all;
 }
 

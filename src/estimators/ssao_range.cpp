@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Ambient occlusion with points in the normal's half-ball that are tested against the depth of the
+// pixel itself, as a series of lessons on Unity builds it, with its range check, its self-check
+// and its weight. The half-ball is that of Chapman, "SSAO Tutorial" (2013).
+//
+//   ao(p) = max(0, 1 - strength/N sum_i w_i [d(q_i) + bias < d(p)] [|d(q_i) - d(p)| <= range])
+//   w_i = smoothstep(0, 0.2, |xy of v_i|)    v_i = F(p) s_i    x_i = p + R v_i
+//
+// s_i are points of the half-ball with lengths from 0.01 to 1, growing with the square of i / N; F
+// turns it about the normal to a random vector of a 4 x 4 pattern, by Gram-Schmidt. q_i is the
+// surface in the pixel that x_i projects to and d its depth. w takes points away that project
+// close to p, in units of the half-ball.
+//
+// What differs, and why:
+// - range and bias are in radii. The source has them as shares of the far plane's depth, of which
+//   a frame knows nothing, and names no values. What the precision of P demands adds to the bias.
+// - The pattern's vectors lie in the picture's plane, as in method ssao: the source does not show
+//   the texture that it reads them from.
+// - Outside the frame there is nothing that occludes.
+//
+// Known fault, kept: the surface is compared with the depth of p, not of x_i. Whatever lies nearer
+// to the viewer than p occludes, in front of x_i or behind it: a plane that does not face the
+// viewer hides itself in part.
+#include "estimators/ssao_range.h"
+
+#include "estimators/ambient_light.h"
+#include "estimators/point_kernel.h"
+#include "estimators/tiled_noise.h"
+#include "parallel/isa.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "estimators/ssao_range.cpp"
+#include <hwy/foreach_target.h>
+
+#include "estimators/view_lanes-inl.h"
+
+#ifndef SSDO_SSAO_RANGE_JOB
+#define SSDO_SSAO_RANGE_JOB
+namespace ssdo {
+namespace {
+
+struct RangeJob {
+  const ViewPlanes& planes;
+  std::vector<glm::vec3> points;  ///< s_i
+  TiledNoise noise_x, noise_y;
+  float radius, range, bias;  ///< scene units
+  float strength;
+  Plane<float>& ao;
+};
+
+}  // namespace
+}  // namespace ssdo
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace ssdo::HWY_NAMESPACE {
+
+void ssao_range_of_tile(const RangeJob& job, const Tile& tile) {
+  const D d;
+  const ViewPlanes& planes = job.planes;
+  const V radius = set(job.radius), farthest = set(job.range);
+  const V share = set(job.strength / float(job.points.size()));
+  for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
+    const Receivers p = load_receivers(planes, x, y);
+    const V3 noise = {hn::LoadU(d, job.noise_x.at(planes, x, y)),
+                      hn::LoadU(d, job.noise_y.at(planes, x, y)), set(0)};
+    const V3 tangent = unit_across(noise, p.normal), bitangent = cross(p.normal, tangent);
+    const V bias = p.rounding + set(job.bias);
+    V occlusion = set(0);
+    for (const glm::vec3& s : job.points) {
+      const V3 v = mul_add(tangent, set(s.x), mul_add(bitangent, set(s.y), p.normal * set(s.z)));
+      const V z = gather_depth(planes, project(planes, mul_add(v, radius, p.position)));
+      const V nearer = z - p.position.z;
+      const M hidden = hn::And(nearer > bias, nearer <= farthest);
+      if (hn::AllFalse(d, hidden)) continue;
+      const V across = hn::Sqrt(hn::MulAdd(v.x, v.x, v.y * v.y));
+      const V weight = smoothstep(set(0), set(0.2f), across);
+      occlusion = occlusion + hn::IfThenElseZero(hidden, weight);
+    }
+    const V ao = saturate(hn::NegMulAdd(occlusion, share, set(1)));
+    store_pixels(hn::IfThenElse(p.valid, ao, set(1)), x, tile, &job.ao(0, y));
+  });
+}
+
+}  // namespace ssdo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ssdo {
+namespace {
+
+HWY_EXPORT(ssao_range_of_tile);
+
+Products estimate_ssao_range(const EstimateInput& in) {
+  choose_isa();
+  const ViewPlanes planes = make_view_planes(in.geometry);
+  const auto noise = frame_noise(in.seed);
+  Products out;
+  out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
+  const RangeJob job{planes,
+                     point_kernel(int(in.parameters.at("samples")), 0.01f, false, in.seed),
+                     TiledNoise(coordinate(noise, 0)),
+                     TiledNoise(coordinate(noise, 1)),
+                     in.radius,
+                     float(in.parameters.at("range")) * in.radius,
+                     float(in.parameters.at("bias")) * in.radius,
+                     float(in.parameters.at("strength")),
+                     out.ao};
+  for_each_tile(
+      planes.width(), planes.height(),
+      [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(ssao_range_of_tile)
+                              (job, tile); }, in.progress);
+  if (in.products.direct) out.direct = ambient_light(in, out.ao);
+  return out;
+}
+
+}  // namespace
+
+Method ssao_range_method() {
+  return {
+      "ssao-range",
+      "points in the normal's half-ball against the pixel's own depth, hard range check",
+      {.ao = true, .direct = true},
+      TiledNoise::kSize,
+      {
+          {"samples", 64, 1, 1024, "", "points per pixel", true},
+          {"range", 1, 0, 1000, "radii", "surfaces nearer to the viewer by more do not occlude",
+           false},
+          {"bias", 0.05, 0, 100, "radii", "surfaces nearer to the viewer by less do not occlude",
+           false},
+          {"strength", 1, 0, 10, "", "how much an occluder takes away", false},
+      },
+      false,
+      [](const ParameterValues& p) { return int(p.at("samples")); },
+      estimate_ssao_range,
+  };
+}
+
+}  // namespace ssdo
+#endif

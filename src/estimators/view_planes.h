@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "math/plane.h"
+#include "parallel/page_array.h"
+#include "scene/geometry.h"
+
+namespace ssdo {
+
+/// Where the pixels of a picture lie in planes whose rows may be read by whole vectors from
+/// anywhere in them: every row has kPad entries more on both sides. The length of a row is an odd
+/// number of cache lines: at a power of two, pixels below each other would share a few places of
+/// the cache.
+struct PaddedLayout {
+  static constexpr int kPad = 16;  ///< the widest vector
+
+  int width, height;
+  std::ptrdiff_t stride;
+
+  PaddedLayout(int w, int h)
+      : width(w), height(h), stride((((w + kPad - 1) / kPad + 2) | 1) * std::ptrdiff_t(kPad)) {}
+
+  std::size_t size() const { return std::size_t(stride) * std::size_t(height); }
+};
+
+/// Values of a picture, row by row, not initialised.
+class PaddedPlane {
+ public:
+  explicit PaddedPlane(const PaddedLayout& layout)
+      : values_(make_page_array(layout.size())), stride_(layout.stride) {}
+
+  /// The pixel (0, y). May be read from -kPad to width + kPad.
+  float* row(int y) { return values_.get() + y * stride_ + PaddedLayout::kPad; }
+  const float* row(int y) const { return values_.get() + y * stride_ + PaddedLayout::kPad; }
+
+  /// Sets a whole row, with what is outside the picture.
+  void fill_row(int y, float value) { std::fill_n(row(y) - PaddedLayout::kPad, stride_, value); }
+
+ private:
+  PageArray values_;
+  std::ptrdiff_t stride_;
+};
+
+/// The depth of background: farther than all that is seen, so that "is it nearer than?" has the
+/// right answer without a mask, a difference of depths is beyond every range, and the farthest of
+/// several depths is background where one of them is. Not-a-number would have the first alone.
+constexpr float kBackgroundDepth = -std::numeric_limits<float>::infinity();
+
+/// The frame as methods read it that look at places which differ from pixel to pixel. Pixels are
+/// those of the data window, (0, 0) its upper left one, their centres at halves.
+///
+/// The position in the centre of a pixel follows from its depth: z (ray_x, ray_y, 1), or
+/// (ray_x, ray_y, z) where the camera is orthographic.
+struct ViewPlanes {
+  PaddedLayout layout;
+  bool orthographic;
+  float fx, fy;  ///< pixels per unit of slope, or per scene unit
+  float cx, cy;  ///< principal point in pixels from the display window's upper left corner: what is
+                 ///< computed from it is the same for every crop
+  /// The pixel (0, 0) in the display window, which patterns are fixed to. May be negative.
+  int first_column, first_row;
+
+  PaddedPlane z;           ///< camera space, negative in front of the viewer; or kBackgroundDepth
+  PaddedPlane nx, ny, nz;  ///< unit normal, on the viewer's side; 0 on background
+  PaddedPlane rounding;    ///< distance by which storing P may have moved it; 0 on background
+  std::vector<float> rays_x, rays_y;  ///< by column and by row, padded as planes are
+
+  const float* ray_x() const { return rays_x.data() + PaddedLayout::kPad; }
+  const float* ray_y() const { return rays_y.data() + PaddedLayout::kPad; }
+  int width() const { return layout.width; }
+  int height() const { return layout.height; }
+
+  /// Planes of a size, not initialised, without a camera.
+  ViewPlanes(int width, int height);
+
+  /// Makes a row background.
+  void clear_row(int y);
+  /// Has a pixel of such a row show a surface, if that is usable.
+  void set(int x, int y, const Surfel& surfel);
+};
+
+/// Whether an estimator may count with it: a surface in front of the viewer, every number finite.
+bool is_usable(const Surfel& surfel);
+
+ViewPlanes make_view_planes(const Geometry& geometry);
+
+/// The same without normals and rounding, for methods that receive elsewhere.
+ViewPlanes make_depth_planes(const Geometry& geometry);
+
+}  // namespace ssdo

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "error.h"
+#include "estimators/point_method_request.h"
+#include "parallel/tiles.h"
+
+namespace ssdo::test {
+
+inline Products obscure(const Method& method, const Geometry& g, float radius,
+                        const std::vector<std::string>& set = {},
+                        const Environment& sky = Environment::constant(glm::vec3(1))) {
+  return run(method, g, {.radius = radius, .set = set, .direct = true, .environment = sky});
+}
+
+/// A floor before a wall, and a sphere.
+inline Surface still_life() {
+  return all_of({cut(plane({}, {0, 0, 1}), [](const glm::dvec3& p) { return p.y < 1; }),
+                 cut(plane({0, 1, 0}, {0, -1, 0}), [](const glm::dvec3& p) { return p.z > 0; }),
+                 sphere({0.4, 0.2, 0.5}, 0.5)});
+}
+
+/// What `window`, a part of a geometry's window, shows of it.
+inline Geometry crop(const Geometry& g, const Window& window) {
+  Geometry part = g;
+  part.window = window;
+  part.surfel = Plane<Surfel>(window.width(), window.height());
+  for (int y = 0; y < window.height(); ++y) {
+    for (int x = 0; x < window.width(); ++x)
+      part.surfel(x, y) = g.surfel(x + window.x0 - g.window.x0, y + window.y0 - g.window.y0);
+  }
+  return part;
+}
+
+/// A sphere with holes, spikes and a few positions that no scene has.
+inline Geometry broken_geometry() {
+  const Window window{0, 0, 96, 72};
+  std::mt19937 random(3);
+  Geometry g =
+      geometry_of(sphere({0, 0, 0}, 2), tilted(camera_from_fov(40, window, 1), 30), window);
+  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+    glm::vec4& p = g.surfel[i].position;
+    if (random() % 10 == 0) p = glm::vec4(0);
+    if (g.is_surface(i) && random() % 10 == 0) p *= glm::vec4(1e6f, 1e6f, 1e6f, 1);
+    if (g.is_surface(i) && random() % 10 == 0) p = glm::vec4(0, 0, -1e-30f, 1);
+    if (g.is_surface(i) && random() % 20 == 0) p.z = NAN;
+    if (g.is_surface(i) && random() % 20 == 0) p.x = INFINITY;
+    if (random() % 20 == 0) g.surfel[i].normal.y = NAN;
+    if (random() % 20 == 0) g.surfel[i].normal = glm::vec4(0);
+  }
+  return g;
+}
+
+inline void expect_usable(const Products& out) {
+  for (std::size_t i = 0; i < out.ao.size(); ++i) {
+    ASSERT_TRUE(out.ao[i] >= 0 && out.ao[i] <= 1) << i << ": " << out.ao[i];
+    for (int c = 0; c < 3; ++c) ASSERT_TRUE(std::isfinite(out.direct[i][c])) << i;
+  }
+}
+
+/// ao on each instruction set that this machine has, against the scalar build: 1 pixel of 500 may
+/// differ, by a sample that rounding moves.
+inline void expect_the_same_from_every_isa(const std::function<Plane<float>()>& ao) {
+  Plane<float> scalar;
+  for (const char* name : {"scalar", "avx2", "avx512"}) {
+    const ChosenIsa isa(name);
+    Plane<float> found;
+    try {
+      found = ao();
+    } catch (const Error&) {
+      continue;
+    }
+    if (scalar.empty()) scalar = found;
+    int off = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) off += std::abs(found[i] - scalar[i]) > 1e-5f;
+    EXPECT_LE(off, int(found.size()) / 500) << name;
+  }
+  EXPECT_LT(*std::min_element(scalar.pixels.begin(), scalar.pixels.end()), 0.8f);
+}
+
+inline void expect_the_same_from_any_threads(const std::function<Plane<float>()>& ao) {
+  const auto with = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return ao();
+  };
+  EXPECT_EQ(with(1).pixels, with(3).pixels);
+}
+
+}  // namespace ssdo::test
