@@ -16,7 +16,7 @@
 //
 //   ao      = 1 - sum w M(hidden) / sum w M(all)               over the halves of all slices
 //   direct  = E(N)/pi * (1 - sum w int_hidden L dM / sum w int_all L dM)    channel by channel
-//   bounce  = sum w sum_q M(newly hidden by q) L_out(q) / sum w M(all)
+//   bounce  = (1 - ao) * sum w sum_q M(newly hidden by q) L_out(q) / sum w M(hidden)
 //
 // What differs from the sources, and why:
 // - w = 1 / |T~|^2, T~ the part of the slice's picture direction that is perpendicular to V. Slices
@@ -97,9 +97,9 @@ class Bitmask {
         layout_(scene_.layout),
         pattern_(layout_, in.geometry.display, in.slices, in.steps, in.seed),
         bounce_pattern_(layout_, in.geometry.display, in.slices, bounce_steps(in.steps), in.seed),
-        march_{scene_, pattern_, in.geometry.window.y0 - in.geometry.display.y0, in.radius,
-               in.extend_offscreen},
-        bounce_march_{scene_, bounce_pattern_, march_.first_row, in.radius, in.extend_offscreen} {
+        march_{scene_, pattern_, in.radius, in.extend_offscreen},
+        bounce_march_{scene_, bounce_pattern_, in.radius, in.extend_offscreen},
+        ao_(layout_) {
     choose_isa();
   }
 
@@ -135,9 +135,8 @@ class Bitmask {
     const LightModel* light = wants_light ? in_.light : nullptr;
     const bool directional = light && light->order > 0;
 
-    InterleavedPlane ao(layout_);
     InterleavedColor bent, share, difference;
-    VisibilityJob job{march_, 0, nullptr, &ao, nullptr, nullptr, nullptr};
+    VisibilityJob job{march_, 0, nullptr, &ao_, nullptr, nullptr, nullptr};
     std::vector<float> weights;
     if (in_.products.bent) {
       bent = make_color(layout_);
@@ -163,7 +162,7 @@ class Bitmask {
     if (in_.products.error) out_.error = Plane<float>(width(), height(), 0.0f);
     if (wants_light) out_.direct = Plane<glm::vec3>(width(), height(), glm::vec3(0));
     for_each_surface([&](std::size_t pixel, std::ptrdiff_t i) {
-      out_.ao[pixel] = ao[i];
+      out_.ao[pixel] = ao_[i];
       const glm::vec3 normal(in_.geometry.surfel[pixel].normal);
       if (in_.products.bent) {
         const glm::vec3 sum = color_at(bent, i);
@@ -173,7 +172,7 @@ class Bitmask {
       if (!wants_light) return;
       const glm::vec3 unoccluded =
           light ? light->irradiance(normal) : in_.environment.constant_radiance();
-      out_.direct[pixel] = unoccluded * (directional ? color_at(share, i) : glm::vec3(ao[i]));
+      out_.direct[pixel] = unoccluded * (directional ? color_at(share, i) : glm::vec3(ao_[i]));
       if (in_.products.error) out_.error[pixel] = luminance(unoccluded * color_at(difference, i));
     });
     if (light) {
@@ -265,8 +264,8 @@ class Bitmask {
     InterleavedColor difference;
     if (in_.products.error) difference = make_color(layout_);
     const BounceJob job{
-        bounce_march_, &sent,   two_sided ? &sent_back : nullptr,          &sent_behind,
-        sent_border,   &bounce, in_.products.error ? &difference : nullptr};
+        bounce_march_, &ao_,        &sent,   two_sided ? &sent_back : nullptr,
+        &sent_behind,  sent_border, &bounce, in_.products.error ? &difference : nullptr};
     for_each_band(
         height(), [&](int y0, int y1) { march_bounce(job, y0, y1); }, in_.progress);
     for_each_surface([&](std::size_t pixel, std::ptrdiff_t i) {
@@ -280,6 +279,7 @@ class Bitmask {
   const Interleaving& layout_;
   SlicePattern pattern_, bounce_pattern_;
   March march_, bounce_march_;
+  InterleavedPlane ao_;
   Products out_;
 };
 

@@ -102,8 +102,10 @@ HWY_INLINE Receiver load_receiver(const MarchScene& scene, std::ptrdiff_t i, int
   p.nz = hn::LoadU(d, scene.nz.data() + i);
   p.valid = depth == depth;
   const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-  p.slope_x = (p.x - hn::Set(d, scene.axis_x)) * hn::Set(d, 1 / scene.fx);
-  p.slope_y = (hn::Set(d, scene.axis_y) - p.y) * hn::Set(d, 1 / scene.fy);
+  p.slope_x = (p.x + hn::Set(d, float(scene.first_x)) - hn::Set(d, scene.axis_x)) *
+              hn::Set(d, 1 / scene.fx);
+  p.slope_y =
+      (hn::Set(d, scene.axis_y) - hn::Set(d, float(y + scene.first_y))) * hn::Set(d, 1 / scene.fy);
   p.pz = zero - depth;
   if (scene.orthographic) {
     p.px = p.slope_x, p.py = p.slope_y;

@@ -55,7 +55,7 @@ template <class Work>
 HWY_INLINE void for_each_receiver(const March& march, int y0, int y1, const Work& work) {
   for_each_vector(march.scene, y0, y1, [&](std::ptrdiff_t i, int y, int comb, int column) HWY_ATTR {
     const Receiver p = load_receiver(march.scene, i, y, comb, column);
-    const int row = (y + march.first_row) & (Interleaving::kPeriod - 1);
+    const int row = (y + march.scene.first_y) & (Interleaving::kPeriod - 1);
     work(Place{i, y, comb, column}, p, march.pattern.member(comb, row),
          reach_px(march.scene, p, march.radius));
   });
@@ -116,14 +116,23 @@ void visibility(const VisibilityJob& job, int y0, int y1) {
       });
 }
 
+/// A weighted sum of radiance, and the weights.
 struct Light {
-  V r, g, b;
+  V r, g, b, weights;
+
   HWY_INLINE void add(V weight, V red, V green, V blue) {
     r = hn::MulAdd(weight, red, r);
     g = hn::MulAdd(weight, green, g);
     b = hn::MulAdd(weight, blue, b);
+    weights = weights + weight;
   }
-  V operator[](int c) const { return c == 0 ? r : c == 1 ? g : b; }
+  HWY_INLINE V mean(int c, V otherwise) const {
+    const V sum = c == 0 ? r : c == 1 ? g : b;
+    return hn::IfThenElse(weights > hn::Zero(D()), sum / weights, otherwise);
+  }
+  HWY_INLINE Light minus(const Light& other) const {
+    return {r - other.r, g - other.g, b - other.b, weights - other.weights};
+  }
 };
 
 /// Whether the surface at `q`, `step` away from the receiver, shows its seen side to it.
@@ -141,17 +150,22 @@ HWY_INLINE M faces(const MarchScene& scene, std::ptrdiff_t q, const SliceStep& s
          hn::Zero(d);
 }
 
-/// Measure of a set of sectors, of one piece: the integral of the cosine to the normal.
-HWY_INLINE V measure_of_run(const Receiver& p, const Half& half, VU bits) {
+/// Measure of a set of sectors: the integral of the cosine to the normal.
+HWY_INLINE V measure_of(const Receiver& p, const Half& half, VU bits) {
   const DU du;
   const VU one = hn::Set(du, 1u), last = hn::Set(du, 31u);
   const VU first = hn::PopulationCount(hn::AndNot(bits, bits - one));
-  const VU end = hn::And(first + hn::PopulationCount(bits), last), begin = hn::And(first, last);
-  const auto moment = [&](int m) HWY_ATTR {
-    const float* table = slice_sectors().of_first[std::size_t(m)].data();
-    return lookup32(table, end) - lookup32(table, begin);
-  };
-  return dot2(p.facing, half.n_t, moment(1), moment(SliceSectors::sine_moment(1)));
+  const VU begin = hn::And(first, last), end = hn::And(first + hn::PopulationCount(bits), last);
+  if (hn::AllTrue(du, bits == hn::AndNot(bits_from(end), bits_from(begin)))) {
+    // One run of sectors, as nearly always.
+    const auto moment = [&](int m) HWY_ATTR {
+      const float* table = slice_sectors().of_first[std::size_t(m)].data();
+      return lookup32(table, end) - lookup32(table, begin);
+    };
+    return dot2(p.facing, half.n_t, moment(1), moment(SliceSectors::sine_moment(1)));
+  }
+  const auto moments = moments_of_bits<1>(bits);
+  return dot2(p.facing, half.n_t, moments.cosine[1], moments.sine[1]);
 }
 
 template <bool kOrthographic>
@@ -165,27 +179,22 @@ void bounce(const BounceJob& job, int y0, int y1) {
         const DU du;
         const V zero = hn::Zero(d);
         const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
-        Light sum{zero, zero, zero}, first_half = sum;
-        V whole = zero, first_whole = zero;
+        Light sum{zero, zero, zero, zero}, first_half = sum;
         for (int k = 0; k < count_of_slices; ++k) {
-          if (k == firsts) first_half = sum, first_whole = whole;
+          if (k == firsts) first_half = sum;
           const Slice& slice = slices[std::size_t(slice_at(k, count_of_slices))];
           const SliceFrame f = slice_frame(march.scene, p, slice);
           for (const bool forward : {true, false}) {
             const Half half =
                 half_of(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
-            Light light{zero, zero, zero};
-            V given = zero;
             const auto receive = [&](VU bits, const auto& sent) HWY_ATTR {
               if (hn::AllTrue(du, bits == hn::Zero(du))) return;
-              const V measure = measure_of_run(p, half, bits);
-              given = given + measure;
-              light.add(measure, sent(0), sent(1), sent(2));
+              sum.add(f.weight * measure_of(p, half, bits), sent(0), sent(1), sent(2));
             };
             const auto load = [&](const InterleavedColor& sent, int c, std::ptrdiff_t q) HWY_ATTR {
               return hn::LoadU(d, sent[std::size_t(c)].data() + q);
             };
-            const VU open = march_half<kOrthographic>(
+            march_half<kOrthographic>(
                 march, p, half, slice, forward, place, reach,
                 [&](std::ptrdiff_t q, const SliceStep& step, VU bits) HWY_ATTR {
                   if (hn::AllTrue(du, bits == hn::Zero(du))) return;
@@ -202,25 +211,18 @@ void bounce(const BounceJob& job, int y0, int y1) {
                 [&](const Border& border, VU bits) HWY_ATTR {
                   receive(bits, [&](int c) HWY_ATTR { return border(job.sent_border[c]); });
                 });
-            // What hides the sectors may be in more pieces than one. Together they have the measure
-            // of all that is hidden.
-            const VU hidden = hn::AndNot(open, half.above);
-            const auto all = moments_of_first<1>(half.above_count),
-                       lost = moments_of_bits<1>(hidden);
-            whole =
-                hn::MulAdd(f.weight, dot2(p.facing, half.n_t, all.cosine[1], all.sine[1]), whole);
-            const V measure = dot2(p.facing, half.n_t, lost.cosine[1], lost.sine[1]);
-            const V scale = hn::IfThenElseZero(given > zero, f.weight * measure / given);
-            sum.add(scale, light.r, light.g, light.b);
           }
         }
+        const V hidden = hn::IfThenElseZero(
+            p.valid, hn::Set(d, 1.0f) - hn::LoadU(d, job.ao->data() + place.index));
         for (int c = 0; c < 3; ++c) {
           const auto at = std::size_t(c);
-          hn::StoreU(hn::IfThenElseZero(hn::And(p.valid, whole > zero), sum[c] / whole), d,
-                     (*job.bounce)[at].data() + place.index);
+          // Where ao has found what these steps have missed, it is near, and lit alike.
+          const V own = hn::LoadU(d, (*job.sent)[at].data() + place.index);
+          hn::StoreU(hidden * sum.mean(c, own), d, (*job.bounce)[at].data() + place.index);
           if (job.difference) {
             const V difference =
-                first_half[c] / first_whole - (sum[c] - first_half[c]) / (whole - first_whole);
+                hidden * (first_half.mean(c, own) - sum.minus(first_half).mean(c, own));
             hn::StoreU(difference * hn::Set(d, error_of_difference(firsts, count_of_slices)), d,
                        (*job.difference)[at].data() + place.index);
           }

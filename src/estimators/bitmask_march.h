@@ -16,9 +16,8 @@ using InterleavedColor = std::array<InterleavedPlane, 3>;
 struct March {
   const MarchScene& scene;
   const SlicePattern& pattern;
-  int first_row;  ///< row of the display window, from its top, that row 0 of the scene is
-  float radius;   ///< scene units, or infinity
-  bool extend;    ///< surfaces go on beyond the frame
+  float radius;  ///< scene units, or infinity
+  bool extend;   ///< surfaces go on beyond the frame
 };
 
 /// How open each pixel is, and to which light.
@@ -35,9 +34,11 @@ struct VisibilityJob {
   InterleavedColor* share_difference;  ///< standard error of share, signed; null: not wanted
 };
 
-/// What each pixel receives from the first surface in every direction.
+/// What each pixel receives from the first surface in every direction: the mean radiance of what
+/// hides the environment, times how much of it is hidden.
 struct BounceJob {
   March march;
+  const InterleavedPlane* ao;
   const InterleavedColor* sent;         ///< radiance of what is seen
   const InterleavedColor* sent_back;    ///< of its other side; null: the same
   const InterleavedColor* sent_behind;  ///< of what is covered

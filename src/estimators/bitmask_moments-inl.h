@@ -143,14 +143,12 @@ struct CircleDirections {
   }
 };
 
-/// Calls `add(i, value)` for each basis polynomial in the unit direction (x, y, z): the real
-/// spherical harmonics up to kOrder without their constants, l*l + l + m.
+/// Calls `add(i, value)` for each basis polynomial of the bands from 2 to kOrder in the unit
+/// direction (x, y, z): the real spherical harmonics without their constants, l*l + l + m.
 template <int kOrder, class Add>
-HWY_INLINE void for_each_basis(V x, V y, V z, const Add& add) {
+HWY_INLINE void for_each_high_basis(V x, V y, V z, const Add& add) {
   const D d;
   const auto number = [&](float value) HWY_ATTR { return hn::Set(d, value); };
-  add(0, number(1));
-  add(1, y), add(2, z), add(3, x);
   if constexpr (kOrder >= 2) {
     const V xx = x * x, yy = y * y, zz = z * z, xy = x * y;
     const V x2y2 = xx - yy;
@@ -185,25 +183,26 @@ struct Moments {
     for (int i = 0; i < kCount; ++i) hidden[i] = whole[i] = hn::Zero(D());
   }
 
+  /// Bands 0 and 1 come from the moments as they are: ao and the bent normal are the same to the
+  /// bit whatever the order.
   HWY_INLINE void add(const Receiver& p, const SliceFrame& f,
                       const CircleMoments<kOrder>& hidden_of_slice,
                       const CircleMoments<kOrder>& whole_of_slice) {
-    const D d;
-    if constexpr (kOrder == 0) {
-      hidden[0] = hn::MulAdd(f.weight, hidden_of_slice.cosine[0], hidden[0]);
-      whole[0] = hn::MulAdd(f.weight, whole_of_slice.cosine[0], whole[0]);
-    } else {
+    add_low_bands(p, f, hidden_of_slice, hidden);
+    add_low_bands(p, f, whole_of_slice, whole);
+    if constexpr (kOrder > 1) {
+      const D d;
       static const CircleDirections<kOrder> directions;
       for (int j = 0; j < CircleDirections<kOrder>::kCount; ++j) {
         const float *cosines = directions.cosine[j], *sines = directions.sine[j];
         const V c = hn::Set(d, cosines[1]), s = hn::Set(d, sines[1]);
         const V h = f.weight * hidden_of_slice.at(cosines, sines),
                 w = f.weight * whole_of_slice.at(cosines, sines);
-        for_each_basis<kOrder>(dot2(c, s, p.vx, f.tx), dot2(c, s, p.vy, f.ty),
-                               dot2(c, s, p.vz, f.tz), [&](int i, V value) HWY_ATTR {
-                                 hidden[i] = hn::MulAdd(h, value, hidden[i]);
-                                 whole[i] = hn::MulAdd(w, value, whole[i]);
-                               });
+        for_each_high_basis<kOrder>(dot2(c, s, p.vx, f.tx), dot2(c, s, p.vy, f.ty),
+                                    dot2(c, s, p.vz, f.tz), [&](int i, V value) HWY_ATTR {
+                                      hidden[i] = hn::MulAdd(h, value, hidden[i]);
+                                      whole[i] = hn::MulAdd(w, value, whole[i]);
+                                    });
       }
     }
   }
@@ -248,6 +247,18 @@ struct Moments {
       rest.whole[i] = whole[i] - other.whole[i];
     }
     return rest;
+  }
+
+ private:
+  HWY_INLINE static void add_low_bands(const Receiver& p, const SliceFrame& f,
+                                       const CircleMoments<kOrder>& of_slice, V* sum) {
+    sum[0] = hn::MulAdd(f.weight, of_slice.cosine[0], sum[0]);
+    if constexpr (kOrder > 0) {
+      const V along_v = f.weight * of_slice.cosine[1], along_t = f.weight * of_slice.sine[1];
+      sum[1] = sum[1] + dot2(along_v, along_t, p.vy, f.ty);
+      sum[2] = sum[2] + dot2(along_v, along_t, p.vz, f.tz);
+      sum[3] = sum[3] + dot2(along_v, along_t, p.vx, f.tx);
+    }
   }
 };
 

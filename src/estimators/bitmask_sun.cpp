@@ -75,7 +75,7 @@ void sun(const SunJob& job, int y0, int y1) {
     constexpr int kPeriod = Interleaving::kPeriod;
     const Interleaving& layout = scene.layout;
     const V zero = hn::Zero(d);
-    const int member = ((y + job.march.first_row) & (kPeriod - 1)) * kPeriod + comb;
+    const int member = ((y + job.march.scene.first_y) & (kPeriod - 1)) * kPeriod + comb;
     const Receiver p = load_receiver(scene, at, y, comb, column);
     Half half;
     const SunRay ray = sun_ray(scene, p, job.directions[std::size_t(member)], half);

@@ -46,8 +46,8 @@ class Cells {
     const std::size_t from = g_.surfel.index(x, y);
     const Surfel& s = g_.surfel[from];
     if (!is_usable(s)) return cell;
-    const glm::vec2 slope((float(x) - scene_.axis_x) / scene_.fx,
-                          (scene_.axis_y - float(y)) / scene_.fy);
+    const glm::vec2 slope((float(x + scene_.first_x) - scene_.axis_x) / scene_.fx,
+                          (scene_.axis_y - float(y + scene_.first_y)) / scene_.fy);
     const float length = scene_.orthographic ? 1.0f : std::sqrt(1 + glm::dot(slope, slope));
     cell.depth = depth_on_ray(s, slope, length);
     cell.normal = s.normal;
@@ -96,8 +96,10 @@ MarchScene make_march_scene(const Geometry& g, const HiddenGeometry* hidden) {
                    orthographic,
                    float(g.camera.fx),
                    float(g.camera.fy),
-                   float(g.camera.cx - g.window.x0 - 0.5),
-                   float(g.camera.cy - g.window.y0 - 0.5),
+                   float(g.camera.cx - g.display.x0 - 0.5),
+                   float(g.camera.cy - g.display.y0 - 0.5),
+                   g.window.x0 - g.display.x0,
+                   g.window.y0 - g.display.y0,
                    plane(),
                    plane(),
                    plane(),

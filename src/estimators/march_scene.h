@@ -57,8 +57,8 @@ struct MarchScene {
   Interleaving layout;
   bool orthographic;
   float fx, fy;                ///< pixels per unit of slope, or per scene unit
-  float axis_x, axis_y;        ///< where the camera's axis is, in pixels, for which (0, 0) is the
-                               ///< middle of the first
+  float axis_x, axis_y;        ///< pixel of the display window that the camera's axis meets
+  int first_x, first_y;        ///< pixel (0, 0) in the display window
   InterleavedPlane depth;      ///< along the axis, positive
   InterleavedPlane thickness;  ///< from the front to the back
   InterleavedPlane behind;     ///< depth of the surface that is covered

@@ -15,7 +15,7 @@ float bare_loads_of_pixels(const March& march, int y0, int y1) {
   const MarchScene& scene = march.scene;
   V sum = hn::Zero(d);
   for_each_vector(scene, y0, y1, [&](std::ptrdiff_t at, int y, int comb, int column) HWY_ATTR {
-    const int row = (y + march.first_row) & (Interleaving::kPeriod - 1);
+    const int row = (y + scene.first_y) & (Interleaving::kPeriod - 1);
     for (const Slice& slice : march.pattern.member(comb, row)) {
       for (const SliceSide& side : slice.sides) {
         for (const SliceStep& step : side.steps) {

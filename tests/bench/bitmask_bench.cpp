@@ -33,7 +33,7 @@ std::shared_ptr<Plane<glm::vec3>> sky_with_a_sun() {
 double bare_seconds(const Geometry& g, const HiddenGeometry& hidden, int slices, int steps) {
   const MarchScene scene = make_march_scene(g, &hidden);
   const SlicePattern pattern(scene.layout, g.display, slices, steps, 0);
-  const March march{scene, pattern, 0, INFINITY, true};
+  const March march{scene, pattern, INFINITY, true};
   double best = 1e9;
   for (int run = 0; run < 3; ++run) {
     const std::clock_t start = std::clock();
