@@ -18,7 +18,7 @@ DepthMips::DepthMips(const ViewPlanes& planes)
       rows_(round_up(planes.height() + top_, kPeriod)),
       // An odd number of cache lines, as in PaddedLayout.
       stride_((round_up(planes.width() + left_, 16) / 16 | 1) * 16),
-      values_(make_page_array(2 * std::size_t(rows_) * std::size_t(stride_))) {
+      values_(std::make_unique_for_overwrite<float[]>(2 * std::size_t(rows_) * std::size_t(stride_))) {
   const int right = left_ + planes.width() - 1, bottom = top_ + planes.height() - 1;
   for_each_row(planes.height(), [&](int y) {
     std::copy_n(planes.z.row(y), planes.width(), row(0, y + top_) + left_);

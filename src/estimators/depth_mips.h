@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <utility>
 
 #include "estimators/view_planes.h"
-#include "parallel/page_array.h"
 
 namespace ssdo {
 
@@ -51,7 +51,7 @@ class DepthMips {
   float* row(int level, int y) { return const_cast<float*>(std::as_const(*this).row(level, y)); }
 
   int left_, top_, rows_, stride_;
-  PageArray values_;
+  std::unique_ptr<float[]> values_;
 };
 
 }  // namespace ssdo

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "math/plane.h"
-#include "parallel/page_array.h"
 #include "scene/geometry.h"
 
 namespace ssdo {
@@ -32,7 +32,7 @@ struct PaddedLayout {
 class PaddedPlane {
  public:
   explicit PaddedPlane(const PaddedLayout& layout)
-      : values_(make_page_array(layout.size())), stride_(layout.stride) {}
+      : values_(std::make_unique_for_overwrite<float[]>(layout.size())), stride_(layout.stride) {}
 
   /// The pixel (0, y). May be read from -kPad to width + kPad.
   float* row(int y) { return values_.get() + y * stride_ + PaddedLayout::kPad; }
@@ -42,7 +42,7 @@ class PaddedPlane {
   void fill_row(int y, float value) { std::fill_n(row(y) - PaddedLayout::kPad, stride_, value); }
 
  private:
-  PageArray values_;
+  std::unique_ptr<float[]> values_;
   std::ptrdiff_t stride_;
 };
 
