@@ -53,17 +53,27 @@ HWY_INLINE SunRay sun_ray(const MarchScene& scene, const Receiver& p, const SunJ
   return ray;
 }
 
-/// Whether what lies at (s, v), `above` the receiver's tangent plane and reaching back by `depth`,
-/// stands in the ray.
-template <bool kOrthographic>
-HWY_INLINE M blocks(const Receiver& p, const Half& half, const SunRay& ray, V s, V above, V depth,
-                    float radius) {
+/// Which lanes that look see a surface in the ray, which lies at s, `above` the receiver's tangent
+/// plane, and reaches back by what `load_depth` gives: few rays ask.
+template <bool kOrthographic, class LoadDepth>
+HWY_INLINE M blocks(const Receiver& p, const Half& half, const SunRay& ray, M looks, V s, V above,
+                    float radius, const LoadDepth& load_depth) {
   const D d;
   const V v = hn::NegMulAdd(s, half.slope, above);
+  const M near = hn::And(above > hn::Zero(d), dot2(s, v, s, v) <= hn::Set(d, radius * radius));
+  const M front_above = hn::And(hn::And(looks, near), s * ray.v <= v * ray.s);
+  if (hn::AllFalse(d, front_above)) return front_above;
+  const V depth = load_depth();
   const V back_s = kOrthographic ? s : hn::MulAdd(depth, s, s);
   const V back_v = kOrthographic ? v - depth : hn::MulAdd(depth, v - p.distance, v);
-  const M near = hn::And(above > hn::Zero(d), dot2(s, v, s, v) <= hn::Set(d, radius * radius));
-  return hn::And(near, hn::And(s * ray.v <= v * ray.s, back_s * ray.v >= back_v * ray.s));
+  return hn::And(front_above, back_s * ray.v >= back_v * ray.s);
+}
+
+/// A pixel in the middle of its block of 4 x 4, where samples lie far apart: as in the slices, so
+/// few are asked for that they stay in the cache.
+HWY_INLINE V middle_of_block(V pixel) {
+  const V block = hn::Set(D(), 4.0f), middle = hn::Set(D(), 2.0f);
+  return hn::MulAdd(hn::Round((pixel - middle) * hn::Set(D(), 0.25f)), block, middle);
 }
 
 template <bool kOrthographic>
@@ -83,10 +93,14 @@ void sun(const SunJob& job, int y0, int y1) {
             bottom = hn::Set(d, float(layout.height() - 1));
     const float reach = reach_px(scene, p, job.march.radius);
     M open = hn::And(p.valid, dot2(half.n_t, p.facing, ray.s, ray.v) > zero);
+    float before = 0;
     for (const float distance : job.distances_px[std::size_t(member)]) {
       const V t = hn::Set(d, distance);
-      const V qx_px = hn::Round(hn::MulAdd(t, ray.step_x, p.x)),
-              qy_px = hn::Round(hn::MulAdd(t, ray.step_y, p.y));
+      V qx_px = hn::Round(hn::MulAdd(t, ray.step_x, p.x)),
+        qy_px = hn::Round(hn::MulAdd(t, ray.step_y, p.y));
+      if (distance - before > kLongStep)
+        qx_px = middle_of_block(qx_px), qy_px = middle_of_block(qy_px);
+      before = distance;
       const M inside = hn::And(hn::And(qx_px >= zero, qx_px <= right),
                                hn::And(hn::And(qy_px >= zero, qy_px <= bottom), t < ray.end_px));
       const M looks = hn::And(inside, open);
@@ -102,14 +116,13 @@ void sun(const SunJob& job, int y0, int y1) {
       const V dx = qx_px - p.x, dy = qy_px - p.y;
       const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise)),
               across = dot2(dx, dy, half.across_x, half.across_y);
-      const auto surface_blocks = [&](V depth, const InterleavedPlane& thickness) HWY_ATTR {
-        return blocks<kOrthographic>(p, half, ray, kOrthographic ? across : depth * across,
-                                     height_above<kOrthographic>(p, rise, depth), gather(thickness),
-                                     job.march.radius);
+      const auto hides = [&](V depth, const InterleavedPlane& thickness) HWY_ATTR {
+        return blocks<kOrthographic>(p, half, ray, looks, kOrthographic ? across : depth * across,
+                                     height_above<kOrthographic>(p, rise, depth), job.march.radius,
+                                     [&]() HWY_ATTR { return gather(thickness); });
       };
-      const M front = surface_blocks(gather(scene.depth), scene.thickness),
-              covered = surface_blocks(gather(scene.behind), scene.behind_thickness);
-      open = hn::AndNot(hn::And(looks, hn::Or(front, covered)), open);
+      open = hn::AndNot(hides(gather(scene.depth), scene.thickness), open);
+      open = hn::AndNot(hides(gather(scene.behind), scene.behind_thickness), open);
     }
     if (job.march.extend && !hn::AllFalse(d, open)) {
       const Border border = border_along(scene, p, comb, column, ray.step_x, ray.step_y, false);

@@ -19,11 +19,6 @@ constexpr int kOrder[kPeriod * kPeriod] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 
 /// met. This much less than 1, and they grow less; the error against many steps fell by a third.
 constexpr double kFarther = 0.7;
 
-/// Where steps are longer than this, in pixels, one pixel in each block of 4 x 4 serves all members
-/// of the pattern. Of the whole frame these are few enough to stay in the cache, where the pixels
-/// that each member would choose for itself come from memory every time.
-constexpr double kLongStep = 32;
-
 /// Phases stay away from the edges of sectors: on a plane, rounding moves the horizon by a little,
 /// and no sector may notice.
 float phase_in(double t) { return float(0.02 + 0.96 * t); }

@@ -11,6 +11,11 @@ namespace ssdo {
 /// Pixels from 1 to `diagonal` for t from 0 to 1, dense at the start.
 double march_distance(double t, double diagonal);
 
+/// Where steps are longer than this, in pixels, one pixel in each block of 4 x 4 serves all members
+/// of the pattern. Of the whole frame these are few enough to stay in the cache, where the pixels
+/// that each member would choose for itself come from memory every time.
+constexpr double kLongStep = 32;
+
 /// A pixel that a march looks at, seen from the pixel where it starts.
 struct SliceStep {
   float dx, dy;           ///< pixels, y down
