@@ -13,7 +13,6 @@
 #include "compose.h"
 #include "display_image.h"
 #include "error.h"
-#include "filters/geometry_filter.h"
 #include "io/exr_writer.h"
 #include "io/image_file.h"
 #include "io/safe_file.h"
@@ -51,7 +50,7 @@ Plane<float> standard_error(const Plane<float>& difference, const Geometry& geom
   Products squares;
   squares.error = difference;
   for (float& e : squares.error.pixels) e *= e;
-  if (plan.filter) squares = filter_geometry(squares, geometry, plan.method->pattern_size);
+  squares = apply_filter(*plan.filter, std::move(squares), geometry, plan.method->pattern_size);
   for (float& e : squares.error.pixels) e = std::sqrt(std::max(e, 0.0f));
   return std::move(squares.error);
 }
@@ -97,7 +96,8 @@ Products estimate(const Options& options, Frame& frame, const std::function<void
        plan.slices, plan.steps, &frame.hidden, frame.light_model ? &*frame.light_model : nullptr,
        plan.extend_offscreen});
   frame.times.estimate += watch.lap();
-  if (plan.filter) products = filter_geometry(products, frame.geometry, plan.method->pattern_size);
+  products =
+      apply_filter(*plan.filter, std::move(products), frame.geometry, plan.method->pattern_size);
   if (!products.error.empty())
     products.error = standard_error(products.error, frame.geometry, plan);
   frame.times.filter += watch.lap();

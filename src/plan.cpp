@@ -221,7 +221,7 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBu
   Plan plan;
   plan.method = &find_method(model.method);
   plan.parameters = resolve_parameters(*plan.method, model.set);
-  plan.filter = model.filter;
+  plan.filter = &find_filter(model.filter);
   plan.error = model.error;
   ProductChoice(*plan.method, output, !gbuffer.albedo.empty(), file).choose(plan);
   choose_bounces(plan, model.bounces, gbuffer);
@@ -237,7 +237,7 @@ nlohmann::json to_json(const Plan& plan) {
                       {"products", plan.make},
                       {"bounces", plan.bounces},
                       {"samples_per_pixel", plan.samples_per_pixel()},
-                      {"filter", plan.filter ? "geometry" : "none"},
+                      {"filter", plan.filter->name},
                       {"reasons", plan.reasons}};
   // JSON knows no infinity.
   j["radius"] = std::isinf(plan.radius) ? nlohmann::json("inf") : nlohmann::json(plan.radius);
