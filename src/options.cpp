@@ -42,7 +42,8 @@ std::string describe_filters() {
 void add_input(CLI::App& app, Options& o, RawOptions& raw) {
   app.add_option(
          "--aov", raw.aov,
-         "ROLE=LAYER or ROLE=FILE:LAYER, roles position normal albedo depth alpha beauty radiance")
+         "ROLE=LAYER or ROLE=FILE:LAYER, roles position normal albedo depth alpha beauty radiance "
+         "ambient")
       ->type_name("ROLE=LAYER")
       ->allow_extra_args(false)
       ->group("Input");
