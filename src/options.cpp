@@ -157,6 +157,9 @@ void add_model(CLI::App& app, Options& o, RawOptions& raw) {
       ->type_name("NAME")
       ->capture_default_str()
       ->group("Model");
+  app.add_flag("--temporal", o.model.temporal,
+               "average over the frames of a sequence what they show of the same surface")
+      ->group("Model");
 }
 
 void add_output(CLI::App& app, Options& o, RawOptions& raw) {

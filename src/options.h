@@ -52,6 +52,7 @@ struct ModelOptions {
   unsigned seed = 0;
   std::vector<std::string> set;  ///< NAME=VALUE of the method
   std::string filter = "geometry";
+  bool temporal = false;  ///< frames of a sequence share what they find
 };
 
 /// A product and the file that it alone goes to.

@@ -237,6 +237,8 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBu
   plan.method = &find_method(model.method);
   plan.parameters = resolve_parameters(*plan.method, model.set);
   plan.filter = &find_filter(model.filter);
+  plan.temporal = model.temporal;
+  plan.seed = model.seed;
   plan.error = model.error;
   ProductChoice(*plan.method, output, gbuffer, file).choose(plan);
   explain_composite(plan, gbuffer);
@@ -254,6 +256,7 @@ nlohmann::json to_json(const Plan& plan) {
                       {"bounces", plan.bounces},
                       {"samples_per_pixel", plan.samples_per_pixel()},
                       {"filter", plan.filter->name},
+                      {"temporal", plan.temporal},
                       {"reasons", plan.reasons}};
   // JSON knows no infinity.
   j["radius"] = std::isinf(plan.radius) ? nlohmann::json("inf") : nlohmann::json(plan.radius);

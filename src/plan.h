@@ -27,6 +27,8 @@ struct Plan {
   std::optional<double> error;       ///< to stay below
   std::string isa;                   ///< instruction set of the inner loops
   const Filter* filter = nullptr;    ///< after the estimate
+  bool temporal = false;             ///< then the mean with the frames before
+  unsigned seed = 0;                 ///< of the sampling pattern
   std::vector<std::string> make;     ///< products for any of the outputs
   std::vector<std::string> write;    ///< those that every EXR of -o holds, in their order there
   std::string show;                  ///< the one that every picture of -o holds
