@@ -8,6 +8,7 @@
 #include <future>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "frame.h"
 #include "io/image_file.h"
@@ -39,6 +40,11 @@ Job job_of_frame(const Options& options, int frame) {
 
 std::vector<Job> plan_jobs(const Options& options) {
   const bool sequence = is_pattern(options.input_file);
+  if (options.model.temporal && !sequence) {
+    throw Error(
+        ExitCode::usage,
+        fmt::format("{}: --temporal needs a sequence, such as shot.####.exr", options.input_file));
+  }
   if (!sequence) {
     if (!options.batch.frames.empty()) {
       throw Error(
@@ -169,6 +175,7 @@ class Batch {
 
   void run_job(std::size_t i) {
     const Job& job = jobs_[i];
+    const std::optional<History> before = std::exchange(history_, std::nullopt);
     OutputPolicy policy = options_.output.policy;
     const bool writes = options_.command == Command::relight && !options_.say.dry_run;
     if (writes && options_.batch.skip_existing) {
@@ -178,6 +185,7 @@ class Batch {
     }
     if (writes) check_targets(job.targets, inputs_of(options_, job.input, job.aovs), policy);
     Frame frame = take_frame(i);
+    if (options_.model.temporal) place_in_sequence(frame, *job.frame, before.has_value());
     if (options_.command == Command::info) return show(frame);
     if (options_.say.dry_run || options_.say.verbose) {
       print(describe(frame));
@@ -190,7 +198,7 @@ class Batch {
     const auto told = [&](double done) {
       progress_.tell((double(i) + done) / double(jobs_.size()), job.input);
     };
-    const Relit relit = relight(options_, frame, job.targets, policy, told);
+    Relit relit = relight(options_, frame, job.targets, policy, told, before);
     for (const std::string& note : relit.notes) say_verbose(note);
     if (relit.clamped_values > 0 && !options_.say.quiet) {
       say(
@@ -199,6 +207,18 @@ class Batch {
                       job.input, relit.clamped_values));
     }
     statistics_.add(frame, job.frame, job.targets, threads_);
+    if (!options_.model.temporal) return;
+    history_ = std::move(relit.history);
+    history_->geometry = std::move(frame.geometry);
+  }
+
+  /// Each frame has a pattern of its own, wherever a run begins, and says whose history it takes.
+  static void place_in_sequence(Frame& frame, int number, bool follows) {
+    frame.plan.seed += unsigned(number);
+    frame.plan.reasons.push_back(
+        !frame.geometry.world_known ? "no history: the frame knows no world space"
+        : follows ? "history of the frame before, where that shows the same surface"
+                  : "no history: the first frame, or the one before was not made by this run");
   }
 
   Frame prepare(std::size_t i) const {
@@ -254,6 +274,7 @@ class Batch {
   nlohmann::json infos_ = nlohmann::json::array();
   std::size_t next_index_ = 0;
   std::future<Frame> next_;
+  std::optional<History> history_;  ///< of the frame before, where --temporal asks for it
 };
 
 }  // namespace

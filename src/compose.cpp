@@ -17,6 +17,21 @@ void append_color(std::vector<NamedPlane>& out, const std::string& prefix,
   }
 }
 
+/// beauty - ambient (1 - ao), or ambient ao without a beauty. Occlusion says how much of the sky is
+/// hidden, not of a lamp: what lamps give stays as rendered. Rendered layers are premultiplied.
+Plane<glm::vec3> occlude_ambient(const GBuffer& gbuffer, const Geometry& geometry,
+                                 const Plane<float>& ao) {
+  const Plane<float> alpha = coverage(gbuffer, geometry);
+  Plane<glm::vec3> out(ao.width, ao.height);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (alpha[i] <= 0) continue;
+    const glm::vec3 rest =
+        gbuffer.beauty.empty() ? glm::vec3(0) : gbuffer.beauty[i] - gbuffer.ambient[i];
+    out[i] = (rest + ao[i] * gbuffer.ambient[i]) / alpha[i];
+  }
+  return out;
+}
+
 }  // namespace
 
 Plane<float> coverage(const GBuffer& gbuffer, const Geometry& geometry) {
@@ -29,7 +44,9 @@ Plane<float> coverage(const GBuffer& gbuffer, const Geometry& geometry) {
   return alpha;
 }
 
-Plane<glm::vec3> composite(const GBuffer& gbuffer, const Products& products) {
+Plane<glm::vec3> composite(const GBuffer& gbuffer, const Geometry& geometry,
+                           const Products& products) {
+  if (!gbuffer.ambient.empty()) return occlude_ambient(gbuffer, geometry, products.ao);
   Plane<glm::vec3> out = products.direct;
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (!products.bounce.empty()) out[i] += products.bounce[i];
@@ -61,7 +78,7 @@ std::vector<NamedPlane> product_channels(const std::string& product, const GBuff
   } else if (product == "bounce") {
     append_color(out, "bounce.", products.bounce);
   } else {
-    Plane<glm::vec3> color = composite(gbuffer, products);
+    Plane<glm::vec3> color = composite(gbuffer, geometry, products);
     Plane<float> alpha = coverage(gbuffer, geometry);
     for (std::size_t i = 0; i < color.size(); ++i) color[i] *= alpha[i];
     append_color(out, "", color);

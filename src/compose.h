@@ -21,8 +21,10 @@ struct NamedPlane {
 /// Coverage: the input's alpha where there is one, else 1 on surfaces; 0 outside the geometry.
 Plane<float> coverage(const GBuffer& gbuffer, const Geometry& geometry);
 
-/// albedo (direct + bounce), not premultiplied.
-Plane<glm::vec3> composite(const GBuffer& gbuffer, const Products& products);
+/// albedo (direct + bounce); or, where the ambient part of the render is known, that part times ao
+/// with the rest of the beauty, where there is one, as it was. Not premultiplied.
+Plane<glm::vec3> composite(const GBuffer& gbuffer, const Geometry& geometry,
+                           const Products& products);
 
 /// The channels of one product: R G B A (premultiplied) for "composite", ao.Y, error.Y,
 /// bent.X/Y/Z in the space of the input's normals, direct.R/G/B, bounce.R/G/B.

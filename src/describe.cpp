@@ -126,10 +126,10 @@ std::string describe(const Frame& frame) {
                                frame.gbuffer.background_pixels, frame.gbuffer.bad_pixels,
                                frame.geometry.median_depth));
   line("light", frame.light);
-  line("plan", fmt::format("{}: {} ({} samples per pixel, {} bounce(s), filter {})",
+  line("plan", fmt::format("{}: {} ({} samples per pixel, {} bounce(s), filter {}{})",
                            fmt::join(frame.plan.make, ", "), frame.plan.method->name,
-                           frame.plan.samples_per_pixel(),
-                           frame.plan.bounces, frame.plan.filter ? "geometry" : "none"));
+                           frame.plan.samples_per_pixel(), frame.plan.bounces,
+                           frame.plan.filter->name, frame.plan.temporal ? " and temporal" : ""));
   for (const std::string& reason : frame.plan.reasons) line("", reason);
   for (const std::string& warning : frame.warnings()) line("warning", warning);
   return text;

@@ -54,7 +54,7 @@ DisplayImage make_display_image(const std::string& product, const Frame& frame,
     });
     return image;
   }
-  Plane<glm::vec3> colors = product == "composite" ? composite(frame.gbuffer, products)
+  Plane<glm::vec3> colors = product == "composite" ? composite(frame.gbuffer, geometry, products)
                             : product == "direct"  ? products.direct
                                                    : products.bounce;
   const Plane<float> alpha = coverage(frame.gbuffer, geometry);

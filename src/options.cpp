@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "error.h"
+#include "filters/registry.h"
 #include "option_values.h"
 
 namespace ssdo {
@@ -14,7 +15,7 @@ namespace {
 /// Texts that become values of other types once the line has been read.
 struct RawOptions {
   std::vector<std::string> aov, save;
-  std::string depth_kind = "planar", env_up = "auto", radius = "auto", filter = "geometry";
+  std::string depth_kind = "planar", env_up = "auto", radius = "auto";
   std::string thickness = "auto", offscreen = "extend", quality = "standard";
   std::string pixel_type = "half", compression, on_error = "stop", progress = "auto";
   std::optional<double> background_depth;
@@ -31,10 +32,18 @@ std::string describe_qualities() {
   return text;
 }
 
+std::string describe_filters() {
+  std::string text = "of the sampling pattern:";
+  for (const Filter& filter : filters())
+    text += fmt::format("\n{}: {}", filter.name, filter.summary);
+  return text;
+}
+
 void add_input(CLI::App& app, Options& o, RawOptions& raw) {
   app.add_option(
          "--aov", raw.aov,
-         "ROLE=LAYER or ROLE=FILE:LAYER, roles position normal albedo depth alpha beauty radiance")
+         "ROLE=LAYER or ROLE=FILE:LAYER, roles position normal albedo depth alpha beauty radiance "
+         "ambient")
       ->type_name("ROLE=LAYER")
       ->allow_extra_args(false)
       ->group("Input");
@@ -144,10 +153,12 @@ void add_model(CLI::App& app, Options& o, RawOptions& raw) {
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false)
       ->group("Model");
-  app.add_option("--filter", raw.filter, "none or geometry")
+  app.add_option("--filter", o.model.filter, describe_filters())
       ->type_name("NAME")
       ->capture_default_str()
-      ->check(CLI::IsMember({"none", "geometry"}))
+      ->group("Model");
+  app.add_flag("--temporal", o.model.temporal,
+               "average over the frames of a sequence what they show of the same surface")
       ->group("Model");
 }
 
@@ -256,13 +267,13 @@ void finish(Options& o, const RawOptions& raw, bool depth_kind_given) {
   if (depth_kind_given) read_depth_kind(raw.depth_kind, o.input.gbuffer);
   if (raw.background_depth) o.input.gbuffer.background_depth = float(*raw.background_depth);
   if (raw.env_up != "auto") o.light.up = raw.env_up == "z" ? UpAxis::z : UpAxis::y;
+  find_filter(o.model.filter);
   o.model.radius = read_length("--radius", raw.radius);
   o.model.thickness = read_length("--thickness", raw.thickness);
   o.model.extend_offscreen = raw.offscreen == "extend";
   o.model.quality = raw.quality == "draft"   ? Quality::draft
                     : raw.quality == "final" ? Quality::final
                                              : Quality::standard;
-  o.model.filter = raw.filter == "geometry";
   o.output.pixel_type = raw.pixel_type == "half" ? Imf::HALF : Imf::FLOAT;
   if (!raw.compression.empty()) o.output.compression = read_compression(raw.compression);
   o.batch.on_error = raw.on_error == "stop" ? OnError::stop : OnError::keep_going;

@@ -51,7 +51,8 @@ struct ModelOptions {
   int bounces = 1;                   ///< 0 to 8
   unsigned seed = 0;
   std::vector<std::string> set;  ///< NAME=VALUE of the method
-  bool filter = true;            ///< geometry filter after the estimate
+  std::string filter = "geometry";
+  bool temporal = false;  ///< frames of a sequence share what they find
 };
 
 /// A product and the file that it alone goes to.

@@ -13,7 +13,6 @@
 #include "compose.h"
 #include "display_image.h"
 #include "error.h"
-#include "filters/geometry_filter.h"
 #include "io/exr_writer.h"
 #include "io/image_file.h"
 #include "io/safe_file.h"
@@ -51,7 +50,7 @@ Plane<float> standard_error(const Plane<float>& difference, const Geometry& geom
   Products squares;
   squares.error = difference;
   for (float& e : squares.error.pixels) e *= e;
-  if (plan.filter) squares = filter_geometry(squares, geometry, plan.method->pattern_size);
+  squares = apply_filter(*plan.filter, std::move(squares), geometry, plan.method->pattern_size);
   for (float& e : squares.error.pixels) e = std::sqrt(std::max(e, 0.0f));
   return std::move(squares.error);
 }
@@ -81,8 +80,9 @@ void write_exr_target(const SafeFile& file, const Target& target, const Options&
   relit.clamped_values += write_exr(file, output);
 }
 
-/// Estimates and filters once.
-Products estimate(const Options& options, Frame& frame, const std::function<void(double)>& told) {
+/// Estimates and filters once; leaves in `history` what a temporal plan has then.
+Products estimate(Frame& frame, const std::function<void(double)>& told,
+                  const std::optional<History>& before, History& history) {
   const Plan& plan = frame.plan;
   Stopwatch watch;
   const double passes = 1.0 + plan.bounces;
@@ -93,11 +93,16 @@ Products estimate(const Options& options, Frame& frame, const std::function<void
   };
   Products products = plan.method->estimate(
       {frame.geometry, frame.gbuffer.albedo, frame.gbuffer.radiance, frame.environment,
-       plan.products, plan.radius, plan.bounces, options.model.seed, plan.parameters, progress,
-       plan.slices, plan.steps, &frame.hidden, frame.light_model ? &*frame.light_model : nullptr,
+       plan.products, plan.radius, plan.bounces, plan.seed, plan.parameters, progress, plan.slices,
+       plan.steps, &frame.hidden, frame.light_model ? &*frame.light_model : nullptr,
        plan.extend_offscreen});
   frame.times.estimate += watch.lap();
-  if (plan.filter) products = filter_geometry(products, frame.geometry, plan.method->pattern_size);
+  products =
+      apply_filter(*plan.filter, std::move(products), frame.geometry, plan.method->pattern_size);
+  if (plan.temporal) {
+    history = accumulate(before ? &*before : nullptr, frame.geometry, products);
+    products = products_of(history);
+  }
   if (!products.error.empty())
     products.error = standard_error(products.error, frame.geometry, plan);
   frame.times.filter += watch.lap();
@@ -105,11 +110,11 @@ Products estimate(const Options& options, Frame& frame, const std::function<void
 }
 
 /// Estimates with more and more slices until the mean standard error is what the plan asks for.
-Products make_products(const Options& options, Frame& frame, Relit& relit,
-                       const std::function<void(double)>& told) {
+Products make_products(Frame& frame, Relit& relit, const std::function<void(double)>& told,
+                       const std::optional<History>& before) {
   Plan& plan = frame.plan;
   for (;;) {
-    Products products = estimate(options, frame, told);
+    Products products = estimate(frame, told, before, relit.history);
     if (!plan.error) return products;
     const double found = mean_over_surfaces(products.error, frame.geometry);
     if (found <= *plan.error || plan.slices >= kMostSlices) {
@@ -170,7 +175,8 @@ void check_targets(const std::vector<Target>& targets, const std::vector<std::st
 }
 
 Relit relight(const Options& options, Frame& frame, const std::vector<Target>& targets,
-              const OutputPolicy& policy, const std::function<void(double)>& told) {
+              const OutputPolicy& policy, const std::function<void(double)>& told,
+              const std::optional<History>& before) {
   const Plan& plan = frame.plan;
   Relit relit;
   std::optional<DisplayTransform>
@@ -182,7 +188,7 @@ Relit relight(const Options& options, Frame& frame, const std::vector<Target>& t
     relit.notes.push_back(display->description());
   }
 
-  const Products products = make_products(options, frame, relit, told);
+  const Products products = make_products(frame, relit, told, before);
   Stopwatch watch;
   told(0.85);
 

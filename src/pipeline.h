@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "estimators/estimator.h"
+#include "filters/temporal.h"
 #include "frame.h"
 #include "options.h"
 
@@ -32,12 +33,15 @@ void check_targets(const std::vector<Target>& targets, const std::vector<std::st
                    const OutputPolicy& policy);
 
 /// The main job on a frame that has been prepared: estimate, filter, compose, colour, write.
-/// All targets appear, or none. `told` hears how far it is, 0..1.
+/// All targets appear, or none. `told` hears how far it is, 0..1. `before` is what a temporal plan
+/// takes from the frame before, if there is one.
 struct Relit {
   std::size_t clamped_values = 0;  ///< beyond the range of half
   std::vector<std::string> notes;  ///< how colours were transformed
+  History history;                 ///< of a temporal plan, for the next frame; without a geometry
 };
 Relit relight(const Options& options, Frame& frame, const std::vector<Target>& targets,
-              const OutputPolicy& policy, const std::function<void(double)>& told);
+              const OutputPolicy& policy, const std::function<void(double)>& told,
+              const std::optional<History>& before);
 
 }  // namespace ssdo

@@ -34,8 +34,9 @@ bool contains(const Names& names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-bool makes(const Method& method, std::string_view product) {
+bool makes(const Method& method, std::string_view product, bool ambient) {
   const ProductSet& can = method.products;
+  if (product == "composite" && ambient) return can.ao;
   return product == "ao"       ? can.ao
          : product == "bent"   ? can.bent
          : product == "bounce" ? can.bounce
@@ -43,14 +44,11 @@ bool makes(const Method& method, std::string_view product) {
                                : can.direct;
 }
 
-bool needs_albedo(std::string_view product) {
-  return product == "composite" || product == "bounce";
-}
-
-std::string methods_that_make(std::string_view product) {
+std::string methods_that_make(std::string_view product, bool ambient) {
   std::string names;
   for (const Method& method : methods()) {
-    if (makes(method, product)) names += (names.empty() ? "" : ", ") + std::string(method.name);
+    if (makes(method, product, ambient))
+      names += (names.empty() ? "" : ", ") + std::string(method.name);
   }
   return names;
 }
@@ -58,9 +56,13 @@ std::string methods_that_make(std::string_view product) {
 /// Decides what is made, and in which files it goes.
 class ProductChoice {
  public:
-  ProductChoice(const Method& method, const OutputOptions& output, bool albedo,
+  ProductChoice(const Method& method, const OutputOptions& output, const GBuffer& gbuffer,
                 const std::string& file)
-      : method_(method), output_(output), albedo_(albedo), file_(file) {}
+      : method_(method),
+        output_(output),
+        albedo_(!gbuffer.albedo.empty()),
+        ambient_(!gbuffer.ambient.empty()),
+        file_(file) {}
 
   void choose(Plan& plan) const {
     const auto is_picture = [](const std::string& path) { return is_display_image(path); };
@@ -69,7 +71,8 @@ class ProductChoice {
     if (std::size_t(pictures) < output_.files.size() || (output_.files.empty() && !only_saves)) {
       plan.write = of_exr();
       if (output_.products.empty() && !albedo_)
-        plan.reasons.push_back("no bounce and no composite: there is no albedo");
+        plan.reasons.push_back(ambient_ ? "no bounce: there is no albedo"
+                                        : "no bounce and no composite: there is no albedo");
     }
     Names wanted = output_.products;
     wanted.insert(wanted.end(), plan.write.begin(), plan.write.end());
@@ -79,21 +82,25 @@ class ProductChoice {
     for (const std::string_view name : kProducts) {
       if (contains(wanted, name)) plan.make.emplace_back(name);
     }
-    const bool composite = contains(wanted, "composite");
+    const bool lit = contains(wanted, "composite") && !ambient_;
     const bool error = contains(wanted, "error") || plan.error;
-    plan.products.ao = contains(wanted, "ao");
+    plan.products.ao = contains(wanted, "ao") || (contains(wanted, "composite") && ambient_);
     plan.products.bent = contains(wanted, "bent");
     plan.products.error = error;
-    plan.products.direct = contains(wanted, "direct") || composite || error;
-    plan.products.bounce = contains(wanted, "bounce") || composite || (error && albedo_);
+    plan.products.direct = contains(wanted, "direct") || lit || error;
+    plan.products.bounce = contains(wanted, "bounce") || lit || (error && albedo_);
   }
 
  private:
+  bool needs_albedo(std::string_view product) const {
+    return product == "bounce" || (product == "composite" && !ambient_);
+  }
+
   /// What an EXR holds: the products that the user names, or all that frame and method allow.
   Names of_exr() const {
     Names names;
     for (const std::string_view name : kProducts) {
-      const bool possible = makes(method_, name) && (albedo_ || !needs_albedo(name));
+      const bool possible = makes(method_, name, ambient_) && (albedo_ || !needs_albedo(name));
       if (output_.products.empty() ? possible : contains(output_.products, name))
         names.emplace_back(name);
     }
@@ -116,9 +123,9 @@ class ProductChoice {
           fmt::format("product '{}': there are ao, bent, direct, bounce, error and composite",
                       name));
     }
-    if (!makes(method_, name)) {
+    if (!makes(method_, name, ambient_)) {
       throw Error(ExitCode::usage, fmt::format("method {} makes no {}; these do: {}", method_.name,
-                                               name, methods_that_make(name)));
+                                               name, methods_that_make(name, ambient_)));
     }
     if (!albedo_ && needs_albedo(name)) {
       throw Error(
@@ -131,9 +138,17 @@ class ProductChoice {
 
   const Method& method_;
   const OutputOptions& output_;
-  bool albedo_;
+  bool albedo_, ambient_;  ///< layers that the frame has
   const std::string& file_;
 };
+
+void explain_composite(Plan& plan, const GBuffer& gbuffer) {
+  if (gbuffer.ambient.empty() || !contains(plan.make, "composite")) return;
+  plan.reasons.push_back(gbuffer.beauty.empty()
+                             ? "composite is the ambient layer times ao: there is no beauty"
+                             : "composite is the beauty with its ambient part times ao; all other "
+                               "light stays as rendered");
+}
 
 void choose_bounces(Plan& plan, int wanted, const GBuffer& gbuffer) {
   plan.bounces = plan.products.bounce ? wanted : 0;
@@ -220,9 +235,12 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBu
   Plan plan;
   plan.method = &find_method(model.method);
   plan.parameters = resolve_parameters(*plan.method, model.set);
-  plan.filter = model.filter;
+  plan.filter = &find_filter(model.filter);
+  plan.temporal = model.temporal;
+  plan.seed = model.seed;
   plan.error = model.error;
-  ProductChoice(*plan.method, output, !gbuffer.albedo.empty(), file).choose(plan);
+  ProductChoice(*plan.method, output, gbuffer, file).choose(plan);
+  explain_composite(plan, gbuffer);
   choose_bounces(plan, model.bounces, gbuffer);
   explain_light(plan, light);
   choose_radius(plan, model, geometry);
@@ -236,7 +254,8 @@ nlohmann::json to_json(const Plan& plan) {
                       {"products", plan.make},
                       {"bounces", plan.bounces},
                       {"samples_per_pixel", plan.samples_per_pixel()},
-                      {"filter", plan.filter ? "geometry" : "none"},
+                      {"filter", plan.filter->name},
+                      {"temporal", plan.temporal},
                       {"reasons", plan.reasons}};
   // JSON knows no infinity.
   j["radius"] = std::isinf(plan.radius) ? nlohmann::json("inf") : nlohmann::json(plan.radius);

@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "estimators/estimator.h"
+#include "filters/registry.h"
 #include "options.h"
-#include "scene/light_model.h"
 #include "scene/gbuffer.h"
 #include "scene/geometry.h"
+#include "scene/light_model.h"
 
 namespace ssdo {
 
@@ -21,11 +22,13 @@ struct Plan {
   ProductSet products;  ///< what the method is asked for
   float radius = 0;     ///< scene units
   int bounces = 0;
-  int slices = 0, steps = 0;     ///< of methods that march
+  int slices = 0, steps = 0;  ///< of methods that march
   bool extend_offscreen = true;
-  std::optional<double> error;   ///< to stay below
-  std::string isa;               ///< instruction set of the inner loops
-  bool filter = true;
+  std::optional<double> error;       ///< to stay below
+  std::string isa;                   ///< instruction set of the inner loops
+  const Filter* filter = nullptr;    ///< after the estimate
+  bool temporal = false;             ///< then the mean with the frames before
+  unsigned seed = 0;                 ///< of the sampling pattern
   std::vector<std::string> make;     ///< products for any of the outputs
   std::vector<std::string> write;    ///< those that every EXR of -o holds, in their order there
   std::string show;                  ///< the one that every picture of -o holds

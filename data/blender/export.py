@@ -152,4 +152,5 @@ def main():
         args.camera.write_text(json.dumps(camera_json(args.scene, scene, picture), indent=1) + "\n")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -12,8 +12,8 @@ namespace {
 /// Names in order of preference, normalised: lower case, no spaces, underscores or dashes; `*`
 /// stands for anything. A name with a dot is compared with the whole path of a layer, one without
 /// with its last segment too. "" is a layer without a name. Plain `diffuse` is missing on purpose
-/// (it is lit), `pref` and `rest` too (another space), `mist` too (no distance). `radiance` has no
-/// name that could be trusted: it is used on request only.
+/// (it is lit), `pref` and `rest` too (another space), `mist` too (no distance). `radiance` and
+/// `ambient` have no name that could be trusted: they are used on request only.
 const std::vector<std::string>& known_names(Role role) {
   static const std::array<std::vector<std::string>, kRoleCount> names = {{
       {"pworld", "p.world", "p", "position", "worldposition", "worldpos", "posw", "wp", "ppass",
@@ -27,6 +27,7 @@ const std::vector<std::string>& known_names(Role role) {
        "vrayzdepth", "cgeometryzdepth"},
       {"alpha"},
       {"", "rgba", "beauty", "combined", "ci", "c", "finalimage*beauty"},
+      {},
       {},
   }};
   return names[std::size_t(role)];

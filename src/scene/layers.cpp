@@ -15,7 +15,7 @@ namespace ssdo {
 namespace {
 
 constexpr std::array<std::string_view, kRoleCount> kRoleNames = {
-    "position", "normal", "albedo", "depth", "alpha", "beauty", "radiance"};
+    "position", "normal", "albedo", "depth", "alpha", "beauty", "radiance", "ambient"};
 
 std::string_view last_segment(std::string_view path) {
   const auto dot = path.rfind('.');

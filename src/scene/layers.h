@@ -12,8 +12,8 @@
 namespace ssdo {
 
 /// What a layer is used as.
-enum class Role { position, normal, albedo, depth, alpha, beauty, radiance };
-inline constexpr std::size_t kRoleCount = 7;
+enum class Role { position, normal, albedo, depth, alpha, beauty, radiance, ambient };
+inline constexpr std::size_t kRoleCount = 8;
 
 std::string_view role_name(Role role);
 std::optional<Role> role_from_name(std::string_view name);

@@ -179,21 +179,26 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   if (!(g.pixel_aspect > 0) || !std::isfinite(g.pixel_aspect)) g.pixel_aspect = 1;
   g.position_step = lead->half ? kStepHalf : kStepFloat;
 
-  const LayerReader read(
-      files, table,
-      {Role::position, Role::depth, Role::normal, Role::albedo, Role::radiance, Role::alpha},
-      g.window);
+  std::vector<Role> roles = {Role::position, Role::depth,    Role::normal,
+                             Role::albedo,   Role::radiance, Role::alpha};
+  if (table[Role::ambient]) roles.insert(roles.end(), {Role::ambient, Role::beauty});
+  const LayerReader read(files, table, roles, g.window);
   g.position = read.vector(table[Role::position], NAN);
   g.depth = read.scalar(table[Role::depth], NAN);
   g.normal = read.vector(table[Role::normal], 0);
   g.albedo = read.vector(table[Role::albedo], 0);
   g.radiance = read.vector(table[Role::radiance], 0);
   g.alpha = read.scalar(table[Role::alpha], 0);
+  if (table[Role::ambient]) {
+    g.ambient = read.vector(table[Role::ambient], 0);
+    g.beauty = read.vector(table[Role::beauty], 0);
+  }
 
   undo_depth_encoding(g, options, file);
   classify(g, options);
   undo_normal_encoding(g);
-  for (Plane<glm::vec3>* values : {&g.normal, &g.albedo, &g.radiance}) clear_broken(g, *values);
+  for (Plane<glm::vec3>* values : {&g.normal, &g.albedo, &g.radiance, &g.ambient, &g.beauty})
+    clear_broken(g, *values);
   clear_negative(g.albedo);
   clear_negative(g.radiance);
   if (lead->half) {

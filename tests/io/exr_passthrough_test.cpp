@@ -19,6 +19,7 @@
 #include <limits>
 
 #include "io/exr_writer.h"
+#include "parallel/tiles.h"
 #include "support/error_matchers.h"
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
@@ -214,7 +215,7 @@ TEST(PassThrough, SameInputGivesSameBytes) {
 
 /// Writes an EXR in a child process that may write files of `bytes` at most. Gives its exit code.
 int write_with_limit(const fs::path& input_path, const fs::path& output, rlim_t bytes) {
-  Imf::setGlobalThreadCount(0);  // threads of OpenEXR do not live on in a child that waits for them
+  const ThreadLimit alone(1);  // a child has none of the threads that OpenEXR would wait for
   const pid_t child = fork();
   if (child == 0) {
     remove_temporaries_on_signals();

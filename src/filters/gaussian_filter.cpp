@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The edge-preserving blur of F. D. Luna, "Introduction to 3D Game Programming with DirectX 12",
+// 2016, chapter 21: a Gaussian along rows and then along columns, which leaves out neighbours of
+// another surface.
+//
+//   out(p) = sum_i g(i) w(p, q) in(q) / sum_i g(i) w(p, q),  q = p + i along the row or column
+//   g(i) = exp(-i^2 / (2 s^2)),  i = -5 .. 5
+//   w = 1 where N_p . N_q >= 0.8 and |z_p - z_q| <= 2, else 0
+//
+// s = 2.5, and both passes run three times, as in the code published with the book. The limit of
+// depth is a length in scene units, made for the book's scene: in a scene of another size the
+// depths reject too much or nothing. What differs: the book blurs at half width and half height
+// what it has computed there, so that its window covers twice as many pixels of the picture.
+#include "filters/gaussian_filter.h"
+
+#include <cmath>
+
+#include "parallel/isa.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "filters/gaussian_filter.cpp"
+#include <hwy/foreach_target.h>
+
+#include "filters/window_average-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace ssdo::HWY_NAMESPACE {
+
+constexpr float kLeastCosine = 0.8f;
+constexpr float kMostDepth = 2;  ///< scene units
+
+struct SameSurface {
+  HWY_INLINE V operator()(const SurfaceLanes& p, const SurfaceLanes& q) const {
+    const D d;
+    const auto same = hn::And(cosine(p, q) >= hn::Set(d, kLeastCosine),
+                              hn::Abs(p.z - q.z) <= hn::Set(d, kMostDepth));
+    return hn::IfThenElseZero(same, hn::Set(d, 1.0f));
+  }
+};
+
+void gaussian_tile(const Products& noisy, const Geometry& geometry, const std::vector<Tap>& taps,
+                   const Tile& tile, Products& out) {
+  WindowAverage<SameSurface>(noisy, geometry, taps, {}, tile, out).run();
+}
+
+}  // namespace ssdo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ssdo {
+
+HWY_EXPORT(gaussian_tile);
+
+Products filter_gaussian(const Products& noisy, const Geometry& geometry, int /*pattern_size*/) {
+  constexpr int kRadius = 5, kRounds = 3;
+  constexpr double kSigma = 2.5;
+  choose_isa();
+  std::vector<Tap> row;
+  for (int i = -kRadius; i <= kRadius; ++i)
+    row.push_back({i, 0, float(std::exp(-i * i / (2 * kSigma * kSigma)))});
+  std::vector<std::vector<Tap>> windows;
+  for (int round = 0; round < kRounds; ++round)
+    windows.insert(windows.end(), {row, transposed(row)});
+  return in_passes(noisy, geometry, windows,
+                   [&](const Products& from, const auto& taps, const Tile& tile, Products& to) {
+                     HWY_DYNAMIC_DISPATCH(gaussian_tile)(from, geometry, taps, tile, to);
+                   });
+}
+
+}  // namespace ssdo
+#endif

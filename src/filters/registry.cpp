@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/registry.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "error.h"
+#include "filters/box_filter.h"
+#include "filters/gaussian_filter.h"
+#include "filters/geometry_filter.h"
+#include "filters/normal_filter.h"
+
+namespace ssdo {
+
+std::span<const Filter> filters() {
+  static const std::array<Filter, 5> all = {{
+      {"none", "leaves the sampling pattern", nullptr},
+      {"box", "mean over the pattern, across edges", filter_box},
+      {"gaussian", "Gaussian within a depth and a cone of normals", filter_gaussian},
+      {"normal", "seven taps, by normals", filter_normal},
+      {"geometry", "mean over the pattern on one surface", filter_geometry},
+  }};
+  return all;
+}
+
+const Filter& find_filter(std::string_view name) {
+  std::string names;
+  for (const Filter& filter : filters()) {
+    if (filter.name == name) return filter;
+    names += (names.empty() ? "" : ", ") + std::string(filter.name);
+  }
+  throw Error(ExitCode::usage,
+              fmt::format("--filter {}: no such filter; there is {}", name, names));
+}
+
+Products apply_filter(const Filter& filter, Products noisy, const Geometry& geometry,
+                      int pattern_size) {
+  return filter.apply ? filter.apply(noisy, geometry, pattern_size) : std::move(noisy);
+}
+
+}  // namespace ssdo

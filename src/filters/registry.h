@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "estimators/estimator.h"
+#include "scene/geometry.h"
+
+namespace ssdo {
+
+/// A row in the table of filters.
+struct Filter {
+  std::string_view name, summary;
+  /// Takes away the noise of a T x T sampling pattern; null: leaves the products as they are.
+  Products (*apply)(const Products& noisy, const Geometry& geometry, int pattern_size);
+};
+
+/// Every filter, in the order of --help.
+std::span<const Filter> filters();
+
+/// Errors: ExitCode::usage with the names that exist.
+const Filter& find_filter(std::string_view name);
+
+/// The products after the filter. Errors: those of choose_isa().
+Products apply_filter(const Filter& filter, Products noisy, const Geometry& geometry,
+                      int pattern_size);
+
+}  // namespace ssdo

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Sequences with --temporal through the real binary.
+#include <ImfStringAttribute.h>
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/frame_file.h"
+#include "support/run_tool.h"
+
+namespace ssdo::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+/// Frames 5 to 8 of a camera that stands still or moves.
+void write_sequence(const TempDir& dir, double step) {
+  const Window window{0, 0, 64, 48};
+  const Surface scene = all_of({plane({}, {0, 0, 1}), sphere({0.2, 0, 0.6}, 0.6)});
+  for (int n = 0; n < 4; ++n) {
+    const Camera camera =
+        look_at(camera_from_fov(40, window, 1), {step * n, -4, 3}, {0, 0, 0.3}, {0, 0, 1});
+    write_frame(dir / ("in." + std::to_string(5 + n) + ".exr"),
+                frame_of(take_picture(scene, camera, window)));
+  }
+}
+
+Finished relight(const TempDir& dir, const std::string& out, std::vector<std::string> flags) {
+  flags.insert(flags.begin(), {dir / "in.@.exr", "-o", dir / (out + ".@.exr"), "--pixel-type",
+                               "float", "--quality", "draft", "--radius", "1"});
+  return run_tool(flags);
+}
+
+Plane<float> ao(const TempDir& dir, const std::string& name) {
+  return channel(dir / (name + ".exr"), "ao.Y");
+}
+
+json plan_of(const TempDir& dir, const std::string& name) {
+  const ExrReader file(dir / (name + ".exr"));
+  const auto* text = file.parts()[0].header.findTypedAttribute<Imf::StringAttribute>("ssdo/plan");
+  return json::parse(text->value());
+}
+
+TEST(TemporalRuns, AverageFramesWhosePatternsComeFromTheirNumbers) {
+  const TempDir dir;
+  write_sequence(dir, 0);
+  ASSERT_EQ(relight(dir, "mean", {"--temporal"}).code, 0);
+  for (const std::string frame : {"5", "6", "7", "8"})
+    ASSERT_EQ(relight(dir, "alone", {"--frames", frame, "--seed", frame}).code, 0);
+  EXPECT_EQ(ao(dir, "mean.5").pixels, ao(dir, "alone.5").pixels);
+  const Plane<float> mean = ao(dir, "mean.8");
+  double largest = 0;
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    double sum = 0;
+    for (const char* frame : {"5", "6", "7", "8"}) sum += ao(dir, "alone." + std::string(frame))[i];
+    EXPECT_NEAR(mean[i], sum / 4, 1e-5);
+    largest = std::max(largest, std::abs(ao(dir, "alone.8")[i] - sum / 4));
+  }
+  EXPECT_GT(largest, 0.01) << "every frame has the same pattern";
+}
+
+TEST(TemporalRuns, GiveTheSameBitsOnAnyNumberOfThreads) {
+  const TempDir dir;
+  write_sequence(dir, 0.1);
+  ASSERT_EQ(relight(dir, "one", {"--temporal", "--threads", "1"}).code, 0);
+  ASSERT_EQ(relight(dir, "four", {"--temporal", "--threads", "4"}).code, 0);
+  for (const std::string frame : {"5", "6", "7", "8"})
+    EXPECT_EQ(ao(dir, "one." + frame).pixels, ao(dir, "four." + frame).pixels) << frame;
+}
+
+TEST(TemporalRuns, SayWhereTheirHistoryBegins) {
+  const TempDir dir;
+  write_sequence(dir, 0.1);
+  ASSERT_EQ(relight(dir, "out", {"--temporal", "--frames", "7-8"}).code, 0);
+  EXPECT_EQ(plan_of(dir, "out.7")["temporal"], true);
+  EXPECT_THAT(plan_of(dir, "out.7")["reasons"].dump(), HasSubstr("no history"));
+  EXPECT_THAT(plan_of(dir, "out.8")["reasons"].dump(), HasSubstr("history of the frame before"));
+
+  // A frame that is skipped leaves none, and one that fails neither.
+  std::filesystem::remove(dir / "out.8.exr");
+  ASSERT_EQ(relight(dir, "out", {"--temporal", "--frames", "7-8", "--skip-existing"}).code, 0);
+  EXPECT_THAT(plan_of(dir, "out.8")["reasons"].dump(), HasSubstr("no history"));
+  std::filesystem::remove(dir / "in.6.exr");
+  EXPECT_EQ(relight(dir, "gap", {"--temporal", "--frames", "5-7", "--on-error", "continue"}).code,
+            3);
+  EXPECT_THAT(plan_of(dir, "gap.7")["reasons"].dump(), HasSubstr("no history"));
+}
+
+TEST(TemporalRuns, NeedASequence) {
+  const TempDir dir;
+  write_sequence(dir, 0);
+  const Finished refused = run_tool({dir / "in.5.exr", "-o", dir / "out.exr", "--temporal"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.error_line(), HasSubstr("--temporal needs a sequence"));
+}
+
+TEST(Filters, AreNamedInThePlan) {
+  const TempDir dir;
+  write_sequence(dir, 0);
+  for (const std::string name : {"none", "box", "gaussian", "normal", "geometry"}) {
+    const Finished done = run_tool({"info", dir / "in.5.exr", "--json", "--filter", name});
+    ASSERT_EQ(done.code, 0) << done.err;
+    EXPECT_EQ(json::parse(done.out)["plan"]["filter"], name);
+  }
+}
+
+}  // namespace
+}  // namespace ssdo::test

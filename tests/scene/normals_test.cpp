@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Normals of frames that have depth and no N.
+#include "scene/normals.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/trigonometric.hpp>
+
+#include "support/analytic_scene.h"
+
+namespace ssdo::test {
+namespace {
+
+const Window kWindow{0, 0, 64, 48};
+
+/// The geometry that a frame of depth alone leads to, rounded to float as a file has it.
+Geometry from_depth(const Surface& scene, const Camera& camera, const CameraOptions& options,
+                    DepthKind kind = DepthKind::planar, const Window& window = kWindow) {
+  const Picture picture = take_picture(scene, camera, window);
+  GBuffer g;
+  g.window = g.display = window;
+  g.depth_kind = kind;
+  g.valid = picture.valid;
+  g.depth = Plane<float>(window.width(), window.height(), 1e10f);
+  for (std::size_t i = 0; i < g.depth.size(); ++i) {
+    if (!picture.valid[i]) continue;
+    const glm::dvec3 p = camera.to_camera(glm::dvec3(picture.position[i]));
+    g.depth[i] = float(kind == DepthKind::ray ? glm::length(p) : -p.z);
+  }
+  GeometryReport report;
+  Geometry geometry = build_geometry(g, options, "test", report);
+  EXPECT_EQ(report.normal_space, "rebuilt from P");
+  return geometry;
+}
+
+glm::dvec3 normal_at(const Geometry& g, std::size_t i) { return glm::dvec3(g.surfel[i].normal); }
+
+TEST(NormalsFromDepth, OfAPlaneAreItsNormalUpToTheBorder) {
+  for (const double tilt : {0.0, 30.0, 60.0, 80.0}) {
+    const double t = glm::radians(tilt);
+    const glm::dvec3 eye(0, -9 * std::sin(t), 9 * std::cos(t)), up(0.2, std::cos(t), std::sin(t));
+    const Surface floor = plane({}, {0, 0, 1});
+    for (const DepthKind kind : {DepthKind::planar, DepthKind::ray}) {
+      const Camera camera = look_at(camera_from_fov(20, kWindow, 1), eye, {}, up);
+      const Geometry g = from_depth(floor, camera, {"", 20, {}}, kind);
+      for (std::size_t i = 0; i < g.surfel.size(); ++i)
+        EXPECT_LT(glm::length(normal_at(g, i) - camera.rotation * glm::dvec3(0, 0, 1)), 1e-3);
+    }
+    const Camera camera = look_at(camera_from_ortho_width(2, kWindow, 1), eye, {}, up);
+    const Geometry g = from_depth(floor, camera, {"", {}, 2});
+    for (std::size_t i = 0; i < g.surfel.size(); ++i)
+      EXPECT_LT(glm::length(normal_at(g, i) - camera.rotation * glm::dvec3(0, 0, 1)), 1e-3);
+  }
+}
+
+TEST(NormalsFromDepth, StayOnTheirOwnSideOfASilhouette) {
+  // A card before a tilted wall: whichever side of an edge a pixel lies on, one of the two
+  // differences stays on its surface, and it is the smaller one.
+  const glm::dvec3 wall = glm::normalize(glm::dvec3(0.5, 0.2, 1)), front(0, 0, 1);
+  const Surface scene =
+      all_of({plane({0, 0, -2}, wall), cut(plane({}, front), [](const glm::dvec3& p) {
+                return std::abs(p.x) < 0.51 && std::abs(p.y) < 0.52;
+              })});
+  const Camera camera = look_at(camera_from_fov(40, kWindow, 1), {0, 0, 5}, {}, {0, 1, 0});
+  const Geometry g = from_depth(scene, camera, {"", 40, {}});
+  const Picture picture = take_picture(scene, camera, kWindow);
+  std::size_t at_edges = 0;
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const std::size_t i = g.surfel.index(x, y);
+      const glm::dvec3 expected = camera.rotation * glm::dvec3(picture.normal[i]);
+      EXPECT_LT(glm::length(normal_at(g, i) - expected), 1e-3) << x << " " << y;
+      at_edges += x > 0 && picture.normal[i] != picture.normal[i - 1];
+    }
+  }
+  EXPECT_GT(at_edges, 20u);
+}
+
+TEST(NormalsFromDepth, DoNotLeanOnTheBackground) {
+  const Camera camera = look_at(camera_from_fov(40, kWindow, 1), {0, 0, 5}, {}, {0, 1, 0});
+  const glm::dvec3 n = glm::normalize(glm::dvec3(0.4, -0.3, 1));
+  const Geometry g =
+      from_depth(cut(plane({}, n), [](const glm::dvec3& p) { return glm::length(p) < 1; }), camera,
+                 {"", 40, {}});
+  std::size_t surfaces = 0, without_a_plane = 0;
+  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+    if (!g.is_surface(i)) continue;
+    ++surfaces;
+    without_a_plane += glm::length(normal_at(g, i) - camera.rotation * n) > 1e-3;
+  }
+  EXPECT_GT(surfaces, 300u);
+  EXPECT_EQ(without_a_plane, 0u);
+}
+
+TEST(NormalsFromDepth, FaceTheViewerWhereThereIsNoPlaneToSee) {
+  for (const Window& window : {Window{0, 0, 1, 1}, Window{0, 0, 5, 1}, Window{0, 0, 1, 5}}) {
+    const Camera camera = look_at(camera_from_fov(4, window, 1), {0, -3, 3}, {}, {0, 0, 1});
+    const Geometry g =
+        from_depth(plane({}, {0, 0, 1}), camera, {"", 4, {}}, DepthKind::planar, window);
+    for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+      const glm::dvec3 view = -glm::normalize(glm::dvec3(g.surfel[i].position));
+      EXPECT_LT(glm::length(normal_at(g, i) - view), 1e-6);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ssdo::test
