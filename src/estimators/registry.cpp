@@ -9,6 +9,7 @@
 #include "error.h"
 #include "estimators/bitmask.h"
 #include "estimators/ssdo.h"
+#include "estimators/trace.h"
 #include "math/number.h"
 
 namespace ssdo {
@@ -24,7 +25,7 @@ std::string parameter_names(const Method& method) {
 }  // namespace
 
 std::span<const Method> methods() {
-  static const std::array<Method, 2> all = {bitmask_method(), ssdo_method()};
+  static const std::array<Method, 3> all = {bitmask_method(), ssdo_method(), trace_method()};
   return all;
 }
 

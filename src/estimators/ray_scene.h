@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+
+#include "estimators/height_field.h"
+
+namespace ssdo {
+
+/// A height field that answers rays in camera space, through Embree. May be asked from many threads
+/// at once.
+class RayScene {
+ public:
+  /// Errors: ExitCode::failed where memory does not suffice.
+  explicit RayScene(HeightField field);
+  ~RayScene();
+
+  /// Whether a ray meets anything nearer than `reach`, in lengths of `direction`, which may be
+  /// infinite.
+  bool is_blocked(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
+
+  /// Whose surface a ray meets first; pixel -1 for nothing.
+  Owner first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
+
+ private:
+  struct Embree;
+  HeightField field_;
+  std::unique_ptr<Embree> embree_;
+};
+
+}  // namespace ssdo
