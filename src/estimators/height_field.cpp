@@ -330,7 +330,14 @@ class Builder {
   }
 
   void add_wall(const Node& n, const Point& a, const Point& b, Block& block) const {
-    add_quad(n, {front(a), front(b), back(b), back(a)}, block.cuts);
+    // Embree knows where a triangle ends to 1e-7 of its length. Endless walls of parallel views are
+    // cut where this is still far below a pixel; those of perspective are no longer than 1 / depth.
+    const float exact = float(width_ + height_);
+    if (!out_.space.orthographic() || std::min(a.front - a.back, b.front - b.back) <= exact)
+      return add_quad(n, {front(a), front(b), back(b), back(a)}, block.cuts);
+    const glm::vec3 a_between(a.at, a.front - exact), b_between(b.at, b.front - exact);
+    add_quad(n, {front(a), front(b), b_between, a_between}, block.cuts);
+    add_quad(n, {a_between, b_between, back(b), back(a)}, block.cuts);
   }
 
   void add_quad(const Node& n, const std::array<glm::vec3, 4>& p, TriangleMesh& mesh) const {

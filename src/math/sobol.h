@@ -53,7 +53,7 @@ inline glm::vec2 sobol_point(std::uint32_t index, std::uint32_t seed) {
     // 24 bits, so that rounding to float keeps them below 1.
     return (float(reversed_bits(scrambled_upwards(reversed, s)) >> 8) + 0.5f) * 0x1p-24f;
   };
-  return {to_unit(index, seed), to_unit(reversed_bits(sobol_second(index)), seed ^ 0x55555555u)};
+  return {to_unit(index, seed), to_unit(reversed_bits(sobol_second(index)), hash_of(seed, 0, 1))};
 }
 
 }  // namespace ssdo
