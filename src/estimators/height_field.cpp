@@ -96,7 +96,7 @@ class Builder {
     bool all_endless = true;
     const auto add = [&](const glm::vec3& position, int source, bool covered) {
       sheets.corners.push_back(out_.space.point(position));
-      sheets.owners.push_back({source, covered});
+      sheets.owners.push_back({sheets.corners.back().z, source, covered});
       const float thickness = hidden_ ? std::max(hidden_->thickness[std::size_t(source)], 0.0f)
                                       : std::numeric_limits<float>::infinity();
       all_endless &= std::isinf(thickness);
@@ -392,6 +392,11 @@ PictureSpace::PictureSpace(const Geometry& g)
 glm::vec3 PictureSpace::point(const glm::dvec3& p) const {
   const double w = orthographic_ ? 1.0 : 1.0 / -p.z;
   return glm::dvec3(fx_ * p.x * w, -fy_ * p.y * w, scale_ * (orthographic_ ? p.z : w));
+}
+
+glm::vec3 PictureSpace::position(const glm::vec3& q) const {
+  const double z = orthographic_ ? q.z / scale_ : -scale_ / q.z, w = orthographic_ ? 1.0 : -z;
+  return glm::dvec3(q.x * w / fx_, -q.y * w / fy_, z);
 }
 
 PictureSpace::Ray PictureSpace::ray(const glm::dvec3& p, const glm::dvec3& d, double reach) const {

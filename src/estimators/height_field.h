@@ -27,6 +27,7 @@ class PictureSpace {
   };
 
   glm::vec3 point(const glm::dvec3& camera_space) const;
+  glm::vec3 position(const glm::vec3& point) const;  ///< the inverse
   Ray ray(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
 
   /// How h changes along the tangent plane at `p` with the normal `n`, per pixel.
@@ -45,6 +46,7 @@ class PictureSpace {
 
 /// What a corner of a triangle belongs to.
 struct Owner {
+  float front = 0;       ///< height of the front that is before this corner, or the corner's own
   int pixel = -1;        ///< that shows this surface
   bool covered = false;  ///< here it goes on behind something else
 };

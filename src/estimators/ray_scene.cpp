@@ -4,6 +4,8 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <utility>
 
 #include "error.h"
@@ -26,6 +28,45 @@ RTCRay ray_of(const PictureSpace::Ray& from) {
   ray.mask = ~0u;
   return ray;
 }
+
+/// A ray that asks for fronts within reach.
+struct Query : RTCIntersectContext {
+  const HeightField* field;
+  glm::vec3 origin;
+  float reach;
+
+  Query(const HeightField& of, const glm::dvec3& from, double limit)
+      : field(&of), origin(from), reach(float(limit)) {
+    rtcInitIntersectContext(this);
+    if (!std::isinf(limit)) filter = &Query::refuse_far_fronts;
+  }
+
+  const TriangleMesh& mesh(unsigned id) const {
+    return id == kSheets ? field->sheets : field->cuts;
+  }
+
+  /// The corner of a triangle that is nearest to a place in it.
+  std::uint32_t corner(unsigned id, unsigned triangle, float u, float v) const {
+    const float w = 1 - u - v;
+    return mesh(id).triangles[triangle][w >= u && w >= v ? 0 : u >= v ? 1 : 2];
+  }
+
+  static void refuse_far_fronts(const RTCFilterFunctionNArguments* hits) {
+    const auto& query = *static_cast<const Query*>(hits->context);
+    for (unsigned i = 0; i < hits->N; ++i) {
+      if (hits->valid[i] == 0) continue;
+      const unsigned id = RTCHitN_geomID(hits->hit, hits->N, i);
+      const std::uint32_t c =
+          query.corner(id, RTCHitN_primID(hits->hit, hits->N, i), RTCHitN_u(hits->hit, hits->N, i),
+                       RTCHitN_v(hits->hit, hits->N, i));
+      const glm::vec3& at = query.mesh(id).corners[c];
+      const float front = query.mesh(id).owners[c].front;
+      if (id == kSheets && at.z == front) continue;
+      const glm::vec3 position = query.field->space.position({at.x, at.y, front});
+      if (glm::distance(position, query.origin) > query.reach) hits->valid[i] = 0;
+    }
+  }
+};
 
 }  // namespace
 
@@ -58,9 +99,9 @@ struct RayScene::Embree {
 RayScene::RayScene(HeightField field)
     : field_(std::move(field)), embree_(std::make_unique<Embree>()) {
   const std::size_t triangles = field_.sheets.triangles.size() + field_.cuts.triangles.size();
-  rtcSetSceneFlags(embree_->scene, triangles < kLarge
-                                       ? RTC_SCENE_FLAG_ROBUST
-                                       : RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
+  const int flags = RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION |
+                    (triangles < kLarge ? 0 : RTC_SCENE_FLAG_COMPACT);
+  rtcSetSceneFlags(embree_->scene, RTCSceneFlags(flags));
   for (TriangleMesh* mesh : {&field_.sheets, &field_.cuts}) {
     if (mesh->triangles.empty()) continue;
     mesh->corners.emplace_back(0);  // so that vectors of four can be read
@@ -80,8 +121,7 @@ RayScene::~RayScene() = default;
 bool RayScene::is_blocked(const glm::dvec3& origin, const glm::dvec3& direction,
                           double reach) const {
   RTCRay ray = ray_of(field_.space.ray(origin, direction, reach));
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  Query context(field_, origin, reach);
   rtcOccluded1(embree_->scene, &context, &ray);
   return ray.tfar < 0;
 }
@@ -90,14 +130,11 @@ Owner RayScene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
                           double reach) const {
   RTCRayHit query{ray_of(field_.space.ray(origin, direction, reach)), {}};
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  Query context(field_, origin, reach);
   rtcIntersect1(embree_->scene, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  const TriangleMesh& mesh = query.hit.geomID == kSheets ? field_.sheets : field_.cuts;
-  const float u = query.hit.u, v = query.hit.v, w = 1 - u - v;
-  const int nearest = w >= u && w >= v ? 0 : u >= v ? 1 : 2;
-  return mesh.owners[mesh.triangles[query.hit.primID][std::size_t(nearest)]];
+  const RTCHit& hit = query.hit;
+  return context.mesh(hit.geomID).owners[context.corner(hit.geomID, hit.primID, hit.u, hit.v)];
 }
 
 }  // namespace ssdo

@@ -16,8 +16,11 @@ class RayScene {
   explicit RayScene(HeightField field);
   ~RayScene();
 
-  /// Whether a ray meets anything nearer than `reach`, in lengths of `direction`, which may be
-  /// infinite.
+  // Directions are unit vectors; a reach may be infinite. What a solid has behind its front counts
+  // as far as that front is within reach too: how far things go on that are far away, no frame
+  // says.
+
+  /// Whether a ray meets anything.
   bool is_blocked(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
 
   /// Whose surface a ray meets first; pixel -1 for nothing.

@@ -16,6 +16,10 @@
 // What a surface sends is its albedo times all the light that arrives, as in method bitmask: the
 // side that is not seen has the light of its own side, as far as the seen one is open.
 //
+// What a solid has behind its front counts as far as that front is within the radius too, as there:
+// beside the endless side walls of far things, the ground of a closed room read 0.10 RMSE off a path
+// tracer, against 0.04.
+//
 // Directions are points of Sobol's sequence, scrambled anew for every pixel (math/sobol.h). Their
 // error falls about as n^-3/4, and is not shared by neighbours, so that no filter is needed and
 // means over a frame are exact. Surfaces end with the frame.

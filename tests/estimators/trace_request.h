@@ -10,7 +10,7 @@ namespace ssdo::test {
 struct TraceRequest {
   float radius = 1;
   ProductSet products = {.ao = true};
-  int samples = 256;
+  int samples = 64;
   Environment environment = Environment::constant(glm::vec3(1));
   const HiddenGeometry* hidden = nullptr;
   float albedo = 0.8f;
