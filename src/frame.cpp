@@ -77,7 +77,7 @@ Frame prepare_frame(const Options& options, const Light& light, const std::strin
     frame.light_model = model_light(frame.environment, frame.geometry.world_to_camera);
   frame.plan = make_plan(options.model, options.output, frame.gbuffer, frame.geometry,
                          frame.light_model ? &*frame.light_model : nullptr, input);
-  if (frame.plan.method->marches) {
+  if (frame.plan.method->looks_behind()) {
     const auto& thickness = options.model.thickness;
     frame.hidden = thickness ? constant_thickness(frame.geometry, float(*thickness))
                              : find_hidden_geometry(frame.geometry);

@@ -10,6 +10,7 @@
 #include <new>
 
 #include "batch.h"
+#include "compare.h"
 #include "error.h"
 #include "estimators/registry.h"
 #include "io/safe_file.h"
@@ -26,6 +27,11 @@ ssdo::ExitCode run(int argc, char** argv) {
   if (parsed.options.command == ssdo::Command::list_methods) {
     fmt::print("{}", ssdo::describe_methods());
     return ssdo::ExitCode::done;
+  }
+  if (parsed.options.command == ssdo::Command::compare) {
+    const ssdo::CompareReport report = ssdo::compare(parsed.options.compare);
+    fmt::print("{}", report.text);
+    return report.code;
   }
   return ssdo::run_batch(parsed.options);
 }

@@ -260,6 +260,23 @@ void add_say(CLI::App& app, Options& o) {
       ->group("Say");
 }
 
+CLI::App* add_compare(CLI::App& app, CompareOptions& o) {
+  CLI::App* compare =
+      app.add_subcommand("compare", "error between two images, layer by layer: FILE or FILE:LAYER");
+  compare->add_option("A", o.a, "image or layer to measure")->required();
+  compare->add_option("B", o.b, "image or layer to hold it to")->required();
+  compare->add_option("--mask", o.mask, "compare only pixels where this is not 0")
+      ->type_name("FILE[:LAYER]");
+  compare->add_option("--diff", o.diff, "write A - B")->type_name("OUT.exr");
+  compare->add_option("--fail-above", o.fail_above, "exit with 1 if the RMSE of a layer is above")
+      ->type_name("RMSE")
+      ->check(between(0, 1e38));
+  compare->add_flag("--json", o.json, "as JSON");
+  compare->add_flag("--overwrite", o.policy.overwrite, "replace the output of --diff");
+  compare->add_flag("--create-dirs", o.policy.create_dirs, "make its folder");
+  return compare;
+}
+
 /// Turns texts into values and refuses what does not fit together.
 void finish(Options& o, const RawOptions& raw, bool depth_kind_given) {
   for (const std::string& text : raw.aov) o.input.aovs.push_back(parse_layer_request(text));
@@ -319,6 +336,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
           ->fallthrough();
   info->add_option("INPUT", o.input_file, "as above")->group("");
   info->add_flag("--json", o.say.json, "as JSON");
+  CLI::App* const compare = add_compare(app, o.compare);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -333,6 +351,10 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
     throw Error(ExitCode::usage, message + "; see ssdo --help");
   }
   if (list) o.command = Command::list_methods;
+  if (compare->parsed()) {
+    o.command = Command::compare;
+    return parsed;
+  }
   if (info->parsed()) o.command = Command::info;
   finish(o, raw, app.count("--depth-kind") > 0);
   return parsed;

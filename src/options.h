@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "color.h"
+#include "compare.h"
 #include "io/exr_reader.h"
 #include "io/safe_file.h"
 #include "scene/environment.h"
@@ -17,7 +18,7 @@
 
 namespace ssdo {
 
-enum class Command { relight, info, list_methods };
+enum class Command { relight, info, compare, list_methods };
 
 /// Which layers are read, and how.
 struct InputOptions {
@@ -100,6 +101,7 @@ struct Options {
   ColorOptions color;
   BatchOptions batch;
   SayOptions say;
+  CompareOptions compare;
   int threads = 0;  ///< 0: choose
 };
 

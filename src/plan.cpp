@@ -182,12 +182,12 @@ void explain_light(Plan& plan, const LightModel* light) {
 void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geometry) {
   if (model.radius) {
     plan.radius = float(*model.radius);
-    if (std::isinf(plan.radius) && !plan.method->marches) {
+    if (std::isinf(plan.radius) && !plan.method->looks_behind()) {
       throw Error(ExitCode::usage,
                   fmt::format("--radius inf: method {} needs a limit", plan.method->name));
     }
     plan.reasons.push_back(fmt::format("radius {:.4g}: as given", plan.radius));
-  } else if (plan.method->marches) {
+  } else if (plan.method->looks_behind()) {
     plan.radius = INFINITY;
     plan.reasons.push_back("radius inf: light is stopped by whatever the frame shows or suggests");
   } else {
@@ -198,16 +198,24 @@ void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geomet
   }
 }
 
+void explain_thickness(Plan& plan, const ModelOptions& model) {
+  plan.reasons.push_back(model.thickness
+                             ? fmt::format("thickness {:.4g}: as given", *model.thickness)
+                             : std::string("thickness: as wide as it looks, and what is covered "
+                                           "goes on behind"));
+}
+
 void choose_march(Plan& plan, const ModelOptions& model) {
   plan.isa = choose_isa();
   if (!plan.method->marches) {
-    const bool asked = model.slices || model.steps || model.thickness || model.error;
+    const bool solids = plan.method->has_solids;
+    const bool asked = model.slices || model.steps || (model.thickness && !solids) || model.error;
     if (asked) {
-      throw Error(ExitCode::usage,
-                  fmt::format("method {} takes no --slices, --steps, --thickness or --error; see "
-                              "--list-methods for its parameters",
-                              plan.method->name));
+      throw Error(ExitCode::usage, fmt::format("method {} takes no --slices, --steps{} or --error; "
+                                               "see --list-methods for its parameters",
+                                               plan.method->name, solids ? "" : ", --thickness"));
     }
+    if (solids) explain_thickness(plan, model);
     return;
   }
   plan.slices = model.slices.value_or(slices_of(model.quality));
@@ -217,10 +225,7 @@ void choose_march(Plan& plan, const ModelOptions& model) {
     plan.slices = 2;
     plan.reasons.push_back("2 slices: an error is the difference of two halves");
   }
-  plan.reasons.push_back(model.thickness
-                             ? fmt::format("thickness {:.4g}: as given", *model.thickness)
-                             : std::string("thickness: as wide as it looks, and what is covered "
-                                           "goes on behind"));
+  explain_thickness(plan, model);
   if (!plan.extend_offscreen) plan.reasons.push_back("surfaces end with the frame: as asked");
 }
 

@@ -76,6 +76,10 @@ struct Method {
   bool marches;  ///< through slices of the frame, as --slices, --steps and --thickness say
   int (*samples_per_pixel)(const ParameterValues&);  ///< null where it marches
   Products (*estimate)(const EstimateInput&);
+  bool has_solids = false;  ///< without marching, takes --thickness and endless radii
+
+  /// Whether it looks at what the frame hides.
+  bool looks_behind() const { return marches || has_solids; }
 };
 
 }  // namespace ssdo

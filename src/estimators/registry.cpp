@@ -14,6 +14,7 @@
 #include "estimators/ssao_fade.h"
 #include "estimators/ssao_range.h"
 #include "estimators/ssdo.h"
+#include "estimators/trace.h"
 #include "math/number.h"
 
 namespace ssdo {
@@ -29,9 +30,9 @@ std::string parameter_names(const Method& method) {
 }  // namespace
 
 std::span<const Method> methods() {
-  static const std::array all = {bitmask_method(),    ssdo_method(),      ssao_method(),
-                                 ssao_range_method(), ssao_fade_method(), sao_method(),
-                                 msvo_method()};
+  static const std::array all = {bitmask_method(), trace_method(),      ssdo_method(),
+                                 ssao_method(),    ssao_range_method(), ssao_fade_method(),
+                                 sao_method(),     msvo_method()};
   return all;
 }
 

@@ -37,6 +37,7 @@ Flags flags_of_help(const std::vector<std::string>& arguments) {
 Flags flags_of_binary() {
   Flags flags = flags_of_help({"--help"});
   flags.merge(flags_of_help({"info", "--help"}));
+  flags.merge(flags_of_help({"compare", "--help"}));
   return flags;
 }
 

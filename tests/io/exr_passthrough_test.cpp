@@ -6,7 +6,6 @@
 #include <ImfMultiView.h>
 #include <ImfPreviewImageAttribute.h>
 #include <ImfStandardAttributes.h>
-#include <ImfThreading.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Rays against the frame as thick solids (height_field.h), with Embree (Wald, Woop, Benthin,
+// Johnson, Ernst 2014). The model is that of method bitmask, without its slices, sectors and steps:
+// the yardstick of the other methods. With directions w_i that are distributed as the cosine is,
+//
+//   ao      = number open / n
+//   direct  = E(N)/pi * sum_open L(w_i) / sum_all L(w_i)   channel by channel, then the suns, each
+//             by its share of seen points of its disc
+//   bounce  = sum L_out(q_i) / n                            q_i: the surface that is met first
+//
+// L is the environment without its suns, looked up as it is: a method whose light is in spherical
+// harmonics shows here what they leave out. The ratio goes to the plain sum as n grows; where all
+// is open it is exact with any n.
+//
+// What a surface sends is its albedo times all the light that arrives, as in method bitmask: the
+// side that is not seen has the light of its own side, as far as the seen one is open.
+//
+// What a solid has behind its front counts as far as that front is within the radius too, as there:
+// beside the endless side walls of far things, the ground of a closed room read 0.10 RMSE off a path
+// tracer, against 0.04.
+//
+// Directions are points of Sobol's sequence, scrambled anew for every pixel (math/sobol.h). Their
+// error falls about as n^-3/4, and is not shared by neighbours, so that no filter is needed and
+// means over a frame are exact. Surfaces end with the frame.
+#include "estimators/trace.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/matrix.hpp>
+#include <optional>
+#include <utility>
+
+#include "estimators/ray_scene.h"
+#include "math/frame.h"
+#include "math/luminance.h"
+#include "math/sobol.h"
+#include "scene/sun.h"
+
+namespace ssdo {
+namespace {
+
+/// The spread of the means of so many parts of the samples gives the standard error.
+constexpr int kGroups = 4;
+
+/// Rays begin above their surface, by so many times what storing P may have moved it, and by a part
+/// of what a pixel shows, which is large against the rounding of a ray.
+constexpr float kRoundings = 4, kFootprints = 2e-3f;
+
+/// Seeds of the two uses of a pixel's sequence.
+constexpr std::uint32_t kSurfaceSeed = 0x51ab, kSunSeed = 0x9c3d;
+
+using Groups = std::array<float, kGroups>;
+
+/// Directions of the seen points of one pixel.
+struct Receiver {
+  glm::dvec3 origin;  ///< above the surface
+  glm::vec3 normal;
+  glm::mat3 frame;  ///< about the normal
+  std::uint32_t seed;
+};
+
+glm::vec3 finite(const glm::vec3& c) { return std::isfinite(c.x + c.y + c.z) ? c : glm::vec3(0); }
+
+/// Standard error of the mean of all groups, if they are independent. Parts of one sequence are
+/// more even together than that: it errs on the safe side.
+float standard_error(const Groups& groups) {
+  float mean = 0, squares = 0;
+  for (const float g : groups) mean += g / kGroups;
+  for (const float g : groups) squares += (g - mean) * (g - mean);
+  return std::sqrt(squares / (kGroups * (kGroups - 1)));
+}
+
+/// The light from a hemisphere, part by part of the samples.
+struct LightSums {
+  std::array<glm::vec3, kGroups> open{}, all{};
+  std::array<int, kGroups> seen{}, number{};
+
+  glm::vec3 share(const glm::vec3& part, const glm::vec3& whole, float ao) const {
+    glm::vec3 out;
+    for (int c = 0; c < 3; ++c)
+      out[c] = whole[c] > 0 ? std::clamp(part[c] / whole[c], 0.0f, 1.0f) : ao;
+    return out;
+  }
+  glm::vec3 share_of_group(int g) const {
+    return share(open[g], all[g], float(seen[g]) / float(number[g]));
+  }
+  glm::vec3 share_of_all(float ao) const {
+    glm::vec3 part(0), whole(0);
+    for (int g = 0; g < kGroups; ++g) part += open[g], whole += all[g];
+    return share(part, whole, ao);
+  }
+};
+
+/// The method on one frame.
+class Trace {
+ public:
+  explicit Trace(const EstimateInput& in)
+      : in_(in),
+        samples_(int(in.parameters.at("samples"))),
+        scene_(build_height_field(in.geometry, in.hidden)) {
+    if (in.light && !in.environment.is_constant()) sky_ = take_suns(in.environment).rest;
+  }
+
+  Products run() {
+    wants_light_ = in_.products.direct || in_.products.bounce || in_.products.error;
+    out_.ao = Plane<float>(width(), height(), 1.0f);
+    if (in_.products.bent) out_.bent = Plane<glm::vec3>(width(), height(), glm::vec3(0));
+    if (wants_light_) out_.direct = Plane<glm::vec3>(width(), height(), glm::vec3(0));
+    if (in_.products.error) luminances_ = Plane<Groups>(width(), height(), Groups{});
+    for_each_surface([&](std::size_t pixel, const Receiver& p) { gather_visibility(pixel, p); });
+    if (in_.products.bounce) {
+      out_.bounce = Plane<glm::vec3>(width(), height(), glm::vec3(0));
+      for (int pass = 1; pass <= in_.bounces; ++pass) gather_bounce(pass == in_.bounces);
+    }
+    if (in_.products.error) {
+      out_.error = Plane<float>(width(), height(), 0.0f);
+      for (std::size_t i = 0; i < luminances_.size(); ++i)
+        out_.error[i] = standard_error(luminances_[i]);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  int width() const { return in_.geometry.surfel.width; }
+  int height() const { return in_.geometry.surfel.height; }
+  int group_of(int sample) const { return sample * kGroups / samples_; }
+
+  Receiver receiver(int x, int y, std::size_t pixel) const {
+    const Geometry& g = in_.geometry;
+    const Surfel& s = g.surfel[pixel];
+    const glm::vec3 normal(s.normal), position(s.position);
+    const float above = kRoundings * s.normal.w + kFootprints * footprint_of(g, pixel);
+    return {glm::dvec3(position) + double(above) * glm::dvec3(normal), normal, frame_about(normal),
+            hash_of(std::uint32_t(g.window.x0 - g.display.x0 + x),
+                    std::uint32_t(g.window.y0 - g.display.y0 + y), in_.seed)};
+  }
+
+  /// Calls `work(pixel, receiver)` for each pixel that shows a surface.
+  template <class Work>
+  void for_each_surface(const Work& work) const {
+    for_each_tile(
+        width(), height(),
+        [&](const Tile& tile) {
+          for (int y = tile.y0; y < tile.y1; ++y) {
+            for (int x = tile.x0; x < tile.x1; ++x) {
+              const std::size_t pixel = in_.geometry.surfel.index(x, y);
+              if (is_solid(in_.geometry, pixel)) work(pixel, receiver(x, y, pixel));
+            }
+          }
+        },
+        in_.progress);
+  }
+
+  /// A direction in the hemisphere with the density of the cosine: the disc, lifted.
+  static glm::vec3 direction(const Receiver& p, int sample) {
+    const glm::vec2 u = sobol_point(std::uint32_t(sample), p.seed ^ kSurfaceSeed);
+    const float r = std::sqrt(u.x), azimuth = 2 * glm::pi<float>() * u.y;
+    return p.frame * glm::vec3(r * std::cos(azimuth), r * std::sin(azimuth), std::sqrt(1 - u.x));
+  }
+
+  void gather_visibility(std::size_t pixel, const Receiver& p) {
+    LightSums light;
+    glm::vec3 open_sum(0), sum(0);
+    const glm::mat3 to_world = glm::transpose(in_.geometry.world_to_camera);
+    int open = 0;
+    for (int s = 0; s < samples_; ++s) {
+      const glm::vec3 to = direction(p, s);
+      const bool is_open = !scene_.is_blocked(p.origin, to, in_.radius);
+      const int g = group_of(s);
+      ++light.number[g];
+      open += is_open, light.seen[g] += is_open;
+      sum += to;
+      if (is_open) open_sum += to;
+      if (!wants_light_ || !sky_) continue;
+      const glm::vec3 radiance = sky_->radiance(to_world * to);
+      light.all[g] += radiance;
+      if (is_open) light.open[g] += radiance;
+    }
+    const float ao = float(open) / float(samples_);
+    out_.ao[pixel] = ao;
+    if (in_.products.bent) {
+      // What the sum over all directions lacks of the normal is added as far as the surface is
+      // open, so that an open one is exact.
+      const glm::vec3 bent = open_sum + ao * (2.0f / 3 * float(samples_) * p.normal - sum);
+      const float length = glm::length(bent);
+      out_.bent[pixel] = length > 0 ? bent / length : p.normal;
+    }
+    if (wants_light_) add_direct(pixel, p, light, ao);
+  }
+
+  void add_direct(std::size_t pixel, const Receiver& p, const LightSums& light, float ao) {
+    const glm::vec3 unoccluded =
+        in_.light ? in_.light->irradiance(p.normal) : in_.environment.constant_radiance();
+    out_.direct[pixel] = unoccluded * (sky_ ? light.share_of_all(ao) : glm::vec3(ao));
+    Groups groups{};
+    for (int g = 0; g < kGroups; ++g) groups[g] = luminance(unoccluded * light.share_of_group(g));
+    for (std::size_t i = 0; in_.light && i < in_.light->suns.size(); ++i)
+      out_.direct[pixel] += light_of(in_.light->suns[i], std::uint32_t(i), p, groups);
+    if (in_.products.error) luminances_[pixel] = groups;
+  }
+
+  /// What a sun gives; `groups` gain what it gives in each part of the samples.
+  glm::vec3 light_of(const Sun& sun, std::uint32_t number, const Receiver& p,
+                     Groups& groups) const {
+    const float cosine = glm::dot(p.normal, sun.direction);
+    if (cosine <= 0) return glm::vec3(0);
+    const glm::mat3 frame = frame_about(sun.direction);
+    std::array<float, kGroups> seen{}, above{};
+    for (int s = 0; s < samples_; ++s) {
+      const glm::vec2 u = sobol_point(std::uint32_t(s), hash_of(p.seed, number, kSunSeed));
+      const float off = sun.angular_radius * std::sqrt(u.x), azimuth = 2 * glm::pi<float>() * u.y;
+      const glm::vec3 to =
+          glm::normalize(frame * glm::vec3(off * std::cos(azimuth), off * std::sin(azimuth), 1));
+      if (glm::dot(to, p.normal) <= 0) continue;
+      above[group_of(s)] += 1;
+      seen[group_of(s)] += !scene_.is_blocked(p.origin, to, in_.radius);
+    }
+    const glm::vec3 unoccluded = cosine * sun.irradiance;
+    float all_seen = 0, all_above = 0;
+    for (int g = 0; g < kGroups; ++g) {
+      all_seen += seen[g], all_above += above[g];
+      groups[g] += luminance(unoccluded) * (above[g] > 0 ? seen[g] / above[g] : 0);
+    }
+    return all_above > 0 ? unoccluded * (all_seen / all_above) : glm::vec3(0);
+  }
+
+  /// What each pixel sends: its albedo times all the light that arrives, or the layer that says so.
+  glm::vec3 sent_by(std::size_t pixel) const {
+    if (!in_.radiance.empty()) return finite(in_.radiance[pixel]);
+    return finite(in_.albedo[pixel] * (out_.direct[pixel] + out_.bounce[pixel]));
+  }
+
+  /// What the unseen side of a pixel's surface sends.
+  glm::vec3 sent_by_back(std::size_t pixel) const {
+    const glm::vec3 normal = -glm::vec3(in_.geometry.surfel[pixel].normal);
+    glm::vec3 light = in_.light->irradiance(normal);
+    for (const Sun& sun : in_.light->suns)
+      light += std::max(0.0f, glm::dot(normal, sun.direction)) * sun.irradiance;
+    return finite(in_.albedo[pixel] * (out_.ao[pixel] * light + out_.bounce[pixel]));
+  }
+
+  void gather_bounce(bool last) {
+    const bool two_sided = in_.light && in_.radiance.empty();
+    Plane<glm::vec3> sent(width(), height(), glm::vec3(0)), sent_back;
+    if (two_sided) sent_back = sent;
+    for_each_row(height(), [&](int y) {
+      for (int x = 0; x < width(); ++x) {
+        const std::size_t pixel = sent.index(x, y);
+        if (!is_solid(in_.geometry, pixel)) continue;
+        sent[pixel] = sent_by(pixel);
+        if (two_sided) sent_back[pixel] = sent_by_back(pixel);
+      }
+    });
+    for_each_surface([&](std::size_t pixel, const Receiver& p) {
+      std::array<glm::vec3, kGroups> sums{};
+      std::array<int, kGroups> number{};
+      for (int s = 0; s < samples_; ++s) {
+        const glm::vec3 to = direction(p, s);
+        const Owner hit = scene_.first_hit(p.origin, to, in_.radius);
+        ++number[group_of(s)];
+        if (hit.pixel < 0) continue;
+        const auto q = std::size_t(hit.pixel);
+        const bool back =
+            two_sided && !hit.covered && glm::dot(glm::vec3(in_.geometry.surfel[q].normal), to) > 0;
+        sums[group_of(s)] += back ? sent_back[q] : sent[q];
+      }
+      glm::vec3 sum(0);
+      for (int g = 0; g < kGroups; ++g) {
+        sum += sums[g];
+        if (last && in_.products.error)
+          luminances_[pixel][g] += luminance(sums[g]) / float(number[g]);
+      }
+      out_.bounce[pixel] = sum / float(samples_);
+    });
+  }
+
+  const EstimateInput& in_;
+  int samples_;
+  RayScene scene_;
+  std::optional<Environment> sky_;  ///< without suns; nothing where it is constant
+  bool wants_light_ = false;
+  Plane<Groups> luminances_;  ///< of direct + bounce
+  Products out_;
+};
+
+Products estimate(const EstimateInput& in) { return Trace(in).run(); }
+
+int samples_per_pixel(const ParameterValues& parameters) {
+  return int(parameters.find("samples")->second);
+}
+
+}  // namespace
+
+Method trace_method() {
+  return {.name = "trace",
+          .summary = "rays against the frame as thick solids: slow, the yardstick of the others",
+          .products = {.ao = true, .direct = true, .bounce = true, .bent = true, .error = true},
+          .pattern_size = 1,
+          .parameters = {{"samples", 64, kGroups, 65536, "rays", "per pixel and bounce", true}},
+          .marches = false,
+          .samples_per_pixel = samples_per_pixel,
+          .estimate = estimate,
+          .has_solids = true};
+}
+
+}  // namespace ssdo
