@@ -47,7 +47,7 @@ TEST(Refusals, OfTheCommandLine) {
       {{"--env-up", "x"}, "--env-up"},
       {{"--env", "-1,0,0"}, "--env"},
       {{"--env-exposure", "1e9"}, "--env-exposure"},
-      {{"--method", "magic"}, "bitmask, ssdo"},
+      {{"--method", "magic"}, "bitmask, trace, ssdo"},
       {{"--method", "ssdo", "--set", "samples"}, "samples, bias"},
       {{"--method", "ssdo", "--set", "samples=0"}, "from 1 to 1024"},
       {{"--method", "ssdo", "--set", "sample=4"}, "samples, bias"},
