@@ -32,7 +32,8 @@
 // half the radius; two steps miss what is small; the bent normal is that of the slices' arcs
 // without the cosine.
 //
-// The direct light is the irradiance of the bent normal times ao.
+// The direct light is the irradiance of the bent normal times ao, or with `multi-bounce` times what
+// multi_bounce.h makes of ao and the albedo. That stands for bounces, so that none is made besides.
 #include "estimators/gtao.h"
 
 #include <algorithm>
@@ -42,7 +43,9 @@
 #include <limits>
 #include <numbers>
 
+#include "error.h"
 #include "estimators/ambient_light.h"
+#include "estimators/multi_bounce.h"
 #include "estimators/tiled_noise.h"
 #include "parallel/isa.h"
 
@@ -226,10 +229,25 @@ void normalise_all(Plane<glm::vec3>& vectors) {
   }
 }
 
+Plane<glm::vec3> direct_light(const EstimateInput& in, const Products& found, bool bounces) {
+  if (!bounces) return ambient_light(in, found.ao, &found.bent);
+  const Plane<float> open(found.ao.width, found.ao.height, 1.0f);
+  Plane<glm::vec3> direct = ambient_light(in, open, &found.bent);
+  for (std::size_t i = 0; i < direct.size(); ++i)
+    direct[i] *= multi_bounce(found.ao[i], in.albedo[i]);
+  return direct;
+}
+
 Products estimate_gtao(const EstimateInput& in) {
   choose_isa();
   const auto parameter = [&](const char* name) { return in.parameters.find(name)->second; };
   const int slices = int(parameter("slices"));
+  const bool bounces = parameter("multi-bounce") != 0;
+  if (bounces && in.products.direct && in.albedo.empty()) {
+    throw Error(ExitCode::layer,
+                "--set multi-bounce=1 needs a layer for albedo and none was found by name; name "
+                "one with --aov albedo=LAYER");
+  }
   const ViewPlanes planes = make_view_planes(in.geometry);
   Products out;
   out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
@@ -251,7 +269,7 @@ Products estimate_gtao(const EstimateInput& in) {
   const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(gtao_of_tile)(job, tile); };
   for_each_tile(planes.width(), planes.height(), work, in.progress);
   normalise_all(out.bent);
-  if (in.products.direct) out.direct = ambient_light(in, out.ao, &out.bent);
+  if (in.products.direct) out.direct = direct_light(in, out, bounces);
   if (!in.products.bent) out.bent = {};
   return out;
 }
@@ -269,6 +287,8 @@ Method gtao_method() {
           {"steps", 2, 1, 256, "", "per side of a slice", true},
           {"thickness", 1, 0, 1, "", "share of a horizon that lower surfaces beyond it leave",
            false},
+          {"multi-bounce", 0, 0, 1, "", "1: direct with light between surfaces, by their albedo",
+           true},
       },
       false,
       [](const ParameterValues& p) { return 2 * int(p.at("slices")) * int(p.at("steps")); },

@@ -225,6 +225,59 @@ TEST(Gtao, DirectIsTheLightOfTheBentNormalTimesAo) {
   }
 }
 
+Products with_albedo(const Geometry& g, const Plane<glm::vec3>& albedo, double multi_bounce) {
+  ParameterValues parameters = resolve_parameters(gtao_method(), {});
+  parameters["multi-bounce"] = multi_bounce;
+  const Plane<glm::vec3> none;
+  const Environment sky = Environment::constant(glm::vec3(1, 2, 4));
+  return gtao_method().estimate(
+      {g, albedo, none, sky, {.ao = true, .direct = true}, 2, 0, 0, parameters, {}});
+}
+
+TEST(Gtao, MultiBounceIsTheFitOfTheReceiversAlbedo) {
+  const Geometry g = room(camera_from_fov(50, kWindow, 1));
+  const glm::dvec3 rho(0.9, 0.5, 0.1);
+  Plane<glm::vec3> albedo(kWindow.width(), kWindow.height(), glm::vec3(rho));
+  const Products plain = with_albedo(g, albedo, 0), many = with_albedo(g, albedo, 1);
+  EXPECT_EQ(plain.ao.pixels, many.ao.pixels);
+  double most = 0;
+  for (std::size_t i = 0; i < many.ao.size(); ++i) {
+    if (!g.is_surface(i)) {
+      EXPECT_EQ(many.direct[i], glm::vec3(0));
+      continue;
+    }
+    const double x = many.ao[i];
+    for (int c = 0; c < 3; ++c) {
+      const double fit = x * (x * x * (2.0404 * rho[c] - 0.3324) + x * (-4.7951 * rho[c] + 0.6417) +
+                              2.7552 * rho[c] + 0.6903);
+      EXPECT_NEAR(many.direct[i][c], (1 << c) * std::max(x, fit), 1e-5);
+      EXPECT_GE(many.direct[i][c], plain.direct[i][c]);
+      most = std::max(most, fit - x);
+    }
+  }
+  EXPECT_GT(most, 0.1);
+}
+
+TEST(Gtao, MultiBounceWithoutAlbedoIsAnError) {
+  const Geometry g = room(camera_from_fov(50, kWindow, 1));
+  EXPECT_NO_THROW(with_albedo(g, {}, 0));
+  try {
+    with_albedo(g, {}, 1);
+    FAIL() << "no error";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code, ExitCode::layer);
+  }
+}
+
+TEST(Gtao, OddAlbedosStayWithinTheFit) {
+  const Geometry g = room(camera_from_fov(50, kWindow, 1));
+  for (const float odd : {NAN, INFINITY, -INFINITY, 1e38f, -3.0f}) {
+    Plane<glm::vec3> albedo(kWindow.width(), kWindow.height(), glm::vec3(odd));
+    for (const glm::vec3& light : with_albedo(g, albedo, 1).direct.pixels)
+      EXPECT_TRUE(light.x >= 0 && light.x <= 1.001f) << light.x;
+  }
+}
+
 TEST(Gtao, VectorsAndThreadsChangeNothing) {
   const Geometry g = room(camera_from_fov(50, kWindow, 1), kWindow);
   const auto ao = [&] { return estimate(g, 2).ao; };
