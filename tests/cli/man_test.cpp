@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The man page against the binary: both know the same flags, and the page renders.
+// The man pages against the binary: both know the same flags and parameters, and the pages render.
 #include <gmock/gmock.h>
 
 #include <cstdio>
@@ -15,10 +15,13 @@ namespace {
 
 using Flags = std::set<std::string>;
 
-const std::string kPage = std::string(SSDO_SOURCE_DIR) + "/man/ssdo.1";
+const std::string kManual = std::string(SSDO_SOURCE_DIR) + "/man/ssdo.1",
+                  kMethods = std::string(SSDO_SOURCE_DIR) + "/man/ssdo-methods.7";
 
-/// The page as groff reads it, with \- for a dash turned into one.
-std::string page() { return std::regex_replace(read_file(kPage), std::regex(R"(\\-)"), "-"); }
+/// A page as groff reads it, with \- for a dash turned into one.
+std::string page(const std::string& path) {
+  return std::regex_replace(read_file(path), std::regex(R"(\\-)"), "-");
+}
 
 /// The flags that a help text declares: those that begin a line, not those that a text mentions.
 Flags flags_of_help(const std::vector<std::string>& arguments) {
@@ -45,7 +48,7 @@ Flags flags_of_binary() {
 Flags flags_of_headings() {
   static const std::regex flag("--[a-z][a-z-]*");
   Flags flags;
-  std::istringstream lines(page());
+  std::istringstream lines(page(kManual));
   bool is_tag = false;
   for (std::string line; std::getline(lines, line);) {
     for (std::sregex_iterator it(line.begin(), line.end(), flag), end; is_tag && it != end; ++it) {
@@ -62,9 +65,9 @@ struct Rendered {
   std::string warnings;
 };
 
-Rendered render() {
+Rendered render(const std::string& path) {
   Rendered rendered;
-  const std::string command = "groff -man -Tutf8 -ww '" + kPage + "' 2>&1 >/dev/null";
+  const std::string command = "groff -man -t -Tutf8 -ww '" + path + "' 2>&1 >/dev/null";
   FILE* groff = popen(command.c_str(), "r");
   if (!groff) return rendered;
   for (int c; (c = std::fgetc(groff)) != EOF;) rendered.warnings += char(c);
@@ -83,7 +86,7 @@ TEST(ManPage, HasTheFlagsOfTheHelpAndNoOthers) {
 TEST(ManPage, MentionsNoFlagThatDoesNotExist) {
   const Flags binary = flags_of_binary();
   static const std::regex flag("(?:^|[^-\\w])(--[a-z][a-z-]*)");
-  const std::string text = page();
+  const std::string text = page(kManual) + page(kMethods);
   for (std::sregex_iterator it(text.begin(), text.end(), flag), end; it != end; ++it) {
     EXPECT_THAT(binary, testing::Contains((*it)[1].str()));
   }
@@ -91,8 +94,8 @@ TEST(ManPage, MentionsNoFlagThatDoesNotExist) {
 
 TEST(ManPage, HasTheParametersOfTheMethods) {
   const Finished done = run_tool({"--list-methods"});
-  static const std::regex parameter(R"(\n  ([a-z-]+) +([0-9.e+]+)  )");
-  const std::string text = page();
+  static const std::regex parameter(R"(\n  ([a-z-]+) +([0-9.e+-]+)  )");
+  const std::string text = page(kMethods);
   int count = 0;
   for (std::sregex_iterator it(done.out.begin(), done.out.end(), parameter), end; it != end; ++it) {
     const std::string heading = ".BR " + (*it)[1].str() + " \" = " + (*it)[2].str() + "\"\n";
@@ -103,9 +106,11 @@ TEST(ManPage, HasTheParametersOfTheMethods) {
 }
 
 TEST(ManPage, RendersWithoutWarnings) {
-  const Rendered rendered = render();
-  EXPECT_EQ(rendered.status, 0) << rendered.warnings;
-  EXPECT_EQ(rendered.warnings, "");
+  for (const std::string& path : {kManual, kMethods}) {
+    const Rendered rendered = render(path);
+    EXPECT_EQ(rendered.status, 0) << rendered.warnings;
+    EXPECT_EQ(rendered.warnings, "") << path;
+  }
 }
 
 }  // namespace
