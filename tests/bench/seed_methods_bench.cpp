@@ -26,6 +26,7 @@ const Row kRows[] = {
     {"ssao-fade/every-pixel", "ssao-fade", {"upsampling=0"}, 14},
     {"sao", "sao", {}, 11},
     {"msvo", "msvo", {}, 36 * 85 / 256.0},
+    {"gtao", "gtao", {}, 8},
 };
 
 void estimate(benchmark::State& state, const std::string& isa, const Row& row, int threads) {

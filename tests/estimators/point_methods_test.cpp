@@ -156,13 +156,15 @@ TEST_P(PointMethods, BackgroundReadsOneAndFramesMayBeTiny) {
   for (const float ao : estimate(empty, 0.7f).ao.pixels) EXPECT_EQ(ao, 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, PointMethods,
-    testing::Values(Case{"ssao", "ssao", {}}, Case{"ssao_range", "ssao-range", {}},
-                    Case{"fade_every_pixel", "ssao-fade", {"upsampling=0"}},
-                    Case{"fade_bilinear", "ssao-fade", {}},
-                    Case{"fade_along_surfaces", "ssao-fade", {"upsampling=2"}}),
-    [](const auto& one) { return one.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, PointMethods,
+                         testing::Values(Case{"ssao", "ssao", {}},
+                                         Case{"ssao_range", "ssao-range", {}},
+                                         Case{"fade_every_pixel", "ssao-fade", {"upsampling=0"}},
+                                         Case{"fade_bilinear", "ssao-fade", {}},
+                                         Case{"fade_along_surfaces", "ssao-fade", {"upsampling=2"}},
+                                         Case{"gtao", "gtao", {"steps=12"}},
+                                         Case{"gtao_thin", "gtao", {"steps=12", "thickness=0.7"}}),
+                         [](const auto& one) { return one.param.name; });
 
 }  // namespace
 }  // namespace ssdo::test

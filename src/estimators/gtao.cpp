@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Ground-truth ambient occlusion: Jimenez, Wu, Pesce, Jarabo, "Practical Realtime Strategies for
+// Accurate Indirect Occlusion", 2016, in the form that engines run. A slice is the plane of the
+// view direction v (to the viewer) and a direction s on the screen; t is what of s lies across v.
+// On both sides the steps of a slice, at max(k (j + u), 1 + j) pixels, look for the cosine h of
+// the horizon's angle to v, from -1 on. For a surface at a distance d whose cosine is H:
+//
+//   H > h:  h = lerp(H, h, min(2 d^2 / R^2, 1))       else  h = lerp(H, h, thickness)
+//
+// With n_p the part of the normal in the slice, n its angle to v and h1 < 0 < h2 the angles of the
+// horizons, held to within a right angle of n, what is open of the slice is
+//
+//   |n_p| / 4 sum_h (-cos(2h - n) + cos n + 2 h sin n)
+//
+// and ao the mean over slices. The bent normal leans by (h1 + h2) / 2 in each slice; those
+// directions are added without |n_p|. k is max(min(R / 2 in pixels, 512), steps) / (steps + 1).
+//
+// What differs, and why:
+// - Slices turn and steps shift (u) by the 4 x 4 patterns of Jimenez et al., which the filter of
+//   the pipeline removes; engines add one pattern per frame for their temporal filter.
+// - A step sees the surface in the centre of its pixel, where engines take the depth of that pixel
+//   for another place. Surfaces that are not above the tangent plane by more than the precision of
+//   P and N do not raise the horizon: they hide nothing, and a tilted plane does not hide itself.
+// - What is outside the frame or background has H = -1.
+// - Pixels that are not square are seen as they are.
+// - Left out are the engines' exponent of 2.5 and intensity on ao, its fade with distance, and
+//   that the bent normal is turned away from the viewer: they have no meaning in light.
+//
+// Known faults, kept: horizons see one layer, and with thickness 1 whatever is in front is
+// endlessly thick; the falloff lets near occluders pass some light; the reach on the screen is
+// half the radius; two steps miss what is small; the bent normal is that of the slices' arcs
+// without the cosine.
+//
+// The direct light is the irradiance of the bent normal times ao, or with `multi-bounce` times what
+// multi_bounce.h makes of ao and the albedo. That stands for bounces, so that none is made besides.
+#include "estimators/gtao.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+
+#include "error.h"
+#include "estimators/ambient_light.h"
+#include "estimators/multi_bounce.h"
+#include "estimators/tiled_noise.h"
+#include "parallel/isa.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "estimators/gtao.cpp"
+#include <hwy/foreach_target.h>
+
+#include "estimators/view_lanes-inl.h"
+// After the targets' headers.
+#include <hwy/contrib/math/math-inl.h>
+
+#ifndef SSDO_GTAO_JOB_
+#define SSDO_GTAO_JOB_
+namespace ssdo {
+
+/// Sine of the elevation up to which a surface may lie in the tangent plane: the precision of
+/// normals in half floats.
+constexpr float kFlat = 0.001f;
+
+/// Directions on the screen, y up, by place in the pattern.
+struct SliceTurns {
+  TiledNoise cosine, sine;
+};
+
+struct GtaoJob {
+  const ViewPlanes& planes;
+  std::vector<SliceTurns> slices;
+  TiledNoise first_step;  ///< 0 to 1
+  int steps;
+  float slope_x, slope_y;  ///< by which rays of neighbouring pixels differ
+  float reach_px;          ///< of the last step at depth 1, or at any where orthographic
+  float falloff;           ///< 2 / R^2
+  float thinness;          ///< 1 - thickness
+  Plane<float>& ao;
+  Plane<glm::vec3>& bent;  ///< mean over slices, not normalised; empty where nobody asks
+};
+
+}  // namespace ssdo
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace ssdo::HWY_NAMESPACE {
+
+/// A pixel that looks around itself.
+struct Viewed {
+  Receivers p;
+  V3 to_viewer;
+  V column, row, ray_x, ray_y;
+};
+
+HWY_INLINE Viewed view(const ViewPlanes& planes, int x, int y) {
+  const D d;
+  const V ray_x = hn::LoadU(d, planes.ray_x() + x), ray_y = set(planes.ray_y()[y]);
+  const V3 to_viewer =
+      planes.orthographic ? V3{set(0), set(0), set(1)} : normalise({ray_x, ray_y, set(1)});
+  return {
+      load_receivers(planes, x, y), to_viewer, hn::Iota(d, float(x)), set(float(y)), ray_x, ray_y};
+}
+
+/// The cosine of the horizon after the surface that is seen some whole pixels away.
+HWY_INLINE V next_horizon(const GtaoJob& job, const Viewed& from, V right, V down, V h) {
+  const ViewPlanes& planes = job.planes;
+  const V z = gather_depth(planes, pixels_at(planes, from.column + right, from.row + down));
+  const V deeper = z - from.p.position.z;
+  // From differences, which loses less than to subtract positions.
+  V3 to{right * set(job.slope_x), down * set(job.slope_y), deeper};
+  if (!planes.orthographic) {
+    to.x = hn::MulAdd(to.x, z, from.ray_x * deeper);
+    to.y = hn::MulAdd(to.y, z, from.ray_y * deeper);
+  }
+  const V distance2 = dot(to, to);
+  const M seen = hn::And(distance2 > set(0), distance2 < set(std::numeric_limits<float>::max()));
+  const V distance = hn::Sqrt(distance2);
+  const V cosine = hn::IfThenElse(seen, dot(to, from.to_viewer) / distance, set(-1));
+  const V flat = hn::MulAdd(set(kFlat), distance, from.p.rounding);
+  const M rises = hn::And(cosine > h, dot(to, from.p.normal) > flat);
+  const V falloff = hn::Min(distance2 * set(job.falloff), set(1));
+  return hn::IfThenElse(rises, hn::MulAdd(h - cosine, falloff, cosine),
+                        hn::MulAdd(hn::Min(cosine - h, set(0)), set(job.thinness), h));
+}
+
+HWY_INLINE V acos_of(V cosine) { return hn::Acos(D(), hn::Min(hn::Max(cosine, set(-1)), set(1))); }
+
+HWY_INLINE void store_vectors(const V3& values, int x, const Tile& tile, glm::vec3* row) {
+  const D d;
+  const int lanes = int(hn::Lanes(d));
+  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+  if (x + lanes <= tile.x1)
+    return hn::StoreInterleaved3(values.x, values.y, values.z, d, &row[x].x);
+  HWY_ALIGN float all[3 * PaddedLayout::kPad];
+  hn::StoreInterleaved3(values.x, values.y, values.z, d, all);
+  for (int i = 0; x + i < tile.x1; ++i) row[x + i] = {all[3 * i], all[3 * i + 1], all[3 * i + 2]};
+}
+
+void gtao_of_tile(const GtaoJob& job, const Tile& tile) {
+  const D d;
+  const ViewPlanes& planes = job.planes;
+  const V steps = set(float(job.steps)), share = set(1 / float(job.slices.size()));
+  const V stretch = set(planes.fx / planes.fy), right_angle = set(float(std::numbers::pi / 2));
+  for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
+    const Viewed from = view(planes, x, y);
+    const Receivers& p = from.p;
+    const V reach = planes.orthographic ? set(job.reach_px) : set(-job.reach_px) / p.position.z;
+    const V step = hn::Max(hn::Min(reach, set(512)), steps) / (steps + set(1));
+    const V first = hn::LoadU(d, job.first_step.at(planes, x, y));
+    const V upright = dot(p.normal, from.to_viewer);
+    V sum = set(0);
+    V3 bent{set(0), set(0), set(0)};
+    for (const SliceTurns& turn : job.slices) {
+      const V turn_x = hn::LoadU(d, turn.cosine.at(planes, x, y)),
+              turn_y = hn::LoadU(d, turn.sine.at(planes, x, y));
+      V h_ahead = set(-1), h_behind = set(-1);
+      for (int j = 0; j < job.steps; ++j) {
+        const V distance = hn::Max(step * (set(float(j)) + first), set(float(1 + j)));
+        const V right = hn::Round(turn_x * distance * stretch),
+                down = hn::Neg(hn::Round(turn_y * distance));
+        h_ahead = next_horizon(job, from, right, down, h_ahead);
+        h_behind = next_horizon(job, from, hn::Neg(right), hn::Neg(down), h_behind);
+      }
+      const V3 tangent = unit_across({turn_x, turn_y, set(0)}, from.to_viewer);
+      const V aside = hn::Neg(dot(p.normal, tangent));  // angles grow away from the tangent
+      const V length = hn::Sqrt(hn::MulAdd(upright, upright, aside * aside));
+      const V unit = set(1) / hn::Max(length, set(1e-20f));
+      const V cos_n = upright * unit, sin_n = aside * unit;
+      const V n = hn::CopySign(acos_of(cos_n), aside);
+      const V h1 = hn::Max(hn::Neg(acos_of(h_ahead)), n - right_angle),
+              h2 = hn::Min(acos_of(h_behind), n + right_angle), both = h1 + h2;
+      const V arc = set(2) * hn::MulAdd(both, sin_n, cos_n) - hn::Cos(d, h1 + h1 - n) -
+                    hn::Cos(d, h2 + h2 - n);
+      sum = hn::MulAdd(length * set(0.25f), arc, sum);
+      if (job.bent.empty()) continue;
+      const V middle = both * set(0.5f);
+      bent = mul_add(from.to_viewer, hn::Cos(d, middle),
+                     mul_add(tangent, hn::Neg(hn::Sin(d, middle)), bent));
+    }
+    store_pixels(hn::IfThenElse(p.valid, saturate(sum * share), set(1)), x, tile, &job.ao(0, y));
+    if (!job.bent.empty())
+      store_vectors(bent * hn::IfThenElseZero(p.valid, share), x, tile, &job.bent(0, y));
+  });
+}
+
+}  // namespace ssdo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ssdo {
+
+HWY_EXPORT(gtao_of_tile);
+
+namespace {
+
+constexpr int kPattern = TiledNoise::kSize;
+
+/// Slice `i` of `count` through each pixel of the pattern.
+SliceTurns turns_of(int i, int count) {
+  std::array<float, kPattern * kPattern> cosine, sine;
+  for (int y = 0; y < kPattern; ++y) {
+    for (int x = 0; x < kPattern; ++x) {
+      const double turn = ((x + y) % kPattern * kPattern + x) / 16.0,
+                   angle = (i + turn) * std::numbers::pi / count;
+      cosine[std::size_t(y * kPattern + x)] = float(std::cos(angle));
+      sine[std::size_t(y * kPattern + x)] = float(std::sin(angle));
+    }
+  }
+  return {TiledNoise(cosine), TiledNoise(sine)};
+}
+
+TiledNoise first_steps() {
+  std::array<float, kPattern * kPattern> first;
+  for (int y = 0; y < kPattern; ++y) {
+    for (int x = 0; x < kPattern; ++x)
+      first[std::size_t(y * kPattern + x)] = 0.25f * float((y - x + kPattern) % kPattern);
+  }
+  return TiledNoise(first);
+}
+
+void normalise_all(Plane<glm::vec3>& vectors) {
+  for (glm::vec3& v : vectors.pixels) {
+    const float length = glm::length(v);
+    v = length > 0 ? v / length : glm::vec3(0);
+  }
+}
+
+Plane<glm::vec3> direct_light(const EstimateInput& in, const Products& found, bool bounces) {
+  if (!bounces) return ambient_light(in, found.ao, &found.bent);
+  const Plane<float> open(found.ao.width, found.ao.height, 1.0f);
+  Plane<glm::vec3> direct = ambient_light(in, open, &found.bent);
+  for (std::size_t i = 0; i < direct.size(); ++i)
+    direct[i] *= multi_bounce(found.ao[i], in.albedo[i]);
+  return direct;
+}
+
+Products estimate_gtao(const EstimateInput& in) {
+  choose_isa();
+  const auto parameter = [&](const char* name) { return in.parameters.find(name)->second; };
+  const int slices = int(parameter("slices"));
+  const bool bounces = parameter("multi-bounce") != 0;
+  if (bounces && in.products.direct && in.albedo.empty()) {
+    throw Error(ExitCode::layer,
+                "--set multi-bounce=1 needs a layer for albedo and none was found by name; name "
+                "one with --aov albedo=LAYER");
+  }
+  const ViewPlanes planes = make_view_planes(in.geometry);
+  Products out;
+  out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
+  if (in.products.bent || in.products.direct)
+    out.bent = Plane<glm::vec3>(planes.width(), planes.height(), glm::vec3(0));
+  std::vector<SliceTurns> turns;
+  for (int i = 0; i < slices; ++i) turns.push_back(turns_of(i, slices));
+  const GtaoJob job{planes,
+                    std::move(turns),
+                    first_steps(),
+                    int(parameter("steps")),
+                    (planes.orthographic ? 1 : -1) / planes.fx,
+                    (planes.orthographic ? -1 : 1) / planes.fy,
+                    planes.fy * in.radius / 2,
+                    float(2 / (double(in.radius) * double(in.radius))),
+                    float(1 - parameter("thickness")),
+                    out.ao,
+                    out.bent};
+  const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(gtao_of_tile)(job, tile); };
+  for_each_tile(planes.width(), planes.height(), work, in.progress);
+  normalise_all(out.bent);
+  if (in.products.direct) out.direct = direct_light(in, out, bounces);
+  if (!in.products.bent) out.bent = {};
+  return out;
+}
+
+}  // namespace
+
+Method gtao_method() {
+  return {
+      "gtao",
+      "horizons in slices with the cosine, Jimenez et al. 2016",
+      {.ao = true, .direct = true, .bent = true},
+      kPattern,
+      {
+          {"slices", 2, 1, 64, "", "per pixel", true},
+          {"steps", 2, 1, 256, "", "per side of a slice", true},
+          {"thickness", 1, 0, 1, "", "share of a horizon that lower surfaces beyond it leave",
+           false},
+          {"multi-bounce", 0, 0, 1, "", "1: direct with light between surfaces, by their albedo",
+           true},
+      },
+      false,
+      [](const ParameterValues& p) { return 2 * int(p.at("slices")) * int(p.at("steps")); },
+      estimate_gtao,
+  };
+}
+
+}  // namespace ssdo
+#endif
