@@ -60,6 +60,8 @@ std::vector<NamedPlane> product_channels(const std::string& product, const GBuff
   std::vector<NamedPlane> out;
   if (product == "ao") {
     out.push_back({"ao.Y", products.ao});
+  } else if (product == "reflection") {
+    out.push_back({"reflection.Y", products.reflection});
   } else if (product == "error") {
     out.push_back({"error.Y", products.error});
   } else if (product == "bent") {

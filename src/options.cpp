@@ -43,7 +43,7 @@ void add_input(CLI::App& app, Options& o, RawOptions& raw) {
   app.add_option(
          "--aov", raw.aov,
          "ROLE=LAYER or ROLE=FILE:LAYER, roles position normal albedo depth alpha beauty radiance "
-         "ambient")
+         "ambient roughness")
       ->type_name("ROLE=LAYER")
       ->allow_extra_args(false)
       ->group("Input");
@@ -168,9 +168,9 @@ void add_output(CLI::App& app, Options& o, RawOptions& raw) {
       ->type_name("OUTPUT")
       ->allow_extra_args(false)
       ->group("Output");
-  app.add_option(
-         "--products", o.output.products,
-         "of ao, bent, direct, bounce, error, composite; default: all that the inputs allow")
+  app.add_option("--products", o.output.products,
+                 "of ao, bent, reflection, direct, bounce, error, composite; default: all that the "
+                 "inputs allow")
       ->type_name("LIST")
       ->delimiter(',')
       ->allow_extra_args(false)

@@ -95,7 +95,7 @@ Products estimate(Frame& frame, const std::function<void(double)>& told,
       {frame.geometry, frame.gbuffer.albedo, frame.gbuffer.radiance, frame.environment,
        plan.products, plan.radius, plan.bounces, plan.seed, plan.parameters, progress, plan.slices,
        plan.steps, &frame.hidden, frame.light_model ? &*frame.light_model : nullptr,
-       plan.extend_offscreen});
+       plan.extend_offscreen, &frame.gbuffer.roughness});
   frame.times.estimate += watch.lap();
   products =
       apply_filter(*plan.filter, std::move(products), frame.geometry, plan.method->pattern_size);

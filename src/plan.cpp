@@ -18,7 +18,7 @@
 namespace ssdo {
 namespace {
 
-constexpr std::array<std::string_view, 6> kProducts = {"ao",     "bent",  "direct",
+constexpr std::array<std::string_view, 7> kProducts = {"ao",     "bent",  "reflection", "direct",
                                                        "bounce", "error", "composite"};
 
 /// Share of the frame's height at the median depth, of methods that need a limit. Of 0.1 to 2, the
@@ -37,11 +37,12 @@ bool contains(const Names& names, std::string_view name) {
 bool makes(const Method& method, std::string_view product, bool ambient) {
   const ProductSet& can = method.products;
   if (product == "composite" && ambient) return can.ao;
-  return product == "ao"       ? can.ao
-         : product == "bent"   ? can.bent
-         : product == "bounce" ? can.bounce
-         : product == "error"  ? can.error
-                               : can.direct;
+  return product == "ao"           ? can.ao
+         : product == "bent"       ? can.bent
+         : product == "reflection" ? can.reflection
+         : product == "bounce"     ? can.bounce
+         : product == "error"      ? can.error
+                                   : can.direct;
 }
 
 std::string methods_that_make(std::string_view product, bool ambient) {
@@ -62,6 +63,7 @@ class ProductChoice {
         output_(output),
         albedo_(!gbuffer.albedo.empty()),
         ambient_(!gbuffer.ambient.empty()),
+        roughness_(!gbuffer.roughness.empty()),
         file_(file) {}
 
   void choose(Plan& plan) const {
@@ -86,6 +88,7 @@ class ProductChoice {
     const bool error = contains(wanted, "error") || plan.error;
     plan.products.ao = contains(wanted, "ao") || (contains(wanted, "composite") && ambient_);
     plan.products.bent = contains(wanted, "bent");
+    plan.products.reflection = contains(wanted, "reflection");
     plan.products.error = error;
     plan.products.direct = contains(wanted, "direct") || lit || error;
     plan.products.bounce = contains(wanted, "bounce") || lit || (error && albedo_);
@@ -100,7 +103,9 @@ class ProductChoice {
   Names of_exr() const {
     Names names;
     for (const std::string_view name : kProducts) {
-      const bool possible = makes(method_, name, ambient_) && (albedo_ || !needs_albedo(name));
+      // Without a layer reflections have a roughness that only who asks for them can know.
+      const bool possible = makes(method_, name, ambient_) && (albedo_ || !needs_albedo(name)) &&
+                            (roughness_ || name != "reflection");
       if (output_.products.empty() ? possible : contains(output_.products, name))
         names.emplace_back(name);
     }
@@ -120,7 +125,8 @@ class ProductChoice {
     if (std::find(kProducts.begin(), kProducts.end(), name) == kProducts.end()) {
       throw Error(
           ExitCode::usage,
-          fmt::format("product '{}': there are ao, bent, direct, bounce, error and composite",
+          fmt::format("product '{}': there are ao, bent, reflection, direct, bounce, error and "
+                      "composite",
                       name));
     }
     if (!makes(method_, name, ambient_)) {
@@ -138,7 +144,7 @@ class ProductChoice {
 
   const Method& method_;
   const OutputOptions& output_;
-  bool albedo_, ambient_;  ///< layers that the frame has
+  bool albedo_, ambient_, roughness_;  ///< layers that the frame has
   const std::string& file_;
 };
 
@@ -148,6 +154,13 @@ void explain_composite(Plan& plan, const GBuffer& gbuffer) {
                              ? "composite is the ambient layer times ao: there is no beauty"
                              : "composite is the beauty with its ambient part times ao; all other "
                                "light stays as rendered");
+}
+
+void explain_reflection(Plan& plan, const GBuffer& gbuffer) {
+  if (!plan.products.reflection || !gbuffer.roughness.empty()) return;
+  plan.reasons.push_back(
+      fmt::format("reflection: roughness {:g} everywhere, there is no layer of it",
+                  plan.parameters.at("roughness")));
 }
 
 void choose_bounces(Plan& plan, int wanted, const GBuffer& gbuffer) {
@@ -246,6 +259,7 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBu
   plan.error = model.error;
   ProductChoice(*plan.method, output, gbuffer, file).choose(plan);
   explain_composite(plan, gbuffer);
+  explain_reflection(plan, gbuffer);
   choose_bounces(plan, model.bounces, gbuffer);
   explain_light(plan, light);
   choose_radius(plan, model, geometry);

@@ -22,16 +22,18 @@ struct ProductSet {
   bool direct = false;
   bool bounce = false;
   bool bent = false;
+  bool reflection = false;
   bool error = false;
 };
 
 /// The planes that were asked for, over the geometry's window; the others are empty. Linear,
-/// without the receiver's albedo. Background: ao 1, all else 0.
+/// without the receiver's albedo. Background: ao and reflection 1, all else 0.
 struct Products {
   Plane<float> ao;
   Plane<glm::vec3> direct, bounce;
-  Plane<glm::vec3> bent;  ///< unit, camera space
-  Plane<float> error;     ///< standard error of the luminance of direct + bounce
+  Plane<glm::vec3> bent;    ///< unit, camera space
+  Plane<float> reflection;  ///< share of a reflection that is not occluded
+  Plane<float> error;       ///< standard error of the luminance of direct + bounce
 };
 
 /// A parameter of one method, set with --set NAME=VALUE.
@@ -65,6 +67,9 @@ struct EstimateInput {
   const HiddenGeometry* hidden = nullptr;  ///< null: all that is seen is endless
   const LightModel* light = nullptr;       ///< of the environment; null: it is constant
   bool extend_offscreen = true;            ///< surfaces go on beyond the frame
+
+  // Of methods that occlude reflections.
+  const Plane<float>* roughness = nullptr;  ///< 0..1; null or empty: as the parameter says
 };
 
 /// A row in the table of methods.

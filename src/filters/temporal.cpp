@@ -103,7 +103,7 @@ class Reprojection {
 bool same_products(const Products& a, const Products& b) {
   return a.ao.empty() == b.ao.empty() && a.direct.empty() == b.direct.empty() &&
          a.bounce.empty() == b.bounce.empty() && a.bent.empty() == b.bent.empty() &&
-         a.error.empty() == b.error.empty();
+         a.reflection.empty() == b.reflection.empty() && a.error.empty() == b.error.empty();
 }
 
 template <class T>
@@ -144,6 +144,7 @@ History accumulate(const History* before, const Geometry& geometry, const Produc
       if (!mean.direct.empty()) mix(mean.direct, i, average(old.direct, at), frames);
       if (!mean.bounce.empty()) mix(mean.bounce, i, average(old.bounce, at), frames);
       if (!mean.bent.empty()) mix(mean.bent, i, turn * average(old.bent, at), frames);
+      if (!mean.reflection.empty()) mix(mean.reflection, i, average(old.reflection, at), frames);
       if (!mean.error.empty()) mix(mean.error, i, average(old.error, at), frames);
       after.frames[i] = frames + 1;
     }
@@ -153,7 +154,9 @@ History accumulate(const History* before, const Geometry& geometry, const Produc
 
 Products products_of(const History& history) {
   Products products = history.mean;
-  for (float& ao : products.ao.pixels) ao = std::clamp(ao, 0.0f, 1.0f);  // rounding leaves it
+  for (Plane<float>* shares : {&products.ao, &products.reflection})
+    for (float& share : shares->pixels)
+      share = std::clamp(share, 0.0f, 1.0f);  // rounding leaves it
   for (glm::vec3& bent : products.bent.pixels) {
     const float length = glm::length(bent);
     bent = length > 0 ? bent / length : glm::vec3(0);

@@ -18,9 +18,10 @@ struct GBuffer {
   Window window, display;
   float pixel_aspect = 1;
   Plane<glm::vec3> position, normal, albedo, radiance;
-  Plane<glm::vec3> ambient;  ///< the part of `beauty` that ambient light gave, as rendered
-  Plane<glm::vec3> beauty;   ///< as rendered; empty where no ambient part is known
-  Plane<float> depth, alpha;                 ///< depth: along the axis or the ray, in scene units
+  Plane<glm::vec3> ambient;   ///< the part of `beauty` that ambient light gave, as rendered
+  Plane<glm::vec3> beauty;    ///< as rendered; empty where no ambient part is known
+  Plane<float> depth, alpha;  ///< depth: along the axis or the ray, in scene units
+  Plane<float> roughness;     ///< of what mirrors, 0..1
   DepthKind depth_kind = DepthKind::planar;  ///< planar or ray: the others are undone
   Plane<unsigned char> valid;                ///< 1 geometry, 0 background or broken
   float position_step = 0;                   ///< relative rounding step of P (or depth) as stored

@@ -29,6 +29,7 @@ const std::vector<std::string>& known_names(Role role) {
       {"", "rgba", "beauty", "combined", "ci", "c", "finalimage*beauty"},
       {},
       {},
+      {"roughness", "specularroughness"},
   }};
   return names[std::size_t(role)];
 }
@@ -64,6 +65,8 @@ const std::vector<Components>& component_sets(Role role) {
       {"x", "y", "z"}, {"r", "g", "b"}, {"red", "green", "blue"}, {"nx", "ny", "nz"}};
   static const std::vector<Components> color = {{"r", "g", "b"}, {"red", "green", "blue"}};
   static const std::vector<Components> depth = {{"z"}, {"v"}, {"y"}, {"r"}, {"t"}, {"depth"}};
+  // A single value, or one that a renderer wrote as grey or into the first of three.
+  static const std::vector<Components> scalar = {{"y"}, {"v"}, {"r"}, {"red"}, {"x"}};
   static const std::vector<Components> alpha = {{"a"}, {"alpha"}};
   switch (role) {
     case Role::position:
@@ -73,6 +76,8 @@ const std::vector<Components>& component_sets(Role role) {
       return depth;
     case Role::alpha:
       return alpha;
+    case Role::roughness:
+      return scalar;
     default:
       return color;
   }

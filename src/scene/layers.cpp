@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
@@ -15,7 +16,7 @@ namespace ssdo {
 namespace {
 
 constexpr std::array<std::string_view, kRoleCount> kRoleNames = {
-    "position", "normal", "albedo", "depth", "alpha", "beauty", "radiance", "ambient"};
+    "position", "normal", "albedo", "depth", "alpha", "beauty", "radiance", "ambient", "roughness"};
 
 std::string_view last_segment(std::string_view path) {
   const auto dot = path.rfind('.');
@@ -131,7 +132,8 @@ std::vector<Candidate> candidates_of(Role role, const std::vector<Group>& groups
     if (role == Role::alpha && layer) {
       if (const auto rank = rank_of(Role::beauty, keys)) found.push_back({100 + *rank, *layer});
     }
-    if (role == Role::depth && !(group.find("x") && group.find("y"))) {
+    if (component_sets(role)[0].size() == 1 && role != Role::alpha &&
+        !(role == Role::depth && group.find("x") && group.find("y"))) {
       for (const auto& [component, channel] : group.components) {
         if (const auto rank = rank_of(role, {normalise(component)})) {
           found.push_back({*rank, scalar_layer(group, channel)});
@@ -244,7 +246,8 @@ LayerRequest parse_layer_request(const std::string& text) {
 }
 
 LayerTable find_layers(const std::vector<const ExrReader*>& files,
-                       const std::vector<LayerRequest>& requests, const std::string& only_part) {
+                       const std::vector<LayerRequest>& requests, const std::string& only_part,
+                       const std::vector<Role>& unused) {
   const std::string frame = files[0]->path().string();
   const auto groups = group_channels(files, only_part);
   if (groups.empty()) {
@@ -264,7 +267,8 @@ LayerTable find_layers(const std::vector<const ExrReader*>& files,
     table[request.role] = find_requested(request, files, groups);
   }
   for (std::size_t i = 0; i < kRoleCount; ++i) {
-    if (!table.layers[i]) table.layers[i] = find_by_name(Role(i), groups, frame);
+    const bool used = std::find(unused.begin(), unused.end(), Role(i)) == unused.end();
+    if (used && !table.layers[i]) table.layers[i] = find_by_name(Role(i), groups, frame);
   }
   return table;
 }

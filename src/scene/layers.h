@@ -12,8 +12,8 @@
 namespace ssdo {
 
 /// What a layer is used as.
-enum class Role { position, normal, albedo, depth, alpha, beauty, radiance, ambient };
-inline constexpr std::size_t kRoleCount = 8;
+enum class Role { position, normal, albedo, depth, alpha, beauty, radiance, ambient, roughness };
+inline constexpr std::size_t kRoleCount = 9;
 
 std::string_view role_name(Role role);
 std::optional<Role> role_from_name(std::string_view name);
@@ -49,9 +49,11 @@ LayerRequest parse_layer_request(const std::string& text);
 /// Finds the layer of every role by the names that renderers give them (DCC table, layers.cpp).
 /// A request wins over names. `files[0]` is the frame; a request with a file refers to the file of
 /// the same path in `files`. `only_part` (a name or a number, or empty) restricts the search.
+/// The roles in `unused` are filled on request only.
 /// Errors: ExitCode::layer when two layers have an equal claim, or a requested one does not exist;
 /// the message lists the candidates.
 LayerTable find_layers(const std::vector<const ExrReader*>& files,
-                       const std::vector<LayerRequest>& requests, const std::string& only_part);
+                       const std::vector<LayerRequest>& requests, const std::string& only_part,
+                       const std::vector<Role>& unused = {});
 
 }  // namespace ssdo

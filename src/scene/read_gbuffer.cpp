@@ -16,6 +16,8 @@ namespace {
 constexpr float kFar = 1e9f;  ///< Blender writes 1e10 where a ray meets nothing
 constexpr float kStepHalf = 1.0f / 2048, kStepFloat = 1.0f / 16777216;
 
+bool is_finite(float v) { return std::isfinite(v); }
+
 bool is_finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -145,13 +147,14 @@ void classify(GBuffer& g, const GBufferOptions& options) {
   }
 }
 
-/// A vector that is not finite becomes 0: black, or a normal to be rebuilt. The pixel counts as
+/// What is not finite becomes 0: black, smooth, or a normal to be rebuilt. The pixel counts as
 /// broken.
-void clear_broken(GBuffer& g, Plane<glm::vec3>& values) {
+template <class T>
+void clear_broken(GBuffer& g, Plane<T>& values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (is_finite(values[i])) continue;
     g.bad_pixels += g.valid[i];
-    values[i] = glm::vec3(0);
+    values[i] = T(0);
   }
 }
 
@@ -179,8 +182,8 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   if (!(g.pixel_aspect > 0) || !std::isfinite(g.pixel_aspect)) g.pixel_aspect = 1;
   g.position_step = lead->half ? kStepHalf : kStepFloat;
 
-  std::vector<Role> roles = {Role::position, Role::depth,    Role::normal,
-                             Role::albedo,   Role::radiance, Role::alpha};
+  std::vector<Role> roles = {Role::position, Role::depth, Role::normal,   Role::albedo,
+                             Role::radiance, Role::alpha, Role::roughness};
   if (table[Role::ambient]) roles.insert(roles.end(), {Role::ambient, Role::beauty});
   const LayerReader read(files, table, roles, g.window);
   g.position = read.vector(table[Role::position], NAN);
@@ -189,6 +192,7 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   g.albedo = read.vector(table[Role::albedo], 0);
   g.radiance = read.vector(table[Role::radiance], 0);
   g.alpha = read.scalar(table[Role::alpha], 0);
+  g.roughness = read.scalar(table[Role::roughness], 0);
   if (table[Role::ambient]) {
     g.ambient = read.vector(table[Role::ambient], 0);
     g.beauty = read.vector(table[Role::beauty], 0);
@@ -201,6 +205,8 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
     clear_broken(g, *values);
   clear_negative(g.albedo);
   clear_negative(g.radiance);
+  clear_broken(g, g.roughness);
+  for (float& r : g.roughness.pixels) r = std::clamp(r, 0.0f, 1.0f);
   if (lead->half) {
     g.warnings.push_back(
         fmt::format("{} is stored in 16 bits: steps of {:.2g} of its magnitude; "

@@ -63,14 +63,15 @@ TEST(Temporal, ASequenceAtRestConvergesToTheMeanOfItsFrames) {
   const Products out = products_of(history);
   for (std::size_t i = 0; i < g.surfel.size(); ++i) {
     if (!g.is_surface(i)) continue;
-    double ao = 0, error = 0;
+    double ao = 0, error = 0, reflection = 0;
     glm::dvec3 direct(0), bounce(0), bent(0);
     for (const Products& p : frames) {
-      ao += p.ao[i] / 16.0, error += p.error[i] / 16.0;
+      ao += p.ao[i] / 16.0, error += p.error[i] / 16.0, reflection += p.reflection[i] / 16.0;
       direct += glm::dvec3(p.direct[i]) / 16.0, bounce += glm::dvec3(p.bounce[i]) / 16.0;
       bent += glm::dvec3(p.bent[i]);
     }
     EXPECT_NEAR(out.ao[i], ao, kRounding);
+    EXPECT_NEAR(out.reflection[i], reflection, kRounding);
     EXPECT_NEAR(out.error[i], error, kRounding);
     EXPECT_LT(difference(out.direct[i], direct), kRounding);
     EXPECT_LT(difference(out.bounce[i], bounce), kRounding);

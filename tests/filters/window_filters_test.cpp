@@ -120,6 +120,7 @@ TEST_P(WindowFilter, IsTheSumOfItsSource) {
       }
     };
     check(in.ao, out.ao, false);
+    check(in.reflection, out.reflection, false);
     check(in.error, out.error, false);
     check(in.direct, out.direct, false);
     check(in.bounce, out.bounce, false);

@@ -194,6 +194,31 @@ TEST(Layers, APartRestrictsTheSearch) {
               IsError(ExitCode::layer, "0 'left', 1 'right'"));
 }
 
+TEST(Layers, FindsRoughnessWhereItIsUsed) {
+  const Channels position = {"P.X", "P.Y", "P.Z"};
+  const auto with = [&](Channels more) {
+    more.insert(more.end(), position.begin(), position.end());
+    return File(more);
+  };
+  for (const char* name : {"Roughness.Y", "specular_roughness.V", "ViewLayer.Roughness.X",
+                           "roughness", "roughness.R"}) {
+    EXPECT_EQ(channels_of(with({name}).find(), Role::roughness), Channels{name}) << name;
+  }
+  EXPECT_EQ(
+      channels_of(with({"roughness.R", "roughness.G", "roughness.B"}).find(), Role::roughness),
+      Channels{"roughness.R"});
+  EXPECT_EQ(channels_of(with({"gloss.Y"}).find(), Role::roughness), Channels{});
+  EXPECT_EQ(channels_of(with({"gloss.Y"}).find({"roughness=gloss"}), Role::roughness),
+            Channels{"gloss.Y"});
+
+  const File two = with({"base.roughness", "coat.roughness"});
+  EXPECT_THAT(error_of([&] { two.find(); }), IsError(ExitCode::layer, "could be roughness"));
+  const ExrReader reader(two.path());
+  EXPECT_EQ(channels_of(find_layers({&reader}, {}, "", {Role::roughness}), Role::roughness),
+            Channels{})
+      << "nothing to choose where nobody asks";
+}
+
 TEST(Layers, RequestsAreParsed) {
   EXPECT_EQ(parse_layer_request("normal=my:layer").layer, "my:layer")
       << "no such file: the colon is the layer's";

@@ -76,7 +76,7 @@ inline Products random_products(const Geometry& g, unsigned seed) {
   Random random(seed);
   const int w = g.surfel.width, h = g.surfel.height;
   Products p;
-  p.ao = p.error = Plane<float>(w, h);
+  p.ao = p.reflection = p.error = Plane<float>(w, h);
   p.direct = p.bounce = p.bent = Plane<glm::vec3>(w, h);
   for (std::size_t i = 0; i < p.ao.size(); ++i) {
     p.ao[i] = between(random, 0, 1);
@@ -84,6 +84,7 @@ inline Products random_products(const Geometry& g, unsigned seed) {
     p.bounce[i] = vector_of(random, 1);
     p.bent[i] = glm::normalize(glm::vec3(0, 0, 1.5f) + vector_of(random, 1));
     p.error[i] = between(random, -1, 1);
+    p.reflection[i] = between(random, 0, 1);
   }
   return p;
 }
