@@ -8,6 +8,7 @@
 
 #include "error.h"
 #include "estimators/bitmask.h"
+#include "estimators/hbao.h"
 #include "estimators/msvo.h"
 #include "estimators/sao.h"
 #include "estimators/ssao.h"
@@ -31,7 +32,7 @@ std::string parameter_names(const Method& method) {
 std::span<const Method> methods() {
   static const std::array all = {bitmask_method(),    ssdo_method(),      ssao_method(),
                                  ssao_range_method(), ssao_fade_method(), sao_method(),
-                                 msvo_method()};
+                                 msvo_method(),       hbao_method()};
   return all;
 }
 

@@ -159,6 +159,7 @@ TEST_P(PointMethods, BackgroundReadsOneAndFramesMayBeTiny) {
 INSTANTIATE_TEST_SUITE_P(
     All, PointMethods,
     testing::Values(Case{"ssao", "ssao", {}}, Case{"ssao_range", "ssao-range", {}},
+                    Case{"hbao", "hbao", {}},
                     Case{"fade_every_pixel", "ssao-fade", {"upsampling=0"}},
                     Case{"fade_bilinear", "ssao-fade", {}},
                     Case{"fade_along_surfaces", "ssao-fade", {"upsampling=2"}}),
