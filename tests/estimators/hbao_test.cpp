@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "estimators/obscurance_request.h"
 
