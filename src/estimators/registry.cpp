@@ -9,6 +9,7 @@
 #include "error.h"
 #include "estimators/bitmask.h"
 #include "estimators/gtao.h"
+#include "estimators/hbao.h"
 #include "estimators/msvo.h"
 #include "estimators/sao.h"
 #include "estimators/ssao.h"
@@ -31,9 +32,9 @@ std::string parameter_names(const Method& method) {
 }  // namespace
 
 std::span<const Method> methods() {
-  static const std::array all = {bitmask_method(), trace_method(),      ssdo_method(),
-                                 ssao_method(),    ssao_range_method(), ssao_fade_method(),
-                                 gtao_method(),    sao_method(),        msvo_method()};
+  static const std::array all = {
+      bitmask_method(),   trace_method(), ssdo_method(), ssao_method(), ssao_range_method(),
+      ssao_fade_method(), hbao_method(),  gtao_method(), sao_method(),  msvo_method()};
   return all;
 }
 

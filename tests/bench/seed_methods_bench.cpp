@@ -25,6 +25,7 @@ const Row kRows[] = {
     {"ssao-fade/along-surfaces", "ssao-fade", {"upsampling=2"}, 14 / 4.0},
     {"ssao-fade/every-pixel", "ssao-fade", {"upsampling=0"}, 14},
     {"sao", "sao", {}, 11},
+    {"hbao", "hbao", {}, 12},
     {"msvo", "msvo", {}, 36 * 85 / 256.0},
     {"gtao", "gtao", {}, 8},
 };

@@ -19,6 +19,7 @@ namespace {
 struct Case {
   std::string name, method;
   std::vector<std::string> set;
+  float near = 0.1f;  ///< a radius that reaches less than 24 pixels far
 };
 
 class PointMethods : public testing::TestWithParam<Case> {
@@ -76,7 +77,7 @@ TEST_P(PointMethods, ThreadsDoNotChangeABit) {
 
 TEST_P(PointMethods, ACropDoesNotChangeABit) {
   const Geometry whole = room();
-  const Products all = estimate(whole, 0.1f);
+  const Products all = estimate(whole, GetParam().near);
   for (const Window window :
        {Window{13, 7, 151, 97}, Window{0, 0, 138, 90}, Window{6, 5, 133, 91}}) {
     Geometry part = whole;
@@ -86,7 +87,7 @@ TEST_P(PointMethods, ACropDoesNotChangeABit) {
       for (int x = 0; x < window.width(); ++x)
         part.surfel(x, y) = whole.surfel(x + window.x0, y + window.y0);
     }
-    const Products cropped = estimate(part, 0.1f);
+    const Products cropped = estimate(part, GetParam().near);
     // Farther from the border than any sample of ssao-fade reaches: five radii.
     const int margin = 24;
     double darkest = 1;
@@ -162,6 +163,7 @@ INSTANTIATE_TEST_SUITE_P(All, PointMethods,
                                          Case{"fade_every_pixel", "ssao-fade", {"upsampling=0"}},
                                          Case{"fade_bilinear", "ssao-fade", {}},
                                          Case{"fade_along_surfaces", "ssao-fade", {"upsampling=2"}},
+                                         Case{"hbao", "hbao", {}, 0.9f},
                                          Case{"gtao", "gtao", {"steps=12"}},
                                          Case{"gtao_thin", "gtao", {"steps=12", "thickness=0.7"}}),
                          [](const auto& one) { return one.param.name; });
