@@ -45,6 +45,8 @@ std::vector<NamedPlane> product_channels(const std::string& product, const GBuff
     out.push_back({"ao.Y", products.ao});
   } else if (product == "error") {
     out.push_back({"error.Y", products.error});
+  } else if (product == "reflection") {
+    out.push_back({"reflection.Y", products.reflection});
   } else if (product == "bent") {
     for (int c = 0; c < 3; ++c) {
       NamedPlane named{std::string("bent.") + "XYZ"[c],

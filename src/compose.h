@@ -25,7 +25,7 @@ Plane<float> coverage(const GBuffer& gbuffer, const Geometry& geometry);
 Plane<glm::vec3> composite(const GBuffer& gbuffer, const Products& products);
 
 /// The channels of one product: R G B A (premultiplied) for "composite", ao.Y, error.Y,
-/// bent.X/Y/Z in the space of the input's normals, direct.R/G/B, bounce.R/G/B.
+/// reflection.Y, bent.X/Y/Z in the space of the input's normals, direct.R/G/B, bounce.R/G/B.
 std::vector<NamedPlane> product_channels(const std::string& product, const GBuffer& gbuffer,
                                          const Geometry& geometry, const Products& products);
 

@@ -29,7 +29,7 @@ void apply_display(Plane<glm::vec3>& colors, const DisplayTransform& display) {
 }  // namespace
 
 bool needs_display(const std::string& product) {
-  return product != "ao" && product != "error" && product != "bent";
+  return product != "ao" && product != "error" && product != "bent" && product != "reflection";
 }
 
 DisplayImage make_display_image(const std::string& product, const Frame& frame,
@@ -39,7 +39,7 @@ DisplayImage make_display_image(const std::string& product, const Frame& frame,
   image.width = geometry.display.width();
   image.height = geometry.display.height();
   image.pixel_aspect = frame.gbuffer.pixel_aspect;
-  const bool grey = product == "ao" || product == "error";
+  const bool grey = product == "ao" || product == "error" || product == "reflection";
   image.channels = grey ? 1 : product == "composite" ? 4 : 3;
   const auto channels = std::size_t(image.channels);
   image.values.assign(geometry.display.area() * channels, 0.0f);

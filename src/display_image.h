@@ -23,8 +23,8 @@ struct DisplayImage {
 /// Whether a product is a colour, which goes through the display transform; visibility does not.
 bool needs_display(const std::string& product);
 
-/// The composite comes with its alpha, not premultiplied; direct and bounce as RGB; ao and error as
-/// grey; bent as RGB with 1/2 for 0.
+/// The composite comes with its alpha, not premultiplied; direct and bounce as RGB; ao, error and
+/// reflection as grey; bent as RGB with 1/2 for 0.
 /// What the data window does not cover is empty. `display` may be null where needs_display is
 /// false.
 DisplayImage make_display_image(const std::string& product, const Frame& frame,

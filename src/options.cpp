@@ -157,9 +157,9 @@ void add_output(CLI::App& app, Options& o, RawOptions& raw) {
       ->type_name("OUTPUT")
       ->allow_extra_args(false)
       ->group("Output");
-  app.add_option(
-         "--products", o.output.products,
-         "of ao, bent, direct, bounce, error, composite; default: all that the inputs allow")
+  app.add_option("--products", o.output.products,
+                 "of ao, bent, reflection, direct, bounce, error, composite; default: all that the "
+                 "inputs and the method allow")
       ->type_name("LIST")
       ->delimiter(',')
       ->allow_extra_args(false)

@@ -18,7 +18,7 @@
 namespace ssdo {
 namespace {
 
-constexpr std::array<std::string_view, 6> kProducts = {"ao",     "bent",  "direct",
+constexpr std::array<std::string_view, 7> kProducts = {"ao",     "bent",  "reflection", "direct",
                                                        "bounce", "error", "composite"};
 
 /// Share of the frame's height at the median depth, of methods that need a limit. Of 0.1 to 2, the
@@ -36,11 +36,12 @@ bool contains(const Names& names, std::string_view name) {
 
 bool makes(const Method& method, std::string_view product) {
   const ProductSet& can = method.products;
-  return product == "ao"       ? can.ao
-         : product == "bent"   ? can.bent
-         : product == "bounce" ? can.bounce
-         : product == "error"  ? can.error
-                               : can.direct;
+  return product == "ao"           ? can.ao
+         : product == "bent"       ? can.bent
+         : product == "reflection" ? can.reflection
+         : product == "bounce"     ? can.bounce
+         : product == "error"      ? can.error
+                                   : can.direct;
 }
 
 bool needs_albedo(std::string_view product) {
@@ -83,6 +84,7 @@ class ProductChoice {
     const bool error = contains(wanted, "error") || plan.error;
     plan.products.ao = contains(wanted, "ao");
     plan.products.bent = contains(wanted, "bent");
+    plan.products.reflection = contains(wanted, "reflection");
     plan.products.error = error;
     plan.products.direct = contains(wanted, "direct") || composite || error;
     plan.products.bounce = contains(wanted, "bounce") || composite || (error && albedo_);
@@ -113,8 +115,9 @@ class ProductChoice {
     if (std::find(kProducts.begin(), kProducts.end(), name) == kProducts.end()) {
       throw Error(
           ExitCode::usage,
-          fmt::format("product '{}': there are ao, bent, direct, bounce, error and composite",
-                      name));
+          fmt::format(
+              "product '{}': there are ao, bent, reflection, direct, bounce, error and composite",
+              name));
     }
     if (!makes(method_, name)) {
       throw Error(ExitCode::usage, fmt::format("method {} makes no {}; these do: {}", method_.name,

@@ -23,15 +23,18 @@ struct ProductSet {
   bool bounce = false;
   bool bent = false;
   bool error = false;
+  bool reflection = false;
 };
 
 /// The planes that were asked for, over the geometry's window; the others are empty. Linear,
-/// without the receiver's albedo. Background: ao 1, all else 0.
+/// without the receiver's albedo. Background: ao and reflection 1, all else
+/// 0.
 struct Products {
   Plane<float> ao;
   Plane<glm::vec3> direct, bounce;
-  Plane<glm::vec3> bent;  ///< unit, camera space
-  Plane<float> error;     ///< standard error of the luminance of direct + bounce
+  Plane<glm::vec3> bent;    ///< unit, camera space
+  Plane<float> error;       ///< standard error of the luminance of direct + bounce
+  Plane<float> reflection;  ///< share of what is mirrored that nothing hides, 0 to 1
 };
 
 /// A parameter of one method, set with --set NAME=VALUE.

@@ -46,6 +46,7 @@
 #include "error.h"
 #include "estimators/ambient_light.h"
 #include "estimators/multi_bounce.h"
+#include "estimators/reflection_occlusion.h"
 #include "estimators/tiled_noise.h"
 #include "parallel/isa.h"
 
@@ -222,6 +223,21 @@ TiledNoise first_steps() {
   return TiledNoise(first);
 }
 
+Plane<float> reflection(const EstimateInput& in, const Plane<glm::vec3>& bent, float roughness) {
+  Plane<float> open(bent.width, bent.height, 1.0f);
+  for_each_row(open.height, [&](int y) {
+    for (int x = 0; x < open.width; ++x) {
+      const Surfel& s = in.geometry.surfel(x, y);
+      if (!is_usable(s)) continue;
+      const glm::vec3 normal(s.normal), seen_along = in.geometry.camera.orthographic
+                                                         ? glm::vec3(0, 0, -1)
+                                                         : glm::normalize(glm::vec3(s.position));
+      open(x, y) = reflection_occlusion(bent(x, y), glm::reflect(seen_along, normal), roughness);
+    }
+  });
+  return open;
+}
+
 void normalise_all(Plane<glm::vec3>& vectors) {
   for (glm::vec3& v : vectors.pixels) {
     const float length = glm::length(v);
@@ -251,7 +267,7 @@ Products estimate_gtao(const EstimateInput& in) {
   const ViewPlanes planes = make_view_planes(in.geometry);
   Products out;
   out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
-  if (in.products.bent || in.products.direct)
+  if (in.products.bent || in.products.direct || in.products.reflection)
     out.bent = Plane<glm::vec3>(planes.width(), planes.height(), glm::vec3(0));
   std::vector<SliceTurns> turns;
   for (int i = 0; i < slices; ++i) turns.push_back(turns_of(i, slices));
@@ -268,6 +284,8 @@ Products estimate_gtao(const EstimateInput& in) {
                     out.bent};
   const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(gtao_of_tile)(job, tile); };
   for_each_tile(planes.width(), planes.height(), work, in.progress);
+  if (in.products.reflection)
+    out.reflection = reflection(in, out.bent, float(parameter("roughness")));
   normalise_all(out.bent);
   if (in.products.direct) out.direct = direct_light(in, out, bounces);
   if (!in.products.bent) out.bent = {};
@@ -280,7 +298,7 @@ Method gtao_method() {
   return {
       "gtao",
       "horizons in slices with the cosine, Jimenez et al. 2016",
-      {.ao = true, .direct = true, .bent = true},
+      {.ao = true, .direct = true, .bent = true, .reflection = true},
       kPattern,
       {
           {"slices", 2, 1, 64, "", "per pixel", true},
@@ -289,6 +307,7 @@ Method gtao_method() {
            false},
           {"multi-bounce", 0, 0, 1, "", "1: direct with light between surfaces, by their albedo",
            true},
+          {"roughness", 0.5, 0, 1, "", "of all surfaces, for reflection", false},
       },
       false,
       [](const ParameterValues& p) { return 2 * int(p.at("slices")) * int(p.at("steps")); },

@@ -76,9 +76,10 @@ std::string describe_methods() {
   std::string text;
   for (const Method& method : methods()) {
     const ProductSet& can = method.products;
-    text += fmt::format("{}  {}\n  products: ao{}{}{}{}\n", method.name, method.summary,
-                        can.bent ? ", bent" : "", can.direct ? ", direct" : "",
-                        can.bounce ? ", bounce" : "", can.error ? ", error" : "");
+    text += fmt::format("{}  {}\n  products: ao{}{}{}{}{}\n", method.name, method.summary,
+                        can.bent ? ", bent" : "", can.reflection ? ", reflection" : "",
+                        can.direct ? ", direct" : "", can.bounce ? ", bounce" : "",
+                        can.error ? ", error" : "");
     for (const Parameter& p : method.parameters) {
       text += fmt::format("  {:<20} {:>8g}  {:g} to {:g} {}  {}\n", p.name, p.value, p.low, p.high,
                           p.unit, p.meaning);

@@ -7,7 +7,7 @@
 namespace ssdo {
 
 /// Averages away the noise of a T x T sampling pattern among pixels of the same surface; see
-/// geometry_filter.cpp. Of the planes that exist, ao is held to 0..1 and bent is made unit again,
+/// geometry_filter.cpp. Of the planes that exist, ao and reflection are held to 0..1 and bent is made unit again,
 /// zero staying zero; the error is taken as a signed difference. Background pixels keep their
 /// values. Errors: those of choose_isa().
 Products filter_geometry(const Products& noisy, const Geometry& geometry, int pattern_size);

@@ -76,6 +76,7 @@ inline std::vector<Part> parts_of(const Products& noisy, Products& out) {
   add3(noisy.bounce, out.bounce, Finish::none);
   add3(noisy.bent, out.bent, Finish::normalise);
   add(noisy.ao, out.ao, Finish::clamp);
+  add(noisy.reflection, out.reflection, Finish::clamp);
   add(noisy.error, out.error, Finish::none);
   return parts;
 }
