@@ -223,21 +223,6 @@ TiledNoise first_steps() {
   return TiledNoise(first);
 }
 
-Plane<float> reflection(const EstimateInput& in, const Plane<glm::vec3>& bent, float roughness) {
-  Plane<float> open(bent.width, bent.height, 1.0f);
-  for_each_row(open.height, [&](int y) {
-    for (int x = 0; x < open.width; ++x) {
-      const Surfel& s = in.geometry.surfel(x, y);
-      if (!is_usable(s)) continue;
-      const glm::vec3 normal(s.normal), seen_along = in.geometry.camera.orthographic
-                                                         ? glm::vec3(0, 0, -1)
-                                                         : glm::normalize(glm::vec3(s.position));
-      open(x, y) = reflection_occlusion(bent(x, y), glm::reflect(seen_along, normal), roughness);
-    }
-  });
-  return open;
-}
-
 void normalise_all(Plane<glm::vec3>& vectors) {
   for (glm::vec3& v : vectors.pixels) {
     const float length = glm::length(v);
@@ -285,7 +270,7 @@ Products estimate_gtao(const EstimateInput& in) {
   const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(gtao_of_tile)(job, tile); };
   for_each_tile(planes.width(), planes.height(), work, in.progress);
   if (in.products.reflection)
-    out.reflection = reflection(in, out.bent, float(parameter("roughness")));
+    out.reflection = reflection_occlusion(in, out.bent, float(parameter("roughness")));
   normalise_all(out.bent);
   if (in.products.direct) out.direct = direct_light(in, out, bounces);
   if (!in.products.bent) out.bent = {};

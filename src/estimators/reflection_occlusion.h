@@ -20,6 +20,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "estimators/estimator.h"
+
 namespace ssdo {
 
 /// From 0, hidden, to 1. `bent` is the mean of unit directions, `mirrored` a unit vector in the
@@ -36,5 +38,9 @@ inline float reflection_occlusion(const glm::vec3& bent, const glm::vec3& mirror
   const float t = 1 - std::clamp((between - inside) / (gloss + open - inside), 0.0f, 1.0f);
   return t * t * (3 - 2 * t) * certain;
 }
+
+/// Of every pixel, from its bent normal (camera space, a mean of unit directions); background: 1.
+Plane<float> reflection_occlusion(const EstimateInput& in, const Plane<glm::vec3>& bent,
+                                  float roughness);
 
 }  // namespace ssdo
