@@ -11,8 +11,9 @@
 //   overlap = smoothstep(0, 1, 1 - clamp((beta - |s - u|) / (s + u - |s - u|)))
 //   occlusion = overlap clamp((u - 0.1) / 0.2)
 //
-// Known fault, kept: |b| says how well the slices agree on a direction, not how narrow each of
-// them is, so that what is hidden evenly from all sides counts as open.
+// Known faults, kept: |b| says how well the slices agree on a direction, not how narrow each of
+// them is. What is hidden evenly from all sides counts as open, and an open plane that is seen at
+// a grazing angle, whose slices lean apart, as hidden in part.
 #pragma once
 
 #include <algorithm>
