@@ -130,17 +130,6 @@ HWY_INLINE V next_horizon(const GtaoJob& job, const Viewed& from, V right, V dow
 
 HWY_INLINE V acos_of(V cosine) { return hn::Acos(D(), hn::Min(hn::Max(cosine, set(-1)), set(1))); }
 
-HWY_INLINE void store_vectors(const V3& values, int x, const Tile& tile, glm::vec3* row) {
-  const D d;
-  const int lanes = int(hn::Lanes(d));
-  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-  if (x + lanes <= tile.x1)
-    return hn::StoreInterleaved3(values.x, values.y, values.z, d, &row[x].x);
-  HWY_ALIGN float all[3 * PaddedLayout::kPad];
-  hn::StoreInterleaved3(values.x, values.y, values.z, d, all);
-  for (int i = 0; x + i < tile.x1; ++i) row[x + i] = {all[3 * i], all[3 * i + 1], all[3 * i + 2]};
-}
-
 void gtao_of_tile(const GtaoJob& job, const Tile& tile) {
   const D d;
   const ViewPlanes& planes = job.planes;
