@@ -46,6 +46,7 @@
 #include "error.h"
 #include "estimators/ambient_light.h"
 #include "estimators/multi_bounce.h"
+#include "estimators/reflection_occlusion.h"
 #include "estimators/tiled_noise.h"
 #include "parallel/isa.h"
 
@@ -128,17 +129,6 @@ HWY_INLINE V next_horizon(const GtaoJob& job, const Viewed& from, V right, V dow
 }
 
 HWY_INLINE V acos_of(V cosine) { return hn::Acos(D(), hn::Min(hn::Max(cosine, set(-1)), set(1))); }
-
-HWY_INLINE void store_vectors(const V3& values, int x, const Tile& tile, glm::vec3* row) {
-  const D d;
-  const int lanes = int(hn::Lanes(d));
-  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-  if (x + lanes <= tile.x1)
-    return hn::StoreInterleaved3(values.x, values.y, values.z, d, &row[x].x);
-  HWY_ALIGN float all[3 * PaddedLayout::kPad];
-  hn::StoreInterleaved3(values.x, values.y, values.z, d, all);
-  for (int i = 0; x + i < tile.x1; ++i) row[x + i] = {all[3 * i], all[3 * i + 1], all[3 * i + 2]};
-}
 
 void gtao_of_tile(const GtaoJob& job, const Tile& tile) {
   const D d;
@@ -251,7 +241,7 @@ Products estimate_gtao(const EstimateInput& in) {
   const ViewPlanes planes = make_view_planes(in.geometry);
   Products out;
   out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
-  if (in.products.bent || in.products.direct)
+  if (in.products.bent || in.products.direct || in.products.reflection)
     out.bent = Plane<glm::vec3>(planes.width(), planes.height(), glm::vec3(0));
   std::vector<SliceTurns> turns;
   for (int i = 0; i < slices; ++i) turns.push_back(turns_of(i, slices));
@@ -268,6 +258,7 @@ Products estimate_gtao(const EstimateInput& in) {
                     out.bent};
   const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(gtao_of_tile)(job, tile); };
   for_each_tile(planes.width(), planes.height(), work, in.progress);
+  if (in.products.reflection) out.reflection = reflection_occlusion(in, out.bent);
   normalise_all(out.bent);
   if (in.products.direct) out.direct = direct_light(in, out, bounces);
   if (!in.products.bent) out.bent = {};
@@ -280,7 +271,7 @@ Method gtao_method() {
   return {
       "gtao",
       "horizons in slices with the cosine, Jimenez et al. 2016",
-      {.ao = true, .direct = true, .bent = true},
+      {.ao = true, .direct = true, .bent = true, .reflection = true},
       kPattern,
       {
           {"slices", 2, 1, 64, "", "per pixel", true},
@@ -289,6 +280,8 @@ Method gtao_method() {
            false},
           {"multi-bounce", 0, 0, 1, "", "1: direct with light between surfaces, by their albedo",
            true},
+          {"roughness", 0.5, 0, 1, "", "of what mirrors, where there is no layer of it", false},
+          {"reflection-strength", 0.5, 0, 1, "", "1/2: slices that agree see a half-ball", false},
       },
       false,
       [](const ParameterValues& p) { return 2 * int(p.at("slices")) * int(p.at("steps")); },

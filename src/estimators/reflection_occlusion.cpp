@@ -10,11 +10,12 @@
 //   occlusion = smoothstep(1 - saturate((w - D) / (S - D))) saturate((u - 0.1) / 0.2)
 //
 // is 1 where one cone lies within the other and 0 where they do not touch, or where the visible
-// cone is all but closed. The length of b is what tells an open surface from a crevice: it must
-// not be made unit before.
+// cone is all but closed. b must not be made unit before.
 //
-// Known faults, kept: a wide specular cone that reaches around a narrow visible one counts as
-// open; s reaches pi, beyond the surface, for a roughness of 1.
+// Known faults, kept: of gtao, the length of b says how well its slices agree on a direction, not
+// how narrow each is, so that what is hidden evenly from all sides counts as open; so does a
+// narrow visible cone within a wide specular one; s reaches pi, beyond the surface, for a
+// roughness of 1.
 #include "estimators/reflection_occlusion.h"
 
 #include <algorithm>
@@ -56,7 +57,7 @@ Plane<float> reflection_occlusion(const EstimateInput& in, const Plane<glm::vec3
   Plane<float> out(bent.width, bent.height, 1.0f);
   const bool layer = in.roughness && !in.roughness->empty();
   const auto roughness = float(in.parameters.at("roughness")),
-             strength = float(in.parameters.at("strength"));
+             strength = float(in.parameters.at("reflection-strength"));
   for_each_row(bent.height, [&](int y) {
     for (int x = 0; x < bent.width; ++x) {
       const std::size_t i = bent.index(x, y);

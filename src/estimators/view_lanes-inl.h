@@ -11,6 +11,8 @@
 
 #include <hwy/highway.h>
 
+#include <glm/vec3.hpp>
+
 #include "estimators/view_planes.h"
 #include "parallel/tiles.h"
 
@@ -159,6 +161,18 @@ HWY_INLINE void store_pixels(V values, int x, const Tile& tile, float* row) {
   HWY_ALIGN float all[PaddedLayout::kPad];
   hn::Store(values, d, all);
   for (int i = 0; x + i < tile.x1; ++i) row[x + i] = all[i];
+}
+
+/// The same of vectors.
+HWY_INLINE void store_vectors(const V3& values, int x, const Tile& tile, glm::vec3* row) {
+  const D d;
+  const int lanes = int(hn::Lanes(d));
+  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+  if (x + lanes <= tile.x1)
+    return hn::StoreInterleaved3(values.x, values.y, values.z, d, &row[x].x);
+  HWY_ALIGN float all[3 * PaddedLayout::kPad];
+  hn::StoreInterleaved3(values.x, values.y, values.z, d, all);
+  for (int i = 0; x + i < tile.x1; ++i) row[x + i] = {all[3 * i], all[3 * i + 1], all[3 * i + 2]};
 }
 
 }  // namespace ssdo::HWY_NAMESPACE

@@ -6,7 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "estimators/point_method_request.h"
+#include "estimators/gtao.h"
+#include "estimators/obscurance_request.h"
 #include "estimators/reflection_occlusion.h"
 
 namespace ssdo::test {
@@ -69,7 +70,7 @@ Plane<float> reflect(const Geometry& g, const Plane<glm::vec3>& bent, double rou
                      const Plane<float>* layer = nullptr) {
   const Plane<glm::vec3> none;
   const Environment sky = Environment::constant(glm::vec3(1));
-  const ParameterValues parameters = {{"roughness", roughness}, {"strength", 0.5}};
+  const ParameterValues parameters = {{"roughness", roughness}, {"reflection-strength", 0.5}};
   EstimateInput in{g, none, none, sky, {.reflection = true}, 1, 0, 0, parameters, {}};
   in.roughness = layer;
   return reflection_occlusion(in, bent);
@@ -121,6 +122,53 @@ TEST(Reflection, BackgroundAndWhatIsBrokenIsOpen) {
   EXPECT_EQ(found(24, 18), 1);
   EXPECT_EQ(found(25, 18), 1);
   EXPECT_EQ(found(24, 16), 0);
+}
+
+/// What gtao makes of a frame.
+Products reflected_by_gtao(const Geometry& g, const std::vector<std::string>& set,
+                           ProductSet products) {
+  const ParameterValues parameters = resolve_parameters(gtao_method(), set);
+  const Plane<glm::vec3> none;
+  const Environment sky = Environment::constant(glm::vec3(1));
+  return gtao_method().estimate({g, none, none, sky, products, 2, 0, 0, parameters, {}});
+}
+
+TEST(Reflection, GtaoTakesTheMeanOfItsSlicesBeforeItIsMadeUnit) {
+  // At the foot of a wall the slices lean to different sides.
+  const Geometry g =
+      geometry_of(still_life(), tilted(camera_from_fov(50, kWindow, 1), 50), kWindow);
+  const auto make = [&](const char* slices) {
+    return reflected_by_gtao(g, {slices, "roughness=0.2"}, {.bent = true, .reflection = true});
+  };
+  const Products one = make("slices=1"), three = make("slices=3");
+  const Plane<float> of_one = reflect(g, one.bent, 0.2), of_three = reflect(g, three.bent, 0.2);
+  int narrower = 0;
+  for (std::size_t i = 0; i < of_one.size(); ++i) {
+    EXPECT_NEAR(one.reflection[i], of_one[i], 1e-4) << "of one slice it is unit from the start";
+    narrower += three.reflection[i] < of_three[i] - 0.02f;
+  }
+  EXPECT_GT(narrower, 50);
+  // Whoever asks for nothing else gets nothing else.
+  const Products alone = reflected_by_gtao(g, {"slices=3", "roughness=0.2"}, {.reflection = true});
+  EXPECT_EQ(alone.reflection.pixels, three.reflection.pixels);
+  EXPECT_TRUE(alone.bent.empty() && alone.direct.empty());
+}
+
+TEST(Reflection, AnOpenPlaneThatFacesTheViewerMirrorsAll) {
+  const Geometry g =
+      geometry_of(plane({}, {0, 0, 1}), tilted(camera_from_ortho_width(6, kWindow, 1), 0), kWindow);
+  for (const char* roughness : {"roughness=0", "roughness=0.5", "roughness=1"}) {
+    for (const float open :
+         reflected_by_gtao(g, {roughness}, {.reflection = true}).reflection.pixels)
+      EXPECT_NEAR(open, 1, 1e-4);
+  }
+}
+
+TEST(Reflection, NothingThatComesInMakesANaN) {
+  for (const char* roughness : {"roughness=0", "roughness=1"}) {
+    const Products out = reflected_by_gtao(broken_geometry(), {roughness}, {.reflection = true});
+    for (const float open : out.reflection.pixels) EXPECT_TRUE(open >= 0 && open <= 1) << open;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The product reflection through the binary: where roughness comes from, and who makes it.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/frame_file.h"
+#include "support/run_tool.h"
+
+namespace ssdo::test {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+/// The frame with layers of one value for every pixel.
+void write_with(const TempDir& dir, const std::map<std::string, float>& layers) {
+  const Picture picture = small_picture();
+  FramePart part = frame_of(picture);
+  for (const auto& [name, value] : layers)
+    part.channels[name] = Plane<float>(picture.window.width(), picture.window.height(), value);
+  write_frame(dir / "in.exr", part);
+}
+
+Plane<float> reflection_of(const TempDir& dir, std::vector<std::string> flags) {
+  flags.insert(flags.begin(), {dir / "in.exr", "-o", dir / "out.exr", "--overwrite", "--pixel-type",
+                               "float", "--method", "gtao", "--products", "reflection"});
+  const Finished done = run_tool(flags);
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(channel_names(dir / "out.exr"), testing::ElementsAre("reflection.Y"));
+  return channel(dir / "out.exr", "reflection.Y");
+}
+
+TEST(ReflectionProduct, RoughnessComesFromALayerOrFromTheParameter) {
+  const TempDir dir;
+  write_with(dir, {{"gloss.Y", 0.9f}});
+  const Plane<float> smooth = reflection_of(dir, {"--set", "roughness=0.2"}),
+                     rough = reflection_of(dir, {"--set", "roughness=0.9"});
+  EXPECT_NE(smooth.pixels, rough.pixels);
+  EXPECT_EQ(reflection_of(dir, {"--aov", "roughness=gloss"}).pixels, rough.pixels);
+  write_with(dir, {{"specular_roughness.Y", 0.2f}});
+  EXPECT_EQ(reflection_of(dir, {}).pixels, smooth.pixels) << "found by its name";
+}
+
+TEST(ReflectionProduct, IsMadeByDefaultOnlyWhereRoughnessIsKnown) {
+  const TempDir dir;
+  const auto products = [&] {
+    const Finished done = run_tool({"info", dir / "in.exr", "--method", "gtao", "--json"});
+    EXPECT_EQ(done.code, 0) << done.err;
+    return nlohmann::json::parse(done.out)["plan"]["products"].get<std::vector<std::string>>();
+  };
+  write_with(dir, {});
+  EXPECT_THAT(products(), Not(Contains("reflection")));
+  write_with(dir, {{"roughness", 0.4f}});
+  EXPECT_THAT(products(), Contains("reflection"));
+}
+
+TEST(ReflectionProduct, ThePlanSaysWhichRoughness) {
+  const TempDir dir;
+  write_with(dir, {});
+  const Finished done = run_tool({"info", dir / "in.exr", "--method", "gtao", "--products",
+                                  "reflection", "--set", "roughness=0.3"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("roughness 0.3 everywhere"));
+}
+
+TEST(ReflectionProduct, OtherMethodsSayWhoMakesItAndDoNotCareAboutRoughness) {
+  const TempDir dir;
+  write_with(dir, {{"base.roughness", 0.2f}, {"coat.roughness", 0.4f}});
+  const Finished refused = run_tool({"info", dir / "in.exr", "--products", "reflection"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.error_line(), HasSubstr("these do: gtao"));
+  EXPECT_EQ(run_tool({"info", dir / "in.exr"}).code, 0) << "two layers are no matter here";
+  const Finished unclear = run_tool({"info", dir / "in.exr", "--method", "gtao"});
+  EXPECT_EQ(unclear.code, 4);
+  EXPECT_THAT(unclear.error_line(), HasSubstr("--aov roughness=LAYER"));
+}
+
+}  // namespace
+}  // namespace ssdo::test
