@@ -28,6 +28,7 @@ const Row kRows[] = {
     {"hbao", "hbao", {}, 12},
     {"msvo", "msvo", {}, 36 * 85 / 256.0},
     {"gtao", "gtao", {}, 8},
+    {"gtao/9x3", "gtao", {"slices=9", "steps=3"}, 54},
 };
 
 void estimate(benchmark::State& state, const std::string& isa, const Row& row, int threads) {
