@@ -64,10 +64,6 @@ HWY_INLINE VU bits_from(VU first) {
 #endif
 }
 
-HWY_INLINE V count(VU bits) {
-  return hn::ConvertTo(D(), hn::BitCast(DI(), hn::PopulationCount(bits)));
-}
-
 /// Columns of the picture that the lanes stand for.
 HWY_INLINE V lane_columns(const Interleaving& layout, int comb, int column) {
   const DI di;
@@ -227,6 +223,8 @@ HWY_INLINE VU march_side(const March& march, const Receiver& p, const Half& half
     const std::ptrdiff_t i = at + step.offset;
     const auto load = [&](const InterleavedPlane& plane)
                           HWY_ATTR { return hn::LoadU(d, plane.data() + i); };
+    // The next vector of receivers looks at the pixels beside these. There are too many such
+    // streams for the processor to see.
     hwy::Prefetch(scene.depth.data() + i + 2 * lanes - 1);
     hwy::Prefetch(scene.behind.data() + i + 2 * lanes - 1);
     hwy::Prefetch(scene.thickness.data() + i + 2 * lanes - 1);

@@ -56,7 +56,7 @@ struct RawMoments {
   V cosine[kDegree + 1], sine[kDegree + 1];
 };
 
-/// Calls `moment(k, of)` for the cosine, `sine(k, of)` for the sine moments.
+/// All of them, each from `lookup(moment)` with the numbering of SliceSectors.
 template <int kDegree, class Lookup>
 HWY_INLINE RawMoments<kDegree> raw_moments(const Lookup& lookup) {
   RawMoments<kDegree> m;
