@@ -178,12 +178,13 @@ TEST_F(Color, FilesThatTheConfigLacksAreNamed) {
   EXPECT_THAT(refusal({.ocio = gains(), .view = "Broken"}), IsError(ExitCode::input, "--view"));
 }
 
+#if OCIO_VERSION_HEX < 0x02020000
 TEST_F(Color, ConfigUrisNeedALaterOpenColorIO) {
   setenv("OCIO", "ocio://default", 1);
-  if (OCIO_VERSION_HEX >= 0x02020000) GTEST_SKIP();
   EXPECT_THAT(refusal({}), IsError(ExitCode::input, "$OCIO ocio://default: "));
   EXPECT_THAT(refusal({}), IsError(ExitCode::input, "pass --ocio FILE, or unset OCIO"));
 }
+#endif
 
 // ---- Applying it.
 

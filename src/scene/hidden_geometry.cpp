@@ -30,10 +30,6 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Neighbours are on one surface when neither lies farther than this from the other's tangent
-/// plane, in pixel footprints.
-constexpr float kGap = 4;
-
 /// What a run that is covered at one end counts for.
 constexpr float kPartlySeen = 3;
 
@@ -115,7 +111,7 @@ class Runs {
     const glm::vec3 step(b.position - a.position);
     const float gap = std::max(std::abs(glm::dot(step, glm::vec3(a.normal))),
                                std::abs(glm::dot(step, glm::vec3(b.normal))));
-    if (gap <= kGap * std::min(footprint(a), footprint(b))) return Meets::same_surface;
+    if (gap <= kSurfaceGap * std::min(footprint(a), footprint(b))) return Meets::same_surface;
     return a.position.z > b.position.z ? Meets::ends : Meets::covered;
   }
 

@@ -17,6 +17,10 @@ struct HiddenGeometry {
   Plane<int> behind_source;
 };
 
+/// Neighbours are on one surface when neither lies farther than this from the other's tangent
+/// plane, in pixel footprints.
+constexpr float kSurfaceGap = 4;
+
 HiddenGeometry find_hidden_geometry(const Geometry& geometry);
 
 /// Everything is as thick as `thickness`, which may be infinite.
