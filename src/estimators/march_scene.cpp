@@ -76,7 +76,10 @@ class Cells {
     const float per_depth = scene_.orthographic ? -normal.z : glm::dot(normal, ray);
     if (!(-per_depth > kLeastFacing * length)) return depth;
     const float moved = depth + glm::dot(normal, position - on_ray) / per_depth;
-    return moved > 0.5f * depth && moved < 2 * depth ? moved : depth;
+    // A depth has no scale to doubt it by where all rays are parallel: it may be next to nothing.
+    const bool credible =
+        scene_.orthographic ? moved > 0 : moved > 0.5f * depth && moved < 2 * depth;
+    return credible ? moved : depth;
   }
 
   const Geometry& g_;

@@ -85,6 +85,27 @@ TEST(Bitmask, AnOpenPlaneReadsOneWhateverWayItTurns) {
   fmt::print("open plane, 45 degrees off the axis: off by {:.1e}\n", error);
 }
 
+TEST(Bitmask, AnOpenPlaneReadsOneWhereverInItsPixelsPIs) {
+  const Window window{0, 0, 64, 48};
+  const Surface ground = plane({}, {0, 0, 1});
+  for (const Camera& projection :
+       {camera_from_fov(50, window, 1), camera_from_ortho_width(6, window, 1)}) {
+    const Camera camera = tilted(projection, 75);
+    Geometry g = geometry_of(ground, camera, window);
+    for (int y = 0; y < window.height(); ++y) {
+      for (int x = 0; x < window.width(); ++x) {
+        const double aside = 0.4 * std::sin(7.0 * x + y), down = 0.4 * std::cos(x + 5.0 * y);
+        const Ray ray = ray_through(camera, x + 0.5 + aside, y + 0.5 + down);
+        const auto hit = ground(ray);
+        if (!hit || !g.is_surface(g.surfel.index(x, y))) continue;
+        const glm::dvec3 p = camera.to_camera(ray.origin + hit->distance * ray.direction);
+        g.surfel(x, y).position = glm::vec4(glm::vec3(p), 1);
+      }
+    }
+    EXPECT_LT(worst(run(g, {.slices = 2, .steps = 16})), 1e-4) << projection.orthographic;
+  }
+}
+
 TEST(Bitmask, ConstantLightIsThatColourTimesAo) {
   const Window window{0, 0, 96, 72};
   const Surface scene = all_of({plane({}, {0, 0, 1}), sphere({0, 0, 0.6}, 0.6)});
