@@ -38,7 +38,7 @@ struct LightOptions {
 enum class Quality { draft, standard, final };
 constexpr int slices_of(Quality q) { return q == Quality::final ? 6 : 2; }
 constexpr int steps_of(Quality q) {
-  return q == Quality::draft ? 10 : q == Quality::standard ? 24 : 48;
+  return q == Quality::draft ? 8 : q == Quality::standard ? 16 : 48;
 }
 
 struct ModelOptions {

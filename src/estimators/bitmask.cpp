@@ -35,6 +35,9 @@
 //   side of a surface that is not seen has the light of its own side, as far as the seen one is
 //   open. That senders which face away send nothing, as in the sources, left five of seven frames
 //   too dark by a fifth and more.
+// - What a pixel shows counts for the stretch of the way up to those that are seen before and after
+//   it (bitmask_side-inl.h). Taken for points, few steps see too little: 16 that count for their
+//   stretches are nearer to the limit than 24 points.
 // - Backs, surfaces behind what covers them (hidden_geometry.cpp) and beyond the frame
 //   (bitmask_extension-inl.h) are guesses that GTAO does not make.
 #include "estimators/bitmask.h"

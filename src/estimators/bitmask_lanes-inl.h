@@ -9,7 +9,6 @@
 #define SSDO_BITMASK_LANES_INL_H_
 #endif
 
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <cmath>
@@ -183,6 +182,18 @@ HWY_INLINE VU sector_of(V v, V distance2, V start) {
   return sector_at(v * reciprocal_sqrt(distance2), start);
 }
 
+/// A point in a slice.
+struct SlicePoint {
+  V s, v;
+};
+
+/// Where the back is of what lies at (s, v): behind it on its own view ray.
+template <bool kOrthographic>
+HWY_INLINE SlicePoint back_of(const Receiver& p, V s, V v, V depth) {
+  if constexpr (kOrthographic) return {s, v - depth};
+  return {hn::MulAdd(depth, s, s), hn::MulAdd(depth, v - p.distance, v)};
+}
+
 /// The sectors that a surface hides which lies at s, `above` the receiver's tangent plane, and
 /// reaches back by `depth`.
 template <bool kOrthographic>
@@ -195,63 +206,10 @@ HWY_INLINE VU sectors_behind(const Receiver& p, const Half& half, V s, V above, 
   const V distance2 = dot2(s, v, s, v);
   const M meets = hn::And(above > hn::Zero(d), distance2 <= hn::Set(d, radius * radius));
   const VU from = sector_of(v, distance2, start);
-  const V back_s = kOrthographic ? s : hn::MulAdd(depth, s, s);
-  const V back_v = kOrthographic ? v - depth : hn::MulAdd(depth, v - p.distance, v);
-  const VU to = sector_of(back_v, dot2(back_s, back_v, back_s, back_v), start);
+  const SlicePoint back = back_of<kOrthographic>(p, s, v, depth);
+  const VU to = sector_of(back.v, dot2(back.s, back.v, back.s, back.v), start);
   return hn::IfThenElseZero(hn::RebindMask(DU(), meets),
                             hn::AndNot(bits_from(to), bits_from(from)));
-}
-
-/// Marches from near to far and gives the sectors that stay open. `seen` and `covered` hear of
-/// samples of what is seen and of what it covers: their index, how far in pixels they lie from the
-/// receiver, and the sectors in which they are the first.
-template <bool kOrthographic, class Seen, class Covered>
-HWY_INLINE VU march_side(const March& march, const Receiver& p, const Half& half,
-                         const SliceSide& side, std::ptrdiff_t at, int y, int column, float reach,
-                         const Seen& seen, const Covered& covered) {
-  const D d;
-  const MarchScene& scene = march.scene;
-  const V zero = hn::Zero(d), start = start_of_sectors(side.phase);
-  const int height = scene.layout.height(), columns = scene.layout.columns();
-  const int lanes = int(hn::Lanes(d));
-  VU open = half.above;
-  for (const SliceStep& step : side.steps) {
-    const int row = y + step.row, first = column + step.column_shift;
-    if (step.distance_px > reach || row < 0 || row >= height || first >= columns ||
-        first + lanes <= 0)
-      break;
-    const std::ptrdiff_t i = at + step.offset;
-    const auto load = [&](const InterleavedPlane& plane)
-                          HWY_ATTR { return hn::LoadU(d, plane.data() + i); };
-    // The next vector of receivers looks at the pixels beside these. There are too many such
-    // streams for the processor to see.
-    hwy::Prefetch(scene.depth.data() + i + 2 * lanes - 1);
-    hwy::Prefetch(scene.behind.data() + i + 2 * lanes - 1);
-    hwy::Prefetch(scene.thickness.data() + i + 2 * lanes - 1);
-    const V dx = hn::Set(d, step.dx), dy = hn::Set(d, step.dy);
-    const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise));
-    const V depth = load(scene.depth), behind = load(scene.behind);
-    const V above = height_above<kOrthographic>(p, rise, depth),
-            above_behind = height_above<kOrthographic>(p, rise, behind);
-    const M rises_behind = above_behind > zero;
-    if (hn::AllFalse(d, hn::Or(above > zero, rises_behind))) continue;
-    const V across = dot2(dx, dy, half.across_x, half.across_y);
-    {
-      const VU bits =
-          sectors_behind<kOrthographic>(p, half, kOrthographic ? across : depth * across, above,
-                                        load(scene.thickness), march.radius, start);
-      seen(i, step, hn::And(open, bits));
-      open = hn::AndNot(bits, open);
-    }
-    if (!hn::AllFalse(d, rises_behind)) {
-      const VU bits = sectors_behind<kOrthographic>(
-          p, half, kOrthographic ? across : behind * across, above_behind,
-          load(scene.behind_thickness), march.radius, start);
-      covered(i, step, hn::And(open, bits));
-      open = hn::AndNot(bits, open);
-    }
-  }
-  return open;
 }
 
 /// The frame of a slice at a receiver: T, the normal's share in it, and the weight that makes

@@ -7,6 +7,7 @@
 
 #include "estimators/bitmask_extension-inl.h"
 #include "estimators/bitmask_moments-inl.h"
+#include "estimators/bitmask_side-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {

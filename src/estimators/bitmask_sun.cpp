@@ -64,9 +64,8 @@ HWY_INLINE M blocks(const Receiver& p, const Half& half, const SunRay& ray, M lo
   const M front_above = hn::And(hn::And(looks, near), s * ray.v <= v * ray.s);
   if (hn::AllFalse(d, front_above)) return front_above;
   const V depth = load_depth();
-  const V back_s = kOrthographic ? s : hn::MulAdd(depth, s, s);
-  const V back_v = kOrthographic ? v - depth : hn::MulAdd(depth, v - p.distance, v);
-  return hn::And(front_above, back_s * ray.v >= back_v * ray.s);
+  const SlicePoint back = back_of<kOrthographic>(p, s, v, depth);
+  return hn::And(front_above, back.s * ray.v >= back.v * ray.s);
 }
 
 /// A pixel in the middle of its block of 4 x 4, where samples lie far apart: as in the slices, so

@@ -63,7 +63,7 @@ struct EstimateInput {
 
   // Of methods that march through slices of the frame.
   int slices = 2;  ///< per pixel
-  int steps = 24;  ///< per side of a slice, from one pixel to the frame's diagonal
+  int steps = 16;  ///< per side of a slice, from one pixel to the frame's diagonal
   const HiddenGeometry* hidden = nullptr;  ///< null: all that is seen is endless
   const LightModel* light = nullptr;       ///< of the environment; null: it is constant
   bool extend_offscreen = true;            ///< surfaces go on beyond the frame

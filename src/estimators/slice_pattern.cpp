@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "estimators/slice_pattern.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <glm/gtc/constants.hpp>
@@ -23,10 +24,28 @@ constexpr double kFarther = 0.7;
 /// and no sector may notice.
 float phase_in(double t) { return float(0.02 + 0.96 * t); }
 
+/// Pixels that are no farther apart than this, along the march, are neighbours.
+constexpr float kNeighbours = 1.5f;
+
 /// The whole number nearest to `x` that leads from `place` to the middle of a block.
 int to_block(double x, int place) {
   const int middle = kPeriod / 2;
   return int(std::lround((x + place - middle) / kPeriod)) * kPeriod + middle - place;
+}
+
+/// Gives every step its stretch of the way. Neighbouring pixels leave none to be shared.
+void share_the_way(std::vector<SliceStep>& steps) {
+  const auto distance = [](const SliceStep& step) { return std::hypot(step.dx, step.dy); };
+  float before = 0;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const float here = distance(steps[k]),
+                after = k + 1 < steps.size() ? distance(steps[k + 1]) : here;
+    const auto half_way = [here](float other) { return std::sqrt(here * std::max(other, 0.5f)); };
+    steps[k].inner = here - before > kNeighbours ? half_way(before) / here : 1;
+    steps[k].outer = after - here > kNeighbours ? half_way(after) / here : 1;
+    steps[k].inner_px = here * steps[k].inner;
+    before = here;
+  }
 }
 
 /// The side that starts at column `comb` and row `line` of a block. `start` in 0..1 places each
@@ -49,9 +68,9 @@ SliceSide make_side(const Interleaving& layout, int comb, int line, double dx, d
     step.column_shift = (comb + x) >> 2;
     step.offset =
         layout.index(y, (comb + x) & (kPeriod - 1), step.column_shift) - layout.index(0, comb, 0);
-    step.distance_px = float(std::hypot(x, y));
     side.steps.push_back(step);
   }
+  share_the_way(side.steps);
   return side;
 }
 

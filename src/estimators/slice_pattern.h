@@ -16,13 +16,15 @@ double march_distance(double t, double diagonal);
 /// that each member would choose for itself come from memory every time.
 constexpr double kLongStep = 32;
 
-/// A pixel that a march looks at, seen from the pixel where it starts.
+/// A pixel that a march looks at, seen from the pixel where it starts, and the stretch of the way
+/// that it stands for: half way to the pixels before and after.
 struct SliceStep {
   float dx, dy;           ///< pixels, y down
   int row;                ///< dy as a whole number
   int column_shift;       ///< of the entry, within its interleaved row
   std::ptrdiff_t offset;  ///< of the index
-  float distance_px;
+  float inner, outer;     ///< ends of the stretch, over the pixel's distance
+  float inner_px;
 };
 
 /// One half of a slice.

@@ -107,8 +107,8 @@ void add(const std::string& name, const auto& run) {
 }
 
 void add_all() {
-  const Job ao{{.ao = true}, 2, 24, 0, 0};
-  const Job standard{{.ao = true, .direct = true, .bounce = true, .bent = true}, 2, 24, 1, 0};
+  const Job ao{{.ao = true}, 2, 16, 0, 0};
+  const Job standard{{.ao = true, .direct = true, .bounce = true, .bent = true}, 2, 16, 1, 0};
   for (const std::string isa : {"avx512", "avx2", "scalar"}) {
     for (const Size& size : kSizes) {
       if (isa == "scalar" && size.width > 1920) continue;
@@ -133,7 +133,7 @@ void add_all() {
 }  // namespace ssdo::bench
 
 int main(int argc, char** argv) {
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // as the tool does
+  mallopt(M_MMAP_MAX, 0);  // as the tool does
   mallopt(M_TRIM_THRESHOLD, INT_MAX);
   ssdo::bench::add_all();
   benchmark::Initialize(&argc, argv);
