@@ -43,7 +43,6 @@
 #include <limits>
 #include <numbers>
 
-#include "error.h"
 #include "estimators/ambient_light.h"
 #include "estimators/multi_bounce.h"
 #include "estimators/reflection_occlusion.h"
@@ -233,11 +232,6 @@ Products estimate_gtao(const EstimateInput& in) {
   const auto parameter = [&](const char* name) { return in.parameters.find(name)->second; };
   const int slices = int(parameter("slices"));
   const bool bounces = parameter("multi-bounce") != 0;
-  if (bounces && in.products.direct && in.albedo.empty()) {
-    throw Error(ExitCode::layer,
-                "--set multi-bounce=1 needs a layer for albedo and none was found by name; name "
-                "one with --aov albedo=LAYER");
-  }
   const ViewPlanes planes = make_view_planes(in.geometry);
   Products out;
   out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
