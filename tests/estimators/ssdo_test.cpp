@@ -12,6 +12,7 @@
 #include "estimators/registry.h"
 #include "math/frame.h"
 #include "support/analytic_scene.h"
+#include "support/crop.h"
 
 namespace ssdo::test {
 namespace {
@@ -227,10 +228,8 @@ TEST(Ssdo, ACropFarEnoughInsideIsThatPartOfTheWhole) {
   const Camera camera =
       look_at(camera_from_fov(40, kWindow, 1), {0, -4, 3}, {0, 0, 0.3}, {0, 0, 1});
   const Geometry g = geometry_of(scene, camera, kWindow);
-  Geometry cropped = geometry_of(scene, camera, part);
-  cropped.display = kWindow;
   const Request request{.radius = 0.2f, .bounces = 1};
-  const Products all = run(g, request), of_part = run(cropped, request);
+  const Products all = run(g, request), of_part = run(crop(g, part), request);
   // A radius is at most 8 pixels here, and a bounce comes from pixels that look as far themselves.
   const int margin = 16;
   double bounced = 0;
