@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <future>
@@ -185,7 +186,7 @@ class Batch {
     }
     if (writes) check_targets(job.targets, inputs_of(options_, job.input, job.aovs), policy);
     Frame frame = take_frame(i);
-    if (options_.model.temporal) place_in_sequence(frame, *job.frame, before.has_value());
+    if (options_.model.temporal) place_in_sequence(frame, i, before);
     if (options_.command == Command::info) return show(frame);
     if (options_.say.dry_run || options_.say.verbose) {
       print(describe(frame));
@@ -213,12 +214,36 @@ class Batch {
   }
 
   /// Each frame has a pattern of its own, wherever a run begins, and says whose history it takes.
-  static void place_in_sequence(Frame& frame, int number, bool follows) {
+  void place_in_sequence(Frame& frame, std::size_t i, const std::optional<History>& before) const {
+    const int number = *jobs_[i].frame;
+    const bool follows = before.has_value();
     frame.plan.seed += unsigned(number);
     frame.plan.reasons.push_back(
         !frame.geometry.world_known ? "no history: the frame knows no world space"
         : follows ? "history of the frame before, where that shows the same surface"
                   : "no history: the first frame, or the one before was not made by this run");
+    if (follows && !frame.gbuffer.motion.empty()) place_motion(frame, *before, i);
+  }
+
+  /// Motion leads to the frame before in time, which need not be the one before in the list.
+  void place_motion(Frame& frame, const History& before, std::size_t i) const {
+    if (std::int64_t(*jobs_[i - 1].frame) + 1 != *jobs_[i].frame) {
+      frame.gbuffer.motion = {};
+      frame.plan.reasons.push_back("motion is not used: it leads to a frame that is not the last");
+      return;
+    }
+    const std::string& name = frame.layers[Role::motion]->name;
+    const glm::vec2 scale = options_.input.gbuffer.motion_scale.value_or(glm::vec2(1));
+    frame.plan.reasons.push_back(fmt::format(
+        "motion {} times {:g}, {:g}: pixels to the frame before, y up, where what moves "
+        "has its history",
+        name, scale.x, scale.y));
+    if (contradicts_cameras(before.geometry, frame.geometry, frame.gbuffer.motion)) {
+      frame.report.warnings.push_back(
+          fmt::format("{} moves other ways than the cameras say; are its units pixels to the frame "
+                      "before, y up? give --motion-scale",
+                      name));
+    }
   }
 
   Frame prepare(std::size_t i) const {

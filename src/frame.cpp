@@ -54,9 +54,10 @@ Frame prepare_frame(const Options& options, const Light& light, const std::strin
   open_files(frame, aovs);
   std::vector<const ExrReader*> files;
   for (const ExrReader& file : frame.files) files.push_back(&file);
-  // Names that only reflections care about are no reason to refuse a frame.
+  // Names that nothing asks for are no reason to refuse a frame.
   std::vector<Role> unused;
   if (!find_method(options.model.method).products.reflection) unused.push_back(Role::roughness);
+  if (!options.model.temporal) unused.push_back(Role::motion);
   frame.layers = find_layers(files, aovs, options.input.part, unused);
   frame.gbuffer = read_gbuffer(files, frame.layers, options.input.gbuffer);
   frame.times.read = watch.lap();

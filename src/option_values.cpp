@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -51,6 +52,16 @@ void read_depth_kind(const std::string& text, GBufferOptions& out) {
     out.depth_near = float(*near);
     out.depth_far = float(*far);
   }
+}
+
+glm::vec2 read_motion_scale(const std::string& text) {
+  const auto comma = text.find(',');
+  const auto x = parse_number(text.substr(0, comma)),
+             y = comma == std::string::npos ? std::nullopt : parse_number(text.substr(comma + 1));
+  if (!x || !y || !std::isfinite(*x) || !std::isfinite(*y) || *x == 0 || *y == 0) {
+    throw_usage(fmt::format("--motion-scale {}: expected two factors X,Y, such as -1,-1", text));
+  }
+  return {float(*x), float(*y)};
 }
 
 Imf::Compression read_compression(const std::string& name) {

@@ -18,6 +18,9 @@ std::optional<double> read_length(const std::string& option, std::string_view te
 /// planar, ray, inverse or normalized:NEAR,FAR.
 void read_depth_kind(const std::string& text, GBufferOptions& out);
 
+/// X,Y: two factors.
+glm::vec2 read_motion_scale(const std::string& text);
+
 Imf::Compression read_compression(const std::string& name);
 
 /// PRODUCT=FILE.

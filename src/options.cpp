@@ -17,7 +17,7 @@ struct RawOptions {
   std::vector<std::string> aov, save;
   std::string depth_kind = "planar", env_up = "auto", radius = "auto";
   std::string thickness = "auto", offscreen = "extend", quality = "standard";
-  std::string pixel_type = "half", compression, on_error = "stop", progress = "auto";
+  std::string pixel_type = "half", compression, motion_scale, on_error = "stop", progress = "auto";
   std::optional<double> background_depth;
 };
 
@@ -53,6 +53,11 @@ void add_input(CLI::App& app, Options& o, RawOptions& raw) {
   app.add_option("--depth-kind", raw.depth_kind,
                  "what a depth layer measures: planar, ray, inverse, normalized:NEAR,FAR")
       ->type_name("KIND")
+      ->group("Input");
+  app.add_option("--motion-scale", raw.motion_scale,
+                 "turns a motion layer into pixels to the frame before, x right, y up; default 1,1")
+      ->type_name("X,Y")
+      ->allow_extra_args(false)
       ->group("Input");
   app.add_option("--background-depth", raw.background_depth,
                  "depth from which on a pixel is background")
@@ -282,6 +287,7 @@ void finish(Options& o, const RawOptions& raw, bool depth_kind_given) {
   for (const std::string& text : raw.aov) o.input.aovs.push_back(parse_layer_request(text));
   for (const std::string& text : raw.save) o.output.saves.push_back(read_save(text));
   if (depth_kind_given) read_depth_kind(raw.depth_kind, o.input.gbuffer);
+  if (!raw.motion_scale.empty()) o.input.gbuffer.motion_scale = read_motion_scale(raw.motion_scale);
   if (raw.background_depth) o.input.gbuffer.background_depth = float(*raw.background_depth);
   if (raw.env_up != "auto") o.light.up = raw.env_up == "z" ? UpAxis::z : UpAxis::y;
   find_filter(o.model.filter);

@@ -100,7 +100,8 @@ Products estimate(Frame& frame, const std::function<void(double)>& told,
   products =
       apply_filter(*plan.filter, std::move(products), frame.geometry, plan.method->pattern_size);
   if (plan.temporal) {
-    history = accumulate(before ? &*before : nullptr, frame.geometry, products);
+    history =
+        accumulate(before ? &*before : nullptr, frame.geometry, products, frame.gbuffer.motion);
     products = products_of(history);
   }
   if (!products.error.empty())

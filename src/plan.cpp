@@ -163,6 +163,17 @@ void explain_reflection(Plan& plan, const GBuffer& gbuffer) {
                   plan.parameters.at("roughness")));
 }
 
+/// Bounces by a fit belong to the light of a method, not to a product that could be left out.
+void check_multi_bounce(const Plan& plan, const GBuffer& gbuffer, const std::string& file) {
+  const auto wanted = plan.parameters.find("multi-bounce");
+  if (wanted == plan.parameters.end() || wanted->second == 0) return;
+  if (!plan.products.direct || !gbuffer.albedo.empty()) return;
+  throw Error(ExitCode::layer,
+              fmt::format("{}: --set multi-bounce=1 needs a layer for albedo and none was found by "
+                          "name; name one with --aov albedo=LAYER, or leave it out",
+                          file));
+}
+
 void choose_bounces(Plan& plan, int wanted, const GBuffer& gbuffer) {
   plan.bounces = plan.products.bounce ? wanted : 0;
   if (plan.bounces == 0 || !gbuffer.radiance.empty()) return;
@@ -193,6 +204,14 @@ void explain_light(Plan& plan, const LightModel* light) {
 }
 
 void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geometry) {
+  if (!plan.method->has_radius) {
+    if (model.radius) {
+      throw Error(ExitCode::usage,
+                  fmt::format("method {} takes no --radius; see --list-methods for its parameters",
+                              plan.method->name));
+    }
+    return;
+  }
   if (model.radius) {
     plan.radius = float(*model.radius);
     if (std::isinf(plan.radius) && !plan.method->looks_behind()) {
@@ -260,6 +279,7 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBu
   ProductChoice(*plan.method, output, gbuffer, file).choose(plan);
   explain_composite(plan, gbuffer);
   explain_reflection(plan, gbuffer);
+  check_multi_bounce(plan, gbuffer, file);
   choose_bounces(plan, model.bounces, gbuffer);
   explain_light(plan, light);
   choose_radius(plan, model, geometry);
@@ -277,7 +297,8 @@ nlohmann::json to_json(const Plan& plan) {
                       {"temporal", plan.temporal},
                       {"reasons", plan.reasons}};
   // JSON knows no infinity.
-  j["radius"] = std::isinf(plan.radius) ? nlohmann::json("inf") : nlohmann::json(plan.radius);
+  if (plan.method->has_radius)
+    j["radius"] = std::isinf(plan.radius) ? nlohmann::json("inf") : nlohmann::json(plan.radius);
   if (plan.method->marches) {
     j["slices"] = plan.slices;
     j["steps"] = plan.steps;

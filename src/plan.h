@@ -20,7 +20,7 @@ struct Plan {
   const Method* method = nullptr;
   ParameterValues parameters;
   ProductSet products;  ///< what the method is asked for
-  float radius = 0;     ///< scene units
+  float radius = 0;     ///< scene units; 0 of a method without one
   int bounces = 0;
   int slices = 0, steps = 0;  ///< of methods that march
   bool extend_offscreen = true;

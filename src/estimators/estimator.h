@@ -82,6 +82,7 @@ struct Method {
   int (*samples_per_pixel)(const ParameterValues&);  ///< null where it marches
   Products (*estimate)(const EstimateInput&);
   bool has_solids = false;  ///< without marching, takes --thickness and endless radii
+  bool has_radius = true;   ///< takes --radius; else its sizes are its own
 
   /// Whether it looks at what the frame hides.
   bool looks_behind() const { return marches || has_solids; }

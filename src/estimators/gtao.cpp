@@ -43,7 +43,6 @@
 #include <limits>
 #include <numbers>
 
-#include "error.h"
 #include "estimators/ambient_light.h"
 #include "estimators/multi_bounce.h"
 #include "estimators/reflection_occlusion.h"
@@ -76,10 +75,9 @@ struct GtaoJob {
   std::vector<SliceTurns> slices;
   TiledNoise first_step;  ///< 0 to 1
   int steps;
-  float slope_x, slope_y;  ///< by which rays of neighbouring pixels differ
-  float reach_px;          ///< of the last step at depth 1, or at any where orthographic
-  float falloff;           ///< 2 / R^2
-  float thinness;          ///< 1 - thickness
+  float reach_px;  ///< of the last step at depth 1, or at any where orthographic
+  float falloff;   ///< 2 / R^2
+  float thinness;  ///< 1 - thickness
   Plane<float>& ao;
   Plane<glm::vec3>& bent;  ///< mean over slices, not normalised; empty where nobody asks
 };
@@ -90,37 +88,16 @@ struct GtaoJob {
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// A pixel that looks around itself.
-struct Viewed {
-  Receivers p;
-  V3 to_viewer;
-  V column, row, ray_x, ray_y;
-};
-
-HWY_INLINE Viewed view(const ViewPlanes& planes, int x, int y) {
-  const D d;
-  const V ray_x = hn::LoadU(d, planes.ray_x() + x), ray_y = set(planes.ray_y()[y]);
-  const V3 to_viewer =
-      planes.orthographic ? V3{set(0), set(0), set(1)} : normalise({ray_x, ray_y, set(1)});
-  return {
-      load_receivers(planes, x, y), to_viewer, hn::Iota(d, float(x)), set(float(y)), ray_x, ray_y};
-}
-
 /// The cosine of the horizon after the surface that is seen some whole pixels away.
-HWY_INLINE V next_horizon(const GtaoJob& job, const Viewed& from, V right, V down, V h) {
+HWY_INLINE V next_horizon(const GtaoJob& job, const Viewed& from, const V3& to_viewer, V right,
+                          V down, V h) {
   const ViewPlanes& planes = job.planes;
   const V z = gather_depth(planes, pixels_at(planes, from.column + right, from.row + down));
-  const V deeper = z - from.p.position.z;
-  // From differences, which loses less than to subtract positions.
-  V3 to{right * set(job.slope_x), down * set(job.slope_y), deeper};
-  if (!planes.orthographic) {
-    to.x = hn::MulAdd(to.x, z, from.ray_x * deeper);
-    to.y = hn::MulAdd(to.y, z, from.ray_y * deeper);
-  }
+  const V3 to = way_to(planes, from, right, down, z);
   const V distance2 = dot(to, to);
   const M seen = hn::And(distance2 > set(0), distance2 < set(std::numeric_limits<float>::max()));
   const V distance = hn::Sqrt(distance2);
-  const V cosine = hn::IfThenElse(seen, dot(to, from.to_viewer) / distance, set(-1));
+  const V cosine = hn::IfThenElse(seen, dot(to, to_viewer) / distance, set(-1));
   const V flat = hn::MulAdd(set(kFlat), distance, from.p.rounding);
   const M rises = hn::And(cosine > h, dot(to, from.p.normal) > flat);
   const V falloff = hn::Min(distance2 * set(job.falloff), set(1));
@@ -136,12 +113,13 @@ void gtao_of_tile(const GtaoJob& job, const Tile& tile) {
   const V steps = set(float(job.steps)), share = set(1 / float(job.slices.size()));
   const V stretch = set(planes.fx / planes.fy), right_angle = set(float(std::numbers::pi / 2));
   for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
-    const Viewed from = view(planes, x, y);
+    const Viewed from = view_from(planes, x, y);
+    const V3 to_viewer = direction_to_viewer(planes, x, y);
     const Receivers& p = from.p;
     const V reach = planes.orthographic ? set(job.reach_px) : set(-job.reach_px) / p.position.z;
     const V step = hn::Max(hn::Min(reach, set(512)), steps) / (steps + set(1));
     const V first = hn::LoadU(d, job.first_step.at(planes, x, y));
-    const V upright = dot(p.normal, from.to_viewer);
+    const V upright = dot(p.normal, to_viewer);
     V sum = set(0);
     V3 bent{set(0), set(0), set(0)};
     for (const SliceTurns& turn : job.slices) {
@@ -152,10 +130,10 @@ void gtao_of_tile(const GtaoJob& job, const Tile& tile) {
         const V distance = hn::Max(step * (set(float(j)) + first), set(float(1 + j)));
         const V right = hn::Round(turn_x * distance * stretch),
                 down = hn::Neg(hn::Round(turn_y * distance));
-        h_ahead = next_horizon(job, from, right, down, h_ahead);
-        h_behind = next_horizon(job, from, hn::Neg(right), hn::Neg(down), h_behind);
+        h_ahead = next_horizon(job, from, to_viewer, right, down, h_ahead);
+        h_behind = next_horizon(job, from, to_viewer, hn::Neg(right), hn::Neg(down), h_behind);
       }
-      const V3 tangent = unit_across({turn_x, turn_y, set(0)}, from.to_viewer);
+      const V3 tangent = unit_across({turn_x, turn_y, set(0)}, to_viewer);
       const V aside = hn::Neg(dot(p.normal, tangent));  // angles grow away from the tangent
       const V length = hn::Sqrt(hn::MulAdd(upright, upright, aside * aside));
       const V unit = set(1) / hn::Max(length, set(1e-20f));
@@ -168,7 +146,7 @@ void gtao_of_tile(const GtaoJob& job, const Tile& tile) {
       sum = hn::MulAdd(length * set(0.25f), arc, sum);
       if (job.bent.empty()) continue;
       const V middle = both * set(0.5f);
-      bent = mul_add(from.to_viewer, hn::Cos(d, middle),
+      bent = mul_add(to_viewer, hn::Cos(d, middle),
                      mul_add(tangent, hn::Neg(hn::Sin(d, middle)), bent));
     }
     store_pixels(hn::IfThenElse(p.valid, saturate(sum * share), set(1)), x, tile, &job.ao(0, y));
@@ -233,11 +211,6 @@ Products estimate_gtao(const EstimateInput& in) {
   const auto parameter = [&](const char* name) { return in.parameters.find(name)->second; };
   const int slices = int(parameter("slices"));
   const bool bounces = parameter("multi-bounce") != 0;
-  if (bounces && in.products.direct && in.albedo.empty()) {
-    throw Error(ExitCode::layer,
-                "--set multi-bounce=1 needs a layer for albedo and none was found by name; name "
-                "one with --aov albedo=LAYER");
-  }
   const ViewPlanes planes = make_view_planes(in.geometry);
   Products out;
   out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
@@ -249,8 +222,6 @@ Products estimate_gtao(const EstimateInput& in) {
                     std::move(turns),
                     first_steps(),
                     int(parameter("steps")),
-                    (planes.orthographic ? 1 : -1) / planes.fx,
-                    (planes.orthographic ? -1 : 1) / planes.fy,
                     planes.fy * in.radius / 2,
                     float(2 / (double(in.radius) * double(in.radius))),
                     float(1 - parameter("thickness")),
@@ -258,7 +229,7 @@ Products estimate_gtao(const EstimateInput& in) {
                     out.bent};
   const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(gtao_of_tile)(job, tile); };
   for_each_tile(planes.width(), planes.height(), work, in.progress);
-  if (in.products.reflection) out.reflection = reflection_occlusion(in, out.bent);
+  if (in.products.reflection) out.reflection = reflection_occlusion(in, planes, out.bent);
   normalise_all(out.bent);
   if (in.products.direct) out.direct = direct_light(in, out, bounces);
   if (!in.products.bent) out.bent = {};

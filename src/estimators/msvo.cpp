@@ -182,7 +182,7 @@ Products estimate(const EstimateInput& in) {
 Method msvo_method() {
   return {
       "msvo",
-      "multi-scale volumetric obscurance, as in Unity; sizes in pixels, no --radius",
+      "multi-scale volumetric obscurance, as in Unity, with sizes in pixels",
       {.ao = true, .direct = true},
       1,
       {
@@ -197,6 +197,8 @@ Method msvo_method() {
       // 36 of each pixel of four scales: 36 (1/4 + 1/16 + 1/64 + 1/256).
       [](const ParameterValues&) { return 12; },
       estimate,
+      /* has_solids */ false,
+      /* has_radius */ false,
   };
 }
 

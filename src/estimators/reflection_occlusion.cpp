@@ -18,56 +18,91 @@
 // roughness of 1.
 #include "estimators/reflection_occlusion.h"
 
-#include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
-#include <glm/gtc/constants.hpp>
+#include <numbers>
 
-#include "estimators/view_planes.h"
+#include "parallel/isa.h"
 #include "parallel/tiles.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "estimators/reflection_occlusion.cpp"
+#include <hwy/foreach_target.h>
+
+#include "estimators/view_lanes-inl.h"
+// After the targets' headers.
+#include <hwy/contrib/math/math-inl.h>
+
+#ifndef SSDO_REFLECTION_JOB_
+#define SSDO_REFLECTION_JOB_
 namespace ssdo {
-namespace {
 
-constexpr float kSharpest = 0.1f;                 ///< roughness of the narrowest specular cone
-constexpr float kClosed = 0.1f, kOpening = 0.2f;  ///< radians of the visible cone
+struct ReflectionJob {
+  const ViewPlanes& planes;
+  const Plane<glm::vec3>& bent;
+  const Plane<float>* layer;  ///< of roughness; null: the number
+  float roughness, strength;
+  Plane<float>& open;
+};
 
-/// The direction in which a mirror there shows the viewer.
-glm::vec3 mirrored(const Surfel& surfel, bool orthographic) {
-  const glm::vec3 n(surfel.normal),
-      to_viewer = orthographic ? glm::vec3(0, 0, 1) : -glm::normalize(glm::vec3(surfel.position));
-  return 2 * glm::dot(n, to_viewer) * n - to_viewer;
-}
+// In radians, of the visible cone; the roughness of the narrowest specular cone.
+constexpr float kClosed = 0.1f, kOpening = 0.2f, kSharpest = 0.1f;
 
-}  // namespace
+}  // namespace ssdo
+#endif
 
-float reflection_occlusion(const glm::vec3& bent, const glm::vec3& reflected, float roughness,
-                           float strength) {
-  const float length = glm::length(bent), pi = glm::pi<float>();
-  const float specular = std::max(roughness, kSharpest) * pi, visible = length * pi * strength;
-  if (!(visible > kClosed)) return 0;
-  const float between = std::acos(std::clamp(glm::dot(bent, reflected) / length, -1.0f, 1.0f));
+HWY_BEFORE_NAMESPACE();
+namespace ssdo::HWY_NAMESPACE {
+
+/// The occlusion of a cone of `specular` about the unit vector r by one of `visible` about b.
+HWY_INLINE V overlap_of_cones(V specular, const V3& r, V visible, const V3& b, V length) {
+  const V cosine = dot(b, r) / hn::Max(length, set(1e-20f));
+  const V between = hn::Acos(D(), hn::Min(hn::Max(cosine, set(-1)), set(1)));
   // S - D is twice the smaller angle.
-  const float apart = (between - std::abs(specular - visible)) / (2 * std::min(specular, visible)),
-              overlap = 1 - std::clamp(apart, 0.0f, 1.0f);
-  return overlap * overlap * (3 - 2 * overlap) * std::min((visible - kClosed) / kOpening, 1.0f);
+  const V apart = (between - hn::Abs(specular - visible)) / (set(2) * hn::Min(specular, visible));
+  const V opened = hn::Min((visible - set(kClosed)) / set(kOpening), set(1));
+  const V overlap = smoothstep(set(0), set(1), set(1) - saturate(apart)) * opened;
+  return hn::IfThenElseZero(visible > set(kClosed), overlap);
 }
 
-Plane<float> reflection_occlusion(const EstimateInput& in, const Plane<glm::vec3>& bent) {
-  Plane<float> out(bent.width, bent.height, 1.0f);
-  const bool layer = in.roughness && !in.roughness->empty();
-  const auto roughness = float(in.parameters.at("roughness")),
-             strength = float(in.parameters.at("reflection-strength"));
-  for_each_row(bent.height, [&](int y) {
-    for (int x = 0; x < bent.width; ++x) {
-      const std::size_t i = bent.index(x, y);
-      const Surfel& s = in.geometry.surfel[i];
-      if (!is_usable(s)) continue;
-      out[i] = reflection_occlusion(bent[i], mirrored(s, in.geometry.camera.orthographic),
-                                    layer ? (*in.roughness)[i] : roughness, strength);
-    }
+void reflection_of_tile(const ReflectionJob& job, const Tile& tile) {
+  const ViewPlanes& planes = job.planes;
+  const V pi = set(float(std::numbers::pi)), strength = set(job.strength) * pi;
+  for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
+    const Receivers p = load_receivers(planes, x, y);
+    const V3 viewer = direction_to_viewer(planes, x, y);
+    // What a mirror there shows the viewer.
+    const V3 r = p.normal * (set(2) * dot(p.normal, viewer)) - viewer;
+    const V3 b = load_vectors(&job.bent(0, y), x, tile);
+    const V roughness = job.layer ? load_pixels(&(*job.layer)(0, y), x, tile) : set(job.roughness);
+    const V length = hn::Sqrt(dot(b, b));
+    const V open =
+        overlap_of_cones(hn::Max(roughness, set(kSharpest)) * pi, r, length * strength, b, length);
+    store_pixels(hn::IfThenElse(p.valid, open, set(1)), x, tile, &job.open(0, y));
   });
-  return out;
+}
+
+}  // namespace ssdo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ssdo {
+
+HWY_EXPORT(reflection_of_tile);
+
+Plane<float> reflection_occlusion(const EstimateInput& in, const ViewPlanes& planes,
+                                  const Plane<glm::vec3>& bent) {
+  choose_isa();
+  Plane<float> open(bent.width, bent.height, 1.0f);
+  const bool layer = in.roughness && !in.roughness->empty();
+  const ReflectionJob job{planes,
+                          bent,
+                          layer ? in.roughness : nullptr,
+                          float(in.parameters.at("roughness")),
+                          float(in.parameters.at("reflection-strength")),
+                          open};
+  const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(reflection_of_tile)(job, tile); };
+  for_each_tile(planes.width(), planes.height(), work, {});
+  return open;
 }
 
 }  // namespace ssdo
+#endif

@@ -65,7 +65,6 @@ struct SaoJob {
   const ViewPlanes& planes;
   const DepthMips& mips;
   std::vector<SpiralTap> taps;
-  float slope_x, slope_y;  ///< by which rays of neighbouring pixels differ
   float inverse_radius;
   float disc_px;  ///< radius of the disc at depth 1, or at any where orthographic
   float scale;    ///< 5 s / N
@@ -123,25 +122,20 @@ void sao_of_tile(const SaoJob& job, const Tile& tile) {
   const D d;
   const ViewPlanes& planes = job.planes;
   for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
-    const Receivers p = load_receivers(planes, x, y);
+    const Viewed from = view_from(planes, x, y);
+    const Receivers& p = from.p;
     const V disc = planes.orthographic ? set(job.disc_px) : set(-job.disc_px) / p.position.z;
     const V angle = spin_angle(unsigned(x + planes.first_column), unsigned(y + planes.first_row));
     const V cosine = hn::Cos(d, angle) * disc, sine = hn::Sin(d, angle) * disc;
     const V stretch = set(planes.fx / planes.fy);
-    const V column = hn::Iota(d, float(x)), row = set(float(y));
-    const V ray_x = hn::LoadU(d, planes.ray_x() + x), ray_y = set(planes.ray_y()[y]);
     const V bias = hn::MulAdd(p.rounding, set(job.inverse_radius), set(job.bias));
     V sum = set(0);
     for (const SpiralTap& tap : job.taps) {
       const V right = hn::Trunc((set(tap.x) * cosine - set(tap.y) * sine) * stretch),
               down = hn::Trunc(set(tap.x) * sine + set(tap.y) * cosine);
-      const Pixels at = pixels_at(planes, column + right, row + down);
+      const Pixels at = pixels_at(planes, from.column + right, from.row + down);
       const V z = mip_depth(job.mips, at, set(tap.distance) * disc);
-      const V deeper = z - p.position.z;
-      // From differences, which loses less than to subtract positions.
-      V3 v{right * set(job.slope_x), down * set(job.slope_y), deeper};
-      if (!planes.orthographic)
-        v.x = hn::MulAdd(v.x, z, ray_x * deeper), v.y = hn::MulAdd(v.y, z, ray_y * deeper);
+      const V3 v = way_to(planes, from, right, down, z);
       sum = sum + obscurance(job, v * set(job.inverse_radius), p.normal, bias);
     }
     const V ao = saturate(hn::NegMulAdd(sum, set(job.scale), set(1)));
@@ -180,8 +174,6 @@ Products estimate(const EstimateInput& in) {
   const SaoJob job{planes,
                    mips,
                    spiral(samples, int(parameter("turns"))),
-                   (planes.orthographic ? 1 : -1) / planes.fx,
-                   (planes.orthographic ? -1 : 1) / planes.fy,
                    1 / in.radius,
                    planes.fy * in.radius,
                    float(5 * parameter("intensity") / samples),

@@ -63,19 +63,15 @@ HWY_INLINE V range_check(V range, V radius) {
 }
 
 void ssao_of_tile(const SsaoJob& job, const Tile& tile) {
-  const D d;
   const ViewPlanes& planes = job.planes;
   const V radius = set(job.radius), share = set(1 / float(job.points.size()));
   for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
     const Receivers p = load_receivers(planes, x, y);
-    const V3 noise = {hn::LoadU(d, job.noise_x.at(planes, x, y)),
-                      hn::LoadU(d, job.noise_y.at(planes, x, y)), set(0)};
-    const V3 tangent = unit_across(noise, p.normal), bitangent = cross(p.normal, tangent);
+    const TangentFrame frame = tangent_frame(planes, job.noise_x, job.noise_y, x, y, p.normal);
     const V bias = p.rounding + set(job.bias);
     V occlusion = set(0);
     for (const glm::vec3& s : job.points) {
-      const V3 point = mul_add(
-          tangent, set(s.x), mul_add(bitangent, set(s.y), mul_add(p.normal, set(s.z), p.position)));
+      const V3 point = frame.place(s, p.position);
       const V z = gather_depth(planes, project(planes, point));
       const M hidden = z >= point.z + bias;
       const V range = hn::IfThenElseZero(hidden, hn::Abs(p.position.z - z));
@@ -113,8 +109,11 @@ Products estimate_ssao(const EstimateInput& in) {
                     out.ao};
   for_each_tile(
       planes.width(), planes.height(),
-      [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(ssao_of_tile)
-                              (job, tile); }, in.progress);
+      [&](const Tile& tile) {
+        HWY_DYNAMIC_DISPATCH(ssao_of_tile)
+        (job, tile);
+      },
+      in.progress);
   if (in.products.direct) out.direct = ambient_light(in, out.ao);
   return out;
 }

@@ -63,13 +63,11 @@ void ssao_range_of_tile(const RangeJob& job, const Tile& tile) {
   const V share = set(job.strength / float(job.points.size()));
   for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
     const Receivers p = load_receivers(planes, x, y);
-    const V3 noise = {hn::LoadU(d, job.noise_x.at(planes, x, y)),
-                      hn::LoadU(d, job.noise_y.at(planes, x, y)), set(0)};
-    const V3 tangent = unit_across(noise, p.normal), bitangent = cross(p.normal, tangent);
+    const TangentFrame frame = tangent_frame(planes, job.noise_x, job.noise_y, x, y, p.normal);
     const V bias = p.rounding + set(job.bias);
     V occlusion = set(0);
     for (const glm::vec3& s : job.points) {
-      const V3 v = mul_add(tangent, set(s.x), mul_add(bitangent, set(s.y), p.normal * set(s.z)));
+      const V3 v = frame.place(s, {set(0), set(0), set(0)});
       const V z = gather_depth(planes, project(planes, mul_add(v, radius, p.position)));
       const V nearer = z - p.position.z;
       const M hidden = hn::And(nearer > bias, nearer <= farthest);
@@ -109,8 +107,11 @@ Products estimate_ssao_range(const EstimateInput& in) {
                      out.ao};
   for_each_tile(
       planes.width(), planes.height(),
-      [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(ssao_range_of_tile)
-                              (job, tile); }, in.progress);
+      [&](const Tile& tile) {
+        HWY_DYNAMIC_DISPATCH(ssao_range_of_tile)
+        (job, tile);
+      },
+      in.progress);
   if (in.products.direct) out.direct = ambient_light(in, out.ao);
   return out;
 }

@@ -13,6 +13,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "estimators/tiled_noise.h"
 #include "estimators/view_planes.h"
 #include "parallel/tiles.h"
 
@@ -94,6 +95,12 @@ HWY_INLINE Receivers load_receivers(const ViewPlanes& planes, int x, int y) {
   return p;
 }
 
+/// The unit direction from each surface to the viewer.
+HWY_INLINE V3 direction_to_viewer(const ViewPlanes& planes, int x, int y) {
+  if (planes.orthographic) return {set(0), set(0), set(1)};
+  return normalise({hn::LoadU(D(), planes.ray_x() + x), set(planes.ray_y()[y]), set(1)});
+}
+
 /// A pixel for each lane, and whether the frame has it. Where it has not, it is the pixel (0, 0).
 struct Pixels {
   VI column, row;
@@ -142,6 +149,51 @@ HWY_INLINE V3 position_at(const ViewPlanes& planes, const Pixels& at, V z) {
                    hn::GatherIndex(d, planes.ray_y(), at.row), z);
 }
 
+/// Lanes of pixels that look at surfaces some whole pixels away.
+struct Viewed {
+  Receivers p;
+  V column, row, ray_x, ray_y;
+};
+
+HWY_INLINE Viewed view_from(const ViewPlanes& planes, int x, int y) {
+  const D d;
+  return {load_receivers(planes, x, y), hn::Iota(d, float(x)), set(float(y)),
+          hn::LoadU(d, planes.ray_x() + x), set(planes.ray_y()[y])};
+}
+
+/// From each receiver to the surface at depth `z` so many pixels away. From differences, which
+/// loses less than to subtract positions. Not finite on background.
+HWY_INLINE V3 way_to(const ViewPlanes& planes, const Viewed& from, V right, V down, V z) {
+  const V deeper = z - from.p.position.z;
+  V3 way{right * set(planes.slope_x), down * set(planes.slope_y), deeper};
+  if (!planes.orthographic) {
+    way.x = hn::MulAdd(way.x, z, from.ray_x * deeper);
+    way.y = hn::MulAdd(way.y, z, from.ray_y * deeper);
+  }
+  return way;
+}
+
+/// The frame of a point kernel's half-ball: about the normal, turned to a pattern's vector.
+struct TangentFrame {
+  V3 tangent, bitangent, normal;
+
+  /// What is (x, y, z) in the half-ball, from `origin`.
+  HWY_INLINE V3 place(const glm::vec3& s, const V3& origin) const {
+    return mul_add(tangent, set(s.x),
+                   mul_add(bitangent, set(s.y), mul_add(normal, set(s.z), origin)));
+  }
+};
+
+/// The vector is (noise_x, noise_y, 0); Gram-Schmidt.
+HWY_INLINE TangentFrame tangent_frame(const ViewPlanes& planes, const TiledNoise& noise_x,
+                                      const TiledNoise& noise_y, int x, int y, const V3& normal) {
+  const D d;
+  const V3 noise{hn::LoadU(d, noise_x.at(planes, x, y)), hn::LoadU(d, noise_y.at(planes, x, y)),
+                 set(0)};
+  const V3 tangent = unit_across(noise, normal);
+  return {tangent, cross(normal, tangent), normal};
+}
+
 /// Calls work(x, y) for each vector of pixels of a tile in which there is a surface.
 template <class Work>
 HWY_INLINE void for_each_vector(const ViewPlanes& planes, const Tile& tile, const Work& work) {
@@ -151,6 +203,32 @@ HWY_INLINE void for_each_vector(const ViewPlanes& planes, const Tile& tile, cons
       if (!hn::AllFalse(d, hn::LoadU(d, planes.z.row(y) + x) > set(kBackgroundDepth))) work(x, y);
     }
   }
+}
+
+/// Reads the lanes that lie in a tile, from pixel x of a row on; `row` needs no padding.
+HWY_INLINE V load_pixels(const float* row, int x, const Tile& tile) {
+  const D d;
+  if (x + int(hn::Lanes(d)) <= tile.x1) return hn::LoadU(d, row + x);
+  HWY_ALIGN float all[PaddedLayout::kPad] = {};
+  for (int i = 0; x + i < tile.x1; ++i) all[i] = row[x + i];
+  return hn::Load(d, all);
+}
+
+/// The same of vectors.
+HWY_INLINE V3 load_vectors(const glm::vec3* row, int x, const Tile& tile) {
+  const D d;
+  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+  HWY_ALIGN float all[3 * PaddedLayout::kPad] = {};
+  const float* from = all;
+  if (x + int(hn::Lanes(d)) <= tile.x1) {
+    from = &row[x].x;
+  } else {
+    for (int i = 0; x + i < tile.x1; ++i)
+      for (int c = 0; c < 3; ++c) all[3 * i + c] = row[x + i][c];
+  }
+  V3 values;
+  hn::LoadInterleaved3(d, from, values.x, values.y, values.z);
+  return values;
 }
 
 /// Writes the lanes that lie in a tile, from pixel x of a row on; `row` needs no padding.

@@ -23,6 +23,8 @@ ViewPlanes empty_planes(const Geometry& g) {
   const Camera& camera = g.camera;
   planes.orthographic = camera.orthographic;
   planes.fx = float(camera.fx), planes.fy = float(camera.fy);
+  planes.slope_x = (planes.orthographic ? 1 : -1) / planes.fx;
+  planes.slope_y = (planes.orthographic ? -1 : 1) / planes.fy;
   planes.cx = float(camera.cx - g.display.x0), planes.cy = float(camera.cy - g.display.y0);
   planes.first_column = g.window.x0 - g.display.x0;
   planes.first_row = g.window.y0 - g.display.y0;
@@ -40,6 +42,8 @@ ViewPlanes::ViewPlanes(int width, int height)
       orthographic(false),
       fx(1),
       fy(1),
+      slope_x(0),
+      slope_y(0),
       cx(0),
       cy(0),
       first_column(0),

@@ -59,7 +59,8 @@ constexpr float kBackgroundDepth = -std::numeric_limits<float>::infinity();
 struct ViewPlanes {
   PaddedLayout layout;
   bool orthographic;
-  float fx, fy;  ///< pixels per unit of slope, or per scene unit
+  float fx, fy;            ///< pixels per unit of slope, or per scene unit
+  float slope_x, slope_y;  ///< by which rays of neighbouring pixels differ
   float cx, cy;  ///< principal point in pixels from the display window's upper left corner: what is
                  ///< computed from it is the same for every crop
   /// The pixel (0, 0) in the display window, which patterns are fixed to. May be negative.

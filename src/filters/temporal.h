@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <glm/vec2.hpp>
+
 #include "estimators/estimator.h"
 #include "scene/geometry.h"
 
@@ -16,7 +18,16 @@ struct History {
 /// The means after the frame that `geometry` and `now` show, for the frame after it; the caller
 /// adds the geometry. History counts where it shows the same surface, see temporal.cpp; there is
 /// none where `before` is null, one of both frames knows no world, or they have other products.
-History accumulate(const History* before, const Geometry& geometry, const Products& now);
+/// `motion` leads from each pixel to where what it shows was seen in the frame before, in pixels,
+/// x right and y down; where it is empty or not finite, things stand still.
+History accumulate(const History* before, const Geometry& geometry, const Products& now,
+                   const Plane<glm::vec2>& motion = {});
+
+/// Whether motion seems to have other units or signs than accumulate takes: along an axis, on most
+/// surfaces that the cameras move, it is not within 30 % of what P and the cameras say. Cameras
+/// that rest contradict nothing.
+bool contradicts_cameras(const Geometry& before, const Geometry& geometry,
+                         const Plane<glm::vec2>& motion);
 
 /// The means as products: bent is unit, background as each estimator leaves it.
 Products products_of(const History& history);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ struct GBuffer {
   Plane<glm::vec3> beauty;    ///< as rendered; empty where no ambient part is known
   Plane<float> depth, alpha;  ///< depth: along the axis or the ray, in scene units
   Plane<float> roughness;     ///< of what mirrors, 0..1
+  Plane<glm::vec2> motion;    ///< pixels, x right and y down, to where it was in the frame before
   DepthKind depth_kind = DepthKind::planar;  ///< planar or ray: the others are undone
   Plane<unsigned char> valid;                ///< 1 geometry, 0 background or broken
   float position_step = 0;                   ///< relative rounding step of P (or depth) as stored

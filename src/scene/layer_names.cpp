@@ -13,7 +13,8 @@ namespace {
 /// stands for anything. A name with a dot is compared with the whole path of a layer, one without
 /// with its last segment too. "" is a layer without a name. Plain `diffuse` is missing on purpose
 /// (it is lit), `pref` and `rest` too (another space), `mist` too (no distance). `radiance` and
-/// `ambient` have no name that could be trusted: they are used on request only.
+/// `ambient` have no name that could be trusted: they are used on request only. So is motion of
+/// other renderers than Blender, whose units and signs differ.
 const std::vector<std::string>& known_names(Role role) {
   static const std::array<std::vector<std::string>, kRoleCount> names = {{
       {"pworld", "p.world", "p", "position", "worldposition", "worldpos", "posw", "wp", "ppass",
@@ -30,6 +31,7 @@ const std::vector<std::string>& known_names(Role role) {
       {},
       {},
       {"roughness", "specularroughness"},
+      {"vector"},
   }};
   return names[std::size_t(role)];
 }
@@ -68,6 +70,8 @@ const std::vector<Components>& component_sets(Role role) {
   // A single value, or one that a renderer wrote as grey or into the first of three.
   static const std::vector<Components> scalar = {{"y"}, {"v"}, {"r"}, {"red"}, {"x"}};
   static const std::vector<Components> alpha = {{"a"}, {"alpha"}};
+  static const std::vector<Components> motion = {
+      {"x", "y"}, {"r", "g"}, {"red", "green"}, {"u", "v"}};
   switch (role) {
     case Role::position:
     case Role::normal:
@@ -78,6 +82,8 @@ const std::vector<Components>& component_sets(Role role) {
       return alpha;
     case Role::roughness:
       return scalar;
+    case Role::motion:
+      return motion;
     default:
       return color;
   }

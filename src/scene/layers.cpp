@@ -16,7 +16,8 @@ namespace ssdo {
 namespace {
 
 constexpr std::array<std::string_view, kRoleCount> kRoleNames = {
-    "position", "normal", "albedo", "depth", "alpha", "beauty", "radiance", "ambient", "roughness"};
+    "position", "normal",   "albedo",  "depth",     "alpha",
+    "beauty",   "radiance", "ambient", "roughness", "motion"};
 
 std::string_view last_segment(std::string_view path) {
   const auto dot = path.rfind('.');
@@ -119,6 +120,8 @@ std::vector<Candidate> candidates_of(Role role, const std::vector<Group>& groups
   std::vector<Candidate> found;
   for (const Group& group : groups) {
     if (group.file != 0) continue;
+    // Blender's has four; two of such a name may be anything.
+    if (role == Role::motion && !group.find("w")) continue;
     const std::vector<std::string> keys = keys_of(group);
     const auto layer = as_layer(group, role);
     const bool bare_nxnynz =

@@ -12,13 +12,25 @@
 namespace ssdo {
 
 /// What a layer is used as.
-enum class Role { position, normal, albedo, depth, alpha, beauty, radiance, ambient, roughness };
-inline constexpr std::size_t kRoleCount = 9;
+enum class Role {
+  position,
+  normal,
+  albedo,
+  depth,
+  alpha,
+  beauty,
+  radiance,
+  ambient,
+  roughness,
+  motion
+};
+inline constexpr std::size_t kRoleCount = 10;
 
 std::string_view role_name(Role role);
 std::optional<Role> role_from_name(std::string_view name);
 
-/// A layer that was chosen for a role: three channels for vectors and colours, one for scalars.
+/// A layer that was chosen for a role: three channels for vectors and colours, two for motion in
+/// the picture, one for scalars.
 struct Layer {
   int file = 0;  ///< 0 is the frame itself, others follow in the order of --aov
   int part = 0;

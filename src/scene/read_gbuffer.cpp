@@ -68,6 +68,14 @@ class LayerReader {
     return out;
   }
 
+  Plane<glm::vec2> motion(const std::optional<Layer>& layer) const {
+    if (!layer) return {};
+    const Plane<float> x = plane(*layer, 0, NAN), y = plane(*layer, 1, NAN);
+    Plane<glm::vec2> out(window_.width(), window_.height());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {x[i], y[i]};
+    return out;
+  }
+
  private:
   using Part = std::pair<int, int>;  ///< file and part
 
@@ -182,8 +190,8 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   if (!(g.pixel_aspect > 0) || !std::isfinite(g.pixel_aspect)) g.pixel_aspect = 1;
   g.position_step = lead->half ? kStepHalf : kStepFloat;
 
-  std::vector<Role> roles = {Role::position, Role::depth, Role::normal,   Role::albedo,
-                             Role::radiance, Role::alpha, Role::roughness};
+  std::vector<Role> roles = {Role::position, Role::depth, Role::normal,    Role::albedo,
+                             Role::radiance, Role::alpha, Role::roughness, Role::motion};
   if (table[Role::ambient]) roles.insert(roles.end(), {Role::ambient, Role::beauty});
   const LayerReader read(files, table, roles, g.window);
   g.position = read.vector(table[Role::position], NAN);
@@ -193,6 +201,9 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   g.radiance = read.vector(table[Role::radiance], 0);
   g.alpha = read.scalar(table[Role::alpha], 0);
   g.roughness = read.scalar(table[Role::roughness], 0);
+  g.motion = read.motion(table[Role::motion]);
+  const glm::vec2 scale = options.motion_scale.value_or(glm::vec2(1));
+  for (glm::vec2& to : g.motion.pixels) to = {scale.x * to.x, -scale.y * to.y};
   if (table[Role::ambient]) {
     g.ambient = read.vector(table[Role::ambient], 0);
     g.beauty = read.vector(table[Role::beauty], 0);

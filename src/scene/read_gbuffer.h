@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,8 @@ struct GBufferOptions {
   std::optional<DepthKind> depth_kind;    ///< planar where not given
   float depth_near = 0, depth_far = 1;    ///< what 0 and 1 mean in a normalized depth
   std::optional<float> background_depth;  ///< depth from which on a pixel is background
+  std::optional<glm::vec2> motion_scale;  ///< of the motion layer, to what Blender writes: pixels
+                                          ///< to the frame before, y up; 1 where not given
 };
 
 /// Reads the layers of `table` and finds background and broken pixels: background where alpha is

@@ -54,6 +54,7 @@ TEST(Refusals, OfTheCommandLine) {
       {{"--set", "samples=4"}, "--set samples=4"},
       {{"--method", "ssdo", "--radius", "inf"}, "needs a limit"},
       {{"--method", "ssdo", "--slices", "3"}, "--slices"},
+      {{"--method", "msvo", "--radius", "0.5"}, "takes no --radius"},
       {{"--method", "ssdo", "--error", "0.1"}, "--error"},
       {{"--method", "ssdo", "--steps", "3"}, "--steps"},
       {{"--method", "ssdo", "--thickness", "inf"}, "--thickness"},
@@ -170,6 +171,18 @@ TEST(Refusals, OfMissingAndAmbiguousLayers) {
                 [](const auto& c) { return !c.first.starts_with("ViewLayer.DiffCol"); });
   write_frame(dir / "none.exr", none);
   expect_refused({dir / "none.exr", "-o", dir / "out.exr"}, 4, "--aov position=LAYER");
+
+  FramePart grey = part;
+  std::erase_if(grey.channels,
+                [](const auto& c) { return c.first.starts_with("ViewLayer.DiffCol"); });
+  write_frame(dir / "grey.exr", grey);
+  const std::vector<std::string> fit = {"--method", "gtao", "--set", "multi-bounce=1"};
+  for (const std::string products : {"direct", "ao,direct"}) {
+    std::vector<std::string> arguments = {dir / "grey.exr", "-o", dir / "out.exr", "--products",
+                                          products};
+    arguments.insert(arguments.end(), fit.begin(), fit.end());
+    expect_refused(arguments, 4, "grey.exr: --set multi-bounce=1 needs a layer for albedo");
+  }
 
   FramePart white = part;
   std::erase_if(white.channels,

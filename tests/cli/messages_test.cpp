@@ -65,6 +65,18 @@ TEST_F(Messages, AVerboseRunNamesWhatItChose) {
   }
 }
 
+TEST_F(Messages, AMethodWithoutARadiusClaimsNone) {
+  const Finished told = run_tool({"info", path("in.exr"), "--method", "msvo"});
+  EXPECT_EQ(told.code, 0) << told.err;
+  EXPECT_THAT(told.out, Not(HasSubstr("radius")));
+  const auto plan_of = [&](const std::string& method) {
+    return json::parse(
+        run_tool({"info", path("in.exr"), "--json", "--method", method}).out)["plan"];
+  };
+  EXPECT_FALSE(plan_of("msvo").contains("radius"));
+  EXPECT_TRUE(plan_of("sao").contains("radius"));
+}
+
 TEST_F(Messages, WithoutATerminalThereIsNoTerminalControl) {
   for (const std::vector<std::string>& flags :
        {std::vector<std::string>{}, {"-v"}, {"--progress", "auto"}, {"--radius", "x"}}) {

@@ -96,6 +96,60 @@ TEST(TemporalRuns, NeedASequence) {
   EXPECT_THAT(refused.error_line(), HasSubstr("--temporal needs a sequence"));
 }
 
+/// A camera that moves sideways, and motion in the four channels that Blender writes: to the frame
+/// before, and from the frame after, y up.
+void write_moving_sequence(const TempDir& dir, const glm::vec2& scale) {
+  const Window window{0, 0, 64, 48};
+  const Surface scene = all_of({plane({}, {0, 0, 1}), sphere({0.2, 0, 0.6}, 0.6)});
+  const auto camera = [&](int n) {
+    return look_at(camera_from_fov(40, window, 1), {0.1 * n, -4 + 0.1 * n, 3}, {0, 0, 0.3},
+                   {0, 0, 1});
+  };
+  for (int n = 0; n < 4; ++n) {
+    const Picture picture = take_picture(scene, camera(n), window);
+    FramePart part = frame_of(picture);
+    Plane<float> x(64, 48), y(64, 48);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const glm::dvec3 p(picture.position[i]);
+      const glm::dvec2 now = camera(n).project(camera(n).to_camera(p)),
+                       before = camera(n - 1).project(camera(n - 1).to_camera(p));
+      x[i] = scale.x * float(before.x - now.x);
+      y[i] = scale.y * float(now.y - before.y);
+    }
+    const std::string layer = "ViewLayer.Vector.";
+    part.channels[layer + "X"] = x, part.channels[layer + "Y"] = y;
+    part.channels[layer + "Z"] = part.channels[layer + "W"] = Plane<float>(64, 48, 99.0f);
+    write_frame(dir / ("in." + std::to_string(5 + n) + ".exr"), part);
+  }
+}
+
+TEST(TemporalRuns, TakeMotionInPixelsToTheFrameBeforeWithYUp) {
+  const TempDir dir;
+  write_moving_sequence(dir, {1, 1});
+  // It says what the cameras say: the wrong axis or sign would begin anew everywhere.
+  ASSERT_EQ(relight(dir, "motion", {"--temporal"}).err, "");
+  EXPECT_THAT(plan_of(dir, "motion.8")["reasons"].dump(), HasSubstr("motion ViewLayer.Vector"));
+  write_moving_sequence(dir, {-0.5f, -2});
+  ASSERT_EQ(relight(dir, "scaled", {"--temporal", "--motion-scale", "-2,-0.5"}).err, "");
+  const Plane<float> motion = ao(dir, "motion.8"), scaled = ao(dir, "scaled.8");
+  for (std::size_t i = 0; i < motion.size(); ++i) EXPECT_NEAR(scaled[i], motion[i], 1e-3);
+
+  const Finished wrong = relight(dir, "wrong", {"--temporal", "--frames", "5-6"});
+  EXPECT_EQ(wrong.code, 0);
+  EXPECT_THAT(wrong.err, HasSubstr("give --motion-scale"));
+  EXPECT_EQ(relight(dir, "bad", {"--temporal", "--motion-scale", "1"}).code, 2);
+}
+
+TEST(TemporalRuns, DoNotTakeMotionToAFrameThatIsNotTheLast) {
+  const TempDir dir;
+  write_moving_sequence(dir, {1, 1});
+  for (const std::string frames : {"5,7", "8,7"}) {
+    ASSERT_EQ(relight(dir, "gap" + frames, {"--temporal", "--frames", frames}).err, "");
+    EXPECT_THAT(plan_of(dir, "gap" + frames + ".7")["reasons"].dump(),
+                HasSubstr("motion is not used"));
+  }
+}
+
 TEST(Filters, AreNamedInThePlan) {
   const TempDir dir;
   write_sequence(dir, 0);

@@ -258,17 +258,6 @@ TEST(Gtao, MultiBounceIsTheFitOfTheReceiversAlbedo) {
   EXPECT_GT(most, 0.1);
 }
 
-TEST(Gtao, MultiBounceWithoutAlbedoIsAnError) {
-  const Geometry g = room(camera_from_fov(50, kWindow, 1));
-  EXPECT_NO_THROW(with_albedo(g, {}, 0));
-  try {
-    with_albedo(g, {}, 1);
-    FAIL() << "no error";
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code, ExitCode::layer);
-  }
-}
-
 TEST(Gtao, OddAlbedosStayWithinTheFit) {
   const Geometry g = room(camera_from_fov(50, kWindow, 1));
   for (const float odd : {NAN, INFINITY, -INFINITY, 1e38f, -3.0f}) {

@@ -13,6 +13,7 @@
 #include "error.h"
 #include "estimators/point_method_request.h"
 #include "parallel/tiles.h"
+#include "support/crop.h"
 
 namespace ssdo::test {
 
@@ -27,18 +28,6 @@ inline Surface still_life() {
   return all_of({cut(plane({}, {0, 0, 1}), [](const glm::dvec3& p) { return p.y < 1; }),
                  cut(plane({0, 1, 0}, {0, -1, 0}), [](const glm::dvec3& p) { return p.z > 0; }),
                  sphere({0.4, 0.2, 0.5}, 0.5)});
-}
-
-/// What `window`, a part of a geometry's window, shows of it.
-inline Geometry crop(const Geometry& g, const Window& window) {
-  Geometry part = g;
-  part.window = window;
-  part.surfel = Plane<Surfel>(window.width(), window.height());
-  for (int y = 0; y < window.height(); ++y) {
-    for (int x = 0; x < window.width(); ++x)
-      part.surfel(x, y) = g.surfel(x + window.x0 - g.window.x0, y + window.y0 - g.window.y0);
-  }
-  return part;
 }
 
 /// A sphere with holes, spikes and a few positions that no scene has.

@@ -3,14 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "estimators/registry.h"
 #include "support/analytic_scene.h"
+#include "support/chosen_isa.h"
 
 namespace ssdo::test {
 
@@ -92,20 +91,5 @@ inline void expect_close(const Plane<float>& found, const std::function<double(i
   // What is open everywhere tests nothing.
   EXPECT_GT(hidden, 0.05 * double(found.size()));
 }
-
-/// Sets $SSDO_ISA while it lives.
-class ChosenIsa {
- public:
-  explicit ChosenIsa(const char* name) {
-    if (const char* before = std::getenv("SSDO_ISA")) before_ = before;
-    setenv("SSDO_ISA", name, 1);
-  }
-  ~ChosenIsa() { before_ ? setenv("SSDO_ISA", before_->c_str(), 1) : unsetenv("SSDO_ISA"); }
-  ChosenIsa(const ChosenIsa&) = delete;
-  ChosenIsa& operator=(const ChosenIsa&) = delete;
-
- private:
-  std::optional<std::string> before_;
-};
 
 }  // namespace ssdo::test

@@ -8,10 +8,9 @@
 #include <cmath>
 #include <limits>
 
-#include "error.h"
 #include "estimators/point_method_request.h"
-#include "parallel/isa.h"
 #include "parallel/tiles.h"
+#include "support/crop.h"
 
 namespace ssdo::test {
 namespace {
@@ -34,16 +33,6 @@ const Window kWindow{0, 0, 151, 97};
 
 Geometry room(const Window& window = kWindow) {
   return geometry_of(room_with_a_ball(), tilted(camera_from_fov(50, window, 1), 55), window);
-}
-
-bool has_isa(const char* name) {
-  const ChosenIsa isa(name);
-  try {
-    choose_isa();
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
 }
 
 TEST_P(PointMethods, VectorsGiveWhatOneLaneGives) {
@@ -80,14 +69,7 @@ TEST_P(PointMethods, ACropDoesNotChangeABit) {
   const Products all = estimate(whole, GetParam().near);
   for (const Window window :
        {Window{13, 7, 151, 97}, Window{0, 0, 138, 90}, Window{6, 5, 133, 91}}) {
-    Geometry part = whole;
-    part.window = window;
-    part.surfel = Plane<Surfel>(window.width(), window.height());
-    for (int y = 0; y < window.height(); ++y) {
-      for (int x = 0; x < window.width(); ++x)
-        part.surfel(x, y) = whole.surfel(x + window.x0, y + window.y0);
-    }
-    const Products cropped = estimate(part, GetParam().near);
+    const Products cropped = estimate(crop(whole, window), GetParam().near);
     // Farther from the border than any sample of ssao-fade reaches: five radii.
     const int margin = 24;
     double darkest = 1;
@@ -163,6 +145,7 @@ INSTANTIATE_TEST_SUITE_P(All, PointMethods,
                                          Case{"fade_every_pixel", "ssao-fade", {"upsampling=0"}},
                                          Case{"fade_bilinear", "ssao-fade", {}},
                                          Case{"fade_along_surfaces", "ssao-fade", {"upsampling=2"}},
+                                         Case{"ssdo", "ssdo", {}, 0.4f},
                                          Case{"hbao", "hbao", {}, 0.9f},
                                          Case{"gtao", "gtao", {"steps=12"}},
                                          Case{"gtao_thin", "gtao", {"steps=12", "thickness=0.7"}}),

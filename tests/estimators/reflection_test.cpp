@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <numbers>
 #include <random>
 
@@ -27,53 +26,97 @@ double slow_occlusion(double length, double between, double roughness, double st
 
 glm::vec3 at_angle(double angle) { return {float(std::sin(angle)), 0, float(std::cos(angle))}; }
 
+/// Reflections of a frame whose bent normals are given.
+Plane<float> reflect(const Geometry& g, const Plane<glm::vec3>& bent, double roughness,
+                     const Plane<float>* layer = nullptr, double strength = 0.5) {
+  const Plane<glm::vec3> none;
+  const Environment sky = Environment::constant(glm::vec3(1));
+  const ParameterValues parameters = {{"roughness", roughness}, {"reflection-strength", strength}};
+  EstimateInput in{g, none, none, sky, {.reflection = true}, 1, 0, 0, parameters, {}};
+  in.roughness = layer;
+  return reflection_occlusion(in, make_view_planes(g), bent);
+}
+
+/// A pixel of which both cones are known: between their axes lies an angle up to half a turn.
+struct Cones {
+  double length, between, roughness;
+};
+
+/// Parallel views of surfaces that mirror the direction at `between`; bent normals point at the
+/// viewer.
+Plane<float> reflect_cones(const std::vector<Cones>& pixels, double strength) {
+  const int width = int(pixels.size());
+  Geometry g;
+  g.window = g.display = {0, 0, width, 1};
+  g.camera = camera_from_ortho_width(width, g.display, 1);
+  g.surfel = Plane<Surfel>(width, 1);
+  Plane<glm::vec3> bent(width, 1);
+  Plane<float> roughness(width, 1);
+  for (int x = 0; x < width; ++x) {
+    const Cones& of = pixels[std::size_t(x)];
+    g.surfel(x, 0) = {glm::vec4(float(x), 0, -1, 1), glm::vec4(at_angle(of.between / 2), 0)};
+    bent(x, 0) = glm::vec3(0, 0, float(of.length));
+    roughness(x, 0) = float(of.roughness);
+  }
+  return reflect(g, bent, 0, &roughness, strength);
+}
+
 TEST(Reflection, ConesMeetAsInTheSeed) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> share(0, 1);
   int partly = 0;
-  for (int i = 0; i < 20000; ++i) {
-    const double length = 0.03 + 0.97 * share(random), between = kPi * share(random),
-                 roughness = share(random), strength = 0.05 + 0.95 * share(random);
-    const double expected = slow_occlusion(length, between, roughness, strength);
-    const float found = reflection_occlusion(float(length) * at_angle(0.7), at_angle(0.7 + between),
-                                             float(roughness), float(strength));
-    ASSERT_NEAR(found, expected, 2e-4)
-        << length << " " << between << " " << roughness << " " << strength;
-    partly += expected > 0.01 && expected < 0.99;
+  for (int row = 0; row < 200; ++row) {
+    const double strength = 0.05 + 0.95 * share(random);
+    std::vector<Cones> pixels;
+    for (int i = 0; i < 101; ++i)
+      pixels.push_back({0.03 + 0.97 * share(random), 0.998 * kPi * share(random), share(random)});
+    const Plane<float> found = reflect_cones(pixels, strength);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const Cones& of = pixels[i];
+      const double expected = slow_occlusion(of.length, of.between, of.roughness, strength);
+      ASSERT_NEAR(found[i], expected, 5e-4)
+          << of.length << " " << of.between << " " << of.roughness << " " << strength;
+      partly += expected > 0.01 && expected < 0.99;
+    }
   }
   EXPECT_GT(partly, 5000);
 }
 
+/// The same of one pixel.
+float reflect_one(double length, double between, double roughness) {
+  return reflect_cones({{length, between, roughness}}, 0.5)[0];
+}
+
 TEST(Reflection, OneWhereAConeIsInsideTheOtherZeroWhereTheyDoNotTouch) {
-  const glm::vec3 n = at_angle(0);
   // A hemisphere of sky and a specular cone of 18 degrees about its edge: inside to 72 degrees,
   // outside from 108 on, half way at 90.
-  EXPECT_EQ(reflection_occlusion(n, at_angle(kPi * 71 / 180), 0, 0.5f), 1);
-  EXPECT_NEAR(reflection_occlusion(n, at_angle(kPi / 2), 0, 0.5f), 0.5, 1e-5);
-  EXPECT_EQ(reflection_occlusion(n, at_angle(kPi * 109 / 180), 0, 0.5f), 0);
-  EXPECT_EQ(reflection_occlusion(n, at_angle(kPi * 71 / 180), 0.1f, 0.5f), 1)
-      << "no cone is narrower than that of roughness 0.1";
+  EXPECT_EQ(reflect_one(1, kPi * 71 / 180, 0), 1);
+  EXPECT_NEAR(reflect_one(1, kPi / 2, 0), 0.5, 1e-5);
+  EXPECT_EQ(reflect_one(1, kPi * 109 / 180, 0), 0);
+  EXPECT_EQ(reflect_one(1, kPi * 71 / 180, 0.1), 1) << "no cone is narrower than that of 0.1";
 }
 
 TEST(Reflection, TheLengthOfTheBentNormalDecides) {
-  const glm::vec3 r = at_angle(0.4);
-  EXPECT_EQ(reflection_occlusion(glm::vec3(0), r, 0.5f, 0.5f), 0) << "all is closed";
+  EXPECT_EQ(reflect_one(0, 0.4, 0.5), 0) << "all is closed";
   // A visible cone of 0.1 radians is closed, one of 0.3 is fully counted.
-  const auto of_angle = [](double angle) { return float(angle / (kPi / 2)) * at_angle(0); };
-  EXPECT_EQ(reflection_occlusion(of_angle(0.0999), at_angle(0), 0.1f, 0.5f), 0);
-  EXPECT_NEAR(reflection_occlusion(of_angle(0.2), at_angle(0), 0.1f, 0.5f), 0.5, 1e-5);
-  EXPECT_NEAR(reflection_occlusion(of_angle(0.3001), at_angle(0), 0.1f, 0.5f), 1, 1e-5);
+  EXPECT_EQ(reflect_one(0.0999 / (kPi / 2), 0, 0.1), 0);
+  EXPECT_NEAR(reflect_one(0.2 / (kPi / 2), 0, 0.1), 0.5, 1e-5);
+  EXPECT_NEAR(reflect_one(0.3001 / (kPi / 2), 0, 0.1), 1, 1e-5);
 }
 
-/// Reflections of a frame whose bent normals are given.
-Plane<float> reflect(const Geometry& g, const Plane<glm::vec3>& bent, double roughness,
-                     const Plane<float>* layer = nullptr) {
-  const Plane<glm::vec3> none;
-  const Environment sky = Environment::constant(glm::vec3(1));
-  const ParameterValues parameters = {{"roughness", roughness}, {"reflection-strength", 0.5}};
-  EstimateInput in{g, none, none, sky, {.reflection = true}, 1, 0, 0, parameters, {}};
-  in.roughness = layer;
-  return reflection_occlusion(in, bent);
+TEST(Reflection, VectorsGiveWhatOneLaneGives) {
+  const Geometry g =
+      geometry_of(room_with_a_ball(), tilted(camera_from_fov(60, kWindow, 1), 50), kWindow);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> share(0, 1);
+  Plane<glm::vec3> bent(48, 36);
+  Plane<float> layer(48, 36);
+  for (std::size_t i = 0; i < bent.size(); ++i) {
+    bent[i] = share(random) * glm::vec3(g.surfel[i].normal);
+    layer[i] = share(random);
+  }
+  expect_the_same_from_every_isa([&] { return reflect(g, bent, 0, &layer); });
+  expect_the_same_from_any_threads([&] { return reflect(g, bent, 0, &layer); });
 }
 
 TEST(Reflection, EveryPixelMirrorsItsOwnRay) {

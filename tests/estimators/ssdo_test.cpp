@@ -12,6 +12,7 @@
 #include "estimators/registry.h"
 #include "math/frame.h"
 #include "support/analytic_scene.h"
+#include "support/crop.h"
 
 namespace ssdo::test {
 namespace {
@@ -219,6 +220,29 @@ TEST(Ssdo, BounceIsProportionalToTheSendersAlbedoAndGrowsWithPasses) {
     first += light.bounce[i].x, second += twice.bounce[i].x;
   }
   EXPECT_GT(second, first * 1.01);
+}
+
+TEST(Ssdo, ACropFarEnoughInsideIsThatPartOfTheWhole) {
+  const Window part{7, 5, 90, 70};
+  const Surface scene = all_of({plane({}, {0, 0, 1}), plane({0, 1, 0}, {0, -1, 0})});
+  const Camera camera =
+      look_at(camera_from_fov(40, kWindow, 1), {0, -4, 3}, {0, 0, 0.3}, {0, 0, 1});
+  const Geometry g = geometry_of(scene, camera, kWindow);
+  const Request request{.radius = 0.2f, .bounces = 1};
+  const Products all = run(g, request), of_part = run(crop(g, part), request);
+  // A radius is at most 8 pixels here, and a bounce comes from pixels that look as far themselves.
+  const int margin = 16;
+  double bounced = 0;
+  for (int y = margin; y < part.height() - margin; ++y) {
+    for (int x = margin; x < part.width() - margin; ++x) {
+      const int wx = x + part.x0, wy = y + part.y0;
+      ASSERT_EQ(of_part.ao(x, y), all.ao(wx, wy)) << x << "," << y;
+      ASSERT_EQ(of_part.direct(x, y), all.direct(wx, wy));
+      ASSERT_EQ(of_part.bounce(x, y), all.bounce(wx, wy));
+      bounced += all.bounce(wx, wy).x;
+    }
+  }
+  EXPECT_GT(bounced, 1);
 }
 
 TEST(Ssdo, NothingThatComesInMakesANaN) {

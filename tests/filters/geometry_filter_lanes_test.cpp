@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The vector loops of the filter against a slow reference, against each other, and what must hold
-// for each product.
+// The vector loops of the filter against a slow reference, and what must hold for each product.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 
 #include "filters/geometry_filter.h"
-#include "parallel/tiles.h"
 #include "support/random_frame.h"
 
 namespace ssdo::test {
@@ -80,55 +77,6 @@ TEST(GeometryFilterLanes, AreTheReference) {
   }
 }
 
-TEST(GeometryFilterLanes, AgreeAmongInstructionSets) {
-  const Geometry g = random_geometry(131, 65, 3);
-  const Products in = random_products(g, 4);
-  const auto run = [&](const char* isa) {
-    const IsaVariable variable(isa);
-    return filter_geometry(in, g, 4);
-  };
-  const Products scalar = run("scalar");
-  for (const char* isa : {"avx2", "avx512"}) {
-    if (!has_isa(isa)) continue;
-    SCOPED_TRACE(isa);
-    const Products vector = run(isa);
-    for (std::size_t i = 0; i < in.ao.size(); ++i) {
-      EXPECT_NEAR(vector.ao[i], scalar.ao[i], 1e-5);
-      EXPECT_NEAR(vector.error[i], scalar.error[i], 1e-5);
-      EXPECT_LT(difference(vector.direct[i], scalar.direct[i]), 1e-5);
-      EXPECT_LT(difference(vector.bounce[i], scalar.bounce[i]), 1e-5);
-      EXPECT_LT(difference(vector.bent[i], scalar.bent[i]), 1e-5);
-    }
-  }
-}
-
-TEST(GeometryFilterLanes, GiveTheSameBitsInACropAndOnAnyNumberOfThreads) {
-  const Geometry g = random_geometry(150, 140, 5);
-  const Products in = random_products(g, 6);
-  const Products whole = [&] {
-    const ThreadLimit one(1);
-    return filter_geometry(in, g, 4);
-  }();
-  const ThreadLimit several(4);
-  const Products again = filter_geometry(in, g, 4);
-  EXPECT_EQ(again.ao.pixels, whole.ao.pixels);
-  EXPECT_EQ(again.bounce.pixels, whole.bounce.pixels);
-
-  const Window window{13, 7, 124, 130};
-  Geometry part;
-  part.surfel = crop(g.surfel, window);
-  Products part_in;
-  part_in.ao = crop(in.ao, window);
-  part_in.bent = crop(in.bent, window);
-  const Products out = filter_geometry(part_in, part, 4);
-  for (int y = 2; y < window.height() - 2; ++y) {
-    for (int x = 2; x < window.width() - 2; ++x) {
-      EXPECT_EQ(out.ao(x, y), whole.ao(window.x0 + x, window.y0 + y));
-      EXPECT_EQ(out.bent(x, y), whole.bent(window.x0 + x, window.y0 + y));
-    }
-  }
-}
-
 TEST(GeometryFilter, IsOddInTheErrorAndLinear) {
   const Geometry g = random_geometry(40, 30, 7);
   Products a, b, minus, sum;
@@ -152,27 +100,6 @@ TEST(GeometryFilter, LeavesNoDirectionWithoutLength) {
   p.bent = Plane<glm::vec3>(40, 30);
   const Products out = filter_geometry(p, g, 4);
   for (const glm::vec3& bent : out.bent.pixels) EXPECT_EQ(bent, glm::vec3(0));
-}
-
-TEST(GeometryFilter, TakesNothingFromTheBackgroundBeItBroken) {
-  const Geometry g = random_geometry(70, 30, 11);
-  const Products clean = random_products(g, 12);
-  Products broken = clean;
-  Geometry holes = g;
-  for (std::size_t i = 0; i < broken.ao.size(); ++i) {
-    if (g.is_surface(i)) continue;
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    broken.ao[i] = nan;
-    broken.direct[i] = glm::vec3(nan);
-    holes.surfel[i].position = glm::vec4(glm::vec3(nan), 0);
-    holes.surfel[i].normal = glm::vec4(nan);
-  }
-  const Products expected = filter_geometry(clean, g, 4), out = filter_geometry(broken, holes, 4);
-  for (std::size_t i = 0; i < broken.ao.size(); ++i) {
-    if (!g.is_surface(i)) continue;
-    EXPECT_EQ(out.ao[i], expected.ao[i]);
-    EXPECT_EQ(out.direct[i], expected.direct[i]);
-  }
 }
 
 }  // namespace

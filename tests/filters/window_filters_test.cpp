@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Box, Gaussian and normal filter, each against its source's sum, and what must hold for all.
+// Box, Gaussian and normal filter, each against its source's sum, and where they cross edges.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 
 #include "filters/registry.h"
-#include "parallel/tiles.h"
 #include "support/analytic_scene.h"
 #include "support/random_frame.h"
 
@@ -128,52 +126,6 @@ TEST_P(WindowFilter, IsTheSumOfItsSource) {
   }
 }
 
-TEST_P(WindowFilter, AgreesAmongInstructionSets) {
-  const Geometry g = random_geometry(131, 65, 3);
-  const Products in = random_products(g, 4);
-  const auto run = [&](const char* isa) {
-    const IsaVariable variable(isa);
-    return filtered(GetParam(), in, g);
-  };
-  const Products scalar = run("scalar");
-  for (const char* isa : {"avx2", "avx512"}) {
-    if (!has_isa(isa)) continue;
-    SCOPED_TRACE(isa);
-    const Products vector = run(isa);
-    for (std::size_t i = 0; i < in.ao.size(); ++i) {
-      EXPECT_NEAR(vector.ao[i], scalar.ao[i], 1e-5);
-      EXPECT_NEAR(vector.error[i], scalar.error[i], 1e-5);
-      EXPECT_LT(difference(vector.direct[i], scalar.direct[i]), 1e-5);
-      EXPECT_LT(difference(vector.bent[i], scalar.bent[i]), 1e-5);
-    }
-  }
-}
-
-TEST_P(WindowFilter, GivesTheSameBitsInACropAndOnAnyNumberOfThreads) {
-  const Geometry g = random_geometry(150, 140, 5);
-  const Products in = random_products(g, 6);
-  const Products whole = [&] {
-    const ThreadLimit one(1);
-    return filtered(GetParam(), in, g);
-  }();
-  const ThreadLimit several(4);
-  const Products again = filtered(GetParam(), in, g);
-  EXPECT_EQ(again.ao.pixels, whole.ao.pixels);
-  EXPECT_EQ(again.bent.pixels, whole.bent.pixels);
-
-  const Window window{13, 7, 124, 130};
-  Geometry part;
-  part.surfel = crop(g.surfel, window);
-  Products part_in;
-  part_in.ao = crop(in.ao, window);
-  const Products out = filtered(GetParam(), part_in, part);
-  constexpr int kReach = 15;  // three passes of five
-  for (int y = kReach; y < window.height() - kReach; ++y) {
-    for (int x = kReach; x < window.width() - kReach; ++x)
-      EXPECT_EQ(out.ao(x, y), whole.ao(window.x0 + x, window.y0 + y));
-  }
-}
-
 TEST_P(WindowFilter, LeavesAFlatFieldAsItIsToTheLastBit) {
   const Geometry g = random_geometry(67, 41, 7);
   Products flat;
@@ -187,28 +139,6 @@ TEST_P(WindowFilter, LeavesAFlatFieldAsItIsToTheLastBit) {
   EXPECT_EQ(out.direct.pixels, flat.direct.pixels);
   EXPECT_EQ(out.bent.pixels, flat.bent.pixels);
   EXPECT_TRUE(out.bounce.empty());
-}
-
-TEST_P(WindowFilter, TakesNothingFromTheBackgroundBeItBroken) {
-  const Geometry g = random_geometry(70, 30, 11);
-  const Products clean = random_products(g, 12);
-  Products broken = clean;
-  Geometry holes = g;
-  for (std::size_t i = 0; i < broken.ao.size(); ++i) {
-    if (g.is_surface(i)) continue;
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    broken.ao[i] = nan;
-    broken.direct[i] = glm::vec3(nan);
-    holes.surfel[i].position = glm::vec4(glm::vec3(nan), 0);
-    holes.surfel[i].normal = glm::vec4(nan);
-  }
-  const Products expected = filtered(GetParam(), clean, g),
-                 out = filtered(GetParam(), broken, holes);
-  for (std::size_t i = 0; i < broken.ao.size(); ++i) {
-    if (!g.is_surface(i)) continue;
-    EXPECT_EQ(out.ao[i], expected.ao[i]);
-    EXPECT_EQ(out.direct[i], expected.direct[i]);
-  }
 }
 
 const Window kWindow{0, 0, 64, 48};
@@ -275,14 +205,6 @@ TEST(BoxFilter, RemovesThePatternAndMovesThePictureByHalfAPixel) {
       EXPECT_NEAR(out.error(x, y), x - 0.5, 1e-5);
     }
   }
-}
-
-TEST(Filters, AreFoundByNameAndNoneChangesNothing) {
-  const Geometry g = random_geometry(20, 20, 13);
-  const Products in = random_products(g, 14);
-  EXPECT_EQ(filtered("none", in, g).ao.pixels, in.ao.pixels);
-  EXPECT_NE(filtered("geometry", in, g).ao.pixels, in.ao.pixels);
-  EXPECT_THROW(find_filter("blur"), Error);
 }
 
 }  // namespace

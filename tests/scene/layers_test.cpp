@@ -194,6 +194,27 @@ TEST(Layers, APartRestrictsTheSearch) {
               IsError(ExitCode::layer, "0 'left', 1 'right'"));
 }
 
+TEST(Layers, FindsMotionOfBlenderAndOfOthersOnRequest) {
+  const auto with = [](Channels channels) {
+    channels.insert(channels.end(), {"P.X", "P.Y", "P.Z"});
+    return File(channels);
+  };
+  const Channels xy = {"ViewLayer.Vector.X", "ViewLayer.Vector.Y"};
+  EXPECT_EQ(channels_of(with({"ViewLayer.Vector.X", "ViewLayer.Vector.Y", "ViewLayer.Vector.Z",
+                              "ViewLayer.Vector.W"})
+                            .find(),
+                        Role::motion),
+            xy);
+  EXPECT_EQ(channels_of(with(xy).find(), Role::motion), Channels{}) << "not of Blender";
+  EXPECT_EQ(channels_of(with(xy).find({"motion=ViewLayer.Vector"}), Role::motion), xy);
+  const File others = with({"velocity.R", "velocity.G", "velocity.B", "forward.u", "forward.v"});
+  EXPECT_EQ(channels_of(others.find(), Role::motion), Channels{});
+  EXPECT_EQ(channels_of(others.find({"motion=velocity"}), Role::motion),
+            (Channels{"velocity.R", "velocity.G"}));
+  EXPECT_EQ(channels_of(others.find({"motion=forward"}), Role::motion),
+            (Channels{"forward.u", "forward.v"}));
+}
+
 TEST(Layers, FindsRoughnessWhereItIsUsed) {
   const Channels position = {"P.X", "P.Y", "P.Z"};
   const auto with = [&](Channels more) {

@@ -3,42 +3,12 @@
 // Uneven frames with noise in every product, for filters whose vector loops are held to slow ones.
 #pragma once
 
-#include <cstdlib>
 #include <glm/geometric.hpp>
-#include <optional>
 #include <random>
-#include <string>
 
-#include "error.h"
 #include "estimators/estimator.h"
-#include "parallel/isa.h"
 
 namespace ssdo::test {
-
-/// Sets $SSDO_ISA while it lives.
-class IsaVariable {
- public:
-  explicit IsaVariable(const char* value) {
-    if (const char* before = std::getenv("SSDO_ISA")) before_ = before;
-    setenv("SSDO_ISA", value, 1);
-  }
-  ~IsaVariable() {
-    before_ ? setenv("SSDO_ISA", before_->c_str(), 1) : unsetenv("SSDO_ISA");
-    choose_isa();
-  }
-
- private:
-  std::optional<std::string> before_;
-};
-
-inline bool has_isa(const char* name) {
-  const IsaVariable variable(name);
-  try {
-    return choose_isa() == name;
-  } catch (const Error&) {
-    return false;
-  }
-}
 
 using Random = std::mt19937;
 
@@ -96,14 +66,5 @@ struct Size {
 };
 inline const Size kSizes[] = {{1, 1},   {1, 9},   {3, 2},  {5, 70},
                               {16, 16}, {17, 33}, {67, 5}, {131, 65}};
-
-/// The part of a plane that `window` cuts out.
-template <class T>
-Plane<T> crop(const Plane<T>& from, const Window& window) {
-  Plane<T> to(window.width(), window.height());
-  for (int y = 0; y < to.height; ++y)
-    for (int x = 0; x < to.width; ++x) to(x, y) = from(window.x0 + x, window.y0 + y);
-  return to;
-}
 
 }  // namespace ssdo::test
