@@ -47,6 +47,25 @@ std::optional<Camera> camera_from_options(const GBuffer& g, const CameraOptions&
                         file));
 }
 
+/// Pixels whose neighbours all show something: at the edge of what a frame shows, P may be an
+/// average with the background, far from where its pixel looks.
+Plane<unsigned char> inner_pixels(const Plane<unsigned char>& valid) {
+  Plane<unsigned char> inner(valid.width, valid.height);
+  for (int y = 1; y + 1 < valid.height; ++y) {
+    for (int x = 1; x + 1 < valid.width; ++x) {
+      inner(x, y) =
+          valid(x, y) && valid(x - 1, y) && valid(x + 1, y) && valid(x, y - 1) && valid(x, y + 1);
+    }
+  }
+  return inner;
+}
+
+/// The camera by pixels that are surely no averages, or else by all.
+std::optional<Camera> fit_camera(const GBuffer& g) {
+  const auto fitted = ssdo::fit_camera(g.position, inner_pixels(g.valid), g.window);
+  return fitted ? fitted : ssdo::fit_camera(g.position, g.valid, g.window);
+}
+
 Camera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,
                    GeometryReport& report) {
   const auto given = camera_from_options(g, options, report);
@@ -59,7 +78,7 @@ Camera find_camera(const GBuffer& g, const CameraOptions& options, const std::st
     camera = *given;
   } else if (given) {
     const auto posed = fit_pose(*given, g.position, g.valid, g.window);
-    const auto fitted = posed ? posed : fit_camera(g.position, g.valid, g.window);
+    const auto fitted = posed ? posed : fit_camera(g);
     if (!fitted) {
       throw Error(ExitCode::layer, fmt::format("{}: P does not project to its own pixels under {}; "
                                                "give --camera FILE.json",
@@ -73,7 +92,7 @@ Camera find_camera(const GBuffer& g, const CameraOptions& options, const std::st
     }
     camera = *fitted;
   } else {
-    const auto fitted = fit_camera(g.position, g.valid, g.window);
+    const auto fitted = fit_camera(g);
     if (!fitted) throw_undetermined(g, file);
     report.camera_source = "fitted from P";
     camera = *fitted;
