@@ -12,6 +12,7 @@
 #include "parallel/tiles.h"
 #include "scene/camera_fit.h"
 #include "scene/normals.h"
+#include "scene/silhouettes.h"
 
 namespace ssdo {
 namespace {
@@ -233,6 +234,15 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
   place_positions(g, out);
   drop_pixels_behind_camera(out, report);
   place_normals(g, out, report);
+  if (report.residual) {
+    const std::size_t averages = mend_silhouettes(out, *report.residual);
+    if (averages > 0) {
+      report.warnings.push_back(fmt::format(
+          "P is an average over an edge in {} pixels, which take the surface beside them; export P "
+          "and N without a filter",
+          averages));
+    }
+  }
   out.median_depth = median_depth(out);
   const bool posed_by_file = !options.file.empty();
   out.world_known =
