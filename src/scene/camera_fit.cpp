@@ -188,9 +188,14 @@ std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
 }
 
 std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>& positions,
-                               const Plane<unsigned char>& valid, const Window& window) {
+                               const Plane<unsigned char>& valid, const Window& window,
+                               double step) {
+  const Samples samples = collect_samples(positions, valid, window);
+  const glm::dvec3 middle(samples.centre.x(), samples.centre.y(), samples.centre.z());
   const auto explains = [&](const Camera& camera) {
-    return measure_residual(camera, positions, valid, window).median_px < 0.5;
+    const double depth = camera.orthographic ? 1.0 : std::abs(camera.to_camera(middle).z),
+                 step_px = step > 0 ? step * camera.fx / depth : 0;
+    return measure_residual(camera, positions, valid, window).median_px < 0.5 + step_px;
   };
   // P may be in camera space already, with the axes of another tool.
   for (const glm::dvec3& axes :
@@ -199,7 +204,6 @@ std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>&
     for (int i = 0; i < 3; ++i) camera.rotation[i][i] = axes[i];
     if (explains(camera)) return camera;
   }
-  const Samples samples = collect_samples(positions, valid, window);
   if (projection.orthographic || samples.items.size() < 4 ||
       samples.spread[1] < 1e-5 * samples.spread[2]) {
     return std::nullopt;

@@ -67,6 +67,17 @@ std::optional<Camera> fit_camera(const GBuffer& g) {
   return fitted ? fitted : ssdo::fit_camera(g.position, g.valid, g.window);
 }
 
+/// The most by which storing P may have moved it along one axis, in scene units.
+double rounding_of_positions(const GBuffer& g) {
+  float largest = 0;
+  for (std::size_t i = 0; i < g.position.size(); ++i) {
+    if (!g.valid[i]) continue;
+    const glm::vec3 p = glm::abs(g.position[i]);
+    largest = std::max({largest, p.x, p.y, p.z});
+  }
+  return double(largest) * g.position_step;
+}
+
 Camera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,
                    GeometryReport& report) {
   const auto given = camera_from_options(g, options, report);
@@ -78,7 +89,7 @@ Camera find_camera(const GBuffer& g, const CameraOptions& options, const std::st
   if (given && !options.file.empty()) {
     camera = *given;
   } else if (given) {
-    const auto posed = fit_pose(*given, g.position, g.valid, g.window);
+    const auto posed = fit_pose(*given, g.position, g.valid, g.window, rounding_of_positions(g));
     const auto fitted = posed ? posed : fit_camera(g);
     if (!fitted) {
       throw Error(ExitCode::layer, fmt::format("{}: P does not project to its own pixels under {}; "
