@@ -12,7 +12,8 @@
 namespace ssdo::test {
 namespace {
 
-const Window kWindow{0, 0, 48, 36};
+/// Two tiles of threads, and no whole number of vectors.
+const Window kWindow{0, 0, 71, 36};
 constexpr float kInfinity = std::numeric_limits<float>::infinity(),
                 kNan = std::numeric_limits<float>::quiet_NaN();
 
