@@ -190,11 +190,7 @@ std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
 std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>& positions,
                                const Plane<unsigned char>& valid, const Window& window,
                                double step) {
-  const Samples samples = collect_samples(positions, valid, window);
-  const glm::dvec3 middle(samples.centre.x(), samples.centre.y(), samples.centre.z());
-  const auto explains = [&](const Camera& camera) {
-    const double depth = camera.orthographic ? 1.0 : std::abs(camera.to_camera(middle).z),
-                 step_px = step > 0 ? step * camera.fx / depth : 0;
+  const auto explains = [&](const Camera& camera, double step_px) {
     return measure_residual(camera, positions, valid, window).median_px < 0.5 + step_px;
   };
   // P may be in camera space already, with the axes of another tool.
@@ -202,8 +198,9 @@ std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>&
        {glm::dvec3(1, 1, 1), glm::dvec3(1, 1, -1), glm::dvec3(1, -1, 1), glm::dvec3(-1, 1, 1)}) {
     Camera camera = projection;
     for (int i = 0; i < 3; ++i) camera.rotation[i][i] = axes[i];
-    if (explains(camera)) return camera;
+    if (explains(camera, 0)) return camera;
   }
+  const Samples samples = collect_samples(positions, valid, window);
   if (projection.orthographic || samples.items.size() < 4 ||
       samples.spread[1] < 1e-5 * samples.spread[2]) {
     return std::nullopt;
@@ -211,7 +208,9 @@ std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>&
   ProjectionModel model = pose_of_plane(samples, projection);
   refine(model, samples, true);
   const Camera camera = to_camera(model, samples, window);
-  return explains(camera) ? std::optional(camera) : std::nullopt;
+  const glm::dvec3 middle(samples.centre.x(), samples.centre.y(), samples.centre.z());
+  const double depth = std::abs(camera.to_camera(middle).z);
+  return explains(camera, step * camera.fx / depth) ? std::optional(camera) : std::nullopt;
 }
 
 Residual measure_residual(const Camera& camera, const Plane<glm::vec3>& positions,
