@@ -41,7 +41,4 @@ inline bool same_bits(const Products& a, const Products& b) {
          same_bits(a.error, b.error);
 }
 
-/// What is wrong with products of this geometry, in words; empty if nothing is.
-std::string find_fault(const Products& products, const Geometry& geometry);
-
 }  // namespace ssdo::test

@@ -39,8 +39,7 @@ std::string fault_of(const char* name, const Plane<Value>& plane, const Geometry
                      testing::PrintToString(*reinterpret_cast<const float*>(&plane[first])));
 }
 
-}  // namespace
-
+/// What is wrong with products of this geometry, in words; empty if nothing is.
 std::string find_fault(const Products& p, const Geometry& g) {
   const auto finite = [](const auto& v) { return is_sane(v); };
   const auto share = [](float v) { return v >= 0 && v <= 1; };
@@ -56,8 +55,6 @@ std::string find_fault(const Products& p, const Geometry& g) {
   if (fault.empty()) fault = fault_of("error", p.error, g, 0.0f, finite);
   return fault;
 }
-
-namespace {
 
 /// Rays of `trace` are slow; few show as much of what breaks.
 std::vector<std::string> settings_of(const Method& method) {
