@@ -42,6 +42,10 @@ constexpr float kOffPlane = 1;
 /// Least share of a normal along the ray that is brought to its plane.
 constexpr double kLeastFacing = 0.05;
 
+/// Share of the pixels that averaged edges have at least: in the frames of data/, whose P is not
+/// averaged, 3 pixels of 100,000 look as if they were.
+constexpr double kFewestAverages = 5e-4;
+
 struct Step {
   int dx, dy;
 };
@@ -149,8 +153,10 @@ std::size_t mend_silhouettes(Geometry& geometry, const Residual& residual) {
       is_average(x, y) = 1;
     }
   });
+  const auto count = std::count(is_average.pixels.begin(), is_average.pixels.end(), 1);
+  if (double(count) < kFewestAverages * double(mended.size())) return 0;
   geometry.surfel = std::move(mended);
-  return std::size_t(std::count(is_average.pixels.begin(), is_average.pixels.end(), 1));
+  return std::size_t(count);
 }
 
 }  // namespace ssdo
