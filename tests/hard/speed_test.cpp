@@ -38,8 +38,8 @@ TEST(Speed, OfAoAsARatioToBareLoads) {
   const MarchScene scene = make_march_scene(g, &hidden);
   const SlicePattern pattern(scene.layout, g.display, kSlices, kSteps, 0);
   const March march{scene, pattern, kNoLimit, true};
-  float sum = 0;
-  const double bare = seconds([&] { sum += bench::bare_loads(march, 0, g.surfel.height); });
+  volatile float sum = 0;  // not-a-number, as background is; asked for, so that the loads are made
+  const double bare = seconds([&] { sum = bench::bare_loads(march, 0, g.surfel.height); });
   Products products;
   const double ao = seconds([&] {
     products = run(g, {.radius = kNoLimit, .slices = kSlices, .steps = kSteps, .hidden = &hidden});
@@ -48,7 +48,7 @@ TEST(Speed, OfAoAsARatioToBareLoads) {
   write_report("speed.md", fmt::format("ao of method bitmask, {}, one thread, 960 x 540: {:.3f} ns "
                                        "per sample; bare loads {:.3f}; ratio {:.2f}\n",
                                        isa, ao / samples, bare / samples, ao / bare));
-  EXPECT_TRUE(std::isfinite(sum)) << "nothing was loaded";
+  EXPECT_GT(bare, 0);
   EXPECT_GT(ao, 0);
   EXPECT_EQ(products.ao.size(), g.surfel.size());
 }
