@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "math/light_range.h"
+
 namespace ssdo {
 namespace {
 
@@ -50,7 +52,7 @@ Plane<glm::vec3> composite(const GBuffer& gbuffer, const Geometry& geometry,
   Plane<glm::vec3> out = products.direct;
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (!products.bounce.empty()) out[i] += products.bounce[i];
-    out[i] *= gbuffer.albedo[i];
+    out[i] = within_range(out[i] * gbuffer.albedo[i]);
   }
   return out;
 }

@@ -12,3 +12,4 @@ options=(-DSSDO_TESTS=ON -DSSDO_SANITIZE="$sanitizer")
 [ -z "${CI:-}" ] || options+=(-DSSDO_WERROR=ON)
 build "$folder" "${options[@]}"
 ctest --test-dir "$folder" --output-on-failure --parallel "$(nproc)"
+cat "$folder"/reports/*.md

@@ -51,6 +51,7 @@
 
 #include "estimators/bitmask_march.h"
 #include "math/frame.h"
+#include "math/light_range.h"
 #include "math/luminance.h"
 #include "math/sequence_numbers.h"
 #include "parallel/isa.h"
@@ -214,8 +215,8 @@ class Bitmask {
 
   /// What each pixel sends: its albedo times all the light that arrives, or the layer that says so.
   glm::vec3 sent_by(std::size_t pixel) const {
-    if (!in_.radiance.empty()) return in_.radiance[pixel];
-    return in_.albedo[pixel] * (out_.direct[pixel] + out_.bounce[pixel]);
+    if (!in_.radiance.empty()) return within_range(in_.radiance[pixel]);
+    return within_range(in_.albedo[pixel] * (out_.direct[pixel] + out_.bounce[pixel]));
   }
 
   /// What the unseen side of a pixel's surface sends: it has the light from its side, as far as the
@@ -225,7 +226,7 @@ class Bitmask {
     glm::vec3 light = in_.light->irradiance(normal);
     for (const Sun& sun : in_.light->suns)
       light += std::max(0.0f, glm::dot(normal, sun.direction)) * sun.irradiance;
-    return in_.albedo[pixel] * (out_.ao[pixel] * light + out_.bounce[pixel]);
+    return within_range(in_.albedo[pixel] * (out_.ao[pixel] * light + out_.bounce[pixel]));
   }
 
   static void put(InterleavedColor& color, std::ptrdiff_t i, const glm::vec3& value) {

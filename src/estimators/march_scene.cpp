@@ -8,19 +8,13 @@
 #include <limits>
 
 #include "parallel/tiles.h"
+#include "scene/usable.h"
 
 namespace ssdo {
 namespace {
 
 constexpr int kPeriod = Interleaving::kPeriod;
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
-
-/// In front of the viewer, and nothing in it that arithmetic would carry into its neighbours.
-bool is_usable(const Surfel& s) {
-  return s.position.w != 0 && s.position.z < -1e-15f &&
-         std::isfinite(glm::dot(s.position, s.position)) &&
-         std::isfinite(glm::dot(s.normal, s.normal));
-}
 
 /// Least share of the normal along a ray that meets its plane: a plane tilted by 89.9 degrees has
 /// 0.0017.

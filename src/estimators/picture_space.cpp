@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "scene/usable.h"
+
 namespace ssdo {
 namespace {
 
@@ -63,10 +65,7 @@ float PictureSpace::height_behind(float h, const glm::vec3& p, float length) con
 }
 
 bool is_solid(const Geometry& geometry, std::size_t pixel) {
-  const Surfel& s = geometry.surfel[pixel];
-  return geometry.is_surface(pixel) && s.position.z < -1e-15f &&
-         std::isfinite(glm::dot(s.position, s.position)) &&
-         std::isfinite(glm::dot(s.normal, s.normal));
+  return is_usable(geometry.surfel[pixel]);
 }
 
 float footprint_of(const Geometry& geometry, std::size_t pixel) {

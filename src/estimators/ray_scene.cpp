@@ -29,6 +29,15 @@ RTCRay ray_of(const PictureSpace::Ray& from) {
   return ray;
 }
 
+/// Whether Embree takes the ray: it ends the process over larger numbers, which only positions far
+/// outside their pixels lead to.
+bool is_traceable(const RTCRay& ray) {
+  constexpr float kLargest = 1e18f;
+  return std::abs(ray.org_x) < kLargest && std::abs(ray.org_y) < kLargest &&
+         std::abs(ray.org_z) < kLargest && std::abs(ray.dir_x) < kLargest &&
+         std::abs(ray.dir_y) < kLargest && std::abs(ray.dir_z) < kLargest;
+}
+
 /// A ray that asks for fronts within reach.
 struct Query : RTCIntersectContext {
   const HeightField* field;
@@ -121,6 +130,7 @@ RayScene::~RayScene() = default;
 bool RayScene::is_blocked(const glm::dvec3& origin, const glm::dvec3& direction,
                           double reach) const {
   RTCRay ray = ray_of(field_.space.ray(origin, direction, reach));
+  if (!is_traceable(ray)) return false;
   Query context(field_, origin, reach);
   rtcOccluded1(embree_->scene, &context, &ray);
   return ray.tfar < 0;
@@ -130,6 +140,7 @@ Owner RayScene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
                           double reach) const {
   RTCRayHit query{ray_of(field_.space.ray(origin, direction, reach)), {}};
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  if (!is_traceable(query.ray)) return {};
   Query context(field_, origin, reach);
   rtcIntersect1(embree_->scene, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};

@@ -34,6 +34,8 @@
 
 #include "estimators/half_ball.h"
 #include "math/frame.h"
+#include "math/light_range.h"
+#include "scene/usable.h"
 
 namespace ssdo {
 namespace {
@@ -195,7 +197,7 @@ void gather_direct(const EstimateInput& in, const Settings& settings, const Samp
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
         const std::size_t i = out.ao.index(x, y);
-        if (!in.geometry.is_surface(i)) continue;
+        if (!is_usable(in.geometry.surfel[i])) continue;
         const Receiver p = sampler.receiver(x, y);
         float visible = 0;
         glm::vec3 lit(0), light(0);
@@ -236,7 +238,7 @@ Plane<glm::vec3> gather_bounce(const EstimateInput& in, const Settings& settings
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
         const std::size_t i = bounce.index(x, y);
-        if (!in.geometry.is_surface(i)) continue;
+        if (!is_usable(in.geometry.surfel[i])) continue;
         const Receiver p = sampler.receiver(x, y);
         glm::vec3 sum(0);
         Batch batch;
@@ -252,7 +254,8 @@ Plane<glm::vec3> gather_bounce(const EstimateInput& in, const Settings& settings
             const float cos_q = std::max(0.0f, -glm::dot(to_q, glm::vec3(sender.normal)));
             // The cosines still carry the length of to_q.
             const float form_factor = radius2 * cos_p * cos_q / (d2 * d2);
-            sum += std::min(form_factor, settings.bounce_singularity) * sent[std::size_t(q)];
+            if (form_factor > 0)  // a broken position has none
+              sum += std::min(form_factor, settings.bounce_singularity) * sent[std::size_t(q)];
           }
         }
         bounce[i] = sum * per_sample;
@@ -265,10 +268,11 @@ Plane<glm::vec3> gather_bounce(const EstimateInput& in, const Settings& settings
 
 /// What every pixel sends: its albedo times all the light that arrives, or the layer that says so.
 Plane<glm::vec3> sender_radiance(const EstimateInput& in, const Products& so_far) {
-  if (!in.radiance.empty()) return in.radiance;
   Plane<glm::vec3> sent(so_far.ao.width, so_far.ao.height, glm::vec3(0));
   for (std::size_t i = 0; i < sent.size(); ++i) {
-    sent[i] = in.albedo[i] * (so_far.direct[i] + so_far.bounce[i]);
+    sent[i] =
+        within_range(in.radiance.empty() ? in.albedo[i] * (so_far.direct[i] + so_far.bounce[i])
+                                         : in.radiance[i]);
   }
   return sent;
 }

@@ -54,12 +54,6 @@ ViewPlanes::ViewPlanes(int width, int height)
       nz(layout),
       rounding(layout) {}
 
-bool is_usable(const Surfel& s) {
-  return s.position.w != 0 && s.position.z < -1e-15f &&
-         std::isfinite(glm::dot(s.position, s.position)) &&
-         std::isfinite(glm::dot(s.normal, s.normal));
-}
-
 void ViewPlanes::clear_row(int y) {
   z.fill_row(y, kBackgroundDepth);
   for (PaddedPlane* plane : {&nx, &ny, &nz, &rounding}) plane->fill_row(y, 0.0f);

@@ -9,6 +9,7 @@
 
 #include "math/plane.h"
 #include "scene/geometry.h"
+#include "scene/usable.h"
 
 namespace ssdo {
 
@@ -84,9 +85,6 @@ struct ViewPlanes {
   /// Has a pixel of such a row show a surface, if that is usable.
   void set(int x, int y, const Surfel& surfel);
 };
-
-/// Whether an estimator may count with it: a surface in front of the viewer, every number finite.
-bool is_usable(const Surfel& surfel);
 
 ViewPlanes make_view_planes(const Geometry& geometry);
 

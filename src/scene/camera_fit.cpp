@@ -188,16 +188,17 @@ std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
 }
 
 std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>& positions,
-                               const Plane<unsigned char>& valid, const Window& window) {
-  const auto explains = [&](const Camera& camera) {
-    return measure_residual(camera, positions, valid, window).median_px < 0.5;
+                               const Plane<unsigned char>& valid, const Window& window,
+                               double step) {
+  const auto explains = [&](const Camera& camera, double step_px) {
+    return measure_residual(camera, positions, valid, window).median_px < 0.5 + step_px;
   };
   // P may be in camera space already, with the axes of another tool.
   for (const glm::dvec3& axes :
        {glm::dvec3(1, 1, 1), glm::dvec3(1, 1, -1), glm::dvec3(1, -1, 1), glm::dvec3(-1, 1, 1)}) {
     Camera camera = projection;
     for (int i = 0; i < 3; ++i) camera.rotation[i][i] = axes[i];
-    if (explains(camera)) return camera;
+    if (explains(camera, 0)) return camera;
   }
   const Samples samples = collect_samples(positions, valid, window);
   if (projection.orthographic || samples.items.size() < 4 ||
@@ -207,7 +208,9 @@ std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>&
   ProjectionModel model = pose_of_plane(samples, projection);
   refine(model, samples, true);
   const Camera camera = to_camera(model, samples, window);
-  return explains(camera) ? std::optional(camera) : std::nullopt;
+  const glm::dvec3 middle(samples.centre.x(), samples.centre.y(), samples.centre.z());
+  const double depth = std::abs(camera.to_camera(middle).z);
+  return explains(camera, step * camera.fx / depth) ? std::optional(camera) : std::nullopt;
 }
 
 Residual measure_residual(const Camera& camera, const Plane<glm::vec3>& positions,

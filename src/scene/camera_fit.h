@@ -24,9 +24,10 @@ std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
 
 /// Finds the pose of a camera whose projection is known, from positions that may lie in a plane.
 /// Returns nothing for fewer than four pixels or pixels in a line, or where no pose brings the
-/// positions within half a pixel.
+/// positions within half a pixel and `step`, by which P may have been rounded, in scene units.
 std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>& positions,
-                               const Plane<unsigned char>& valid, const Window& window);
+                               const Plane<unsigned char>& valid, const Window& window,
+                               double step = 0);
 
 /// How well `camera` explains the positions.
 Residual measure_residual(const Camera& camera, const Plane<glm::vec3>& positions,

@@ -12,6 +12,7 @@
 #include "parallel/tiles.h"
 #include "scene/camera_fit.h"
 #include "scene/normals.h"
+#include "scene/silhouettes.h"
 
 namespace ssdo {
 namespace {
@@ -47,6 +48,36 @@ std::optional<Camera> camera_from_options(const GBuffer& g, const CameraOptions&
                         file));
 }
 
+/// Pixels whose neighbours all show something: at the edge of what a frame shows, P may be an
+/// average with the background, far from where its pixel looks.
+Plane<unsigned char> inner_pixels(const Plane<unsigned char>& valid) {
+  Plane<unsigned char> inner(valid.width, valid.height);
+  for (int y = 1; y + 1 < valid.height; ++y) {
+    for (int x = 1; x + 1 < valid.width; ++x) {
+      inner(x, y) =
+          valid(x, y) && valid(x - 1, y) && valid(x + 1, y) && valid(x, y - 1) && valid(x, y + 1);
+    }
+  }
+  return inner;
+}
+
+/// The camera by pixels that are surely no averages, or else by all.
+std::optional<Camera> fit_camera(const GBuffer& g) {
+  const auto fitted = ssdo::fit_camera(g.position, inner_pixels(g.valid), g.window);
+  return fitted ? fitted : ssdo::fit_camera(g.position, g.valid, g.window);
+}
+
+/// The most by which storing P may have moved it along one axis, in scene units.
+double rounding_of_positions(const GBuffer& g) {
+  float largest = 0;
+  for (std::size_t i = 0; i < g.position.size(); ++i) {
+    if (!g.valid[i]) continue;
+    const glm::vec3 p = glm::abs(g.position[i]);
+    largest = std::max({largest, p.x, p.y, p.z});
+  }
+  return double(largest) * g.position_step;
+}
+
 Camera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,
                    GeometryReport& report) {
   const auto given = camera_from_options(g, options, report);
@@ -58,8 +89,8 @@ Camera find_camera(const GBuffer& g, const CameraOptions& options, const std::st
   if (given && !options.file.empty()) {
     camera = *given;
   } else if (given) {
-    const auto posed = fit_pose(*given, g.position, g.valid, g.window);
-    const auto fitted = posed ? posed : fit_camera(g.position, g.valid, g.window);
+    const auto posed = fit_pose(*given, g.position, g.valid, g.window, rounding_of_positions(g));
+    const auto fitted = posed ? posed : fit_camera(g);
     if (!fitted) {
       throw Error(ExitCode::layer, fmt::format("{}: P does not project to its own pixels under {}; "
                                                "give --camera FILE.json",
@@ -73,7 +104,7 @@ Camera find_camera(const GBuffer& g, const CameraOptions& options, const std::st
     }
     camera = *fitted;
   } else {
-    const auto fitted = fit_camera(g.position, g.valid, g.window);
+    const auto fitted = fit_camera(g);
     if (!fitted) throw_undetermined(g, file);
     report.camera_source = "fitted from P";
     camera = *fitted;
@@ -214,6 +245,15 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
   place_positions(g, out);
   drop_pixels_behind_camera(out, report);
   place_normals(g, out, report);
+  if (report.residual) {
+    const std::size_t averages = mend_silhouettes(out, *report.residual);
+    if (averages > 0) {
+      report.warnings.push_back(fmt::format(
+          "P is an average over an edge in {} pixels, which take the surface beside them; export P "
+          "and N without a filter",
+          averages));
+    }
+  }
   out.median_depth = median_depth(out);
   const bool posed_by_file = !options.file.empty();
   out.world_known =

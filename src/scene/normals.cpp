@@ -49,6 +49,7 @@ glm::vec3 gradient_normal(const Plane<Surfel>& surfels, int x, int y, const glm:
 NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
                               const glm::mat3& rotation, bool orthographic) {
   std::vector<NormalSpace> spaces = {{rotation, "the space of P", 0},
+                                     {-rotation, "the space of P, turned round", 0},
                                      {glm::mat3(1), "camera space", 0}};
   constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "error.h"
+#include "math/light_range.h"
 
 namespace ssdo {
 namespace {
@@ -16,11 +17,13 @@ namespace {
 constexpr float kFar = 1e9f;  ///< Blender writes 1e10 where a ray meets nothing
 constexpr float kStepHalf = 1.0f / 2048, kStepFloat = 1.0f / 16777216;
 
-bool is_finite(float v) { return std::isfinite(v); }
-
 bool is_finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
+
+bool is_sane(float v) { return std::isfinite(v); }
+
+bool is_sane(const glm::vec3& v) { return v == within_range(v); }
 
 /// Lays planes that cover `from` onto the window `to`; pixels that they do not cover get `fill`.
 Plane<float> lay_onto(const Window& to, const Window& from, const Plane<float>& plane, float fill) {
@@ -148,19 +151,19 @@ void classify(GBuffer& g, const GBufferOptions& options) {
     if (is_background(g, i, background_depth)) {
       g.valid[i] = 0;
       ++g.background_pixels;
-    } else if (!g.position.empty() && !is_finite(g.position[i])) {
+    } else if (!g.position.empty() && !(glm::length(g.position[i]) < kFar)) {
       g.valid[i] = 0;
       ++g.bad_pixels;
     }
   }
 }
 
-/// What is not finite becomes 0: black, smooth, or a normal to be rebuilt. The pixel counts as
-/// broken.
+/// What is not finite, or beyond all light, becomes 0: black, smooth, or a normal to be rebuilt.
+/// The pixel counts as broken.
 template <class T>
 void clear_broken(GBuffer& g, Plane<T>& values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (is_finite(values[i])) continue;
+    if (is_sane(values[i])) continue;
     g.bad_pixels += g.valid[i];
     values[i] = T(0);
   }

@@ -130,14 +130,6 @@ TEST(Msvo, ADistantForegroundIsForgivenWhereItIsOutOfReach) {
       << "the known fault";
 }
 
-TEST(Msvo, BackgroundIsOpenAndDark) {
-  const Products out =
-      run(geometry_of(sphere({0, 0, 0}, 1), tilted(camera_from_fov(40, kWindow, 1), 30), kWindow));
-  EXPECT_EQ(out.direct(0, 0), glm::vec3(0));
-  EXPECT_NE(out.direct(105, 70), glm::vec3(0));
-  for (const float ao : out.ao.pixels) EXPECT_NEAR(ao, 1, 1e-6) << "nothing is in a ball's way";
-}
-
 TEST(Msvo, ConstantLightIsThatColourTimesAo) {
   const Geometry g = still_life_in(kWindow, camera_from_fov(50, kWindow, 1));
   const glm::vec3 color(0.25f, 1, 8);

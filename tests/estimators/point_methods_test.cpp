@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What holds for all methods that sample points: the same result from every instruction set, any
-// number of threads and any crop, and nothing but numbers out.
+// What holds for all methods that sample points: the same result from every instruction set and any
+// crop, and nothing but numbers out. See also hard/hard_test.cpp.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -51,17 +51,6 @@ TEST_P(PointMethods, VectorsGiveWhatOneLaneGives) {
     ++compared;
   }
   if (compared == 0) fmt::print("this machine has no vectors to compare\n");
-}
-
-TEST_P(PointMethods, ThreadsDoNotChangeABit) {
-  const Geometry g = room();
-  const auto ao = [&](int threads) {
-    const ThreadLimit limit(threads);
-    return estimate(g, 0.7f, true);
-  };
-  const Products one = ao(1), three = ao(3);
-  EXPECT_EQ(one.ao.pixels, three.ao.pixels);
-  EXPECT_EQ(one.direct.pixels, three.direct.pixels);
 }
 
 TEST_P(PointMethods, ACropDoesNotChangeABit) {
@@ -127,16 +116,6 @@ TEST_P(PointMethods, BrokenPixelsNeitherComeOutNorSpread) {
       EXPECT_EQ(out.direct[i], glm::vec3(0));
     }
   }
-}
-
-TEST_P(PointMethods, BackgroundReadsOneAndFramesMayBeTiny) {
-  for (const Window& window : {Window{0, 0, 1, 1}, Window{0, 0, 1, 9}, Window{0, 0, 9, 1}}) {
-    const Geometry g = room(window);
-    for (const float ao : estimate(g, 0.7f).ao.pixels) EXPECT_TRUE(ao >= 0 && ao <= 1);
-  }
-  Geometry empty = room();
-  for (Surfel& s : empty.surfel.pixels) s = Surfel{};
-  for (const float ao : estimate(empty, 0.7f).ao.pixels) EXPECT_EQ(ao, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PointMethods,

@@ -166,15 +166,6 @@ TEST(Sao, ADistantForegroundDoesNotOcclude) {
       << "within the radius it would";
 }
 
-TEST(Sao, BackgroundIsOpenAndDark) {
-  const Products out = obscure(
-      sao_method(),
-      geometry_of(sphere({0, 0, 0}, 1), tilted(camera_from_fov(40, kWindow, 1), 30), kWindow), 1);
-  EXPECT_EQ(out.ao(0, 0), 1);
-  EXPECT_EQ(out.direct(0, 0), glm::vec3(0));
-  EXPECT_EQ(out.ao(48, 36), 1) << "a sphere before nothing is not occluded by the nothing";
-}
-
 TEST(Sao, ConstantLightIsThatColourTimesAo) {
   const Geometry g =
       geometry_of(still_life(), tilted(camera_from_fov(40, kWindow, 1), 50), kWindow);

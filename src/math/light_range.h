@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <glm/vec3.hpp>
+
+namespace ssdo {
+
+/// No light or albedo is above this, so that sums, squares and products of two stay finite.
+constexpr float kBrightest = 1e15f;
+
+/// Light within the range of numbers: after many bounces between surfaces that send more than they
+/// get it would leave it. Not-a-number is dark.
+inline glm::vec3 within_range(const glm::vec3& light) {
+  glm::vec3 held;
+  for (int c = 0; c < 3; ++c)
+    held[c] = light[c] == light[c] ? std::clamp(light[c], -kBrightest, kBrightest) : 0.0f;
+  return held;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// How much worse ao gets in hard cases, method by method: a table, written to the build folder, and
+// held to what was measured. Every frame goes through a file and the reading of it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "estimators/bitmask_request.h"
+#include "filters/registry.h"
+#include "hard/every_method.h"
+#include "support/report.h"
+
+namespace ssdo::test {
+namespace {
+
+const Window kFrame{0, 0, 96, 72};
+constexpr float kRadius = 0.5f;
+
+struct Difference {
+  double sum2 = 0, count = 0;
+
+  void add(double difference) { sum2 += difference * difference, ++count; }
+  double rms() const { return std::sqrt(sum2 / std::max(count, 1.0)); }
+};
+
+/// A frame of the still life as a file holds it.
+Geometry still_life(Imf::PixelType type, const glm::dvec3& moved) {
+  Camera camera = usual_camera(kFrame);
+  camera.origin += moved;
+  const Surface scene = [&](const Ray& ray) {
+    return hard_still_life()({ray.origin - moved, ray.direction});
+  };
+  FramePart part = frame_of(take_picture(scene, camera, kFrame));
+  part.type = type;
+  return read_through_file(part);
+}
+
+Geometry averaged_still_life(Plane<unsigned char>& averaged) {
+  FramePart part =
+      frame_of(average_picture(hard_still_life(), usual_camera(kFrame), kFrame, 2, averaged));
+  part.channels.erase("ViewLayer.Depth.Z");
+  return read_through_file(part);
+}
+
+Plane<float> ao_of(const Method& method, const Geometry& g) {
+  const HardFrame frame{g, Plane<glm::vec3>(g.surfel.width, g.surfel.height, glm::vec3(0.5f)),
+                        Environment::constant(glm::vec3(1)), kRadius, 0};
+  return apply_filter(find_filter("geometry"), run_method(method, frame, nullptr), g,
+                      method.pattern_size)
+      .ao;
+}
+
+/// ao of the still life by rays.
+Plane<float> truth() {
+  Plane<float> ao(kFrame.width(), kFrame.height());
+  const Surface scene = hard_still_life();
+  const Camera camera = usual_camera(kFrame);
+  for_each_row(ao.height, [&](int y) {
+    for (int x = 0; x < ao.width; ++x)
+      ao(x, y) = float(ao_by_rays(scene, point_at(scene, camera, kFrame, x, y), kRadius, 512));
+  });
+  return ao;
+}
+
+/// An open plane as a file holds it.
+Geometry plane_in_file(Imf::PixelType type, const glm::dvec3& moved) {
+  Camera camera = usual_camera(kFrame);
+  camera.origin += moved;
+  FramePart part = frame_of(take_picture(plane(moved, {0, 0, 1}), camera, kFrame));
+  part.type = type;
+  return read_through_file(part, 30);
+}
+
+Geometry tilted_plane(double degrees) {
+  return geometry_of(ground(), leaning(camera_from_fov(30, kFrame, 1), degrees), kFrame);
+}
+
+struct Column {
+  std::string title;
+  double found = 0;
+};
+
+/// Frames and truth that all methods share.
+class Frames {
+ public:
+  Frames() {
+    const glm::dvec3 far(60, -40, 50), farther(1e6, -1e6, 1e6);
+    lifes_ = {{"half P", still_life(Imf::HALF, {})},
+              {"half P, origin 90 away", still_life(Imf::HALF, far)},
+              {"origin 1.7e6 away", still_life(Imf::FLOAT, farther)}};
+    planes_ = {{"plane at 50", tilted_plane(50)},
+               {"plane, half P, origin 90 away", plane_in_file(Imf::HALF, far)},
+               {"plane, origin 1.7e6 away", plane_in_file(Imf::FLOAT, farther)},
+               {"plane at 85", tilted_plane(85)},
+               {"plane at 89", tilted_plane(89)},
+               {"plane at 89.9", tilted_plane(89.9)}};
+  }
+
+  std::vector<Column> measure(const Method& method) const {
+    const Plane<float> clean = ao_of(method, clean_), averaged = ao_of(method, averaged_);
+    std::vector<Column> columns = {{"clean, against rays", between(clean, rays_).rms()}};
+    for (const auto& [title, geometry] : lifes_)
+      columns.push_back({title, between(ao_of(method, geometry), clean).rms()});
+    Difference at_edges, beside;
+    for (int y = 0; y < clean.height; ++y) {
+      for (int x = 0; x < clean.width; ++x) {
+        if (at_edges_(x, y))
+          at_edges.add(beyond_neighbours(averaged(x, y), clean, x, y));
+        else
+          beside.add(averaged(x, y) - clean(x, y));
+      }
+    }
+    columns.push_back({"averaged edges", at_edges.rms()});
+    columns.push_back({"beside them", beside.rms()});
+    for (const auto& [title, geometry] : planes_) {
+      const Plane<float> open(geometry.surfel.width, geometry.surfel.height, 1.0f);
+      columns.push_back({title, between(ao_of(method, geometry), open).rms()});
+    }
+    return columns;
+  }
+
+ private:
+  static Difference between(const Plane<float>& a, const Plane<float>& b) {
+    Difference d;
+    for (std::size_t i = 0; i < a.size(); ++i) d.add(a[i] - b[i]);
+    return d;
+  }
+
+  /// How far a value lies beyond all that the clean frame has in and around a pixel: an average
+  /// over an edge may be taken for either side of it.
+  static double beyond_neighbours(float value, const Plane<float>& clean, int x, int y) {
+    float least = 1, most = 0;
+    for (int qy = std::max(y - 1, 0); qy < std::min(y + 2, clean.height); ++qy) {
+      for (int qx = std::max(x - 1, 0); qx < std::min(x + 2, clean.width); ++qx)
+        least = std::min(least, clean(qx, qy)), most = std::max(most, clean(qx, qy));
+    }
+    return value - std::clamp(value, least, most);
+  }
+
+  Geometry clean_ = still_life(Imf::FLOAT, {});
+  Plane<unsigned char> at_edges_;
+  Geometry averaged_ = averaged_still_life(at_edges_);
+  std::vector<std::pair<std::string, Geometry>> lifes_, planes_;
+  Plane<float> rays_ = truth();
+};
+
+/// RMSE of ao in the order of the columns.
+const std::map<std::string_view, std::vector<double>> kRecorded = {
+    {"bitmask",
+     {0.0698, 0.0009, 0.0257, 0.0431, 0.0774, 0.0207, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000,
+      0.0000}},
+    {"trace",
+     {0.0624, 0.0032, 0.0738, 0.1284, 0.1246, 0.0314, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000,
+      0.0000}},
+    {"ssdo",
+     {0.0689, 0.0006, 0.0172, 0.0326, 0.0186, 0.0059, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000,
+      0.0000}},
+    {"ssao",
+     {0.1438, 0.0002, 0.0046, 0.0078, 0.0328, 0.0045, 0.0005, 0.0000, 0.0000, 0.0642, 0.0196,
+      0.0011}},
+    {"ssao-range",
+     {0.1035, 0.0037, 0.0346, 0.0603, 0.0108, 0.0038, 0.0695, 0.0413, 0.0372, 0.0114, 0.0030,
+      0.0006}},
+    {"ssao-fade",
+     {0.0547, 0.0018, 0.0125, 0.0205, 0.0060, 0.0070, 0.0037, 0.0030, 0.0045, 0.0003, 0.0001,
+      0.0000}},
+    {"hbao",
+     {0.1467, 0.0003, 0.0158, 0.0268, 0.0192, 0.0044, 0.0000, 0.0000, 0.0000, 0.0000, 0.0000,
+      0.0000}},
+    {"gtao",
+     {0.1740, 0.0001, 0.0061, 0.0059, 0.0386, 0.0077, 0.0090, 0.0090, 0.0090, 0.0313, 0.0279,
+      0.0276}},
+    {"sao",
+     {0.1391, 0.0008, 0.0463, 0.0775, 0.0658, 0.0135, 0.0000, 0.0000, 0.0000, 0.0006, 0.0005,
+      0.0000}},
+    {"msvo",
+     {0.2614, 0.0011, 0.0131, 0.0229, 0.0050, 0.0035, 0.2313, 0.2324, 0.2319, 0.0000, 0.0000,
+      0.0000}}};
+
+TEST(Degradation, StaysWithinWhatWasMeasured) {
+  const Frames frames;
+  std::string table;
+  for (const Method& method : methods()) {
+    const std::vector<Column> columns = frames.measure(method);
+    if (table.empty()) {
+      std::string rule = "|---|";
+      table = "| method |";
+      for (const Column& column : columns) table += " " + column.title + " |", rule += "---|";
+      table += "\n" + rule + "\n";
+    }
+    const auto row = kRecorded.find(method.name);
+    const bool known = row != kRecorded.end() && row->second.size() == columns.size();
+    EXPECT_TRUE(known) << method.name << ": nothing is recorded";
+    table += fmt::format("| `{}` |", method.name);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const double found = columns[i].found;
+      table += fmt::format(" {:.4f} |", found);
+      if (!known) continue;
+      EXPECT_LT(found, 1.05 * row->second[i] + 0.001) << method.name << ", " << columns[i].title;
+    }
+    table += "\n";
+  }
+  write_report(
+      "hard_cases.md",
+      "RMSE of ao, radius a sixth of the frame's width: of the clean frame against rays; of "
+      "others against the same method's clean frame; of open planes against 1.\n\n" +
+          table);
+}
+
+}  // namespace
+}  // namespace ssdo::test
