@@ -77,8 +77,10 @@ class Bench {
                                                options_.input_file));
     }
     std::vector<std::string> inputs = inputs_of(options_, options_.input_file, options_.input.aovs);
+    std::vector<Truth> truths;
     for (const std::string& text : options_.bench.truths) {
-      const Truth truth = read_truth(parse_truth(text));
+      truths.push_back(read_truth(parse_truth(text)));
+      const Truth& truth = truths.back();
       if (!truths_.emplace(truth.product, truth.channels).second) {
         throw Error(ExitCode::usage, fmt::format("--truth {}: there is another truth of {} already",
                                                  text, truth.product));
@@ -93,7 +95,8 @@ class Bench {
     prepared.output.products.clear();
     frame_ = prepare_frame(prepared, light_, options_.input_file, options_.input.aovs);
     choose_products();
-    for (const auto& [product, channels] : truths_) check_truth(product, channels);
+    check_surfaces();
+    for (const Truth& truth : truths) check_truth(truth);
     frame_.plan = plan_of(standard_setting(find_method("bitmask")));
     if (options_.say.verbose) {
       fmt::print(stderr, "{}", describe(frame_));
@@ -128,20 +131,29 @@ class Bench {
     }
   }
 
-  /// A truth of another size would silently be held to a corner of the frame.
-  void check_truth(const std::string& product, const Channels& truth) const {
+  void check_surfaces() {
     const Geometry& g = frame_.geometry;
-    Channels own{g.window, {Plane<float>(g.window.width(), g.window.height())}};
-    const std::size_t valid = compare_surfaces(frame_, own, truth).pixels;
-    const auto all = compare_surfaces(frame_, own, own).pixels;
-    if (valid == all && all > 0) return;
+    for (std::size_t i = 0; i < g.surfel.size(); ++i) report_.surface_pixels += g.is_surface(i);
+    if (report_.surface_pixels > 0) return;
+    throw Error(ExitCode::failed,
+                fmt::format("{}: shows no surface: there is nothing to measure", frame_.input));
+  }
+
+  /// A truth of another size would silently be held to a corner of the frame.
+  void check_truth(const Truth& truth) const {
+    const Window &own = frame_.geometry.display, &other = truth.display;
+    if (!(own == other)) {
+      throw Error(ExitCode::layer,
+                  fmt::format("--truth {}:{}: is {} x {}, and the frame is {} x {}; it has to show "
+                              "the same frame",
+                              truth.file, truth.layer, other.width(), other.height(), own.width(),
+                              own.height()));
+    }
+    const std::size_t valid = compare_surfaces(frame_, truth.channels, truth.channels).pixels;
+    if (valid == report_.surface_pixels) return;
     throw Error(ExitCode::layer,
-                all == 0
-                    ? fmt::format("{}: shows no surface: there is nothing to measure", frame_.input)
-                    : fmt::format("--truth {}: is {} x {} and has values at {} of the frame's {} "
-                                  "pixels of surfaces; it has to show the same frame",
-                                  report_.truths.at(product), truth.window.width(),
-                                  truth.window.height(), valid, all));
+                fmt::format("--truth {}:{}: has values at {} of the frame's {} pixels of surfaces",
+                            truth.file, truth.layer, valid, report_.surface_pixels));
   }
 
   void choose_methods() {
@@ -157,8 +169,6 @@ class Bench {
       }
       if (useful) methods_.push_back(&method);
     }
-    const Geometry& g = frame_.geometry;
-    for (std::size_t i = 0; i < g.surfel.size(); ++i) report_.surface_pixels += g.is_surface(i);
     rays_ = reference_rays(report_.surface_pixels);
     const Ladder trace = ladder_of(find_method("trace"), rays_);
     work_ += trace.seeds * work_of(trace.limit);

@@ -215,23 +215,25 @@ async function paint(canvas, uri, isError) {
 /// The pictures that can be shown: references have no map of their own error.
 const entries = () => bench.pictures.filter(
     p => p.pictures[state.product] && p.pictures[state.product][state.view]);
-const chosen = {left: null, right: null};
+/// Names of what stands on the left and the right of each view.
+const choices = {error: {}, picture: {}};
 
 function drawChoices() {
-  const all = entries();
+  const all = entries(), chosen = choices[state.view];
   const byName = name => all.find(p => p.name === name);
-  const standard = all.find(p => p.row !== undefined && bench.rows[p.row].standard);
-  chosen.left = (byName(chosen.left) || standard || all[0] || {}).name;
-  const other = byName(chosen.right) || (state.view === "picture" && all[0] && all[0].row === undefined ? all[0] : null) ||
-                all.find(p => p.row !== undefined && bench.rows[p.row].method === "ssao" && bench.rows[p.row].standard) || all.at(-1) || {};
-  chosen.right = other.name;
-  for (const side of ["left", "right"]) {
-    const select = by(side);
-    select.replaceChildren();
-    for (const p of all) element("option", p.name, select).value = p.name;
-    select.value = chosen[side];
-    by(side + "-name").textContent = chosen[side] || "";
-    if (byName(chosen[side])) paint(by(side + "-picture"), byName(chosen[side]).pictures[state.product][state.view], state.view === "error");
+  const standardOf = method => all.find(
+      p => p.row !== undefined && bench.rows[p.row].standard && (!method || bench.rows[p.row].method === method));
+  const reference = all.find(p => p.row === undefined);
+  const left = byName(chosen.left) || standardOf() || all[0];
+  const right = byName(chosen.right) || reference || standardOf("ssdo") || all.at(-1);
+  if (!left) return;
+  chosen.left = left.name, chosen.right = right.name;
+  for (const [side, entry] of [["left", left], ["right", right]]) {
+    by(side).replaceChildren();
+    for (const p of all) element("option", p.name, by(side)).value = p.name;
+    by(side).value = entry.name;
+    by(side + "-name").textContent = entry.name;
+    paint(by(side + "-picture"), entry.pictures[state.product][state.view], state.view === "error");
   }
   for (const view of ["error", "picture"]) by("view-" + view).className = view === state.view ? "on" : "";
   by("scale").style.visibility = state.view === "error" ? "visible" : "hidden";
@@ -244,7 +246,7 @@ function drawGallery() {
     paint(element("canvas", undefined, tile), p.pictures[state.product][state.view], state.view === "error");
     const caption = element("figcaption", p.name, tile);
     if (p.row !== undefined) element("b", figure(errorOf(bench.rows[p.row])), caption);
-    tile.onclick = () => { chosen.right = p.name; drawChoices(); };
+    tile.onclick = () => { choices[state.view].right = p.name; drawChoices(); };
   }
 }
 
@@ -266,7 +268,7 @@ function wipe(percent) {
 function show(row) {
   const entry = bench.pictures.find(p => p.row !== undefined && bench.rows[p.row] === row);
   if (!entry || !entry.pictures[state.product]) return;
-  chosen.left = entry.name;
+  choices[state.view].left = entry.name;
   drawChoices();
 }
 
@@ -279,7 +281,7 @@ by("viewer").onpointermove = by("viewer").onpointerup = event => {
   wipe(Number(by("wipe").value));
 };
 for (const side of ["left", "right"])
-  by(side).onchange = () => { chosen[side] = by(side).value; drawChoices(); };
+  by(side).onchange = () => { choices[state.view][side] = by(side).value; drawChoices(); };
 for (const view of ["error", "picture"])
   by("view-" + view).onclick = () => { state.view = view; drawChoices(); drawGallery(); };
 

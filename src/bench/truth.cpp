@@ -67,6 +67,8 @@ Truth read_truth(const TruthRequest& request) {
                             request.picture));
   }
   truth.channels = {picture.window(layer), picture.read(layer)};
+  truth.display = picture.exr() ? picture.exr()->parts()[std::size_t(layer.part)].display_window
+                                : truth.channels.window;
   auto& planes = truth.channels.planes;
   if (planes.size() == 4) planes.pop_back();  // alpha
   if (planes.size() != 3 && planes.size() != 1) {

@@ -24,6 +24,7 @@ TruthRequest parse_truth(const std::string& text);
 struct Truth {
   std::string product;
   std::string file, layer;
+  Window display;  ///< of the picture
   Channels channels;
 };
 
