@@ -11,15 +11,14 @@
 
 #include "bench/command.h"
 #include "bench/machine.h"
-#include "bench/pareto.h"
 #include "bench/pictures.h"
+#include "bench/recommend.h"
 #include "bench/report.h"
 #include "bench/report_files.h"
-#include "bench/truth.h"
+#include "bench/subject.h"
 #include "estimators/registry.h"
 #include "pipeline.h"
 #include "progress.h"
-#include "sequence.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -39,10 +38,6 @@ bool makes(const Method& method, const std::string& product) {
                                : method.products.bounce;
 }
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// Measures one frame.
 class Bench {
  public:
@@ -50,7 +45,8 @@ class Bench {
       : options_(options),
         threads_(choose_thread_count(options.threads)),
         limit_(threads_),
-        light_(options.light),
+        subject_(read_subject(options)),
+        frame_(subject_.frame),
         progress_(options.batch.progress, options.say.quiet) {}
 
   BenchOutcome run() {
@@ -60,7 +56,7 @@ class Bench {
     describe_machine();
     measure_reference();
     for (const Method* method : methods_) measure_method(*method);
-    recommend();
+    recommend(report_, options_.bench.wants);
     keep_pictures_of_note();
     progress_.clear();
     report_.seconds = watch.lap() * 1e-3;
@@ -71,32 +67,10 @@ class Bench {
 
  private:
   void read_inputs() {
-    if (is_pattern(options_.input_file)) {
-      throw Error(ExitCode::usage, fmt::format("{}: is a sequence, and bench measures one frame; "
-                                               "name the file of a frame",
-                                               options_.input_file));
-    }
-    std::vector<std::string> inputs = inputs_of(options_, options_.input_file, options_.input.aovs);
-    std::vector<Truth> truths;
-    for (const std::string& text : options_.bench.truths) {
-      truths.push_back(read_truth(parse_truth(text)));
-      const Truth& truth = truths.back();
-      if (!truths_.emplace(truth.product, truth.channels).second) {
-        throw Error(ExitCode::usage, fmt::format("--truth {}: there is another truth of {} already",
-                                                 text, truth.product));
-      }
-      report_.truths[truth.product] = truth.file + ":" + truth.layer;
-      inputs.push_back(truth.file);
-    }
-    check_report_files(options_.bench.reports, inputs, options_.output.policy);
-
-    Options prepared = options_;
-    prepared.model.method = "bitmask";  // which needs all that any method needs
-    prepared.output.products.clear();
-    frame_ = prepare_frame(prepared, light_, options_.input_file, options_.input.aovs);
-    choose_products();
-    check_surfaces();
-    for (const Truth& truth : truths) check_truth(truth);
+    report_.products = subject_.products;
+    report_.surface_pixels = subject_.surface_pixels;
+    for (const auto& [product, truth] : subject_.truths)
+      report_.truths[product] = truth.file + ":" + truth.layer;
     frame_.plan = plan_of(standard_setting(find_method("bitmask")));
     if (options_.say.verbose) {
       fmt::print(stderr, "{}", describe(frame_));
@@ -107,60 +81,12 @@ class Bench {
     if (wants_page(options_.bench.reports)) pictures_.emplace(frame_, options_.color);
   }
 
-  /// Those that are asked for; else those that have a truth, and all else that the frame allows.
-  void choose_products() {
-    for (const std::string& name : options_.output.products) {
-      if (!contains(kBenchProducts, name)) {
-        throw Error(ExitCode::usage,
-                    fmt::format("product '{}': bench measures ao, direct and bounce", name));
-      }
-    }
-    const bool light_is_ao = frame_.environment.is_constant();
-    for (const std::string& name : kBenchProducts) {
-      const bool asked = contains(options_.output.products, name) || truths_.contains(name);
-      const bool possible = name == "ao" || (name == "direct" && !light_is_ao) ||
-                            (name == "bounce" && contains(frame_.plan.make, name));
-      if (asked || (options_.output.products.empty() && possible)) report_.products.push_back(name);
-    }
-    for (const WantedError& want : options_.bench.wants) {
-      if (!want.product.empty() && !contains(report_.products, want.product)) {
-        throw Error(ExitCode::usage,
-                    fmt::format("--want {}={:g}: {} is not measured; there is {}", want.product,
-                                want.error, want.product, fmt::join(report_.products, ", ")));
-      }
-    }
-  }
-
-  void check_surfaces() {
-    const Geometry& g = frame_.geometry;
-    for (std::size_t i = 0; i < g.surfel.size(); ++i) report_.surface_pixels += g.is_surface(i);
-    if (report_.surface_pixels > 0) return;
-    throw Error(ExitCode::failed,
-                fmt::format("{}: shows no surface: there is nothing to measure", frame_.input));
-  }
-
-  /// A truth of another size would silently be held to a corner of the frame.
-  void check_truth(const Truth& truth) const {
-    const Window &own = frame_.geometry.display, &other = truth.display;
-    if (!(own == other)) {
-      throw Error(ExitCode::layer,
-                  fmt::format("--truth {}:{}: is {} x {}, and the frame is {} x {}; it has to show "
-                              "the same frame",
-                              truth.file, truth.layer, other.width(), other.height(), own.width(),
-                              own.height()));
-    }
-    const std::size_t valid = compare_surfaces(frame_, truth.channels, truth.channels).pixels;
-    if (valid == report_.surface_pixels) return;
-    throw Error(ExitCode::layer,
-                fmt::format("--truth {}:{}: has values at {} of the frame's {} pixels of surfaces",
-                            truth.file, truth.layer, valid, report_.surface_pixels));
-  }
-
   void choose_methods() {
     for (const std::string& name : options_.bench.methods) find_method(name);
     for (const Method& method : methods()) {
-      const bool asked = contains(options_.bench.methods, std::string(method.name));
-      if (!options_.bench.methods.empty() && !asked) continue;
+      const auto& names = options_.bench.methods;
+      const bool asked = std::find(names.begin(), names.end(), method.name) != names.end();
+      if (!names.empty() && !asked) continue;
       const bool useful = std::any_of(report_.products.begin(), report_.products.end(),
                                       [&](const std::string& p) { return makes(method, p); });
       if (!useful && asked) {
@@ -228,8 +154,9 @@ class Bench {
     BenchReference truth{"truth", {}}, trace{"trace, converged", {}};
     for (const std::string& product : report_.products) {
       trace.pictures[product] = pictures_->picture_of(product, trace_.products.at(product));
-      if (truths_.contains(product))
-        truth.pictures[product] = pictures_->picture_of(product, truths_.at(product));
+      if (subject_.truths.contains(product))
+        truth.pictures[product] =
+            pictures_->picture_of(product, subject_.truths.at(product).channels);
     }
     if (!truth.pictures.empty()) report_.references.push_back(std::move(truth));
     report_.references.push_back(std::move(trace));
@@ -237,8 +164,8 @@ class Bench {
 
   /// What errors are ranked by, and shown against.
   const Channels& reference_of(const std::string& product) const {
-    const auto truth = truths_.find(product);
-    return truth != truths_.end() ? truth->second : trace_.products.at(product);
+    const auto truth = subject_.truths.find(product);
+    return truth != subject_.truths.end() ? truth->second.channels : trace_.products.at(product);
   }
 
   double error_between(const std::string& product, const Channels& a, const Channels& b) const {
@@ -251,8 +178,9 @@ class Bench {
     for (const auto& [product, channels] : products) {
       ErrorSplit& split = errors[product];
       split.approximation = error_between(product, channels, trace_.products.at(product));
-      const auto truth = truths_.find(product);
-      if (truth != truths_.end()) split.model = error_between(product, channels, truth->second);
+      const auto truth = subject_.truths.find(product);
+      if (truth != subject_.truths.end())
+        split.model = error_between(product, channels, truth->second.channels);
     }
     return errors;
   }
@@ -323,29 +251,6 @@ class Bench {
     report_.stages.write = frame_.times.write;
   }
 
-  void recommend() {
-    if (options_.bench.wants.empty()) return;
-    // The largest of all errors, each in parts of what is wanted.
-    std::vector<CostAndError> rows;
-    for (const BenchRow& row : report_.rows) {
-      double worst = 0;
-      for (const WantedError& want : options_.bench.wants) {
-        const auto errors =
-            row.errors.find(want.product.empty() ? report_.products[0] : want.product);
-        const double error = errors == row.errors.end() ? INFINITY : errors->second.total();
-        worst = std::max(worst, error / want.error);
-      }
-      rows.push_back({report_.cpu_ms_per_megapixel(row), worst});
-    }
-    for (const WantedError& want : options_.bench.wants) {
-      report_.wanted +=
-          fmt::format("{}{} {:g}", report_.wanted.empty() ? "" : ", ",
-                      want.product.empty() ? report_.products[0] : want.product, want.error);
-    }
-    report_.recommended = cheapest_within(rows, 1);
-    if (!report_.recommended) report_.best = least_error(rows);
-  }
-
   /// Those on a front, the methods' own defaults and what is recommended.
   void keep_pictures_of_note() {
     std::vector<bool> keep(report_.rows.size());
@@ -362,10 +267,9 @@ class Bench {
   const Options& options_;
   int threads_;
   ThreadLimit limit_;
-  Light light_;
+  Subject subject_;
+  Frame& frame_;
   Progress progress_;
-  Frame frame_;
-  ProductChannels truths_;
   std::vector<const Method*> methods_;
   int rays_ = 0;
   Converged trace_;  ///< the reference of all

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The page of report.html with its style, its script, Chart.js and the data in it. Pictures are
-// PNG in data URIs.
+// page/page.html with its style, its scripts, Chart.js and the data in it. Pictures are PNG in data
+// URIs.
 #include <OpenImageIO/strutil.h>
 
 #include <string_view>
@@ -17,8 +17,14 @@ constexpr std::string_view kPage =
 constexpr std::string_view kStyle =
 #include "bench_style.inc"
     ;
-constexpr std::string_view kScript =
-#include "bench_script.inc"
+constexpr std::string_view kSpeed =
+#include "bench_speed.inc"
+    ;
+constexpr std::string_view kMaps =
+#include "bench_maps.inc"
+    ;
+constexpr std::string_view kFigures =
+#include "bench_figures.inc"
     ;
 constexpr std::string_view kChart =
 #include "bench_chart.inc"
@@ -79,7 +85,12 @@ std::string to_html(const BenchReport& report) {
   data["pictures"] = pictures_json(report);
   data["error_scale"] = report.error_scale;
   const std::string text = escaped(data.dump());
-  return filled(kPage, {{"style", kStyle}, {"script", kScript}, {"chart", kChart}, {"data", text}});
+  return filled(kPage, {{"style", kStyle},
+                        {"chart", kChart},
+                        {"data", text},
+                        {"speed", kSpeed},
+                        {"maps", kMaps},
+                        {"figures", kFigures}});
 }
 
 }  // namespace ssdo

@@ -172,7 +172,7 @@ TEST_F(Bench, RefusesWhatItCannotMeasure) {
   fails({"-o", path("x.exr")}, 2, "bench takes no --output");
   fails({"--slices", "3"}, 2, "bench takes no --slices");
   fails({"--methods", "nothing"}, 2, "no such method");
-  fails({"--products", "bent"}, 2, "product 'bent': bench measures ao, direct and bounce");
+  fails({"--products", "bent"}, 2, "product 'bent': bench measures ao, direct, bounce");
   fails({"--want", "none"}, 2, "--want none");
   fails({"--want", "ao=-1"}, 2, "--want ao=-1");
   fails({"--want", "sheen=1"}, 2, "sheen is not measured; there is ao, direct, bounce");
