@@ -114,6 +114,7 @@ TEST_F(Bench, NoiseGoesDownAndTraceIsTheYardstick) {
                 1e-6 * double(row["cpu_ms_per_megapixel"]));
   }
   EXPECT_GT(report["stages_ms"]["write"], 0);
+  EXPECT_EQ(report["surface_pixels"], 32 * (24 - BenchFrame::kSky));
 }
 
 TEST_F(Bench, CsvAndTableSayWhatJsonSays) {

@@ -11,13 +11,22 @@ namespace ssdo::test {
 
 /// A small frame in a folder of its own, and a made-up truth of each product.
 struct BenchFrame {
+  static constexpr int kSky = 6;  ///< rows of background
+
   TempDir folder;
   std::string frame, truth;
 
   /// The name of the frame is one that a shell has to be careful with.
   BenchFrame() : frame(folder / "it's a frame.exr"), truth(folder / "truth.exr") {
     const Window window{0, 0, 32, 24};
-    write_frame(frame, frame_of(small_picture(window, window)));
+    FramePart layers = frame_of(small_picture(window, window));
+    for (int i = 0; i < 32 * kSky; ++i) {
+      for (const char* name :
+           {"Position.X", "Position.Y", "Position.Z", "Normal.X", "Normal.Y", "Normal.Z"})
+        layers.channels[std::string("ViewLayer.") + name][std::size_t(i)] = 0;
+      layers.channels["ViewLayer.Depth.Z"][std::size_t(i)] = 1e10f;
+    }
+    write_frame(frame, layers);
     FramePart part{"", window, window, {}, Imf::FLOAT, {}};
     Plane<float> ao(32, 24);
     Plane<glm::vec3> direct(32, 24), bounce(32, 24);
