@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -244,7 +245,8 @@ class Bench {
   void measure_writing(const Plan& plan, const Products& products) {
     Relit relit;
     frame_.plan = plan;
-    const Target target{fs::temp_directory_path() / "ssdo_bench.exr", std::nullopt};
+    const Target target{fs::temp_directory_path() / fmt::format("ssdo_bench_{}.exr", getpid()),
+                        std::nullopt};
     frame_.times.write = 0;
     write_targets(
         options_, frame_, {target}, {.overwrite = true}, products, nullptr, [](double) {}, relit);

@@ -84,11 +84,11 @@ Ladder plain_ladder_of(std::string_view method, int reference) {
             2};
   }
   if (method == "trace") return {each({4, 16, 64}, rays), rays(reference), 2};
-  if (method == "ssdo") return {each({8, 16, 32, 64, 128}, points), points(512), 2};
+  if (method == "ssdo") return {each({8, 16, 32, 64, 128}, points), points(512), 4};
   if (method == "ssao" || method == "ssao-range")
-    return {each({16, 32, 64, 128}, points), points(512), 2};
-  if (method == "ssao-fade") return {each({1, 2, 0}, resolution), resolution(0), 16};
-  if (method == "hbao") return {each({2, 3, 6, 12, 24}, taps), taps(32), 8};
+    return {each({16, 32, 64, 128}, points), points(512), 8};
+  if (method == "ssao-fade") return {each({1, 2, 0}, resolution), resolution(0), 128};
+  if (method == "hbao") return {each({2, 3, 6, 12, 24}, taps), taps(32), 64};
   if (method == "gtao") {
     return {{horizons(1, 2), horizons(2, 2), horizons(3, 4), horizons(6, 8)}, horizons(32, 32), 1};
   }
@@ -153,7 +153,7 @@ Setting standard_setting(const Method& method) {
 }
 
 int reference_rays(std::size_t surface_pixels) {
-  constexpr double kAllRays = 5e7;
+  constexpr double kAllRays = 3e7;
   int count = 512;
   while (count > 64 && count * double(surface_pixels) > kAllRays) count /= 2;
   return count;
