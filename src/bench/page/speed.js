@@ -168,7 +168,12 @@ function advise(wanted) {
   const good = front().find(row => errorOf(row) <= wanted);
   const row = good || front().at(-1);
   by("answer").replaceChildren();
-  by("command").textContent = row ? row.command : "";
+  by("command").replaceChildren();
+  // Lines break between words, and not after the dashes of an option.
+  for (const word of row ? row.command.split(" ") : []) {
+    if (by("command").firstChild) by("command").append(" ");
+    element("span", word, by("command"));
+  }
   if (!row) return;
   if (!good) by("answer").append("None has that. The best is ");
   element("b", nameOf(row), by("answer"));
