@@ -52,7 +52,7 @@ class Bench {
 
   BenchOutcome run() {
     Stopwatch watch;
-    read_inputs();
+    describe_subject();
     choose_methods();
     describe_machine();
     measure_reference();
@@ -67,7 +67,7 @@ class Bench {
   }
 
  private:
-  void read_inputs() {
+  void describe_subject() {
     report_.products = subject_.products;
     report_.surface_pixels = subject_.surface_pixels;
     for (const auto& [product, truth] : subject_.truths)
@@ -173,7 +173,7 @@ class Bench {
     return error_of(product, compare_surfaces(frame_, a, b).figures);
   }
 
-  /// Without the noise, which rows and limits have from different sources.
+  /// All but the noise, which is another figure for a row than for a limit.
   Errors errors_of(const ProductChannels& products) const {
     Errors errors;
     for (const auto& [product, channels] : products) {
@@ -186,8 +186,8 @@ class Bench {
     return errors;
   }
 
-  /// The standard error of the mean of both halves is half of the spread between them, for which
-  /// the error of one half stands that is as large as half the difference.
+  /// The noise of a limit is the standard error of the mean of its two halves: the size of half
+  /// their difference.
   void add_limit(const Ladder& ladder, const Converged& limit) {
     BenchLimit out{ladder.limit, ladder.seeds, errors_of(limit.products)};
     for (const auto& [product, half] : limit.half_difference) {

@@ -16,8 +16,8 @@ struct BenchFrame {
   TempDir folder;
   std::string frame, truth;
 
-  /// The name of the frame is one that a shell has to be careful with.
-  BenchFrame() : frame(folder / "it's a frame.exr"), truth(folder / "truth.exr") {
+  /// The name of the frame is one that a shell and a page have to be careful with.
+  BenchFrame() : frame(folder / "it's <!--<script>.exr"), truth(folder / "truth.exr") {
     const Window window{0, 0, 32, 24};
     FramePart layers = frame_of(small_picture(window, window));
     for (int i = 0; i < 32 * kSky; ++i) {
