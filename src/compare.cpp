@@ -70,12 +70,10 @@ Mask read_mask(const std::string& text) {
   return {picture.window(layer), picture.read(layer)};
 }
 
-/// A pair with its figures, and A - B over the window of A: 0 where a pixel does not count.
+/// A pair with its figures.
 struct Compared {
   Pair pair;
-  Difference figures;
-  std::size_t pixels = 0;
-  std::vector<Plane<float>> difference;
+  ChannelsDifference difference;
 };
 
 Compared compare_pair(const LayeredPicture& a, const LayeredPicture& b, const Pair& pair,
@@ -89,38 +87,14 @@ Compared compare_pair(const LayeredPicture& a, const LayeredPicture& b, const Pa
                     a.file(), shown_name(pair.a), in_a, b.file(), shown_name(pair.b), in_b,
                     pair.a.channels[0]));
   }
-  const Window wa = a.window(pair.a), wb = b.window(pair.b);
-  const auto planes_a = a.read(pair.a), planes_b = b.read(pair.b);
-  const std::size_t channels = std::max(in_a, in_b);
-  Compared out{pair, {}, 0, {}};
-  out.difference.assign(channels, Plane<float>(wa.width(), wa.height()));
-  std::vector<float> values_a, values_b;
-  for (int y = std::max(wa.y0, wb.y0); y < std::min(wa.y1, wb.y1); ++y) {
-    for (int x = std::max(wa.x0, wb.x0); x < std::min(wa.x1, wb.x1); ++x) {
-      const auto at_a = [&](std::size_t c) {
-        return planes_a[in_a == 1 ? 0 : c](x - wa.x0, y - wa.y0);
-      };
-      const auto at_b = [&](std::size_t c) {
-        return planes_b[in_b == 1 ? 0 : c](x - wb.x0, y - wb.y0);
-      };
-      bool valid = mask.holds(x, y);
-      for (std::size_t c = 0; valid && c < channels; ++c)
-        valid = std::isfinite(at_a(c)) && std::isfinite(at_b(c));
-      if (!valid) continue;
-      ++out.pixels;
-      for (std::size_t c = 0; c < channels; ++c) {
-        values_a.push_back(at_a(c));
-        values_b.push_back(at_b(c));
-        out.difference[c](x - wa.x0, y - wa.y0) = at_a(c) - at_b(c);
-      }
-    }
-  }
-  if (out.pixels == 0) {
+  Compared out{
+      pair, compare_channels({a.window(pair.a), a.read(pair.a)}, {b.window(pair.b), b.read(pair.b)},
+                             [&](int x, int y) { return mask.holds(x, y); })};
+  if (out.difference.pixels == 0) {
     throw Error(ExitCode::failed,
                 fmt::format("{}:{} and {}:{}: no pixel is valid in both", a.file(),
                             shown_name(pair.a), b.file(), shown_name(pair.b)));
   }
-  out.figures = measure_difference(values_a, values_b);
   return out;
 }
 
@@ -136,10 +110,11 @@ void write_difference(const std::string& path, const OutputPolicy& policy, const
                               "{}:LAYER",
                               path, a.file(), a.file()));
     }
+    const auto& planes = c.difference.a_minus_b;
     const auto& names =
-        c.pair.a.channels.size() >= c.difference.size() ? c.pair.a.channels : c.pair.b.channels;
-    for (std::size_t k = 0; k < c.difference.size(); ++k)
-      output.planes.push_back({names[k], Imf::FLOAT, &c.difference[k]});
+        c.pair.a.channels.size() >= planes.size() ? c.pair.a.channels : c.pair.b.channels;
+    for (std::size_t k = 0; k < planes.size(); ++k)
+      output.planes.push_back({names[k], Imf::FLOAT, &planes[k]});
   }
   SafeFile file(path, policy);
   write_exr(file, output);
@@ -153,11 +128,11 @@ nlohmann::json to_json(const CompareOptions& options, const std::vector<Compared
     return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr);
   };
   for (const Compared& c : all) {
-    const Difference& d = c.figures;
+    const Difference& d = c.difference.figures;
     layers.push_back({{"a", shown_name(c.pair.a)},
                       {"b", shown_name(c.pair.b)},
-                      {"pixels", c.pixels},
-                      {"channels", c.difference.size()},
+                      {"pixels", c.difference.pixels},
+                      {"channels", c.difference.a_minus_b.size()},
                       {"rmse", number(d.rmse)},
                       {"relative_rmse", number(d.relative_rmse())},
                       {"bias", number(d.bias)},
@@ -172,12 +147,12 @@ std::string to_table(const std::vector<Compared>& all) {
   std::string text = fmt::format("{:<32} {:>9} {:>11} {:>10} {:>11} {:>11} {:>11} {:>8}\n", "layer",
                                  "pixels", "RMSE", "relative", "bias", "max", "99 %", "PSNR");
   for (const Compared& c : all) {
-    const Difference& d = c.figures;
+    const Difference& d = c.difference.figures;
     const std::string a = shown_name(c.pair.a), b = shown_name(c.pair.b);
     text +=
         fmt::format("{:<32} {:>9} {:>11.6g} {:>10.4g} {:>+11.4g} {:>11.6g} {:>11.6g} {:>8.2f}\n",
-                    a == b ? a : a + " - " + b, c.pixels, d.rmse, d.relative_rmse(), d.bias,
-                    d.largest, d.p99, d.psnr());
+                    a == b ? a : a + " - " + b, c.difference.pixels, d.rmse, d.relative_rmse(),
+                    d.bias, d.largest, d.p99, d.psnr());
   }
   return text;
 }
@@ -211,6 +186,38 @@ Difference measure_difference(const std::vector<float>& a, const std::vector<flo
   return d;
 }
 
+ChannelsDifference compare_channels(const Channels& a, const Channels& b,
+                                    const std::function<bool(int x, int y)>& counts) {
+  const std::size_t in_a = a.planes.size(), in_b = b.planes.size();
+  const std::size_t channels = std::max(in_a, in_b);
+  const Window &wa = a.window, &wb = b.window;
+  ChannelsDifference out;
+  out.a_minus_b.assign(channels, Plane<float>(wa.width(), wa.height()));
+  std::vector<float> values_a, values_b;
+  for (int y = std::max(wa.y0, wb.y0); y < std::min(wa.y1, wb.y1); ++y) {
+    for (int x = std::max(wa.x0, wb.x0); x < std::min(wa.x1, wb.x1); ++x) {
+      const auto at_a = [&](std::size_t c) {
+        return a.planes[in_a == 1 ? 0 : c](x - wa.x0, y - wa.y0);
+      };
+      const auto at_b = [&](std::size_t c) {
+        return b.planes[in_b == 1 ? 0 : c](x - wb.x0, y - wb.y0);
+      };
+      bool valid = counts(x, y);
+      for (std::size_t c = 0; valid && c < channels; ++c)
+        valid = std::isfinite(at_a(c)) && std::isfinite(at_b(c));
+      if (!valid) continue;
+      ++out.pixels;
+      for (std::size_t c = 0; c < channels; ++c) {
+        values_a.push_back(at_a(c));
+        values_b.push_back(at_b(c));
+        out.a_minus_b[c](x - wa.x0, y - wa.y0) = at_a(c) - at_b(c);
+      }
+    }
+  }
+  out.figures = measure_difference(values_a, values_b);
+  return out;
+}
+
 CompareReport compare(const CompareOptions& options) {
   const PictureName name_a = parse_picture_name(options.a), name_b = parse_picture_name(options.b);
   const LayeredPicture a(name_a.file), b(name_b.file);
@@ -237,7 +244,7 @@ CompareReport compare(const CompareOptions& options) {
   CompareReport report;
   report.text = options.json ? to_json(options, all).dump(2) + "\n" : to_table(all);
   for (const Compared& c : all) {
-    if (options.fail_above && !(c.figures.rmse <= *options.fail_above))
+    if (options.fail_above && !(c.difference.figures.rmse <= *options.fail_above))
       report.code = ExitCode::failed;
   }
   return report;

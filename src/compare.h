@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "error.h"
 #include "io/safe_file.h"
+#include "math/plane.h"
 
 namespace ssdo {
 
@@ -33,6 +35,24 @@ struct Difference {
 
 /// Of two lists of finite numbers, as long as each other.
 Difference measure_difference(const std::vector<float>& a, const std::vector<float>& b);
+
+/// Channels over a window.
+struct Channels {
+  Window window;
+  std::vector<Plane<float>> planes;
+};
+
+/// Of two pictures, where both have finite values.
+struct ChannelsDifference {
+  Difference figures;
+  std::size_t pixels = 0;               ///< that count
+  std::vector<Plane<float>> a_minus_b;  ///< over the window of A; 0 where a pixel does not count
+};
+
+/// `counts(x, y)` says which pixels count, in the coordinates of the windows. Channels pair in
+/// order; one channel is compared with each of several, and other numbers must be equal.
+ChannelsDifference compare_channels(const Channels& a, const Channels& b,
+                                    const std::function<bool(int x, int y)>& counts);
 
 /// What `ssdo compare` says, and whether it fails: ExitCode::failed where a layer's RMSE is above
 /// `fail_above`.

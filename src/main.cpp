@@ -10,6 +10,7 @@
 #include <new>
 
 #include "batch.h"
+#include "bench/bench.h"
 #include "compare.h"
 #include "error.h"
 #include "estimators/registry.h"
@@ -32,6 +33,11 @@ ssdo::ExitCode run(int argc, char** argv) {
     const ssdo::CompareReport report = ssdo::compare(parsed.options.compare);
     fmt::print("{}", report.text);
     return report.code;
+  }
+  if (parsed.options.command == ssdo::Command::bench) {
+    const ssdo::BenchOutcome outcome = ssdo::bench(parsed.options);
+    fmt::print("{}", outcome.text);
+    return outcome.code;
   }
   return ssdo::run_batch(parsed.options);
 }

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "bench/bench_cli.h"
 #include "error.h"
 #include "filters/registry.h"
 #include "option_values.h"
@@ -342,6 +343,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
           ->fallthrough();
   info->add_option("INPUT", o.input_file, "as above")->group("");
   info->add_flag("--json", o.say.json, "as JSON");
+  CLI::App* const bench = add_bench(app, o);
   CLI::App* const compare = add_compare(app, o.compare);
   try {
     app.parse(argc, argv);
@@ -362,6 +364,10 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
     return parsed;
   }
   if (info->parsed()) o.command = Command::info;
+  if (bench->parsed()) {
+    o.command = Command::bench;
+    finish_bench(app, o);
+  }
   finish(o, raw, app.count("--depth-kind") > 0);
   return parsed;
 }

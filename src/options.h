@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/bench_options.h"
 #include "color.h"
 #include "compare.h"
 #include "io/exr_reader.h"
@@ -18,7 +19,7 @@
 
 namespace ssdo {
 
-enum class Command { relight, info, compare, list_methods };
+enum class Command { relight, info, compare, bench, list_methods };
 
 /// Which layers are read, and how.
 struct InputOptions {
@@ -102,6 +103,7 @@ struct Options {
   BatchOptions batch;
   SayOptions say;
   CompareOptions compare;
+  BenchOptions bench;
   int threads = 0;  ///< 0: choose
 };
 

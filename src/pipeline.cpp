@@ -91,11 +91,7 @@ Products estimate(Frame& frame, const std::function<void(double)>& told,
     told(std::min((finished + double(done) / double(count)) / passes, 1.0) * 0.8);
     if (done == count) finished += 1;
   };
-  Products products = plan.method->estimate(
-      {frame.geometry, frame.gbuffer.albedo, frame.gbuffer.radiance, frame.environment,
-       plan.products, plan.radius, plan.bounces, plan.seed, plan.parameters, progress, plan.slices,
-       plan.steps, &frame.hidden, frame.light_model ? &*frame.light_model : nullptr,
-       plan.extend_offscreen, &frame.gbuffer.roughness});
+  Products products = run_method(frame, plan, progress);
   frame.times.estimate += watch.lap();
   products =
       apply_filter(*plan.filter, std::move(products), frame.geometry, plan.method->pattern_size);
@@ -175,6 +171,37 @@ void check_targets(const std::vector<Target>& targets, const std::vector<std::st
   }
 }
 
+Products run_method(const Frame& frame, const Plan& plan, const TileProgress& progress) {
+  return plan.method->estimate({frame.geometry, frame.gbuffer.albedo, frame.gbuffer.radiance,
+                                frame.environment, plan.products, plan.radius, plan.bounces,
+                                plan.seed, plan.parameters, progress, plan.slices, plan.steps,
+                                &frame.hidden, frame.light_model ? &*frame.light_model : nullptr,
+                                plan.extend_offscreen, &frame.gbuffer.roughness});
+}
+
+std::vector<std::unique_ptr<SafeFile>> write_targets(
+    const Options& options, Frame& frame, const std::vector<Target>& targets,
+    const OutputPolicy& policy, const Products& products, const DisplayTransform* display,
+    const std::function<void(double)>& told, Relit& relit) {
+  Stopwatch watch;
+  std::vector<std::unique_ptr<SafeFile>> files;
+  for (const Target& target : targets) {
+    files.push_back(std::make_unique<SafeFile>(target.path, policy));
+    if (is_exr(target.path)) {
+      write_exr_target(*files.back(), target, options, frame, products, relit);
+      frame.times.write += watch.lap();
+    } else {
+      const DisplayImage image =
+          make_display_image(product_of_picture(target, frame.plan), frame, products, display);
+      frame.times.compose += watch.lap();
+      write_image(*files.back(), image.spec(options.output.bits), image.values);
+      frame.times.write += watch.lap();
+    }
+    told(double(files.size()) / double(targets.size()));
+  }
+  return files;
+}
+
 Relit relight(const Options& options, Frame& frame, const std::vector<Target>& targets,
               const OutputPolicy& policy, const std::function<void(double)>& told,
               const std::optional<History>& before) {
@@ -190,24 +217,11 @@ Relit relight(const Options& options, Frame& frame, const std::vector<Target>& t
   }
 
   const Products products = make_products(frame, relit, told, before);
-  Stopwatch watch;
   told(0.85);
-
-  std::vector<std::unique_ptr<SafeFile>> files;
-  for (const Target& target : targets) {
-    files.push_back(std::make_unique<SafeFile>(target.path, policy));
-    if (is_exr(target.path)) {
-      write_exr_target(*files.back(), target, options, frame, products, relit);
-      frame.times.write += watch.lap();
-    } else {
-      const DisplayImage image = make_display_image(product_of_picture(target, plan), frame,
-                                                    products, display ? &*display : nullptr);
-      frame.times.compose += watch.lap();
-      write_image(*files.back(), image.spec(options.output.bits), image.values);
-      frame.times.write += watch.lap();
-    }
-    told(0.85 + 0.15 * double(files.size()) / double(targets.size()));
-  }
+  const auto files = write_targets(
+      options, frame, targets, policy, products, display ? &*display : nullptr,
+      [&](double done) { told(0.85 + 0.15 * done); }, relit);
+  Stopwatch watch;
   for (const auto& file : files) file->commit();
   frame.times.write += watch.lap();
   return relit;

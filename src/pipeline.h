@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -9,6 +11,7 @@
 #include "estimators/estimator.h"
 #include "filters/temporal.h"
 #include "frame.h"
+#include "io/safe_file.h"
 #include "options.h"
 
 namespace ssdo {
@@ -32,6 +35,9 @@ std::vector<std::string> inputs_of(const Options& options, const std::string& fr
 void check_targets(const std::vector<Target>& targets, const std::vector<std::string>& inputs,
                    const OutputPolicy& policy);
 
+/// What the method of `plan` makes of a frame, before any filter.
+Products run_method(const Frame& frame, const Plan& plan, const TileProgress& progress);
+
 /// The main job on a frame that has been prepared: estimate, filter, compose, colour, write.
 /// All targets appear, or none. `told` hears how far it is, 0..1. `before` is what a temporal plan
 /// takes from the frame before, if there is one.
@@ -43,5 +49,12 @@ struct Relit {
 Relit relight(const Options& options, Frame& frame, const std::vector<Target>& targets,
               const OutputPolicy& policy, const std::function<void(double)>& told,
               const std::optional<History>& before);
+
+/// Writes what the targets show of `products` to temporaries, for the caller to commit. `display`
+/// may be null where no target is a picture of a colour. Adds to the times of the frame.
+std::vector<std::unique_ptr<SafeFile>> write_targets(
+    const Options& options, Frame& frame, const std::vector<Target>& targets,
+    const OutputPolicy& policy, const Products& products, const DisplayTransform* display,
+    const std::function<void(double)>& told, Relit& relit);
 
 }  // namespace ssdo

@@ -20,7 +20,7 @@ install_packages() {
 
 build_packages=(g++ cmake ninja-build pkg-config libopenexr-dev libopenimageio-dev openimageio-tools
   libopencolorio-dev libeigen3-dev libglm-dev libtbb-dev libembree-dev libhwy-dev libcli11-dev libfmt-dev nlohmann-json3-dev)
-test_packages=(libgtest-dev libgmock-dev groff)
+test_packages=(libgtest-dev libgmock-dev groff chromium)
 
 # build FOLDER [cmake options]: configures and builds into FOLDER.
 build() {

@@ -148,12 +148,17 @@ Plane<glm::vec3> read_image(const fs::path& path) {
   return plane;
 }
 
-void write_image(const SafeFile& file, const ImageSpec& spec, std::span<const float> values) {
-  const OIIO::ImageSpec stored = stored_spec(spec, file.target());
+std::vector<unsigned char> encode_image(const fs::path& name, const ImageSpec& spec,
+                                        std::span<const float> values) {
+  const OIIO::ImageSpec stored = stored_spec(spec, name);
   const auto pixels = stored.format == OIIO::TypeDesc::UINT16
                           ? quantize<std::uint16_t>(spec, stored.nchannels, values)
                           : quantize<std::uint8_t>(spec, stored.nchannels, values);
-  const std::vector<unsigned char> bytes = encode(stored, file.target(), pixels);
+  return encode(stored, name, pixels);
+}
+
+void write_image(const SafeFile& file, const ImageSpec& spec, std::span<const float> values) {
+  const std::vector<unsigned char> bytes = encode_image(file.target(), spec, values);
   CheckedFile checked(file);
   checked.write(bytes.data(), bytes.size());
   checked.close();

@@ -28,10 +28,15 @@ struct ImageSpec {
 /// .tiff, in any case.
 bool is_display_image(const std::filesystem::path& path);
 
-/// Writes interleaved values in 0..1 (others are clamped, NaN becomes 0) to the temporary of
-/// `file`; the caller commits it. The kind follows the ending of the target. JPEG drops alpha. The
-/// same values give the same bytes on every run.
-/// Errors: ExitCode::output, also when the disk is full.
+/// The bytes of an image file of the kind that the ending of `name` says, from interleaved values
+/// in 0..1 (others are clamped, NaN becomes 0).
+/// Errors: ExitCode::output, naming `name`.
+std::vector<unsigned char> encode_image(const std::filesystem::path& name, const ImageSpec& spec,
+                                        std::span<const float> values);
+
+/// Writes interleaved values in 0..1, as encode_image() does, to the temporary of `file`; the
+/// caller commits it. The kind follows the ending of the target. JPEG drops alpha. The same values
+/// give the same bytes on every run. Errors: ExitCode::output, also when the disk is full.
 void write_image(const SafeFile& file, const ImageSpec& spec, std::span<const float> values);
 
 }  // namespace ssdo

@@ -41,6 +41,7 @@ Flags flags_of_binary() {
   Flags flags = flags_of_help({"--help"});
   flags.merge(flags_of_help({"info", "--help"}));
   flags.merge(flags_of_help({"compare", "--help"}));
+  flags.merge(flags_of_help({"bench", "--help"}));
   return flags;
 }
 

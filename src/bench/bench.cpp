@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/bench.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "bench/command.h"
+#include "bench/machine.h"
+#include "bench/pictures.h"
+#include "bench/recommend.h"
+#include "bench/report.h"
+#include "bench/report_files.h"
+#include "bench/subject.h"
+#include "estimators/registry.h"
+#include "pipeline.h"
+#include "progress.h"
+#include "stopwatch.h"
+
+namespace ssdo {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How much slower a ray is than a sample of the other methods; for the progress bar only.
+constexpr double kRayCost = 30;
+
+/// What the ends of a map of errors of ao stand for. Maps of light end at the mean of the light.
+constexpr double kAoScale = 0.25;
+
+bool makes(const Method& method, const std::string& product) {
+  return product == "ao"       ? method.products.ao
+         : product == "direct" ? method.products.direct
+                               : method.products.bounce;
+}
+
+/// Measures one frame.
+class Bench {
+ public:
+  explicit Bench(const Options& options)
+      : options_(options),
+        threads_(choose_thread_count(options.threads)),
+        limit_(threads_),
+        subject_(read_subject(options)),
+        frame_(subject_.frame),
+        progress_(options.batch.progress, options.say.quiet) {}
+
+  BenchOutcome run() {
+    Stopwatch watch;
+    describe_subject();
+    choose_methods();
+    describe_machine();
+    measure_reference();
+    for (const Method* method : methods_) measure_method(*method);
+    recommend(report_, options_.bench.wants);
+    keep_pictures_of_note();
+    progress_.clear();
+    report_.seconds = watch.lap() * 1e-3;
+    write_reports(report_, options_.bench.reports, options_.output.policy);
+    const bool failed = !options_.bench.wants.empty() && !report_.recommended;
+    return {to_table(report_), failed ? ExitCode::failed : ExitCode::done};
+  }
+
+ private:
+  void describe_subject() {
+    report_.products = subject_.products;
+    report_.surface_pixels = subject_.surface_pixels;
+    for (const auto& [product, truth] : subject_.truths)
+      report_.truths[product] = truth.file + ":" + truth.layer;
+    frame_.plan = plan_of(standard_setting(find_method("bitmask")));
+    if (options_.say.verbose) {
+      fmt::print(stderr, "{}", describe(frame_));
+    } else if (!options_.say.quiet) {
+      for (const std::string& warning : frame_.warnings())
+        fmt::print(stderr, "ssdo: {}: warning: {}\n", options_.input_file, warning);
+    }
+    if (wants_page(options_.bench.reports)) pictures_.emplace(frame_, options_.color);
+  }
+
+  void choose_methods() {
+    for (const std::string& name : options_.bench.methods) find_method(name);
+    for (const Method& method : methods()) {
+      const auto& names = options_.bench.methods;
+      const bool asked = std::find(names.begin(), names.end(), method.name) != names.end();
+      if (!names.empty() && !asked) continue;
+      const bool useful = std::any_of(report_.products.begin(), report_.products.end(),
+                                      [&](const std::string& p) { return makes(method, p); });
+      if (!useful && asked) {
+        throw Error(ExitCode::usage, fmt::format("--methods {}: makes none of {}", method.name,
+                                                 fmt::join(report_.products, ", ")));
+      }
+      if (useful) methods_.push_back(&method);
+    }
+    rays_ = reference_rays(report_.surface_pixels);
+    const Ladder trace = ladder_of(find_method("trace"), rays_);
+    work_ += trace.seeds * work_of(trace.limit);
+    for (const Method* method : methods_) {
+      const Ladder ladder = ladder_of(*method, rays_);
+      if (method->name != "trace") work_ += ladder.seeds * work_of(ladder.limit);
+      for (const Setting& setting : ladder.settings) work_ += work_of(setting);
+    }
+  }
+
+  double work_of(const Setting& setting) const {
+    return plan_of(setting).samples_per_pixel() * (setting.method->name == "trace" ? kRayCost : 1);
+  }
+
+  void describe_machine() {
+    report_.input = options_.input_file;
+    report_.frame = to_json(frame_);
+    report_.pixels = frame_.geometry.surfel.size();
+    report_.stages = frame_.times;
+    report_.processor = processor_name();
+    report_.processors = processor_count();
+    report_.threads = threads_;
+    report_.isa = frame_.plan.isa;
+    report_.filter = frame_.plan.filter->name;
+  }
+
+  Plan plan_of(const Setting& setting) const {
+    OutputOptions output;
+    for (const std::string& product : report_.products) {
+      if (makes(*setting.method, product)) output.products.push_back(product);
+    }
+    return make_plan(setting.applied_to(options_.model), output, frame_.gbuffer, frame_.geometry,
+                     frame_.light_model ? &*frame_.light_model : nullptr, options_.input_file);
+  }
+
+  Converged converge_to(const Setting& setting, int seeds) {
+    const double work = work_of(setting), before = done_;
+    const auto told = [&](int done) { tell(before + done * work, setting); };
+    tell(before, setting);
+    return converge(frame_, plan_of(setting), seeds, told);
+  }
+
+  void tell(double done, const Setting& setting) {
+    done_ = done;
+    progress_.tell(done / work_, setting.name());
+  }
+
+  void measure_reference() {
+    const Ladder ladder = ladder_of(find_method("trace"), rays_);
+    trace_ = converge_to(ladder.limit, ladder.seeds);
+    for (const std::string& product : report_.products) {
+      const Channels& reference = reference_of(product);
+      const double mean = compare_surfaces(frame_, reference, reference).figures.mean_b;
+      report_.error_scale[product] = product == "ao" || !(mean > 0) ? kAoScale : mean;
+    }
+    if (!pictures_) return;
+    BenchReference truth{"truth", {}}, trace{"trace, converged", {}};
+    for (const std::string& product : report_.products) {
+      trace.pictures[product] = pictures_->picture_of(product, trace_.products.at(product));
+      if (subject_.truths.contains(product))
+        truth.pictures[product] =
+            pictures_->picture_of(product, subject_.truths.at(product).channels);
+    }
+    if (!truth.pictures.empty()) report_.references.push_back(std::move(truth));
+    report_.references.push_back(std::move(trace));
+  }
+
+  /// What errors are ranked by, and shown against.
+  const Channels& reference_of(const std::string& product) const {
+    const auto truth = subject_.truths.find(product);
+    return truth != subject_.truths.end() ? truth->second.channels : trace_.products.at(product);
+  }
+
+  double error_between(const std::string& product, const Channels& a, const Channels& b) const {
+    return error_of(product, compare_surfaces(frame_, a, b).figures);
+  }
+
+  /// All but the noise, which is another figure for a row than for a limit.
+  Errors errors_of(const ProductChannels& products) const {
+    Errors errors;
+    for (const auto& [product, channels] : products) {
+      ErrorSplit& split = errors[product];
+      split.approximation = error_between(product, channels, trace_.products.at(product));
+      const auto truth = subject_.truths.find(product);
+      if (truth != subject_.truths.end())
+        split.model = error_between(product, channels, truth->second.channels);
+    }
+    return errors;
+  }
+
+  /// The noise of a limit is the standard error of the mean of its two halves: the size of half
+  /// their difference.
+  void add_limit(const Ladder& ladder, const Converged& limit) {
+    BenchLimit out{ladder.limit, ladder.seeds, errors_of(limit.products)};
+    for (const auto& [product, half] : limit.half_difference) {
+      Channels off = limit.products.at(product);
+      for (std::size_t c = 0; c < off.planes.size(); ++c) {
+        for (std::size_t i = 0; i < off.planes[c].size(); ++i)
+          off.planes[c][i] += half.planes[c][i];
+      }
+      out.errors[product].noise = error_between(product, off, limit.products.at(product));
+    }
+    report_.limits.push_back(std::move(out));
+  }
+
+  void measure_method(const Method& method) {
+    const Ladder ladder = ladder_of(method, rays_);
+    const bool is_trace = method.name == "trace";
+    const Converged own = is_trace ? Converged() : converge_to(ladder.limit, ladder.seeds);
+    const Converged& limit = is_trace ? trace_ : own;
+    add_limit(ladder, limit);
+    for (const Setting& setting : ladder.settings) measure_setting(setting, limit);
+  }
+
+  void measure_setting(const Setting& setting, const Converged& limit) {
+    const Plan plan = plan_of(setting);
+    const double work = work_of(setting), before = done_;
+    const auto told = [&](std::size_t done, std::size_t count) {
+      tell(before + work * double(done) / double(count) / (1.0 + plan.bounces), setting);
+    };
+    const Measured measured = measure(frame_, plan, told);
+    tell(before + work, setting);
+    const ProductChannels products = channels_of(frame_, plan, measured.products);
+    BenchRow row{setting,
+                 plan.samples_per_pixel(),
+                 measured.estimate,
+                 measured.filter,
+                 measured.runs,
+                 errors_of(products),
+                 command_of(options_, setting, plan),
+                 {}};
+    for (const auto& [product, channels] : products) {
+      row.errors[product].noise = error_between(product, channels, limit.products.at(product));
+      if (pictures_) row.pictures[product] = pictures_of(product, channels);
+    }
+    if (report_.rows.empty()) measure_writing(plan, measured.products);
+    report_.rows.push_back(std::move(row));
+  }
+
+  Pictures pictures_of(const std::string& product, const Channels& channels) const {
+    const auto difference = compare_surfaces(frame_, channels, reference_of(product));
+    return {pictures_->picture_of(product, channels),
+            pictures_->map_of(difference, report_.error_scale.at(product))};
+  }
+
+  /// An EXR of the products that never gets its name.
+  void measure_writing(const Plan& plan, const Products& products) {
+    Relit relit;
+    frame_.plan = plan;
+    const Target target{fs::temp_directory_path() / fmt::format("ssdo_bench_{}.exr", getpid()),
+                        std::nullopt};
+    frame_.times.write = 0;
+    write_targets(
+        options_, frame_, {target}, {.overwrite = true}, products, nullptr, [](double) {}, relit);
+    report_.stages.write = frame_.times.write;
+  }
+
+  /// Those on a front, the methods' own defaults and what is recommended.
+  void keep_pictures_of_note() {
+    std::vector<bool> keep(report_.rows.size());
+    for (const std::string& product : report_.products) {
+      for (const std::size_t i : report_.front(product)) keep[i] = true;
+    }
+    if (report_.recommended) keep[*report_.recommended] = true;
+    if (report_.best) keep[*report_.best] = true;
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+      if (!keep[i] && !report_.rows[i].setting.standard) report_.rows[i].pictures.clear();
+    }
+  }
+
+  const Options& options_;
+  int threads_;
+  ThreadLimit limit_;
+  Subject subject_;
+  Frame& frame_;
+  Progress progress_;
+  std::vector<const Method*> methods_;
+  int rays_ = 0;
+  Converged trace_;  ///< the reference of all
+  std::optional<BenchPictures> pictures_;
+  BenchReport report_;
+  double work_ = 0, done_ = 0;  ///< for the progress bar
+};
+
+}  // namespace
+
+BenchOutcome bench(const Options& options) { return Bench(options).run(); }
+
+}  // namespace ssdo

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ssdo {
+
+/// The largest error that is wanted of a product.
+struct WantedError {
+  std::string product;  ///< empty: the first that is measured
+  double error = 0;
+};
+
+/// What `ssdo bench` is asked for beside the options of the main job.
+struct BenchOptions {
+  std::vector<std::string> methods;     ///< empty: all
+  std::vector<std::string> truths;      ///< [PRODUCT=]FILE:LAYER
+  std::vector<std::string> reports;     ///< files that end in .html, .csv or .json
+  std::vector<std::string> want_texts;  ///< --want as it was written
+  std::vector<WantedError> wants;
+
+  /// Arguments of the main job that the command line gave, option by option, for the commands that
+  /// it recommends.
+  std::vector<std::vector<std::string>> carried;
+};
+
+}  // namespace ssdo

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/command.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+namespace ssdo {
+namespace {
+
+/// Whether the setting's method takes an option as it was given.
+bool reaches(const std::vector<std::string>& option, const Setting& setting) {
+  if (setting.method->looks_behind()) return true;
+  return option[0] != "--thickness" && !(option[0] == "--radius" && option.back() == "inf");
+}
+
+}  // namespace
+
+std::string shell_word(const std::string& word) {
+  const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+    return (c < 128 && std::isalnum(c)) ||
+           std::string_view("_./:=,+@%-").find(char(c)) != std::string_view::npos;
+  });
+  if (plain) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+std::string command_of(const Options& options, const Setting& setting, const Plan& plan) {
+  std::vector<std::string> words = {"ssdo", options.input_file};
+  for (const auto& option : options.bench.carried) {
+    if (reaches(option, setting)) words.insert(words.end(), option.begin(), option.end());
+  }
+  const auto own = setting.arguments();
+  words.insert(words.end(), own.begin(), own.end());
+  const std::string stem = std::filesystem::path(options.input_file).stem().string();
+  words.insert(words.end(), {"--products", fmt::format("{}", fmt::join(plan.make, ",")), "-o",
+                             stem + "_relit.exr"});
+  for (std::string& word : words) word = shell_word(word);
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
+}  // namespace ssdo

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/measure.h"
+
+#include <algorithm>
+#include <ctime>
+
+#include "compose.h"
+#include "pipeline.h"
+#include "stopwatch.h"
+
+namespace ssdo {
+namespace {
+
+/// A median needs three runs; more are made while all together stay below this.
+constexpr int kMostRuns = 5;
+constexpr double kRepeatBelowMs = 600;
+
+double process_cpu_ms() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return double(t.tv_sec) * 1e3 + double(t.tv_nsec) * 1e-6;
+}
+
+/// Both clocks, lap by lap.
+class CostWatch {
+ public:
+  Cost lap() {
+    const double cpu = process_cpu_ms();
+    const Cost cost{cpu - cpu_, wall_.lap()};
+    cpu_ = cpu;
+    return cost;
+  }
+
+ private:
+  Stopwatch wall_;
+  double cpu_ = process_cpu_ms();
+};
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return (values[(n - 1) / 2] + values[n / 2]) / 2;
+}
+
+Cost median_of(const std::vector<Cost>& costs) {
+  std::vector<double> cpu, wall;
+  for (const Cost& c : costs) {
+    cpu.push_back(c.cpu_ms);
+    wall.push_back(c.wall_ms);
+  }
+  return {median(cpu), median(wall)};
+}
+
+/// a = keep a + take b.
+void blend(ProductChannels& a, const ProductChannels& b, float keep, float take) {
+  for (auto& [name, channels] : a) {
+    for (std::size_t c = 0; c < channels.planes.size(); ++c) {
+      Plane<float>& to = channels.planes[c];
+      const Plane<float>& from = b.at(name).planes[c];
+      for (std::size_t i = 0; i < to.size(); ++i) to[i] = keep * to[i] + take * from[i];
+    }
+  }
+}
+
+}  // namespace
+
+ProductChannels channels_of(const Frame& frame, const Plan& plan, const Products& products) {
+  ProductChannels all;
+  for (const std::string& name : plan.make) {
+    Channels& channels = all[name];
+    channels.window = frame.geometry.window;
+    for (NamedPlane& plane : product_channels(name, frame.gbuffer, frame.geometry, products))
+      channels.planes.push_back(std::move(plane.pixels));
+  }
+  return all;
+}
+
+Measured measure(const Frame& frame, const Plan& plan, const TileProgress& progress) {
+  Measured out;
+  std::vector<Cost> estimates, filters;
+  double spent = 0;
+  do {
+    CostWatch watch;
+    out.products = run_method(frame, plan, out.runs == 0 ? progress : TileProgress());
+    estimates.push_back(watch.lap());
+    out.products = apply_filter(*plan.filter, std::move(out.products), frame.geometry,
+                                plan.method->pattern_size);
+    filters.push_back(watch.lap());
+    spent += estimates.back().wall_ms + filters.back().wall_ms;
+    ++out.runs;
+  } while (out.runs < kMostRuns && spent + spent / out.runs < kRepeatBelowMs);
+  out.estimate = median_of(estimates);
+  out.filter = median_of(filters);
+  return out;
+}
+
+Converged converge(const Frame& frame, Plan plan, int seeds, const std::function<void(int)>& told) {
+  Converged out;
+  ProductChannels& mean = out.products;
+  ProductChannels second;
+  const int half = seeds / 2;
+  for (int i = 0; i < seeds; ++i) {
+    ++plan.seed;
+    ProductChannels one = channels_of(frame, plan, run_method(frame, plan, {}));
+    ProductChannels& sum = i < half || seeds == 1 ? mean : second;
+    if (sum.empty()) {
+      sum = std::move(one);
+    } else {
+      const float n = float(i % half);
+      blend(sum, one, n / (n + 1), 1 / (n + 1));
+    }
+    told(i + 1);
+  }
+  if (seeds == 1) return out;
+  out.half_difference = mean;
+  blend(out.half_difference, second, 0.5f, -0.5f);
+  blend(mean, second, 0.5f, 0.5f);
+  return out;
+}
+
+ChannelsDifference compare_surfaces(const Frame& frame, const Channels& a, const Channels& b) {
+  const Geometry& g = frame.geometry;
+  return compare_channels(a, b, [&](int x, int y) {
+    return g.window.contains(x, y) &&
+           g.is_surface(g.surfel.index(x - g.window.x0, y - g.window.y0));
+  });
+}
+
+double error_of(const std::string& product, const Difference& difference) {
+  return product == "ao" ? difference.rmse : difference.relative_rmse();
+}
+
+}  // namespace ssdo

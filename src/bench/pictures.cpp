@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "display_image.h"
+#include "io/image_file.h"
+#include "math/luminance.h"
+
+namespace ssdo {
+namespace {
+
+/// Pixels of the wider side of a picture in a page.
+constexpr int kMostPixels = 720;
+
+/// Levels of a map of errors. Noise does not compress: fewer levels are half of the page.
+constexpr float kLevels = 64;
+
+DisplayImage thinned(const DisplayImage& image) {
+  const int step = (std::max(image.width, image.height) + kMostPixels - 1) / kMostPixels;
+  DisplayImage out{(image.width + step - 1) / step,
+                   (image.height + step - 1) / step,
+                   image.channels,
+                   image.pixel_aspect,
+                   {}};
+  for (int y = 0; y < image.height; y += step) {
+    for (int x = 0; x < image.width; x += step) {
+      const auto from =
+          image.values.begin() + std::ptrdiff_t(y * std::size_t(image.width) + x) * image.channels;
+      out.values.insert(out.values.end(), from, from + image.channels);
+    }
+  }
+  return out;
+}
+
+/// The channels over the window of a frame, one of them standing for three; outside of their own
+/// window 0.
+Plane<glm::vec3> colors_over(const Window& window, const Channels& from) {
+  Plane<glm::vec3> out(window.width(), window.height(), glm::vec3(0));
+  for (int y = window.y0; y < window.y1; ++y) {
+    for (int x = window.x0; x < window.x1; ++x) {
+      if (!from.window.contains(x, y)) continue;
+      for (int c = 0; c < 3; ++c) {
+        const auto& plane = from.planes[from.planes.size() == 3 ? std::size_t(c) : 0];
+        out(x - window.x0, y - window.y0)[c] = plane(x - from.window.x0, y - from.window.y0);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+BenchPictures::BenchPictures(const Frame& frame, const ColorOptions& color)
+    : frame_(frame), display_(color, color_tags(frame)) {}
+
+std::string BenchPictures::picture_of(const std::string& product, const Channels& channels) const {
+  const Geometry& g = frame_.geometry;
+  Products products;
+  Plane<glm::vec3> colors = colors_over(g.window, channels);
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    if (!g.is_surface(i)) colors[i] = glm::vec3(product == "ao" ? 1 : 0);
+  }
+  if (product == "ao") {
+    products.ao = Plane<float>(g.window.width(), g.window.height());
+    for (std::size_t i = 0; i < colors.size(); ++i) products.ao[i] = luminance(colors[i]);
+  } else {
+    (product == "direct" ? products.direct : products.bounce) = std::move(colors);
+  }
+  return encode(product, products);
+}
+
+std::string BenchPictures::map_of(const ChannelsDifference& difference, double scale) const {
+  const Window& window = frame_.geometry.window;
+  const Plane<glm::vec3> colors = colors_over(window, {window, difference.a_minus_b});
+  Products products;
+  products.ao = Plane<float>(window.width(), window.height());
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const float share = std::clamp(luminance(colors[i]) / float(scale), -1.0f, 1.0f);
+    products.ao[i] = 0.5f + 0.5f * std::round(share * (kLevels / 2)) / (kLevels / 2);
+  }
+  return encode("ao", products);
+}
+
+std::string BenchPictures::encode(const std::string& product, const Products& products) const {
+  const DisplayImage image = thinned(make_display_image(product, frame_, products, &display_));
+  const auto bytes = encode_image("picture.png", image.spec(8), image.values);
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace ssdo

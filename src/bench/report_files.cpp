@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/report_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "error.h"
+#include "io/checked_file.h"
+
+namespace ssdo {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string ending(const std::string& path) {
+  std::string text = fs::path(path).extension().string();
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return text;
+}
+
+std::string text_of(const BenchReport& report, const std::string& kind) {
+  if (kind == ".csv") return to_csv(report);
+  return kind == ".json" ? to_json(report).dump(2) + "\n" : to_html(report);
+}
+
+}  // namespace
+
+bool wants_page(const std::vector<std::string>& paths) {
+  return std::any_of(paths.begin(), paths.end(),
+                     [](const std::string& path) { return ending(path) == ".html"; });
+}
+
+void check_report_files(const std::vector<std::string>& paths,
+                        const std::vector<std::string>& inputs, const OutputPolicy& policy) {
+  std::vector<fs::path> seen;
+  for (const std::string& path : paths) {
+    const std::string kind = ending(path);
+    if (kind != ".html" && kind != ".csv" && kind != ".json") {
+      throw Error(ExitCode::usage,
+                  fmt::format("--report {}: unknown kind; use .html, .csv or .json", path));
+    }
+    const fs::path full = fs::weakly_canonical(path);
+    if (std::find(seen.begin(), seen.end(), full) != seen.end())
+      throw Error(ExitCode::usage, fmt::format("--report {}: named twice", path));
+    seen.push_back(full);
+    for (const std::string& input : inputs) {
+      std::error_code ignored;
+      if (fs::equivalent(path, input, ignored)) {
+        throw Error(ExitCode::output,
+                    fmt::format("--report {}: is an input; write to another file", path));
+      }
+    }
+    check_output(path, policy);
+  }
+}
+
+void write_reports(const BenchReport& report, const std::vector<std::string>& paths,
+                   const OutputPolicy& policy) {
+  std::vector<std::unique_ptr<SafeFile>> files;
+  for (const std::string& path : paths) {
+    const std::string text = text_of(report, ending(path));
+    files.push_back(std::make_unique<SafeFile>(path, policy));
+    CheckedFile checked(*files.back());
+    checked.write(text.data(), text.size());
+    checked.close();
+  }
+  for (const auto& file : files) file->commit();
+}
+
+}  // namespace ssdo

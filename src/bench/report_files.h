@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/report.h"
+#include "io/safe_file.h"
+
+namespace ssdo {
+
+/// Whether one of the reports is a page, which needs pictures.
+bool wants_page(const std::vector<std::string>& paths);
+
+/// Refuses what cannot be written before any work is done. Errors: ExitCode::usage for an ending
+/// other than .html, .csv and .json, or a file that is named twice; ExitCode::output for an input
+/// and what check_output refuses.
+void check_report_files(const std::vector<std::string>& paths,
+                        const std::vector<std::string>& inputs, const OutputPolicy& policy);
+
+/// Writes the report in the form that each ending asks for: all files appear, or none.
+/// Errors: ExitCode::output.
+void write_reports(const BenchReport& report, const std::vector<std::string>& paths,
+                   const OutputPolicy& policy);
+
+}  // namespace ssdo

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/subject.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "bench/report_files.h"
+#include "error.h"
+#include "pipeline.h"
+#include "sequence.h"
+
+namespace ssdo {
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::map<std::string, Truth> read_truths(const std::vector<std::string>& texts) {
+  std::map<std::string, Truth> truths;
+  for (const std::string& text : texts) {
+    Truth truth = read_truth(parse_truth(text));
+    const std::string product = truth.product;
+    if (!truths.emplace(product, std::move(truth)).second) {
+      throw Error(ExitCode::usage,
+                  fmt::format("--truth {}: there is another truth of {} already", text, product));
+    }
+  }
+  return truths;
+}
+
+/// Those that are asked for or have a truth; else all that tell something about the frame.
+std::vector<std::string> choose_products(const Options& options, const Subject& subject) {
+  const std::vector<std::string>& asked = options.output.products;
+  for (const std::string& name : asked) {
+    if (!contains(kBenchProducts, name)) {
+      throw Error(ExitCode::usage, fmt::format("product '{}': bench measures {}", name,
+                                               fmt::join(kBenchProducts, ", ")));
+    }
+  }
+  std::vector<std::string> products;
+  for (const std::string& name : kBenchProducts) {
+    // In light that is the same from everywhere, direct is ao times a colour.
+    const bool telling = name == "direct" ? !subject.frame.environment.is_constant()
+                                          : contains(subject.frame.plan.make, name);
+    if (contains(asked, name) || subject.truths.contains(name) || (asked.empty() && telling))
+      products.push_back(name);
+  }
+  for (const WantedError& want : options.bench.wants) {
+    if (!want.product.empty() && !contains(products, want.product)) {
+      throw Error(ExitCode::usage,
+                  fmt::format("--want {}={:g}: {} is not measured; there is {}", want.product,
+                              want.error, want.product, fmt::join(products, ", ")));
+    }
+  }
+  return products;
+}
+
+std::size_t count_surfaces(const Frame& frame) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < frame.geometry.surfel.size(); ++i)
+    count += frame.geometry.is_surface(i);
+  if (count > 0) return count;
+  throw Error(ExitCode::failed,
+              fmt::format("{}: shows no surface: there is nothing to measure", frame.input));
+}
+
+/// A truth of another size would silently be held to a corner of the frame.
+void check_truth(const Truth& truth, const Subject& subject) {
+  const Window &own = subject.frame.geometry.display, &other = truth.display;
+  if (!(own == other)) {
+    throw Error(ExitCode::layer,
+                fmt::format("--truth {}:{}: is {} x {}, and the frame is {} x {}; it has to show "
+                            "the same frame",
+                            truth.file, truth.layer, other.width(), other.height(), own.width(),
+                            own.height()));
+  }
+  const std::size_t valid = compare_surfaces(subject.frame, truth.channels, truth.channels).pixels;
+  if (valid == subject.surface_pixels) return;
+  throw Error(ExitCode::layer,
+              fmt::format("--truth {}:{}: has values at {} of the frame's {} pixels of surfaces",
+                          truth.file, truth.layer, valid, subject.surface_pixels));
+}
+
+}  // namespace
+
+Subject read_subject(const Options& options) {
+  if (is_pattern(options.input_file)) {
+    throw Error(ExitCode::usage,
+                fmt::format("{}: is a sequence, and bench measures one frame; name the file of one",
+                            options.input_file));
+  }
+  Subject subject;
+  subject.truths = read_truths(options.bench.truths);
+  std::vector<std::string> inputs = inputs_of(options, options.input_file, options.input.aovs);
+  for (const auto& [product, truth] : subject.truths) inputs.push_back(truth.file);
+  check_report_files(options.bench.reports, inputs, options.output.policy);
+
+  Options prepared = options;
+  prepared.model.method = "bitmask";  // which needs all that any method needs
+  prepared.output.products.clear();
+  const Light light(options.light);
+  subject.frame = prepare_frame(prepared, light, options.input_file, options.input.aovs);
+  subject.products = choose_products(options, subject);
+  subject.surface_pixels = count_surfaces(subject.frame);
+  for (const auto& [product, truth] : subject.truths) check_truth(truth, subject);
+  return subject;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bench/truth.h"
+#include "frame.h"
+#include "options.h"
+
+namespace ssdo {
+
+/// What a bench measures on: a frame, what is known of it, and the products whose error counts.
+struct Subject {
+  Frame frame;                          ///< prepared with all that any method needs
+  std::map<std::string, Truth> truths;  ///< by product
+  std::vector<std::string> products;    ///< in the order of kBenchProducts
+  std::size_t surface_pixels = 0;
+};
+
+/// Reads the frame and its truths, and refuses what cannot be measured or reported before any time
+/// is spent.
+/// Errors: those of prepare_frame, read_truth and check_report_files; ExitCode::usage for a
+/// sequence and for products that are not measured; layer for a truth that does not show the frame;
+/// failed for a frame without a surface.
+Subject read_subject(const Options& options);
+
+}  // namespace ssdo

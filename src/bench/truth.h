@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/measure.h"
+
+namespace ssdo {
+
+/// The products whose error is measured, in the order of tables.
+inline const std::vector<std::string> kBenchProducts = {"ao", "direct", "bounce"};
+
+/// What --truth names: FILE:LAYER, and the product that it is the truth of.
+struct TruthRequest {
+  std::string product;  ///< empty: the layer's name tells
+  std::string picture;
+};
+
+/// [ao=|direct=|bounce=]FILE[:LAYER].
+TruthRequest parse_truth(const std::string& text);
+
+/// A layer, and what it is the truth of.
+struct Truth {
+  std::string product;
+  std::string file, layer;
+  Window display;  ///< of the picture
+  Channels channels;
+};
+
+/// Errors: ExitCode::input for a file that cannot be read; layer for a layer that does not exist,
+/// is one of several or has another number of channels than its product; usage for one whose name
+/// does not tell the product.
+Truth read_truth(const TruthRequest& request);
+
+}  // namespace ssdo
