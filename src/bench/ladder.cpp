@@ -78,7 +78,7 @@ Setting rays(int count) { return samples(count, "rays"); }
 
 Ladder plain_ladder_of(std::string_view method, int reference) {
   if (method == "bitmask") {
-    return {{march(1, 6), march(2, 6), march(2, 10), march(2, 24), march(4, 32), march(6, 48),
+    return {{march(1, 6), march(2, 8), march(2, 16), march(2, 24), march(4, 32), march(6, 48),
              march(12, 64)},
             march(32, 96),
             2};
@@ -118,6 +118,7 @@ ModelOptions Setting::applied_to(const ModelOptions& model) const {
     out.thickness.reset();
     if (out.radius && std::isinf(*out.radius)) out.radius.reset();
   }
+  if (!method->has_radius) out.radius.reset();
   if (method->marches) {
     out.slices = slices;
     out.steps = steps;

@@ -92,7 +92,7 @@ TEST(Command, HasWhatReachesTheSetting) {
             "--products ao,direct -o 'a b_relit.exr'");
   EXPECT_EQ(command_of(options, standard_setting(find_method("bitmask")), plan),
             "ssdo 'shots/a b.exr' --env sky.exr --thickness 2 --radius inf --method bitmask "
-            "--slices 2 --steps 24 --products ao,direct -o 'a b_relit.exr'");
+            "--slices 2 --steps 16 --products ao,direct -o 'a b_relit.exr'");
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST_F(Messages, AVerboseRunNamesWhatItChose) {
   EXPECT_EQ(done.code, 0);
   EXPECT_EQ(done.out, "");
   for (const char* word : {"ViewLayer.Position.X", "ViewLayer.DiffCol.R", "fitted from P", "radius",
-                           "96 samples", "studio.exr", "16 bits", "ACES SDR Video"}) {
+                           "64 samples", "studio.exr", "16 bits", "ACES SDR Video"}) {
     EXPECT_THAT(done.err, HasSubstr(word));
   }
 }

@@ -134,7 +134,7 @@ TEST_F(Outputs, EveryFlagOfTheModelMatters) {
   const std::vector<float> plain = run({}).pixels;
   EXPECT_EQ(run({"--method", "bitmask", "--seed", "0", "--filter", "geometry", "--radius", "auto",
                  "--thickness", "auto", "--offscreen", "extend", "--quality", "standard",
-                 "--slices", "2", "--steps", "24"})
+                 "--slices", "2", "--steps", "16"})
                 .pixels,
             plain)
       << "these are the defaults";
