@@ -141,6 +141,9 @@ HWY_INLINE VU march_side(const March& march, const Receiver& p, const Half& half
     hwy::Prefetch(scene.depth.data() + i + 2 * lanes - 1);
     hwy::Prefetch(scene.behind.data() + i + 2 * lanes - 1);
     hwy::Prefetch(scene.thickness.data() + i + 2 * lanes - 1);
+    hwy::Prefetch(scene.nx.data() + i + 2 * lanes - 1);
+    hwy::Prefetch(scene.ny.data() + i + 2 * lanes - 1);
+    hwy::Prefetch(scene.nz.data() + i + 2 * lanes - 1);
     const V dx = hn::Set(d, step.dx), dy = hn::Set(d, step.dy);
     const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise));
     const V depth = load(scene.depth), behind = load(scene.behind);
