@@ -14,8 +14,8 @@
 //   surface continues behind the run as its tangent plane. Each pixel takes the surface that
 //   reaches it from the nearest end of its runs.
 //
-// Measured against path-traced occlusion on the seven frames that this was developed with: see the
-// man page, ACCURACY.
+// Measured against path-traced occlusion on the seven frames that this was developed with: see man
+// ssdo-methods.
 #include "scene/hidden_geometry.h"
 
 #include <algorithm>
