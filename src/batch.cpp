@@ -140,7 +140,8 @@ class Batch {
     if (options_.command == Command::info && options_.say.json) {
       fmt::print("{}\n", infos_.size() == 1 ? infos_[0].dump(2) : infos_.dump(2));
     }
-    if (!options_.say.stats.empty()) statistics_.write(options_.say.stats);
+    if (!options_.say.stats.empty())
+      statistics_.write(options_.say.stats, Statistics::policy(options_.output.policy));
     return code;
   }
 
@@ -171,7 +172,7 @@ class Batch {
         }
       }
     }
-    check_output(options_.say.stats, Statistics::policy());
+    check_output(options_.say.stats, Statistics::policy(options_.output.policy));
   }
 
   void run_job(std::size_t i) {

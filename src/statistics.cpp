@@ -52,8 +52,8 @@ void Statistics::add(const Frame& frame, std::optional<int> number,
   });
 }
 
-void Statistics::write(const std::string& path) const {
-  SafeFile file(path, policy());
+void Statistics::write(const std::string& path, const OutputPolicy& policy) const {
+  SafeFile file(path, policy);
   std::ofstream out(file.temporary());
   out << frames_.dump(2) << '\n';
   out.close();

@@ -18,10 +18,13 @@ class Statistics {
            int threads);
 
   /// A log is replaced where an image would not be.
-  static OutputPolicy policy() { return {.overwrite = true, .create_dirs = false}; }
+  static OutputPolicy policy(OutputPolicy of_images) {
+    of_images.overwrite = true;
+    return of_images;
+  }
 
-  /// Writes what has been added, replacing `path`. Errors: ExitCode::output.
-  void write(const std::string& path) const;
+  /// Writes what has been added. Errors: ExitCode::output.
+  void write(const std::string& path, const OutputPolicy& policy) const;
 
  private:
   nlohmann::json frames_ = nlohmann::json::array();

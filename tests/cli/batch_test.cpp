@@ -53,6 +53,16 @@ TEST_F(Shot, ARangeIsDoneInItsOrder) {
   EXPECT_THAT(order, ElementsAre(5, 1, 2));
 }
 
+TEST_F(Shot, TheFolderOfItsStatisticsIsMadeWhereThatOfItsImagesIs) {
+  const std::string log = dir_ / "new/deep/stats.json";
+  const Finished refused = run({"--frames", "1", "--stats", log});
+  EXPECT_EQ(refused.code, 5);
+  EXPECT_THAT(refused.error_line(), HasSubstr("give --create-dirs"));
+  EXPECT_THAT(done(), ElementsAre()) << "found before any work";
+  EXPECT_EQ(run({"--frames", "1", "--create-dirs", "--stats", log}).code, 0);
+  EXPECT_EQ(json::parse(read_file(log)).size(), 1u);
+}
+
 TEST_F(Shot, AMissingFrameIsNamedAndStopsOrNot) {
   const Finished stopped = run({"--frames", "1-5"});
   EXPECT_EQ(stopped.code, 3);
