@@ -17,5 +17,5 @@ echo
 echo "The relit frame, all products:  $out/still_life.exr"
 echo "The composite for a display:    $out/still_life.png"
 echo "Occlusion and bounce:           $out/still_life_ao.png, $out/still_life_bounce.png"
-sed -n 's/^ *"\(read\|prepare\|estimate\|filter\|compose\|write\|total\)": \([0-9]*\).*/\1 \2/p' "$out/still_life.json" |
+sed -n 's/^ *"\(read\|prepare\|estimate\|filter\|compose\|write\|total\)": \([0-9][0-9]*\).*/\1 \2/p' "$out/still_life.json" |
   awk 'BEGIN { printf "It took" } { printf " %s %d ms,", $1, $2 } END { print " by the clock." }'

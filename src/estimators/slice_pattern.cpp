@@ -33,7 +33,8 @@ int to_block(double x, int place) {
   return int(std::lround((x + place - middle) / kPeriod)) * kPeriod + middle - place;
 }
 
-/// Gives every step its stretch of the way. Neighbouring pixels leave none to be shared.
+/// Gives every step its stretch of the way, which begins outside of the pixel where the march
+/// does. Neighbouring pixels leave none to be shared.
 void share_the_way(std::vector<SliceStep>& steps) {
   const auto distance = [](const SliceStep& step) { return std::hypot(step.dx, step.dy); };
   float before = 0;
