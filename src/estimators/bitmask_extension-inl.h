@@ -53,7 +53,7 @@ HWY_INLINE Border border_along(const MarchScene& scene, const Receiver& p, int c
     border.dx = aside;
     border.dy = hn::IfThenElse(downwards, bottom, zero) - p.y;
     border.first = scene.border.in_row(hn::GetLane(dy) > 0, column_of_lane_0 & (kPeriod - 1),
-                                       column + (column_of_lane_0 >> 2));
+                                       column + (column_of_lane_0 >> Interleaving::kShift));
     return border;
   }
   const V edge_x = hn::IfThenElse(through_side, hn::IfThenElse(rightwards, right, zero),
@@ -69,7 +69,7 @@ HWY_INLINE Border border_along(const MarchScene& scene, const Receiver& p, int c
   };
   const auto in_row =
       hn::And(shifted, hn::Set(di, kPeriod - 1)) * hn::Set(di, int(layout.stride())) +
-      hn::ShiftRight<2>(shifted) +
+      hn::ShiftRight<Interleaving::kShift>(shifted) +
       offset(downwards, scene.border.in_row(false, 0, 0), scene.border.in_row(true, 0, 0));
   const auto in_column =
       hn::ConvertTo(di, edge_y) +

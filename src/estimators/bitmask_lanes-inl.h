@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The geometry of method bitmask for a vector of pixels, compiled once for every instruction set;
-// see bitmask.cpp for the method and its symbols. Lanes are pixels that lie four apart in a row.
+// see bitmask.cpp for the method and its symbols. Lanes are pixels that lie a pattern apart in a row.
 #if defined(SSDO_BITMASK_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_LANES_INL_H_
 #undef SSDO_BITMASK_LANES_INL_H_

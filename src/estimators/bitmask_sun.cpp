@@ -108,7 +108,7 @@ void sun(const SunJob& job, int y0, int y1) {
           hn::ConvertTo(di, hn::IfThenElseZero(looks, qx_px)) + hn::Set(di, layout.phase());
       const auto line = hn::ConvertTo(di, hn::IfThenElseZero(looks, qy_px)) * hn::Set(di, kPeriod) +
                         hn::And(shifted, hn::Set(di, kPeriod - 1));
-      const auto index = line * hn::Set(di, int(layout.stride())) + hn::ShiftRight<2>(shifted) +
+      const auto index = line * hn::Set(di, int(layout.stride())) + hn::ShiftRight<Interleaving::kShift>(shifted) +
                          hn::Set(di, Interleaving::kPad);
       const auto gather = [&](const InterleavedPlane& plane)
                               HWY_ATTR { return hn::GatherIndex(d, plane.data(), index); };

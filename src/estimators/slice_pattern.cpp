@@ -13,8 +13,16 @@ namespace {
 
 constexpr int kPeriod = Interleaving::kPeriod;
 
-/// An ordering of the 4 x 4 pattern in which neighbours are far apart (Bayer's matrix, 1973).
-constexpr int kOrder[kPeriod * kPeriod] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+/// An ordering of the pattern in which neighbours are far apart (Bayer's matrix, 1973): each of its
+/// quarters holds every fourth rank, and so do theirs.
+int order_of(int column, int row) {
+  int rank = 0;
+  for (int bit = 1; bit < kPeriod; bit *= 2) {
+    const bool right = column & bit, below = row & bit;
+    rank = 4 * rank + (right != below ? 2 : 0) + (below ? 1 : 0);
+  }
+  return rank;
+}
 
 /// Steps that grow in proportion to the distance are longest where the frame's largest things are
 /// met. This much less than 1, and they grow less; the error against many steps fell by a third.
@@ -27,10 +35,10 @@ float phase_in(double t) { return float(0.02 + 0.96 * t); }
 /// Pixels that are no farther apart than this, along the march, are neighbours.
 constexpr float kNeighbours = 1.5f;
 
-/// The whole number nearest to `x` that leads from `place` to the middle of a block.
+/// The whole number nearest to `x` that leads from `place` to the middle of a block of 4.
 int to_block(double x, int place) {
-  const int middle = kPeriod / 2;
-  return int(std::lround((x + place - middle) / kPeriod)) * kPeriod + middle - place;
+  constexpr int kBlock = 4, kMiddle = kBlock / 2;
+  return int(std::lround((x + place - kMiddle) / kBlock)) * kBlock + kMiddle - place;
 }
 
 /// Gives every step its stretch of the way, which begins outside of the pixel where the march
@@ -66,7 +74,7 @@ SliceSide make_side(const Interleaving& layout, int comb, int line, double dx, d
     SliceStep step;
     step.dx = float(x), step.dy = float(y);
     step.row = y;
-    step.column_shift = (comb + x) >> 2;
+    step.column_shift = (comb + x) >> Interleaving::kShift;
     step.offset =
         layout.index(y, (comb + x) & (kPeriod - 1), step.column_shift) - layout.index(0, comb, 0);
     side.steps.push_back(step);
@@ -81,7 +89,7 @@ double march_distance(double t, double diagonal) {
   return std::pow(diagonal, std::pow(t, kFarther));
 }
 
-int SlicePattern::rank(int member) { return kOrder[member]; }
+int SlicePattern::rank(int member) { return order_of(member % kPeriod, member / kPeriod); }
 
 SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, int slices, int steps,
                            unsigned seed)
@@ -93,12 +101,12 @@ SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, in
   for (int row = 0; row < kPeriod; ++row) {
     for (int column = 0; column < kPeriod; ++column) {
       const int member = row * kPeriod + column;
-      const double place = (kOrder[member] + fraction(turn)) / (kPeriod * kPeriod);
+      const double place = (rank(member) + fraction(turn)) / (kPeriod * kPeriod);
       for (int k = 0; k < slices; ++k) {
         const double angle = glm::pi<double>() * (k + place) / slices;
         Slice slice{float(std::cos(angle)), float(std::sin(angle)), {}};
         for (int s = 0; s < 2; ++s) {
-          const double n = (kOrder[member] * slices + k) * 2 + s;
+          const double n = (rank(member) * slices + k) * 2 + s;
           const double sign = s == 0 ? 1 : -1;
           slice.sides[s] = make_side(layout, column, row, sign * slice.dx, sign * slice.dy, steps,
                                      diagonal, fraction(start1 + n * kR2First),

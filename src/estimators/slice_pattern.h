@@ -39,7 +39,7 @@ struct Slice {
   SliceSide sides[2];  ///< along (dx, dy) and against it
 };
 
-/// The slices of every member of the 4 x 4 pattern, row by row. All members together divide the
+/// The slices of every member of the T x T pattern, T = Interleaving::kPeriod, row by row. All members together divide the
 /// half-circle evenly.
 class SlicePattern {
  public:
@@ -47,7 +47,7 @@ class SlicePattern {
   SlicePattern(const Interleaving& layout, const Window& display, int slices, int steps,
                unsigned seed);
 
-  /// The rank of each member in an order in which neighbours are far apart, 0..15.
+  /// The rank of each member in an order in which neighbours are far apart, 0..T^2 - 1.
   static int rank(int member);
 
   const std::vector<Slice>& member(int column, int row) const {

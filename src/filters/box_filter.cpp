@@ -43,14 +43,14 @@ namespace ssdo {
 
 HWY_EXPORT(box_tile);
 
-Products filter_box(const Products& noisy, const Geometry& geometry, int pattern_size) {
+Products filter_box(Products noisy, const Geometry& geometry, int pattern_size) {
   choose_isa();
   std::vector<Tap> window;
   const int first = -(pattern_size / 2);
   for (int dy = first; dy < first + pattern_size; ++dy) {
     for (int dx = first; dx < first + pattern_size; ++dx) window.push_back({dx, dy, 1});
   }
-  return in_passes(noisy, geometry, {window},
+  return in_passes(std::move(noisy), geometry, {window},
                    [&](const Products& from, const auto& taps, const Tile& tile, Products& to) {
                      HWY_DYNAMIC_DISPATCH(box_tile)(from, geometry, taps, tile, to);
                    });

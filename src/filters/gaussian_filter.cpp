@@ -52,7 +52,7 @@ namespace ssdo {
 
 HWY_EXPORT(gaussian_tile);
 
-Products filter_gaussian(const Products& noisy, const Geometry& geometry, int /*pattern_size*/) {
+Products filter_gaussian(Products noisy, const Geometry& geometry, int /*pattern_size*/) {
   constexpr int kRadius = 5, kRounds = 3;
   constexpr double kSigma = 2.5;
   choose_isa();
@@ -62,7 +62,7 @@ Products filter_gaussian(const Products& noisy, const Geometry& geometry, int /*
   std::vector<std::vector<Tap>> windows;
   for (int round = 0; round < kRounds; ++round)
     windows.insert(windows.end(), {row, transposed(row)});
-  return in_passes(noisy, geometry, windows,
+  return in_passes(std::move(noisy), geometry, windows,
                    [&](const Products& from, const auto& taps, const Tile& tile, Products& to) {
                      HWY_DYNAMIC_DISPATCH(gaussian_tile)(from, geometry, taps, tile, to);
                    });

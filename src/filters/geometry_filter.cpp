@@ -16,6 +16,16 @@
 // then has a total weight of exactly 1, which removes the pattern on a plane, and the window has a
 // centre, which T alone has not.
 //
+// For T = 8 this would be 81 neighbours. But it is also the mean of four windows of T = 4 about the
+// pixels (+-2, +-2) away, so that a second pass makes it of what the first has left:
+//
+//   out(p) = m(p) + 1/4 sum_q w(p, q) l(p, q) (m(q) - m(p)),   m the result for T = 4
+//   l = ramp(|b_q - b_p| / (r (b_p + b_q + (A_p + A_q) / 4))),   b the brightness of m, A = b / ao
+//
+// What leads over an edge counts as the pixel's own mean. So does, by l, what leads over a step of
+// ao or direct light that is more than noise: the edge of a shadow. The noise of what is dark is
+// small beside the light that it would have in the open, which is about A, not beside its own. A
+// bounce has more noise and no such steps: l = 1.
 //
 // Lanes are pixels that lie side by side; two rows at a time share their loads. What is not a
 // surface has no normal here, so that it weighs 0. This file is compiled once for every
@@ -23,7 +33,9 @@
 #include "filters/geometry_filter.h"
 
 #include <cstdlib>
+#include <optional>
 
+#include "filters/tap.h"
 #include "parallel/isa.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -37,6 +49,7 @@ namespace ssdo::HWY_NAMESPACE {
 
 constexpr float kPlaneTolerance = 0.3f;  ///< t: the sine of 17 degrees
 constexpr float kNormalCosine = 0.8f;    ///< c: normals 37 degrees apart share nothing
+constexpr float kStepTolerance = 0.15f;  ///< r; measured, with the 1/4 before A
 
 /// Position, normal and rounding.
 struct Pixels {
@@ -199,9 +212,112 @@ class TileFilter {
   AlignedFloats averages_;  ///< by row, component and column; after the components the weights' sum
 };
 
+/// How bright a pixel is, and would about be in the open.
+struct Brightness {
+  V value, open;
+};
+
+/// l(p, q).
+HWY_INLINE V likeness(const Brightness& p, const Brightness& q) {
+  const D d;
+  const V scale = hn::MulAdd(hn::Set(d, 0.25f), p.open + q.open, p.value + q.value);
+  const V step = hn::Abs(q.value - p.value) / hn::Max(scale, hn::Set(d, 1e-30f));
+  return clamp01(hn::NegMulAdd(step, hn::Set(d, 2 / kStepTolerance), hn::Set(d, 2.0f)));
+}
+
+/// The second pass.
+class CornerFilter {
+ public:
+  CornerFilter(const Products& means, const Geometry& geometry, int offset, const Tile& tile,
+               Products& out)
+      : offset_(offset),
+        tile_(tile),
+        rows_(means, geometry.surfel, tile, offset, 2 * offset + 1, out),
+        results_(zeros((rows_.components() + 1) * rows_.stride())) {
+    int channel = TileRows::kSurfelChannels;
+    for (const Part& part : rows_.parts()) {
+      if (part.noisy == means.ao.pixels.data()) ao_ = channel;
+      channel += part.components;
+    }
+  }
+
+  void run() {
+    int gathered = tile_.y0 - offset_;
+    for (int y = tile_.y0; y < tile_.y1; ++y) {
+      for (; gathered <= y + offset_; ++gathered) rows_.gather(gathered);
+      for (int x = 0; x < tile_.x1 - tile_.x0; x += kLanes) filter(x, y);
+      rows_.write(y, results_.get(), is_surface());
+    }
+  }
+
+ private:
+  static constexpr float kLeastOpen = 0.02f;
+
+  float* is_surface() const { return results_.get() + rows_.components() * rows_.stride(); }
+
+  /// A vector of pixels from column `x` of the tile on.
+  HWY_INLINE void filter(int x, int y) {
+    const D d;
+    const int stride = rows_.stride();
+    const int above = y - offset_, below = y + offset_, left = x, right = x + 2 * offset_;
+    const auto surface_at = [&](int row, int column) HWY_ATTR {
+      return load_pixels(rows_.row(row, 0) + column, stride);
+    };
+    const Pixels p = surface_at(y, x + offset_);
+    const V quarter = hn::Set(d, 0.25f);
+    const V w0 = quarter * similarity(p, surface_at(above, left)),
+            w1 = quarter * similarity(p, surface_at(above, right)),
+            w2 = quarter * similarity(p, surface_at(below, left)),
+            w3 = quarter * similarity(p, surface_at(below, right));
+    hn::Store(similarity(p, p), d, is_surface() + x);
+    int c = 0;
+    for (const Part& part : rows_.parts()) {
+      const auto mean_at = [&](int k, int row, int column) HWY_ATTR {
+        return hn::LoadU(d, rows_.row(row, TileRows::kSurfelChannels + c + k) + column);
+      };
+      V v0 = w0, v1 = w1, v2 = w2, v3 = w3;
+      if (part.shadowed) {
+        const auto brightness_at = [&](int row, int column) HWY_ATTR {
+          V value = mean_at(0, row, column);
+          if (part.components == 3)
+            value = value + mean_at(1, row, column) + mean_at(2, row, column);
+          if (!ao_) return Brightness{value, value};
+          const V ao = hn::LoadU(d, rows_.row(row, *ao_) + column);
+          return Brightness{value, value / hn::Max(ao, hn::Set(d, kLeastOpen))};
+        };
+        const Brightness own = brightness_at(y, x + offset_);
+        v0 = v0 * likeness(own, brightness_at(above, left));
+        v1 = v1 * likeness(own, brightness_at(above, right));
+        v2 = v2 * likeness(own, brightness_at(below, left));
+        v3 = v3 * likeness(own, brightness_at(below, right));
+      }
+      for (int k = 0; k < part.components; ++k) {
+        const V own = mean_at(k, y, x + offset_);
+        V sum = hn::MulAdd(v0, mean_at(k, above, left) - own, own);
+        sum = hn::MulAdd(v1, mean_at(k, above, right) - own, sum);
+        sum = hn::MulAdd(v2, mean_at(k, below, left) - own, sum);
+        sum = hn::MulAdd(v3, mean_at(k, below, right) - own, sum);
+        hn::Store(sum, d, results_.get() + (c + k) * stride + x);
+      }
+      c += part.components;
+    }
+  }
+
+  const int offset_;
+  const Tile tile_;
+  TileRows rows_;
+  std::optional<int> ao_;  ///< its channel
+  AlignedFloats results_;  ///< by component and column; after the components 0 where no surface is
+};
+
 void filter_tile(const Products& noisy, const Geometry& geometry, int pattern_size,
                  const Tile& tile, Products& out) {
   TileFilter(noisy, geometry, pattern_size, tile, out).run();
+}
+
+void filter_corners(const Products& means, const Geometry& geometry, int offset, const Tile& tile,
+                    Products& out) {
+  CornerFilter(means, geometry, offset, tile, out).run();
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -211,14 +327,23 @@ HWY_AFTER_NAMESPACE();
 namespace ssdo {
 
 HWY_EXPORT(filter_tile);
+HWY_EXPORT(filter_corners);
 
-Products filter_geometry(const Products& noisy, const Geometry& geometry, int pattern_size) {
+Products filter_geometry(Products noisy, const Geometry& geometry, int pattern_size) {
+  constexpr int kMostAtOnce = 4;
   choose_isa();
-  Products out = noisy;
-  for_each_tile(geometry.surfel.width, geometry.surfel.height, [&](const Tile& tile) {
-    HWY_DYNAMIC_DISPATCH(filter_tile)(noisy, geometry, pattern_size, tile, out);
+  const int width = geometry.surfel.width, height = geometry.surfel.height;
+  const bool twice = pattern_size > kMostAtOnce;
+  Products means = like(noisy);
+  for_each_tile(width, height, [&](const Tile& tile) {
+    HWY_DYNAMIC_DISPATCH(filter_tile)
+    (noisy, geometry, twice ? pattern_size / 2 : pattern_size, tile, means);
   });
-  return out;
+  if (!twice) return means;
+  for_each_tile(width, height, [&](const Tile& tile) {
+    HWY_DYNAMIC_DISPATCH(filter_corners)(means, geometry, pattern_size / 4, tile, noisy);
+  });
+  return noisy;
 }
 
 }  // namespace ssdo

@@ -52,13 +52,13 @@ namespace ssdo {
 
 HWY_EXPORT(normal_tile);
 
-Products filter_normal(const Products& noisy, const Geometry& geometry, int /*pattern_size*/) {
+Products filter_normal(Products noisy, const Geometry& geometry, int /*pattern_size*/) {
   constexpr std::array<double, 4> kWeights = {0.37004405286, 0.31718061674, 0.19823788546,
                                               0.11453744493};
   choose_isa();
   std::vector<Tap> row;
   for (int i = -3; i <= 3; ++i) row.push_back({i, 0, float(kWeights[std::size_t(std::abs(i))])});
-  return in_passes(noisy, geometry, {row, transposed(row)},
+  return in_passes(std::move(noisy), geometry, {row, transposed(row)},
                    [&](const Products& from, const auto& taps, const Tile& tile, Products& to) {
                      HWY_DYNAMIC_DISPATCH(normal_tile)(from, geometry, taps, tile, to);
                    });

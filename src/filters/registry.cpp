@@ -36,7 +36,7 @@ const Filter& find_filter(std::string_view name) {
 
 Products apply_filter(const Filter& filter, Products noisy, const Geometry& geometry,
                       int pattern_size) {
-  return filter.apply ? filter.apply(noisy, geometry, pattern_size) : std::move(noisy);
+  return filter.apply ? filter.apply(std::move(noisy), geometry, pattern_size) : std::move(noisy);
 }
 
 }  // namespace ssdo

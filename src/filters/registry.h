@@ -14,7 +14,7 @@ namespace ssdo {
 struct Filter {
   std::string_view name, summary;
   /// Takes away the noise of a T x T sampling pattern; null: leaves the products as they are.
-  Products (*apply)(const Products& noisy, const Geometry& geometry, int pattern_size);
+  Products (*apply)(Products noisy, const Geometry& geometry, int pattern_size);
 };
 
 /// Every filter, in the order of --help.

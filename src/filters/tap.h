@@ -22,12 +22,19 @@ inline std::vector<Tap> transposed(std::vector<Tap> taps) {
   return taps;
 }
 
+/// Planes of the same sizes, whose values are whatever was in memory.
+inline Products like(const Products& other) {
+  const auto plane = [](const auto& p) { return std::decay_t<decltype(p)>::like(p); };
+  return {plane(other.ao),   plane(other.direct),     plane(other.bounce),
+          plane(other.bent), plane(other.reflection), plane(other.error)};
+}
+
 /// Runs `pass` from `noisy` with each window in turn, each on what the one before has left.
 /// `pass(from, taps, tile, to)` averages one tile.
 template <class Pass>
-Products in_passes(const Products& noisy, const Geometry& geometry,
+Products in_passes(Products noisy, const Geometry& geometry,
                    const std::vector<std::vector<Tap>>& windows, const Pass& pass) {
-  Products from = noisy, to = noisy;  // the background, which no pass writes, is in both
+  Products from = std::move(noisy), to = like(from);
   for (const std::vector<Tap>& taps : windows) {
     for_each_tile(geometry.surfel.width, geometry.surfel.height,
                   [&](const Tile& tile) { pass(from, taps, tile, to); });

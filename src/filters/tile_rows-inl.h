@@ -60,24 +60,26 @@ struct Part {
   float* out;
   int components;
   Finish finish;
+  bool shadowed;  ///< steps of its brightness are edges of shadows
 };
 
 /// Those planes that exist.
 inline std::vector<Part> parts_of(const Products& noisy, Products& out) {
   std::vector<Part> parts;
-  const auto add = [&](const Plane<float>& from, Plane<float>& to, Finish finish) {
-    if (!from.empty()) parts.push_back({from.pixels.data(), to.pixels.data(), 1, finish});
+  const auto add = [&](const Plane<float>& from, Plane<float>& to, Finish finish, bool shadowed) {
+    if (!from.empty()) parts.push_back({from.pixels.data(), to.pixels.data(), 1, finish, shadowed});
   };
-  const auto add3 = [&](const Plane<glm::vec3>& from, Plane<glm::vec3>& to, Finish finish) {
+  const auto add3 = [&](const Plane<glm::vec3>& from, Plane<glm::vec3>& to, Finish finish,
+                        bool shadowed) {
     static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-    if (!from.empty()) parts.push_back({&from.pixels[0].x, &to.pixels[0].x, 3, finish});
+    if (!from.empty()) parts.push_back({&from.pixels[0].x, &to.pixels[0].x, 3, finish, shadowed});
   };
-  add3(noisy.direct, out.direct, Finish::none);
-  add3(noisy.bounce, out.bounce, Finish::none);
-  add3(noisy.bent, out.bent, Finish::normalise);
-  add(noisy.ao, out.ao, Finish::clamp);
-  add(noisy.reflection, out.reflection, Finish::clamp);
-  add(noisy.error, out.error, Finish::none);
+  add3(noisy.direct, out.direct, Finish::none, true);
+  add3(noisy.bounce, out.bounce, Finish::none, false);
+  add3(noisy.bent, out.bent, Finish::normalise, false);
+  add(noisy.ao, out.ao, Finish::clamp, true);
+  add(noisy.reflection, out.reflection, Finish::clamp, true);
+  add(noisy.error, out.error, Finish::none, false);
   return parts;
 }
 
@@ -102,6 +104,7 @@ class TileRows {
     surface_ = zeros(stride_);
   }
 
+  const std::vector<Part>& parts() const { return parts_; }
   int components() const { return components_; }  ///< of all products
   int stride() const { return stride_; }          ///< from a channel to the next
 
@@ -128,8 +131,8 @@ class TileRows {
     }
   }
 
-  /// Writes row `y` of the tile where `weight` is more than 0, from averages by component, which
-  /// it finishes.
+  /// Writes row `y` of the tile from averages by component, which it finishes, and what is noisy
+  /// where `weight` is 0.
   void write(int y, float* averages, const float* weight) const {
     const std::size_t first = surfel_.index(tile_.x0, y);
     const int count = tile_.x1 - tile_.x0;
@@ -237,10 +240,13 @@ class TileRows {
 
   void write_part(const Part& part, std::size_t first, int count, const float* from,
                   const float* weight) const {
+    const float* noisy = part.noisy + first * std::size_t(part.components);
     float* to = part.out + first * std::size_t(part.components);
     const auto single = [&](int i) {
-      if (!(weight[i] > 0)) return;
-      for (int c = 0; c < part.components; ++c) to[i * part.components + c] = from[c * stride_ + i];
+      for (int c = 0; c < part.components; ++c) {
+        const int at = i * part.components + c;
+        to[at] = weight[i] > 0 ? from[c * stride_ + i] : noisy[at];
+      }
     };
     const auto whole = [&](int i) HWY_ATTR {
       const D d;

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "parallel/large_memory.h"
+
 namespace ssdo {
 
 /// A rectangle of whole pixels, x in [x0, x1) and y in [y0, y1), y pointing down, in the pixel
@@ -24,11 +26,19 @@ struct Window {
 template <class T>
 struct Plane {
   int width = 0, height = 0;
-  std::vector<T> pixels;
+  std::vector<T, LargeMemory<T>> pixels;
 
   Plane() = default;
   Plane(int w, int h, T value = T{})
       : width(w), height(h), pixels(std::size_t(w) * std::size_t(h), value) {}
+
+  /// A plane of the same size, whose values are whatever was in memory.
+  static Plane like(const auto& other) {
+    Plane plane;
+    plane.width = other.width, plane.height = other.height;
+    plane.pixels.resize(other.size());
+    return plane;
+  }
 
   bool empty() const { return pixels.empty(); }
   std::size_t size() const { return pixels.size(); }

@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <memory>
 
+#include "parallel/large_memory.h"
+
 namespace ssdo {
 
-/// Where the pixels of a picture lie when every row is stored as four rows of every fourth pixel.
-/// Pixels that are four apart then are neighbours in memory, and the same offset from each of them
+/// Where the pixels of a picture lie when every row is stored as eight rows of every eighth pixel.
+/// Pixels that are eight apart then are neighbours in memory, and the same offset from each of them
 /// leads to neighbours again: a whole vector of pixels reads its samples with one load.
 ///
 /// Rows are padded by kPad entries on both sides, so that a vector of which one lane lies in the
@@ -16,7 +18,8 @@ namespace ssdo {
 /// two, pixels below each other would share a few places of the cache.
 class Interleaving {
  public:
-  static constexpr int kPeriod = 4;
+  static constexpr int kPeriod = 8;
+  static constexpr int kShift = 3;  ///< x / kPeriod is x >> kShift
   static constexpr int kPad = 16;  ///< the widest vector
 
   /// `phase` is the column of the display window that the first pixel has, modulo kPeriod.
@@ -30,18 +33,18 @@ class Interleaving {
   int width() const { return width_; }
   int height() const { return height_; }
   int phase() const { return phase_; }
-  int columns() const { return columns_; }  ///< entries of each of the four rows
+  int columns() const { return columns_; }  ///< entries of each of the eight rows
   std::ptrdiff_t stride() const { return stride_; }
   std::size_t size() const { return std::size_t(stride_) * std::size_t(height_) * kPeriod; }
 
-  /// Index of entry `column` of the row that holds every fourth pixel of row `y` from `comb` on.
+  /// Index of entry `column` of the row that holds every eighth pixel of row `y` from `comb` on.
   std::ptrdiff_t index(int y, int comb, int column) const {
     return (std::ptrdiff_t(y) * kPeriod + comb) * stride_ + kPad + column;
   }
   /// Index of a pixel.
   std::ptrdiff_t index(int x, int y) const {
     const int shifted = x + phase_;
-    return index(y, shifted & (kPeriod - 1), shifted >> 2);
+    return index(y, shifted & (kPeriod - 1), shifted >> kShift);
   }
 
  private:
@@ -54,7 +57,9 @@ class InterleavedPlane {
  public:
   InterleavedPlane() = default;
   explicit InterleavedPlane(const Interleaving& layout)
-      : values_(std::make_unique_for_overwrite<float[]>(layout.size())) {}
+      : values_(std::make_unique_for_overwrite<float[]>(layout.size())) {
+    advise_large_pages(values_.get(), layout.size() * sizeof(float));
+  }
 
   float* data() { return values_.get(); }
   const float* data() const { return values_.get(); }

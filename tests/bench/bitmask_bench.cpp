@@ -87,7 +87,8 @@ void filter(benchmark::State& state, const std::string& isa, const Size& size, i
   products.ao = Plane<float>(size.width, size.height, 0.5f);
   products.bent = products.direct = products.bounce =
       Plane<glm::vec3>(size.width, size.height, glm::vec3(0.5f));
-  for (auto _ : state) benchmark::DoNotOptimize(filter_geometry(products, g, 4));
+  for (auto _ : state)
+    products = filter_geometry(std::move(products), g, bitmask_method().pattern_size);
   using benchmark::Counter;
   state.counters["ns/pixel"] = Counter(double(g.surfel.size()) * 1e-9,
                                        Counter::kIsIterationInvariantRate | Counter::kInvert);

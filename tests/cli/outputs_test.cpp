@@ -131,7 +131,7 @@ TEST_F(Outputs, EveryBounceAddsLight) {
 }
 
 TEST_F(Outputs, EveryFlagOfTheModelMatters) {
-  const std::vector<float> plain = run({}).pixels;
+  const auto plain = run({}).pixels;
   EXPECT_EQ(run({"--method", "bitmask", "--seed", "0", "--filter", "geometry", "--radius", "auto",
                  "--thickness", "auto", "--offscreen", "extend", "--quality", "standard",
                  "--slices", "2", "--steps", "16"})
@@ -219,7 +219,7 @@ TEST_F(Outputs, EveryParameterOfMethodSsdoMatters) {
     flags.insert(flags.end(), {"--method", "ssdo"});
     return run(flags, name).pixels;
   };
-  const std::vector<float> plain = ssdo({});
+  const auto plain = ssdo({});
   EXPECT_EQ(ssdo({"--seed", "0", "--filter", "geometry", "--radius", "auto", "--set", "samples=16",
                   "--set", "strength=1"}),
             plain)
@@ -234,7 +234,7 @@ TEST_F(Outputs, EveryParameterOfMethodSsdoMatters) {
                                                 {"--set", "strength=0.5"}}) {
     EXPECT_NE(ssdo(flags), plain) << flags[0] << " " << flags[1];
   }
-  const std::vector<float> bounce = ssdo({}, "bounce.R");
+  const auto bounce = ssdo({}, "bounce.R");
   EXPECT_NE(ssdo({"--set", "bounce-strength=2"}, "bounce.R"), bounce);
   EXPECT_NE(ssdo({"--set", "bounce-singularity=0.1"}, "bounce.R"), bounce);
   EXPECT_EQ(ssdo({"--set", "bounce-strength=2"}), plain) << "occlusion is not its business";

@@ -12,14 +12,16 @@ namespace {
 
 const Window kWindow{0, 0, 64, 48};
 
-Products noise_of_a_pattern(const Geometry& g) {
+/// Numbers of a T x T pattern; ao has the mean 1/2, direct (T^2 - 1) / 2.
+Products noise_of_a_pattern(const Geometry& g, int size = 4, float contrast = 1) {
   Products p;
   p.ao = Plane<float>(g.surfel.width, g.surfel.height, 1);
   p.direct = Plane<glm::vec3>(g.surfel.width, g.surfel.height);
   for (int y = 0; y < g.surfel.height; ++y) {
     for (int x = 0; x < g.surfel.width; ++x) {
-      const int member = (y % 4) * 4 + x % 4;
-      p.ao(x, y) = float((member * 7) % 16) / 15;  // mean 1/2
+      const int members = size * size, member = (y % size) * size + x % size;
+      const float noise = float((member * 7) % members) / float(members - 1) - 0.5f;
+      p.ao(x, y) = 0.5f + contrast * noise;
       p.direct(x, y) = glm::vec3(member, 1, 0);
     }
   }
@@ -33,15 +35,35 @@ TEST(GeometryFilter, RemovesThePatternOnAPlaneExactly) {
                 {0, -5 * std::sin(glm::radians(tilt)), 5 * std::cos(glm::radians(tilt))}, {0, 0, 0},
                 {0, 1, 0.1});
     const Geometry g = geometry_of(plane({}, {0, 0, 1}), camera, kWindow);
-    const Products out = filter_geometry(noise_of_a_pattern(g), g, 4);
-    for (int y = 2; y < kWindow.height() - 2; ++y) {
-      for (int x = 2; x < kWindow.width() - 2; ++x) {
+    const Products out = filter_geometry(noise_of_a_pattern(g), g, 4),
+                   of_wide = filter_geometry(noise_of_a_pattern(g, 8, 0.3f), g, 8);
+    for (int y = 4; y < kWindow.height() - 4; ++y) {
+      for (int x = 4; x < kWindow.width() - 4; ++x) {
         EXPECT_NEAR(out.ao(x, y), 0.5, 1e-5);
         EXPECT_NEAR(out.direct(x, y).x, 7.5, 1e-4);
         EXPECT_NEAR(out.direct(x, y).y, 1, 1e-5);
+        EXPECT_NEAR(of_wide.ao(x, y), 0.5, 1e-5);
       }
     }
   }
+}
+
+TEST(GeometryFilter, KeepsTheEdgeOfAShadow) {
+  const Geometry g =
+      geometry_of(plane({}, {0, 0, 1}),
+                  look_at(camera_from_fov(40, kWindow, 1), {0, 0, 5}, {}, {0, 1, 0}), kWindow);
+  Products p;
+  p.ao = Plane<float>(kWindow.width(), kWindow.height(), 0.9f);
+  p.direct = Plane<glm::vec3>(kWindow.width(), kWindow.height(), glm::vec3(4, 3, 2));
+  for (int y = 0; y < kWindow.height(); ++y) {
+    for (int x = 0; x < 30; ++x) p.ao(x, y) = 0.4f, p.direct(x, y) = glm::vec3(0.4f, 0.3f, 0.5f);
+  }
+  // Averaged over 8 x 8, these would have 0.56 and 0.74 of ao.
+  const Products out = filter_geometry(p, g, 8);
+  EXPECT_LT(out.ao(28, 24), 0.47);
+  EXPECT_GT(out.ao(31, 24), 0.83);
+  EXPECT_LT(out.direct(28, 24).y, 0.3 + 2.7 * 0.14);
+  EXPECT_GT(out.direct(31, 24).y, 0.3 + 2.7 * 0.86);
 }
 
 TEST(GeometryFilter, LeavesLittleOfThePatternOnACurvedSurface) {

@@ -21,9 +21,9 @@ struct TypedChannel {
   std::vector<std::byte> bytes;
 };
 
-template <class T>
-TypedChannel typed(Imf::PixelType type, const std::vector<T>& values) {
-  TypedChannel channel{type, std::vector<std::byte>(values.size() * sizeof(T))};
+template <class Values>
+TypedChannel typed(Imf::PixelType type, const Values& values) {
+  TypedChannel channel{type, std::vector<std::byte>(values.size() * sizeof(values[0]))};
   std::memcpy(channel.bytes.data(), values.data(), channel.bytes.size());
   return channel;
 }
