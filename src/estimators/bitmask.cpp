@@ -31,10 +31,8 @@
 // - direct is a ratio to the exact unoccluded irradiance E(N): the noise of a few directions
 //   cancels. L is taken in spherical harmonics, of the environment without its suns; each sun is a
 //   direction of its own, tested along the slice that holds it (bitmask_sun.cpp).
-// - bounce takes the radiance of the first surface in each sector; no 1/d^2, so no singularity. The
-//   side of a surface that is not seen has the light of its own side, as far as the seen one is
-//   open. That senders which face away send nothing, as in the sources, left five of seven frames
-//   too dark by a fifth and more.
+// - bounce takes the radiance of the first surface in each sector; no 1/d^2, so no singularity
+//   (bitmask_bounce.cpp, and bitmask_senders.cpp for what is sent).
 // - What a pixel shows counts for the stretch of the way up to those that are seen before and after
 //   it (bitmask_side-inl.h). Taken for points, few steps see too little: 16 that count for their
 //   stretches are nearer to the limit than 24 points.
@@ -69,13 +67,14 @@ constexpr int bounce_steps(int steps) { return (2 * steps + 2) / 3; }
 /// A shadow's edge shows single steps, where slices average them.
 constexpr int kSunSteps = 2;
 
+/// With few slices, one pixel of 2 x 2 gathers the light that bounces, and looks in half as many
+/// directions again: error and noise are those of all pixels, on seven frames.
+constexpr int bounce_spacing(int slices) { return slices < 4 ? 2 : 1; }
+constexpr int bounce_slices(int slices) { return slices < 4 ? (3 * slices + 1) / 2 : slices; }
+
 /// One colour for each pixel, in the order of the march.
 InterleavedColor make_color(const Interleaving& layout) {
   return {InterleavedPlane(layout), InterleavedPlane(layout), InterleavedPlane(layout)};
-}
-
-glm::vec3 color_at(const InterleavedColor& color, std::ptrdiff_t i) {
-  return {color[0][i], color[1][i], color[2][i]};
 }
 
 /// What the light's coefficients weigh the polynomials of add_basis with, channel by channel: these
@@ -100,85 +99,113 @@ class Bitmask {
         scene_(make_march_scene(in.geometry, in.hidden)),
         layout_(scene_.layout),
         pattern_(layout_, in.geometry.display, in.slices, in.steps, in.seed),
-        bounce_pattern_(layout_, in.geometry.display, in.slices, bounce_steps(in.steps), in.seed),
+        bounce_pattern_(layout_, in.geometry.display, bounce_slices(in.slices),
+                        bounce_steps(in.steps), in.seed, bounce_spacing(in.slices)),
         march_{scene_, pattern_, in.radius, in.extend_offscreen},
         bounce_march_{scene_, bounce_pattern_, in.radius, in.extend_offscreen},
         ao_(layout_) {
     choose_isa();
+    if (!in.light) {
+      for (int i = 0; i < 4; ++i)
+        constant_irradiance_(i % 2, i / 2) = in.environment.constant_radiance();
+    }
   }
 
   Products run() {
     gather_visibility();
-    if (in_.products.bounce) {
-      out_.bounce = Plane<glm::vec3>(width(), height(), glm::vec3(0));
-      for (int pass = 1; pass <= in_.bounces; ++pass) gather_bounce(pass == in_.bounces);
-    }
+    if (in_.products.bounce) gather_bounce();
+    if (in_.products.error) out_.error = picture(error_);
+    out_.ao = picture(ao_, 1.0f);
+    if (wants_light()) out_.direct = picture(direct_);
     return std::move(out_);
   }
 
  private:
-  int width() const { return layout_.width(); }
-  int height() const { return layout_.height(); }
+  bool wants_light() const {
+    return in_.products.direct || in_.products.bounce || in_.products.error;
+  }
+  const OctahedralMap& irradiance() const {
+    return in_.light ? in_.light->irradiance : constant_irradiance_;
+  }
 
-  bool is_surface(std::ptrdiff_t i) const { return !std::isnan(scene_.depth[i]); }
-
-  /// Calls `work(pixel, index)` for each pixel that shows a surface; index is that of the march.
+  /// Calls `work(pixel, index)` for each pixel of a row; index is that of the march.
   template <class Work>
-  void for_each_surface(const Work& work) const {
-    for_each_row(height(), [&](int y) {
-      for (int x = 0; x < width(); ++x) {
-        const std::size_t pixel = in_.geometry.surfel.index(x, y);
-        const std::ptrdiff_t i = layout_.index(x, y);
-        if (is_surface(i)) work(pixel, i);
-      }
+  void for_each_pixel(int y, const Work& work) const {
+    for (int first = 0; first < std::min(kPeriod, layout_.width()); ++first) {
+      std::ptrdiff_t i = layout_.index(first, y);
+      for (int x = first; x < layout_.width(); x += kPeriod)
+        work(in_.geometry.surfel.index(x, y), i++);
+    }
+  }
+
+  /// A value of every pixel; `background` where there is no surface.
+  Plane<float> picture(const InterleavedPlane& plane, float background = 0) const {
+    auto out = Plane<float>::like(in_.geometry.surfel);
+    for_each_row(layout_.height(), [&](int y) {
+      for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
+        out[pixel] = std::isnan(scene_.depth[i]) ? background : plane[i];
+      });
     });
+    return out;
+  }
+
+  Plane<glm::vec3> picture(const InterleavedColor& color) const {
+    auto out = Plane<glm::vec3>::like(in_.geometry.surfel);
+    for_each_row(layout_.height(), [&](int y) {
+      for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
+        const glm::vec3 value(color[0][i], color[1][i], color[2][i]);
+        out[pixel] = std::isnan(scene_.depth[i]) ? glm::vec3(0) : value;
+      });
+    });
+    return out;
+  }
+
+  InterleavedColor black() const {
+    InterleavedColor color = make_color(layout_);
+    for_each_row(layout_.height(), [&](int y) {
+      for (InterleavedPlane& plane : color) plane.fill_row(layout_, y, 0);
+    });
+    return color;
+  }
+
+  /// The other way, within the range of light.
+  InterleavedColor interleaved(const Plane<glm::vec3>& picture) const {
+    InterleavedColor color = black();
+    for_each_row(layout_.height(), [&](int y) {
+      for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
+        const glm::vec3 value = within_range(picture[pixel]);
+        for (int c = 0; c < 3; ++c) color[std::size_t(c)][i] = value[c];
+      });
+    });
+    return color;
   }
 
   void gather_visibility() {
-    const bool wants_light = in_.products.direct || in_.products.bounce || in_.products.error;
-    const LightModel* light = wants_light ? in_.light : nullptr;
-    const bool directional = light && light->order > 0;
-
-    InterleavedColor bent, share, difference;
-    VisibilityJob job{march_, 0, nullptr, &ao_, nullptr, nullptr, nullptr};
-    std::vector<float> weights;
+    const LightModel* light = wants_light() ? in_.light : nullptr;
+    VisibilityJob job{march_, 0, nullptr, &irradiance(), &ao_, nullptr, nullptr, nullptr};
+    InterleavedColor bent;
     if (in_.products.bent) {
       bent = make_color(layout_);
       job.bent = &bent;
       job.order = 1;
     }
-    if (directional || (wants_light && in_.products.error)) {
-      job.order = std::max(directional ? light->order : 0, 1);
-      weights = basis_weights(directional ? light : nullptr, job.order);
-      job.light = weights.data();
-      share = make_color(layout_);
-      job.share = &share;
+    std::vector<float> weights;
+    if (wants_light()) {
+      direct_ = make_color(layout_);
+      job.direct = &direct_;
+      if ((light && light->order > 0) || in_.products.error) {
+        job.order = std::max(light ? light->order : 0, 1);
+        weights = basis_weights(light && light->order > 0 ? light : nullptr, job.order);
+        job.light = weights.data();
+      }
     }
     if (in_.products.error) {
-      difference = make_color(layout_);
-      job.share_difference = &difference;
+      error_ = InterleavedPlane(layout_);
+      job.difference = &error_;
     }
     for_each_band(
-        height(), [&](int y0, int y1) { march_visibility(job, y0, y1); }, in_.progress);
-
-    out_.ao = Plane<float>(width(), height(), 1.0f);
-    if (in_.products.bent) out_.bent = Plane<glm::vec3>(width(), height(), glm::vec3(0));
-    if (in_.products.error) out_.error = Plane<float>(width(), height(), 0.0f);
-    if (wants_light) out_.direct = Plane<glm::vec3>(width(), height(), glm::vec3(0));
-    for_each_surface([&](std::size_t pixel, std::ptrdiff_t i) {
-      out_.ao[pixel] = ao_[i];
-      const glm::vec3 normal(in_.geometry.surfel[pixel].normal);
-      if (in_.products.bent) {
-        const glm::vec3 sum = color_at(bent, i);
-        const float length = glm::length(sum);
-        out_.bent[pixel] = length > 0 ? sum / length : normal;
-      }
-      if (!wants_light) return;
-      const glm::vec3 unoccluded =
-          light ? light->irradiance(normal) : in_.environment.constant_radiance();
-      out_.direct[pixel] = unoccluded * (directional ? color_at(share, i) : glm::vec3(ao_[i]));
-      if (in_.products.error) out_.error[pixel] = luminance(unoccluded * color_at(difference, i));
-    });
+        layout_.height(), [&](int y0, int y1) { march_visibility(job, y0, y1); }, in_.progress);
+    if (in_.products.bent) out_.bent = picture(bent);
     if (light) {
       for (const Sun& sun : light->suns) add_sun(sun);
     }
@@ -187,8 +214,7 @@ class Bitmask {
   /// Adds the light of a sun where it is seen. Members of the pattern look at different points of
   /// its disc.
   void add_sun(const Sun& sun) {
-    InterleavedPlane visible(layout_);
-    SunJob job{march_, {}, {}, &visible};
+    SunJob job{march_, {}, {}, &sun, &direct_};
     const glm::mat3 frame = frame_about(sun.direction);
     const double diagonal = std::hypot(in_.geometry.display.width(), in_.geometry.display.height());
     const int members = kPeriod * kPeriod, steps = kSunSteps * in_.steps;
@@ -205,76 +231,78 @@ class Bitmask {
             float(march_distance((i + start) / steps, diagonal)));
     }
     for_each_band(
-        height(), [&](int y0, int y1) { march_sun(job, y0, y1); }, in_.progress);
-    for_each_surface([&](std::size_t pixel, std::ptrdiff_t i) {
-      const glm::vec3 normal(in_.geometry.surfel[pixel].normal);
-      out_.direct[pixel] +=
-          visible[i] * std::max(0.0f, glm::dot(normal, sun.direction)) * sun.irradiance;
-    });
+        layout_.height(), [&](int y0, int y1) { march_sun(job, y0, y1); }, in_.progress);
   }
 
-  /// What each pixel sends: its albedo times all the light that arrives, or the layer that says so.
-  glm::vec3 sent_by(std::size_t pixel) const {
-    if (!in_.radiance.empty()) return within_range(in_.radiance[pixel]);
-    return within_range(in_.albedo[pixel] * (out_.direct[pixel] + out_.bounce[pixel]));
-  }
-
-  /// What the unseen side of a pixel's surface sends: it has the light from its side, as far as the
-  /// seen side is open.
-  glm::vec3 sent_by_back(std::size_t pixel) const {
-    const glm::vec3 normal = -glm::vec3(in_.geometry.surfel[pixel].normal);
-    glm::vec3 light = in_.light->irradiance(normal);
-    for (const Sun& sun : in_.light->suns)
-      light += std::max(0.0f, glm::dot(normal, sun.direction)) * sun.irradiance;
-    return within_range(in_.albedo[pixel] * (out_.ao[pixel] * light + out_.bounce[pixel]));
-  }
-
-  static void put(InterleavedColor& color, std::ptrdiff_t i, const glm::vec3& value) {
-    for (int c = 0; c < 3; ++c) color[std::size_t(c)][i] = value[c];
-  }
-
-  /// The pixel that shows what goes on behind this one; -1 where nothing does.
-  int source_behind(std::size_t pixel) const {
+  /// The light that each pixel's covered surface sends: that of the pixel where it is seen.
+  void find_sent_behind(const InterleavedColor& sent, InterleavedColor& behind) const {
     const bool known = in_.hidden && !in_.hidden->behind_source.empty();
-    return known ? in_.hidden->behind_source[pixel] : -1;
+    for_each_row(layout_.height(), [&](int y) {
+      for (InterleavedPlane& plane : behind) plane.fill_row(layout_, y, 0);
+      if (!known) return;
+      for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
+        const int source = in_.hidden->behind_source[pixel];
+        if (source < 0) return;
+        const std::ptrdiff_t from =
+            layout_.index(source % layout_.width(), source / layout_.width());
+        for (std::size_t c = 0; c < 3; ++c) behind[c][i] = sent[c][from];
+      });
+    });
   }
 
-  void gather_bounce(bool last) {
-    const bool two_sided = in_.light && in_.radiance.empty();
-    InterleavedColor sent = make_color(layout_), sent_behind = make_color(layout_),
-                     bounce = make_color(layout_), sent_back;
-    if (two_sided) sent_back = make_color(layout_);
-    for_each_row(height(), [&](int y) {
-      for (InterleavedColor* color : {&sent, &sent_behind, &sent_back}) {
-        for (InterleavedPlane& plane : *color) {
-          if (plane.data()) plane.fill_row(layout_, y, 0);
-        }
+  /// Each pass is lit by the one before.
+  void gather_bounce() {
+    const bool lit = in_.radiance.empty();  // else a layer says what is sent
+    InterleavedColor given = interleaved(lit ? in_.albedo : in_.radiance), bounce = black(),
+                     sent_back, sent_behind = make_color(layout_), gathered = make_color(layout_),
+                     sent_before_last;
+    InterleavedPlane weights(layout_), difference, error;
+    if (lit && in_.light) sent_back = black();
+    if (in_.products.error)
+      difference = InterleavedPlane(layout_), error = InterleavedPlane(layout_);
+    if (lit && in_.bounces > 1) sent_before_last = black();
+    for (int pass = 1; pass <= in_.bounces; ++pass) {
+      // The last pass asks for the albedo no more.
+      InterleavedColor& sent = lit && pass < in_.bounces ? sent_before_last : given;
+      const bool two_sided = lit && in_.light;
+      if (lit) {
+        const SenderJob senders{scene_,
+                                &ao_,
+                                &given,
+                                &direct_,
+                                pass > 1 ? &bounce : nullptr,
+                                &irradiance(),
+                                in_.light ? &in_.light->suns : nullptr,
+                                &sent,
+                                two_sided ? &sent_back : nullptr};
+        for_each_band(layout_.height(), [&](int y0, int y1) { find_senders(senders, y0, y1); });
       }
-      for (int x = 0; x < width(); ++x) {
-        const std::size_t pixel = in_.geometry.surfel.index(x, y);
-        const std::ptrdiff_t i = layout_.index(x, y);
-        if (!is_surface(i)) continue;
-        put(sent, i, sent_by(pixel));
-        if (two_sided) put(sent_back, i, sent_by_back(pixel));
-        const int source = source_behind(pixel);
-        if (source >= 0) put(sent_behind, i, sent_by(std::size_t(source)));
+      find_sent_behind(sent, sent_behind);
+      BorderValues sent_border[3];
+      for (int c = 0; c < 3; ++c) {
+        sent_border[c] = scene_.border.gather(
+            [&](int x, int y) { return sent[std::size_t(c)][layout_.index(x, y)]; });
       }
-    });
-    BorderValues sent_border[3];
-    for (int c = 0; c < 3; ++c) {
-      sent_border[c] = scene_.border.gather(
-          [&](int x, int y) { return sent[std::size_t(c)][layout_.index(x, y)]; });
+      const bool wants_error = in_.products.error && pass == in_.bounces;
+      const BounceJob job{bounce_march_,
+                          &ao_,
+                          &sent,
+                          two_sided ? &sent_back : nullptr,
+                          &sent_behind,
+                          sent_border,
+                          &gathered,
+                          &weights,
+                          wants_error ? &difference : nullptr,
+                          &bounce,
+                          wants_error ? &error : nullptr};
+      for_each_band(
+          layout_.height(), [&](int y0, int y1) { march_bounce(job, y0, y1); }, in_.progress);
+      for_each_band(layout_.height(), [&](int y0, int y1) { spread_bounce(job, y0, y1); });
     }
-    InterleavedColor difference;
-    if (in_.products.error) difference = make_color(layout_);
-    const BounceJob job{
-        bounce_march_, &ao_,        &sent,   two_sided ? &sent_back : nullptr,
-        &sent_behind,  sent_border, &bounce, in_.products.error ? &difference : nullptr};
-    for_each_band(
-        height(), [&](int y0, int y1) { march_bounce(job, y0, y1); }, in_.progress);
-    for_each_surface([&](std::size_t pixel, std::ptrdiff_t i) {
-      out_.bounce[pixel] = color_at(bounce, i);
-      if (last && in_.products.error) out_.error[pixel] += luminance(color_at(difference, i));
+    out_.bounce = picture(bounce);
+    if (!in_.products.error) return;
+    for_each_row(layout_.height(), [&](int y) {
+      for_each_pixel(y, [&](std::size_t, std::ptrdiff_t i) { error_[i] += error[i]; });
     });
   }
 
@@ -283,7 +311,9 @@ class Bitmask {
   const Interleaving& layout_;
   SlicePattern pattern_, bounce_pattern_;
   March march_, bounce_march_;
-  InterleavedPlane ao_;
+  OctahedralMap constant_irradiance_{2};
+  InterleavedPlane ao_, error_;
+  InterleavedColor direct_;
   Products out_;
 };
 

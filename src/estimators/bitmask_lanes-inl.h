@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The geometry of method bitmask for a vector of pixels, compiled once for every instruction set;
-// see bitmask.cpp for the method and its symbols. Lanes are pixels that lie a pattern apart in a row.
+// see bitmask.cpp for the method and its symbols. Lanes are pixels that lie a pattern apart in a
+// row.
 #if defined(SSDO_BITMASK_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_LANES_INL_H_
 #undef SSDO_BITMASK_LANES_INL_H_
@@ -9,6 +10,7 @@
 #define SSDO_BITMASK_LANES_INL_H_
 #endif
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <cmath>
@@ -90,6 +92,7 @@ HWY_INLINE Receiver load_receiver(const MarchScene& scene, std::ptrdiff_t i, int
                                   int column) {
   const D d;
   Receiver p;
+  hwy::Prefetch(scene.rounding.data() + i + 4 * hn::Lanes(d));  // nothing else comes by here
   const V depth = hn::LoadU(d, scene.depth.data() + i);
   p.x = lane_columns(scene.layout, comb, column), p.y = hn::Set(d, float(y));
   p.nx = hn::LoadU(d, scene.nx.data() + i);

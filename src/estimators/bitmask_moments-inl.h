@@ -5,7 +5,8 @@
 //
 // On the circle of a slice, harmonics of order L are sums of cos(k theta) and sin(k theta) up to
 // k = L. So the moments of a set of sectors up to L say all that they will ever be asked, and
-// 2 L + 1 equally spaced directions, weighted to have the same moments, stand for the set.
+// 2 L + 2 equally spaced directions, weighted to have the same moments, stand for the set. They are
+// L + 1 lines: harmonics of an even order are the same at both ends, those of an odd one opposite.
 #if defined(SSDO_BITMASK_MOMENTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_MOMENTS_INL_H_
 #undef SSDO_BITMASK_MOMENTS_INL_H_
@@ -16,6 +17,7 @@
 #include <hwy/highway.h>
 
 #include "estimators/bitmask_lanes-inl.h"
+#include "estimators/bitmask_light-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -115,28 +117,31 @@ struct CircleMoments {
     }
   }
 
-  /// Weight of the direction at this angle, one of 2 kOrder + 1.
-  HWY_INLINE V at(const float* cosines, const float* sines) const {
+  /// Weights of the direction at this angle, one of 2 kOrder + 2, with that of the opposite one
+  /// added and subtracted.
+  HWY_INLINE void at(const float* cosines, const float* sines, V& both, V& difference) const {
     const D d;
-    V sum = cosine[0] * hn::Set(d, 0.5f);
+    V sums[2] = {cosine[0] * hn::Set(d, 0.5f), hn::Zero(d)};
     for (int k = 1; k <= kOrder; ++k) {
+      V& sum = sums[k % 2];
       sum = hn::MulAdd(cosine[k], hn::Set(d, cosines[k]), sum);
       sum = hn::MulAdd(sine[k], hn::Set(d, sines[k]), sum);
     }
-    return sum * hn::Set(d, 2.0f / (2 * kOrder + 1));
+    const V scale = hn::Set(d, 2.0f / (kOrder + 1));
+    both = sums[0] * scale, difference = sums[1] * scale;
   }
 };
 
-/// cos and sin of k times each of 2 kOrder + 1 equally spaced angles.
+/// cos and sin of k times each of kOrder + 1 angles that divide the half-circle equally.
 template <int kOrder>
 struct CircleDirections {
-  static constexpr int kCount = 2 * kOrder + 1;
+  static constexpr int kCount = kOrder + 1;
   float cosine[kCount][kOrder + 1], sine[kCount][kOrder + 1];
 
   CircleDirections() {
     for (int j = 0; j < kCount; ++j) {
       for (int k = 0; k <= kOrder; ++k) {
-        const double angle = 2 * 3.14159265358979324 * j * k / kCount;
+        const double angle = 3.14159265358979324 * j * k / kCount;
         cosine[j][k] = float(std::cos(angle)), sine[j][k] = float(std::sin(angle));
       }
     }
@@ -196,12 +201,15 @@ struct Moments {
       for (int j = 0; j < CircleDirections<kOrder>::kCount; ++j) {
         const float *cosines = directions.cosine[j], *sines = directions.sine[j];
         const V c = hn::Set(d, cosines[1]), s = hn::Set(d, sines[1]);
-        const V h = f.weight * hidden_of_slice.at(cosines, sines),
-                w = f.weight * whole_of_slice.at(cosines, sines);
+        V h[2], w[2];
+        hidden_of_slice.at(cosines, sines, h[0], h[1]);
+        whole_of_slice.at(cosines, sines, w[0], w[1]);
+        for (int k = 0; k < 2; ++k) h[k] = h[k] * f.weight, w[k] = w[k] * f.weight;
         for_each_high_basis<kOrder>(dot2(c, s, p.vx, f.tx), dot2(c, s, p.vy, f.ty),
                                     dot2(c, s, p.vz, f.tz), [&](int i, V value) HWY_ATTR {
-                                      hidden[i] = hn::MulAdd(h, value, hidden[i]);
-                                      whole[i] = hn::MulAdd(w, value, whole[i]);
+                                      const int odd = i >= 9 && i < 16;  // band 3
+                                      hidden[i] = hn::MulAdd(h[odd], value, hidden[i]);
+                                      whole[i] = hn::MulAdd(w[odd], value, whole[i]);
                                     });
       }
     }
@@ -229,15 +237,22 @@ struct Moments {
     return hn::IfThenElse(total > hn::Zero(d), share, otherwise);
   }
 
-  /// The mean open direction, not normalised. Of an open surface it is the normal, whatever the
-  /// slices: what their sum over all directions lacks of it is added as far as the surface is open.
-  HWY_INLINE void bent_normal(const Receiver& p, V ao, V bent[3]) const {
-    const V normal[3] = {p.nx, p.ny, p.nz};
-    for (int c = 0; c < 3; ++c) {
-      const int band = 1 + (c + 2) % 3;  // bands of order 1 are y, z, x
-      const V expected = hn::Set(D(), 2.0f / 3) * whole[0] * normal[c];
-      bent[c] = hn::MulAdd(ao, expected - whole[band], whole[band] - hidden[band]);
-    }
+  /// The mean open direction; `closed` where nothing is open. Of an open surface it is the normal,
+  /// whatever the slices: what their sum over all directions lacks of it is added as far as the
+  /// surface is open.
+  HWY_INLINE Color bent_normal(const Receiver& p, V ao, const Normals& closed) const {
+    const D d;
+    const V full = hn::Set(d, 2.0f / 3) * whole[0];
+    const auto along = [&](V normal, int band) HWY_ATTR {  // bands of order 1 are y, z, x
+      return hn::MulAdd(ao, hn::MulSub(full, normal, whole[band]), whole[band] - hidden[band]);
+    };
+    const V x = along(p.nx, 3), y = along(p.ny, 1), z = along(p.nz, 2);
+    const V length2 = dot3(x, y, z, x, y, z);
+    const M has_length = length2 > hn::Zero(d);
+    const V scale = hn::Set(d, 1.0f) / hn::Sqrt(length2);
+    return {hn::IfThenElse(has_length, x * scale, closed.x),
+            hn::IfThenElse(has_length, y * scale, closed.y),
+            hn::IfThenElse(has_length, z * scale, closed.z)};
   }
 
   HWY_INLINE Moments minus(const Moments& other) const {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Whether each pixel sees a sun: a march along the one slice that holds it, compiled once for
-// every instruction set. Here lanes look at different offsets, so that samples are gathered.
+// The light of a sun where a pixel sees it: a march along the one slice that holds it, compiled
+// once for every instruction set. Here lanes look at different offsets, so that samples are
+// gathered.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask_sun.cpp"
 #include <hwy/foreach_target.h>
 
 #include "estimators/bitmask_extension-inl.h"
+#include "estimators/bitmask_light-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -108,7 +110,8 @@ void sun(const SunJob& job, int y0, int y1) {
           hn::ConvertTo(di, hn::IfThenElseZero(looks, qx_px)) + hn::Set(di, layout.phase());
       const auto line = hn::ConvertTo(di, hn::IfThenElseZero(looks, qy_px)) * hn::Set(di, kPeriod) +
                         hn::And(shifted, hn::Set(di, kPeriod - 1));
-      const auto index = line * hn::Set(di, int(layout.stride())) + hn::ShiftRight<Interleaving::kShift>(shifted) +
+      const auto index = line * hn::Set(di, int(layout.stride())) +
+                         hn::ShiftRight<Interleaving::kShift>(shifted) +
                          hn::Set(di, Interleaving::kPad);
       const auto gather = [&](const InterleavedPlane& plane)
                               HWY_ATTR { return hn::GatherIndex(d, plane.data(), index); };
@@ -133,7 +136,10 @@ void sun(const SunJob& job, int y0, int y1) {
       const M rises = hn::Or(e.above > zero, e.end_above > zero);
       open = hn::AndNot(hn::And(crosses, rises), open);
     }
-    hn::StoreU(hn::IfThenElseZero(open, hn::Set(d, 1.0f)), d, job.visible->data() + at);
+    const V cosine = load_normals(scene, at, p.valid).facing(job.sun->direction);
+    store_color(mul_add(set_color(job.sun->irradiance), hn::IfThenElseZero(open, cosine),
+                        load_color(*job.direct, at)),
+                *job.direct, at);
   });
 }
 

@@ -15,9 +15,9 @@ constexpr int kPeriod = Interleaving::kPeriod;
 
 /// An ordering of the pattern in which neighbours are far apart (Bayer's matrix, 1973): each of its
 /// quarters holds every fourth rank, and so do theirs.
-int order_of(int column, int row) {
+int order_of(int column, int row, int size) {
   int rank = 0;
-  for (int bit = 1; bit < kPeriod; bit *= 2) {
+  for (int bit = 1; bit < size; bit *= 2) {
     const bool right = column & bit, below = row & bit;
     rank = 4 * rank + (right != below ? 2 : 0) + (below ? 1 : 0);
   }
@@ -89,30 +89,31 @@ double march_distance(double t, double diagonal) {
   return std::pow(diagonal, std::pow(t, kFarther));
 }
 
-int SlicePattern::rank(int member) { return order_of(member % kPeriod, member / kPeriod); }
+int SlicePattern::rank(int member) { return order_of(member % kPeriod, member / kPeriod, kPeriod); }
 
 SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, int slices, int steps,
-                           unsigned seed)
-    : members_(kPeriod * kPeriod) {
+                           unsigned seed, int spacing)
+    : members_(kPeriod * kPeriod), spacing_(spacing) {
   const double diagonal = std::max(2.0, std::hypot(display.width(), display.height()));
   const double turn = start_of(3 * std::uint64_t(seed)),
                start1 = start_of(3 * std::uint64_t(seed) + 1),
                start2 = start_of(3 * std::uint64_t(seed) + 2);
-  for (int row = 0; row < kPeriod; ++row) {
-    for (int column = 0; column < kPeriod; ++column) {
-      const int member = row * kPeriod + column;
-      const double place = (rank(member) + fraction(turn)) / (kPeriod * kPeriod);
+  const int size = kPeriod / spacing;
+  for (int row = 0; row < kPeriod; row += spacing) {
+    for (int column = 0; column < kPeriod; column += spacing) {
+      const int rank = order_of(column / spacing, row / spacing, size);
+      const double place = (rank + fraction(turn)) / (size * size);
       for (int k = 0; k < slices; ++k) {
         const double angle = glm::pi<double>() * (k + place) / slices;
         Slice slice{float(std::cos(angle)), float(std::sin(angle)), {}};
         for (int s = 0; s < 2; ++s) {
-          const double n = (rank(member) * slices + k) * 2 + s;
+          const double n = (rank * slices + k) * 2 + s;
           const double sign = s == 0 ? 1 : -1;
           slice.sides[s] = make_side(layout, column, row, sign * slice.dx, sign * slice.dy, steps,
                                      diagonal, fraction(start1 + n * kR2First),
                                      phase_in(fraction(start2 + n * kR2Second)));
         }
-        members_[std::size_t(member)].push_back(std::move(slice));
+        members_[std::size_t(row * kPeriod + column)].push_back(std::move(slice));
       }
     }
   }

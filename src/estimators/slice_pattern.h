@@ -39,13 +39,16 @@ struct Slice {
   SliceSide sides[2];  ///< along (dx, dy) and against it
 };
 
-/// The slices of every member of the T x T pattern, T = Interleaving::kPeriod, row by row. All members together divide the
-/// half-circle evenly.
+/// The slices of every member of the T x T pattern, T = Interleaving::kPeriod, row by row. All
+/// members together divide the half-circle evenly.
 class SlicePattern {
  public:
-  /// `steps` per side, from one pixel to the diagonal of `display`.
+  /// `steps` per side, from one pixel to the diagonal of `display`. Of `spacing` x `spacing`
+  /// pixels, 1 or a power of two, one marches; the others have no slices.
   SlicePattern(const Interleaving& layout, const Window& display, int slices, int steps,
-               unsigned seed);
+               unsigned seed, int spacing = 1);
+
+  int spacing() const { return spacing_; }
 
   /// The rank of each member in an order in which neighbours are far apart, 0..T^2 - 1.
   static int rank(int member);
@@ -56,6 +59,7 @@ class SlicePattern {
 
  private:
   std::vector<std::vector<Slice>> members_;
+  int spacing_;
 };
 
 }  // namespace ssdo

@@ -44,6 +44,7 @@ class OctahedralMap {
     return octahedral_decode(glm::vec2(x, y) / float(size() - 1));
   }
   glm::vec3& operator()(int x, int y) { return nodes_(x, y); }
+  const float* data() const { return &nodes_[0].x; }  ///< by row, node and channel
 
   glm::vec3 operator()(const glm::vec3& direction) const {
     const glm::vec2 at = octahedral_encode(direction) * float(size() - 1);
