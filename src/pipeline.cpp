@@ -50,7 +50,9 @@ Plane<float> standard_error(const Plane<float>& difference, const Geometry& geom
   Products squares;
   squares.error = difference;
   for (float& e : squares.error.pixels) e *= e;
-  squares = apply_filter(*plan.filter, std::move(squares), geometry, plan.method->pattern_size);
+  constexpr int kNeighbours = 4;  // enough to tell a size, be the pattern larger
+  squares = apply_filter(*plan.filter, std::move(squares), geometry,
+                         std::min(plan.method->pattern_size, kNeighbours));
   for (float& e : squares.error.pixels) e = std::sqrt(std::max(e, 0.0f));
   return std::move(squares.error);
 }

@@ -113,7 +113,7 @@ class Bitmask {
 
   Products run() {
     gather_visibility();
-    if (in_.products.bounce) gather_bounce();
+    if (in_.products.bounce) out_.bounce = picture(gather_bounce());
     if (in_.products.error) out_.error = picture(error_);
     out_.ao = picture(ao_, 1.0f);
     if (wants_light()) out_.direct = picture(direct_);
@@ -251,7 +251,7 @@ class Bitmask {
   }
 
   /// Each pass is lit by the one before.
-  void gather_bounce() {
+  InterleavedColor gather_bounce() {
     const bool lit = in_.radiance.empty();  // else a layer says what is sent
     InterleavedColor given = interleaved(lit ? in_.albedo : in_.radiance), bounce = black(),
                      sent_back, sent_behind = make_color(layout_), gathered = make_color(layout_),
@@ -299,11 +299,12 @@ class Bitmask {
           layout_.height(), [&](int y0, int y1) { march_bounce(job, y0, y1); }, in_.progress);
       for_each_band(layout_.height(), [&](int y0, int y1) { spread_bounce(job, y0, y1); });
     }
-    out_.bounce = picture(bounce);
-    if (!in_.products.error) return;
-    for_each_row(layout_.height(), [&](int y) {
-      for_each_pixel(y, [&](std::size_t, std::ptrdiff_t i) { error_[i] += error[i]; });
-    });
+    if (in_.products.error && in_.bounces > 0) {
+      for_each_row(layout_.height(), [&](int y) {
+        for_each_pixel(y, [&](std::size_t, std::ptrdiff_t i) { error_[i] += error[i]; });
+      });
+    }
+    return bounce;
   }
 
   const EstimateInput& in_;

@@ -20,6 +20,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
+#include <vector>
 
 #include "parallel/tiles.h"
 
@@ -143,20 +144,24 @@ class Silhouettes {
 
 std::size_t mend_silhouettes(Geometry& geometry, const Residual& residual) {
   const Silhouettes silhouettes(geometry, residual);
-  Plane<unsigned char> is_average(geometry.surfel.width, geometry.surfel.height);
-  Plane<Surfel> mended = geometry.surfel;
-  for_each_row(mended.height, [&](int y) {
-    for (int x = 0; x < mended.width; ++x) {
-      const auto surfel = silhouettes.mended(x, y);
-      if (!surfel) continue;
-      mended(x, y) = *surfel;
-      is_average(x, y) = 1;
+  struct Mended {
+    int x;
+    Surfel surfel;
+  };
+  std::vector<std::vector<Mended>> rows(std::size_t(geometry.surfel.height));
+  for_each_row(geometry.surfel.height, [&](int y) {
+    for (int x = 0; x < geometry.surfel.width; ++x) {
+      if (const auto surfel = silhouettes.mended(x, y))
+        rows[std::size_t(y)].push_back({x, *surfel});
     }
   });
-  const auto count = std::count(is_average.pixels.begin(), is_average.pixels.end(), 1);
-  if (double(count) < kFewestAverages * double(mended.size())) return 0;
-  geometry.surfel = std::move(mended);
-  return std::size_t(count);
+  std::size_t count = 0;
+  for (const auto& row : rows) count += row.size();
+  if (double(count) < kFewestAverages * double(geometry.surfel.size())) return 0;
+  for (int y = 0; y < geometry.surfel.height; ++y) {
+    for (const Mended& m : rows[std::size_t(y)]) geometry.surfel(m.x, y) = m.surfel;
+  }
+  return count;
 }
 
 }  // namespace ssdo

@@ -99,6 +99,54 @@ TEST(BitmaskBounce, ALayerOfRadianceHoldsForBothSides) {
   EXPECT_NEAR(bounce, hidden, 0.01 * hidden);
 }
 
+/// Mean bounce over the columns of pixels from x0 to x1, in rows where the walls go on.
+glm::dvec3 mean_bounce(const Products& out, int x0, int x1) {
+  glm::dvec3 sum(0);
+  for (int y = 40; y < 104; ++y) {
+    for (int x = x0; x < x1; ++x) sum += glm::dvec3(out.bounce(x, y));
+  }
+  return sum / (64.0 * (x1 - x0));
+}
+
+TEST(BitmaskBounce, FewSlicesKeepToTheirSurface) {
+  // A terrace over a floor, seen from above, and a red wall on the terrace, a blue one on the
+  // floor: on both sides of the edge between them the light is another.
+  const auto on_terrace = [](const glm::dvec3& p) { return p.x < 0; };
+  const auto on_floor = [](const glm::dvec3& p) { return p.x >= 0; };
+  const auto low = [](const glm::dvec3& p) { return p.z > 0 && p.z < 1.5; };
+  const Surface scene =
+      all_of({cut(plane({0, 0, 1}, {0, 0, 1}), on_terrace), cut(plane({}, {0, 0, 1}), on_floor),
+              cut(plane({-1.5, 0, 0}, {1, 0, 0}), low), cut(plane({1, 0, 0}, {-1, 0, 0}), low)});
+  const Camera camera = look_at(camera_from_fov(40, kWindow, 1), {0, 0, 6}, {0, 0, 0}, {0, 1, 0});
+  const Geometry g = geometry_of(scene, camera, kWindow);
+  Plane<glm::vec3> radiance = constant(glm::vec3(0));
+  int edge = 0;
+  for (int y = 0; y < kWindow.height(); ++y) {
+    for (int x = 0; x < kWindow.width(); ++x) {
+      const Point p = point_at(scene, camera, kWindow, x, y);
+      if (std::abs(p.normal.x) > 0.5)
+        radiance(x, y) = p.normal.x > 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1);
+      else if (y == 72 && p.position.z > 0.5)
+        edge = std::max(edge, x);
+    }
+  }
+  const auto with = [&](int slices) {
+    return run(g, {.radius = kNoLimit,
+                   .slices = slices,
+                   .steps = 64,
+                   .extend = false,
+                   .bounces = 1,
+                   .radiance = radiance});
+  };
+  const Products few = with(2), many = with(12);
+  for (const int x : {edge - 1, edge + 1}) {
+    const glm::dvec3 found = mean_bounce(few, x, x + 2), expected = mean_bounce(many, x, x + 2);
+    fmt::print("bounce beside an edge: red {:.4f} ({:.4f}), blue {:.4f} ({:.4f})\n", found.x,
+               expected.x, found.z, expected.z);
+    EXPECT_LT(glm::length(found - expected), 0.1 * glm::length(expected)) << x;
+  }
+}
+
 TEST(BitmaskBounce, InAClosedBoxNothingOutshinesTheSky) {
   const Surface box = all_of({plane({0, 0, 0}, {0, 0, 1}), plane({0, 0, 3}, {0, 0, -1}),
                               plane({0, 3, 0}, {0, -1, 0}), plane({0, -3, 0}, {0, 1, 0}),

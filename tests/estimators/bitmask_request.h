@@ -18,9 +18,10 @@ namespace ssdo::test {
 constexpr float kNoLimit = std::numeric_limits<float>::infinity();
 constexpr double kPi = glm::pi<double>();
 
-/// What a test asks of method bitmask. The defaults have converged: the 16 pixels of the pattern
-/// have 192 slices together, and steps visit every pixel within a few hundred. What is left is the
-/// pixel itself: an edge is seen half a pixel late, so closed forms need a radius of many pixels.
+/// What a test asks of method bitmask. The defaults have converged: any 4 x 4 pixels of the pattern
+/// have 192 slices together, evenly spread, and steps visit every pixel within a few hundred. What
+/// is left is the pixel itself: an edge is seen half a pixel late, so closed forms need a radius of
+/// many pixels.
 struct Request {
   float radius = 1;
   Environment environment = Environment::constant(glm::vec3(1));
@@ -100,8 +101,8 @@ inline Point point_at(const Surface& scene, const Camera& camera, const Window& 
   return {ray.origin + hit.distance * ray.direction, away ? -hit.normal : hit.normal};
 }
 
-/// Mean of `value(x, y)` over the square of 2 `half` pixels around the middle: with an even `half`,
-/// every member of the 4 x 4 pattern as often as any other.
+/// Mean of `value(x, y)` over the square of 2 `half` pixels around the middle. With an even `half`
+/// their slices are evenly spread.
 template <class Value>
 auto middle(const Window& window, const Value& value, int half = 2) {
   auto sum = value(window.width() / 2, window.height() / 2) * 0.0;
