@@ -30,9 +30,10 @@ struct Border {
   }
 };
 
-/// The way out along (dx, dy), a unit vector in pixels; `shared` by all lanes or not.
+/// The way out along (dx, dy), a unit vector in pixels; `shared` by all lanes or not. In the latter
+/// case it may lead `aside_px` away from there, a whole number, along the border.
 HWY_INLINE Border border_along(const MarchScene& scene, const Receiver& p, int comb, int column,
-                               V dx, V dy, bool shared) {
+                               V dx, V dy, bool shared, float aside_px = 0) {
   const D d;
   const DI di;
   const Interleaving& layout = scene.layout;
@@ -56,11 +57,12 @@ HWY_INLINE Border border_along(const MarchScene& scene, const Receiver& p, int c
                                        column + (column_of_lane_0 >> Interleaving::kShift));
     return border;
   }
+  const V beside = hn::Set(d, aside_px);
   const V edge_x = hn::IfThenElse(through_side, hn::IfThenElse(rightwards, right, zero),
-                                  hn::Clamp(p.x + aside, zero, right)),
-          edge_y =
-              hn::IfThenElse(through_side, hn::Clamp(p.y + hn::Round(to_side * dy), zero, bottom),
-                             hn::IfThenElse(downwards, bottom, zero));
+                                  hn::Clamp(p.x + aside + beside, zero, right)),
+          edge_y = hn::IfThenElse(through_side,
+                                  hn::Clamp(p.y + hn::Round(to_side * dy) + beside, zero, bottom),
+                                  hn::IfThenElse(downwards, bottom, zero));
   border.dx = edge_x - p.x, border.dy = edge_y - p.y;
   const auto shifted = hn::ConvertTo(di, edge_x) + hn::Set(di, phase);
   const auto offset = [&](M later, std::ptrdiff_t first, std::ptrdiff_t second) HWY_ATTR {

@@ -17,6 +17,13 @@ namespace ssdo::HWY_NAMESPACE {
 /// all or nothing, where slices average many guesses, so that the guess has to be a safer one.
 constexpr float kSunWidths = 8;
 
+/// How many pixels of the border are asked what goes on there, and how far they lie to both sides
+/// of where the ray leaves the frame, in heights of the frame. One alone may show a ledge, or the
+/// gap beside it, and draw its shadow across the frame. Relative error of direct light, one to
+/// five: a street 0.994, 0.946; things on a table 0.121, 0.113; more or farther ones change little.
+constexpr int kWitnesses = 5;
+constexpr float kWitnessReach = 0.1f;
+
 /// The way to the sun from a receiver.
 struct SunRay {
   V s, v;            ///< its direction in the slice
@@ -77,6 +84,34 @@ HWY_INLINE V middle_of_block(V pixel) {
   return hn::MulAdd(hn::Round((pixel - middle) * hn::Set(D(), 0.25f)), block, middle);
 }
 
+/// How many of the surfaces that go on beyond the frame let rays pass, 0..1. `turn` in 0..1 differs
+/// from member to member of the pattern.
+template <bool kOrthographic>
+HWY_INLINE V open_beyond(const March& march, const Receiver& p, const Half& half, const SunRay& ray,
+                         int comb, int column, float reach, M open, float turn) {
+  const D d;
+  const V zero = hn::Zero(d);
+  const float apart_px = 2 * kWitnessReach * float(march.scene.layout.height()) / kWitnesses;
+  V passed = zero;
+  for (int k = 0; k < kWitnesses; ++k) {
+    const float aside_px = std::round((float(k) + turn - 0.5f * kWitnesses) * apart_px);
+    const Border border =
+        border_along(march.scene, p, comb, column, ray.step_x, ray.step_y, false, aside_px);
+    const Extension e = extend<kOrthographic>(march, p, half, border, reach, kSunWidths);
+    // The ray passes between both ends of the piece.
+    const V here = e.s * ray.v - e.v * ray.s, there = e.end_s * ray.v - e.end_v * ray.s;
+    const M leaves = hn::And(e.exists, border.distance_px < ray.end_px);
+    const M crosses = hn::And(leaves, here * there <= zero);
+    const M rises = hn::Or(e.above > zero, e.end_above > zero);
+    // The last step may be far from the border.
+    const M meets = blocks<kOrthographic>(p, half, ray, hn::And(open, leaves), e.s, e.above,
+                                          march.radius, [&]() HWY_ATTR { return e.depth; });
+    const M hides = hn::Or(meets, hn::And(crosses, rises));
+    passed = passed + hn::IfThenElseZero(hn::AndNot(hides, open), hn::Set(d, 1.0f / kWitnesses));
+  }
+  return passed;
+}
+
 template <bool kOrthographic>
 void sun(const SunJob& job, int y0, int y1) {
   const MarchScene& scene = job.march.scene;
@@ -126,20 +161,16 @@ void sun(const SunJob& job, int y0, int y1) {
       open = hn::AndNot(hides(gather(scene.depth), scene.thickness), open);
       open = hn::AndNot(hides(gather(scene.behind), scene.behind_thickness), open);
     }
+    V visible = hn::IfThenElseZero(open, hn::Set(d, 1.0f));
     if (job.march.extend && !hn::AllFalse(d, open)) {
-      const Border border = border_along(scene, p, comb, column, ray.step_x, ray.step_y, false);
-      const Extension e = extend<kOrthographic>(job.march, p, half, border, reach, kSunWidths);
-      // The ray passes between both ends of the piece.
-      const V here = e.s * ray.v - e.v * ray.s, there = e.end_s * ray.v - e.end_v * ray.s;
-      const M crosses =
-          hn::And(hn::And(e.exists, border.distance_px < ray.end_px), here * there <= zero);
-      const M rises = hn::Or(e.above > zero, e.end_above > zero);
-      open = hn::AndNot(hn::And(crosses, rises), open);
+      const float turn = (float(SlicePattern::rank(member)) + 0.5f) / (kPeriod * kPeriod);
+      visible =
+          open_beyond<kOrthographic>(job.march, p, half, ray, comb, column, reach, open, turn);
     }
     const V cosine = load_normals(scene, at, p.valid).facing(job.sun->direction);
-    store_color(mul_add(set_color(job.sun->irradiance), hn::IfThenElseZero(open, cosine),
-                        load_color(*job.direct, at)),
-                *job.direct, at);
+    store_color(
+        mul_add(set_color(job.sun->irradiance), visible * cosine, load_color(*job.direct, at)),
+        *job.direct, at);
   });
 }
 
