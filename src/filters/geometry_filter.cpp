@@ -5,12 +5,15 @@
 // tangent plane and by how far their normals differ.
 //
 //   out(p) = sum_q b(q) w(p, q) in(q) / sum_q b(q) w(p, q)
-//   w = ramp(|n_p . (q - p)| / (t |q - p|)) * ramp((1 - n_p . n_q) / (1 - c))
+//   w = ramp(h / (t |q - p|)) * ramp((1 - n_p . n_q) / (1 - c))
+//   h = min(|n_p . (q - p)|, |n_p . (q - p) + n_p . (o - p)|),   o on the other side of p
 //   ramp(x) = 1 up to 1/2, falling to 0 at 1
 //
 // The first argument is the sine of the angle by which q leaves the tangent plane, so that the
-// weight knows no unit and no resolution. The flat part matters: where a surface bends gently, all
-// members of the pattern have to weigh the same, or the pattern shows through.
+// weight knows no unit and no resolution. Smooth normals of a coarse mesh may lean away from its
+// faces: there the plane cuts the surface, but what q rises above it, o falls below. The flat part
+// matters: where a surface bends gently, all members of the pattern have to weigh the same, or the
+// pattern shows through.
 //
 // The window is T + 1 wide, with b = 1/2 at its ends: each of the T x T members of the pattern
 // then has a total weight of exactly 1, which removes the pattern on a plane, and the window has a
@@ -71,28 +74,41 @@ HWY_INLINE V clamp01(V x) {
   return hn::Min(hn::Max(x, hn::Zero(d)), hn::Set(d, 1.0f));
 }
 
-/// ramp(off_plane / (t distance)). Most neighbours lie in the flat part, which squares can tell.
-HWY_INLINE V plane_ramp(V off_plane, V distance2) {
-  const D d;
-  const V one = hn::Set(d, 1.0f);
-  constexpr float kFlat = kPlaneTolerance / 2;
-  if (hn::AllTrue(d, off_plane * off_plane <= distance2 * hn::Set(d, kFlat * kFlat))) return one;
-  const V sine = off_plane / hn::Sqrt(distance2);
-  const V ramp = clamp01(hn::NegMulAdd(sine, hn::Set(d, 2 / kPlaneTolerance), hn::Set(d, 2.0f)));
-  return hn::IfThenElse(distance2 > hn::Zero(d), ramp, one);
+/// How far q lies from p's tangent plane, signed.
+HWY_INLINE V above_plane(const Pixels& p, const Pixels& q) {
+  return dot3(q.x - p.x, q.y - p.y, q.z - p.z, p.nx, p.ny, p.nz);
 }
 
-/// w(p, q), 0 where one of them has no normal.
-HWY_INLINE V similarity(const Pixels& p, const Pixels& q) {
+/// ramp(h / (t |q - p|)), where it is not flat: few ask.
+HWY_NOINLINE V plane_ramp(const Pixels& p, const Pixels& q, const Pixels& o) {
   const D d;
-  const V x = q.x - p.x, y = q.y - p.y, z = q.z - p.z;
-  const V off_plane =
-      hn::Max(hn::Zero(d), hn::Abs(dot3(x, y, z, p.nx, p.ny, p.nz)) - (p.rounding + q.rounding));
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const V x = q.x - p.x, y = q.y - p.y, z = q.z - p.z, distance2 = dot3(x, y, z, x, y, z);
+  const V above = above_plane(p, q), rounding = p.rounding + q.rounding;
+  const V off_plane = hn::Max(zero, hn::Abs(above) - rounding),
+          bend = hn::Max(zero, hn::Abs(above + above_plane(p, o)) - rounding - rounding);
+  const auto exists = dot3(o.nx, o.ny, o.nz, o.nx, o.ny, o.nz) > zero;
+  const V sine = hn::IfThenElse(exists, hn::Min(off_plane, bend), off_plane) / hn::Sqrt(distance2);
+  const V ramp = clamp01(hn::NegMulAdd(sine, hn::Set(d, 2 / kPlaneTolerance), hn::Set(d, 2.0f)));
+  return hn::IfThenElse(distance2 > zero, ramp, one);
+}
+
+/// w(p, q), 0 where one of them has no normal. `opposite()` is the pixel on p's other side.
+template <class Opposite>
+HWY_INLINE V similarity(const Pixels& p, const Pixels& q, const Opposite& opposite) {
+  const D d;
   // 2 - 2 (1 - cosine) / (1 - c)
   constexpr float kSlope = 2 / (1 - kNormalCosine);
   const V cosine = dot3(p.nx, p.ny, p.nz, q.nx, q.ny, q.nz);
   const V turn = clamp01(hn::MulAdd(cosine, hn::Set(d, kSlope), hn::Set(d, 2 - kSlope)));
-  return turn * plane_ramp(off_plane, dot3(x, y, z, x, y, z));
+  // Most neighbours lie in the flat part of the ramp, which squares can tell.
+  const V x = q.x - p.x, y = q.y - p.y, z = q.z - p.z;
+  const V off_plane =
+      hn::Max(hn::Zero(d), hn::Abs(dot3(x, y, z, p.nx, p.ny, p.nz)) - (p.rounding + q.rounding));
+  constexpr float kFlat = kPlaneTolerance / 2;
+  const V flat2 = dot3(x, y, z, x, y, z) * hn::Set(d, kFlat * kFlat);
+  if (hn::AllTrue(d, off_plane * off_plane <= flat2)) return turn;
+  return turn * plane_ramp(p, q, opposite());
 }
 
 class TileFilter {
@@ -158,17 +174,21 @@ class TileFilter {
     V sum0 = hn::Zero(d), sum1 = sum0;
     float* weight = weights_.get();
     for (int dy = -half_; dy <= half_ + 1; ++dy) {
-      const float* from = rows_.row(y + dy, 0) + x + half_;
+      const auto pixels_at = [&](int row, int dx) HWY_ATTR {
+        return load_pixels(rows_.row(row, 0) + x + half_ + dx, stride);
+      };
       const float border0 = border(dy), border1 = border(dy - 1);
       for (int dx = -half_; dx <= half_; ++dx, weight += 2 * kLanes) {
-        const Pixels q = load_pixels(from + dx, stride);
+        const Pixels q = pixels_at(y + dy, dx);
         if (border0 != 0) {
-          const V w = hn::Set(d, border(dx) * border0) * similarity(p0, q);
+          const auto opposite = [&]() HWY_ATTR { return pixels_at(y - dy, -dx); };
+          const V w = hn::Set(d, border(dx) * border0) * similarity(p0, q, opposite);
           hn::Store(w, d, weight);
           sum0 = sum0 + w;
         }
         if (border1 != 0) {
-          const V w = hn::Set(d, border(dx) * border1) * similarity(p1, q);
+          const auto opposite = [&]() HWY_ATTR { return pixels_at(y + 2 - dy, -dx); };
+          const V w = hn::Set(d, border(dx) * border1) * similarity(p1, q, opposite);
           hn::Store(w, d, weight + kLanes);
           sum1 = sum1 + w;
         }
@@ -264,12 +284,14 @@ class CornerFilter {
       return load_pixels(rows_.row(row, 0) + column, stride);
     };
     const Pixels p = surface_at(y, x + offset_);
+    const Pixels q0 = surface_at(above, left), q1 = surface_at(above, right),
+                 q2 = surface_at(below, left), q3 = surface_at(below, right);
     const V quarter = hn::Set(d, 0.25f);
-    const V w0 = quarter * similarity(p, surface_at(above, left)),
-            w1 = quarter * similarity(p, surface_at(above, right)),
-            w2 = quarter * similarity(p, surface_at(below, left)),
-            w3 = quarter * similarity(p, surface_at(below, right));
-    hn::Store(similarity(p, p), d, is_surface() + x);
+    const auto weight = [&](const Pixels& q, const Pixels& opposite) HWY_ATTR {
+      return quarter * similarity(p, q, [&]() HWY_ATTR { return opposite; });
+    };
+    const V w0 = weight(q0, q3), w1 = weight(q1, q2), w2 = weight(q2, q1), w3 = weight(q3, q0);
+    hn::Store(dot3(p.nx, p.ny, p.nz, p.nx, p.ny, p.nz), d, is_surface() + x);
     int c = 0;
     for (const Part& part : rows_.parts()) {
       const auto mean_at = [&](int k, int row, int column) HWY_ATTR {

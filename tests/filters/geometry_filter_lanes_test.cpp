@@ -13,13 +13,26 @@
 namespace ssdo::test {
 namespace {
 
-double reference_weight(const Surfel& p, const Surfel& q) {
-  const auto ramp = [](double x) { return std::clamp(2 - 2 * x, 0.0, 1.0); };
-  const glm::dvec3 step = glm::dvec3(q.position) - glm::dvec3(p.position), n(p.normal);
-  const double distance = glm::length(step),
-               off_plane = std::max(0.0, std::abs(glm::dot(step, n)) - p.normal.w - q.normal.w),
-               turn = 1 - glm::dot(n, glm::dvec3(q.normal));
-  return ramp(distance > 0 ? off_plane / (0.3 * distance) : 0) * ramp(turn / 0.2);
+const Surfel* surface_at(const Geometry& g, int x, int y) {
+  if (x < 0 || y < 0 || x >= g.surfel.width || y >= g.surfel.height) return nullptr;
+  return g.is_surface(g.surfel.index(x, y)) ? &g.surfel(x, y) : nullptr;
+}
+
+/// w of the pixel (dx, dy) from (x, y), which shows a surface.
+double reference_weight(const Geometry& g, int x, int y, int dx, int dy) {
+  const auto ramp = [](double t) { return std::clamp(2 - 2 * t, 0.0, 1.0); };
+  const Surfel &p = g.surfel(x, y), *q = surface_at(g, x + dx, y + dy),
+               *o = surface_at(g, x - dx, y - dy);
+  if (!q) return 0;
+  const glm::dvec3 n(p.normal);
+  const auto above = [&](const Surfel& s) {
+    return glm::dot(glm::dvec3(s.position) - glm::dvec3(p.position), n);
+  };
+  const double distance = glm::length(glm::dvec3(q->position) - glm::dvec3(p.position)),
+               rounding = p.normal.w + q->normal.w, turn = 1 - glm::dot(n, glm::dvec3(q->normal));
+  double height = std::max(0.0, std::abs(above(*q)) - rounding);
+  if (o) height = std::min(height, std::max(0.0, std::abs(above(*q) + above(*o)) - 2 * rounding));
+  return ramp(distance > 0 ? height / (0.3 * distance) : 0) * ramp(turn / 0.2);
 }
 
 double brightness(double v) { return v; }
@@ -47,9 +60,8 @@ Value reference(const Plane<T>& in, const Geometry& g, int pattern_size, int x, 
     Value sum = own;
     for (const int qy : {y - 2, y + 2}) {
       for (const int qx : {x - 2, x + 2}) {
-        if (qx < 0 || qy < 0 || qx >= g.surfel.width || qy >= g.surfel.height) continue;
-        if (!g.is_surface(g.surfel.index(qx, qy))) continue;
-        double weight = reference_weight(g.surfel(x, y), g.surfel(qx, qy)) / 4;
+        if (!surface_at(g, qx, qy)) continue;
+        double weight = reference_weight(g, x, y, qx - x, qy - y) / 4;
         if (kind.ao) {
           const double p = brightness(own), q = brightness(mean(qx, qy)),
                        scale = p + q + (in_the_open(x, y) + in_the_open(qx, qy)) / 4,
@@ -67,10 +79,9 @@ Value reference(const Plane<T>& in, const Geometry& g, int pattern_size, int x, 
   for (int dy = -half; dy <= half; ++dy) {
     for (int dx = -half; dx <= half; ++dx) {
       const int qx = x + dx, qy = y + dy;
-      if (qx < 0 || qy < 0 || qx >= g.surfel.width || qy >= g.surfel.height) continue;
-      if (!g.is_surface(g.surfel.index(qx, qy))) continue;
+      if (!surface_at(g, qx, qy)) continue;
       const double border = (std::abs(dx) == half ? 0.5 : 1) * (std::abs(dy) == half ? 0.5 : 1),
-                   weight = border * reference_weight(g.surfel(x, y), g.surfel(qx, qy));
+                   weight = border * reference_weight(g, x, y, dx, dy);
       weights += weight;
       sum += weight * Value(in(qx, qy));
     }

@@ -75,6 +75,21 @@ TEST(GeometryFilter, LeavesLittleOfThePatternOnACurvedSurface) {
   }
 }
 
+TEST(GeometryFilter, FollowsACoarseMeshUnderSmoothNormals) {
+  // A wall whose normals lean 40 degrees up, as those at the end of a post that is shaded smooth.
+  Geometry g =
+      geometry_of(plane({}, {0, 0, 1}),
+                  look_at(camera_from_fov(40, kWindow, 1), {0, 0, 5}, {}, {0, 1, 0}), kWindow);
+  for (Surfel& s : g.surfel.pixels) {
+    const double lean = glm::radians(40.0);
+    s.normal = glm::vec4(0, std::sin(lean), std::cos(lean), s.normal.w);
+  }
+  const Products out = filter_geometry(noise_of_a_pattern(g), g, 4);
+  for (int y = 4; y < kWindow.height() - 4; ++y) {
+    for (int x = 4; x < kWindow.width() - 4; ++x) EXPECT_NEAR(out.ao(x, y), 0.5, 1e-5);
+  }
+}
+
 TEST(GeometryFilter, DoesNotCrossEdges) {
   // Left of the middle a box stands out of the floor; both are flat and face the camera.
   const Surface floor = plane({}, {0, 0, 1});
