@@ -79,6 +79,24 @@ HWY_INLINE Piece piece_at(const MarchScene& scene, const Receiver& p, const Half
   return piece;
 }
 
+/// The piece of what is covered at this depth. Its slope is unknown: it faces the viewer.
+template <bool kOrthographic>
+HWY_INLINE Piece covered_piece(const Receiver& p, const Half& half, const SliceStep& step, V depth,
+                               V rise, V across) {
+  const D d;
+  const auto end_at = [&](float of_way, V& s, V& v) HWY_ATTR {
+    const V share = hn::Set(d, of_way);
+    s = across * share;
+    if constexpr (!kOrthographic) s = s * depth;
+    const V end_rise = hn::MulAdd(share, rise - p.rise, p.rise);
+    v = hn::NegMulAdd(s, half.slope, height_above<kOrthographic>(p, end_rise, depth));
+  };
+  Piece piece;
+  end_at(step.inner, piece.inner_s, piece.inner_v);
+  end_at(step.outer, piece.outer_s, piece.outer_v);
+  return piece;
+}
+
 /// Leaves what lies within the radius. Gives where that is anything.
 HWY_INLINE M clip(Piece& piece, float radius) {
   const D d;
@@ -164,9 +182,15 @@ HWY_INLINE VU march_side(const March& march, const Receiver& p, const Half& half
       open = hn::AndNot(bits, open);
     }
     if (!hn::AllFalse(d, rises_behind)) {
-      const VU bits = sectors_behind<kOrthographic>(
-          p, half, kOrthographic ? across : behind * across, above_behind,
-          load(scene.behind_thickness), march.radius, start);
+      const V s = kOrthographic ? across : behind * across,
+              thickness = load(scene.behind_thickness);
+      const VU bits =
+          step.inner == step.outer
+              ? sectors_behind<kOrthographic>(p, half, s, above_behind, thickness, march.radius,
+                                              start)
+              : sectors_behind_piece<kOrthographic>(
+                    p, half, covered_piece<kOrthographic>(p, half, step, behind, rise, across), s,
+                    above_behind, thickness, march.radius, start);
       covered(i, step, hn::And(open, bits));
       open = hn::AndNot(bits, open);
     }
