@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "parallel/large_memory.h"
+#include "math/uninitialized.h"
 
 namespace ssdo {
 
@@ -26,7 +26,7 @@ struct Window {
 template <class T>
 struct Plane {
   int width = 0, height = 0;
-  std::vector<T, LargeMemory<T>> pixels;
+  std::vector<T, Uninitialized<T>> pixels;
 
   Plane() = default;
   Plane(int w, int h, T value = T{})

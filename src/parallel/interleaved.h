@@ -5,8 +5,6 @@
 #include <cstddef>
 #include <memory>
 
-#include "parallel/large_memory.h"
-
 namespace ssdo {
 
 /// Where the pixels of a picture lie when every row is stored as eight rows of every eighth pixel.
@@ -57,9 +55,7 @@ class InterleavedPlane {
  public:
   InterleavedPlane() = default;
   explicit InterleavedPlane(const Interleaving& layout)
-      : values_(std::make_unique_for_overwrite<float[]>(layout.size())) {
-    advise_large_pages(values_.get(), layout.size() * sizeof(float));
-  }
+      : values_(std::make_unique_for_overwrite<float[]>(layout.size())) {}
 
   float* data() { return values_.get(); }
   const float* data() const { return values_.get(); }
