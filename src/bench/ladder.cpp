@@ -2,7 +2,7 @@
 //
 // Each method has the settings that its users would choose among: its own default, a few below and
 // a few above. The limit is far beyond the last of them. Where the pattern follows --seed, it is
-// the mean over several seeds, for a pattern of 4 x 4 pixels is the same for all surfaces alike;
+// the mean over several seeds, for a pattern that repeats is the same for all surfaces alike;
 // the difference of two halves of the seeds is also what tells its noise. Methods without a seed
 // (gtao, sao, msvo) have one run and no such figure.
 #include "bench/ladder.h"

@@ -25,7 +25,7 @@ struct Light {
     sum = mul_add(radiance, weight, sum);
     weights = weights + weight;
   }
-  HWY_INLINE Color mean() const { return scaled(sum, hn::Set(D(), 1.0f) / weights); }
+  HWY_INLINE Color mean() const { return {sum.r / weights, sum.g / weights, sum.b / weights}; }
   HWY_INLINE Light minus(const Light& other) const {
     return {{sum.r - other.sum.r, sum.g - other.sum.g, sum.b - other.sum.b},
             weights - other.weights};
@@ -155,7 +155,7 @@ HWY_INLINE void for_each_gatherer(const MarchScene& scene, int spacing, const Pl
                                   const Visit& visit) {
   constexpr int kPeriod = Interleaving::kPeriod;
   const Interleaving& layout = scene.layout;
-  const int off_x = place.comb % spacing, off_y = (place.y + scene.first_y) % spacing;
+  const int off_x = place.comb & (spacing - 1), off_y = (place.y + scene.first_y) & (spacing - 1);
   for (int dy = -off_y; dy <= off_y; dy += spacing) {
     if (place.y + dy < 0 || place.y + dy >= layout.height()) continue;
     for (int dx = -off_x; dx <= off_x; dx += spacing) {

@@ -165,6 +165,17 @@ TEST(BitmaskProperties, ThePatternMovesWithTheDisplayWindow) {
   }
 }
 
+TEST(BitmaskProperties, ThePatternGoesOnInOverscan) {
+  // The display window begins a little after the frame, or whole patterns before it.
+  const auto with_display_at = [](int offset) {
+    Geometry g = geometry_of(still_life(), camera(), kWindow);
+    g.display.x0 += offset, g.display.x1 += offset, g.display.y0 += offset, g.display.y1 += offset;
+    return run(g, all_products());
+  };
+  EXPECT_EQ(count_differences(with_display_at(3), with_display_at(3 - 16)), 0);
+  EXPECT_GT(count_differences(with_display_at(3), with_display_at(2)), 0);
+}
+
 void expect_sane(const Products& out) {
   std::size_t bad = 0;
   for (std::size_t i = 0; i < out.ao.size(); ++i) {
