@@ -44,13 +44,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
-#include <limits>
-#include <optional>
 
 #include "estimators/bitmask_march.h"
 #include "math/frame.h"
 #include "math/light_range.h"
-#include "math/luminance.h"
 #include "math/sequence_numbers.h"
 #include "parallel/isa.h"
 #include "scene/light_model.h"

@@ -10,8 +10,6 @@
 
 #include <hwy/highway.h>
 
-#include <limits>
-
 #include "estimators/bitmask_lanes-inl.h"
 #include "math/light_range.h"
 #include "math/octahedral_map.h"
