@@ -12,6 +12,7 @@
 
 #include "estimators/bitmask_lanes-inl.h"
 #include "math/light_range.h"
+#include "math/luminance.h"
 #include "math/octahedral_map.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -55,8 +56,7 @@ HWY_INLINE Color set_color(const glm::vec3& c) {
 /// luminance() of math/luminance.h
 HWY_INLINE V luminance(const Color& c) {
   const D d;
-  return hn::MulAdd(hn::Set(d, 0.2126f), c.r,
-                    hn::MulAdd(hn::Set(d, 0.7152f), c.g, hn::Set(d, 0.0722f) * c.b));
+  return dot3(hn::Set(d, kLumaRed), hn::Set(d, kLumaGreen), hn::Set(d, kLumaBlue), c.r, c.g, c.b);
 }
 
 /// within_range() of math/light_range.h

@@ -27,6 +27,17 @@ struct Piece {
   V inner_s, inner_v, outer_s, outer_v;
 };
 
+/// Where a piece ends: a share of the way to its pixel, at this depth. `rise` and `across` are
+/// those of the pixel.
+template <bool kOrthographic>
+HWY_INLINE void end_at(const Receiver& p, const Half& half, V share, V depth, V rise, V across,
+                       V& s, V& v) {
+  s = across * share;
+  if constexpr (!kOrthographic) s = s * depth;
+  const V end_rise = hn::MulAdd(share, rise - p.rise, p.rise);
+  v = hn::NegMulAdd(s, half.slope, height_above<kOrthographic>(p, end_rise, depth));
+}
+
 /// Most that depth grows or shrinks, as a factor, from a pixel to the ends of its piece: a piece of
 /// a plane that is seen edge-on, or meets the horizon within the step, ends before.
 constexpr float kMostDeepening = 2;
@@ -47,7 +58,7 @@ HWY_INLINE Piece piece_at(const MarchScene& scene, const Receiver& p, const Half
     m_ray = hn::MulAdd(mx, p.slope_x + ex, hn::MulAdd(my, p.slope_y + ey, m_ray));
   m_ray = hn::Min(m_ray, hn::Set(d, -1e-9f));
   const V m_way = dot2(mx, my, ex, ey);
-  const auto end_at = [&](float of_way, bool inner, V& s, V& v) HWY_ATTR {
+  const auto end = [&](float of_way, bool inner, V& s, V& v) HWY_ATTR {
     V share = hn::Set(d, of_way), end_depth;
     if constexpr (kOrthographic) {
       // Depth has no scale here: it changes by no more than the way is long.
@@ -68,14 +79,11 @@ HWY_INLINE Piece piece_at(const MarchScene& scene, const Receiver& p, const Half
     }
     // Where a round thing turns away, its tangent plane would come far before it.
     if (inner) end_depth = hn::Max(end_depth, depth);
-    s = across * share;
-    if constexpr (!kOrthographic) s = s * end_depth;
-    const V end_rise = hn::MulAdd(share, rise - p.rise, p.rise);
-    v = hn::NegMulAdd(s, half.slope, height_above<kOrthographic>(p, end_rise, end_depth));
+    end_at<kOrthographic>(p, half, share, end_depth, rise, across, s, v);
   };
   Piece piece;
-  end_at(step.inner, true, piece.inner_s, piece.inner_v);
-  end_at(step.outer, false, piece.outer_s, piece.outer_v);
+  end(step.inner, true, piece.inner_s, piece.inner_v);
+  end(step.outer, false, piece.outer_s, piece.outer_v);
   return piece;
 }
 
@@ -84,16 +92,10 @@ template <bool kOrthographic>
 HWY_INLINE Piece covered_piece(const Receiver& p, const Half& half, const SliceStep& step, V depth,
                                V rise, V across) {
   const D d;
-  const auto end_at = [&](float of_way, V& s, V& v) HWY_ATTR {
-    const V share = hn::Set(d, of_way);
-    s = across * share;
-    if constexpr (!kOrthographic) s = s * depth;
-    const V end_rise = hn::MulAdd(share, rise - p.rise, p.rise);
-    v = hn::NegMulAdd(s, half.slope, height_above<kOrthographic>(p, end_rise, depth));
-  };
+  const V inner = hn::Set(d, step.inner), outer = hn::Set(d, step.outer);
   Piece piece;
-  end_at(step.inner, piece.inner_s, piece.inner_v);
-  end_at(step.outer, piece.outer_s, piece.outer_v);
+  end_at<kOrthographic>(p, half, inner, depth, rise, across, piece.inner_s, piece.inner_v);
+  end_at<kOrthographic>(p, half, outer, depth, rise, across, piece.outer_s, piece.outer_v);
   return piece;
 }
 
@@ -170,29 +172,26 @@ HWY_INLINE VU march_side(const March& march, const Receiver& p, const Half& half
     const M rises_behind = above_behind > zero;
     if (hn::AllFalse(d, hn::Or(above > zero, rises_behind))) continue;
     const V across = dot2(dx, dy, half.across_x, half.across_y);
-    {
-      const V s = kOrthographic ? across : depth * across, thickness = load(scene.thickness);
-      const VU bits =
-          step.inner == step.outer
-              ? sectors_behind<kOrthographic>(p, half, s, above, thickness, march.radius, start)
-              : sectors_behind_piece<kOrthographic>(
-                    p, half, piece_at<kOrthographic>(scene, p, half, step, i, depth, rise, across),
-                    s, above, thickness, march.radius, start);
-      seen(i, step, hn::And(open, bits));
-      open = hn::AndNot(bits, open);
-    }
+    const auto sectors = [&](V of_depth, V of_above, V thickness, const auto& piece) HWY_ATTR {
+      const V s = kOrthographic ? across : of_depth * across;
+      return step.inner == step.outer
+                 ? sectors_behind<kOrthographic>(p, half, s, of_above, thickness, march.radius,
+                                                 start)
+                 : sectors_behind_piece<kOrthographic>(p, half, piece(), s, of_above, thickness,
+                                                       march.radius, start);
+    };
+    const VU bits = sectors(depth, above, load(scene.thickness), [&]() HWY_ATTR {
+      return piece_at<kOrthographic>(scene, p, half, step, i, depth, rise, across);
+    });
+    seen(i, step, hn::And(open, bits));
+    open = hn::AndNot(bits, open);
     if (!hn::AllFalse(d, rises_behind)) {
-      const V s = kOrthographic ? across : behind * across,
-              thickness = load(scene.behind_thickness);
-      const VU bits =
-          step.inner == step.outer
-              ? sectors_behind<kOrthographic>(p, half, s, above_behind, thickness, march.radius,
-                                              start)
-              : sectors_behind_piece<kOrthographic>(
-                    p, half, covered_piece<kOrthographic>(p, half, step, behind, rise, across), s,
-                    above_behind, thickness, march.radius, start);
-      covered(i, step, hn::And(open, bits));
-      open = hn::AndNot(bits, open);
+      const VU bits_behind =
+          sectors(behind, above_behind, load(scene.behind_thickness), [&]() HWY_ATTR {
+            return covered_piece<kOrthographic>(p, half, step, behind, rise, across);
+          });
+      covered(i, step, hn::And(open, bits_behind));
+      open = hn::AndNot(bits_behind, open);
     }
   }
   return open;

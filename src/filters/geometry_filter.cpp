@@ -79,12 +79,11 @@ HWY_INLINE V above_plane(const Pixels& p, const Pixels& q) {
   return dot3(q.x - p.x, q.y - p.y, q.z - p.z, p.nx, p.ny, p.nz);
 }
 
-/// ramp(h / (t |q - p|)), where it is not flat: few ask.
-HWY_NOINLINE V plane_ramp(const Pixels& p, const Pixels& q, const Pixels& o) {
+/// ramp(h / (t |q - p|)); `above` is n_p . (q - p), which rounding may have moved so much. Few ask
+/// for it: most neighbours lie in the flat part, which squares can tell.
+HWY_NOINLINE V plane_ramp(V above, V rounding, V distance2, const Pixels& p, const Pixels& o) {
   const D d;
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const V x = q.x - p.x, y = q.y - p.y, z = q.z - p.z, distance2 = dot3(x, y, z, x, y, z);
-  const V above = above_plane(p, q), rounding = p.rounding + q.rounding;
   const V off_plane = hn::Max(zero, hn::Abs(above) - rounding),
           bend = hn::Max(zero, hn::Abs(above + above_plane(p, o)) - rounding - rounding);
   const auto exists = dot3(o.nx, o.ny, o.nz, o.nx, o.ny, o.nz) > zero;
@@ -101,14 +100,12 @@ HWY_INLINE V similarity(const Pixels& p, const Pixels& q, const Opposite& opposi
   constexpr float kSlope = 2 / (1 - kNormalCosine);
   const V cosine = dot3(p.nx, p.ny, p.nz, q.nx, q.ny, q.nz);
   const V turn = clamp01(hn::MulAdd(cosine, hn::Set(d, kSlope), hn::Set(d, 2 - kSlope)));
-  // Most neighbours lie in the flat part of the ramp, which squares can tell.
-  const V x = q.x - p.x, y = q.y - p.y, z = q.z - p.z;
-  const V off_plane =
-      hn::Max(hn::Zero(d), hn::Abs(dot3(x, y, z, p.nx, p.ny, p.nz)) - (p.rounding + q.rounding));
+  const V x = q.x - p.x, y = q.y - p.y, z = q.z - p.z, distance2 = dot3(x, y, z, x, y, z);
+  const V above = above_plane(p, q), rounding = p.rounding + q.rounding;
+  const V off_plane = hn::Max(hn::Zero(d), hn::Abs(above) - rounding);
   constexpr float kFlat = kPlaneTolerance / 2;
-  const V flat2 = dot3(x, y, z, x, y, z) * hn::Set(d, kFlat * kFlat);
-  if (hn::AllTrue(d, off_plane * off_plane <= flat2)) return turn;
-  return turn * plane_ramp(p, q, opposite());
+  if (hn::AllTrue(d, off_plane * off_plane <= distance2 * hn::Set(d, kFlat * kFlat))) return turn;
+  return turn * plane_ramp(above, rounding, distance2, p, opposite());
 }
 
 class TileFilter {

@@ -5,7 +5,12 @@
 
 namespace ssdo {
 
-/// Of a linear colour with Rec. 709 primaries (ITU-R BT.709); close enough to rank others.
-inline float luminance(const glm::vec3& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+/// Shares in the luminance of a linear colour with Rec. 709 primaries (ITU-R BT.709); close enough
+/// to rank others.
+constexpr float kLumaRed = 0.2126f, kLumaGreen = 0.7152f, kLumaBlue = 0.0722f;
+
+inline float luminance(const glm::vec3& c) {
+  return kLumaRed * c.x + kLumaGreen * c.y + kLumaBlue * c.z;
+}
 
 }  // namespace ssdo
