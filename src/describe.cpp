@@ -115,8 +115,8 @@ std::string describe(const Frame& frame) {
         fmt::format("{} ({}{})", fmt::join(layer->channels, ", "), layer->half ? "half" : "float",
                     layer->by_request ? ", by --aov" : "");
     if (Role(i) == Role::normal) {
-      value += fmt::format("; {}, median cosine {:.3f} with P", frame.report.normal_space,
-                           frame.report.normal_agreement);
+      value += fmt::format("; {}, {:.1f} % agree with P", frame.report.normal_space,
+                           100 * frame.report.normal_agreement);
     }
     line(role_name(Role(i)), value);
   }

@@ -190,16 +190,7 @@ std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
 std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>& positions,
                                const Plane<unsigned char>& valid, const Window& window,
                                double step) {
-  const auto explains = [&](const Camera& camera, double step_px) {
-    return measure_residual(camera, positions, valid, window).median_px < 0.5 + step_px;
-  };
-  // P may be in camera space already, with the axes of another tool.
-  for (const glm::dvec3& axes :
-       {glm::dvec3(1, 1, 1), glm::dvec3(1, 1, -1), glm::dvec3(1, -1, 1), glm::dvec3(-1, 1, 1)}) {
-    Camera camera = projection;
-    for (int i = 0; i < 3; ++i) camera.rotation[i][i] = axes[i];
-    if (explains(camera, 0)) return camera;
-  }
+  if (const auto own = in_own_space(projection, positions, valid, window)) return own;
   const Samples samples = collect_samples(positions, valid, window);
   if (projection.orthographic || samples.items.size() < 4 ||
       samples.spread[1] < 1e-5 * samples.spread[2]) {
@@ -208,9 +199,46 @@ std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>&
   ProjectionModel model = pose_of_plane(samples, projection);
   refine(model, samples, true);
   const Camera camera = to_camera(model, samples, window);
-  const glm::dvec3 middle(samples.centre.x(), samples.centre.y(), samples.centre.z());
-  const double depth = std::abs(camera.to_camera(middle).z);
-  return explains(camera, step * camera.fx / depth) ? std::optional(camera) : std::nullopt;
+  return explains(camera, positions, valid, window, step) ? std::optional(camera) : std::nullopt;
+}
+
+bool explains(const Camera& camera, const Plane<glm::vec3>& positions,
+              const Plane<unsigned char>& valid, const Window& window, double step) {
+  const Samples samples = collect_samples(positions, valid, window);
+  const auto in_camera_space = [&](const Vector3d& p) {
+    const Vector3d at = samples.centre + samples.scale * p;
+    return camera.to_camera({at.x(), at.y(), at.z()});
+  };
+  const double depth = -in_camera_space(Vector3d::Zero()).z;
+  if (!camera.orthographic && !(depth > 0)) return false;
+  std::vector<double> misses;
+  for (const Sample& s : samples.items) {
+    const glm::dvec2 at = camera.project(in_camera_space(s.p));
+    misses.push_back(std::hypot(at.x - s.pixel.x(), at.y - s.pixel.y()));
+  }
+  return quantile(misses, 0.5) < 0.5 + step * camera.fx / (camera.orthographic ? 1.0 : depth);
+}
+
+std::optional<Camera> in_own_space(const Camera& projection, const Plane<glm::vec3>& positions,
+                                   const Plane<unsigned char>& valid, const Window& window) {
+  // The picture tells the signs of x and y; that of z is what brings surfaces before the camera.
+  std::size_t before = 0, behind = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (!valid[i]) continue;
+    before += positions[i].z < 0;
+    behind += positions[i].z > 0;
+  }
+  for (const double x : {1.0, -1.0}) {
+    for (const double y : {1.0, -1.0}) {
+      Camera camera = projection;
+      camera.rotation = glm::dmat3(1);
+      camera.rotation[0][0] = x, camera.rotation[1][1] = y;
+      camera.rotation[2][2] = before >= behind ? 1.0 : -1.0;
+      camera.origin = glm::dvec3(0);
+      if (explains(camera, positions, valid, window)) return camera;
+    }
+  }
+  return std::nullopt;
 }
 
 Residual measure_residual(const Camera& camera, const Plane<glm::vec3>& positions,

@@ -29,6 +29,17 @@ std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>&
                                const Plane<unsigned char>& valid, const Window& window,
                                double step = 0);
 
+/// Whether the positions lie before the camera and half of them project to within half a pixel of
+/// their own, and `step`, by which P
+/// may have been rounded, in scene units.
+bool explains(const Camera& camera, const Plane<glm::vec3>& positions,
+              const Plane<unsigned char>& valid, const Window& window, double step = 0);
+
+/// The camera with the projection of `projection` for P in camera space, with whatever signs of the
+/// axes; nothing where P is not in camera space.
+std::optional<Camera> in_own_space(const Camera& projection, const Plane<glm::vec3>& positions,
+                                   const Plane<unsigned char>& valid, const Window& window);
+
 /// How well `camera` explains the positions.
 Residual measure_residual(const Camera& camera, const Plane<glm::vec3>& positions,
                           const Plane<unsigned char>& valid, const Window& window);

@@ -8,120 +8,17 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "error.h"
 #include "parallel/tiles.h"
-#include "scene/camera_fit.h"
+#include "scene/find_camera.h"
+#include "scene/normal_space.h"
 #include "scene/normals.h"
 #include "scene/silhouettes.h"
 
 namespace ssdo {
 namespace {
 
-/// The projection that the options give, without a pose unless it stands in a file.
-std::optional<Camera> camera_from_options(const GBuffer& g, const CameraOptions& options,
-                                          GeometryReport& report) {
-  if (!options.file.empty()) {
-    report.camera_source = "--camera " + options.file;
-    return read_camera(options.file, g.display, g.pixel_aspect);
-  }
-  if (options.fov) {
-    report.camera_source = fmt::format("--fov {:g}", *options.fov);
-    return camera_from_fov(*options.fov, g.display, g.pixel_aspect);
-  }
-  if (options.ortho) {
-    report.camera_source = fmt::format("--ortho {:g}", *options.ortho);
-    return camera_from_ortho_width(*options.ortho, g.display, g.pixel_aspect);
-  }
-  return std::nullopt;
-}
-
-[[noreturn]] void throw_undetermined(const GBuffer& g, const std::string& file) {
-  throw Error(
-      ExitCode::layer,
-      g.position.empty()
-          ? fmt::format("{}: has depth but no position, which leaves the camera open; give "
-                        "--fov DEGREES, --ortho WIDTH or --camera FILE.json",
-                        file)
-          : fmt::format("{}: the camera cannot be fitted from P, whose pixels lie in one "
-                        "plane or are too few; give --fov DEGREES, --ortho WIDTH or --camera "
-                        "FILE.json",
-                        file));
-}
-
-/// Pixels whose neighbours all show something: at the edge of what a frame shows, P may be an
-/// average with the background, far from where its pixel looks.
-Plane<unsigned char> inner_pixels(const Plane<unsigned char>& valid) {
-  Plane<unsigned char> inner(valid.width, valid.height);
-  for (int y = 1; y + 1 < valid.height; ++y) {
-    for (int x = 1; x + 1 < valid.width; ++x) {
-      inner(x, y) =
-          valid(x, y) && valid(x - 1, y) && valid(x + 1, y) && valid(x, y - 1) && valid(x, y + 1);
-    }
-  }
-  return inner;
-}
-
-/// The camera by pixels that are surely no averages, or else by all.
-std::optional<Camera> fit_camera(const GBuffer& g) {
-  const auto fitted = ssdo::fit_camera(g.position, inner_pixels(g.valid), g.window);
-  return fitted ? fitted : ssdo::fit_camera(g.position, g.valid, g.window);
-}
-
-/// The most by which storing P may have moved it along one axis, in scene units.
-double rounding_of_positions(const GBuffer& g) {
-  float largest = 0;
-  for (std::size_t i = 0; i < g.position.size(); ++i) {
-    if (!g.valid[i]) continue;
-    const glm::vec3 p = glm::abs(g.position[i]);
-    largest = std::max({largest, p.x, p.y, p.z});
-  }
-  return double(largest) * g.position_step;
-}
-
-Camera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,
-                   GeometryReport& report) {
-  const auto given = camera_from_options(g, options, report);
-  if (g.position.empty()) {
-    if (!given) throw_undetermined(g, file);
-    return *given;
-  }
-  Camera camera;
-  if (given && !options.file.empty()) {
-    camera = *given;
-  } else if (given) {
-    const auto posed = fit_pose(*given, g.position, g.valid, g.window, rounding_of_positions(g));
-    const auto fitted = posed ? posed : fit_camera(g);
-    if (!fitted) {
-      throw Error(ExitCode::layer, fmt::format("{}: P does not project to its own pixels under {}; "
-                                               "give --camera FILE.json",
-                                               file, report.camera_source));
-    }
-    if (!posed) {
-      report.warnings.push_back(fmt::format("{} contradicts P, which shows {:.2f} degrees; P wins",
-                                            report.camera_source,
-                                            fitted->hfov_degrees(g.display.width())));
-      report.camera_source = "fitted from P";
-    }
-    camera = *fitted;
-  } else {
-    const auto fitted = fit_camera(g);
-    if (!fitted) throw_undetermined(g, file);
-    report.camera_source = "fitted from P";
-    camera = *fitted;
-  }
-  report.residual = measure_residual(camera, g.position, g.valid, g.window);
-  if (report.residual->median_px > 0.5) {
-    report.warnings.push_back(
-        fmt::format("camera ({}): half of the positions miss their pixels by {:.2g} px or more; "
-                    "is this P of this camera?",
-                    report.camera_source, report.residual->median_px));
-  }
-  return camera;
-}
-
 /// Camera-space positions, and the radius by which rounding may have moved each of them.
-void place_positions(const GBuffer& g, Geometry& out) {
-  const Camera& camera = out.camera;
+void place_positions(const GBuffer& g, const Camera& camera, Geometry& out) {
   for_each_row(out.surfel.height, [&](int y) {
     for (int x = 0; x < out.surfel.width; ++x) {
       const std::size_t i = out.surfel.index(x, y);
@@ -159,28 +56,49 @@ void drop_pixels_behind_camera(Geometry& out, GeometryReport& report) {
   }
 }
 
-/// Least median cosine between N and the gradient of P. Stored normals are better than those of a
-/// rough P, so little is asked; but where P was made from depth, no rotation to a world is known,
-/// and normals of a world that is tilted against the camera must not pass.
-constexpr double kAgreementOfP = 0.3, kAgreementOfDepth = 0.9;
+/// Least share of the smooth pixels where N follows the gradient of P; normals.cpp has what right
+/// and wrong normals reach.
+constexpr double kLeastShare = 0.95;
+constexpr std::size_t kFewestSmoothPixels = 16;  ///< below, nothing is known
 
-void place_normals(const GBuffer& g, Geometry& out, GeometryReport& report) {
-  const bool orthographic = out.camera.orthographic;
-  NormalSpace space{glm::mat3(1), "rebuilt from P", 0};
-  if (!g.normal.empty()) {
-    space = find_normal_space(g.normal, out.surfel, glm::mat3(out.camera.rotation), orthographic);
-    if (space.agreement < (g.position.empty() ? kAgreementOfDepth : kAgreementOfP)) {
-      report.warnings.push_back(
-          fmt::format("normals do not belong to P (median cosine {:.2f} at "
-                      "best); rebuilt from P",
-                      space.agreement));
-      space.name = "rebuilt from P";
-    }
+/// The spaces that N may be in.
+std::vector<NamedRotation> spaces_of_normals(const GBuffer& g, const FoundCamera& found) {
+  const glm::mat3 of_positions(found.of_positions.rotation), world(found.camera.rotation);
+  std::vector<NamedRotation> spaces;
+  if (!g.position.empty()) spaces.push_back({of_positions, "the space of P"});
+  spaces.push_back({glm::mat3(1), "camera space"});
+  if (found.by_file && (g.position.empty() || of_positions != world))
+    spaces.push_back({world, "the world of --camera"});
+  return spaces;
+}
+
+/// How the stored normals are to be used; nothing where they are not to be, and why in `report`.
+std::optional<NormalSpace> usable_normal_space(const GBuffer& g, const FoundCamera& found,
+                                               const Geometry& out, GeometryReport& report) {
+  if (g.normal.empty()) return std::nullopt;
+  NormalSpace space =
+      find_normal_space(g.normal, out.surfel, spaces_of_normals(g, found), out.camera.orthographic);
+  report.normal_agreement = space.share;
+  const bool from_depth = g.position.empty();
+  if (space.smooth_pixels < kFewestSmoothPixels && !from_depth) {
+    space.name += ", unchecked: P is nowhere smooth";
+    return space;
   }
-  const bool rebuild_all = space.name == "rebuilt from P";
-  out.normals_to_camera = rebuild_all ? glm::mat3(out.camera.rotation) : space.to_camera;
-  report.normal_space = space.name;
-  report.normal_agreement = space.agreement;
+  if (space.share >= kLeastShare) return space;
+  report.warnings.push_back(
+      fmt::format("normals do not belong to {0}: whatever their space and axes, they agree with it "
+                  "in {1:.0f} % "
+                  "of the smooth pixels; rebuilt from {0}",
+                  from_depth ? "the depth" : "P", 100 * space.share));
+  return std::nullopt;
+}
+
+void place_normals(const GBuffer& g, const FoundCamera& found, Geometry& out,
+                   GeometryReport& report) {
+  const bool orthographic = out.camera.orthographic;
+  const std::optional<NormalSpace> space = usable_normal_space(g, found, out, report);
+  out.normals_to_camera = space ? space->to_camera : glm::mat3(found.of_positions.rotation);
+  report.normal_space = space ? space->name : "rebuilt from P";
 
   Plane<unsigned char> fate(out.surfel.width, out.surfel.height);  // 1 rebuilt, 2 turned
   for_each_row(out.surfel.height, [&](int y) {
@@ -188,7 +106,7 @@ void place_normals(const GBuffer& g, Geometry& out, GeometryReport& report) {
       const std::size_t i = out.surfel.index(x, y);
       if (!out.is_surface(i)) continue;
       const glm::vec3 view = direction_to_viewer(glm::vec3(out.surfel[i].position), orthographic);
-      glm::vec3 n = rebuild_all ? glm::vec3(0) : space.to_camera * g.normal[i];
+      glm::vec3 n = space ? space->to_camera * g.normal[i] : glm::vec3(0);
       const float length = glm::length(n);
       if (length > 1e-4f && length < 1e4f) {
         n /= length;
@@ -241,10 +159,11 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
     report.warnings.push_back("the frame shows no surface");
     return out;
   }
-  out.camera = find_camera(g, options, file, report);
-  place_positions(g, out);
+  const FoundCamera found = find_camera(g, options, file, report);
+  out.camera = found.camera;
+  place_positions(g, found.of_positions, out);
   drop_pixels_behind_camera(out, report);
-  place_normals(g, out, report);
+  place_normals(g, found, out, report);
   if (report.residual) {
     const std::size_t averages = mend_silhouettes(out, *report.residual);
     if (averages > 0) {
@@ -255,9 +174,8 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
     }
   }
   out.median_depth = median_depth(out);
-  const bool posed_by_file = !options.file.empty();
   out.world_known =
-      posed_by_file || (!g.position.empty() && !out.camera.is_camera_space(out.median_depth));
+      found.by_file || (!g.position.empty() && !out.camera.is_camera_space(out.median_depth));
   if (out.world_known) out.world_to_camera = glm::mat3(out.camera.rotation);
   return out;
 }

@@ -43,8 +43,8 @@ struct Geometry {
 struct GeometryReport {
   std::string camera_source;  ///< "fitted from P", "--camera FILE", "--fov"
   std::optional<Residual> residual;
-  std::string normal_space;     ///< "space of P", "camera space", "from P"
-  double normal_agreement = 0;  ///< median cosine between N and the gradient of P
+  std::string normal_space;     ///< "the space of P", "camera space", "rebuilt from P"
+  double normal_agreement = 0;  ///< share of the smooth pixels where N follows the gradient of P
   std::size_t normals_rebuilt = 0, normals_turned = 0;
   std::vector<std::string> warnings;
 };

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "math/plane.h"
+#include "scene/surfel.h"
+
+namespace ssdo {
+
+/// How the stored normals are brought to camera space.
+struct NormalSpace {
+  glm::mat3 to_camera{1.0f};
+  std::string name;
+
+  /// What the normals are held to: pixels around which P is smooth.
+  std::size_t smooth_pixels = 0;
+  double median_cosine = 0;  ///< between N and the gradient of P, of either sign
+  double share = 0;          ///< of the smooth pixels where the two are less than 53 degrees apart
+};
+
+/// A space that normals may be stored in, and the rotation from it to camera space.
+struct NamedRotation {
+  glm::mat3 to_camera;
+  std::string name;
+};
+
+/// Decides in which of `spaces` and by which axes the normals are stored, of any order and sign.
+/// What agrees best with the gradient of P where P is smooth is taken; the first space with its
+/// axes as they are, unless another is clearly better, or there is nothing to decide by. Normals
+/// that agree with none, but with P once they are turned by one rotation, have a space of their
+/// own.
+NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
+                              const std::vector<NamedRotation>& spaces, bool orthographic);
+
+}  // namespace ssdo
