@@ -10,12 +10,14 @@
 
 #include "error.h"
 #include "math/light_range.h"
+#include "scene/background.h"
+#include "scene/depth_encoding.h"
 
 namespace ssdo {
 namespace {
 
-constexpr float kFar = 1e9f;  ///< Blender writes 1e10 where a ray meets nothing
-constexpr float kStepHalf = 1.0f / 2048, kStepFloat = 1.0f / 16777216;
+/// Relative rounding: half and float keep 11 and 24 bits, PXR24 keeps 16 of a float.
+constexpr float kStepHalf = 1.0f / 2048, kStepFloat = 1.0f / 16777216, kStepPxr24 = 1.0f / 65536;
 
 bool is_finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -93,33 +95,6 @@ class LayerReader {
   std::map<Part, std::map<std::string, Plane<float>>> planes_;
 };
 
-/// Depth as a distance along the axis or the ray.
-void undo_depth_encoding(GBuffer& g, const GBufferOptions& options, const std::string& file) {
-  if (g.depth.empty()) return;
-  const DepthKind kind = options.depth_kind.value_or(DepthKind::planar);
-  if (kind == DepthKind::ray) g.depth_kind = DepthKind::ray;
-  if (kind == DepthKind::inverse) {
-    for (float& z : g.depth.pixels) z = 1 / z;
-  }
-  if (kind == DepthKind::normalized) {
-    for (float& z : g.depth.pixels) {
-      z = options.depth_near + z * (options.depth_far - options.depth_near);
-    }
-  }
-  if (options.depth_kind || !g.position.empty()) return;
-  float largest = 0;
-  for (float z : g.depth.pixels) {
-    if (z < kFar) largest = std::max(largest, z);
-  }
-  if (largest <= 1) {
-    throw Error(ExitCode::layer,
-                fmt::format("{}: depth ends at {:.4g} and seems to be normalised to 0..1; give its "
-                            "meaning with --depth-kind normalized:NEAR,FAR, or say --depth-kind "
-                            "planar if these are scene units",
-                            file, largest));
-  }
-}
-
 /// Normals stored as n/2 + 1/2 have no negative component, and are of unit length after decoding.
 void undo_normal_encoding(GBuffer& g) {
   double as_stored = 0, decoded = 0;
@@ -135,29 +110,6 @@ void undo_normal_encoding(GBuffer& g) {
   g.warnings.push_back("normals are encoded as 0..1; decoded with 2n - 1");
 }
 
-bool is_background(const GBuffer& g, std::size_t i, float background_depth) {
-  if (!g.alpha.empty() && g.alpha[i] <= 1e-4f) return true;
-  if (!g.depth.empty()) return !(g.depth[i] < background_depth && g.depth[i] > 0);
-  const glm::vec3 p = g.position[i], a = glm::abs(p);
-  if (p == glm::vec3(0) || !(std::max({a.x, a.y, a.z}) < kFar)) return true;
-  return !g.normal.empty() && g.normal[i] == glm::vec3(0);
-}
-
-void classify(GBuffer& g, const GBufferOptions& options) {
-  g.valid = Plane<unsigned char>(g.window.width(), g.window.height(), 1);
-  const float background_depth =
-      options.background_depth ? *options.background_depth * (1 - 1e-6f) : kFar;
-  for (std::size_t i = 0; i < g.valid.size(); ++i) {
-    if (is_background(g, i, background_depth)) {
-      g.valid[i] = 0;
-      ++g.background_pixels;
-    } else if (!g.position.empty() && !(glm::length(g.position[i]) < kFar)) {
-      g.valid[i] = 0;
-      ++g.bad_pixels;
-    }
-  }
-}
-
 /// What is not finite, or beyond all light, becomes 0: black, smooth, or a normal to be rebuilt.
 /// The pixel counts as broken.
 template <class T>
@@ -166,6 +118,32 @@ void clear_broken(GBuffer& g, Plane<T>& values) {
     if (is_sane(values[i])) continue;
     g.bad_pixels += g.valid[i];
     values[i] = T(0);
+  }
+}
+
+/// Sets the precision of P, or of the depth that P is made from, and warns where it is poor.
+void note_precision(GBuffer& g, const Layer& lead, const ExrPart& part, bool is_position) {
+  const std::string_view name = role_name(is_position ? Role::position : Role::depth);
+  g.position_step = lead.half ? kStepHalf : kStepFloat;
+  if (lead.half) {
+    g.warnings.push_back(
+        fmt::format("{} is stored in 16 bits: steps of {:.2g} of its magnitude; export 32 bits",
+                    name, kStepHalf));
+  }
+  const Imf::Compression compression = part.header.compression();
+  const bool pxr24 = compression == Imf::PXR24_COMPRESSION && !lead.half,
+             b44 = (compression == Imf::B44_COMPRESSION || compression == Imf::B44A_COMPRESSION) &&
+                   lead.half,
+             dwa = compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
+  if (pxr24) g.position_step = kStepPxr24;
+  if (pxr24 || b44 || dwa) {
+    g.warnings.push_back(
+        fmt::format("{} is stored with lossy compression ({}), which moves surfaces; "
+                    "export with ZIP or another lossless one",
+                    name,
+                    pxr24 ? "PXR24"
+                    : b44 ? "B44"
+                          : "DWA"));
   }
 }
 
@@ -191,7 +169,7 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   g.display = part.display_window;
   g.pixel_aspect = part.header.pixelAspectRatio();
   if (!(g.pixel_aspect > 0) || !std::isfinite(g.pixel_aspect)) g.pixel_aspect = 1;
-  g.position_step = lead->half ? kStepHalf : kStepFloat;
+  note_precision(g, *lead, part, table[Role::position].has_value());
 
   std::vector<Role> roles = {Role::position, Role::depth, Role::normal,    Role::albedo,
                              Role::radiance, Role::alpha, Role::roughness, Role::motion};
@@ -213,7 +191,7 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   }
 
   undo_depth_encoding(g, options, file);
-  classify(g, options);
+  find_background(g, options.background_depth);
   undo_normal_encoding(g);
   for (Plane<glm::vec3>* values : {&g.normal, &g.albedo, &g.radiance, &g.ambient, &g.beauty})
     clear_broken(g, *values);
@@ -221,12 +199,6 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   clear_negative(g.radiance);
   clear_broken(g, g.roughness);
   for (float& r : g.roughness.pixels) r = std::clamp(r, 0.0f, 1.0f);
-  if (lead->half) {
-    g.warnings.push_back(
-        fmt::format("{} is stored in 16 bits: steps of {:.2g} of its magnitude; "
-                    "export 32 bits",
-                    role_name(table[Role::position] ? Role::position : Role::depth), kStepHalf));
-  }
   return g;
 }
 

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/background.h"
+
+#include <glm/geometric.hpp>
+
+#include "scene/depth_model.h"
+
+namespace ssdo {
+namespace {
+
+/// Coverage down to here is none.
+constexpr float kLeastAlpha = 1e-4f;
+
+/// Not-a-number is below nothing.
+bool is_missing(const glm::vec3& p) { return !(glm::length(p) < kEmptyDepth); }
+
+bool shows_nothing(float depth, float background_depth) {
+  return !(depth < background_depth && depth > 0);
+}
+
+/// A layer of normals that are 0 on every position says nothing of the background.
+bool has_normals(const GBuffer& g) {
+  for (std::size_t i = 0; i < g.normal.size(); ++i) {
+    if (g.normal[i] != glm::vec3(0)) return true;
+  }
+  return false;
+}
+
+/// What P and the depth beside it agree on; empties a depth that contradicts P.
+std::optional<DepthModel> hold_depth_to_position(GBuffer& g) {
+  if (g.position.empty() || g.depth.empty()) return std::nullopt;
+  Plane<unsigned char> counts(g.window.width(), g.window.height());
+  std::size_t both = 0, without_depth = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const bool covered = g.alpha.empty() || g.alpha[i] > kLeastAlpha;
+    if (!covered || is_missing(g.position[i]) || g.position[i] == glm::vec3(0)) continue;
+    const bool in_depth = !shows_nothing(g.depth[i], kEmptyDepth);
+    counts[i] = in_depth;
+    both += in_depth;
+    without_depth += !(g.depth[i] > 0);
+  }
+  // A layer that is 0 or not a number wherever P shows a surface was never written.
+  const bool empty = both == 0 && without_depth > 0;
+  if (!empty && both < DepthModel::kFewestPixels) return std::nullopt;
+  const auto model = DepthModel::fit(g.position, g.depth, counts, g.position_step);
+  if (!model) {
+    g.depth = {};
+    g.warnings.push_back(
+        "depth contradicts P (another unit, remapped, empty, or of another frame) and is left out");
+  }
+  return model;
+}
+
+}  // namespace
+
+void find_background(GBuffer& g, std::optional<float> background_depth) {
+  const std::optional<DepthModel> depth_of_position = hold_depth_to_position(g);
+  const float far = background_depth ? *background_depth * (1 - 1e-6f) : kEmptyDepth;
+  const bool normals_tell = has_normals(g);
+  g.valid = Plane<unsigned char>(g.window.width(), g.window.height());
+  for (std::size_t i = 0; i < g.valid.size(); ++i) {
+    const bool nothing_in_depth = !g.depth.empty() && shows_nothing(g.depth[i], far);
+    bool background = nothing_in_depth || (!g.alpha.empty() && g.alpha[i] <= kLeastAlpha);
+    bool broken = false;
+    if (!g.position.empty()) {
+      const glm::vec3& p = g.position[i];
+      const bool depth_agrees = depth_of_position && depth_of_position->agrees(p, g.depth[i]);
+      const bool without_normal = normals_tell && g.normal[i] == glm::vec3(0);
+      background |= (p == glm::vec3(0) || without_normal) && !depth_agrees;
+      broken = is_missing(p);
+      background |= broken && !depth_of_position;
+    }
+    g.background_pixels += background;
+    g.bad_pixels += !background && broken;
+    g.valid[i] = !background && !broken;
+  }
+}
+
+}  // namespace ssdo

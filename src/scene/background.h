@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scene/gbuffer.h"
+
+namespace ssdo {
+
+/// Depths and coordinates from here on show nothing: Blender writes 1e10 where a ray meets nothing.
+inline constexpr float kEmptyDepth = 1e9f;
+
+/// Fills `valid` and counts background and broken pixels. A pixel is background where anything says
+/// so: alpha is 0; P is 0, not finite, or kEmptyDepth or more; N is 0; or the depth is
+/// `background_depth` or more, not finite, 0 or less. P or N of 0 counts for nothing where a depth
+/// shows that very surface, and N of 0 for nothing in a layer that is 0 throughout.
+///
+/// Where there is P, a depth that contradicts it (depth_model.h) is left out with a warning, and
+/// the plane is emptied. A P that is not finite counts as broken where a depth shows a surface.
+void find_background(GBuffer& g, std::optional<float> background_depth);
+
+}  // namespace ssdo

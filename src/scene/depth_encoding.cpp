@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/depth_encoding.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "error.h"
+#include "scene/background.h"
+
+namespace ssdo {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Rounding of the farther end, relative to it.
+constexpr float kRounding = 1e-6f;
+
+void decode(Plane<float>& depth, DepthKind kind, const GBufferOptions& options) {
+  const float near = options.depth_near, far = options.depth_far;
+  const float farther = std::max(near, far) * (1 - kRounding);
+  for (float& z : depth.pixels) {
+    if (kind == DepthKind::inverse) z = 1 / z;
+    if (kind == DepthKind::normalized) {
+      z = near + z * (far - near);
+      if (z >= farther) z = kInfinity;
+    }
+  }
+}
+
+/// The z of a camera that looks along -z, apart from pixels that show nothing.
+void turn_negative(GBuffer& g) {
+  bool negative = false;
+  for (const float z : g.depth.pixels) {
+    if (z > 0 && z < kEmptyDepth) return;
+    negative |= z < 0 && z > -kEmptyDepth;
+  }
+  if (!negative) return;
+  for (float& z : g.depth.pixels) z = -z;
+  g.warnings.push_back(
+      "depth is negative, as the z of a camera that looks along -z; its sign is turned");
+}
+
+void check_has_unit(const GBuffer& g, const std::string& file) {
+  float largest = 0;
+  for (const float z : g.depth.pixels) {
+    if (z < kEmptyDepth) largest = std::max(largest, z);
+  }
+  if (largest > 1) return;
+  throw Error(ExitCode::layer,
+              fmt::format("{}: depth ends at {:.4g} and seems to be normalised to 0..1; give its "
+                          "meaning with --depth-kind normalized:NEAR,FAR, or say --depth-kind "
+                          "planar if these are scene units",
+                          file, largest));
+}
+
+}  // namespace
+
+void undo_depth_encoding(GBuffer& g, const GBufferOptions& options, const std::string& file) {
+  if (g.depth.empty()) return;
+  const DepthKind kind = options.depth_kind.value_or(DepthKind::planar);
+  g.depth_kind = kind == DepthKind::ray ? DepthKind::ray : DepthKind::planar;
+  decode(g.depth, kind, options);
+  turn_negative(g);
+  if (!options.depth_kind && g.position.empty()) check_has_unit(g, file);
+}
+
+}  // namespace ssdo

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "scene/gbuffer.h"
+#include "scene/read_gbuffer.h"
+
+namespace ssdo {
+
+/// Turns the depth as stored into a distance along the axis or the ray, in scene units, and sets
+/// its kind. In a normalized depth what is stored as the farther end, or beyond it, shows nothing:
+/// it becomes infinite. A depth that is negative throughout is a coordinate along the axis: its
+/// sign is turned, with a warning. Errors: ExitCode::layer for a depth within 0..1 of unknown
+/// meaning where there is no P.
+void undo_depth_encoding(GBuffer& g, const GBufferOptions& options, const std::string& file);
+
+}  // namespace ssdo

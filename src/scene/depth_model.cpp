@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/depth_model.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <vector>
+
+#include "scene/projection_model.h"
+
+namespace ssdo {
+namespace {
+
+constexpr std::size_t kMostSamples = 20000;
+constexpr int kRounds = 4;  ///< of leaving out what does not fit
+constexpr double kTolerance = 0.05;
+
+/// Share of the pixels with a depth that has to agree: averaged silhouettes do not, and in grass
+/// they may be a third of the frame.
+constexpr double kLeastShare = 0.5;
+
+/// A unit of depth this far from one of P is another. Positions in a plane tell only the part of
+/// the gradient that lies in the plane: then it may be shorter.
+constexpr double kUnitLength = 0.05;
+constexpr double kFlat = 1e-3;  ///< thickness of such a plane over its extent
+
+struct Pixel {
+  glm::dvec3 p;  ///< from the centre
+  double depth;
+};
+
+std::vector<Pixel> collect(const Plane<glm::vec3>& positions, const Plane<float>& depth,
+                           const Plane<unsigned char>& counts) {
+  std::vector<Pixel> pixels;
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (counts[i]) pixels.push_back({glm::dvec3(positions[i]), depth[i]});
+  }
+  if (pixels.size() <= kMostSamples) return pixels;
+  std::vector<Pixel> spread;
+  for (std::size_t k = 0; k < kMostSamples; ++k)
+    spread.push_back(pixels[k * pixels.size() / kMostSamples]);
+  return spread;
+}
+
+/// Least squares for value = affine . (p, 1), relative to the value's size so that no far pixel
+/// outweighs the others; the shortest solution where P leaves it open.
+glm::dvec4 fit_affine(const std::vector<Pixel>& pixels, const std::vector<double>& values,
+                      const std::vector<double>& sizes, const std::vector<bool>& used) {
+  Eigen::Matrix4d ata = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d atb = Eigen::Vector4d::Zero();
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (!used[i]) continue;
+    const double weight = 1 / sizes[i];
+    const Eigen::Vector4d row =
+        weight * Eigen::Vector4d(pixels[i].p.x, pixels[i].p.y, pixels[i].p.z, 1);
+    ata += row * row.transpose();
+    atb += row * weight * values[i];
+  }
+  const Eigen::Vector4d x = ata.completeOrthogonalDecomposition().solve(atb);
+  return {x[0], x[1], x[2], x[3]};
+}
+
+/// Whether the positions lie in a plane, whose normal they leave open.
+bool is_flat(const std::vector<Pixel>& pixels) {
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (const Pixel& pixel : pixels) {
+    const Eigen::Vector3d p(pixel.p.x, pixel.p.y, pixel.p.z);
+    moments += p * p.transpose();
+  }
+  const Eigen::Vector3d spread =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvalues();
+  return !(spread[0] > kFlat * kFlat * spread[2]);
+}
+
+}  // namespace
+
+double DepthModel::depth_of(const glm::dvec3& p) const {
+  const double value = glm::dot(affine_, glm::dvec4(p, 1));
+  return kind_ == DepthKind::planar ? value : std::sqrt(std::max(glm::dot(p, p) + value, 0.0));
+}
+
+double DepthModel::length_of_unit() const {
+  const double gradient = glm::length(glm::dvec3(affine_));
+  // The camera at c: |p - c|^2 = |p|^2 - 2 c p + |c|^2.
+  return kind_ == DepthKind::planar ? gradient
+                                    : 0.5 * gradient / std::sqrt(std::max(affine_.w, 1e-300));
+}
+
+bool DepthModel::agrees(const glm::vec3& position, float depth) const {
+  const glm::dvec3 size = glm::abs(glm::dvec3(position));
+  const double rounding = 2 * position_step_ * std::max({size.x, size.y, size.z});
+  // Not-a-number agrees with nothing.
+  return std::abs(depth_of(glm::dvec3(position) - centre_) - depth) <=
+         kTolerance * depth + rounding;
+}
+
+std::optional<DepthModel> DepthModel::fit(const Plane<glm::vec3>& positions,
+                                          const Plane<float>& depth,
+                                          const Plane<unsigned char>& counts, float position_step) {
+  std::vector<Pixel> pixels = collect(positions, depth, counts);
+  if (pixels.size() < kFewestPixels) return std::nullopt;
+  glm::dvec3 centre(0);
+  for (const Pixel& pixel : pixels) centre += pixel.p / double(pixels.size());
+  for (Pixel& pixel : pixels) pixel.p -= centre;
+  const bool flat = is_flat(pixels);
+
+  for (const DepthKind kind : {DepthKind::planar, DepthKind::ray}) {
+    DepthModel model;
+    model.kind_ = kind;
+    model.centre_ = centre;
+    model.position_step_ = position_step;
+    std::vector<double> values, sizes;
+    for (const Pixel& pixel : pixels) {
+      const bool planar = kind == DepthKind::planar;
+      sizes.push_back(planar ? pixel.depth : pixel.depth * pixel.depth);
+      values.push_back(planar ? pixel.depth : sizes.back() - glm::dot(pixel.p, pixel.p));
+    }
+    std::vector<bool> used(pixels.size(), true);
+    for (int round = 0; round < kRounds; ++round) {
+      model.affine_ = fit_affine(pixels, values, sizes, used);
+      std::vector<double> misses;
+      for (const Pixel& pixel : pixels)
+        misses.push_back(std::abs(model.depth_of(pixel.p) - pixel.depth) / pixel.depth);
+      // What misses by more than three times the median is of another surface, or an average.
+      const double limit = std::max(3 * quantile(misses, 0.5), kTolerance);
+      for (std::size_t i = 0; i < pixels.size(); ++i) used[i] = misses[i] <= limit;
+    }
+    std::size_t agreeing = 0;
+    for (const Pixel& pixel : pixels)
+      agreeing += model.agrees(glm::vec3(pixel.p + centre), float(pixel.depth));
+    if (double(agreeing) < kLeastShare * double(pixels.size())) continue;
+    const double length = model.length_of_unit();
+    if (length < 1 + kUnitLength && (flat || length > 1 - kUnitLength)) return model;
+  }
+  return std::nullopt;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
+
+#include "math/plane.h"
+#include "scene/gbuffer.h"
+
+namespace ssdo {
+
+/// What a depth layer has to be where P is known, whatever the camera: planar depth is an affine
+/// function of P whose gradient is the unit vector along the axis; the square of a distance from
+/// the camera is |P|^2 and an affine function.
+class DepthModel {
+ public:
+  static constexpr std::size_t kFewestPixels = 4;  ///< that have both, to tell anything
+
+  /// Fits both kinds to the pixels of `counts`, whose depths are positive. Nothing where neither
+  /// is right for most of them, that is, where the depth contradicts P: remapped, in another unit,
+  /// of another frame; or where there are fewer than kFewestPixels.
+  /// `position_step` is the relative rounding of P.
+  static std::optional<DepthModel> fit(const Plane<glm::vec3>& positions, const Plane<float>& depth,
+                                       const Plane<unsigned char>& counts, float position_step);
+
+  /// Whether a pixel's depth is what its P says, to 5 % and the rounding of P.
+  bool agrees(const glm::vec3& position, float depth) const;
+
+ private:
+  double depth_of(const glm::dvec3& from_centre) const;
+
+  /// Of depth, in units of P: 1 where the two have the same.
+  double length_of_unit() const;
+
+  DepthKind kind_ = DepthKind::planar;
+  glm::dvec3 centre_{0};
+  glm::dvec4 affine_{0};  ///< of P - centre, and the constant
+  double position_step_ = 0;
+};
+
+}  // namespace ssdo
