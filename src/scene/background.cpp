@@ -64,9 +64,8 @@ void find_background(GBuffer& g, std::optional<float> background_depth) {
     bool broken = false;
     if (!g.position.empty()) {
       const glm::vec3& p = g.position[i];
-      const bool depth_agrees = depth_of_position && depth_of_position->agrees(p, g.depth[i]);
-      const bool without_normal = normals_tell && g.normal[i] == glm::vec3(0);
-      background |= (p == glm::vec3(0) || without_normal) && !depth_agrees;
+      const bool suspect = p == glm::vec3(0) || (normals_tell && g.normal[i] == glm::vec3(0));
+      background |= suspect && !(depth_of_position && depth_of_position->agrees(p, g.depth[i]));
       broken = is_missing(p);
       background |= broken && !depth_of_position;
     }

@@ -31,17 +31,17 @@ struct Pixel {
   double depth;
 };
 
+/// At most kMostSamples of the pixels that count, spread over the frame.
 std::vector<Pixel> collect(const Plane<glm::vec3>& positions, const Plane<float>& depth,
                            const Plane<unsigned char>& counts) {
+  const auto count = std::size_t(std::count(counts.pixels.begin(), counts.pixels.end(), 1));
+  const std::size_t stride = count / kMostSamples + 1;
   std::vector<Pixel> pixels;
+  std::size_t seen = 0;
   for (std::size_t i = 0; i < depth.size(); ++i) {
-    if (counts[i]) pixels.push_back({glm::dvec3(positions[i]), depth[i]});
+    if (counts[i] && seen++ % stride == 0) pixels.push_back({glm::dvec3(positions[i]), depth[i]});
   }
-  if (pixels.size() <= kMostSamples) return pixels;
-  std::vector<Pixel> spread;
-  for (std::size_t k = 0; k < kMostSamples; ++k)
-    spread.push_back(pixels[k * pixels.size() / kMostSamples]);
-  return spread;
+  return pixels;
 }
 
 /// Least squares for value = affine . (p, 1), relative to the value's size so that no far pixel
