@@ -13,6 +13,7 @@
 
 #include "frame.h"
 #include "io/image_file.h"
+#include "io/one_line.h"
 #include "parallel/tiles.h"
 #include "pipeline.h"
 #include "progress.h"
@@ -281,7 +282,7 @@ class Batch {
   }
 
   /// One line on standard error. A terminal that is gone does not stop the work.
-  void say(const std::string& line) { print("ssdo: " + line + "\n"); }
+  void say(const std::string& line) { print("ssdo: " + printable(line) + "\n"); }
   void print(const std::string& text) {
     progress_.clear();
     std::fputs(text.c_str(), stderr);
