@@ -179,12 +179,6 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
                      const GBufferOptions& options) {
   const std::string file = files[0]->path().string();
   const auto& lead = table[Role::position] ? table[Role::position] : table[Role::depth];
-  if (!lead) {
-    throw Error(ExitCode::layer,
-                fmt::format("{}: no layer for position or depth found by name; name one with --aov "
-                            "position=LAYER or --aov depth=LAYER ('ssdo info' lists the layers)",
-                            file));
-  }
   const ExrPart& part = files[std::size_t(lead->file)]->parts()[std::size_t(lead->part)];
   GBuffer g;
   g.window = part.data_window;
