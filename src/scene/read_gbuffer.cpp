@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "math/light_range.h"
+#include "scene/layer_windows.h"
 
 namespace ssdo {
 namespace {
@@ -190,10 +191,11 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   std::vector<Role> roles = {Role::position, Role::depth, Role::normal,    Role::albedo,
                              Role::radiance, Role::alpha, Role::roughness, Role::motion};
   if (table[Role::ambient]) roles.insert(roles.end(), {Role::ambient, Role::beauty});
+  check_display_windows(files, table, roles);
   const LayerReader read(files, table, roles, g.window);
   g.position = read.vector(table[Role::position], NAN);
   g.depth = read.scalar(table[Role::depth], NAN);
-  g.normal = read.vector(table[Role::normal], 0);
+  g.normal = read.vector(table[Role::normal], NAN);
   g.albedo = read.vector(table[Role::albedo], 0);
   g.radiance = read.vector(table[Role::radiance], 0);
   g.alpha = read.scalar(table[Role::alpha], 0);
@@ -209,6 +211,7 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   undo_depth_encoding(g, options, file);
   classify(g, options);
   undo_normal_encoding(g);
+  note_data_windows(files, table, roles, g);
   for (Plane<glm::vec3>* values : {&g.normal, &g.albedo, &g.radiance, &g.ambient, &g.beauty})
     clear_broken(g, *values);
   clear_negative(g.albedo);

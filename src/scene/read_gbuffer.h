@@ -24,7 +24,7 @@ struct GBufferOptions {
 /// 0, or else by depth (>= 1e9, infinite, NaN, <= 0) where there is one, or else by P (0, >= 1e9,
 /// not finite) or a normal of 0.
 /// The table has a position or a depth, whose data window the planes have.
-/// Errors: ExitCode::layer when the depth has no unit.
+/// Errors: ExitCode::layer when a layer is of another display window, or the depth has no unit.
 GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTable& table,
                      const GBufferOptions& options);
 
