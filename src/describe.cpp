@@ -48,7 +48,7 @@ std::string describe_normals(const Frame& frame) {
   std::string text = layer ? describe_layer(frame, *layer) : "no layer";
   if (!report.normal_space.empty()) text += "; " + report.normal_space;
   if (layer) text += fmt::format(", median cosine {:.3f} with P", report.normal_agreement);
-  if (report.normals_rebuilt > 0)
+  if (layer && report.normals_rebuilt > 0)
     text += fmt::format("; {} rebuilt from P", report.normals_rebuilt);
   if (report.normals_turned > 0)
     text += fmt::format("; {} turned to the viewer", report.normals_turned);
