@@ -13,6 +13,8 @@
 
 #include "frame.h"
 #include "io/image_file.h"
+#include "io/one_line.h"
+#include "listing.h"
 #include "parallel/tiles.h"
 #include "pipeline.h"
 #include "progress.h"
@@ -119,33 +121,45 @@ class Batch {
       : options_(options),
         threads_(choose_thread_count(options.threads)),
         limit_(threads_),
-        light_(options.light),
         jobs_(plan_jobs(options)),
         progress_(options.batch.progress, options.say.quiet) {}
 
   ExitCode run() {
-    if (!options_.say.stats.empty()) check_statistics_file();
     ExitCode code = ExitCode::done;
-    for (std::size_t i = 0; i < jobs_.size(); ++i) {
-      const std::optional<Error> error = error_of_job(i);
-      if (error) {
-        // A single frame that fails is the job that fails.
-        if (jobs_.size() == 1) throw *error;
-        say(error->what());
-        if (code == ExitCode::done) code = error->code;
-        if (options_.batch.on_error == OnError::stop) break;
-      }
-      progress_.tell(double(i + 1) / double(jobs_.size()), jobs_[i].input);
+    try {
+      code = run_jobs();
+    } catch (const Error& e) {
+      note_in_info(e);
+      print_infos();
+      throw;
     }
-    if (options_.command == Command::info && options_.say.json) {
-      fmt::print("{}\n", infos_.size() == 1 ? infos_[0].dump(2) : infos_.dump(2));
-    }
+    print_infos();
     if (!options_.say.stats.empty())
       statistics_.write(options_.say.stats, Statistics::policy(options_.output.policy));
     return code;
   }
 
  private:
+  ExitCode run_jobs() {
+    if (!options_.say.stats.empty()) check_statistics_file();
+    ExitCode code = ExitCode::done;
+    for (std::size_t i = 0; i < jobs_.size(); ++i) {
+      if (options_.command == Command::info) list(jobs_[i]);
+      if (!light_) light_.emplace(options_.light);
+      const std::optional<Error> error = error_of_job(i);
+      if (error) {
+        // A single frame that fails is the job that fails.
+        if (jobs_.size() == 1) throw *error;
+        note_in_info(*error);
+        say(error->what());
+        if (code == ExitCode::done) code = error->code;
+        if (options_.batch.on_error == OnError::stop) break;
+      }
+      progress_.tell(double(i + 1) / double(jobs_.size()), jobs_[i].input);
+    }
+    return code;
+  }
+
   std::optional<Error> error_of_job(std::size_t i) {
     try {
       run_job(i);
@@ -253,7 +267,7 @@ class Batch {
       throw Error(ExitCode::input,
                   fmt::format("{}: frame {} of the range is missing", job.input, *job.frame));
     }
-    return prepare_frame(options_, light_, job.input, job.aovs);
+    return prepare_frame(options_, *light_, job.input, job.aovs);
   }
 
   /// The frame of job `i`, which may be on its way already; sends for the next one.
@@ -272,16 +286,38 @@ class Batch {
     return frame;
   }
 
+  /// Comes before all that can fail, so that `info` says what a file holds in any case.
+  void list(const Job& job) {
+    const Listing listing = list_layers(job.input, job.aovs);
+    infos_.push_back(listing.json);
+    print_info(listing.text);
+  }
+
   void show(const Frame& frame) {
-    if (options_.say.json) {
-      infos_.push_back(to_json(frame));
-    } else {
-      fmt::print("{}", describe(frame));
-    }
+    infos_.back().update(to_json(frame));
+    print_info(describe(frame));
+  }
+
+  void note_in_info(const Error& e) {
+    if (!infos_.empty()) infos_.back()["error"] = {{"code", int(e.code)}, {"message", e.what()}};
+  }
+
+  void print_info(const std::string& text) {
+    if (options_.say.json) return;
+    progress_.clear();
+    fmt::print("{}", text);
+    std::fflush(stdout);  // before an error line
+  }
+
+  void print_infos() const {
+    if (!options_.say.json || infos_.empty()) return;
+    const nlohmann::json& shown = infos_.size() == 1 ? infos_[0] : infos_;
+    // Names in a file need not be UTF-8, and JSON has to be.
+    fmt::print("{}\n", shown.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   }
 
   /// One line on standard error. A terminal that is gone does not stop the work.
-  void say(const std::string& line) { print("ssdo: " + line + "\n"); }
+  void say(const std::string& line) { print("ssdo: " + printable(line) + "\n"); }
   void print(const std::string& text) {
     progress_.clear();
     std::fputs(text.c_str(), stderr);
@@ -293,7 +329,7 @@ class Batch {
   const Options& options_;
   int threads_;
   ThreadLimit limit_;
-  Light light_;
+  std::optional<Light> light_;  ///< read after the first listing of `info`
   std::vector<Job> jobs_;
   Progress progress_;
   Statistics statistics_;

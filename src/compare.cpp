@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "io/exr_writer.h"
+#include "io/one_line.h"
 #include "io/picture_layers.h"
 
 namespace ssdo {
@@ -148,7 +149,7 @@ std::string to_table(const std::vector<Compared>& all) {
                                  "pixels", "RMSE", "relative", "bias", "max", "99 %", "PSNR");
   for (const Compared& c : all) {
     const Difference& d = c.difference.figures;
-    const std::string a = shown_name(c.pair.a), b = shown_name(c.pair.b);
+    const std::string a = printable(shown_name(c.pair.a)), b = printable(shown_name(c.pair.b));
     text +=
         fmt::format("{:<32} {:>9} {:>11.6g} {:>10.4g} {:>+11.4g} {:>11.6g} {:>11.6g} {:>8.2f}\n",
                     a == b ? a : a + " - " + b, c.difference.pixels, d.rmse, d.relative_rmse(),

@@ -5,6 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "frame.h"
+#include "io/exr_parts.h"
+#include "io/one_line.h"
+#include "listing.h"
 
 namespace ssdo {
 namespace {
@@ -25,6 +28,30 @@ std::string describe_camera(const Frame& frame) {
     text += fmt::format("; P lands {:.2g} px from its pixel (median), {:.2g} px (99 %)",
                         r->median_px, r->p99_px);
   }
+  return text;
+}
+
+/// Its channels; where they do not tell, which part or file they stand in.
+std::string describe_layer(const Frame& frame, const Layer& layer) {
+  const ExrReader& file = frame.files[std::size_t(layer.file)];
+  std::string text =
+      fmt::format("{} ({}{})", fmt::join(layer.channels, ", "), layer.half ? "half" : "float",
+                  layer.by_request ? ", by --aov" : "");
+  if (file.parts().size() > 1) text += " in " + label(file.parts()[std::size_t(layer.part)]);
+  if (layer.file != 0) text += " of " + file.path().string();
+  return text;
+}
+
+std::string describe_normals(const Frame& frame) {
+  const GeometryReport& report = frame.report;
+  const auto& layer = frame.layers[Role::normal];
+  std::string text = layer ? describe_layer(frame, *layer) : "no layer";
+  if (!report.normal_space.empty()) text += "; " + report.normal_space;
+  if (layer) text += fmt::format(", {:.1f} % agree with P", 100 * report.normal_agreement);
+  if (layer && report.normals_rebuilt > 0)
+    text += fmt::format("; {} rebuilt from P", report.normals_rebuilt);
+  if (report.normals_turned > 0)
+    text += fmt::format("; {} turned to the viewer", report.normals_turned);
   return text;
 }
 
@@ -50,33 +77,11 @@ json camera_json(const Frame& frame) {
   return j;
 }
 
-json window_json(const Window& w) { return {w.x0, w.y0, w.x1 - 1, w.y1 - 1}; }
-
 std::size_t surface_pixels(const Frame& frame) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < frame.geometry.surfel.size(); ++i)
     count += frame.geometry.is_surface(i);
   return count;
-}
-
-json parts_json(const Frame& frame) {
-  json parts = json::array();
-  for (const ExrPart& part : frame.files.front().parts()) {
-    json channels = json::array();
-    for (const ExrChannel& c : part.channels) {
-      channels.push_back({{"name", c.name},
-                          {"type", c.type == Imf::HALF    ? "half"
-                                   : c.type == Imf::FLOAT ? "float"
-                                                          : "uint"}});
-    }
-    parts.push_back({{"name", part.name},
-                     {"view", part.view},
-                     {"deep", part.deep},
-                     {"data_window", window_json(part.data_window)},
-                     {"display_window", window_json(part.display_window)},
-                     {"channels", channels}});
-  }
-  return parts;
 }
 
 json layers_json(const Frame& frame) {
@@ -95,14 +100,11 @@ json layers_json(const Frame& frame) {
 }  // namespace
 
 std::string describe(const Frame& frame) {
-  std::size_t channels = 0;
-  for (const ExrPart& part : frame.files.front().parts()) channels += part.channels.size();
   const Window& display = frame.geometry.display;
   std::string text =
-      fmt::format("{}: {} x {}, {} part(s), {} channels\n", frame.input, display.width(),
-                  display.height(), frame.files.front().parts().size(), channels);
+      fmt::format("{}: {} x {}\n", printable(frame.input), display.width(), display.height());
   const auto line = [&](std::string_view key, const std::string& value) {
-    text += fmt::format("  {:<10}{}\n", key, value);
+    text += fmt::format("  {:<10}{}\n", key, printable(value));
   };
   if (!(frame.geometry.window == display)) {
     const Window& w = frame.geometry.window;
@@ -110,15 +112,10 @@ std::string describe(const Frame& frame) {
   }
   for (std::size_t i = 0; i < kRoleCount; ++i) {
     const auto& layer = frame.layers.layers[i];
-    if (!layer) continue;
-    std::string value =
-        fmt::format("{} ({}{})", fmt::join(layer->channels, ", "), layer->half ? "half" : "float",
-                    layer->by_request ? ", by --aov" : "");
-    if (Role(i) == Role::normal) {
-      value += fmt::format("; {}, {:.1f} % agree with P", frame.report.normal_space,
-                           100 * frame.report.normal_agreement);
-    }
-    line(role_name(Role(i)), value);
+    if (Role(i) == Role::normal)
+      line("normal", describe_normals(frame));
+    else if (layer)
+      line(role_name(Role(i)), describe_layer(frame, *layer));
   }
   line("camera", describe_camera(frame));
   line("surfaces", fmt::format("{} of {} pixels ({} background, {} broken), median depth {:.4g}",
@@ -142,7 +139,7 @@ nlohmann::json to_json(const Frame& frame) {
           {"height", g.display.height()},
           {"data_window", window_json(g.window)},
           {"display_window", window_json(g.display)},
-          {"parts", parts_json(frame)},
+          {"parts", parts_json(frame.files.front())},
           {"layers", layers_json(frame)},
           {"camera", camera_json(frame)},
           {"normals",

@@ -6,6 +6,7 @@
 #include <ImfStringAttribute.h>
 
 #include "estimators/registry.h"
+#include "listing.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -18,16 +19,6 @@ UpAxis up_axis_of(const Imf::Header& header) {
   }
   const auto* software = header.findTypedAttribute<Imf::StringAttribute>("Software");
   return software && software->value().find("Blender") != std::string::npos ? UpAxis::z : UpAxis::y;
-}
-
-/// Opens the frame and every file that --aov names, each once.
-void open_files(Frame& frame, const std::vector<LayerRequest>& aovs) {
-  frame.files.emplace_back(frame.input);
-  for (const LayerRequest& request : aovs) {
-    bool open = request.file.empty();
-    for (const ExrReader& file : frame.files) open |= file.path() == request.file;
-    if (!open) frame.files.emplace_back(request.file);
-  }
 }
 
 }  // namespace
@@ -51,7 +42,7 @@ Frame prepare_frame(const Options& options, const Light& light, const std::strin
   Frame frame;
   frame.input = input;
   Stopwatch watch;
-  open_files(frame, aovs);
+  for (const std::string& path : files_of_frame(input, aovs)) frame.files.emplace_back(path);
   std::vector<const ExrReader*> files;
   for (const ExrReader& file : frame.files) files.push_back(&file);
   // Names that nothing asks for are no reason to refuse a frame.
@@ -59,6 +50,8 @@ Frame prepare_frame(const Options& options, const Light& light, const std::strin
   if (!find_method(options.model.method).products.reflection) unused.push_back(Role::roughness);
   if (!options.model.temporal) unused.push_back(Role::motion);
   frame.layers = find_layers(files, aovs, options.input.part, unused);
+  require_position(frame.layers, frame.files.front(),
+                   options.command == Command::info ? "" : " ('ssdo info' lists the layers)");
   frame.gbuffer = read_gbuffer(files, frame.layers, options.input.gbuffer);
   frame.times.read = watch.lap();
 

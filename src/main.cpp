@@ -14,6 +14,7 @@
 #include "compare.h"
 #include "error.h"
 #include "estimators/registry.h"
+#include "io/one_line.h"
 #include "io/safe_file.h"
 #include "options.h"
 
@@ -61,7 +62,7 @@ void keep_freed_memory() {
 /// The last words of a process that fails; what cannot be said (standard error is closed, or its
 /// disk is full) does not change the exit code.
 ssdo::ExitCode fail(ssdo::ExitCode code, const char* message) {
-  std::fprintf(stderr, "ssdo: %s\n", message);
+  std::fprintf(stderr, "ssdo: %s\n", ssdo::printable(message).c_str());
   return code;
 }
 

@@ -48,7 +48,8 @@ void add_input(CLI::App& app, Options& o, RawOptions& raw) {
       ->type_name("ROLE=LAYER")
       ->allow_extra_args(false)
       ->group("Input");
-  app.add_option("--part", o.input.part, "look for layers in this part only")
+  app.add_option("--part", o.input.part,
+                 "look for layers in this part or view, and what completes it")
       ->type_name("NAME|N")
       ->group("Input");
   app.add_option("--depth-kind", raw.depth_kind,

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "io/one_line.h"
+
 namespace ssdo {
 
 Progress::Progress(ProgressStyle style, bool quiet) : style_(style) {
@@ -42,7 +44,8 @@ void Progress::tell(double done, const std::string& what) {
 
 void Progress::draw(int percent, const std::string& what) {
   const std::string filled(std::size_t(percent / 4), '#');
-  std::fputs(fmt::format("\r\033[K[{:<25}] {:3d}% {}", filled, percent, what).c_str(), stderr);
+  std::fputs(fmt::format("\r\033[K[{:<25}] {:3d}% {}", filled, percent, printable(what)).c_str(),
+             stderr);
   std::fflush(stderr);
   drawn_ = true;
 }

@@ -18,6 +18,7 @@
 #include "bench/report_files.h"
 #include "bench/subject.h"
 #include "estimators/registry.h"
+#include "io/one_line.h"
 #include "pipeline.h"
 #include "progress.h"
 #include "stopwatch.h"
@@ -77,7 +78,7 @@ class Bench {
       fmt::print(stderr, "{}", describe(frame_));
     } else if (!options_.say.quiet) {
       for (const std::string& warning : frame_.warnings())
-        fmt::print(stderr, "ssdo: {}: warning: {}\n", options_.input_file, warning);
+        fmt::print(stderr, "ssdo: {}\n", printable(options_.input_file + ": warning: " + warning));
     }
     if (wants_page(options_.bench.reports)) pictures_.emplace(frame_, options_.color);
   }

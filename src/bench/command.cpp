@@ -8,6 +8,8 @@
 #include <cctype>
 #include <filesystem>
 
+#include "io/one_line.h"
+
 namespace ssdo {
 namespace {
 
@@ -26,6 +28,12 @@ std::string shell_word(const std::string& word) {
            std::string_view("_./:=,+@%-").find(char(c)) != std::string_view::npos;
   });
   if (plain) return word;
+  if (printable(word) != word) {
+    std::string escaped;
+    for (const char c : word)
+      escaped += c == '\'' || c == '\\' ? std::string{'\\', c} : std::string(1, c);
+    return "$'" + printable(escaped) + "'";
+  }
   std::string out = "'";
   for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";

@@ -9,7 +9,8 @@
 
 namespace ssdo {
 
-/// A word as a shell reads it: in quotes where it holds more than letters, digits and _./:=,+@%-.
+/// A word as a shell reads it: in quotes where it holds more than letters, digits and _./:=,+@%-,
+/// and in the $'...' of bash where a terminal should not get it raw.
 std::string shell_word(const std::string& word);
 
 /// The command line of the main job that does what was measured: the setting, the options of the

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bench/report.h"
+#include "io/one_line.h"
 
 namespace ssdo {
 namespace {
@@ -67,11 +68,11 @@ std::string recommendation(const BenchReport& report) {
 std::string to_table(const BenchReport& report) {
   std::string text = fmt::format(
       "{}: {} x {}, {} of {} pixels show surfaces; {} thread(s), {} ({}); filter {}; {:.0f} s\n",
-      report.input, report.frame.at("width").get<int>(), report.frame.at("height").get<int>(),
-      report.surface_pixels, report.pixels, report.threads, report.processor, report.isa,
-      report.filter, report.seconds);
+      printable(report.input), report.frame.at("width").get<int>(),
+      report.frame.at("height").get<int>(), report.surface_pixels, report.pixels, report.threads,
+      report.processor, report.isa, report.filter, report.seconds);
   for (const auto& [product, layer] : report.truths)
-    text += fmt::format("truth of {}: {}\n", product, layer);
+    text += fmt::format("truth of {}: {}\n", product, printable(layer));
   text += heading(report);
   for (std::size_t i = 0; i < report.rows.size(); ++i) {
     const BenchRow& row = report.rows[i];

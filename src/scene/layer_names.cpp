@@ -11,16 +11,17 @@ namespace {
 
 /// Names in order of preference, normalised: lower case, no spaces, underscores or dashes; `*`
 /// stands for anything. A name with a dot is compared with the whole path of a layer, one without
-/// with its last segment too. "" is a layer without a name. Plain `diffuse` is missing on purpose
-/// (it is lit), `pref` and `rest` too (another space), `mist` too (no distance). `radiance` and
-/// `ambient` have no name that could be trusted: they are used on request only. So is motion of
-/// other renderers than Blender, whose units and signs differ.
+/// with its last segment too. "" is a layer without a name, "nxnynz" three components without one.
+/// Plain `diffuse` is missing on purpose (it is lit), `pref` and `rest` too (another space), `mist`
+/// too (no distance). `radiance` and `ambient` have no name that could be trusted: they are used on
+/// request only. So is motion of other renderers than Blender, whose units and signs differ.
 const std::vector<std::string>& known_names(Role role) {
   static const std::array<std::vector<std::string>, kRoleCount> names = {{
       {"pworld", "p.world", "p", "position", "worldposition", "worldpos", "posw", "wp", "ppass",
-       "cgeometryworldposition"},
-      {"nworld", "n.world", "n", "normal", "normals", "nn", "shnormal", "normw", "worldnormal",
-       "ns", "vraynormals", "cgeometrynormalsshading", "bumpnormals", "denoisingnormal"},
+       "cgeometryworldposition", "*movierenderqueueworldposition", "pxpypz"},
+      {"nxnynz", "nworld", "n.world", "n", "normal", "normals", "nn", "shnormal", "normw",
+       "worldnormal", "ns", "vraynormals", "cgeometrynormalsshading", "bumpnormals",
+       "denoisingnormal"},
       {"albedo", "diffusealbedo", "diffcol", "diffusecolor", "diffusefilter", "vraydiffusefilter",
        "cshadingalbedo", "cshadingsourcecolor", "diffuseopacity", "denoisealbedo",
        "denoisingalbedo", "basecolor"},
@@ -63,7 +64,9 @@ std::optional<std::size_t> rank_of(Role role, const std::vector<std::string>& ke
 }
 
 const std::vector<Components>& component_sets(Role role) {
-  static const std::vector<Components> vector = {
+  static const std::vector<Components> position = {
+      {"x", "y", "z"}, {"r", "g", "b"}, {"red", "green", "blue"}, {"px", "py", "pz"}};
+  static const std::vector<Components> normal = {
       {"x", "y", "z"}, {"r", "g", "b"}, {"red", "green", "blue"}, {"nx", "ny", "nz"}};
   static const std::vector<Components> color = {{"r", "g", "b"}, {"red", "green", "blue"}};
   static const std::vector<Components> depth = {{"z"}, {"v"}, {"y"}, {"r"}, {"t"}, {"depth"}};
@@ -74,8 +77,9 @@ const std::vector<Components>& component_sets(Role role) {
       {"x", "y"}, {"r", "g"}, {"red", "green"}, {"u", "v"}};
   switch (role) {
     case Role::position:
+      return position;
     case Role::normal:
-      return vector;
+      return normal;
     case Role::depth:
       return depth;
     case Role::alpha:

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
+#include <iterator>
 
 #include "error.h"
+#include "scene/layer_candidates.h"
+#include "scene/layer_groups.h"
 #include "scene/layer_names.h"
 #include "sequence.h"
 
@@ -19,203 +21,155 @@ constexpr std::array<std::string_view, kRoleCount> kRoleNames = {
     "position", "normal",   "albedo",  "depth",     "alpha",
     "beauty",   "radiance", "ambient", "roughness", "motion"};
 
-std::string_view last_segment(std::string_view path) {
-  const auto dot = path.rfind('.');
-  return dot == std::string_view::npos ? path : path.substr(dot + 1);
+/// Where layers are looked for, best first: a role is taken from the first set that has it.
+using Tiers = std::vector<std::vector<LayerGroup>>;
+
+template <class Keep>
+std::vector<LayerGroup> those_of(const std::vector<LayerGroup>& groups, const Keep& keep) {
+  std::vector<LayerGroup> kept;
+  std::copy_if(groups.begin(), groups.end(), std::back_inserter(kept), keep);
+  return kept;
 }
 
-/// The channels of a part that share a path up to the last dot, by lower-case component.
-struct Group {
-  int file = 0, part = 0;
-  std::string name;       ///< part and layer, for messages and --aov
-  std::string layer;      ///< path without the part's name
-  bool only_part = true;  ///< of its file
-  std::map<std::string, ExrChannel> components;
-
-  const ExrChannel* find(std::string_view component) const {
-    const auto it = components.find(std::string(component));
-    return it == components.end() ? nullptr : &it->second;
-  }
-};
-
-/// "part.layer", unless the layer begins with the part's name as Blender and Nuke write it.
-std::string qualified(const std::string& part, const std::string& layer) {
-  if (part.empty() || layer == part || layer.starts_with(part + ".")) return layer;
-  return layer.empty() ? part : part + "." + layer;
+std::string quoted(const std::vector<std::string>& names) {
+  return fmt::format("'{}'", fmt::join(names, "', '"));
 }
 
-std::vector<Group> group_channels(const std::vector<const ExrReader*>& files,
-                                  const std::string& only_part) {
-  std::vector<Group> groups;
-  for (std::size_t f = 0; f < files.size(); ++f) {
-    for (const ExrPart& part : files[f]->parts()) {
-      if (part.deep) continue;
-      if (f == 0 && !only_part.empty() && part.name != only_part &&
-          std::to_string(part.index) != only_part) {
-        continue;
-      }
-      std::map<std::string, Group> by_layer;
-      for (const ExrChannel& channel : part.channels) {
-        if (channel.x_sampling != 1 || channel.y_sampling != 1) continue;
-        const auto dot = channel.name.rfind('.');
-        const std::string layer = dot == std::string::npos ? "" : channel.name.substr(0, dot);
-        Group& group = by_layer[layer];
-        group.file = int(f);
-        group.part = part.index;
-        group.layer = layer;
-        group.only_part = files[f]->parts().size() == 1;
-        group.name = qualified(part.name, layer);
-        group.components[lower(last_segment(channel.name))] = channel;
-      }
-      for (auto& [layer, group] : by_layer) groups.push_back(std::move(group));
-    }
-  }
-  return groups;
-}
-
-/// The group's channels for the role, or none if the components do not fit.
-std::optional<Layer> as_layer(const Group& group, Role role) {
-  // The Z of X, Y, Z is a coordinate, not a depth.
-  if (role == Role::depth && group.find("x") && group.find("y")) return std::nullopt;
-  for (const Components& set : component_sets(role)) {
-    if (role != Role::normal && set[0] == "nx") continue;
-    Layer layer{group.file, group.part, group.name, {}, false, false};
-    for (const std::string& component : set) {
-      if (const ExrChannel* channel = group.find(component)) {
-        layer.channels.push_back(channel->name);
-        layer.half |= channel->type == Imf::HALF;
-      }
-    }
-    if (layer.channels.size() == set.size()) return layer;
-  }
-  return std::nullopt;
-}
-
-/// A single channel as a scalar layer: a bare "Z", or "depth" without a component.
-Layer scalar_layer(const Group& group, const ExrChannel& channel) {
-  return {group.file,
-          group.part,
-          qualified(group.name, channel.name),
-          {channel.name},
-          channel.type == Imf::HALF,
-          false};
-}
-
-/// What a group may be called: its whole path, its path within the part, and their last segments.
-/// Channels without a layer are called after their part, unless there is no other part.
-std::vector<std::string> keys_of(const Group& group) {
-  const std::string full = normalise(group.name), own = normalise(group.layer);
-  std::vector<std::string> keys = {full, std::string(last_segment(full))};
-  if (!own.empty()) keys.insert(keys.end(), {own, std::string(last_segment(own))});
-  if (own.empty() && group.only_part) keys.push_back(own);
-  return keys;
-}
-
-struct Candidate {
-  std::size_t rank = 0;
-  Layer layer;
-};
-
-std::vector<Candidate> candidates_of(Role role, const std::vector<Group>& groups) {
-  std::vector<Candidate> found;
-  for (const Group& group : groups) {
-    if (group.file != 0) continue;
-    // Blender's has four; two of such a name may be anything.
-    if (role == Role::motion && !group.find("w")) continue;
-    const std::vector<std::string> keys = keys_of(group);
-    const auto layer = as_layer(group, role);
-    const bool bare_nxnynz =
-        role == Role::normal && layer && lower(last_segment(layer->channels[0])) == "nx";
-    if (const auto rank = bare_nxnynz ? std::optional<std::size_t>(0) : rank_of(role, keys);
-        rank && layer) {
-      found.push_back({*rank, *layer});
-      continue;
-    }
-    // Beauty's A is the alpha of the frame.
-    if (role == Role::alpha && layer) {
-      if (const auto rank = rank_of(Role::beauty, keys)) found.push_back({100 + *rank, *layer});
-    }
-    if (component_sets(role)[0].size() == 1 && role != Role::alpha &&
-        !(role == Role::depth && group.find("x") && group.find("y"))) {
-      for (const auto& [component, channel] : group.components) {
-        if (const auto rank = rank_of(role, {normalise(component)})) {
-          found.push_back({*rank, scalar_layer(group, channel)});
-        }
-      }
-    }
-  }
-  return found;
-}
-
-std::string list_names(const std::vector<Candidate>& candidates) {
-  std::vector<std::string> names;
-  for (const auto& c : candidates) names.push_back("'" + c.layer.name + "'");
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
-std::optional<Layer> find_by_name(Role role, const std::vector<Group>& groups,
-                                  const std::string& file) {
-  std::vector<Candidate> all = candidates_of(role, groups), best;
-  for (const Candidate& c : all) {
-    if (!best.empty() && c.rank > best[0].rank) continue;
-    if (!best.empty() && c.rank < best[0].rank) best.clear();
-    best.push_back(c);
-  }
-  if (best.empty()) return std::nullopt;
-  if (best.size() > 1) {
-    throw Error(ExitCode::layer,
-                fmt::format("{}: {} layers could be {}: {}; choose one with --aov {}=LAYER", file,
-                            best.size(), role_name(role), list_names(best), role_name(role)));
-  }
-  return best[0].layer;
-}
-
-/// The layers whose name is `wanted`: exactly, else with the case ignored.
-std::vector<Layer> layers_named(const std::string& wanted, Role role, int file,
-                                const std::vector<Group>& groups) {
-  std::vector<Layer> exact, loose;
-  const auto note = [&](const std::string& name, const Layer& layer) {
-    if (name == wanted) exact.push_back(layer);
-    if (lower(name) == lower(wanted)) loose.push_back(layer);
+/// The other parts of the view of `part`, which complete it. Not those with a position of their
+/// own where it has one: they show something else. Where it has a depth alone, positions and
+/// depths of others are left out alike.
+std::vector<LayerGroup> parts_beside(const std::vector<LayerGroup>& part,
+                                     const std::vector<LayerGroup>& all) {
+  const bool position = !best_candidates(Role::position, part).empty();
+  const bool depth = !best_candidates(Role::depth, part).empty();
+  const auto is_beside = [&](const LayerGroup& group) {
+    if (group.part == part[0].part || !same_view(group.view, part[0].view)) return false;
+    const auto own = those_of(all, [&](const LayerGroup& g) { return g.part == group.part; });
+    if (!position && !depth) return true;
+    return best_candidates(Role::position, own).empty() &&
+           (position || best_candidates(Role::depth, own).empty());
   };
-  const bool scalar = component_sets(role)[0].size() == 1;
-  for (const Group& group : groups) {
-    if (group.file != file) continue;
-    if (const auto layer = as_layer(group, role)) {
-      note(group.name, *layer);
-      if (group.layer != group.name) note(group.layer, *layer);
-    }
-    for (const auto& [component, channel] : group.components) {
-      if (scalar) note(channel.name, scalar_layer(group, channel));
-    }
-  }
-  return exact.empty() ? loose : exact;
+  return those_of(all, is_beside);
 }
 
-Layer find_requested(const LayerRequest& request, const std::vector<const ExrReader*>& files,
-                     const std::vector<Group>& groups) {
-  int file = 0;
-  for (std::size_t f = 1; f < files.size() && !request.file.empty(); ++f) {
-    if (files[f]->path() == request.file) file = int(f);
-  }
-  const auto found = layers_named(request.layer, request.role, file, groups);
-  if (found.size() == 1) {
-    Layer layer = found[0];
-    layer.by_request = true;
-    return layer;
-  }
+[[noreturn]] void throw_no_part(const ExrReader& frame, const std::string& wanted) {
   std::vector<std::string> names;
-  for (const Group& group : groups) {
-    if (group.file == file && as_layer(group, request.role))
-      names.push_back("'" + group.name + "'");
-  }
-  throw Error(
-      ExitCode::layer,
-      fmt::format("{}: {} layer '{}' with channels for {}; the file has {}",
-                  files[std::size_t(file)]->path().string(), found.empty() ? "no" : "more than one",
-                  request.layer, role_name(request.role),
-                  names.empty() ? "none that fits" : fmt::format("{}", fmt::join(names, ", "))));
+  for (const ExrPart& part : frame.parts())
+    names.push_back(fmt::format("{} '{}'{}", part.index, part.name, part.deep ? " (deep)" : ""));
+  throw Error(ExitCode::layer, fmt::format("{}: no flat part or view '{}'; the file has {}",
+                                           frame.path().string(), wanted, fmt::join(names, ", ")));
 }
+
+/// The groups of the frame that --part selects: a part by name or number, completed by the other
+/// parts of its view, or else a view.
+Tiers select_part(const ExrReader& frame, const std::vector<LayerGroup>& groups,
+                  const std::string& wanted) {
+  if (wanted.empty()) return {groups};
+  const auto part = those_of(groups, [&](const LayerGroup& group) {
+    return frame.parts()[std::size_t(group.part)].name == wanted ||
+           std::to_string(group.part) == wanted;
+  });
+  if (!part.empty()) return {part, parts_beside(part, groups)};
+  const auto view =
+      those_of(groups, [&](const LayerGroup& group) { return lower(group.view) == lower(wanted); });
+  if (view.empty()) throw_no_part(frame, wanted);
+  return {view};
+}
+
+/// Finds the layers of one frame.
+class LayerFinder {
+ public:
+  LayerFinder(const std::vector<const ExrReader*>& files, const std::vector<LayerRequest>& requests,
+              const std::string& only_part)
+      : files_(files), requests_(requests) {
+    for (std::size_t f = 0; f < files.size(); ++f)
+      groups_.push_back(group_channels(*files[f], int(f)));
+    if (groups_[0].empty() && only_part.empty()) {
+      throw Error(ExitCode::input,
+                  fmt::format("{}: holds deep images only; ssdo reads flat ones: flatten it first",
+                              frame()));
+    }
+    tiers_ = select_part(*files[0], groups_[0], only_part);
+  }
+
+  /// The layer that is requested for the role, or else, if `by_name`, the one with the best name.
+  std::optional<Layer> find(Role role, bool by_name) const {
+    std::optional<Layer> found;
+    for (const LayerRequest& request : requests_) {
+      if (request.role == role) found = find_requested(request);
+    }
+    return found || !by_name ? found : find_by_name(role);
+  }
+
+  /// Restricts the search to the view of this layer, so that no frame is made of two.
+  void keep_view_of(const Layer& lead) {
+    if (lead.file != 0 || views_of(groups_[0]).empty()) return;
+    const auto own = std::find_if(groups_[0].begin(), groups_[0].end(), [&](const LayerGroup& g) {
+      return g.part == lead.part && g.layer == split_channel(lead.channels[0]).first;
+    });
+    const std::string view = own->view;
+    for (auto& groups : tiers_)
+      groups = those_of(groups, [&](const LayerGroup& g) { return same_view(g.view, view); });
+  }
+
+ private:
+  std::string frame() const { return files_[0]->path().string(); }
+
+  std::optional<Layer> find_by_name(Role role) const {
+    for (const auto& groups : tiers_) {
+      const std::vector<Candidate> best = best_candidates(role, groups);
+      if (best.size() > 1) throw_ambiguous(role, best);
+      if (!best.empty()) return best[0].layer;
+    }
+    return std::nullopt;
+  }
+
+  [[noreturn]] void throw_ambiguous(Role role, const std::vector<Candidate>& best) const {
+    std::vector<std::string> names, views;
+    for (const Candidate& c : best) {
+      names.push_back(c.layer.name);
+      if (std::find(views.begin(), views.end(), c.view) == views.end()) views.push_back(c.view);
+    }
+    const bool of_views = views.size() == best.size() && !views_of(groups_[0]).empty() &&
+                          std::find(views.begin(), views.end(), "") == views.end();
+    const std::string by_view =
+        of_views ? fmt::format("a view with --part {}, or ", fmt::join(views, " or --part ")) : "";
+    throw Error(
+        ExitCode::layer,
+        fmt::format("{}: {} layers could be {}: {}; choose {}one with --aov {}=LAYER", frame(),
+                    best.size(), role_name(role), quoted(names), by_view, role_name(role)));
+  }
+
+  Layer find_requested(const LayerRequest& request) const {
+    std::size_t file = 0;
+    for (std::size_t f = 1; f < files_.size() && !request.file.empty(); ++f) {
+      if (files_[f]->path() == request.file) file = f;
+    }
+    std::vector<Layer> found;
+    for (const auto& groups : file == 0 ? tiers_ : Tiers()) {
+      if (found.empty()) found = layers_named(request.layer, request.role, groups);
+    }
+    if (found.empty()) found = layers_named(request.layer, request.role, groups_[file]);
+    if (found.size() == 1) {
+      found[0].by_request = true;
+      return found[0];
+    }
+    std::vector<std::string> names;
+    for (const LayerGroup& group : groups_[file]) {
+      if (as_layer(group, request.role)) names.push_back(group.name);
+    }
+    throw Error(ExitCode::layer,
+                fmt::format("{}: {} layer '{}' with channels for {}; the file has {}",
+                            files_[file]->path().string(), found.empty() ? "no" : "more than one",
+                            request.layer, role_name(request.role),
+                            names.empty() ? "none that fits" : quoted(names)));
+  }
+
+  const std::vector<const ExrReader*>& files_;
+  const std::vector<LayerRequest>& requests_;
+  std::vector<std::vector<LayerGroup>> groups_;  ///< by file
+  Tiers tiers_;                                  ///< of the frame
+};
 
 }  // namespace
 
@@ -248,31 +202,35 @@ LayerRequest parse_layer_request(const std::string& text) {
   return request;
 }
 
+void require_position(const LayerTable& table, const ExrReader& frame, const std::string& advice) {
+  if (table[Role::position] || table[Role::depth]) return;
+  std::string text = "name one with --aov position=LAYER or --aov depth=LAYER";
+  for (const LayerGroup& group : group_channels(frame, 0)) {
+    if (normalise(group.path).find("samplerinfo") == std::string::npos) continue;
+    if (!as_layer(group, Role::position)) continue;
+    text = fmt::format("if '{0}' was rendered with type Point, say --aov \"position={0}\"",
+                       group.name);
+  }
+  throw Error(ExitCode::layer, fmt::format("{}: no layer for position or depth found by name; {}{}",
+                                           frame.path().string(), text, advice));
+}
+
 LayerTable find_layers(const std::vector<const ExrReader*>& files,
                        const std::vector<LayerRequest>& requests, const std::string& only_part,
                        const std::vector<Role>& unused) {
-  const std::string frame = files[0]->path().string();
-  const auto groups = group_channels(files, only_part);
-  if (groups.empty()) {
-    const auto& parts = files[0]->parts();
-    if (!only_part.empty()) {
-      std::vector<std::string> names;
-      for (const auto& part : parts) names.push_back(fmt::format("{} '{}'", part.index, part.name));
-      throw Error(ExitCode::layer, fmt::format("{}: no flat part '{}'; the file has {}", frame,
-                                               only_part, fmt::join(names, ", ")));
-    }
-    throw Error(
-        ExitCode::input,
-        fmt::format("{}: holds deep images only; ssdo reads flat ones: flatten it first", frame));
-  }
+  LayerFinder finder(files, requests, only_part);
   LayerTable table;
-  for (const LayerRequest& request : requests) {
-    table[request.role] = find_requested(request, files, groups);
+  const auto find = [&](Role role) {
+    const bool used = std::find(unused.begin(), unused.end(), role) == unused.end();
+    if (!table[role]) table[role] = finder.find(role, used);
+  };
+  for (const Role role : {Role::position, Role::depth}) {
+    find(role);
+    if (!table[role]) continue;
+    finder.keep_view_of(*table[role]);
+    break;
   }
-  for (std::size_t i = 0; i < kRoleCount; ++i) {
-    const bool used = std::find(unused.begin(), unused.end(), Role(i)) == unused.end();
-    if (used && !table.layers[i]) table.layers[i] = find_by_name(Role(i), groups, frame);
-  }
+  for (std::size_t i = 0; i < kRoleCount; ++i) find(Role(i));
   return table;
 }
 

@@ -12,6 +12,7 @@
 #include "math/light_range.h"
 #include "scene/background.h"
 #include "scene/depth_encoding.h"
+#include "scene/layer_windows.h"
 
 namespace ssdo {
 namespace {
@@ -157,12 +158,6 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
                      const GBufferOptions& options) {
   const std::string file = files[0]->path().string();
   const auto& lead = table[Role::position] ? table[Role::position] : table[Role::depth];
-  if (!lead) {
-    throw Error(ExitCode::layer,
-                fmt::format("{}: no layer for position or depth found by name; name one with --aov "
-                            "position=LAYER or --aov depth=LAYER ('ssdo info' lists the layers)",
-                            file));
-  }
   const ExrPart& part = files[std::size_t(lead->file)]->parts()[std::size_t(lead->part)];
   GBuffer g;
   g.window = part.data_window;
@@ -174,10 +169,11 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   std::vector<Role> roles = {Role::position, Role::depth, Role::normal,    Role::albedo,
                              Role::radiance, Role::alpha, Role::roughness, Role::motion};
   if (table[Role::ambient]) roles.insert(roles.end(), {Role::ambient, Role::beauty});
+  check_display_windows(files, table, roles);
   const LayerReader read(files, table, roles, g.window);
   g.position = read.vector(table[Role::position], NAN);
   g.depth = read.scalar(table[Role::depth], NAN);
-  g.normal = read.vector(table[Role::normal], 0);
+  g.normal = read.vector(table[Role::normal], NAN);
   g.albedo = read.vector(table[Role::albedo], 0);
   g.radiance = read.vector(table[Role::radiance], 0);
   g.alpha = read.scalar(table[Role::alpha], 0);
@@ -193,6 +189,7 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   undo_depth_encoding(g, options, file);
   find_background(g, options.background_depth);
   undo_normal_encoding(g);
+  note_data_windows(files, table, roles, g);
   for (Plane<glm::vec3>* values : {&g.normal, &g.albedo, &g.radiance, &g.ambient, &g.beauty})
     clear_broken(g, *values);
   clear_negative(g.albedo);

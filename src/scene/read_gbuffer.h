@@ -23,7 +23,8 @@ struct GBufferOptions {
 /// Reads the layers of `table` and finds background and broken pixels: background where alpha is
 /// 0, or else by depth (>= 1e9, infinite, NaN, <= 0) where there is one, or else by P (0, >= 1e9,
 /// not finite) or a normal of 0.
-/// Errors: ExitCode::layer when there is neither position nor depth, or the depth has no unit.
+/// The table has a position or a depth, whose data window the planes have.
+/// Errors: ExitCode::layer when a layer is of another display window, or the depth has no unit.
 GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTable& table,
                      const GBufferOptions& options);
 

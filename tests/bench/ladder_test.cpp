@@ -79,6 +79,7 @@ TEST(Command, IsQuotedForAShell) {
   EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
   EXPECT_EQ(shell_word("$x"), "'$x'");
   EXPECT_EQ(shell_word(""), "''");
+  EXPECT_EQ(shell_word("a\033[2J'\\"), "$'a\\x1b[2J\\'\\\\'");
 }
 
 TEST(Command, HasWhatReachesTheSetting) {

@@ -164,7 +164,7 @@ TEST(Refusals, OfMissingAndAmbiguousLayers) {
                  "'Other.Position', 'ViewLayer.Position'");
   expect_refused({dir / "two.exr", "-o", dir / "out.exr", "--aov", "position=Third"}, 4,
                  "'Other.Position'");
-  expect_refused({dir / "two.exr", "-o", dir / "out.exr", "--part", "3"}, 4, "no flat part '3'");
+  expect_refused({dir / "two.exr", "-o", dir / "out.exr", "--part", "3"}, 4, "no flat part or view '3'");
 
   FramePart none = part;
   std::erase_if(none.channels,

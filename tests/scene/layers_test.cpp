@@ -4,55 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "support/error_matchers.h"
-#include "support/exr_fixture.h"
-#include "support/temp_dir.h"
+#include "support/layer_file.h"
 
 namespace ssdo::test {
 namespace {
 
-using Channels = std::vector<std::string>;
-
-const Imath::Box2i kBox({0, 0}, {1, 1});
-
-Imf::Header header_of(const Channels& names) {
-  std::vector<TestChannel> channels;
-  for (const std::string& name : names) channels.push_back({name});
-  return test_header(kBox, channels);
-}
-
-/// A file of one part, or of several with names.
-class File {
- public:
-  explicit File(const Channels& names) { write({header_of(names)}); }
-  explicit File(const std::vector<std::pair<std::string, Channels>>& parts) {
-    std::vector<Imf::Header> headers;
-    for (const auto& [name, channels] : parts) headers.push_back(named(header_of(channels), name));
-    write(headers);
-  }
-  LayerTable find(const std::vector<std::string>& aov = {}, const std::string& part = "") const {
-    const ExrReader reader(path());
-    std::vector<LayerRequest> requests;
-    for (const std::string& text : aov) requests.push_back(parse_layer_request(text));
-    return find_layers({&reader}, requests, part);
-  }
-  std::filesystem::path path() const { return dir_ / "frame.exr"; }
-
- private:
-  void write(const std::vector<Imf::Header>& headers) {
-    Imf::MultiPartOutputFile file(path().c_str(), headers.data(), int(headers.size()));
-    for (int i = 0; i < int(headers.size()); ++i) {
-      const TestPixels pixels(headers[std::size_t(i)], kBox);
-      Imf::OutputPart part(file, i);
-      part.setFrameBuffer(pixels.frame_buffer());
-      part.writePixels(2);
-    }
-  }
-  TempDir dir_;
-};
-
-Channels channels_of(const LayerTable& table, Role role) {
-  return table[role] ? table[role]->channels : Channels{};
-}
+using File = LayerFile;
+using Parts = std::vector<LayerPart>;
 
 TEST(Layers, FindsBlender) {
   const auto t = File({"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B",
@@ -71,15 +29,14 @@ TEST(Layers, FindsBlender) {
 
 TEST(Layers, FindsBlender5InParts) {
   const auto t =
-      File(std::vector<std::pair<std::string, Channels>>{
-               {"ViewLayer.Combined",
-                {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B",
-                 "ViewLayer.Combined.A"}},
-               {"ViewLayer.Position",
-                {"ViewLayer.Position.X", "ViewLayer.Position.Y", "ViewLayer.Position.Z"}},
-               {"ViewLayer.Diffuse Color",
-                {"ViewLayer.Diffuse Color.R", "ViewLayer.Diffuse Color.G",
-                 "ViewLayer.Diffuse Color.B"}}})
+      File(Parts{{"ViewLayer.Combined",
+                  {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B",
+                   "ViewLayer.Combined.A"}},
+                 {"ViewLayer.Position",
+                  {"ViewLayer.Position.X", "ViewLayer.Position.Y", "ViewLayer.Position.Z"}},
+                 {"ViewLayer.Diffuse Color",
+                  {"ViewLayer.Diffuse Color.R", "ViewLayer.Diffuse Color.G",
+                   "ViewLayer.Diffuse Color.B"}}})
           .find();
   EXPECT_EQ(t[Role::position]->part, 1);
   EXPECT_EQ(t[Role::albedo]->part, 2);
@@ -140,10 +97,10 @@ TEST(Layers, FindsNukeSpellings) {
 }
 
 TEST(Layers, FindsNukePartsWhoseChannelsHaveNoLayer) {
-  const auto t = File(std::vector<std::pair<std::string, Channels>>{{"rgba", {"R", "G", "B", "A"}},
-                                                                    {"P", {"X", "Y", "Z"}},
-                                                                    {"N", {"X", "Y", "Z"}},
-                                                                    {"depth", {"Z"}}})
+  const auto t = File(Parts{{"rgba", {"R", "G", "B", "A"}},
+                            {"P", {"X", "Y", "Z"}},
+                            {"N", {"X", "Y", "Z"}},
+                            {"depth", {"Z"}}})
                      .find();
   EXPECT_EQ(t[Role::position]->part, 1);
   EXPECT_EQ(t[Role::normal]->part, 2);
@@ -185,8 +142,7 @@ TEST(Layers, ARequestForWhatIsNotThereNamesWhatIs) {
 }
 
 TEST(Layers, APartRestrictsTheSearch) {
-  const File file(std::vector<std::pair<std::string, Channels>>{{"left", {"P.X", "P.Y", "P.Z"}},
-                                                                {"right", {"P.X", "P.Y", "P.Z"}}});
+  const File file(Parts{{"left", {"P.X", "P.Y", "P.Z"}}, {"right", {"P.X", "P.Y", "P.Z"}}});
   EXPECT_THAT(error_of([&] { file.find(); }), IsError(ExitCode::layer, "could be position"));
   EXPECT_EQ(file.find({}, "right")[Role::position]->part, 1);
   EXPECT_EQ(file.find({}, "0")[Role::position]->part, 0);

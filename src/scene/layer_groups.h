@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/exr_reader.h"
+
+namespace ssdo {
+
+/// A channel's name at its last dot: layer and component. No dot: no layer.
+std::pair<std::string, std::string> split_channel(const std::string& channel);
+
+/// The channels of a flat part that share a layer.
+struct LayerGroup {
+  int file = 0, part = 0;
+  std::string name;       ///< part and layer as the file spells them, for messages and --aov
+  std::string layer;      ///< in the names of the channels
+  std::string view;       ///< "left", or empty
+  std::string path;       ///< name without the view
+  std::string own_path;   ///< layer without the view
+  bool only_part = true;  ///< of its file
+  std::map<std::string, ExrChannel> components;  ///< by component in lower case
+
+  const ExrChannel* find(std::string_view component) const {
+    const auto it = components.find(std::string(component));
+    return it == components.end() ? nullptr : &it->second;
+  }
+};
+
+/// The groups of a file's flat parts, without subsampled channels. The view of a group is the
+/// part's attribute `view`; else a word at the start or end of the part's name ("P.left",
+/// "P_main") or of the layer ("P.left.X", "left.P.X") that is left, right, main or a view of the
+/// file; else, in a part with the attribute `multiView`, the first view of that.
+std::vector<LayerGroup> group_channels(const ExrReader& file, int file_index);
+
+/// Whether two views are the same. "main" is Nuke's name for the only view, as good as none.
+bool same_view(const std::string& a, const std::string& b);
+
+/// The views that `groups` tell apart; empty where there are not at least two with names.
+std::vector<std::string> views_of(const std::vector<LayerGroup>& groups);
+
+}  // namespace ssdo
