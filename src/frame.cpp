@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame.h"
 
-#include <ImfChromaticitiesAttribute.h>
 #include <ImfIntAttribute.h>
 #include <ImfStringAttribute.h>
 
@@ -101,11 +100,7 @@ ColorTags color_tags(const Frame& frame) {
   if (const auto* flag = header.findTypedAttribute<Imf::IntAttribute>("acesImageContainerFlag")) {
     tags.aces_container = flag->value() == 1;
   }
-  if (const auto* c = header.findTypedAttribute<Imf::ChromaticitiesAttribute>("chromaticities")) {
-    const Imf::Chromaticities& v = c->value();
-    tags.chromaticities = {v.red.x,  v.red.y,  v.green.x, v.green.y,
-                           v.blue.x, v.blue.y, v.white.x, v.white.y};
-  }
+  tags.chromaticities = chromaticities_of(header);
   return tags;
 }
 

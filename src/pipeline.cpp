@@ -216,6 +216,7 @@ Relit relight(const Options& options, Frame& frame, const std::vector<Target>& t
       continue;
     display.emplace(options.color, color_tags(frame));
     relit.notes.push_back(display->description());
+    if (!display->warning().empty()) relit.warnings.push_back(display->warning());
   }
 
   const Products products = make_products(frame, relit, told, before);
