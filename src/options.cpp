@@ -85,7 +85,7 @@ void add_camera(CLI::App& app, Options& o) {
 
 void add_light(CLI::App& app, Options& o, RawOptions& raw) {
   app.add_option("--env", o.light.env, "lat-long map, or a constant colour")
-      ->type_name("FILE|R,G,B")
+      ->type_name("FILE[:LAYER]|R,G,B")
       ->capture_default_str()
       ->group("Light");
   app.add_option("--env-rotate", o.light.rotate_degrees,
