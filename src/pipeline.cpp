@@ -186,8 +186,8 @@ std::vector<std::unique_ptr<SafeFile>> write_targets(
       write_exr_target(*files.back(), target, options, frame, products, relit);
       frame.times.write += watch.lap();
     } else {
-      const DisplayImage image =
-          make_display_image(product_of_picture(target, frame.plan), frame, products, display);
+      const DisplayImage image = make_display_image(product_of_picture(target, frame.plan), frame,
+                                                    products, display, keeps_alpha(target.path));
       frame.times.compose += watch.lap();
       write_image(*files.back(), image.spec(options.output.bits), image.values);
       frame.times.write += watch.lap();
