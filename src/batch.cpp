@@ -216,6 +216,9 @@ class Batch {
     };
     Relit relit = relight(options_, frame, job.targets, policy, told, before);
     for (const std::string& note : relit.notes) say_verbose(note);
+    for (const std::string& warning : relit.warnings) {
+      if (!options_.say.quiet) say(fmt::format("{}: warning: {}", job.input, warning));
+    }
     if (relit.clamped_values > 0 && !options_.say.quiet) {
       say(
           fmt::format("{}: warning: {} values were beyond the range of half and clamped to 65504; "

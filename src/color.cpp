@@ -122,28 +122,52 @@ View choose_view(const LabelledConfig& from, const ColorOptions& options) {
   return v;
 }
 
+OCIO::TransformRcPtr matrix_transform(const glm::mat3& m) {
+  double rows[16] = {};
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) rows[4 * row + column] = m[column][row];
+  }
+  rows[15] = 1;
+  const auto transform = OCIO::MatrixTransform::Create();
+  transform->setMatrix(rows);
+  return transform;
+}
+
+/// Whether the view shows the values as they are.
+bool shows_data(const OCIO::Config& config, const View& v) {
+  const auto space =
+      config.getColorSpace(config.getDisplayViewColorSpaceName(v.display.c_str(), v.view.c_str()));
+  return space && space->isData();
+}
+
 /// A look that the user names takes the place of those that the view brings along.
-OCIO::ConstCPUProcessorRcPtr make_processor(const LabelledConfig& from, const std::string& input,
+OCIO::ConstCPUProcessorRcPtr make_processor(const LabelledConfig& from, const InputSpace& input,
                                             const View& v) try {
   const auto transform = OCIO::DisplayViewTransform::Create();
-  transform->setSrc(input.c_str());
+  transform->setSrc(input.name.c_str());
   transform->setDisplay(v.display.c_str());
   transform->setView(v.view.c_str());
   const auto pipeline = OCIO::LegacyViewingPipeline::Create();
   pipeline->setDisplayViewTransform(transform);
   pipeline->setLooksOverrideEnabled(!v.look.empty());
   pipeline->setLooksOverride(v.look.c_str());
-  return pipeline->getProcessor(from.config)->getDefaultCPUProcessor();
+  const auto processor = pipeline->getProcessor(from.config);
+  if (!input.conversion || shows_data(*from.config, v)) return processor->getDefaultCPUProcessor();
+  const auto group = OCIO::GroupTransform::Create();
+  group->appendTransform(matrix_transform(*input.conversion));
+  group->appendTransform(processor->createGroupTransform());
+  return from.config->getProcessor(group)->getDefaultCPUProcessor();
 } catch (const OCIO::Exception& error) {
   throw Error(ExitCode::input,
               fmt::format("{}: cannot go from {} to display {}, view {}: {}; mend the "
                           "config or choose others with --display and --view",
-                          from.label, input, v.display, v.view, one_line(error.what())));
+                          from.label, input.name, v.display, v.view, one_line(error.what())));
 }
 
 std::string describe(const std::string& config_label, const InputSpace& input, const View& v) {
-  std::string line = fmt::format("colour by {}: {} ({}) to display {}, view {}", config_label,
-                                 input.name, input.chosen_by, v.display, v.view);
+  std::string line =
+      fmt::format("colour by {}: {} ({}{}) to display {}, view {}", config_label, input.name,
+                  input.chosen_by, input.conversion ? ", converted" : "", v.display, v.view);
   if (!v.look.empty()) line += ", look " + v.look;
   if (!input.passed_over.empty()) {
     line += fmt::format("; passed over: {}", fmt::join(input.passed_over, ", "));
@@ -162,8 +186,9 @@ DisplayTransform::DisplayTransform(const ColorOptions& options, const ColorTags&
   const LabelledConfig from = select_config(options.ocio);
   const InputSpace input = choose_input_space(*from.config, from.label, options.colorspace, tags);
   const View view = choose_view(from, options);
-  processor_ = std::make_unique<Processor>(Processor{make_processor(from, input.name, view)});
+  processor_ = std::make_unique<Processor>(Processor{make_processor(from, input, view)});
   description_ = describe(from.label, input, view);
+  warning_ = input.warning;
 }
 
 DisplayTransform::~DisplayTransform() = default;

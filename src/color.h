@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+
+#include "io/primaries.h"
 
 namespace ssdo {
 
@@ -20,18 +21,19 @@ struct ColorOptions {
 
 /// What a file says about its own colours.
 struct ColorTags {
-  std::filesystem::path path{};                          ///< for the config's file rules
-  std::string interop_id{};                              ///< attribute `colorInteropID`
-  bool aces_container = false;                           ///< attribute `acesImageContainerFlag` = 1
-  std::optional<std::array<float, 8>> chromaticities{};  ///< rx ry gx gy bx by wx wy
+  std::filesystem::path path{};  ///< for the config's file rules
+  std::string interop_id{};      ///< attribute `colorInteropID`
+  bool aces_container = false;   ///< attribute `acesImageContainerFlag` = 1
+  std::optional<Chromaticities> chromaticities{};
 };
 
 /// The way from a frame's scene-linear colours to a display, through OpenColorIO.
 ///
 /// The input's colour space is --colorspace, else the tag colorInteropID, else the ACES container
-/// flag, else chromaticities that match a known set, else a file rule of the config other than its
-/// default, else the role scene_linear. A tag that names data, or a space that the config lacks, is
-/// passed over. A look takes the place of those that the view brings along.
+/// flag, else the chromaticities, else a file rule of the config other than its default, else the
+/// role scene_linear. Primaries of which the config has no space are converted to one that it has,
+/// white to white. Any other tag that names data, or a space that the config lacks, is passed over.
+/// A look takes the place of those that the view brings along.
 class DisplayTransform {
  public:
   /// Errors: ExitCode::usage for a colour space, display, view or look that the config does not
@@ -49,10 +51,13 @@ class DisplayTransform {
   /// were passed over.
   const std::string& description() const { return description_; }
 
+  /// One line where the file says what its colours are and that could not be followed; else empty.
+  const std::string& warning() const { return warning_; }
+
  private:
   struct Processor;
   std::unique_ptr<Processor> processor_;
-  std::string description_;
+  std::string description_, warning_;
 };
 
 }  // namespace ssdo

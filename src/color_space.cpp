@@ -18,10 +18,10 @@ using Names = std::vector<std::string>;
 
 /// A linear space that files can name by id or by chromaticities.
 struct KnownSpace {
-  const char* interop_id;               ///< of the Color Interop Forum
-  const char* primaries;                ///< for messages
-  std::array<float, 8> chromaticities;  ///< rx ry gx gy bx by wx wy
-  Names names;                          ///< what the configs in use call it
+  const char* interop_id;  ///< of the Color Interop Forum
+  const char* primaries;   ///< for messages
+  Chromaticities chromaticities;
+  Names names;  ///< what the configs in use call it
 };
 
 /// Chromaticities: ITU-R BT.709, Academy S-2014-004 (AP1), SMPTE ST 2065-1 (AP0) and EG 432-1 (P3),
@@ -30,7 +30,7 @@ const std::vector<KnownSpace>& known_spaces() {
   static const std::vector<KnownSpace> spaces = {
       {"lin_rec709_scene",
        "Rec.709",
-       {.64f, .33f, .30f, .60f, .15f, .06f, .3127f, .3290f},
+       kRec709,
        {"lin_rec709_scene", "lin_rec709", "lin_rec709_srgb", "Linear Rec.709 (sRGB)",
         "Linear Rec.709", "Utility - Linear - sRGB", "Utility - Linear - Rec.709", "lin_srgb",
         "Linear BT.709"}},
@@ -57,38 +57,40 @@ const std::vector<KnownSpace>& known_spaces() {
   return spaces;
 }
 
-/// Writers round to three or four decimals.
-bool same_chromaticities(const std::array<float, 8>& a, const std::array<float, 8>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(),
-                    [](float x, float y) { return std::abs(x - y) < 1e-3f; });
-}
-
 /// A source that says which space the colours have, and the names that space may have.
 struct Claim {
   std::string source;
   Names names;
+  std::optional<Chromaticities> primaries{};  ///< of linear colours
 };
 
 Claim claim_of_interop_id(const std::string& id) {
   Claim claim{"colorInteropID " + one_line(id), {id}};
   for (const KnownSpace& space : known_spaces()) {
-    if (id == space.interop_id) claim.names = space.names;
+    if (id != space.interop_id) continue;
+    claim.names = space.names;
+    claim.primaries = space.chromaticities;
   }
   return claim;
 }
 
 Claim claim_of_aces_container() {
-  const Claim ap0 = claim_of_interop_id("lin_ap0_scene");
-  return {"acesImageContainerFlag", ap0.names};
+  Claim ap0 = claim_of_interop_id("lin_ap0_scene");
+  ap0.source = "acesImageContainerFlag";
+  return ap0;
 }
 
-Claim claim_of_chromaticities(const std::array<float, 8>& chromaticities) {
+const KnownSpace* find_known(const Chromaticities& chromaticities) {
   for (const KnownSpace& space : known_spaces()) {
-    if (same_chromaticities(chromaticities, space.chromaticities)) {
-      return {fmt::format("chromaticities of {}", space.primaries), space.names};
-    }
+    if (same_chromaticities(chromaticities, space.chromaticities)) return &space;
   }
-  return {"chromaticities of no known space", {}};
+  return nullptr;
+}
+
+Claim claim_of_chromaticities(const Chromaticities& chromaticities) {
+  const KnownSpace* known = find_known(chromaticities);
+  return {"chromaticities of " + describe_primaries(chromaticities), known ? known->names : Names(),
+          chromaticities};
 }
 
 /// The default rule says nothing about this file, so it claims nothing. A version 1 config has no
@@ -98,7 +100,7 @@ std::vector<Claim> claims_of_file_rules(const OCIO::Config& config, const std::s
   if (config.filepathOnlyMatchesDefaultRule(path.c_str())) return {};
   std::size_t rule = 0;
   const std::string name = config.getColorSpaceFromFilepath(path.c_str(), rule);
-  return {{fmt::format("file rule {}", config.getFileRules()->getName(rule)), {name}}};
+  return {{fmt::format("file rule {}", config.getFileRules()->getName(rule)), {name}, {}}};
 }
 
 /// All claims, the most trusted first.
@@ -121,6 +123,18 @@ OCIO::ConstColorSpaceRcPtr find_space(const OCIO::Config& config, const Names& n
   return nullptr;
 }
 
+/// A linear space that the config has, and the conversion to it; nothing where it has none.
+std::optional<InputSpace> convert(const OCIO::Config& config, const Claim& claim) {
+  if (!claim.primaries) return std::nullopt;
+  for (const KnownSpace& known : known_spaces()) {
+    const auto space = find_space(config, known.names);
+    if (!space || space->isData()) continue;
+    const auto conversion = conversion_of_primaries(*claim.primaries, known.chromaticities);
+    if (conversion) return InputSpace{space->getName(), claim.source, {}, conversion};
+  }
+  return std::nullopt;
+}
+
 std::string list_spaces(const OCIO::Config& config) {
   Names names;
   for (int i = 0; i < config.getNumColorSpaces(); ++i) {
@@ -130,6 +144,12 @@ std::string list_spaces(const OCIO::Config& config) {
 }
 
 }  // namespace
+
+std::string describe_primaries(const Chromaticities& chromaticities) {
+  const KnownSpace* known = find_known(chromaticities);
+  return known ? known->primaries
+               : fmt::format("no known space ({:g})", fmt::join(chromaticities, " "));
+}
 
 InputSpace choose_input_space(const OCIO::Config& config, const std::string& config_label,
                               const std::string& colorspace, const ColorTags& tags) {
@@ -142,13 +162,26 @@ InputSpace choose_input_space(const OCIO::Config& config, const std::string& con
                             config_label, list_spaces(config)));
   }
   Names passed_over;
+  bool claims_colors = false;
   for (const Claim& claim : claims(config, tags)) {
     const auto space = find_space(config, claim.names);
     if (space && !space->isData()) return {space->getName(), claim.source, passed_over};
+    if (auto converted = space ? std::nullopt : convert(config, claim)) {
+      converted->passed_over = passed_over;
+      return *converted;
+    }
     passed_over.push_back(claim.source + (space ? " (data, no colours)" : " (not in the config)"));
+    claims_colors |= !space;
   }
   if (const auto space = config.getColorSpace(OCIO::ROLE_SCENE_LINEAR)) {
-    return {space->getName(), "role scene_linear", passed_over};
+    InputSpace input{space->getName(), "role scene_linear", passed_over};
+    if (claims_colors) {
+      input.warning = fmt::format(
+          "{}: its colours are taken as {}, the role scene_linear of {}; name their space with "
+          "--colorspace",
+          fmt::join(passed_over, ", "), input.name, config_label);
+    }
+    return input;
   }
   throw Error(
       ExitCode::usage,

@@ -2,6 +2,7 @@
 #include "compare.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "difference.h"
 #include "io/exr_writer.h"
+#include "io/image_file.h"
 #include "io/one_line.h"
 #include "io/picture_layers.h"
 
@@ -20,6 +23,36 @@ struct Pair {
   PictureLayer a, b;
 };
 
+/// The layer with only those components that `other` has too.
+PictureLayer common_components(const PictureLayer& layer, const PictureLayer& other) {
+  PictureLayer common = layer;
+  common.channels.clear(), common.components.clear();
+  for (std::size_t c = 0; c < layer.channels.size(); ++c) {
+    const auto& others = other.components;
+    if (std::find(others.begin(), others.end(), layer.components[c]) == others.end()) continue;
+    common.channels.push_back(layer.channels[c]);
+    common.components.push_back(layer.components[c]);
+  }
+  return common;
+}
+
+/// The layer among `layers` that `wanted` is compared with, or none. Layers of the same name in
+/// several parts belong to the parts of the same name.
+const PictureLayer* counterpart(const PictureLayer& wanted,
+                                const std::vector<PictureLayer>& layers) {
+  const PictureLayer* best = nullptr;
+  int best_rank = 0;
+  for (const PictureLayer& layer : layers) {
+    if (layer.name != wanted.name || common_components(layer, wanted).channels.empty()) continue;
+    const int rank =
+        1 + (layer.part_name == wanted.part_name) + 2 * (layer.components == wanted.components);
+    if (rank <= best_rank) continue;
+    best = &layer;
+    best_rank = rank;
+  }
+  return best;
+}
+
 /// The layers that are named, or all that both pictures have.
 std::vector<Pair> pair_layers(const LayeredPicture& a, const LayeredPicture& b,
                               const std::string& layer_a, const std::string& layer_b) {
@@ -27,22 +60,32 @@ std::vector<Pair> pair_layers(const LayeredPicture& a, const LayeredPicture& b,
     return {
         {a.find(layer_a.empty() ? layer_b : layer_a), b.find(layer_b.empty() ? layer_a : layer_b)}};
   std::vector<Pair> pairs;
-  for (const PictureLayer& l : a.layers()) {
-    const auto same = [&](const PictureLayer& m) {
-      return m.name == l.name && m.components == l.components;
-    };
-    const auto& others = b.layers();
-    // Layers of the same name in several parts belong to the parts of the same name.
-    auto match = std::find_if(others.begin(), others.end(), [&](const PictureLayer& m) {
-      return same(m) && m.part_name == l.part_name;
-    });
-    if (match == others.end()) match = std::find_if(others.begin(), others.end(), same);
-    if (match != others.end()) pairs.push_back({l, *match});
+  for (const PictureLayer& layer : a.layers()) {
+    if (const PictureLayer* match = counterpart(layer, b.layers()))
+      pairs.push_back({common_components(layer, *match), common_components(*match, layer)});
   }
   if (!pairs.empty()) return pairs;
   throw Error(ExitCode::layer,
               fmt::format("{} and {} have no layer in common; pair two by name: {}:LAYER {}:LAYER",
                           a.file(), b.file(), a.file(), b.file()));
+}
+
+/// The channels that no pair compares, of the picture whose layer of a pair is `side`.
+std::vector<std::string> unpaired(const LayeredPicture& picture, const std::vector<Pair>& pairs,
+                                  PictureLayer Pair::*side) {
+  std::vector<std::string> names;
+  for (const PictureLayer& layer : picture.layers()) {
+    for (const std::string& channel : layer.channels) {
+      const auto compares = [&](const Pair& pair) {
+        const PictureLayer& own = pair.*side;
+        return own.part == layer.part &&
+               std::find(own.channels.begin(), own.channels.end(), channel) != own.channels.end();
+      };
+      if (std::none_of(pairs.begin(), pairs.end(), compares))
+        names.push_back(layer.part_name.empty() ? channel : layer.part_name + "." + channel);
+    }
+  }
+  return names;
 }
 
 /// Pixels that count, over a window of their own.
@@ -67,7 +110,9 @@ Mask read_mask(const std::string& text) {
     throw Error(ExitCode::layer, fmt::format("--mask {}: has {} layers; name one: {}:LAYER", text,
                                              picture.layers().size(), name.file));
   }
-  const PictureLayer layer = name.layer.empty() ? picture.layers()[0] : picture.find(name.layer);
+  PictureLayer layer = name.layer.empty() ? picture.layers()[0] : picture.find(name.layer);
+  // An opaque PNG is no mask of everything.
+  if (!picture.exr() && name.layer.empty()) layer.channels = {"R", "G", "B"};
   return {picture.window(layer), picture.read(layer)};
 }
 
@@ -122,17 +167,28 @@ void write_difference(const std::string& path, const OutputPolicy& policy, const
   file.commit();
 }
 
-nlohmann::json to_json(const CompareOptions& options, const std::vector<Compared>& all) {
+/// All that the report tells.
+struct Comparison {
+  std::vector<Compared> layers;
+  std::vector<std::string> only_in_a, only_in_b;  ///< channels without a counterpart
+};
+
+nlohmann::json to_json(const CompareOptions& options, const Comparison& all) {
   nlohmann::json layers = nlohmann::json::array();
   // JSON knows no infinity: nothing to be relative to, or no error at all.
   const auto number = [](double v) {
     return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr);
   };
-  for (const Compared& c : all) {
+  for (const Compared& c : all.layers) {
     const Difference& d = c.difference.figures;
+    const LeftOut& left_out = c.difference.left_out;
     layers.push_back({{"a", shown_name(c.pair.a)},
                       {"b", shown_name(c.pair.b)},
                       {"pixels", c.difference.pixels},
+                      {"left_out", left_out.all()},
+                      {"not_finite_in_both", left_out.in_both},
+                      {"not_finite_in_one", left_out.in_one},
+                      {"outside_one", left_out.outside},
                       {"channels", c.difference.a_minus_b.size()},
                       {"rmse", number(d.rmse)},
                       {"relative_rmse", number(d.relative_rmse())},
@@ -141,112 +197,92 @@ nlohmann::json to_json(const CompareOptions& options, const std::vector<Compared
                       {"p99", number(d.p99)},
                       {"psnr", number(d.psnr())}});
   }
-  return {{"a", options.a}, {"b", options.b}, {"layers", layers}};
+  return {{"a", options.a},
+          {"b", options.b},
+          {"layers", layers},
+          {"only_in_a", all.only_in_a},
+          {"only_in_b", all.only_in_b}};
 }
 
-std::string to_table(const std::vector<Compared>& all) {
-  std::string text = fmt::format("{:<32} {:>9} {:>11} {:>10} {:>11} {:>11} {:>11} {:>8}\n", "layer",
-                                 "pixels", "RMSE", "relative", "bias", "max", "99 %", "PSNR");
-  for (const Compared& c : all) {
+/// "only in B: a, b, c and 7 more", or nothing.
+std::string list_channels(std::string_view where, const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 8;
+  if (names.empty()) return "";
+  const auto end = names.begin() + std::ptrdiff_t(std::min(kMost, names.size()));
+  std::string text = fmt::format("only in {}: {}", where, fmt::join(names.begin(), end, ", "));
+  if (names.size() > kMost) text += fmt::format(" and {} more", names.size() - kMost);
+  return printable(text) + "\n";
+}
+
+std::string to_table(const Comparison& all) {
+  std::string text =
+      fmt::format("{:<32} {:>9} {:>9} {:>11} {:>10} {:>11} {:>11} {:>11} {:>8}\n", "layer",
+                  "pixels", "left out", "RMSE", "relative", "bias", "max", "99 %", "PSNR");
+  std::string notes;
+  for (const Compared& c : all.layers) {
     const Difference& d = c.difference.figures;
+    const LeftOut& left_out = c.difference.left_out;
     const std::string a = printable(shown_name(c.pair.a)), b = printable(shown_name(c.pair.b));
-    text +=
-        fmt::format("{:<32} {:>9} {:>11.6g} {:>10.4g} {:>+11.4g} {:>11.6g} {:>11.6g} {:>8.2f}\n",
-                    a == b ? a : a + " - " + b, c.difference.pixels, d.rmse, d.relative_rmse(),
-                    d.bias, d.largest, d.p99, d.psnr());
+    const std::string name = a == b ? a : a + " - " + b;
+    text += fmt::format(
+        "{:<32} {:>9} {:>9} {:>11.6g} {:>10.4g} {:>+11.4g} {:>11.6g} {:>11.6g} {:>8.2f}\n", name,
+        c.difference.pixels, left_out.all(), d.rmse, d.relative_rmse(), d.bias, d.largest, d.p99,
+        d.psnr());
+    if (left_out.without_counterpart() == 0) continue;
+    notes += fmt::format(
+        "{}: {} pixels have no counterpart ({} are not finite in one picture, {} "
+        "outside the window of one)\n",
+        name, left_out.without_counterpart(), left_out.in_one, left_out.outside);
   }
-  return text;
+  return text + notes + list_channels("A", all.only_in_a) + list_channels("B", all.only_in_b);
+}
+
+/// Whether a gate lets the pair pass.
+bool passes(const CompareOptions& options, const ChannelsDifference& difference) {
+  return !options.fail_above || (difference.figures.rmse <= *options.fail_above &&
+                                 difference.invalid_share() <= options.max_invalid);
+}
+
+void check_diff(const CompareOptions& options, const LayeredPicture& a, const LayeredPicture& b) {
+  if (options.diff.empty()) return;
+  if (!has_exr_ending(options.diff)) {
+    throw Error(ExitCode::usage,
+                fmt::format("--diff {}: differences are written as EXR; end the name in .exr",
+                            options.diff));
+  }
+  if (!a.exr()) {
+    throw Error(ExitCode::usage, fmt::format("--diff {}: {} is no EXR, whose header it would take",
+                                             options.diff, a.file()));
+  }
+  for (const std::string& input : {a.file(), b.file(), parse_picture_name(options.mask).file}) {
+    std::error_code ignored;
+    if (std::filesystem::equivalent(options.diff, input, ignored)) {
+      throw Error(ExitCode::output,
+                  fmt::format("{}: is an input; write to another file", options.diff));
+    }
+  }
+  check_output(options.diff, options.policy);
 }
 
 }  // namespace
 
-double Difference::relative_rmse() const { return rmse / std::abs(mean_b); }
-double Difference::psnr() const { return 20 * std::log10(peak / rmse); }
-
-Difference measure_difference(const std::vector<float>& a, const std::vector<float>& b) {
-  Difference d;
-  d.count = a.size();
-  if (a.empty()) return d;
-  std::vector<double> sizes(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double difference = double(a[i]) - double(b[i]);
-    d.rmse += difference * difference;
-    d.bias += difference;
-    d.mean_b += b[i];
-    d.peak = std::max({d.peak, std::abs(double(a[i])), std::abs(double(b[i]))});
-    sizes[i] = std::abs(difference);
-  }
-  const auto count = double(a.size());
-  d.rmse = std::sqrt(d.rmse / count);
-  d.bias /= count;
-  d.mean_b /= count;
-  d.largest = *std::max_element(sizes.begin(), sizes.end());
-  const auto at = sizes.begin() + std::ptrdiff_t(std::ceil(0.99 * count)) - 1;
-  std::nth_element(sizes.begin(), at, sizes.end());
-  d.p99 = *at;
-  return d;
-}
-
-ChannelsDifference compare_channels(const Channels& a, const Channels& b,
-                                    const std::function<bool(int x, int y)>& counts) {
-  const std::size_t in_a = a.planes.size(), in_b = b.planes.size();
-  const std::size_t channels = std::max(in_a, in_b);
-  const Window &wa = a.window, &wb = b.window;
-  ChannelsDifference out;
-  out.a_minus_b.assign(channels, Plane<float>(wa.width(), wa.height()));
-  std::vector<float> values_a, values_b;
-  for (int y = std::max(wa.y0, wb.y0); y < std::min(wa.y1, wb.y1); ++y) {
-    for (int x = std::max(wa.x0, wb.x0); x < std::min(wa.x1, wb.x1); ++x) {
-      const auto at_a = [&](std::size_t c) {
-        return a.planes[in_a == 1 ? 0 : c](x - wa.x0, y - wa.y0);
-      };
-      const auto at_b = [&](std::size_t c) {
-        return b.planes[in_b == 1 ? 0 : c](x - wb.x0, y - wb.y0);
-      };
-      bool valid = counts(x, y);
-      for (std::size_t c = 0; valid && c < channels; ++c)
-        valid = std::isfinite(at_a(c)) && std::isfinite(at_b(c));
-      if (!valid) continue;
-      ++out.pixels;
-      for (std::size_t c = 0; c < channels; ++c) {
-        values_a.push_back(at_a(c));
-        values_b.push_back(at_b(c));
-        out.a_minus_b[c](x - wa.x0, y - wa.y0) = at_a(c) - at_b(c);
-      }
-    }
-  }
-  out.figures = measure_difference(values_a, values_b);
-  return out;
-}
-
 CompareReport compare(const CompareOptions& options) {
   const PictureName name_a = parse_picture_name(options.a), name_b = parse_picture_name(options.b);
   const LayeredPicture a(name_a.file), b(name_b.file);
-  if (!options.diff.empty()) {
-    if (!a.exr()) {
-      throw Error(ExitCode::usage,
-                  fmt::format("--diff {}: {} is no EXR, whose header it would take", options.diff,
-                              a.file()));
-    }
-    for (const std::string& input : {name_a.file, name_b.file}) {
-      std::error_code ignored;
-      if (std::filesystem::equivalent(options.diff, input, ignored)) {
-        throw Error(ExitCode::output,
-                    fmt::format("{}: is an input; write to another file", options.diff));
-      }
-    }
-    check_output(options.diff, options.policy);
-  }
+  check_diff(options, a, b);
   const Mask mask = read_mask(options.mask);
-  std::vector<Compared> all;
-  for (const Pair& pair : pair_layers(a, b, name_a.layer, name_b.layer))
-    all.push_back(compare_pair(a, b, pair, mask));
-  if (!options.diff.empty()) write_difference(options.diff, options.policy, a, all);
+  const std::vector<Pair> pairs = pair_layers(a, b, name_a.layer, name_b.layer);
+  Comparison all;
+  for (const Pair& pair : pairs) all.layers.push_back(compare_pair(a, b, pair, mask));
+  if (name_a.layer.empty() && name_b.layer.empty()) {
+    all.only_in_a = unpaired(a, pairs, &Pair::a);
+    all.only_in_b = unpaired(b, pairs, &Pair::b);
+  }
+  if (!options.diff.empty()) write_difference(options.diff, options.policy, a, all.layers);
   CompareReport report;
   report.text = options.json ? to_json(options, all).dump(2) + "\n" : to_table(all);
-  for (const Compared& c : all) {
-    if (options.fail_above && !(c.difference.figures.rmse <= *options.fail_above))
-      report.code = ExitCode::failed;
+  for (const Compared& c : all.layers) {
+    if (!passes(options, c.difference)) report.code = ExitCode::failed;
   }
   return report;
 }

@@ -33,14 +33,15 @@ bool needs_display(const std::string& product) {
 }
 
 DisplayImage make_display_image(const std::string& product, const Frame& frame,
-                                const Products& products, const DisplayTransform* display) {
+                                const Products& products, const DisplayTransform* display,
+                                bool with_alpha) {
   const Geometry& geometry = frame.geometry;
   DisplayImage image;
   image.width = geometry.display.width();
   image.height = geometry.display.height();
   image.pixel_aspect = frame.gbuffer.pixel_aspect;
   const bool grey = product == "ao" || product == "error" || product == "reflection";
-  image.channels = grey ? 1 : product == "composite" ? 4 : 3;
+  image.channels = grey ? 1 : product == "composite" && with_alpha ? 4 : 3;
   const auto channels = std::size_t(image.channels);
   image.values.assign(geometry.display.area() * channels, 0.0f);
   if (!needs_display(product)) {
@@ -58,6 +59,12 @@ DisplayImage make_display_image(const std::string& product, const Frame& frame,
                             : product == "direct"  ? products.direct
                                                    : products.bounce;
   const Plane<float> alpha = coverage(frame.gbuffer, geometry);
+  if (product == "composite" && !with_alpha) {
+    for (std::size_t i = 0; i < colors.size(); ++i) colors[i] *= alpha[i];
+    glm::vec3 black(0);  // which some views lift
+    display->apply({&black, 1});
+    for (std::size_t i = 0; i < image.values.size(); ++i) image.values[i] = black[int(i % 3)];
+  }
   apply_display(colors, *display);
   for_each_shown_pixel(geometry, [&](std::size_t to, std::size_t from) {
     if (alpha[from] <= 0) return;

@@ -23,11 +23,13 @@ struct DisplayImage {
 /// Whether a product is a colour, which goes through the display transform; visibility does not.
 bool needs_display(const std::string& product);
 
-/// The composite comes with its alpha, not premultiplied; direct and bounce as RGB; ao, error and
-/// reflection as grey; bent as RGB with 1/2 for 0.
-/// What the data window does not cover is empty. `display` may be null where needs_display is
-/// false.
+/// The composite comes with its alpha, not premultiplied, or, where `with_alpha` is false, over
+/// black: premultiplied before the display transform, as light adds up, which is how compositors
+/// show and convert a premultiplied EXR. Direct and bounce come as RGB; ao, error and reflection as
+/// grey; bent as RGB with 1/2 for 0. What the data window does not cover is empty. `display` may be
+/// null where needs_display is false.
 DisplayImage make_display_image(const std::string& product, const Frame& frame,
-                                const Products& products, const DisplayTransform* display);
+                                const Products& products, const DisplayTransform* display,
+                                bool with_alpha);
 
 }  // namespace ssdo

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame.h"
 
-#include <ImfChromaticitiesAttribute.h>
 #include <ImfIntAttribute.h>
 #include <ImfStringAttribute.h>
 
@@ -61,15 +60,17 @@ Frame prepare_frame(const Options& options, const Light& light, const std::strin
   frame.gbuffer.depth = {};
 
   const bool world = frame.geometry.world_known;
-  frame.environment = light.around(world ? up_axis_of(frame.part().header) : UpAxis::y);
-  frame.light = light.description();
-  if (!frame.environment.is_constant()) {
-    frame.light += frame.environment.frame().up == UpAxis::z ? ", z up" : ", y up";
-    if (!world) {
-      frame.report.warnings.push_back(
-          "the frame knows no world space; the environment is taken in "
-          "camera space: give --camera FILE.json to place it");
-    }
+  const Imf::Header& header = frame.part().header;
+  const FrameLight around =
+      light.around(world ? up_axis_of(header) : UpAxis::y, chromaticities_of(header));
+  frame.environment = around.environment;
+  frame.light = around.description;
+  frame.report.warnings.insert(frame.report.warnings.end(), around.warnings.begin(),
+                               around.warnings.end());
+  if (!frame.environment.is_constant() && !world) {
+    frame.report.warnings.push_back(
+        "the frame knows no world space; the environment is taken in "
+        "camera space: give --camera FILE.json to place it");
   }
   if (!frame.environment.is_constant())
     frame.light_model = model_light(frame.environment, frame.geometry.world_to_camera);
@@ -94,11 +95,7 @@ ColorTags color_tags(const Frame& frame) {
   if (const auto* flag = header.findTypedAttribute<Imf::IntAttribute>("acesImageContainerFlag")) {
     tags.aces_container = flag->value() == 1;
   }
-  if (const auto* c = header.findTypedAttribute<Imf::ChromaticitiesAttribute>("chromaticities")) {
-    const Imf::Chromaticities& v = c->value();
-    tags.chromaticities = {v.red.x,  v.red.y,  v.green.x, v.green.y,
-                           v.blue.x, v.blue.y, v.white.x, v.white.y};
-  }
+  tags.chromaticities = chromaticities_of(header);
   return tags;
 }
 

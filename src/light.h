@@ -2,31 +2,45 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "io/primaries.h"
 #include "options.h"
 #include "scene/environment.h"
 
 namespace ssdo {
 
-/// The environment as it was asked for, read once for all frames of a sequence.
+/// The environment around one frame.
+struct FrameLight {
+  Environment environment;
+  std::string description;            ///< one line: the map or the colour
+  std::vector<std::string> warnings;  ///< of the map
+};
+
+/// The environment as it was asked for, read once for all frames of a sequence. Its light is finite
+/// and at most kBrightest, exposure included.
 class Light {
  public:
-  /// Errors: ExitCode::input for a map that cannot be read, ExitCode::usage for a colour that is
-  /// none.
+  /// Errors: those of read_environment_map; ExitCode::usage for a colour that is none, and for an
+  /// exposure that makes light brighter than kBrightest.
   explicit Light(const LightOptions& options);
 
-  /// The environment around a frame. `up_of_frame` is used where the user gives no axis.
-  Environment around(UpAxis up_of_frame) const;
-
-  /// One line: the map or the colour.
-  const std::string& description() const { return description_; }
+  /// The environment of a frame. `up_of_frame` is used where the user gives no axis. A map that
+  /// says which primaries its colours have is converted to `primaries` of the frame, if it has any.
+  FrameLight around(UpAxis up_of_frame, const std::optional<Chromaticities>& primaries) const;
 
  private:
+  void read_map();
+  void check_exposure(float brightest);
+
   LightOptions options_;
   std::shared_ptr<const Plane<glm::vec3>> map_;
+  std::optional<Chromaticities> primaries_;  ///< of the map
   glm::vec3 constant_{1};
   std::string description_;
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace ssdo

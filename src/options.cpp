@@ -86,7 +86,7 @@ void add_camera(CLI::App& app, Options& o) {
 
 void add_light(CLI::App& app, Options& o, RawOptions& raw) {
   app.add_option("--env", o.light.env, "lat-long map, or a constant colour")
-      ->type_name("FILE|R,G,B")
+      ->type_name("FILE[:LAYER]|R,G,B")
       ->capture_default_str()
       ->group("Light");
   app.add_option("--env-rotate", o.light.rotate_degrees,
@@ -278,6 +278,12 @@ CLI::App* add_compare(CLI::App& app, CompareOptions& o) {
   compare->add_option("--fail-above", o.fail_above, "exit with 1 if the RMSE of a layer is above")
       ->type_name("RMSE")
       ->check(between(0, 1e38));
+  compare
+      ->add_option("--max-invalid", o.max_invalid,
+                   "share of pixels that may be valid in one image only under --fail-above")
+      ->type_name("SHARE")
+      ->capture_default_str()
+      ->check(between(0, 1));
   compare->add_flag("--json", o.json, "as JSON");
   compare->add_flag("--overwrite", o.policy.overwrite, "replace the output of --diff");
   compare->add_flag("--create-dirs", o.policy.create_dirs, "make its folder");

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "error.h"
 #include "io/exr_writer.h"
 #include "io/image_file.h"
+#include "io/picture_layers.h"
 #include "io/safe_file.h"
 #include "sequence.h"
 #include "stopwatch.h"
@@ -23,13 +23,6 @@ namespace ssdo {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_exr(const fs::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return ending == ".exr";
-}
 
 constexpr int kMostSlices = 256;
 
@@ -142,8 +135,8 @@ std::vector<Target> targets_of(const OutputOptions& output, std::optional<int> f
 
 std::vector<std::string> inputs_of(const Options& options, const std::string& frame,
                                    const std::vector<LayerRequest>& aovs) {
-  std::vector<std::string> inputs = {frame, options.light.env, options.camera.file,
-                                     options.color.ocio};
+  std::vector<std::string> inputs = {frame, parse_picture_name(options.light.env).file,
+                                     options.camera.file, options.color.ocio};
   for (const LayerRequest& request : aovs) inputs.push_back(request.file);
   return inputs;
 }
@@ -152,7 +145,7 @@ void check_targets(const std::vector<Target>& targets, const std::vector<std::st
                    const OutputPolicy& policy) {
   std::vector<fs::path> seen;
   for (const Target& target : targets) {
-    if (!is_exr(target.path) && !is_display_image(target.path)) {
+    if (!has_exr_ending(target.path) && !is_display_image(target.path)) {
       throw Error(
           ExitCode::usage,
           fmt::format("{}: unknown kind of output; use .exr, .png, .jpg or .tif", target.path));
@@ -189,12 +182,12 @@ std::vector<std::unique_ptr<SafeFile>> write_targets(
   std::vector<std::unique_ptr<SafeFile>> files;
   for (const Target& target : targets) {
     files.push_back(std::make_unique<SafeFile>(target.path, policy));
-    if (is_exr(target.path)) {
+    if (has_exr_ending(target.path)) {
       write_exr_target(*files.back(), target, options, frame, products, relit);
       frame.times.write += watch.lap();
     } else {
-      const DisplayImage image =
-          make_display_image(product_of_picture(target, frame.plan), frame, products, display);
+      const DisplayImage image = make_display_image(product_of_picture(target, frame.plan), frame,
+                                                    products, display, keeps_alpha(target.path));
       frame.times.compose += watch.lap();
       write_image(*files.back(), image.spec(options.output.bits), image.values);
       frame.times.write += watch.lap();
@@ -212,10 +205,11 @@ Relit relight(const Options& options, Frame& frame, const std::vector<Target>& t
   std::optional<DisplayTransform>
       display;  // made first: a view that does not exist costs no estimate
   for (const Target& target : targets) {
-    if (is_exr(target.path) || !needs_display(product_of_picture(target, plan)) || display)
+    if (has_exr_ending(target.path) || !needs_display(product_of_picture(target, plan)) || display)
       continue;
     display.emplace(options.color, color_tags(frame));
     relit.notes.push_back(display->description());
+    if (!display->warning().empty()) relit.warnings.push_back(display->warning());
   }
 
   const Products products = make_products(frame, relit, told, before);

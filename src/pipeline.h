@@ -44,7 +44,8 @@ Products run_method(const Frame& frame, const Plan& plan, const TileProgress& pr
 struct Relit {
   std::size_t clamped_values = 0;  ///< beyond the range of half
   std::vector<std::string> notes;  ///< how colours were transformed
-  History history;                 ///< of a temporal plan, for the next frame; without a geometry
+  std::vector<std::string> warnings;
+  History history;  ///< of a temporal plan, for the next frame; without a geometry
 };
 Relit relight(const Options& options, Frame& frame, const std::vector<Target>& targets,
               const OutputPolicy& policy, const std::function<void(double)>& told,

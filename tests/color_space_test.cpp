@@ -2,8 +2,6 @@
 // Which colour space the input has. Gains: see config_of_gains.
 #include <gtest/gtest.h>
 
-#include <array>
-
 #include "support/color_fixture.h"
 
 namespace ssdo::test {
@@ -11,8 +9,6 @@ namespace {
 
 using ColorSpace = ColorFixture;
 
-using Chromaticities = std::array<float, 8>;
-constexpr Chromaticities kRec709 = {.64f, .33f, .30f, .60f, .15f, .06f, .3127f, .3290f};
 constexpr Chromaticities kAp1 = {.713f, .293f, .165f, .830f, .128f, .044f, .32168f, .33767f};
 constexpr Chromaticities kAp0 = {.7347f, .2653f, 0, 1, .0001f, -.0770f, .32168f, .33767f};
 constexpr Chromaticities kP3D65 = {.680f, .320f, .265f, .690f, .150f, .060f, .3127f, .3290f};
@@ -59,15 +55,57 @@ TEST_F(ColorSpace, TagsOfDataArePassedOver) {
                                 "file rule masks (data, no colours)"));
 }
 
-TEST_F(ColorSpace, TagsThatTheConfigDoesNotKnowArePassedOver) {
-  const ColorTags tags{.interop_id = "lin_nobody\nknows", .chromaticities = kRec2020};
+TEST_F(ColorSpace, TagsThatTheConfigDoesNotKnowArePassedOverWithAWarning) {
+  const ColorTags tags{.interop_id = "lin_nobody\nknows"};
   EXPECT_THAT(description({}, tags), testing::HasSubstr("lin_rec709 (role scene_linear)"));
-  EXPECT_THAT(
-      description({}, tags),
-      testing::EndsWith("; passed over: colorInteropID lin_nobody knows (not in the config), "
-                        "chromaticities of Rec.2020 (not in the config)"));
-  const ColorTags own{.chromaticities = Chromaticities{.6f, .3f, .3f, .6f, .1f, .1f, .3f, .3f}};
-  EXPECT_THAT(description({}, own), testing::HasSubstr("chromaticities of no known space"));
+  EXPECT_THAT(description({}, tags),
+              testing::EndsWith("; passed over: colorInteropID lin_nobody knows (not in the "
+                                "config)"));
+  EXPECT_THAT(DisplayTransform({}, tags).warning(),
+              testing::StartsWith("colorInteropID lin_nobody knows (not in the config): its "
+                                  "colours are taken as lin_rec709"));
+  EXPECT_EQ(DisplayTransform({}, {}).warning(), "");
+  EXPECT_EQ(DisplayTransform({}, {.interop_id = "data"}).warning(), "");
+  EXPECT_EQ(DisplayTransform({.colorspace = "ACEScg"}, tags).warning(), "");
+}
+
+/// Issue 12, number 20: colours of primaries that the config lacks were taken as Rec.709 in
+/// silence. What is shown is what a config that has them shows: their red in Rec.709 is ITU-R
+/// BT.2087's for Rec.2020, and SMPTE's for P3 with the white of Rec.709.
+TEST_F(ColorSpace, PrimariesThatTheConfigLacksAreConverted) {
+  const ColorOptions linear{.ocio = write("plain.ocio",
+                                          "ocio_profile_version: 2\n"
+                                          "roles: {default: lin_rec709, scene_linear: lin_rec709}\n"
+                                          "displays:\n"
+                                          "  Monitor:\n"
+                                          "    - !<View> {name: Plain, colorspace: lin_rec709}\n"
+                                          "    - !<View> {name: Raw, colorspace: Raw}\n"
+                                          "colorspaces:\n"
+                                          "  - !<ColorSpace> {name: lin_rec709}\n"
+                                          "  - !<ColorSpace> {name: Raw, isdata: true}\n")};
+  const auto red = [&](const ColorTags& tags) {
+    return shown(DisplayTransform(linear, tags), {1, 0, 0});
+  };
+  for (const ColorTags& tags :
+       {ColorTags{.chromaticities = kRec2020}, ColorTags{.interop_id = "lin_rec2020_scene"}}) {
+    EXPECT_NEAR(red(tags).x, 1.6605, 1e-3);
+    EXPECT_NEAR(red(tags).y, -0.1246, 1e-3);
+    EXPECT_NEAR(red(tags).z, -0.0182, 1e-3);
+    EXPECT_THAT(description(linear, tags), testing::HasSubstr(", converted) to display"));
+    EXPECT_EQ(DisplayTransform(linear, tags).warning(), "");
+  }
+  EXPECT_NEAR(red({.chromaticities = kP3D65}).x, 1.2249, 1e-3);
+  EXPECT_NEAR(red({.chromaticities = kP3D65}).y, -0.0420, 1e-3);
+  for (const Chromaticities& c : {kRec2020, kP3D65, kAp1, kAp0}) {
+    const glm::vec3 white = shown(DisplayTransform(linear, {.chromaticities = c}), glm::vec3(1));
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(white[i], 1, 1e-4) << "white stays white";
+  }
+  ColorOptions raw = linear;
+  raw.view = "Raw";
+  EXPECT_EQ(shown(DisplayTransform(raw, {.chromaticities = kRec2020}), {1, 0, 0}).y, 0);
+  const ColorTags flat{.chromaticities = Chromaticities{.3f, .3f, .3f, .3f, .3f, .3f, .3f, .3f}};
+  EXPECT_EQ(red(flat), glm::vec3(1, 0, 0));
+  EXPECT_THAT(DisplayTransform(linear, flat).warning(), testing::HasSubstr("--colorspace"));
 }
 
 TEST_F(ColorSpace, EachKnownSetOfChromaticitiesFindsItsSpace) {
@@ -89,7 +127,8 @@ TEST_F(ColorSpace, ChromaticitiesMayBeRounded) {
   EXPECT_THAT(description({}, {.chromaticities = off}),
               testing::HasSubstr("ACEScg (chromaticities"));
   off[6] = 0.3127f;
-  EXPECT_THAT(description({}, {.chromaticities = off}), testing::HasSubstr("lin_rec709 (role"));
+  EXPECT_THAT(description({}, {.chromaticities = off}),
+              testing::HasSubstr("chromaticities of no known space (0.713 0.293"));
 }
 
 TEST_F(ColorSpace, ColorspaceMayBeAnAliasOrARole) {

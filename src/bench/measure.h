@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "compare.h"
+#include "difference.h"
 #include "frame.h"
 
 namespace ssdo {

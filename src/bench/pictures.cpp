@@ -85,7 +85,7 @@ std::string BenchPictures::map_of(const ChannelsDifference& difference, double s
 }
 
 std::string BenchPictures::encode(const std::string& product, const Products& products) const {
-  const DisplayImage image = thinned(make_display_image(product, frame_, products, &display_));
+  const DisplayImage image = thinned(make_display_image(product, frame_, products, &display_, true));
   const auto bytes = encode_image("picture.png", image.spec(8), image.values);
   return {bytes.begin(), bytes.end()};
 }

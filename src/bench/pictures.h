@@ -5,7 +5,7 @@
 #include <string>
 
 #include "color.h"
-#include "compare.h"
+#include "difference.h"
 #include "frame.h"
 
 namespace ssdo {

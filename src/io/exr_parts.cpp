@@ -4,6 +4,7 @@
 #include <ImfChannelList.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
+#include <ImfTestFile.h>
 #include <ImfThreading.h>
 #include <fmt/format.h>
 
@@ -78,6 +79,11 @@ void check_is_exr(const fs::path& file) {
     fail(file,
          "is not an EXR file, by its first four bytes; convert it, for example with oiiotool");
   }
+}
+
+bool begins_as_exr(const fs::path& file) {
+  std::error_code ignored;
+  return fs::is_regular_file(file, ignored) && Imf::isOpenExrFile(file.c_str());
 }
 
 ExrPart describe_part(const Imf::MultiPartInputFile& file, int index) {

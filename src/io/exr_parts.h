@@ -12,6 +12,9 @@ namespace ssdo {
 /// bytes. OpenEXR's own messages do not tell a missing file from a folder.
 void check_is_exr(const std::filesystem::path& file);
 
+/// Whether `file` is a plain file that begins as an EXR does, whatever its name.
+bool begins_as_exr(const std::filesystem::path& file);
+
 /// Unpacks the header of a part.
 ExrPart describe_part(const Imf::MultiPartInputFile& file, int index);
 

@@ -43,6 +43,9 @@ void check_exists(const fs::path& path) {
   if (fs::is_directory(status)) {
     fail(ExitCode::input, path, "is a folder, not an image; name a file in it");
   }
+  if (fs::status_known(status) && !fs::is_regular_file(status)) {
+    fail(ExitCode::input, path, "is a device, pipe or socket, not an image; name a file");
+  }
 }
 
 std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& path) {
@@ -126,26 +129,34 @@ bool is_display_image(const fs::path& path) {
   return kind == ".png" || kind == ".tif" || kind == ".tiff" || is_jpeg(path);
 }
 
-Plane<glm::vec3> read_image(const fs::path& path) {
-  auto image = open_image(path);
-  const OIIO::ImageSpec& spec = image->spec();
+bool keeps_alpha(const fs::path& path) { return !is_jpeg(path); }
+
+bool has_exr_ending(const fs::path& path) { return ending(path) == ".exr"; }
+
+Image read_image(const fs::path& path) {
+  auto file = open_image(path);
+  const OIIO::ImageSpec& spec = file->spec();
   if (spec.deep || spec.depth > 1 || spec.nchannels < 1) {
     fail(ExitCode::input, path, "is not a flat image (it is deep, a volume or has no channels)");
   }
-  const int channels = spec.nchannels < 3 ? 1 : 3;
+  const int colors = spec.nchannels < 3 ? 1 : 3;
+  const int channels = std::max(colors, spec.alpha_channel + 1);
   check_decoded_size(path, double(spec.width) * spec.height * (sizeof(glm::vec3) + 4.0 * channels));
   std::vector<float> values(std::size_t(spec.width) * spec.height * channels);
-  if (!image->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data())) {
+  // libjpeg fills up what a file lacks with grey, and OpenImageIO reports that but goes on.
+  if (!file->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data()) ||
+      file->has_error()) {
     fail(ExitCode::input, path,
-         fmt::format("is damaged or cut short ({}); copy it again", one_line(image->geterror())));
+         fmt::format("is damaged or cut short ({}); copy it again", one_line(file->geterror())));
   }
-  Plane<glm::vec3> plane(spec.width, spec.height);
-  const float* value = values.data();
-  for (glm::vec3& pixel : plane.pixels) {
-    pixel = channels == 1 ? glm::vec3(*value) : glm::vec3(value[0], value[1], value[2]);
-    value += channels;
+  Image image{Plane<glm::vec3>(spec.width, spec.height), {}, !spec.format.is_floating_point()};
+  if (spec.alpha_channel >= colors) image.alpha = Plane<float>(spec.width, spec.height);
+  for (std::size_t i = 0; i < image.color.size(); ++i) {
+    const float* value = &values[i * std::size_t(channels)];
+    image.color[i] = colors == 1 ? glm::vec3(*value) : glm::vec3(value[0], value[1], value[2]);
+    if (!image.alpha.empty()) image.alpha[i] = value[spec.alpha_channel];
   }
-  return plane;
+  return image;
 }
 
 std::vector<unsigned char> encode_image(const fs::path& name, const ImageSpec& spec,

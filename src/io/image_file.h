@@ -11,10 +11,16 @@
 
 namespace ssdo {
 
-/// Reads the first three channels (or one, as grey) of any image that OpenImageIO reads: EXR, HDR,
-/// TIFF, PNG. Values are taken as stored, without a colour transform.
-/// Errors: ExitCode::input.
-Plane<glm::vec3> read_image(const std::filesystem::path& path);
+/// An image as it is stored, without a colour transform.
+struct Image {
+  Plane<glm::vec3> color;  ///< the first three channels, or one as grey
+  Plane<float> alpha;      ///< empty where there is none
+  bool integers = false;   ///< stored as integers, which become 0..1
+};
+
+/// Reads any flat image that OpenImageIO reads: Radiance HDR, TIFF, PNG, JPEG.
+/// Errors: ExitCode::input, also for a file that is cut short and that the library would fill up.
+Image read_image(const std::filesystem::path& path);
 
 /// What a display image is stored as.
 struct ImageSpec {
@@ -28,6 +34,12 @@ struct ImageSpec {
 /// .tiff, in any case.
 bool is_display_image(const std::filesystem::path& path);
 
+/// Whether that image kind can hold an alpha: all but JPEG.
+bool keeps_alpha(const std::filesystem::path& path);
+
+/// Whether the ending of `path` is .exr, in any case.
+bool has_exr_ending(const std::filesystem::path& path);
+
 /// The bytes of an image file of the kind that the ending of `name` says, from interleaved values
 /// in 0..1 (others are clamped, NaN becomes 0).
 /// Errors: ExitCode::output, naming `name`.
@@ -35,8 +47,9 @@ std::vector<unsigned char> encode_image(const std::filesystem::path& name, const
                                         std::span<const float> values);
 
 /// Writes interleaved values in 0..1, as encode_image() does, to the temporary of `file`; the
-/// caller commits it. The kind follows the ending of the target. JPEG drops alpha. The same values
-/// give the same bytes on every run. Errors: ExitCode::output, also when the disk is full.
+/// caller commits it. The kind follows the ending of the target. JPEG drops a fourth channel. The
+/// same values give the same bytes on every run. Errors: ExitCode::output, also when the disk is
+/// full.
 void write_image(const SafeFile& file, const ImageSpec& spec, std::span<const float> values);
 
 }  // namespace ssdo

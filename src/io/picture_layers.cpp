@@ -5,9 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <string_view>
 
 #include "error.h"
+#include "io/exr_parts.h"
 #include "io/image_file.h"
 
 namespace ssdo {
@@ -67,46 +69,68 @@ std::string shown_name(const PictureLayer& layer) {
 }
 
 LayeredPicture::LayeredPicture(const std::string& file) : file_(file) {
-  if (!is_display_image(file)) {
+  if (has_exr_ending(file) || begins_as_exr(file)) {
     exr_.emplace(file);
     layers_ = layers_of(*exr_);
+    if (layers_.empty()) {
+      throw Error(ExitCode::input,
+                  fmt::format("{}: holds no flat image with a value in every pixel, but deep or "
+                              "subsampled ones; flatten or resample it first",
+                              file));
+    }
     return;
   }
-  const Plane<glm::vec3> pixels = read_image(file);
+  Image image = read_image(file);
+  integers_ = image.integers;
   layers_ = {{0, "", "", {"R", "G", "B"}, {"R", "G", "B"}}};
-  image_.assign(3, Plane<float>(pixels.width, pixels.height));
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    for (int c = 0; c < 3; ++c) image_[std::size_t(c)][i] = pixels[i][c];
+  image_.assign(3, Plane<float>::like(image.color));
+  for (std::size_t i = 0; i < image.color.size(); ++i) {
+    for (int c = 0; c < 3; ++c) image_[std::size_t(c)][i] = image.color[i][c];
   }
+  if (image.alpha.empty()) return;
+  layers_[0].channels.push_back("A");
+  layers_[0].components.push_back("A");
+  image_.push_back(std::move(image.alpha));
 }
 
 std::string LayeredPicture::names() const {
   std::vector<std::string> names;
   for (const PictureLayer& layer : layers_) names.push_back(shown_name(layer));
-  return names.empty() ? "nothing that can be compared" : fmt::format("{}", fmt::join(names, ", "));
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 PictureLayer LayeredPicture::find(const std::string& name) const {
-  const auto all_with = [&](const auto& matches) {
+  using Matches = std::function<bool(const std::string& part, const std::string& own)>;
+  const auto layers_with = [&](const Matches& matches) {
     std::vector<PictureLayer> found;
     for (const PictureLayer& layer : layers_) {
-      if (matches(layer)) found.push_back(layer);
+      if (matches(layer.part_name, layer.name)) found.push_back(layer);
     }
     return found;
   };
-  auto found = all_with([&](const PictureLayer& l) {
-    return name == shown_name(l) || (!l.part_name.empty() && name == l.part_name + "." + l.name);
-  });
-  if (found.empty())
-    found = all_with([&](const PictureLayer& l) { return ends_with_words(l.name, name); });
-  if (found.empty()) {
+  const auto channels_with = [&](const Matches& matches) {
+    std::vector<PictureLayer> found;
     for (const PictureLayer& layer : layers_) {
-      for (std::size_t c = 0; c < layer.channels.size(); ++c) {
-        if (!ends_with_words(layer.channels[c], name)) continue;
-        found.push_back({layer.part, name, layer.part_name, {layer.channels[c]}, {""}});
+      for (const std::string& channel : layer.channels) {
+        if (matches(layer.part_name, channel))
+          found.push_back({layer.part, name, layer.part_name, {channel}, {""}});
       }
     }
+    return found;
+  };
+  const Matches in_full = [&](const std::string& part, const std::string& own) {
+    return name == own || (!part.empty() && name == part + "." + own);
+  };
+  const Matches by_last_words = [&](const std::string&, const std::string& own) {
+    return ends_with_words(own, name);
+  };
+  auto found = layers_with(in_full);
+  for (const PictureLayer& layer : layers_) {
+    if (layer.name.empty() && name == shown_name(layer)) found.push_back(layer);
   }
+  if (found.empty()) found = channels_with(in_full);
+  if (found.empty()) found = layers_with(by_last_words);
+  if (found.empty()) found = channels_with(by_last_words);
   if (found.size() == 1) return found[0];
   throw Error(ExitCode::layer,
               found.empty()
@@ -120,11 +144,15 @@ Window LayeredPicture::window(const PictureLayer& layer) const {
   return {0, 0, image_[0].width, image_[0].height};
 }
 
+Window LayeredPicture::display(const PictureLayer& layer) const {
+  return exr_ ? exr_->parts()[std::size_t(layer.part)].display_window : window(layer);
+}
+
 std::vector<Plane<float>> LayeredPicture::read(const PictureLayer& layer) const {
   if (exr_) return exr_->read(layer.part, layer.channels);
   std::vector<Plane<float>> planes;
   for (const std::string& channel : layer.channels)
-    planes.push_back(image_[channel == "R" ? 0 : channel == "G" ? 1 : 2]);
+    planes.push_back(image_[std::string_view("RGBA").find(channel)]);
   return planes;
 }
 

@@ -29,32 +29,39 @@ struct PictureLayer {
   std::vector<std::string> components;  ///< what follows the last dot
 };
 
-/// The layers of an EXR, or the one layer R G B of any other image.
+/// The layers of an EXR, or the one layer R G B, with A where there is an alpha, of any other
+/// image.
 class LayeredPicture {
  public:
-  /// Errors: ExitCode::input.
+  /// Errors: ExitCode::input, also for deep images.
   explicit LayeredPicture(const std::string& file);
 
   const std::string& file() const { return file_; }
   const std::optional<ExrReader>& exr() const { return exr_; }
   const std::vector<PictureLayer>& layers() const { return layers_; }
 
-  /// The layer of that name: in full, behind a part's name and a dot, or its last words
-  /// ("DiffDir"); or the one channel of that name. Errors: ExitCode::layer where there is none, or
-  /// several.
+  /// The names of all layers, for messages.
+  std::string names() const;
+
+  /// Whether the image is no EXR and stores integers, which become 0..1.
+  bool integers() const { return integers_; }
+
+  /// The layer of that name, or the one channel: by its full name ("ViewLayer.DiffDir", "Z"), also
+  /// behind a part's name and a dot; else by its last words ("DiffDir").
+  /// Errors: ExitCode::layer where there is none, or several.
   PictureLayer find(const std::string& name) const;
 
-  /// The window that a layer covers.
+  /// The window that a layer covers, and the one that it is shown in.
   Window window(const PictureLayer& layer) const;
+  Window display(const PictureLayer& layer) const;
   std::vector<Plane<float>> read(const PictureLayer& layer) const;
 
  private:
-  std::string names() const;
-
   std::string file_;
   std::optional<ExrReader> exr_;
   std::vector<PictureLayer> layers_;
-  std::vector<Plane<float>> image_;  ///< of what is no EXR
+  std::vector<Plane<float>> image_;  ///< of what is no EXR, in the order of its channels
+  bool integers_ = false;
 };
 
 /// How a layer is called in messages and tables.

@@ -93,6 +93,22 @@ TEST_F(Shot, FramesThatAreDoneAreSkippedUnlessBroken) {
   EXPECT_THAT(done(), ElementsAre(1, 2, 4));
 }
 
+/// Issue 12, number 14: a JPEG that was cut in half counted as readable.
+TEST_F(Shot, PicturesThatAreCutShortAreMadeAnew) {
+  for (const std::string kind : {"jpg", "png", "tif"}) {
+    const std::string picture = dir_ / ("out." + kind);
+    const std::vector<std::string> flags = {file("in", 1), "-o", picture, "--skip-existing"};
+    ASSERT_EQ(run_tool(flags).code, 0);
+    const std::string whole = read_file(picture);
+    const auto written = fs::last_write_time(picture);
+    ASSERT_EQ(run_tool(flags).code, 0);
+    EXPECT_EQ(fs::last_write_time(picture), written) << kind << " is skipped";
+    fs::resize_file(picture, whole.size() / 2);
+    ASSERT_EQ(run_tool(flags).code, 0);
+    EXPECT_TRUE(read_file(picture) == whole) << kind;
+  }
+}
+
 TEST_F(Shot, ManyFramesDoNotGoToOneFile) {
   const Finished refused = run_tool({dir_ / "in.####.exr", "-o", dir_ / "out.exr"});
   EXPECT_EQ(refused.code, 2);
