@@ -13,6 +13,7 @@
 
 #include "frame.h"
 #include "io/image_file.h"
+#include "io/json_text.h"
 #include "parallel/tiles.h"
 #include "pipeline.h"
 #include "progress.h"
@@ -138,7 +139,7 @@ class Batch {
       progress_.tell(double(i + 1) / double(jobs_.size()), jobs_[i].input);
     }
     if (options_.command == Command::info && options_.say.json) {
-      fmt::print("{}\n", infos_.size() == 1 ? infos_[0].dump(2) : infos_.dump(2));
+      fmt::print("{}\n", json_text(infos_.size() == 1 ? infos_[0] : infos_, 2));
     }
     if (!options_.say.stats.empty())
       statistics_.write(options_.say.stats, Statistics::policy(options_.output.policy));

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "io/exr_writer.h"
+#include "io/json_text.h"
 #include "io/picture_layers.h"
 
 namespace ssdo {
@@ -242,7 +243,7 @@ CompareReport compare(const CompareOptions& options) {
     all.push_back(compare_pair(a, b, pair, mask));
   if (!options.diff.empty()) write_difference(options.diff, options.policy, a, all);
   CompareReport report;
-  report.text = options.json ? to_json(options, all).dump(2) + "\n" : to_table(all);
+  report.text = options.json ? json_text(to_json(options, all), 2) + "\n" : to_table(all);
   for (const Compared& c : all) {
     if (options.fail_above && !(c.difference.figures.rmse <= *options.fail_above))
       report.code = ExitCode::failed;

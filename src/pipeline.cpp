@@ -15,6 +15,7 @@
 #include "error.h"
 #include "io/exr_writer.h"
 #include "io/image_file.h"
+#include "io/json_text.h"
 #include "io/safe_file.h"
 #include "sequence.h"
 #include "stopwatch.h"
@@ -75,7 +76,8 @@ void write_exr_target(const SafeFile& file, const Target& target, const Options&
   output.part = frame.lead().part;
   output.keep_channels = options.output.keep_channels;
   output.compression = options.output.compression;
-  output.attributes = {{"ssdo/version", SSDO_VERSION}, {"ssdo/plan", to_json(frame.plan).dump()}};
+  output.attributes = {{"ssdo/version", SSDO_VERSION},
+                       {"ssdo/plan", json_text(to_json(frame.plan))}};
   for (const NamedPlane& plane : channels) {
     output.planes.push_back({plane.channel, options.output.pixel_type, &plane.pixels});
   }

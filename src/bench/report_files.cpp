@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "io/checked_file.h"
+#include "io/json_text.h"
 
 namespace ssdo {
 namespace {
@@ -24,7 +25,7 @@ std::string ending(const std::string& path) {
 
 std::string text_of(const BenchReport& report, const std::string& kind) {
   if (kind == ".csv") return to_csv(report);
-  return kind == ".json" ? to_json(report).dump(2) + "\n" : to_html(report);
+  return kind == ".json" ? json_text(to_json(report), 2) + "\n" : to_html(report);
 }
 
 }  // namespace
