@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "io/exr_writer.h"
 #include "io/json_text.h"
 #include "io/picture_layers.h"
+#include "io/run_files.h"
 
 namespace ssdo {
 namespace {
@@ -228,13 +228,10 @@ CompareReport compare(const CompareOptions& options) {
                   fmt::format("--diff {}: {} is no EXR, whose header it would take", options.diff,
                               a.file()));
     }
-    for (const std::string& input : {name_a.file, name_b.file}) {
-      std::error_code ignored;
-      if (std::filesystem::equivalent(options.diff, input, ignored)) {
-        throw Error(ExitCode::output,
-                    fmt::format("{}: is an input; write to another file", options.diff));
-      }
-    }
+    check_run_files({{{"A", name_a.file},
+                      {"B", name_b.file},
+                      {"--mask", parse_picture_name(options.mask).file}},
+                     {{"--diff", options.diff}}});
     check_output(options.diff, options.policy);
   }
   const Mask mask = read_mask(options.mask);
