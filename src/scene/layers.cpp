@@ -192,6 +192,16 @@ std::vector<Layer> layers_named(const std::string& wanted, Role role, int file,
   return exact.empty() ? loose : exact;
 }
 
+/// Nothing has the name of a request: it was meant as FILE:LAYER if what stands before the last
+/// colon can only be a file.
+void refuse_missing_file(const LayerRequest& request) {
+  const std::string file = request.layer.substr(0, request.layer.rfind(':'));
+  const bool is_name = lower(file).ends_with(".exr") || file.find('/') != file.npos;
+  if (!request.file.empty() || file == request.layer || !is_name) return;
+  throw Error(ExitCode::input, fmt::format("{}: does not exist; check --aov {}={}", file,
+                                           role_name(request.role), request.layer));
+}
+
 Layer find_requested(const LayerRequest& request, const std::vector<const ExrReader*>& files,
                      const std::vector<Group>& groups) {
   int file = 0;
@@ -204,6 +214,7 @@ Layer find_requested(const LayerRequest& request, const std::vector<const ExrRea
     layer.by_request = true;
     return layer;
   }
+  if (found.empty()) refuse_missing_file(request);
   std::vector<std::string> names;
   for (const Group& group : groups) {
     if (group.file == file && as_layer(group, request.role))
@@ -241,7 +252,9 @@ LayerRequest parse_layer_request(const std::string& text) {
   const auto colon = request.layer.rfind(':');
   if (colon == std::string::npos) return request;
   const std::string file = request.layer.substr(0, colon);
-  if (std::filesystem::exists(file) || is_pattern(file)) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  if ((exists(status) && !is_directory(status)) || is_pattern(file)) {
     request.file = file;
     request.layer = request.layer.substr(colon + 1);
   }

@@ -198,6 +198,26 @@ TEST(Refusals, OfMissingAndAmbiguousLayers) {
                                    "direct.R", "error.Y"));
 }
 
+/// Issue 20: a file that is not there was taken for the name of a layer; a colon may stand in one.
+TEST(Refusals, OfAMissingFileOfALayer) {
+  const TempDir dir;
+  const std::string in = dir / "in.exr", out = dir / "out.exr";
+  FramePart odd = frame_of(small_picture());
+  odd.add("a.exr:P", small_picture().position);
+  odd.add("sub:P", small_picture().position);
+  write_frame(in, odd);
+  std::filesystem::create_directory(dir / "sub");
+  expect_refused({in, "-o", out, "--aov", "position=gone.exr:ViewLayer.Position"}, 3,
+                 "gone.exr: does not exist");
+  expect_refused({in, "-o", out, "--aov", "position=sub/gone:P"}, 3, "sub/gone: does not exist");
+  expect_refused({in, "-o", out, "--aov", "position=View:Position"}, 4, "no layer 'View:Position'");
+  for (const std::string layer : {"a.exr:P", "sub:P"}) {
+    const Finished done = run_tool({in, "-o", out, "--overwrite", "--aov", "position=" + layer},
+                                   {.folder = dir.path()});
+    EXPECT_EQ(done.code, 0) << done.err;
+  }
+}
+
 TEST(Help, GoesToStandardOutput) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
                                                     {"info", "--help"},
