@@ -4,6 +4,9 @@
 #include <ImfChromaticitiesAttribute.h>
 #include <ImfIntAttribute.h>
 #include <ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include <string_view>
 
 #include "estimators/registry.h"
 #include "stopwatch.h"
@@ -28,6 +31,26 @@ void open_files(Frame& frame, const std::vector<LayerRequest>& aovs) {
     for (const ExrReader& file : frame.files) open |= file.path() == request.file;
     if (!open) frame.files.emplace_back(request.file);
   }
+}
+
+void warn_of_idle_depth_options(Frame& frame, const GBufferOptions& options) {
+  if (frame.layers[Role::depth]) return;
+  const auto warn = [&](std::string_view option) {
+    frame.report.warnings.push_back(
+        fmt::format("{} has no effect: the frame has no depth layer", option));
+  };
+  if (options.depth_kind) warn("--depth-kind");
+  if (options.background_depth) warn("--background-depth");
+}
+
+void warn_of_idle_light_options(Frame& frame, const LightOptions& options) {
+  if (!frame.environment.is_constant()) return;
+  const auto warn = [&](std::string_view option) {
+    frame.report.warnings.push_back(
+        fmt::format("{} has no effect: the light is the same from everywhere", option));
+  };
+  if (options.rotate_degrees != 0) warn("--env-rotate");
+  if (options.up) warn("--env-up");
 }
 
 }  // namespace
@@ -67,6 +90,7 @@ Frame prepare_frame(const Options& options, const Light& light, const std::strin
   frame.gbuffer.position = frame.gbuffer.normal = {};
   frame.gbuffer.depth = {};
 
+  warn_of_idle_depth_options(frame, options.input.gbuffer);
   const bool world = frame.geometry.world_known;
   frame.environment = light.around(world ? up_axis_of(frame.part().header) : UpAxis::y);
   frame.light = light.description();
@@ -78,6 +102,7 @@ Frame prepare_frame(const Options& options, const Light& light, const std::strin
           "camera space: give --camera FILE.json to place it");
     }
   }
+  warn_of_idle_light_options(frame, options.light);
   if (!frame.environment.is_constant())
     frame.light_model = model_light(frame.environment, frame.geometry.world_to_camera);
   frame.plan = make_plan(options.model, options.output, frame.gbuffer, frame.geometry,

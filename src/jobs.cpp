@@ -35,7 +35,7 @@ Job single_job(const Options& options, std::vector<Target> targets) {
         ExitCode::usage,
         fmt::format("{}: --temporal needs a sequence, such as shot.####.exr", options.input_file));
   }
-  if (!options.batch.frames.empty()) {
+  if (options.batch.frames) {
     throw Error(ExitCode::usage,
                 fmt::format("{}: --frames needs a pattern in the input's name, such as "
                             "shot.####.exr",
@@ -58,8 +58,8 @@ Job job_of_frame(const Options& options, const std::vector<Target>& targets, int
 }
 
 std::vector<Job> jobs_of_sequence(const Options& options, const std::vector<Target>& targets) {
-  const auto frames = options.batch.frames.empty() ? find_frames(options.input_file)
-                                                   : parse_frames(options.batch.frames);
+  const auto frames =
+      options.batch.frames ? *options.batch.frames : find_frames(options.input_file);
   if (frames.empty()) {
     throw Error(ExitCode::input,
                 fmt::format("{}: no frame of this sequence exists", options.input_file));
@@ -110,7 +110,8 @@ std::vector<RunFile> inputs_of(const Options& options, const std::string& frame,
                                  {"--env", env.substr(0, env.rfind(':'))},  // of FILE:LAYER
                                  {"--camera", options.camera.file},
                                  {"--ocio", options.color.ocio},
-                                 {"$OCIO", ocio ? ocio : ""}};
+                                 {"$OCIO", ocio ? ocio : ""},
+                                 {"--config", options.config_file}};
   for (const LayerRequest& request : aovs) inputs.push_back({"--aov", request.file});
   return inputs;
 }

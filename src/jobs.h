@@ -24,7 +24,7 @@ struct Job {
 /// ExitCode::input for a sequence without frames; those of check_run_files, over all frames.
 std::vector<Job> plan_jobs(const Options& options);
 
-/// Every file that a frame is made from: the frame, those of --aov, --env, --camera and
+/// Every file that a frame is made from: the frame, those of --aov, --env, --camera, --config and
 /// the OpenColorIO config.
 std::vector<RunFile> inputs_of(const Options& options, const std::string& frame,
                                const std::vector<LayerRequest>& aovs);

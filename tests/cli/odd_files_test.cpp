@@ -60,7 +60,7 @@ TEST_F(OddFiles, AreNoOutputs) {
   expect_refused({in, "-o", path("pipe.exr"), "--overwrite"}, 5, "is a device, pipe or socket");
   expect_refused({in, "-o", path("folder.exr"), "--overwrite"}, 5, "is a folder");
   expect_refused({in, "-o", path("in.exr/out.exr"), "--create-dirs"}, 5, "is a file, not a folder");
-  expect_refused({in, "-o", ""}, 2, "unknown kind of output");
+  expect_refused({in, "-o", ""}, 2, "--output: its value is empty");
   expect_refused({in, "-o", path("out")}, 2, "unknown kind of output");
   expect_refused({in, "-o", "/dev/stdout"}, 2, "unknown kind of output");
   expect_refused({in, "-o", path("out.exr"), "--stats", path("gone/stats.json")}, 5,

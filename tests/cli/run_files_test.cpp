@@ -60,6 +60,7 @@ TEST_F(RunFiles, NoOutputIsAnotherOutput) {
 }
 
 TEST_F(RunFiles, NoOutputIsAnInput) {
+  std::ofstream(path("o.toml")) << "slices = 3\n";
   std::ofstream(path("c.json")) << R"({"hfov_deg": 40})";
   fs::copy_file(data("color/config.ocio"), path("c.ocio"));
   fs::copy_file(path("in.exr"), path("lends.exr"));
@@ -70,6 +71,7 @@ TEST_F(RunFiles, NoOutputIsAnInput) {
       {{"--stats", "in.exr"}, "INPUT"},
       {{"--stats", "./hard.json"}, "INPUT"},
       {{"--stats", "link.json"}, "INPUT"},
+      {{"--config", "o.toml", "--stats", "o.toml"}, "--config"},
       {{"--camera", "c.json", "--stats", "./c.json"}, "--camera"},
       {{"--ocio", "c.ocio", "--stats", path("c.ocio")}, "--ocio"},
       {{"--aov", "normal=lends.exr:ViewLayer.Normal", "-o", "lends.exr"}, "--aov"},
