@@ -13,81 +13,19 @@
 
 #include "frame.h"
 #include "io/image_file.h"
+#include "io/json_text.h"
 #include "io/one_line.h"
+#include "jobs.h"
 #include "listing.h"
 #include "parallel/tiles.h"
 #include "pipeline.h"
 #include "progress.h"
-#include "sequence.h"
 #include "statistics.h"
 
 namespace ssdo {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// One frame of the job.
-struct Job {
-  std::optional<int> frame;
-  std::string input;
-  std::vector<LayerRequest> aovs;
-  std::vector<Target> targets;
-};
-
-Job job_of_frame(const Options& options, int frame) {
-  Job job{frame, expand_pattern(options.input_file, frame), options.input.aovs,
-          targets_of(options.output, frame)};
-  for (LayerRequest& request : job.aovs) request.file = expand_pattern(request.file, frame);
-  return job;
-}
-
-std::vector<Job> plan_jobs(const Options& options) {
-  const bool sequence = is_pattern(options.input_file);
-  if (options.model.temporal && !sequence) {
-    throw Error(
-        ExitCode::usage,
-        fmt::format("{}: --temporal needs a sequence, such as shot.####.exr", options.input_file));
-  }
-  if (!sequence) {
-    if (!options.batch.frames.empty()) {
-      throw Error(
-          ExitCode::usage,
-          fmt::format("{}: --frames needs a pattern in the input's name, such as shot.####.exr",
-                      options.input_file));
-    }
-    for (const Target& target : targets_of(options.output, std::nullopt)) {
-      if (is_pattern(target.path)) {
-        throw Error(ExitCode::usage,
-                    fmt::format("{}: has a frame pattern, but the input {} has none", target.path,
-                                options.input_file));
-      }
-    }
-    return {{std::nullopt, options.input_file, options.input.aovs,
-             targets_of(options.output, std::nullopt)}};
-  }
-  const auto frames = options.batch.frames.empty() ? find_frames(options.input_file)
-                                                   : parse_frames(options.batch.frames);
-  if (frames.empty()) {
-    throw Error(ExitCode::input,
-                fmt::format("{}: no frame of this sequence exists", options.input_file));
-  }
-  if (frames.size() > 1) {
-    for (const Target& target : targets_of(options.output, std::nullopt)) {
-      if (!is_pattern(target.path)) {
-        throw Error(
-            ExitCode::usage,
-            fmt::format("{}: {} frames would go to this one file; put a pattern into its name, "
-                        "such as out.####.exr",
-                        target.path, frames.size()));
-      }
-    }
-  }
-  std::vector<Job> jobs;
-  for (int frame : frames) {
-    jobs.push_back(job_of_frame(options, frame));
-  }
-  return jobs;
-}
 
 bool is_readable(const std::string& path) {
   try {
@@ -134,14 +72,15 @@ class Batch {
       throw;
     }
     print_infos();
-    if (!options_.say.stats.empty())
+    if (has_statistics() && !options_.say.dry_run)
       statistics_.write(options_.say.stats, Statistics::policy(options_.output.policy));
     return code;
   }
 
  private:
   ExitCode run_jobs() {
-    if (!options_.say.stats.empty()) check_statistics_file();
+    if (has_statistics())
+      check_output(options_.say.stats, Statistics::policy(options_.output.policy));
     ExitCode code = ExitCode::done;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
       if (options_.command == Command::info) list(jobs_[i]);
@@ -174,32 +113,18 @@ class Batch {
     }
   }
 
-  /// Refused before any work is done: a path that cannot be written, or that is an input.
-  void check_statistics_file() const {
-    for (const Job& job : jobs_) {
-      for (const std::string& input : inputs_of(options_, job.input, job.aovs)) {
-        std::error_code ignored;
-        if (fs::equivalent(options_.say.stats, input, ignored)) {
-          throw Error(
-              ExitCode::output,
-              fmt::format("{}: is an input; write the statistics elsewhere", options_.say.stats));
-        }
-      }
-    }
-    check_output(options_.say.stats, Statistics::policy(options_.output.policy));
-  }
-
   void run_job(std::size_t i) {
     const Job& job = jobs_[i];
     const std::optional<History> before = std::exchange(history_, std::nullopt);
     OutputPolicy policy = options_.output.policy;
-    const bool writes = options_.command == Command::relight && !options_.say.dry_run;
-    if (writes && options_.batch.skip_existing) {
-      if (all_done(job))
-        return say_verbose(fmt::format("{}: skipped, its outputs exist", job.input));
+    const bool relights = options_.command == Command::relight;
+    if (relights && options_.batch.skip_existing) {
+      if (all_done(job)) return say_skipped(job);
       policy.overwrite = true;  // what is there is incomplete: the frame is made anew
     }
-    if (writes) check_targets(job.targets, inputs_of(options_, job.input, job.aovs), policy);
+    for (const Target& target : job.targets) {
+      if (relights) check_output(target.path, policy);
+    }
     Frame frame = take_frame(i);
     if (options_.model.temporal) place_in_sequence(frame, i, before);
     if (options_.command == Command::info) return show(frame);
@@ -210,7 +135,7 @@ class Batch {
         say(fmt::format("{}: warning: {}", job.input, warning));
       }
     }
-    if (!writes) return;
+    if (options_.say.dry_run) return say_colors(frame, job);
     const auto told = [&](double done) {
       progress_.tell((double(i) + done) / double(jobs_.size()), job.input);
     };
@@ -315,8 +240,7 @@ class Batch {
   void print_infos() const {
     if (!options_.say.json || infos_.empty()) return;
     const nlohmann::json& shown = infos_.size() == 1 ? infos_[0] : infos_;
-    // Names in a file need not be UTF-8, and JSON has to be.
-    fmt::print("{}\n", shown.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(shown, 2));
   }
 
   /// One line on standard error. A terminal that is gone does not stop the work.
@@ -328,12 +252,26 @@ class Batch {
   void say_verbose(const std::string& text) {
     if (options_.say.verbose) say(text);
   }
+  void say_skipped(const Job& job) {
+    if (options_.say.verbose || options_.say.dry_run)
+      say(fmt::format("{}: skipped, its outputs exist", job.input));
+  }
+  /// The end of a dry run: the last that a real one could refuse before its work.
+  void say_colors(const Frame& frame, const Job& job) {
+    if (const auto display = make_display(options_, frame, job.targets))
+      say(display->description());
+  }
+
+  /// `info` makes nothing that could be counted.
+  bool has_statistics() const {
+    return options_.command == Command::relight && !options_.say.stats.empty();
+  }
 
   const Options& options_;
   int threads_;
   ThreadLimit limit_;
-  std::optional<Light> light_;  ///< read after the first listing of `info`
   std::vector<Job> jobs_;
+  std::optional<Light> light_;  ///< read after the first listing of `info`
   Progress progress_;
   Statistics statistics_;
   nlohmann::json infos_ = nlohmann::json::array();

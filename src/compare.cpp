@@ -6,15 +6,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "difference.h"
 #include "io/exr_writer.h"
 #include "io/image_file.h"
+#include "io/json_text.h"
 #include "io/one_line.h"
 #include "io/picture_layers.h"
+#include "io/run_files.h"
 
 namespace ssdo {
 namespace {
@@ -254,13 +255,9 @@ void check_diff(const CompareOptions& options, const LayeredPicture& a, const La
     throw Error(ExitCode::usage, fmt::format("--diff {}: {} is no EXR, whose header it would take",
                                              options.diff, a.file()));
   }
-  for (const std::string& input : {a.file(), b.file(), parse_picture_name(options.mask).file}) {
-    std::error_code ignored;
-    if (std::filesystem::equivalent(options.diff, input, ignored)) {
-      throw Error(ExitCode::output,
-                  fmt::format("{}: is an input; write to another file", options.diff));
-    }
-  }
+  check_run_files(
+      {{{"A", a.file()}, {"B", b.file()}, {"--mask", parse_picture_name(options.mask).file}},
+       {{"--diff", options.diff}}});
   check_output(options.diff, options.policy);
 }
 
@@ -280,7 +277,7 @@ CompareReport compare(const CompareOptions& options) {
   }
   if (!options.diff.empty()) write_difference(options.diff, options.policy, a, all.layers);
   CompareReport report;
-  report.text = options.json ? to_json(options, all).dump(2) + "\n" : to_table(all);
+  report.text = options.json ? json_text(to_json(options, all), 2) + "\n" : to_table(all);
   for (const Compared& c : all.layers) {
     if (!passes(options, c.difference)) report.code = ExitCode::failed;
   }

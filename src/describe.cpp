@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 
 #include "frame.h"
@@ -70,7 +71,8 @@ json camera_json(const Frame& frame) {
             {"cx", c.cx},
             {"cy", c.cy},
             {"hfov_deg", c.hfov_degrees(frame.geometry.display.width())},
-            {"world_to_camera", rows}};
+            {"world_to_camera", rows},
+            {"world_handedness", glm::determinant(c.rotation) < 0 ? "left" : "right"}};
   if (const auto& r = frame.report.residual) {
     j["residual_px"] = {{"median", r->median_px}, {"p99", r->p99_px}, {"max", r->max_px}};
   }

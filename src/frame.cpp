@@ -3,6 +3,9 @@
 
 #include <ImfIntAttribute.h>
 #include <ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include <string_view>
 
 #include "estimators/registry.h"
 #include "listing.h"
@@ -18,6 +21,26 @@ UpAxis up_axis_of(const Imf::Header& header) {
   }
   const auto* software = header.findTypedAttribute<Imf::StringAttribute>("Software");
   return software && software->value().find("Blender") != std::string::npos ? UpAxis::z : UpAxis::y;
+}
+
+void warn_of_idle_depth_options(Frame& frame, const GBufferOptions& options) {
+  if (frame.layers[Role::depth]) return;
+  const auto warn = [&](std::string_view option) {
+    frame.report.warnings.push_back(
+        fmt::format("{} has no effect: the frame has no depth layer", option));
+  };
+  if (options.depth_kind) warn("--depth-kind");
+  if (options.background_depth) warn("--background-depth");
+}
+
+void warn_of_idle_light_options(Frame& frame, const LightOptions& options) {
+  if (!frame.environment.is_constant()) return;
+  const auto warn = [&](std::string_view option) {
+    frame.report.warnings.push_back(
+        fmt::format("{} has no effect: the light is the same from everywhere", option));
+  };
+  if (options.rotate_degrees != 0) warn("--env-rotate");
+  if (options.up) warn("--env-up");
 }
 
 }  // namespace
@@ -59,6 +82,7 @@ Frame prepare_frame(const Options& options, const Light& light, const std::strin
   frame.gbuffer.position = frame.gbuffer.normal = {};
   frame.gbuffer.depth = {};
 
+  warn_of_idle_depth_options(frame, options.input.gbuffer);
   const bool world = frame.geometry.world_known;
   const Imf::Header& header = frame.part().header;
   const FrameLight around =
@@ -72,6 +96,7 @@ Frame prepare_frame(const Options& options, const Light& light, const std::strin
         "the frame knows no world space; the environment is taken in "
         "camera space: give --camera FILE.json to place it");
   }
+  warn_of_idle_light_options(frame, options.light);
   if (!frame.environment.is_constant())
     frame.light_model = model_light(frame.environment, frame.geometry.world_to_camera);
   frame.plan = make_plan(options.model, options.output, frame.gbuffer, frame.geometry,

@@ -64,6 +64,18 @@ glm::vec2 read_motion_scale(const std::string& text) {
   return {float(*x), float(*y)};
 }
 
+Quality read_quality(std::string_view text) {
+  return text == "draft" ? Quality::draft : text == "final" ? Quality::final : Quality::standard;
+}
+
+ProgressStyle read_progress_style(std::string_view text) {
+  return text == "none"      ? ProgressStyle::none
+         : text == "tractor" ? ProgressStyle::tractor
+         : text == "alfred"  ? ProgressStyle::alfred
+         : text == "openjd"  ? ProgressStyle::openjd
+                             : ProgressStyle::automatic;
+}
+
 Imf::Compression read_compression(const std::string& name) {
   static const std::vector<std::pair<std::string, Imf::Compression>> names = {
       {"none", Imf::NO_COMPRESSION},   {"rle", Imf::RLE_COMPRESSION},

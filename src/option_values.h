@@ -21,6 +21,12 @@ void read_depth_kind(const std::string& text, GBufferOptions& out);
 /// X,Y: two factors.
 glm::vec2 read_motion_scale(const std::string& text);
 
+/// draft, standard or final.
+Quality read_quality(std::string_view text);
+
+/// none, tractor, alfred, openjd; all else is auto.
+ProgressStyle read_progress_style(std::string_view text);
+
 Imf::Compression read_compression(const std::string& name);
 
 /// PRODUCT=FILE.

@@ -77,7 +77,7 @@ enum class OnError { stop, keep_going };
 enum class ProgressStyle { automatic, none, tractor, alfred, openjd };
 
 struct BatchOptions {
-  std::string frames;  ///< empty: every frame that exists
+  std::optional<std::vector<int>> frames;  ///< every frame that exists where not given
   bool skip_existing = false;
   OnError on_error = OnError::stop;
   ProgressStyle progress = ProgressStyle::automatic;
@@ -104,7 +104,9 @@ struct Options {
   SayOptions say;
   CompareOptions compare;
   BenchOptions bench;
-  int threads = 0;  ///< 0: choose
+  int threads = 0;                    ///< 0: choose
+  std::string config_file;            ///< that was read; empty: none
+  std::vector<std::string> warnings;  ///< options that have no effect beside the others
 };
 
 /// What the command line asks for: work, or a text to print (--help, --version).

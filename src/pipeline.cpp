@@ -14,9 +14,8 @@
 #include "error.h"
 #include "io/exr_writer.h"
 #include "io/image_file.h"
-#include "io/picture_layers.h"
+#include "io/json_text.h"
 #include "io/safe_file.h"
-#include "sequence.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -68,7 +67,8 @@ void write_exr_target(const SafeFile& file, const Target& target, const Options&
   output.part = frame.lead().part;
   output.keep_channels = options.output.keep_channels;
   output.compression = options.output.compression;
-  output.attributes = {{"ssdo/version", SSDO_VERSION}, {"ssdo/plan", to_json(frame.plan).dump()}};
+  output.attributes = {{"ssdo/version", SSDO_VERSION},
+                       {"ssdo/plan", json_text(to_json(frame.plan))}};
   for (const NamedPlane& plane : channels) {
     output.planes.push_back({plane.channel, options.output.pixel_type, &plane.pixels});
   }
@@ -123,47 +123,13 @@ Products make_products(Frame& frame, Relit& relit, const std::function<void(doub
 
 }  // namespace
 
-std::vector<Target> targets_of(const OutputOptions& output, std::optional<int> frame) {
-  const auto expand = [&](const std::string& path) {
-    return frame ? expand_pattern(path, *frame) : path;
-  };
-  std::vector<Target> targets;
-  for (const std::string& path : output.files) targets.push_back({expand(path), std::nullopt});
-  for (const SaveRequest& save : output.saves) targets.push_back({expand(save.path), save.product});
-  return targets;
-}
-
-std::vector<std::string> inputs_of(const Options& options, const std::string& frame,
-                                   const std::vector<LayerRequest>& aovs) {
-  std::vector<std::string> inputs = {frame, parse_picture_name(options.light.env).file,
-                                     options.camera.file, options.color.ocio};
-  for (const LayerRequest& request : aovs) inputs.push_back(request.file);
-  return inputs;
-}
-
-void check_targets(const std::vector<Target>& targets, const std::vector<std::string>& inputs,
-                   const OutputPolicy& policy) {
-  std::vector<fs::path> seen;
+std::optional<DisplayTransform> make_display(const Options& options, const Frame& frame,
+                                             const std::vector<Target>& targets) {
   for (const Target& target : targets) {
-    if (!has_exr_ending(target.path) && !is_display_image(target.path)) {
-      throw Error(
-          ExitCode::usage,
-          fmt::format("{}: unknown kind of output; use .exr, .png, .jpg or .tif", target.path));
-    }
-    const fs::path full = fs::weakly_canonical(target.path);
-    if (std::find(seen.begin(), seen.end(), full) != seen.end()) {
-      throw Error(ExitCode::usage, fmt::format("{}: named twice as an output", target.path));
-    }
-    seen.push_back(full);
-    for (const std::string& input : inputs) {
-      std::error_code ignored;
-      if (fs::equivalent(target.path, input, ignored)) {
-        throw Error(ExitCode::output,
-                    fmt::format("{}: is an input; write to another file", target.path));
-      }
-    }
-    check_output(target.path, policy);
+    if (!has_exr_ending(target.path) && needs_display(product_of_picture(target, frame.plan)))
+      return DisplayTransform(options.color, color_tags(frame));
   }
+  return std::nullopt;
 }
 
 Products run_method(const Frame& frame, const Plan& plan, const TileProgress& progress) {
@@ -200,14 +166,10 @@ std::vector<std::unique_ptr<SafeFile>> write_targets(
 Relit relight(const Options& options, Frame& frame, const std::vector<Target>& targets,
               const OutputPolicy& policy, const std::function<void(double)>& told,
               const std::optional<History>& before) {
-  const Plan& plan = frame.plan;
   Relit relit;
-  std::optional<DisplayTransform>
-      display;  // made first: a view that does not exist costs no estimate
-  for (const Target& target : targets) {
-    if (has_exr_ending(target.path) || !needs_display(product_of_picture(target, plan)) || display)
-      continue;
-    display.emplace(options.color, color_tags(frame));
+  // Made first: a view that does not exist costs no estimate.
+  const std::optional<DisplayTransform> display = make_display(options, frame, targets);
+  if (display) {
     relit.notes.push_back(display->description());
     if (!display->warning().empty()) relit.warnings.push_back(display->warning());
   }

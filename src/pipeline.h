@@ -22,18 +22,10 @@ struct Target {
   std::optional<std::string> product;  ///< --save
 };
 
-/// The files of one frame, with `frame` in the place of their patterns.
-std::vector<Target> targets_of(const OutputOptions& output, std::optional<int> frame);
-
-/// Every file that a frame is made from: the frame, those of --aov, --env, --camera and --ocio.
-std::vector<std::string> inputs_of(const Options& options, const std::string& frame,
-                                   const std::vector<LayerRequest>& aovs);
-
-/// Refuses targets that cannot be written, before any work is done: an unknown kind of file, a
-/// name that is used twice, an input that would be replaced, and what check_output refuses.
-/// Errors: ExitCode::usage and ExitCode::output.
-void check_targets(const std::vector<Target>& targets, const std::vector<std::string>& inputs,
-                   const OutputPolicy& policy);
+/// How colours become those of a display, where a target is a picture that shows colours.
+/// Errors: those of DisplayTransform.
+std::optional<DisplayTransform> make_display(const Options& options, const Frame& frame,
+                                             const std::vector<Target>& targets);
 
 /// What the method of `plan` makes of a frame, before any filter.
 Products run_method(const Frame& frame, const Plan& plan, const TileProgress& progress);

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "error.h"
+#include "io/json_text.h"
 #include "io/safe_file.h"
 
 namespace ssdo {
@@ -55,7 +56,7 @@ void Statistics::add(const Frame& frame, std::optional<int> number,
 void Statistics::write(const std::string& path, const OutputPolicy& policy) const {
   SafeFile file(path, policy);
   std::ofstream out(file.temporary());
-  out << frames_.dump(2) << '\n';
+  out << json_text(frames_, 2) << '\n';
   out.close();
   if (!out)
     throw Error(ExitCode::output, fmt::format("{}: the statistics could not be written", path));

@@ -51,7 +51,6 @@ CLI::App* add_bench(CLI::App& app, Options& o) {
                                        "speed against error of methods and settings on "
                                        "this frame, and the setting for a wanted error")
                         ->fallthrough();
-  bench->add_option("INPUT", o.input_file, "as above")->group("");
   bench
       ->add_option("--report", o.bench.reports,
                    "write .html (a page with charts and maps), .csv or .json; repeatable")

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "error.h"
 #include "io/checked_file.h"
+#include "io/json_text.h"
 
 namespace ssdo {
 namespace {
@@ -24,7 +26,7 @@ std::string ending(const std::string& path) {
 
 std::string text_of(const BenchReport& report, const std::string& kind) {
   if (kind == ".csv") return to_csv(report);
-  return kind == ".json" ? to_json(report).dump(2) + "\n" : to_html(report);
+  return kind == ".json" ? json_text(to_json(report), 2) + "\n" : to_html(report);
 }
 
 }  // namespace
@@ -34,28 +36,19 @@ bool wants_page(const std::vector<std::string>& paths) {
                      [](const std::string& path) { return ending(path) == ".html"; });
 }
 
-void check_report_files(const std::vector<std::string>& paths,
-                        const std::vector<std::string>& inputs, const OutputPolicy& policy) {
-  std::vector<fs::path> seen;
+void check_report_files(const std::vector<std::string>& paths, std::vector<RunFile> inputs,
+                        const OutputPolicy& policy) {
+  RunFiles files{std::move(inputs), {}};
   for (const std::string& path : paths) {
     const std::string kind = ending(path);
     if (kind != ".html" && kind != ".csv" && kind != ".json") {
       throw Error(ExitCode::usage,
                   fmt::format("--report {}: unknown kind; use .html, .csv or .json", path));
     }
-    const fs::path full = fs::weakly_canonical(path);
-    if (std::find(seen.begin(), seen.end(), full) != seen.end())
-      throw Error(ExitCode::usage, fmt::format("--report {}: named twice", path));
-    seen.push_back(full);
-    for (const std::string& input : inputs) {
-      std::error_code ignored;
-      if (fs::equivalent(path, input, ignored)) {
-        throw Error(ExitCode::output,
-                    fmt::format("--report {}: is an input; write to another file", path));
-      }
-    }
-    check_output(path, policy);
+    files.outputs.push_back({"--report", path});
   }
+  check_run_files(files);
+  for (const std::string& path : paths) check_output(path, policy);
 }
 
 void write_reports(const BenchReport& report, const std::vector<std::string>& paths,

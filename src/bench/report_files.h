@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/report.h"
+#include "io/run_files.h"
 #include "io/safe_file.h"
 
 namespace ssdo {
@@ -13,10 +14,9 @@ namespace ssdo {
 bool wants_page(const std::vector<std::string>& paths);
 
 /// Refuses what cannot be written before any work is done. Errors: ExitCode::usage for an ending
-/// other than .html, .csv and .json, or a file that is named twice; ExitCode::output for an input
-/// and what check_output refuses.
-void check_report_files(const std::vector<std::string>& paths,
-                        const std::vector<std::string>& inputs, const OutputPolicy& policy);
+/// other than .html, .csv and .json; those of check_run_files and check_output.
+void check_report_files(const std::vector<std::string>& paths, std::vector<RunFile> inputs,
+                        const OutputPolicy& policy);
 
 /// Writes the report in the form that each ending asks for: all files appear, or none.
 /// Errors: ExitCode::output.

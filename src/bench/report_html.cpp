@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "bench/report.h"
+#include "io/json_text.h"
 
 namespace ssdo {
 namespace {
@@ -84,7 +85,7 @@ std::string to_html(const BenchReport& report) {
   nlohmann::json data = to_json(report);
   data["pictures"] = pictures_json(report);
   data["error_scale"] = report.error_scale;
-  const std::string text = escaped(data.dump());
+  const std::string text = escaped(json_text(data));
   return filled(kPage, {{"style", kStyle},
                         {"chart", kChart},
                         {"data", text},

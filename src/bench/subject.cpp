@@ -5,10 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "bench/report_files.h"
 #include "error.h"
-#include "pipeline.h"
+#include "jobs.h"
 #include "sequence.h"
 
 namespace ssdo {
@@ -94,9 +95,9 @@ Subject read_subject(const Options& options) {
   }
   Subject subject;
   subject.truths = read_truths(options.bench.truths);
-  std::vector<std::string> inputs = inputs_of(options, options.input_file, options.input.aovs);
-  for (const auto& [product, truth] : subject.truths) inputs.push_back(truth.file);
-  check_report_files(options.bench.reports, inputs, options.output.policy);
+  std::vector<RunFile> inputs = inputs_of(options, options.input_file, options.input.aovs);
+  for (const auto& [product, truth] : subject.truths) inputs.push_back({"--truth", truth.file});
+  check_report_files(options.bench.reports, std::move(inputs), options.output.policy);
 
   Options prepared = options;
   prepared.model.method = "bitmask";  // which needs all that any method needs

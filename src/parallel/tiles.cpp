@@ -9,7 +9,6 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -19,6 +18,7 @@
 #include <string_view>
 
 #include "error.h"
+#include "math/number.h"
 
 namespace ssdo {
 namespace {
@@ -26,17 +26,25 @@ namespace {
 constexpr int kTileSize = 64;  ///< position and normal of 64 x 64 pixels fill half an L2 cache
 constexpr int kBandHeight = 16;
 
-std::optional<int> from_environment(const char* name) {
+std::string_view variable(const char* name) {
   const char* value = std::getenv(name);
-  if (!value || !*value) return std::nullopt;
-  const std::string_view text = value;
-  int count = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
-  if (error != std::errc{} || end != text.data() + text.size() || count < 1) {
-    throw Error(ExitCode::usage,
-                fmt::format("${} is '{}'; expected a positive number of threads", name, text));
-  }
-  return count;
+  return value ? value : "";
+}
+
+/// A whole number from 1 to kMostThreads; nothing for any other text.
+std::optional<int> parse_count(std::string_view text) {
+  const auto count = parse_number(text);
+  const bool fits = count && *count >= 1 && *count <= kMostThreads && *count == std::floor(*count);
+  return fits ? std::optional(int(*count)) : std::nullopt;
+}
+
+std::optional<int> from_user() {
+  const std::string_view text = variable("SSDO_THREADS");
+  if (text.empty()) return std::nullopt;
+  if (const auto count = parse_count(text)) return count;
+  throw Error(ExitCode::usage,
+              fmt::format("$SSDO_THREADS is '{}'; expected a number of threads from 1 to {}", text,
+                          kMostThreads));
 }
 
 /// The quota of control groups v2, rounded up: "200000 100000" are two processors.
@@ -94,8 +102,9 @@ void for_each_row(int height, const std::function<void(int y)>& work) {
 
 int choose_thread_count(int requested) {
   if (requested > 0) return requested;
-  for (const char* name : {"SSDO_THREADS", "CUE_THREADS", "SLURM_CPUS_PER_TASK"}) {
-    if (const auto count = from_environment(name)) return *count;
+  if (const auto count = from_user()) return *count;
+  for (const char* name : {"CUE_THREADS", "SLURM_CPUS_PER_TASK"}) {
+    if (const auto count = parse_count(variable(name))) return *count;
   }
   const int processors = from_affinity();
   return std::min(processors, from_control_group().value_or(processors));
@@ -109,6 +118,8 @@ ThreadLimit::ThreadLimit(int count)
     : control_(new Control{{tbb::global_control::max_allowed_parallelism, std::size_t(count)}}) {
   // OpenEXR counts helpers beside the calling thread: 0 makes it work alone.
   OPENEXR_IMF_NAMESPACE::setGlobalThreadCount(count == 1 ? 0 : count);
+  // OpenImageIO starts $CUE_THREADS threads, be they 99999, before it can be told another number.
+  setenv("OPENIMAGEIO_THREADS", std::to_string(count).c_str(), 1);
   OIIO::attribute("threads", count);
   OIIO::attribute("exr_threads", count == 1 ? -1 : count);
 }

@@ -52,6 +52,16 @@ std::vector<LayerGroup> parts_beside(const std::vector<LayerGroup>& part,
   return those_of(all, is_beside);
 }
 
+/// Nothing has the name of a request: it was meant as FILE:LAYER if what stands before the last
+/// colon can only be a file.
+void refuse_missing_file(const LayerRequest& request) {
+  const std::string file = request.layer.substr(0, request.layer.rfind(':'));
+  const bool is_name = lower(file).ends_with(".exr") || file.find('/') != file.npos;
+  if (!request.file.empty() || file == request.layer || !is_name) return;
+  throw Error(ExitCode::input, fmt::format("{}: does not exist; check --aov {}={}", file,
+                                           role_name(request.role), request.layer));
+}
+
 [[noreturn]] void throw_no_part(const ExrReader& frame, const std::string& wanted) {
   std::vector<std::string> names;
   for (const ExrPart& part : frame.parts())
@@ -154,6 +164,7 @@ class LayerFinder {
       found[0].by_request = true;
       return found[0];
     }
+    if (found.empty()) refuse_missing_file(request);
     std::vector<std::string> names;
     for (const LayerGroup& group : groups_[file]) {
       if (as_layer(group, request.role)) names.push_back(group.name);
@@ -195,7 +206,9 @@ LayerRequest parse_layer_request(const std::string& text) {
   const auto colon = request.layer.rfind(':');
   if (colon == std::string::npos) return request;
   const std::string file = request.layer.substr(0, colon);
-  if (std::filesystem::exists(file) || is_pattern(file)) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  if ((exists(status) && !is_directory(status)) || is_pattern(file)) {
     request.file = file;
     request.layer = request.layer.substr(colon + 1);
   }

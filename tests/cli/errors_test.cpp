@@ -198,6 +198,56 @@ TEST(Refusals, OfMissingAndAmbiguousLayers) {
                                    "direct.R", "error.Y"));
 }
 
+/// Issue 20: INPUT was that of `info` or of the main job, whichever came last.
+TEST(Refusals, OfWordsTooMany) {
+  const TempDir dir;
+  const std::string in = dir / "in.exr", other = dir / "other.exr";
+  for (const std::string& file : {in, other}) write_frame(file, frame_of(small_picture()));
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"info", in, other},
+                                                {in, "info", other},
+                                                {in, "info", "bench"},
+                                                {in, other, "-o", std::string(dir / "out.exr")},
+                                                {"bench", in, other},
+                                                {"compare", in, in, other}})
+    expect_refused(words, 2, "not expected");
+  expect_refused({in, "compare", in, in}, 2, "compare takes no INPUT");
+  expect_refused({"--radius", "3", "compare", in, in}, 2, "compare takes no --radius");
+}
+
+/// Issue 20: what a script's unset variable leaves behind counted as not given.
+TEST(Refusals, OfEmptyValues) {
+  const TempDir dir;
+  const std::string in = dir / "in.exr";
+  write_frame(in, frame_of(small_picture()));
+  for (const char* option :
+       {"--frames", "--part", "--camera", "--env", "--ocio", "--colorspace", "--display", "--view",
+        "--look", "--stats", "--config", "--compression", "--products", "--aov", "--save",
+        "--motion-scale", "--output"})
+    expect_refused({in, "-o", dir / "out.exr", option, ""}, 2, option);
+  expect_refused({"compare", in, in, "--mask", ""}, 2, "--mask: its value is empty");
+  expect_refused({"", "-o", dir / "out.exr"}, 2, "INPUT: its value is empty");
+}
+
+/// Issue 20: a file that is not there was taken for the name of a layer; a colon may stand in one.
+TEST(Refusals, OfAMissingFileOfALayer) {
+  const TempDir dir;
+  const std::string in = dir / "in.exr", out = dir / "out.exr";
+  FramePart odd = frame_of(small_picture());
+  odd.add("a.exr:P", small_picture().position);
+  odd.add("sub:P", small_picture().position);
+  write_frame(in, odd);
+  std::filesystem::create_directory(dir / "sub");
+  expect_refused({in, "-o", out, "--aov", "position=gone.exr:ViewLayer.Position"}, 3,
+                 "gone.exr: does not exist");
+  expect_refused({in, "-o", out, "--aov", "position=sub/gone:P"}, 3, "sub/gone: does not exist");
+  expect_refused({in, "-o", out, "--aov", "position=View:Position"}, 4, "no layer 'View:Position'");
+  for (const std::string layer : {"a.exr:P", "sub:P"}) {
+    const Finished done = run_tool({in, "-o", out, "--overwrite", "--aov", "position=" + layer},
+                                   {.folder = dir.path()});
+    EXPECT_EQ(done.code, 0) << done.err;
+  }
+}
+
 TEST(Help, GoesToStandardOutput) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
                                                     {"info", "--help"},

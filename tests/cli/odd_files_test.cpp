@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "support/frame_file.h"
 #include "support/run_tool.h"
@@ -14,6 +15,7 @@ namespace ssdo::test {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 using testing::HasSubstr;
 
 class OddFiles : public testing::Test {
@@ -58,7 +60,7 @@ TEST_F(OddFiles, AreNoOutputs) {
   expect_refused({in, "-o", path("pipe.exr"), "--overwrite"}, 5, "is a device, pipe or socket");
   expect_refused({in, "-o", path("folder.exr"), "--overwrite"}, 5, "is a folder");
   expect_refused({in, "-o", path("in.exr/out.exr"), "--create-dirs"}, 5, "is a file, not a folder");
-  expect_refused({in, "-o", ""}, 2, "unknown kind of output");
+  expect_refused({in, "-o", ""}, 2, "--output: its value is empty");
   expect_refused({in, "-o", path("out")}, 2, "unknown kind of output");
   expect_refused({in, "-o", "/dev/stdout"}, 2, "unknown kind of output");
   expect_refused({in, "-o", path("out.exr"), "--stats", path("gone/stats.json")}, 5,
@@ -87,6 +89,41 @@ TEST_F(OddFiles, ALinkIsWrittenThrough) {
   EXPECT_TRUE(fs::is_symlink(path("link.exr")));
   EXPECT_EQ(channel_names(path("store/real.exr")).size(), 15u);
   EXPECT_THAT(listing(path("store")), testing::ElementsAre("real.exr"));
+}
+
+/// Issue 13: the run failed with a library's exception after its EXR was there.
+TEST_F(OddFiles, NamesThatAreNotUtf8AreNames) {
+  const std::string odd = path("d\xE9j\xE0.exr"), out = path("vu_\xFF.exr");
+  FramePart part = frame_of(small_picture());
+  part.channels["caf\xE9.Y"] = part.channels["ViewLayer.Depth.Z"];
+  part.name = "r\xE9sum\xE9";
+  write_frame(odd, part);
+  const auto text_of = [](const json& value) {
+    return fs::path(value.get<std::string>()).filename();
+  };
+
+  EXPECT_EQ(run_tool({odd, "-o", out, "--stats", path("s.json")}).code, 0);
+  EXPECT_TRUE(fs::exists(out));
+  const json frame = json::parse(read_file(path("s.json"))).at(0);
+  EXPECT_EQ(text_of(frame["input"]), "d\\xE9j\\xE0.exr");
+  EXPECT_EQ(text_of(frame["output"]), "vu_\\xFF.exr");
+
+  const Finished told = run_tool({"info", odd, "--json"});
+  ASSERT_EQ(told.code, 0) << told.err;
+  const json info = json::parse(told.out);
+  EXPECT_EQ(text_of(info["file"]), "d\\xE9j\\xE0.exr");
+  EXPECT_EQ(info["parts"][0]["name"], "r\\xE9sum\\xE9");
+  EXPECT_EQ(info["parts"][0]["channels"].back()["name"], "caf\\xE9.Y");
+
+  const Finished compared = run_tool({"compare", odd, odd, "--json"});
+  ASSERT_EQ(compared.code, 0) << compared.err;
+  EXPECT_EQ(text_of(json::parse(compared.out)["a"]), "d\\xE9j\\xE0.exr");
+
+  const Finished bench =
+      run_tool({"bench", odd, "--methods", "ssao", "--products", "ao", "-q", "--report",
+                path("r.json"), "--report", path("r.html"), "--report", path("r.csv")});
+  ASSERT_EQ(bench.code, 0) << bench.err;
+  EXPECT_EQ(text_of(json::parse(read_file(path("r.json")))["input"]), "d\\xE9j\\xE0.exr");
 }
 
 TEST_F(OddFiles, NamesWithSpacesAndSignsAreNames) {

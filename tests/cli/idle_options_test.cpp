@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// An option that changes nothing is no silent success: issue 20.
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "support/frame_file.h"
+#include "support/run_tool.h"
+
+namespace ssdo::test {
+namespace {
+
+using testing::HasSubstr;
+
+class IdleOptions : public testing::Test {
+ protected:
+  IdleOptions() {
+    FramePart part = frame_of(small_picture());
+    write_frame(path("in.exr"), part);
+    part.channels.erase("ViewLayer.Depth.Z");
+    write_frame(path("no_depth.exr"), part);
+  }
+  std::string path(const std::string& name) const { return dir_ / name; }
+  Finished run(const std::string& in, std::vector<std::string> flags) const {
+    flags.insert(flags.begin(),
+                 {path(in), "-o", path("out.exr"), "--overwrite", "--slices", "1", "--steps", "1"});
+    return run_tool(flags);
+  }
+  TempDir dir_;
+};
+
+TEST_F(IdleOptions, AreWarnedOf) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> idle = {
+      {{"--motion-scale", "-1,-1"}, "--motion-scale has no effect"},
+      {{"--env-rotate", "30"}, "--env-rotate has no effect"},
+      {{"--env-up", "z", "--env", "0.5"}, "--env-up has no effect"},
+      {{"--quality", "final"}, "--slices and --steps stand in its place"},
+      {{"--bits", "16"}, "--bits has no effect"},
+      {{"--view", "Raw"}, "--view has no effect"},
+  };
+  for (const auto& [flags, says] : idle) {
+    const Finished done = run("in.exr", flags);
+    EXPECT_EQ(done.code, 0) << done.err;
+    EXPECT_THAT(done.error_line(), HasSubstr(says));
+    EXPECT_THAT(done.error_line(), HasSubstr("warning: "));
+    std::vector<std::string> quiet = flags;
+    quiet.push_back("-q");
+    EXPECT_EQ(run("in.exr", quiet).err, "");
+  }
+  for (const std::vector<std::string>& flags :
+       {std::vector<std::string>{"--background-depth", "100"}, {"--depth-kind", "ray"}}) {
+    EXPECT_THAT(run("no_depth.exr", flags).error_line(), HasSubstr(flags[0] + " has no effect"));
+    EXPECT_EQ(run("in.exr", flags).err, "");
+  }
+  const auto picture = [&](std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {path("in.exr"), "-o", path("out.jpg"), "--overwrite"});
+    return run_tool(flags).error_line();
+  };
+  for (const std::vector<std::string>& flags : {std::vector<std::string>{"--bits", "16"},
+                                                {"--pixel-type", "float"},
+                                                {"--keep-channels"},
+                                                {"--compression", "zip"},
+                                                {"--quality", "draft", "--method", "ssao"},
+                                                {"--offscreen", "open", "--method", "ssdo"}}) {
+    EXPECT_THAT(picture(flags), HasSubstr(flags[0] + " has no effect"));
+  }
+  const Finished save = run_tool({path("in.exr"), "--save", "ao=" + path("ao.exr"), "--products",
+                                  "ao,direct", "--bounces", "0"});
+  EXPECT_THAT(save.error_line(), HasSubstr("--products has no effect"));
+}
+
+TEST_F(IdleOptions, WithAnEffectAreNot) {
+  for (const std::vector<std::string>& flags :
+       {std::vector<std::string>{"--env", data("environments/sky.exr"), "--env-rotate", "30",
+                                 "--env-up", "z"},
+        {"-o", path("out.png"), "--bits", "16", "--view", "Raw", "--pixel-type", "float"},
+        {"--offscreen", "open", "--bounces", "2"}}) {
+    const Finished done = run("in.exr", flags);
+    EXPECT_EQ(done.code, 0);
+    EXPECT_EQ(done.err, "");
+  }
+}
+
+/// A file of options serves jobs of many kinds.
+TEST_F(IdleOptions, OfAConfigFileAreNot) {
+  std::ofstream(path("o.toml")) << "motion-scale = \"-1,-1\"\nbits = 16\n";
+  EXPECT_EQ(run("in.exr", {"--config", path("o.toml")}).err, "");
+}
+
+/// Two answers to one question are an error.
+TEST_F(IdleOptions, ThatContradictEachOtherAreRefused) {
+  std::ofstream(path("c.json")) << R"({"hfov_deg": 40})";
+  for (const std::vector<std::string>& flags :
+       {std::vector<std::string>{"--camera", path("c.json"), "--fov", "40"},
+        {"--camera", path("c.json"), "--ortho", "4"},
+        {"-q", "-v"}}) {
+    const Finished done = run("in.exr", flags);
+    EXPECT_EQ(done.code, 2) << flags[0];
+    EXPECT_THAT(done.error_line(), HasSubstr("excludes")) << flags[0];
+  }
+}
+
+}  // namespace
+}  // namespace ssdo::test
