@@ -95,7 +95,7 @@ TEST_F(Config, AValueThatTheOptionDoesNotTakeIsRefusedWithItsLine) {
 /// Issue 4: also behind a byte-order mark, in any type that TOML has for it.
 TEST_F(Config, EveryKindOfValueIsTaken) {
   write(
-      "\xef\xbb\xbf# by a Windows editor\r\nslices = 3\r\nradius = 0.25\nbounces = \"0\"\n"
+      "\xef\xbb\xbfslices = 3\r\n# by a Windows editor\r\nradius = 0.25\nbounces = \"0\"\n"
       "products = [\"ao\", \"bent\"]\nfilter = 'none'\ntemporal = false\nthickness = inf\n");
   const json plan = info()["plan"];
   EXPECT_EQ(plan["slices"], 3);
