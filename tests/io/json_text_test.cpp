@@ -18,12 +18,12 @@ TEST(JsonText, KeepsUtf8AndSpellsOtherBytes) {
       {"plain", "plain"},
       {"d\xC3\xA9j\xC3\xA0 \xE6\xBC\xA2 \xF0\x9F\x8C\x9E",
        "d\xC3\xA9j\xC3\xA0 \xE6\xBC\xA2 \xF0\x9F\x8C\x9E"},
-      {"d\xE9j\xE0", "d\\xE9j\\xE0"},
-      {"\xFF\xC3", "\\xFF\\xC3"},
-      {"a\xC3(", "a\\xC3("},
-      {"\xC0\xAF", "\\xC0\\xAF"},           // overlong
-      {"\xED\xA0\x80", "\\xED\\xA0\\x80"},  // half of a pair of UTF-16
-      {"\xF5\x80\x80\x80", "\\xF5\\x80\\x80\\x80"},
+      {"d\xE9j\xE0", "d\\xe9j\\xe0"},
+      {"\xFF\xC3", "\\xff\\xc3"},
+      {"a\xC3(", "a\\xc3("},
+      {"\xC0\xAF", "\\xc0\\xaf"},           // overlong
+      {"\xED\xA0\x80", "\\xed\\xa0\\x80"},  // half of a pair of UTF-16
+      {"\xF5\x80\x80\x80", "\\xf5\\x80\\x80\\x80"},
   };
   for (const auto& [text, shown] : texts) {
     const json value = {{"list", {text, 1.5, nullptr}}, {text, true}};
