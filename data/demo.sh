@@ -14,7 +14,7 @@ out=$root/build/demo
   --create-dirs --overwrite --stats "$out/still_life.json" -v
 
 echo
-echo "The relit frame, all products:  $out/still_life.exr"
+echo "The relit frame, its products:  $out/still_life.exr"
 echo "The composite for a display:    $out/still_life.png"
 echo "Occlusion and bounce:           $out/still_life_ao.png, $out/still_life_bounce.png"
 sed -n 's/^ *"\(read\|prepare\|estimate\|filter\|compose\|write\|total\)": \([0-9][0-9]*\).*/\1 \2/p' "$out/still_life.json" |

@@ -188,13 +188,13 @@ void add_model(CLI::App& app, Options& o) {
 
 void add_output(CLI::App& app, Options& o) {
   app.add_option("-o,--output", o.output.files,
-                 "output, repeatable: .exr holds all products, .png .jpg .tif the composite")
+                 "output, repeatable: .exr holds the products, .png .jpg .tif the composite")
       ->type_name("OUTPUT")
       ->allow_extra_args(false)
       ->group("Output");
   app.add_option("--products", o.output.products,
-                 "of ao, bent, reflection, direct, bounce, error, composite; default: all that the "
-                 "inputs allow")
+                 "of ao, bent, reflection, direct, bounce, error, composite, or all; default: "
+                 "ao,direct,bounce,composite as far as the inputs allow")
       ->type_name("LIST")
       ->delimiter(',')
       ->allow_extra_args(false)

@@ -21,6 +21,12 @@ namespace {
 constexpr std::array<std::string_view, 7> kProducts = {"ao",     "bent",  "reflection", "direct",
                                                        "bounce", "error", "composite"};
 
+/// What an EXR holds where --products is not given, as far as frame and method allow.
+constexpr std::array<std::string_view, 4> kUsualProducts = {"ao", "direct", "bounce", "composite"};
+
+/// --products all: whatever frame and method allow.
+constexpr std::string_view kAll = "all";
+
 /// Share of the frame's height at the median depth, of methods that need a limit. Of 0.1 to 2, the
 /// one with the least error of direct light against a path tracer on five of seven frames.
 constexpr float kAutoRadius = 0.3f;
@@ -77,6 +83,7 @@ class ProductChoice {
                                         : "no bounce and no composite: there is no albedo");
     }
     Names wanted = output_.products;
+    std::erase(wanted, kAll);
     wanted.insert(wanted.end(), plan.write.begin(), plan.write.end());
     for (const SaveRequest& save : output_.saves) wanted.push_back(save.product);
     if (pictures > 0) wanted.push_back(plan.show = of_picture());
@@ -99,22 +106,26 @@ class ProductChoice {
     return product == "bounce" || (product == "composite" && !ambient_);
   }
 
-  /// What an EXR holds: the products that the user names, or all that frame and method allow.
   Names of_exr() const {
     Names names;
     for (const std::string_view name : kProducts) {
       // Without a layer reflections have a roughness that only who asks for them can know.
       const bool possible = makes(method_, name, ambient_) && (albedo_ || !needs_albedo(name)) &&
                             (roughness_ || name != "reflection");
-      if (output_.products.empty() ? possible : contains(output_.products, name))
-        names.emplace_back(name);
+      const bool usual =
+          std::find(kUsualProducts.begin(), kUsualProducts.end(), name) != kUsualProducts.end();
+      const bool if_possible = output_.products.empty() ? usual : contains(output_.products, kAll);
+      if (contains(output_.products, name) || (if_possible && possible)) names.emplace_back(name);
     }
     return names;
   }
 
   /// What a picture shows: the composite, or the only product that the user names.
   std::string of_picture() const {
-    if (output_.products.empty() || contains(output_.products, "composite")) return "composite";
+    if (output_.products.empty() || contains(output_.products, "composite") ||
+        contains(output_.products, kAll)) {
+      return "composite";
+    }
     if (output_.products.size() == 1) return output_.products[0];
     throw Error(ExitCode::usage,
                 "a picture shows one product, and --products names several without "
@@ -125,8 +136,8 @@ class ProductChoice {
     if (std::find(kProducts.begin(), kProducts.end(), name) == kProducts.end()) {
       throw Error(
           ExitCode::usage,
-          fmt::format("product '{}': there are ao, bent, reflection, direct, bounce, error and "
-                      "composite",
+          fmt::format("product '{}': there are ao, bent, reflection, direct, bounce, error, "
+                      "composite, and all",
                       name));
     }
     if (!makes(method_, name, ambient_)) {

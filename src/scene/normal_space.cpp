@@ -2,11 +2,11 @@
 //
 // The space of stored normals is found by what P shows. The gradient of P is the normal of the
 // geometry, exactly, where P is smooth: where three pixels in a row and three in a column lie on a
-// line each. Shading normals differ from it honestly (smooth normals on a coarse mesh by up to 40
-// degrees, bumps by as much), but not in most places and not by more. On the frames of data/ and on
-// five more scenes of Cycles, N is within 53 degrees of the gradient in 99.3 to 100 % of the smooth
-// pixels, N of a frame shifted by 10 pixels in 77 to 97 %, by 40 pixels in 51 to 87 %, and N with
-// other axes in 0 to 97 %; a closed box looks the same in several.
+// line each. Shading normals may differ from it (smooth normals on a coarse mesh by up to 40
+// degrees, bumps by as much), but rarely by more. On the frames of data/ and on five more scenes of
+// Cycles, N is within 53 degrees of the gradient in 99.3 to 100 % of the smooth pixels, N of a
+// frame shifted by 10 pixels in 77 to 97 %, by 40 pixels in 51 to 87 %, and N with other axes in 0
+// to 97 %; a closed box looks the same under several.
 //
 // Normals are compared without their sign, since some renderers leave those of back faces as they
 // are: two maps of axes that differ by the sign alone are one candidate, whose sign is decided
@@ -177,9 +177,9 @@ float median_size(const Candidate& candidate) {
 }
 
 /// The rotation that brings the mapped normals closest to the gradients: Wahba's problem, solved by
-/// a singular value decomposition (Markley 1988), over and over by the pixels that agree best, so
-/// that bumps and smooth normals count little. About a normal that all pixels share nothing is
-/// known: there the weight of the identity decides.
+/// a singular value decomposition (Markley 1988), and solved again by the pixels that agree best,
+/// so that bumps and smooth normals count little. A rotation about a normal that all pixels share
+/// cannot be observed: the small weight of the identity sets it to zero.
 glm::mat3 rotation_to_gradients(const Candidate& candidate, const std::vector<Witness>& witnesses) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   for (int round = 0; round < kFitRounds; ++round) {
@@ -235,7 +235,7 @@ NormalSpace described(const Candidate& found) {
   const auto within = std::count_if(found.cosines.begin(), found.cosines.end(),
                                     [](float c) { return std::abs(c) > kWithin; });
   const std::size_t count = found.cosines.size();
-  NormalSpace space{found.to_camera, found.name, count, median_size(found), 0};
+  NormalSpace space{found.to_camera, found.name, count, 0};
   if (2 * std::size_t(positive) < count) {
     space.to_camera = -space.to_camera;
     space.name += ", turned round";

@@ -15,11 +15,8 @@ namespace ssdo {
 struct NormalSpace {
   glm::mat3 to_camera{1.0f};
   std::string name;
-
-  /// What the normals are held to: pixels around which P is smooth.
-  std::size_t smooth_pixels = 0;
-  double median_cosine = 0;  ///< between N and the gradient of P, of either sign
-  double share = 0;          ///< of the smooth pixels where the two are less than 53 degrees apart
+  std::size_t smooth_pixels = 0;  ///< around which P is smooth: N is compared with P there
+  double share = 0;               ///< of them, where N and the gradient are within 53 degrees
 };
 
 /// A space that normals may be stored in, and the rotation from it to camera space.

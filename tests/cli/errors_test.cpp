@@ -164,7 +164,8 @@ TEST(Refusals, OfMissingAndAmbiguousLayers) {
                  "'Other.Position', 'ViewLayer.Position'");
   expect_refused({dir / "two.exr", "-o", dir / "out.exr", "--aov", "position=Third"}, 4,
                  "'Other.Position'");
-  expect_refused({dir / "two.exr", "-o", dir / "out.exr", "--part", "3"}, 4, "no flat part or view '3'");
+  expect_refused({dir / "two.exr", "-o", dir / "out.exr", "--part", "3"}, 4,
+                 "no flat part or view '3'");
 
   FramePart none = part;
   std::erase_if(none.channels,
@@ -192,7 +193,13 @@ TEST(Refusals, OfMissingAndAmbiguousLayers) {
                  "--aov albedo=LAYER");
   expect_refused({dir / "white.exr", "-o", dir / "out.png"}, 4, "--save PRODUCT=FILE");
   EXPECT_EQ(run_tool({dir / "white.exr", "-o", dir / "out.exr"}).code, 0)
-      << "ao, bent, direct and its error need no albedo";
+      << "ao and direct need no albedo";
+  EXPECT_THAT(channel_names(dir / "out.exr"),
+              testing::ElementsAre("ao.Y", "direct.B", "direct.G", "direct.R"));
+  EXPECT_EQ(
+      run_tool({dir / "white.exr", "-o", dir / "out.exr", "--overwrite", "--products", "all"}).code,
+      0)
+      << "nor do bent and the error of direct";
   EXPECT_THAT(channel_names(dir / "out.exr"),
               testing::ElementsAre("ao.Y", "bent.X", "bent.Y", "bent.Z", "direct.B", "direct.G",
                                    "direct.R", "error.Y"));

@@ -113,8 +113,7 @@ TEST_F(Farm, SeveralOutputsOfAFrameAreAllInItsStatistics) {
   EXPECT_EQ(frame["bounces"], 2);
   EXPECT_EQ(frame["plan"]["slices"], 3);
   EXPECT_EQ(frame["plan"]["radius"], "inf");
-  EXPECT_EQ(frame["plan"]["products"],
-            json({"ao", "bent", "direct", "bounce", "error", "composite"}));
+  EXPECT_EQ(frame["plan"]["products"], json({"ao", "direct", "bounce", "composite"}));
   EXPECT_GT(frame["peak_rss_bytes"].get<double>(), 1e6);
   const json& ms = frame["stages_ms"];
   double sum = 0;

@@ -49,7 +49,7 @@ TEST_F(Outputs, AnExrHoldsTheProductsThatAreNamedAndTheirValuesDoNotDependOnIt) 
       {"bounce", {"bounce.R", "bounce.G", "bounce.B"}},
       {"composite", {"R", "G", "B", "A"}}};
   const std::string sky = data("environments/sky.exr");
-  run({"--env", sky});
+  run({"--env", sky, "--products", "all"});
   std::map<std::string, Plane<float>> all;
   for (const std::string& name : channel_names(path("out.exr")))
     all[name] = channel(path("out.exr"), name);
@@ -156,8 +156,8 @@ TEST_F(Outputs, EveryFlagOfTheModelMatters) {
 TEST_F(Outputs, BentNormalsAreUnitOnSurfacesAndNothingElsewhere) {
   std::filesystem::copy_file(data("still_life.exr"), path("in.exr"),
                              std::filesystem::copy_options::overwrite_existing);
-  const Plane<float> x = run({}, "bent.X"), y = channel(path("out.exr"), "bent.Y"),
-                     z = channel(path("out.exr"), "bent.Z"),
+  const Plane<float> x = run({"--products", "bent"}, "bent.X"),
+                     y = channel(path("out.exr"), "bent.Y"), z = channel(path("out.exr"), "bent.Z"),
                      depth = channel(path("in.exr"), "ViewLayer.Depth.Z");
   int outside = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
