@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "estimate.h"
 #include "estimators/estimator.h"
-#include "filters/temporal.h"
 #include "frame.h"
 #include "io/safe_file.h"
 #include "options.h"
@@ -35,16 +35,15 @@ std::vector<std::string> inputs_of(const Options& options, const std::string& fr
 void check_targets(const std::vector<Target>& targets, const std::vector<std::string>& inputs,
                    const OutputPolicy& policy);
 
-/// What the method of `plan` makes of a frame, before any filter.
-Products run_method(const Frame& frame, const Plan& plan, const TileProgress& progress);
-
 /// The main job on a frame that has been prepared: estimate, filter, compose, colour, write.
 /// All targets appear, or none. `told` hears how far it is, 0..1. `before` is what a temporal plan
 /// takes from the frame before, if there is one.
 struct Relit {
   std::size_t clamped_values = 0;  ///< beyond the range of half
-  std::vector<std::string> notes;  ///< how colours were transformed
+  std::vector<std::string> notes;  ///< how colours were transformed, and what the error is
+  std::vector<std::string> warnings;
   History history;                 ///< of a temporal plan, for the next frame; without a geometry
+  std::optional<ErrorFound> error;  ///< where the plan asks for it
 };
 Relit relight(const Options& options, Frame& frame, const std::vector<Target>& targets,
               const OutputPolicy& policy, const std::function<void(double)>& told,

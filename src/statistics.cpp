@@ -21,7 +21,8 @@ std::size_t peak_rss_bytes() {
 }  // namespace
 
 void Statistics::add(const Frame& frame, std::optional<int> number,
-                     const std::vector<Target>& targets, int threads) {
+                     const std::vector<Target>& targets, int threads,
+                     const std::optional<ErrorFound>& error) {
   const StageTimes& t = frame.times;
   nlohmann::json outputs = nlohmann::json::array();
   for (const Target& target : targets) outputs.push_back(target.path);
@@ -50,6 +51,9 @@ void Statistics::add(const Frame& frame, std::optional<int> number,
       {"bad_pixels", frame.gbuffer.bad_pixels},
       {"plan", to_json(frame.plan)},
   });
+  if (error)
+    frames_.back()["error"] = {
+        {"mean", error->all}, {"noise", error->noise}, {"steps", error->steps}};
 }
 
 void Statistics::write(const std::string& path, const OutputPolicy& policy) const {
