@@ -5,12 +5,13 @@
 //
 //   error = sqrt(noise^2 + steps^2)
 //
-// noise: the difference of two halves of the slices. It goes through the filter with its sign, like
-// the light itself, so that it shrinks as the noise of the light does, and is squared only then.
-// The method sees to it that both halves cover all directions (SlicePattern::half_sign). steps:
-// what changes with half of the steps. What few steps miss is the same in every slice, so that no
-// halves of them tell. It falls about as 1 / steps: what the second half of the steps has changed
-// is about what is left to be changed. It costs a second run, of half the steps.
+// Noise is the difference of two halves of the slices. It goes through the filter with its sign, as
+// the light does, so that it shrinks as the noise of the light does, and is squared only then. The
+// method sees to it that both halves cover all directions (SlicePattern::half_sign).
+//
+// Steps is what half of the steps would change. What few steps miss is the same in every slice, so
+// that halves of the slices cannot tell. It falls about as 1 / steps: as much as the second half
+// of the steps has changed is left to be changed. This costs a second run, of half the steps.
 //
 // Both are one draw of an error. Its size is the root mean square among neighbours on a surface.
 #include "estimate.h"
@@ -29,14 +30,14 @@ namespace {
 // The most that --error goes to: beyond them rounding and the guesses of the model count for more.
 constexpr int kMostSlices = 64, kMostSteps = 128;
 
-double mean_over_surfaces(const Plane<float>& plane, const Geometry& geometry) {
+double rms_over_surfaces(const Plane<float>& plane, const Geometry& geometry) {
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < plane.size(); ++i) {
     if (!geometry.is_surface(i)) continue;
-    sum += plane[i];
+    sum += double(plane[i]) * double(plane[i]);
     count += 1;
   }
-  return count > 0 ? sum / count : 0;
+  return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
 /// The plane alone, as products that a filter takes.
@@ -131,13 +132,13 @@ class Round {
   ErrorFound measure(Plane<float>& error, Plane<float> change) const {
     ErrorFound found;
     error = size_of(noise_of(std::move(error), plan_), frame_.geometry);
-    found.noise = mean_over_surfaces(error, frame_.geometry);
+    found.noise = rms_over_surfaces(error, frame_.geometry);
     if (!change.empty()) {
       change = size_of(std::move(change), frame_.geometry);
-      found.steps = mean_over_surfaces(change, frame_.geometry);
+      found.steps = rms_over_surfaces(change, frame_.geometry);
       for (std::size_t i = 0; i < error.size(); ++i) error[i] = std::hypot(error[i], change[i]);
     }
-    found.all = mean_over_surfaces(error, frame_.geometry);
+    found.all = rms_over_surfaces(error, frame_.geometry);
     return found;
   }
 

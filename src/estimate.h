@@ -12,7 +12,8 @@
 
 namespace ssdo {
 
-/// Mean over the surfaces of the product `error`, and of the two parts whose squares add up to it.
+/// Root mean square of the product `error` over the surfaces, and of the two parts whose squares
+/// add up to it.
 struct ErrorFound {
   double all = 0;
   double noise = 0;  ///< of so many slices: another seed changes the light by this much

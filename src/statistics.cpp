@@ -53,7 +53,7 @@ void Statistics::add(const Frame& frame, std::optional<int> number,
   });
   if (error)
     frames_.back()["error"] = {
-        {"mean", error->all}, {"noise", error->noise}, {"steps", error->steps}};
+        {"rms", error->all}, {"noise", error->noise}, {"steps", error->steps}};
 }
 
 void Statistics::write(const std::string& path, const OutputPolicy& policy) const {

@@ -25,6 +25,16 @@ int order_of(int column, int row, int size) {
   return rank;
 }
 
+/// What a seed does to the ranks of a pattern: bits of it, reversed, that ranks are combined with
+/// by exclusive or. All that holds for the order holds for the new one. Seeds that follow each
+/// other give a member ranks that are far apart and in the end all, so that frames of a sequence,
+/// or runs for an average, share no direction. Seed 0 changes nothing.
+int turn_of(unsigned seed, int size) {
+  int bits = 0;
+  for (int most = size * size; most > 1; most /= 2, seed /= 2) bits = 2 * bits + int(seed & 1);
+  return bits;
+}
+
 /// Alternates from one direction to the next, and on every scale of the pattern from row to row or
 /// from column to column: by rows among 2 x 2 and among 8 x 8 members, by columns among 4 x 4.
 /// Both have to alternate for filters that are narrower than the pattern.
@@ -110,7 +120,7 @@ SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, in
   const int size = kPeriod / spacing;
   for (int row = 0; row < kPeriod; row += spacing) {
     for (int column = 0; column < kPeriod; column += spacing) {
-      const int rank = order_of(column / spacing, row / spacing, size);
+      const int rank = order_of(column / spacing, row / spacing, size) ^ turn_of(seed, size);
       half_signs_[std::size_t(row * kPeriod + column)] = half_sign_of(rank);
       const double place = (rank + fraction(turn)) / (size * size);
       for (int k = 0; k < slices; ++k) {
