@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "filters/continuity.h"
 #include "frame.h"
 #include "io/image_file.h"
 #include "io/json_text.h"
@@ -115,7 +116,7 @@ class Batch {
 
   void run_job(std::size_t i) {
     const Job& job = jobs_[i];
-    const std::optional<History> before = std::exchange(history_, std::nullopt);
+    std::optional<History> before = std::exchange(history_, std::nullopt);
     OutputPolicy policy = options_.output.policy;
     const bool relights = options_.command == Command::relight;
     if (relights && options_.batch.skip_existing) {
@@ -150,22 +151,39 @@ class Batch {
                       "keep them with --pixel-type float",
                       job.input, relit.clamped_values));
     }
-    statistics_.add(frame, job.frame, job.targets, threads_);
+    for (const std::string& warning : relit.warnings) {
+      if (!options_.say.quiet) say(fmt::format("{}: warning: {}", job.input, warning));
+    }
+    statistics_.add(frame, job.frame, job.targets, threads_, relit.error);
     if (!options_.model.temporal) return;
     history_ = std::move(relit.history);
     history_->geometry = std::move(frame.geometry);
+    history_->albedo = std::move(frame.gbuffer.albedo);
   }
 
   /// Each frame has a pattern of its own, wherever a run begins, and says whose history it takes.
-  void place_in_sequence(Frame& frame, std::size_t i, const std::optional<History>& before) const {
+  /// Leaves none in `before` after a cut.
+  void place_in_sequence(Frame& frame, std::size_t i, std::optional<History>& before) const {
     const int number = *jobs_[i].frame;
-    const bool follows = before.has_value();
     frame.plan.seed += unsigned(number);
-    frame.plan.reasons.push_back(
+    std::string reason =
         !frame.geometry.world_known ? "no history: the frame knows no world space"
-        : follows ? "history of the frame before, where that shows the same surface"
-                  : "no history: the first frame, or the one before was not made by this run");
-    if (follows && !frame.gbuffer.motion.empty()) place_motion(frame, *before, i);
+        : before ? "history of the frame before, where that shows the same surface"
+                 : "no history: the first frame, or the one before was not made by this run";
+    if (before && before->geometry.world_known && frame.geometry.world_known) {
+      const Continuity found =
+          compare_frames({before->geometry, before->albedo}, {frame.geometry, frame.gbuffer.albedo},
+                         frame.gbuffer.motion);
+      before->albedo = {};  // not needed any more
+      if (found.is_cut()) {
+        before.reset();
+        reason = fmt::format(
+            "no history: a cut, the frame before has {:.0f} % of the surfaces that both look at",
+            100 * found.kept / found.met);
+      }
+    }
+    frame.plan.reasons.push_back(reason);
+    if (before && !frame.gbuffer.motion.empty()) place_motion(frame, *before, i);
   }
 
   /// Motion leads to the frame before in time, which need not be the one before in the list.

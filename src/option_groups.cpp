@@ -158,7 +158,7 @@ void add_model(CLI::App& app, Options& o) {
       ->check(CLI::Range(1, 256))
       ->group("Model");
   app.add_option("--error", o.model.error,
-                 "go on until the standard error of direct + bounce is below E, on average")
+                 "take more slices and steps until the error of direct + bounce is E or less")
       ->type_name("E")
       ->check(positive())
       ->group("Model");

@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -20,34 +17,6 @@
 
 namespace ssdo {
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr int kMostSlices = 256;
-
-double mean_over_surfaces(const Plane<float>& plane, const Geometry& geometry) {
-  double sum = 0, count = 0;
-  for (std::size_t i = 0; i < plane.size(); ++i) {
-    if (!geometry.is_surface(i)) continue;
-    sum += plane[i];
-    count += 1;
-  }
-  return count > 0 ? sum / count : 0;
-}
-
-/// The difference of two halves of the samples, filtered like all else, is one draw of the error
-/// of each pixel; their root mean square among neighbours is its size.
-Plane<float> standard_error(const Plane<float>& difference, const Geometry& geometry,
-                            const Plan& plan) {
-  Products squares;
-  squares.error = difference;
-  for (float& e : squares.error.pixels) e *= e;
-  constexpr int kNeighbours = 4;  // enough to tell a size, be the pattern larger
-  squares = apply_filter(*plan.filter, std::move(squares), geometry,
-                         std::min(plan.method->pattern_size, kNeighbours));
-  for (float& e : squares.error.pixels) e = std::sqrt(std::max(e, 0.0f));
-  return std::move(squares.error);
-}
 
 const std::string& product_of_picture(const Target& target, const Plan& plan) {
   return target.product ? *target.product : plan.show;
@@ -75,52 +44,6 @@ void write_exr_target(const SafeFile& file, const Target& target, const Options&
   relit.clamped_values += write_exr(file, output);
 }
 
-/// Estimates and filters once; leaves in `history` what a temporal plan has then.
-Products estimate(Frame& frame, const std::function<void(double)>& told,
-                  const std::optional<History>& before, History& history) {
-  const Plan& plan = frame.plan;
-  Stopwatch watch;
-  const double passes = 1.0 + plan.bounces;
-  double finished = 0;
-  const auto progress = [&](std::size_t done, std::size_t count) {
-    told(std::min((finished + double(done) / double(count)) / passes, 1.0) * 0.8);
-    if (done == count) finished += 1;
-  };
-  Products products = run_method(frame, plan, progress);
-  frame.times.estimate += watch.lap();
-  products =
-      apply_filter(*plan.filter, std::move(products), frame.geometry, plan.method->pattern_size);
-  if (plan.temporal) {
-    history =
-        accumulate(before ? &*before : nullptr, frame.geometry, products, frame.gbuffer.motion);
-    products = products_of(history);
-  }
-  if (!products.error.empty())
-    products.error = standard_error(products.error, frame.geometry, plan);
-  frame.times.filter += watch.lap();
-  return products;
-}
-
-/// Estimates with more and more slices until the mean standard error is what the plan asks for.
-Products make_products(Frame& frame, Relit& relit, const std::function<void(double)>& told,
-                       const std::optional<History>& before) {
-  Plan& plan = frame.plan;
-  for (;;) {
-    Products products = estimate(frame, told, before, relit.history);
-    if (!plan.error) return products;
-    const double found = mean_over_surfaces(products.error, frame.geometry);
-    if (found <= *plan.error || plan.slices >= kMostSlices) {
-      relit.notes.push_back(fmt::format("standard error {:.2g} with {} slices{}", found,
-                                        plan.slices,
-                                        found <= *plan.error ? "" : ", the most there are"));
-      return products;
-    }
-    // The error falls a little slower than 1 / slices; a step too short costs another round.
-    const double factor = std::clamp(std::pow(found / *plan.error, 1.3), 1.5, 8.0);
-    plan.slices = std::min(kMostSlices, int(std::ceil(plan.slices * factor)));
-  }
-}
-
 }  // namespace
 
 std::optional<DisplayTransform> make_display(const Options& options, const Frame& frame,
@@ -130,14 +53,6 @@ std::optional<DisplayTransform> make_display(const Options& options, const Frame
       return DisplayTransform(options.color, color_tags(frame));
   }
   return std::nullopt;
-}
-
-Products run_method(const Frame& frame, const Plan& plan, const TileProgress& progress) {
-  return plan.method->estimate({frame.geometry, frame.gbuffer.albedo, frame.gbuffer.radiance,
-                                frame.environment, plan.products, plan.radius, plan.bounces,
-                                plan.seed, plan.parameters, progress, plan.slices, plan.steps,
-                                &frame.hidden, frame.light_model ? &*frame.light_model : nullptr,
-                                plan.extend_offscreen, &frame.gbuffer.roughness});
 }
 
 std::vector<std::unique_ptr<SafeFile>> write_targets(
@@ -174,10 +89,14 @@ Relit relight(const Options& options, Frame& frame, const std::vector<Target>& t
     if (!display->warning().empty()) relit.warnings.push_back(display->warning());
   }
 
-  const Products products = make_products(frame, relit, told, before);
-  told(0.85);
+  Estimate found = estimate(
+      frame, [&](double done) { told(0.85 * done); }, before);
+  relit.history = std::move(found.history);
+  relit.error = found.error;
+  relit.notes.insert(relit.notes.end(), found.notes.begin(), found.notes.end());
+  relit.warnings.insert(relit.warnings.end(), found.warnings.begin(), found.warnings.end());
   const auto files = write_targets(
-      options, frame, targets, policy, products, display ? &*display : nullptr,
+      options, frame, targets, policy, found.products, display ? &*display : nullptr,
       [&](double done) { told(0.85 + 0.15 * done); }, relit);
   Stopwatch watch;
   for (const auto& file : files) file->commit();

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "estimate.h"
 #include "estimators/estimator.h"
-#include "filters/temporal.h"
 #include "frame.h"
 #include "io/safe_file.h"
 #include "options.h"
@@ -27,17 +27,15 @@ struct Target {
 std::optional<DisplayTransform> make_display(const Options& options, const Frame& frame,
                                              const std::vector<Target>& targets);
 
-/// What the method of `plan` makes of a frame, before any filter.
-Products run_method(const Frame& frame, const Plan& plan, const TileProgress& progress);
-
 /// The main job on a frame that has been prepared: estimate, filter, compose, colour, write.
 /// All targets appear, or none. `told` hears how far it is, 0..1. `before` is what a temporal plan
 /// takes from the frame before, if there is one.
 struct Relit {
   std::size_t clamped_values = 0;  ///< beyond the range of half
-  std::vector<std::string> notes;  ///< how colours were transformed
+  std::vector<std::string> notes;  ///< how colours were transformed, and what the error is
   std::vector<std::string> warnings;
-  History history;  ///< of a temporal plan, for the next frame; without a geometry
+  History history;                  ///< of a temporal plan, for the next frame; without a geometry
+  std::optional<ErrorFound> error;  ///< where the plan asks for it
 };
 Relit relight(const Options& options, Frame& frame, const std::vector<Target>& targets,
               const OutputPolicy& policy, const std::function<void(double)>& told,

@@ -266,8 +266,10 @@ void choose_march(Plan& plan, const ModelOptions& model) {
   plan.extend_offscreen = model.extend_offscreen;
   if ((plan.products.error || plan.error) && plan.slices < 2) {
     plan.slices = 2;
-    plan.reasons.push_back("2 slices: an error is the difference of two halves");
+    plan.reasons.push_back("2 slices: the noise is the difference of two halves");
   }
+  if (plan.products.error)
+    plan.reasons.push_back("error: a second run with half of the steps shows what few steps miss");
   explain_thickness(plan, model);
   if (!plan.extend_offscreen) plan.reasons.push_back("surfaces end with the frame: as asked");
 }

@@ -22,7 +22,8 @@ std::size_t peak_rss_bytes() {
 }  // namespace
 
 void Statistics::add(const Frame& frame, std::optional<int> number,
-                     const std::vector<Target>& targets, int threads) {
+                     const std::vector<Target>& targets, int threads,
+                     const std::optional<ErrorFound>& error) {
   const StageTimes& t = frame.times;
   nlohmann::json outputs = nlohmann::json::array();
   for (const Target& target : targets) outputs.push_back(target.path);
@@ -51,6 +52,9 @@ void Statistics::add(const Frame& frame, std::optional<int> number,
       {"bad_pixels", frame.gbuffer.bad_pixels},
       {"plan", to_json(frame.plan)},
   });
+  if (error)
+    frames_.back()["error"] = {
+        {"rms", error->all}, {"noise", error->noise}, {"steps", error->steps}};
 }
 
 void Statistics::write(const std::string& path, const OutputPolicy& policy) const {

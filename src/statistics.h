@@ -15,7 +15,7 @@ namespace ssdo {
 class Statistics {
  public:
   void add(const Frame& frame, std::optional<int> number, const std::vector<Target>& targets,
-           int threads);
+           int threads, const std::optional<ErrorFound>& error);
 
   /// A log is replaced where an image would not be.
   static OutputPolicy policy(OutputPolicy of_images) {

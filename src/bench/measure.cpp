@@ -5,7 +5,7 @@
 #include <ctime>
 
 #include "compose.h"
-#include "pipeline.h"
+#include "estimate.h"
 #include "stopwatch.h"
 
 namespace ssdo {

@@ -122,7 +122,7 @@ void gather(const BounceJob& job, int y0, int y1) {
             const V difference = luminance(first_half.mean()) - luminance(second_half.mean());
             const M both = hn::And(first_half.weights > zero, second_half.weights > zero);
             hn::StoreU(hn::IfThenElseZero(both, difference) * light.weights *
-                           hn::Set(d, error_of_difference(firsts, count_of_slices)),
+                           hn::Set(d, error_of_difference(march, place, firsts, count_of_slices)),
                        d, job.difference->data() + place.index);
           });
 }

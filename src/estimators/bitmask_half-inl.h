@@ -21,17 +21,19 @@ HWY_INLINE int slice_at(int k, int count) {
   return k < firsts ? 2 * k : 2 * (k - firsts) + 1;
 }
 
-/// The difference of two halves, with `first` of `count` slices in one of them, is the standard
-/// error of the whole times this.
-HWY_INLINE float error_of_difference(int first, int count) {
-  return std::sqrt(float(first) * float(count - first)) / float(count);
-}
-
 /// A vector of receivers in the frame.
 struct Place {
   std::ptrdiff_t index;
   int y, comb, column;
 };
+
+/// The difference of two halves, with `first` of `count` slices in one of them, is the standard
+/// error of the whole times this, with the sign of the pattern's member.
+HWY_INLINE float error_of_difference(const March& march, const Place& place, int first, int count) {
+  const int row = (place.y + march.scene.first_y) & (Interleaving::kPeriod - 1);
+  return march.pattern.half_sign(place.comb, row) * std::sqrt(float(first) * float(count - first)) /
+         float(count);
+}
 
 /// Marches one half of a slice, on the side `forward` or not, in the frame and beyond it, and gives
 /// the sectors that stay open. `beyond` hears of those that are hidden beyond the frame.

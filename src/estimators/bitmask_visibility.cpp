@@ -62,8 +62,9 @@ void visibility(const VisibilityJob& job, int y0, int y1) {
         if (job.difference) {
           const V difference =
               luminance(visible(first_half)) - luminance(visible(sum.minus(first_half)));
-          hn::StoreU(difference * hn::Set(d, error_of_difference(firsts, count_of_slices)), d,
-                     job.difference->data() + i);
+          hn::StoreU(
+              difference * hn::Set(d, error_of_difference(march, place, firsts, count_of_slices)),
+              d, job.difference->data() + i);
         }
       });
 }

@@ -33,7 +33,7 @@ struct Products {
   Plane<glm::vec3> direct, bounce;
   Plane<glm::vec3> bent;    ///< unit, camera space
   Plane<float> reflection;  ///< share of a reflection that is not occluded
-  Plane<float> error;       ///< standard error of the luminance of direct + bounce
+  Plane<float> error;  ///< of the luminance of direct + bounce, with the sign of one draw of noise
 };
 
 /// A parameter of one method, set with --set NAME=VALUE.

@@ -2,6 +2,7 @@
 #include "estimators/slice_pattern.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <glm/gtc/constants.hpp>
@@ -22,6 +23,24 @@ int order_of(int column, int row, int size) {
     rank = 4 * rank + (right != below ? 2 : 0) + (below ? 1 : 0);
   }
   return rank;
+}
+
+/// What a seed does to the ranks of a pattern: bits of it, reversed, that ranks are combined with
+/// by exclusive or. All that holds for the order holds for the new one. Seeds that follow each
+/// other give a member ranks that are far apart and in the end all, so that frames of a sequence,
+/// or runs for an average, share no direction. Seed 0 changes nothing.
+int turn_of(unsigned seed, int size) {
+  int bits = 0;
+  for (int most = size * size; most > 1; most /= 2, seed /= 2) bits = 2 * bits + int(seed & 1);
+  return bits;
+}
+
+/// Alternates from one direction to the next, and on every scale of the pattern from row to row or
+/// from column to column: by rows among 2 x 2 and among 8 x 8 members, by columns among 4 x 4.
+/// Both have to alternate for filters that are narrower than the pattern.
+float half_sign_of(int rank) {
+  constexpr unsigned kRowsColumnsRows = 0b011101;
+  return std::popcount(unsigned(rank) & kRowsColumnsRows) % 2 == 0 ? 1.0f : -1.0f;
 }
 
 /// Steps that grow in proportion to the distance are longest where the frame's largest things are
@@ -93,7 +112,7 @@ int SlicePattern::rank(int member) { return order_of(member % kPeriod, member / 
 
 SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, int slices, int steps,
                            unsigned seed, int spacing)
-    : members_(kPeriod * kPeriod), spacing_(spacing) {
+    : members_(kPeriod * kPeriod), half_signs_(kPeriod * kPeriod, 1.0f), spacing_(spacing) {
   const double diagonal = std::max(2.0, std::hypot(display.width(), display.height()));
   const double turn = start_of(3 * std::uint64_t(seed)),
                start1 = start_of(3 * std::uint64_t(seed) + 1),
@@ -101,7 +120,8 @@ SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, in
   const int size = kPeriod / spacing;
   for (int row = 0; row < kPeriod; row += spacing) {
     for (int column = 0; column < kPeriod; column += spacing) {
-      const int rank = order_of(column / spacing, row / spacing, size);
+      const int rank = order_of(column / spacing, row / spacing, size) ^ turn_of(seed, size);
+      half_signs_[std::size_t(row * kPeriod + column)] = half_sign_of(rank);
       const double place = (rank + fraction(turn)) / (size * size);
       for (int k = 0; k < slices; ++k) {
         const double angle = glm::pi<double>() * (k + place) / slices;

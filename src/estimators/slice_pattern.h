@@ -50,6 +50,15 @@ class SlicePattern {
 
   int spacing() const { return spacing_; }
 
+  /// 1 or -1: which half of a member's slices belongs to the first half of all slices. With these
+  /// signs each half covers all directions about evenly, in one pixel and in all that a filter
+  /// averages, so that the difference of the two is noise. With the same sign everywhere, one
+  /// half would have the slices of some directions, and the difference would show what stands
+  /// there.
+  float half_sign(int column, int row) const {
+    return half_signs_[std::size_t(row * Interleaving::kPeriod + column)];
+  }
+
   /// The rank of each member in an order in which neighbours are far apart, 0..T^2 - 1.
   static int rank(int member);
 
@@ -59,6 +68,7 @@ class SlicePattern {
 
  private:
   std::vector<std::vector<Slice>> members_;
+  std::vector<float> half_signs_;
   int spacing_;
 };
 

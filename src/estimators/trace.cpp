@@ -65,12 +65,14 @@ struct Receiver {
 };
 
 /// Standard error of the mean of all groups, if they are independent. Parts of one sequence are
-/// more even together than that: it errs on the safe side.
+/// more even together than that: it errs on the safe side. It has the sign of the difference of two
+/// halves, so that a filter averages it as it averages noise.
 float standard_error(const Groups& groups) {
   float mean = 0, squares = 0;
   for (const float g : groups) mean += g / kGroups;
   for (const float g : groups) squares += (g - mean) * (g - mean);
-  return std::sqrt(squares / (kGroups * (kGroups - 1)));
+  const float difference = groups[0] + groups[1] - groups[2] - groups[3];
+  return std::copysign(std::sqrt(squares / (kGroups * (kGroups - 1))), difference);
 }
 
 /// The light from a hemisphere, part by part of the samples.

@@ -13,21 +13,16 @@ struct History {
   Geometry geometry;    ///< of the latest frame; it must know the world
   Products mean;        ///< over frames; bent in the latest camera's space, not made unit
   Plane<float> frames;  ///< how many frames each pixel's mean counts; 0 where there is no surface
+  Plane<glm::vec3> albedo;  ///< of the latest frame, by which a cut is told; may be empty
 };
 
 /// The means after the frame that `geometry` and `now` show, for the frame after it; the caller
-/// adds the geometry. History counts where it shows the same surface, see temporal.cpp; there is
-/// none where `before` is null, one of both frames knows no world, or they have other products.
-/// `motion` leads from each pixel to where what it shows was seen in the frame before, in pixels,
-/// x right and y down; where it is empty or not finite, things stand still.
+/// adds geometry and albedo. History counts where it shows the same surface, see temporal.cpp;
+/// there is none where `before` is null, one of both frames knows no world, or they have other
+/// products. `motion` leads from each pixel to where what it shows was seen in the frame before, in
+/// pixels, x right and y down; where it is empty or not finite, things stand still.
 History accumulate(const History* before, const Geometry& geometry, const Products& now,
                    const Plane<glm::vec2>& motion = {});
-
-/// Whether motion seems to have other units or signs than accumulate takes: along an axis, on most
-/// surfaces that the cameras move, it is not within 30 % of what P and the cameras say. Cameras
-/// that rest contradict nothing.
-bool contradicts_cameras(const Geometry& before, const Geometry& geometry,
-                         const Plane<glm::vec2>& motion);
 
 /// The means as products: bent is unit, background as each estimator leaves it.
 Products products_of(const History& history);

@@ -182,38 +182,6 @@ TEST_F(Outputs, APictureOfBentShowsDirectionsAsColours) {
   }
 }
 
-TEST_F(Outputs, AnErrorThatIsAskedForIsReached) {
-  const std::string sky = data("environments/sky.exr");
-  const auto mean = [&](const std::vector<std::string>& flags) {
-    const Plane<float> error = run(flags, "error.Y");
-    return sum(error) / sum(channel(path("out.exr"), "A"));
-  };
-  const double usual = mean({"--env", sky});
-  EXPECT_GT(usual, 1e-4);
-  const std::string wanted = std::to_string(usual / 3);
-  EXPECT_LE(mean({"--env", sky, "--error", wanted}), usual / 3);
-}
-
-TEST_F(Outputs, AnErrorIsReachedOrThereAreAsManySlicesAsThereCanBe) {
-  std::filesystem::copy_file(data("room_corner.exr"), path("in.exr"),
-                             std::filesystem::copy_options::overwrite_existing);
-  const std::string stats = path("stats.json");
-  const auto relit = [&](const std::string& error, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> flags = {"--error", error, "--stats", stats};
-    flags.insert(flags.end(), more.begin(), more.end());
-    const double found = sum(run(flags, "error.Y")) / sum(channel(path("out.exr"), "A"));
-    return std::pair(found,
-                     nlohmann::json::parse(read_file(stats))[0]["plan"]["slices"].get<int>());
-  };
-  const auto [reached, slices] = relit("0.01");
-  EXPECT_LE(reached, 0.01);
-  EXPECT_GT(slices, 2);
-  EXPECT_LT(slices, 256);
-  const auto [missed, most] = relit("1e-9", {"--steps", "1", "--bounces", "0"});
-  EXPECT_GT(missed, 1e-9);
-  EXPECT_EQ(most, 256);
-}
-
 TEST_F(Outputs, EveryParameterOfMethodSsdoMatters) {
   const auto ssdo = [&](std::vector<std::string> flags, const std::string& name = "ao.Y") {
     flags.insert(flags.end(), {"--method", "ssdo"});

@@ -88,6 +88,29 @@ TEST(TemporalRuns, SayWhereTheirHistoryBegins) {
   EXPECT_THAT(plan_of(dir, "gap.7")["reasons"].dump(), HasSubstr("no history"));
 }
 
+/// Issue 12, 7: the frames after a cut share the floor with those before, but none of their light.
+TEST(TemporalRuns, BeginAnewAfterACut) {
+  const TempDir dir;
+  write_sequence(dir, 0.1);
+  const Window window{0, 0, 64, 48};
+  const Surface pit = all_of({plane({}, {0, 0, 1}), plane({0, 0.6, 0}, {0, -1, 0}),
+                              plane({-0.8, 0, 0}, {1, 0, 0}), sphere({0.4, 0, 0.3}, 0.3)});
+  for (const int n : {7, 8}) {
+    const Camera camera =
+        look_at(camera_from_fov(40, window, 1), {0.3 + 0.05 * n, -3, 3}, {0.2, 0, 0.3}, {0, 0, 1});
+    FramePart part = frame_of(take_picture(pit, camera, window));
+    part.add("ViewLayer.DiffCol", Plane<glm::vec3>(64, 48, glm::vec3(0.3f, 0.2f, 0.1f)), "RGB");
+    write_frame(dir / ("in." + std::to_string(n) + ".exr"), part);
+  }
+  ASSERT_EQ(relight(dir, "shot", {"--temporal"}).err, "");
+  ASSERT_EQ(relight(dir, "alone", {"--temporal", "--frames", "7-8"}).err, "");
+  EXPECT_EQ(ao(dir, "shot.7").pixels, ao(dir, "alone.7").pixels);
+  EXPECT_EQ(ao(dir, "shot.8").pixels, ao(dir, "alone.8").pixels);
+  EXPECT_THAT(plan_of(dir, "shot.6")["reasons"].dump(), HasSubstr("history of the frame before"));
+  EXPECT_THAT(plan_of(dir, "shot.7")["reasons"].dump(), HasSubstr("no history: a cut"));
+  EXPECT_THAT(plan_of(dir, "shot.8")["reasons"].dump(), HasSubstr("history of the frame before"));
+}
+
 TEST(TemporalRuns, NeedASequence) {
   const TempDir dir;
   write_sequence(dir, 0);

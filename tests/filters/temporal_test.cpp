@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "filters/continuity.h"
 #include "filters/temporal.h"
 
 #include <gtest/gtest.h>

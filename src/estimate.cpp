@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The error of direct + bounce is how far they are from what very many slices and steps would give
+// through the same filter. It has two parts, which are measured apart:
+//
+//   error = sqrt(noise^2 + steps^2)
+//
+// Noise is the difference of two halves of the slices. It goes through the filter with its sign, as
+// the light does, so that it shrinks as the noise of the light does, and is squared only then. The
+// method sees to it that both halves cover all directions (SlicePattern::half_sign).
+//
+// Steps is what half of the steps would change. What few steps miss is the same in every slice, so
+// that halves of the slices cannot tell. It falls about as 1 / steps: as much as the second half
+// of the steps has changed is left to be changed. This costs a second run, of half the steps.
+//
+// Both are one draw of an error. Its size is the root mean square among neighbours on a surface.
+#include "estimate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/luminance.h"
+#include "stopwatch.h"
+
+namespace ssdo {
+namespace {
+
+// The most that --error goes to: beyond them rounding and the guesses of the model count for more.
+constexpr int kMostSlices = 64, kMostSteps = 128;
+
+double rms_over_surfaces(const Plane<float>& plane, const Geometry& geometry) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < plane.size(); ++i) {
+    if (!geometry.is_surface(i)) continue;
+    sum += double(plane[i]) * double(plane[i]);
+    count += 1;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+/// The plane alone, as products that a filter takes.
+Products as_error(Plane<float> plane) {
+  Products products;
+  products.error = std::move(plane);
+  return products;
+}
+
+/// The size of an error from a draw of it: its root mean square among neighbours on a surface.
+Plane<float> size_of(Plane<float> draw, const Geometry& geometry) {
+  constexpr int kNeighbours = 8;
+  for (float& e : draw.pixels) e *= e;
+  Plane<float> size =
+      apply_filter(find_filter("geometry"), as_error(std::move(draw)), geometry, kNeighbours).error;
+  for (float& e : size.pixels) e = std::sqrt(std::max(e, 0.0f));
+  return size;
+}
+
+/// The noise of the filtered light, from the filtered difference of two halves of the slices.
+Plane<float> noise_of(Plane<float> difference, const Plan& plan) {
+  // The directions of one pixel are evenly spaced, so that its error is that of a half divided by
+  // 2; a difference is what independent halves would have, and too large by sqrt(2^2 - 1). Those of
+  // the pixels that a filter averages are as good as independent. Both measured on seven frames.
+  const bool one_pixel = plan.method->marches && !plan.filter->apply;
+  for (float& e : difference.pixels) e /= one_pixel ? std::sqrt(3.0f) : 1.0f;
+  return difference;
+}
+
+float brightness(const Products& products, std::size_t i) {
+  const float direct = products.direct.empty() ? 0 : luminance(products.direct[i]);
+  return direct + (products.bounce.empty() ? 0 : luminance(products.bounce[i]));
+}
+
+/// What half of the steps would change of direct + bounce, not filtered.
+Plane<float> change_by_steps(const Frame& frame, const Products& products,
+                             const TileProgress& progress) {
+  Plan fewer = frame.plan;
+  fewer.steps = fewer.steps > 1 ? fewer.steps / 2 : 2;
+  fewer.products = {.direct = true, .bounce = frame.plan.products.bounce};
+  const Products other = run_method(frame, fewer, progress);
+  auto change = Plane<float>::like(frame.geometry.surfel);
+  for (std::size_t i = 0; i < change.size(); ++i)
+    change[i] = brightness(products, i) - brightness(other, i);
+  return change;
+}
+
+/// Estimates and filters once.
+class Round {
+ public:
+  Round(Frame& frame, const std::function<void(double)>& told)
+      : frame_(frame), plan_(frame.plan), told_(told) {
+    compares_steps_ = plan_.products.error && plan_.method->marches;
+    passes_ = (compares_steps_ ? 2.0 : 1.0) * (1.0 + plan_.bounces);
+  }
+
+  Estimate run(const std::optional<History>& before) {
+    const auto progress = [this](std::size_t done, std::size_t count) { tell(done, count); };
+    Stopwatch watch;
+    Estimate out;
+    Products products = run_method(frame_, plan_, progress);
+    Plane<float> change;
+    if (compares_steps_) change = change_by_steps(frame_, products, progress);
+    frame_.times.estimate += watch.lap();
+    products = filtered(std::move(products));
+    if (plan_.temporal) {
+      out.history =
+          accumulate(before ? &*before : nullptr, frame_.geometry, products, frame_.gbuffer.motion);
+      products = products_of(out.history);
+    }
+    if (plan_.products.error) {
+      if (compares_steps_) change = filtered(as_error(std::move(change))).error;
+      out.error = measure(products.error, std::move(change));
+    }
+    out.products = std::move(products);
+    frame_.times.filter += watch.lap();
+    return out;
+  }
+
+ private:
+  void tell(std::size_t done, std::size_t count) {
+    told_(std::min((finished_ + double(done) / double(count)) / passes_, 1.0));
+    if (done == count) finished_ += 1;
+  }
+
+  Products filtered(Products products) const {
+    return apply_filter(*plan_.filter, std::move(products), frame_.geometry,
+                        plan_.method->pattern_size);
+  }
+
+  /// Turns the difference of halves into the product `error`.
+  ErrorFound measure(Plane<float>& error, Plane<float> change) const {
+    ErrorFound found;
+    error = size_of(noise_of(std::move(error), plan_), frame_.geometry);
+    found.noise = rms_over_surfaces(error, frame_.geometry);
+    if (!change.empty()) {
+      change = size_of(std::move(change), frame_.geometry);
+      found.steps = rms_over_surfaces(change, frame_.geometry);
+      for (std::size_t i = 0; i < error.size(); ++i) error[i] = std::hypot(error[i], change[i]);
+    }
+    found.all = rms_over_surfaces(error, frame_.geometry);
+    return found;
+  }
+
+  Frame& frame_;
+  const Plan& plan_;
+  const std::function<void(double)>& told_;
+  bool compares_steps_;
+  double passes_, finished_ = 0;
+};
+
+/// Raises what is too few for the error that the plan asks for. False where that is at its most.
+bool refine(Plan& plan, const ErrorFound& found) {
+  const double each = *plan.error / std::sqrt(2.0), larger = std::max(found.noise, found.steps);
+  // A step too short costs another round. `power`: the error falls as count^(-1 / power).
+  const auto raise = [&](int& count, int most, double part, double power) {
+    if (count >= most || (part <= each && part < larger)) return false;
+    const double factor = std::clamp(std::pow(part / each, power), 1.5, 8.0);
+    count = std::min(most, int(std::ceil(count * factor)));
+    return true;
+  };
+  const bool slices = raise(plan.slices, kMostSlices, found.noise, 1.3),
+             steps = raise(plan.steps, kMostSteps, found.steps, 1);
+  return slices || steps;
+}
+
+std::string describe(const ErrorFound& found, const Plan& plan) {
+  std::string text = fmt::format("error of direct + bounce {:.2g}", found.all);
+  if (plan.method->marches)
+    text += fmt::format(": {:.2g} is the noise of {} slices, {:.2g} the bias of {} steps",
+                        found.noise, plan.slices, found.steps, plan.steps);
+  return text;
+}
+
+}  // namespace
+
+Products run_method(const Frame& frame, const Plan& plan, const TileProgress& progress) {
+  return plan.method->estimate({frame.geometry, frame.gbuffer.albedo, frame.gbuffer.radiance,
+                                frame.environment, plan.products, plan.radius, plan.bounces,
+                                plan.seed, plan.parameters, progress, plan.slices, plan.steps,
+                                &frame.hidden, frame.light_model ? &*frame.light_model : nullptr,
+                                plan.extend_offscreen, &frame.gbuffer.roughness});
+}
+
+Estimate estimate(Frame& frame, const std::function<void(double)>& told,
+                  const std::optional<History>& before) {
+  Plan& plan = frame.plan;
+  for (;;) {
+    Estimate out = Round(frame, told).run(before);
+    if (!out.error) return out;
+    if (plan.error && out.error->all > *plan.error) {
+      if (refine(plan, *out.error)) continue;
+      out.warnings.push_back(
+          fmt::format("--error {:g} is not reached: it is {:.2g} with {} slices and {} steps",
+                      *plan.error, out.error->all, plan.slices, plan.steps));
+    }
+    out.notes.push_back(describe(*out.error, plan));
+    return out;
+  }
+}
+
+}  // namespace ssdo

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Whether a frame goes on from the one before. A pixel tells where the other camera looked at its
+// point: it saw the same surface there, of the same albedo; another albedo, or through it, which
+// is against one shot. A cut is where less than half of those that tell are for it.
+//
+//   the same albedo: within the range of the pixels around p', and 0.05 + 1/8 of its upper end
+//
+// A range and not a mean, as a texture of single pixels shows other samples when the camera moves.
+#include "filters/continuity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <iterator>
+#include <vector>
+
+#include "filters/reprojection.h"
+
+namespace ssdo {
+namespace {
+
+constexpr int kEvery = 4;  ///< one pixel of so many in a row and in a column tells
+
+// Of cuts: the least part that goes on within a shot, and pixels that have to tell.
+constexpr double kLeastKept = 0.5, kLeastPixels = 16;
+
+// Of motion that is held to the cameras: least pixels of theirs, and factor to be off.
+constexpr double kLeastMove = 0.1, kMostDifference = 0.3;
+
+bool is_like(const glm::vec3& now, const Plane<glm::vec3>& before, const Footprint& at) {
+  glm::vec3 low(INFINITY), high(-INFINITY);
+  for (int k = 0; k < at.count; ++k) {
+    low = glm::min(low, before[at.pixel[k]]);
+    high = glm::max(high, before[at.pixel[k]]);
+  }
+  for (int c = 0; c < 3; ++c) {
+    const float margin = 0.05f + high[c] / 8;
+    if (!(now[c] >= low[c] - margin && now[c] <= high[c] + margin)) return false;
+  }
+  return true;
+}
+
+/// What the pixels of `now` tell.
+void add_pixels(Continuity& sum, const View& before, const View& now,
+                const Plane<glm::vec2>& motion) {
+  const Reprojection reprojection(before.geometry, now.geometry);
+  const bool colored = !before.albedo.empty() && !now.albedo.empty();
+  const Plane<Surfel>& surfel = now.geometry.surfel;
+  for (int y = 0; y < surfel.height; y += kEvery) {
+    for (int x = 0; x < surfel.width; x += kEvery) {
+      const std::size_t i = surfel.index(x, y);
+      if (!now.geometry.is_surface(i)) continue;
+      const glm::dvec2 told =
+          motion.empty() ? glm::dvec2(NAN) : centre_of(now.geometry, x, y) + glm::dvec2(motion[i]);
+      const Footprint at = reprojection.find(surfel[i], told);
+      if (at.sight == Sight::nothing) continue;
+      sum.met += 1;
+      if (at.sight == Sight::same && (!colored || is_like(now.albedo[i], before.albedo, at)))
+        sum.kept += 1;
+    }
+  }
+}
+
+}  // namespace
+
+bool Continuity::is_cut() const { return met >= kLeastPixels && kept < kLeastKept * met; }
+
+Continuity compare_frames(const View& before, const View& now, const Plane<glm::vec2>& motion) {
+  Continuity still, moving;
+  add_pixels(still, before, now, {});
+  add_pixels(still, now, before, {});
+  if (motion.empty()) return still;
+  add_pixels(moving, before, now, motion);  // which leads to the frame before, not from it
+  return moving.kept * still.met > still.kept * moving.met ? moving : still;
+}
+
+bool contradicts_cameras(const Geometry& before, const Geometry& geometry,
+                         const Plane<glm::vec2>& motion) {
+  if (!before.world_known || !geometry.world_known) return false;
+  const Reprojection reprojection(before, geometry);
+  std::vector<double> factors[2];  // along each axis, of what the cameras say
+  std::size_t surfaces = 0;
+  for (int y = 0; y < geometry.surfel.height; y += kEvery) {
+    for (int x = 0; x < geometry.surfel.width; x += kEvery) {
+      const std::size_t i = geometry.surfel.index(x, y);
+      if (!geometry.is_surface(i)) continue;
+      surfaces += 1;
+      const glm::dvec2 by_cameras =
+          reprojection.place(geometry.surfel[i].position) - centre_of(geometry, x, y);
+      for (int axis = 0; axis < 2; ++axis) {
+        const double factor = double(motion[i][axis]) / by_cameras[axis];
+        if (std::abs(by_cameras[axis]) > kLeastMove && std::isfinite(factor))
+          factors[axis].push_back(factor);
+      }
+    }
+  }
+  return std::any_of(std::begin(factors), std::end(factors), [&](std::vector<double>& of_axis) {
+    if (of_axis.size() <= surfaces / 4) return false;
+    const auto middle = of_axis.begin() + std::ptrdiff_t(of_axis.size() / 2);
+    std::nth_element(of_axis.begin(), middle, of_axis.end());
+    return std::abs(*middle - 1) > kMostDifference;
+  });
+}
+
+}  // namespace ssdo

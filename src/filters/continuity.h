@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "math/plane.h"
+#include "scene/geometry.h"
+
+namespace ssdo {
+
+/// A frame of a sequence as the next one remembers it.
+struct View {
+  const Geometry& geometry;        ///< must know the world
+  const Plane<glm::vec3>& albedo;  ///< empty where there is none
+};
+
+/// How much of what one frame shows is there in the other.
+struct Continuity {
+  double met = 0;   ///< pixels whose point the other camera looked at, in either direction
+  double kept = 0;  ///< those that show the same surface there, with the same albedo
+
+  /// Whether the frames belong to two shots.
+  bool is_cut() const;
+};
+
+/// Compares every fourth pixel in a row and in a column. What is new in the picture, and what
+/// something else may have hidden, says nothing. `motion` is that of temporal.h; of the frames as
+/// they are and with motion, the result is the one of which more is kept.
+Continuity compare_frames(const View& before, const View& now, const Plane<glm::vec2>& motion = {});
+
+/// Whether motion seems to have other units or signs than accumulate takes: along an axis, on most
+/// surfaces that the cameras move, it is not within 30 % of what P and the cameras say. Cameras
+/// that rest contradict nothing.
+bool contradicts_cameras(const Geometry& before, const Geometry& geometry,
+                         const Plane<glm::vec2>& motion);
+
+}  // namespace ssdo

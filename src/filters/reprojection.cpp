@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The tests are those at the top of temporal.cpp.
+#include "filters/reprojection.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace ssdo {
+namespace {
+
+constexpr double kLeastCosine = 0.9;  ///< normals 26 degrees apart are of two surfaces
+constexpr double kLeastShare = 0.1;   ///< of the bilinear weight
+constexpr double kSlant = 2;          ///< a thing's way, over what the picture shows of it
+constexpr double kBehind = 0.02;      ///< of the depth: so much farther is behind, not beside
+
+bool shows_same(const Surfel& q, const glm::dvec3& p, const glm::dvec3& normal, double limit) {
+  const glm::dvec3 away = glm::dvec3(q.position) - p, other(q.normal);
+  limit += q.normal.w;
+  return glm::dot(normal, other) >= kLeastCosine && std::abs(glm::dot(normal, away)) <= limit &&
+         std::abs(glm::dot(other, away)) <= limit;
+}
+
+}  // namespace
+
+Reprojection::Reprojection(const Geometry& before, const Geometry& now)
+    : before_(before),
+      turn_(before.camera.rotation * glm::transpose(now.camera.rotation)),
+      step_(before.camera.rotation * (now.camera.origin - before.camera.origin)),
+      pixel_size_(1 / before.camera.fx, 1 / before.camera.fy) {}
+
+glm::dvec2 Reprojection::place(const glm::vec4& position) const {
+  const glm::dvec3 p = turn_ * glm::dvec3(position) + step_;
+  return before_.camera.orthographic || p.z < 0 ? before_.camera.project(p) : glm::dvec2(NAN);
+}
+
+Footprint Reprojection::find(const Surfel& surfel, const glm::dvec2& told) const {
+  Footprint found;
+  const glm::dvec3 p = turn_ * glm::dvec3(surfel.position) + step_;
+  const glm::dvec2 still = place(surfel.position);
+  const bool moves = std::isfinite(told.x) && std::isfinite(told.y);
+  const double scale = before_.camera.orthographic ? 1.0 : -p.z,
+               way = moves ? kSlant * scale * glm::length((told - still) * pixel_size_) : 0.0,
+               limit = 0.5 * scale * pixel_size_.x + surfel.normal.w + way;
+  const glm::dvec2 at =
+      (moves ? told : still) - glm::dvec2(before_.window.x0 + 0.5, before_.window.y0 + 0.5);
+  const double left = std::floor(at.x), top = std::floor(at.y);
+  const int width = before_.surfel.width, height = before_.surfel.height;
+  if (!(left >= -1 && left < width && top >= -1 && top < height)) return found;
+  const glm::dvec3 normal = turn_ * glm::dvec3(surfel.normal);
+  double sum = 0;
+  bool through = true;
+  for (int corner = 0; corner < 4; ++corner) {
+    const int dx = corner % 2, dy = corner / 2, x = int(left) + dx, y = int(top) + dy;
+    const double across = at.x - left, down = at.y - top,
+                 weight = (dx ? across : 1 - across) * (dy ? down : 1 - down);
+    if (x < 0 || y < 0 || x >= width || y >= height) continue;
+    const std::size_t i = before_.surfel.index(x, y);
+    if (!before_.is_surface(i)) continue;
+    const Surfel& q = before_.surfel[i];
+    through = through && double(q.position.z) < p.z - kBehind * std::abs(p.z) - way;
+    if (!shows_same(q, p, normal, limit)) continue;
+    found.pixel[found.count] = i;
+    found.weight[found.count++] = float(weight);
+    sum += weight;
+  }
+  if (sum < kLeastShare) found.count = 0;
+  for (int k = 0; k < found.count; ++k) found.weight[k] /= float(sum);
+  found.sight = found.count > 0 ? Sight::same : through ? Sight::through : Sight::nothing;
+  return found;
+}
+
+}  // namespace ssdo

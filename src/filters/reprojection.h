@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "scene/geometry.h"
+
+namespace ssdo {
+
+/// What the frame before shows where a point of the present one was.
+enum class Sight {
+  nothing,  ///< it is outside that picture, or something else may hide it
+  same,     ///< its surface
+  through,  ///< what lies behind it: it was not there
+};
+
+/// Pixels of the frame before with weights whose sum is 1, or none.
+struct Footprint {
+  std::size_t pixel[4];
+  float weight[4];
+  int count = 0;
+  Sight sight = Sight::nothing;  ///< `same` where there are pixels
+};
+
+/// Finds in the frame before what a pixel shows. Between the two camera spaces lies a rotation and
+/// the camera's own step, which stay exact however far away the world's origin is.
+class Reprojection {
+ public:
+  /// Both must know the world.
+  Reprojection(const Geometry& before, const Geometry& now);
+
+  /// From the camera space of the frame before to the present one.
+  glm::mat3 to_present() const { return glm::mat3(glm::transpose(turn_)); }
+
+  /// Where the camera before saw a point of the present one's space, had it not moved: pixels of
+  /// the display window. Not finite where that camera looked away.
+  glm::dvec2 place(const glm::vec4& position) const;
+
+  /// `told` is where the thing was seen according to its motion, not finite where nothing tells.
+  Footprint find(const Surfel& surfel, const glm::dvec2& told) const;
+
+ private:
+  const Geometry& before_;
+  const glm::dmat3 turn_;
+  const glm::dvec3 step_;
+  const glm::dvec2 pixel_size_;  ///< at depth 1, or at any where the camera is orthographic
+};
+
+/// The centre of a pixel of the data window, in pixels of the display window.
+inline glm::dvec2 centre_of(const Geometry& geometry, int x, int y) {
+  return {geometry.window.x0 + x + 0.5, geometry.window.y0 + y + 0.5};
+}
+
+}  // namespace ssdo
