@@ -11,6 +11,7 @@
 
 #include "scene/depth_model.h"
 #include "support/analytic_scene.h"
+#include "support/gbuffer_of.h"
 
 namespace ssdo::test {
 namespace {
@@ -32,11 +33,8 @@ Picture ball_before_nothing(double away = 0) {
 
 /// P, N and planar depth of the picture, as Blender writes them.
 GBuffer frame_of(const Picture& picture) {
-  GBuffer g;
-  g.window = g.display = kWindow;
-  g.position = picture.position;
-  g.normal = picture.normal;
-  g.position_step = 1.0f / 16777216;
+  GBuffer g = gbuffer_of(picture);
+  g.valid = {};
   g.depth = Plane<float>(kWindow.width(), kWindow.height(), 1e10f);
   for (std::size_t i = 0; i < g.depth.size(); ++i) {
     if (picture.valid[i])

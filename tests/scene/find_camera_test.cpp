@@ -10,6 +10,7 @@
 
 #include "scene/camera_fit.h"
 #include "support/analytic_scene.h"
+#include "support/gbuffer_of.h"
 #include "support/temp_dir.h"
 
 namespace ssdo::test {
@@ -35,16 +36,6 @@ void write_camera(const std::filesystem::path& path, const Camera& camera) {
   std::ofstream(path) << nlohmann::json{{"fx", camera.fx}, {"world_to_camera", rows}};
 }
 
-GBuffer frame_of_positions(const Picture& picture) {
-  GBuffer g;
-  g.window = g.display = kWindow;
-  g.position = picture.position;
-  g.normal = picture.normal;
-  g.valid = picture.valid;
-  g.position_step = 1.0f / 16777216;
-  return g;
-}
-
 /// Holds the geometry to what the picture shows in camera space.
 void expect_placed(const Geometry& geometry, const Picture& picture) {
   for (std::size_t i = 0; i < geometry.surfel.size(); ++i) {
@@ -64,7 +55,7 @@ TEST(FindCamera, TakesPInCameraSpaceBesideAPoseForWhatItIs) {
   for (const glm::vec3& signs :
        {glm::vec3(1, 1, 1), glm::vec3(1, 1, -1), glm::vec3(1, -1, -1), glm::vec3(-1, 1, 1)}) {
     for (const bool normals_in_world : {false, true}) {
-      GBuffer g = frame_of_positions(picture);
+      GBuffer g = gbuffer_of(picture);
       for (std::size_t i = 0; i < g.position.size(); ++i) {
         const glm::dvec3 p = picture.camera.to_camera(glm::dvec3(picture.position[i]));
         g.position[i] = signs * glm::vec3(p);
@@ -89,7 +80,7 @@ TEST(FindCamera, TakesPInTheWorldOfThePose) {
   write_camera(dir / "camera.json", picture.camera);
   GeometryReport report;
   const Geometry geometry =
-      build_geometry(frame_of_positions(picture), {dir / "camera.json", {}, {}}, "test", report);
+      build_geometry(gbuffer_of(picture), {dir / "camera.json", {}, {}}, "test", report);
   expect_placed(geometry, picture);
   EXPECT_TRUE(report.warnings.empty());
 }
@@ -102,7 +93,7 @@ TEST(FindCamera, PrefersPToAPoseOfAnotherShot) {
   write_camera(dir / "camera.json", other);
   GeometryReport report;
   const Geometry geometry =
-      build_geometry(frame_of_positions(picture), {dir / "camera.json", {}, {}}, "test", report);
+      build_geometry(gbuffer_of(picture), {dir / "camera.json", {}, {}}, "test", report);
   expect_placed(geometry, picture);
   ASSERT_EQ(report.warnings.size(), 1u);
   EXPECT_NE(report.warnings[0].find("contradicts P"), std::string::npos);

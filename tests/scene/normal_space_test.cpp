@@ -13,6 +13,7 @@
 
 #include "scene/geometry.h"
 #include "support/analytic_scene.h"
+#include "support/gbuffer_of.h"
 
 namespace ssdo::test {
 namespace {
@@ -26,16 +27,6 @@ Surface still_life() {
 
 Camera usual_camera(const Window& window = kWindow) {
   return look_at(camera_from_fov(40, window, 1), {1.5, -4, 3}, {0, 0, 0.3}, {0, 0, 1});
-}
-
-GBuffer gbuffer_of(const Picture& picture) {
-  GBuffer g;
-  g.window = g.display = picture.window;
-  g.position = picture.position;
-  g.normal = picture.normal;
-  g.valid = picture.valid;
-  g.position_step = 1.0f / 16777216;
-  return g;
 }
 
 GBuffer still_life_frame() {

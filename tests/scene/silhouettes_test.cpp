@@ -9,6 +9,7 @@
 
 #include "hard/hard_cases.h"
 #include "support/analytic_scene.h"
+#include "support/gbuffer_of.h"
 
 namespace ssdo::test {
 namespace {
@@ -20,14 +21,8 @@ Camera usual_view() {
 }
 
 std::size_t mended(const Picture& picture) {
-  GBuffer g;
-  g.window = g.display = picture.window;
-  g.position = picture.position;
-  g.normal = picture.normal;
-  g.valid = picture.valid;
-  g.position_step = 1.0f / 16777216;
   GeometryReport report;
-  Geometry geometry = build_geometry(g, {}, "test", report);
+  Geometry geometry = build_geometry(gbuffer_of(picture), {}, "test", report);
   std::size_t moved = 0;
   for (std::size_t i = 0; i < geometry.surfel.size(); ++i) {
     if (!geometry.is_surface(i)) continue;
