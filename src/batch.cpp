@@ -151,9 +151,6 @@ class Batch {
                       "keep them with --pixel-type float",
                       job.input, relit.clamped_values));
     }
-    for (const std::string& warning : relit.warnings) {
-      if (!options_.say.quiet) say(fmt::format("{}: warning: {}", job.input, warning));
-    }
     statistics_.add(frame, job.frame, job.targets, threads_, relit.error);
     if (!options_.model.temporal) return;
     history_ = std::move(relit.history);
