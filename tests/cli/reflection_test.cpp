@@ -44,10 +44,11 @@ TEST(ReflectionProduct, RoughnessComesFromALayerOrFromTheParameter) {
   EXPECT_EQ(reflection_of(dir, {}).pixels, smooth.pixels) << "found by its name";
 }
 
-TEST(ReflectionProduct, IsMadeByDefaultOnlyWhereRoughnessIsKnown) {
+TEST(ReflectionProduct, IsAmongAllProductsOnlyWhereRoughnessIsKnown) {
   const TempDir dir;
   const auto products = [&] {
-    const Finished done = run_tool({"info", dir / "in.exr", "--method", "gtao", "--json"});
+    const Finished done =
+        run_tool({"info", dir / "in.exr", "--method", "gtao", "--products", "all", "--json"});
     EXPECT_EQ(done.code, 0) << done.err;
     return nlohmann::json::parse(done.out)["plan"]["products"].get<std::vector<std::string>>();
   };
