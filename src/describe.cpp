@@ -109,8 +109,7 @@ std::string describe(const Frame& frame) {
     text += fmt::format("  {:<10}{}\n", key, printable(value));
   };
   if (!(frame.geometry.window == display)) {
-    const Window& w = frame.geometry.window;
-    line("window", fmt::format("data {},{} to {},{}", w.x0, w.y0, w.x1 - 1, w.y1 - 1));
+    line("window", "data " + text_of(frame.geometry.window));
   }
   for (std::size_t i = 0; i < kRoleCount; ++i) {
     const auto& layer = frame.layers.layers[i];

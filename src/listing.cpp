@@ -53,10 +53,6 @@ std::string list_components(Channels channels) {
   return text;
 }
 
-std::string text_of(const Window& w) {
-  return fmt::format("{},{} to {},{}", w.x0, w.y0, w.x1 - 1, w.y1 - 1);
-}
-
 std::string list_part(const ExrPart& part) {
   std::string text = "  " + label(part);
   if (!part.view.empty()) text += fmt::format(", view '{}'", part.view);

@@ -133,4 +133,8 @@ double decoder_bytes(const ExrPart& part) {
   return bytes_per_pixel * pixels_per_chunk(part) * 2 * std::max(1, Imf::globalThreadCount());
 }
 
+std::string text_of(const Window& w) {
+  return fmt::format("{},{} to {},{}", w.x0, w.y0, w.x1 - 1, w.y1 - 1);
+}
+
 }  // namespace ssdo

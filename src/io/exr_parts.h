@@ -30,4 +30,7 @@ double largest_ratio(const ExrPart& part);
 /// for each of its threads.
 double decoder_bytes(const ExrPart& part);
 
+/// A window by its first and last pixel, as headers have it: "0,0 to 575,323".
+std::string text_of(const Window& window);
+
 }  // namespace ssdo

@@ -14,9 +14,6 @@ namespace fs = std::filesystem;
 namespace ssdo {
 namespace {
 
-// As many links as Linux itself follows before it reports a loop.
-constexpr int kMostLinks = 40;
-
 // Shortens UTF-8 text without cutting through a character, which some file systems refuse.
 std::string shortened(std::string text, std::size_t size) {
   if (text.size() <= size) return text;

@@ -11,14 +11,12 @@
 #include <utility>
 
 #include "error.h"
+#include "io/output_path.h"
 
 namespace ssdo {
 namespace {
 
 namespace fs = std::filesystem;
-
-// As many links as Linux itself follows before it reports a loop.
-constexpr int kMostLinks = 40;
 
 /// Where a path leads once every link on its way is followed. What does not exist is taken as it
 /// will be once its folders are made.

@@ -24,10 +24,6 @@ Role lead_of(const LayerTable& table) {
   return table[Role::position] ? Role::position : Role::depth;
 }
 
-std::string text_of(const Window& w) {
-  return fmt::format("{},{} to {},{}", w.x0, w.y0, w.x1 - 1, w.y1 - 1);
-}
-
 /// "part 2 'Albedo' of half.exr", or the file where it has no other part.
 std::string text_of(const ExrReader& file, const ExrPart& part) {
   const std::string path = file.path().string();

@@ -168,12 +168,9 @@ bool is_clearly_better(const Candidate& other, const Candidate& rule) {
 }
 
 float median_size(const Candidate& candidate) {
-  std::vector<float> sizes;
+  std::vector<double> sizes;
   for (const float c : candidate.cosines) sizes.push_back(std::abs(c));
-  if (sizes.empty()) return 0;
-  const auto middle = sizes.begin() + std::ptrdiff_t(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle;
+  return float(quantile(sizes, 0.5));
 }
 
 /// The rotation that brings the mapped normals closest to the gradients: Wahba's problem, solved by
