@@ -9,13 +9,13 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "difference.h"
 #include "io/exr_writer.h"
 #include "io/image_file.h"
 #include "io/json_text.h"
 #include "io/one_line.h"
 #include "io/picture_layers.h"
 #include "io/run_files.h"
+#include "metrics/difference.h"
 
 namespace ssdo {
 namespace {

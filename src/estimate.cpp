@@ -73,13 +73,12 @@ float brightness(const Products& products, std::size_t i) {
 }
 
 /// What half of the steps would change of direct + bounce, not filtered.
-Plane<float> change_by_steps(const Frame& frame, const Products& products,
-                             const TileProgress& progress) {
-  Plan fewer = frame.plan;
+Plane<float> change_by_steps(const Scene& scene, const Method& method, Request fewer,
+                             const Products& products, const Progress& progress) {
   fewer.steps = fewer.steps > 1 ? fewer.steps / 2 : 2;
-  fewer.products = {.direct = true, .bounce = frame.plan.products.bounce};
-  const Products other = run_method(frame, fewer, progress);
-  auto change = Plane<float>::like(frame.geometry.surfel);
+  fewer.products = {.direct = true, .bounce = fewer.products.bounce};
+  const Products other = method.estimate(scene, fewer, progress);
+  auto change = Plane<float>::like(scene.geometry.surfel);
   for (std::size_t i = 0; i < change.size(); ++i)
     change[i] = brightness(products, i) - brightness(other, i);
   return change;
@@ -88,32 +87,34 @@ Plane<float> change_by_steps(const Frame& frame, const Products& products,
 /// Estimates and filters once.
 class Round {
  public:
-  Round(Frame& frame, const std::function<void(double)>& told)
-      : frame_(frame), plan_(frame.plan), told_(told) {
-    compares_steps_ = plan_.products.error && plan_.method->marches;
-    passes_ = (compares_steps_ ? 2.0 : 1.0) * (1.0 + plan_.bounces);
+  Round(const Scene& scene, const Plan& plan, const Request& request,
+        const std::function<void(double)>& told)
+      : scene_(scene), plan_(plan), request_(request), told_(told) {
+    compares_steps_ = request.products.error && plan.method->marches;
+    passes_ = (compares_steps_ ? 2.0 : 1.0) * (1.0 + request.bounces);
   }
 
-  Estimate run(const std::optional<History>& before) {
+  Estimate run(const Past& past) {
     const auto progress = [this](std::size_t done, std::size_t count) { tell(done, count); };
     Stopwatch watch;
     Estimate out;
-    Products products = run_method(frame_, plan_, progress);
+    Products products = plan_.method->estimate(scene_, request_, progress);
     Plane<float> change;
-    if (compares_steps_) change = change_by_steps(frame_, products, progress);
-    frame_.times.estimate += watch.lap();
+    if (compares_steps_)
+      change = change_by_steps(scene_, *plan_.method, request_, products, progress);
+    out.estimate_ms = watch.lap();
     products = filtered(std::move(products));
     if (plan_.temporal) {
-      out.history =
-          accumulate(before ? &*before : nullptr, frame_.geometry, products, frame_.gbuffer.motion);
+      out.history = accumulate(past.history ? &*past.history : nullptr, scene_.geometry, products,
+                               past.motion);
       products = products_of(out.history);
     }
-    if (plan_.products.error) {
+    if (request_.products.error) {
       if (compares_steps_) change = filtered(as_error(std::move(change))).error;
       out.error = measure(products.error, std::move(change));
     }
     out.products = std::move(products);
-    frame_.times.filter += watch.lap();
+    out.filter_ms = watch.lap();
     return out;
   }
 
@@ -124,34 +125,35 @@ class Round {
   }
 
   Products filtered(Products products) const {
-    return apply_filter(*plan_.filter, std::move(products), frame_.geometry,
+    return apply_filter(*plan_.filter, std::move(products), scene_.geometry,
                         plan_.method->pattern_size);
   }
 
   /// Turns the difference of halves into the product `error`.
   ErrorFound measure(Plane<float>& error, Plane<float> change) const {
     ErrorFound found;
-    error = size_of(noise_of(std::move(error), plan_), frame_.geometry);
-    found.noise = rms_over_surfaces(error, frame_.geometry);
+    error = size_of(noise_of(std::move(error), plan_), scene_.geometry);
+    found.noise = rms_over_surfaces(error, scene_.geometry);
     if (!change.empty()) {
-      change = size_of(std::move(change), frame_.geometry);
-      found.steps = rms_over_surfaces(change, frame_.geometry);
+      change = size_of(std::move(change), scene_.geometry);
+      found.steps = rms_over_surfaces(change, scene_.geometry);
       for (std::size_t i = 0; i < error.size(); ++i) error[i] = std::hypot(error[i], change[i]);
     }
-    found.all = rms_over_surfaces(error, frame_.geometry);
+    found.all = rms_over_surfaces(error, scene_.geometry);
     return found;
   }
 
-  Frame& frame_;
+  const Scene& scene_;
   const Plan& plan_;
+  const Request& request_;
   const std::function<void(double)>& told_;
   bool compares_steps_;
   double passes_, finished_ = 0;
 };
 
-/// Raises what is too few for the error that the plan asks for. False where that is at its most.
-bool refine(Plan& plan, const ErrorFound& found) {
-  const double each = *plan.error / std::sqrt(2.0), larger = std::max(found.noise, found.steps);
+/// Raises what is too few for the error `wanted`. False where that is at its most.
+bool refine(Request& request, double wanted, const ErrorFound& found) {
+  const double each = wanted / std::sqrt(2.0), larger = std::max(found.noise, found.steps);
   // A step too short costs another round. `power`: the error falls as count^(-1 / power).
   const auto raise = [&](int& count, int most, double part, double power) {
     if (count >= most || (part <= each && part < larger)) return false;
@@ -159,42 +161,37 @@ bool refine(Plan& plan, const ErrorFound& found) {
     count = std::min(most, int(std::ceil(count * factor)));
     return true;
   };
-  const bool slices = raise(plan.slices, kMostSlices, found.noise, 1.3),
-             steps = raise(plan.steps, kMostSteps, found.steps, 1);
+  const bool slices = raise(request.slices, kMostSlices, found.noise, 1.3),
+             steps = raise(request.steps, kMostSteps, found.steps, 1);
   return slices || steps;
 }
 
-std::string describe(const ErrorFound& found, const Plan& plan) {
+std::string describe(const ErrorFound& found, const Method& method, const Request& request) {
   std::string text = fmt::format("error of direct + bounce {:.2g}", found.all);
-  if (plan.method->marches)
+  if (method.marches)
     text += fmt::format(": {:.2g} is the noise of {} slices, {:.2g} the bias of {} steps",
-                        found.noise, plan.slices, found.steps, plan.steps);
+                        found.noise, request.slices, found.steps, request.steps);
   return text;
 }
 
 }  // namespace
 
-Products run_method(const Frame& frame, const Plan& plan, const TileProgress& progress) {
-  return plan.method->estimate({frame.geometry, frame.gbuffer.albedo, frame.gbuffer.radiance,
-                                frame.environment, plan.products, plan.radius, plan.bounces,
-                                plan.seed, plan.parameters, progress, plan.slices, plan.steps,
-                                &frame.hidden, frame.light_model ? &*frame.light_model : nullptr,
-                                plan.extend_offscreen, &frame.gbuffer.roughness});
-}
-
-Estimate estimate(Frame& frame, const std::function<void(double)>& told,
-                  const std::optional<History>& before) {
-  Plan& plan = frame.plan;
+Estimate estimate(const Scene& scene, const Plan& plan, const std::function<void(double)>& told,
+                  const Past& past) {
+  Request request = plan.request;
+  double estimate_ms = 0, filter_ms = 0;
   for (;;) {
-    Estimate out = Round(frame, told).run(before);
-    if (!out.error) return out;
+    Estimate out = Round(scene, plan, request, told).run(past);
+    out.estimate_ms = estimate_ms += out.estimate_ms;
+    out.filter_ms = filter_ms += out.filter_ms;
     if (plan.error && out.error->all > *plan.error) {
-      if (refine(plan, *out.error)) continue;
+      if (refine(request, *plan.error, *out.error)) continue;
       out.warnings.push_back(
           fmt::format("--error {:g} is not reached: it is {:.2g} with {} slices and {} steps",
-                      *plan.error, out.error->all, plan.slices, plan.steps));
+                      *plan.error, out.error->all, request.slices, request.steps));
     }
-    out.notes.push_back(describe(*out.error, plan));
+    if (out.error) out.notes.push_back(describe(*out.error, *plan.method, request));
+    out.request = request;
     return out;
   }
 }

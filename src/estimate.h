@@ -8,7 +8,8 @@
 
 #include "estimators/estimator.h"
 #include "filters/temporal.h"
-#include "frame.h"
+#include "plan.h"
+#include "scene/scene.h"
 
 namespace ssdo {
 
@@ -23,18 +24,22 @@ struct ErrorFound {
 /// The products of a frame after the filter.
 struct Estimate {
   Products products;
+  Request request;                  ///< of the plan, with the slices and steps that were needed
   std::optional<ErrorFound> error;  ///< where the plan asks for it
   History history;                  ///< of a temporal plan, for the next frame; without a geometry
+  double estimate_ms = 0, filter_ms = 0;  ///< by the clock
   std::vector<std::string> notes, warnings;
 };
 
-/// What the method of `plan` makes of a frame, before any filter.
-Products run_method(const Frame& frame, const Plan& plan, const TileProgress& progress);
+/// What a temporal plan takes from the frame before, both of them where there is one.
+struct Past {
+  std::optional<History> history;
+  Plane<glm::vec2> motion;  ///< pixels to where it was there; may be empty
+};
 
 /// Estimates and filters, with more and more slices and steps until the error is what the plan asks
-/// for, if it does; those that were taken stand in the plan then. `told` hears how far it is, 0..1.
-/// `before` is what a temporal plan takes from the frame before, if there is one.
-Estimate estimate(Frame& frame, const std::function<void(double)>& told,
-                  const std::optional<History>& before);
+/// for, if it does. `told` hears how far it is, 0..1.
+Estimate estimate(const Scene& scene, const Plan& plan, const std::function<void(double)>& told,
+                  const Past& past);
 
 }  // namespace ssdo

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame.h"
 
-#include <ImfIntAttribute.h>
-#include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
 #include <string_view>
 
 #include "estimators/registry.h"
-#include "listing.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -19,8 +16,8 @@ UpAxis up_axis_of(const Imf::Header& header) {
   for (auto it = header.begin(); it != header.end(); ++it) {
     if (std::string(it.name()).find("BlenderMultiChannel") != std::string::npos) return UpAxis::z;
   }
-  const auto* software = header.findTypedAttribute<Imf::StringAttribute>("Software");
-  return software && software->value().find("Blender") != std::string::npos ? UpAxis::z : UpAxis::y;
+  const bool blender = string_attribute(header, "Software").find("Blender") != std::string::npos;
+  return blender ? UpAxis::z : UpAxis::y;
 }
 
 void warn_of_idle_depth_options(Frame& frame, const GBufferOptions& options) {
@@ -34,7 +31,7 @@ void warn_of_idle_depth_options(Frame& frame, const GBufferOptions& options) {
 }
 
 void warn_of_idle_light_options(Frame& frame, const LightOptions& options) {
-  if (!frame.environment.is_constant()) return;
+  if (!frame.scene.light.is_constant()) return;
   const auto warn = [&](std::string_view option) {
     frame.report.warnings.push_back(
         fmt::format("{} has no effect: the light is the same from everywhere", option));
@@ -59,8 +56,8 @@ std::vector<std::string> Frame::warnings() const {
   return all;
 }
 
-Frame prepare_frame(const Options& options, const Light& light, const std::string& input,
-                    const std::vector<LayerRequest>& aovs) {
+Frame prepare_frame(const FrameOptions& options, const Lighting& light, const std::string& input,
+                    const std::vector<LayerRequest>& aovs, int number) {
   Frame frame;
   frame.input = input;
   Stopwatch watch;
@@ -73,38 +70,39 @@ Frame prepare_frame(const Options& options, const Light& light, const std::strin
   if (!options.model.temporal) unused.push_back(Role::motion);
   frame.layers = find_layers(files, aovs, options.input.part, unused);
   require_position(frame.layers, frame.files.front(),
-                   options.command == Command::info ? "" : " ('ssdo info' lists the layers)");
+                   options.input.listed ? "" : " ('ssdo info' lists the layers)");
   frame.gbuffer = read_gbuffer(files, frame.layers, options.input.gbuffer);
   frame.times.read = watch.lap();
 
-  frame.geometry = build_geometry(frame.gbuffer, options.camera, input, frame.report);
+  Scene& scene = frame.scene;
+  scene.geometry = build_geometry(frame.gbuffer, options.camera, input, frame.report);
   // From here on there is one position and one normal: those of the geometry.
   frame.gbuffer.position = frame.gbuffer.normal = {};
   frame.gbuffer.depth = {};
+  scene.senders = {std::move(frame.gbuffer.albedo), std::move(frame.gbuffer.radiance)};
+  scene.roughness = std::move(frame.gbuffer.roughness);
 
   warn_of_idle_depth_options(frame, options.input.gbuffer);
-  const bool world = frame.geometry.world_known;
+  const bool world = scene.geometry.world_known;
   const Imf::Header& header = frame.part().header;
-  const FrameLight around =
+  const FrameEnvironment around =
       light.around(world ? up_axis_of(header) : UpAxis::y, chromaticities_of(header));
-  frame.environment = around.environment;
+  scene.light = model_light(around.environment, scene.geometry.world_to_camera);
   frame.light = around.description;
   frame.report.warnings.insert(frame.report.warnings.end(), around.warnings.begin(),
                                around.warnings.end());
-  if (!frame.environment.is_constant() && !world) {
+  if (!scene.light.is_constant() && !world) {
     frame.report.warnings.push_back(
         "the frame knows no world space; the environment is taken in "
         "camera space: give --camera FILE.json to place it");
   }
   warn_of_idle_light_options(frame, options.light);
-  if (!frame.environment.is_constant())
-    frame.light_model = model_light(frame.environment, frame.geometry.world_to_camera);
-  frame.plan = make_plan(options.model, options.output, frame.gbuffer, frame.geometry,
-                         frame.light_model ? &*frame.light_model : nullptr, input);
+  ModelOptions model = options.model;
+  if (model.temporal) model.seed += unsigned(number);
+  frame.plan = make_plan(model, options.output, scene, frame.gbuffer, input);
   if (frame.plan.method->looks_behind()) {
-    const auto& thickness = options.model.thickness;
-    frame.hidden = thickness ? constant_thickness(frame.geometry, float(*thickness))
-                             : find_hidden_geometry(frame.geometry);
+    scene.hidden = model.thickness ? constant_thickness(scene.geometry, float(*model.thickness))
+                                   : find_hidden_geometry(scene.geometry);
   }
   frame.times.prepare = watch.lap();
   return frame;
@@ -114,12 +112,8 @@ ColorTags color_tags(const Frame& frame) {
   const Imf::Header& header = frame.part().header;
   ColorTags tags;
   tags.path = frame.input;
-  if (const auto* id = header.findTypedAttribute<Imf::StringAttribute>("colorInteropID")) {
-    tags.interop_id = id->value();
-  }
-  if (const auto* flag = header.findTypedAttribute<Imf::IntAttribute>("acesImageContainerFlag")) {
-    tags.aces_container = flag->value() == 1;
-  }
+  tags.interop_id = string_attribute(header, "colorInteropID");
+  tags.aces_container = int_attribute(header, "acesImageContainerFlag") == 1;
   tags.chromaticities = chromaticities_of(header);
   return tags;
 }

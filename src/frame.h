@@ -2,19 +2,38 @@
 #pragma once
 
 #include <deque>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
-#include "color.h"
+#include "color/color.h"
 #include "io/exr_reader.h"
-#include "light.h"
-#include "options.h"
+#include "lighting.h"
+#include "outputs.h"
 #include "plan.h"
 #include "scene/gbuffer.h"
-#include "scene/geometry.h"
-#include "scene/layers.h"
+#include "scene/layers/layers.h"
+#include "scene/read_gbuffer.h"
+#include "scene/scene.h"
 
 namespace ssdo {
+
+/// Which layers are read, and how.
+struct InputOptions {
+  std::vector<LayerRequest> aovs;
+  std::string part;  ///< name or number; empty: all
+  GBufferOptions gbuffer;
+  bool listed = false;  ///< the user has seen the list of layers: errors need not say where it is
+};
+
+/// All that the user says about the result.
+struct FrameOptions {
+  InputOptions input;
+  CameraOptions camera;
+  LightOptions light;
+  ModelOptions model;
+  OutputOptions output;
+  ColorOptions color;
+};
 
 /// Milliseconds of wall time per stage.
 struct StageTimes {
@@ -26,15 +45,13 @@ struct Frame {
   std::string input;
   std::deque<ExrReader> files;  ///< the frame, then the files that --aov names
   LayerTable layers;
-  GBuffer gbuffer;
-  Geometry geometry;
+  Scene scene;
+  GBuffer gbuffer;  ///< what the scene has not taken: layers as rendered, alpha, motion
   GeometryReport report;
-  Environment environment = Environment::constant(glm::vec3(1));
-  std::optional<LightModel> light_model;  ///< of an environment that is no constant
-  HiddenGeometry hidden;                  ///< for methods that march
   std::string light;  ///< one line
   Plan plan;
-  StageTimes times;
+  std::vector<std::string> history;  ///< what a temporal plan takes from the frame before, and why
+  StageTimes times;                  ///< of the stages up to here
 
   /// The layer that the products are made from: position, or depth where there is none.
   const Layer& lead() const;
@@ -43,16 +60,13 @@ struct Frame {
 };
 
 /// Reads the layers of `input` and decides what to do with them: read, layers, gbuffer, camera,
-/// geometry, plan. `aovs` are the requests for layers, with files of this very frame.
+/// geometry, plan. `aovs` are the requests for layers, with files of this very frame. `number` is
+/// the frame's in its sequence: a temporal plan has another sampling pattern in every frame.
 /// Errors: those of the stages.
-Frame prepare_frame(const Options& options, const Light& light, const std::string& input,
-                    const std::vector<LayerRequest>& aovs);
+Frame prepare_frame(const FrameOptions& options, const Lighting& light, const std::string& input,
+                    const std::vector<LayerRequest>& aovs, int number = 0);
 
 /// What the header of the frame's part says about colour.
 ColorTags color_tags(const Frame& frame);
-
-/// What was found and decided, for people and for programs.
-std::string describe(const Frame& frame);
-nlohmann::json to_json(const Frame& frame);
 
 }  // namespace ssdo

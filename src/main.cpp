@@ -9,14 +9,14 @@
 #include <exception>
 #include <new>
 
-#include "batch.h"
 #include "bench/bench.h"
+#include "cli/batch.h"
+#include "cli/options.h"
 #include "compare.h"
 #include "error.h"
 #include "estimators/registry.h"
 #include "io/one_line.h"
 #include "io/safe_file.h"
-#include "options.h"
 
 namespace {
 

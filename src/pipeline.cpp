@@ -1,106 +1,111 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline.h"
 
-#include <fmt/format.h>
-
-#include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
-#include "compose.h"
-#include "display_image.h"
-#include "error.h"
+#include "color/compose.h"
+#include "color/display_image.h"
 #include "io/exr_writer.h"
 #include "io/image_file.h"
 #include "io/json_text.h"
-#include "io/safe_file.h"
 #include "stopwatch.h"
 
 namespace ssdo {
 namespace {
 
+/// The share of a job's time that estimate and filter take, for progress.
+constexpr double kEstimateShare = 0.85;
+
 const std::string& product_of_picture(const Target& target, const Plan& plan) {
   return target.product ? *target.product : plan.show;
 }
 
-void write_exr_target(const SafeFile& file, const Target& target, const Options& options,
-                      const Frame& frame, const Products& products, Relit& relit) {
+/// Returns how many values were clamped.
+std::size_t write_exr_target(const SafeFile& file, const Target& target, const RelightJob& job,
+                             const Plan& plan, const Products& products) {
+  const Frame& frame = job.frame;
   std::vector<NamedPlane> channels;
-  for (const std::string& product :
-       target.product ? std::vector{*target.product} : frame.plan.write) {
-    for (NamedPlane& plane : product_channels(product, frame.gbuffer, frame.geometry, products)) {
+  for (const std::string& product : target.product ? std::vector{*target.product} : plan.write) {
+    for (NamedPlane& plane : product_channels(product, frame.scene, frame.gbuffer, products))
       channels.push_back(std::move(plane));
-    }
   }
   ExrOutput output;
   output.input = &frame.files[std::size_t(frame.lead().file)];
   output.part = frame.lead().part;
-  output.keep_channels = options.output.keep_channels;
-  output.compression = options.output.compression;
-  output.attributes = {{"ssdo/version", SSDO_VERSION},
-                       {"ssdo/plan", json_text(to_json(frame.plan))}};
-  for (const NamedPlane& plane : channels) {
-    output.planes.push_back({plane.channel, options.output.pixel_type, &plane.pixels});
-  }
-  relit.clamped_values += write_exr(file, output);
+  output.keep_channels = job.options.output.keep_channels;
+  output.compression = job.options.output.compression;
+  output.attributes = {{"ssdo/version", SSDO_VERSION}, {"ssdo/plan", json_text(to_json(plan))}};
+  for (const NamedPlane& plane : channels)
+    output.planes.push_back({plane.channel, job.options.output.pixel_type, &plane.pixels});
+  return write_exr(file, output);
+}
+
+void append(std::vector<std::string>& lines, const std::vector<std::string>& more) {
+  lines.insert(lines.end(), more.begin(), more.end());
 }
 
 }  // namespace
 
-std::optional<DisplayTransform> make_display(const Options& options, const Frame& frame,
-                                             const std::vector<Target>& targets) {
-  for (const Target& target : targets) {
-    if (!has_exr_ending(target.path) && needs_display(product_of_picture(target, frame.plan)))
-      return DisplayTransform(options.color, color_tags(frame));
+std::optional<DisplayTransform> make_display(const RelightJob& job) {
+  for (const Target& target : job.targets) {
+    if (!has_exr_ending(target.path) && needs_display(product_of_picture(target, job.frame.plan)))
+      return DisplayTransform(job.options.color, color_tags(job.frame));
   }
   return std::nullopt;
 }
 
-std::vector<std::unique_ptr<SafeFile>> write_targets(
-    const Options& options, Frame& frame, const std::vector<Target>& targets,
-    const OutputPolicy& policy, const Products& products, const DisplayTransform* display,
-    const std::function<void(double)>& told, Relit& relit) {
+Written write_targets(const RelightJob& job, const Plan& plan, const Products& products,
+                      const DisplayTransform* display, const std::function<void(double)>& told) {
   Stopwatch watch;
-  std::vector<std::unique_ptr<SafeFile>> files;
-  for (const Target& target : targets) {
-    files.push_back(std::make_unique<SafeFile>(target.path, policy));
+  Written out;
+  for (const Target& target : job.targets) {
+    const SafeFile& file =
+        *out.files.emplace_back(std::make_unique<SafeFile>(target.path, job.policy));
     if (has_exr_ending(target.path)) {
-      write_exr_target(*files.back(), target, options, frame, products, relit);
-      frame.times.write += watch.lap();
+      out.clamped_values += write_exr_target(file, target, job, plan, products);
     } else {
-      const DisplayImage image = make_display_image(product_of_picture(target, frame.plan), frame,
-                                                    products, display, keeps_alpha(target.path));
-      frame.times.compose += watch.lap();
-      write_image(*files.back(), image.spec(options.output.bits), image.values);
-      frame.times.write += watch.lap();
+      const DisplayImage image =
+          make_display_image(product_of_picture(target, plan), job.frame.scene, job.frame.gbuffer,
+                             products, display, keeps_alpha(target.path));
+      out.compose_ms += watch.lap();
+      write_image(file, image.spec(job.options.output.bits), image.values);
     }
-    told(double(files.size()) / double(targets.size()));
+    out.write_ms += watch.lap();
+    told(double(out.files.size()) / double(job.targets.size()));
   }
-  return files;
+  return out;
 }
 
-Relit relight(const Options& options, Frame& frame, const std::vector<Target>& targets,
-              const OutputPolicy& policy, const std::function<void(double)>& told,
-              const std::optional<History>& before) {
+Relit relight(const RelightJob& job, const std::function<void(double)>& told, const Past& past) {
   Relit relit;
   // Made first: a view that does not exist costs no estimate.
-  const std::optional<DisplayTransform> display = make_display(options, frame, targets);
+  const std::optional<DisplayTransform> display = make_display(job);
   if (display) {
     relit.notes.push_back(display->description());
     if (!display->warning().empty()) relit.warnings.push_back(display->warning());
   }
 
   Estimate found = estimate(
-      frame, [&](double done) { told(0.85 * done); }, before);
+      job.frame.scene, job.frame.plan, [&](double done) { told(kEstimateShare * done); }, past);
+  relit.plan = job.frame.plan;
+  relit.plan.request = std::move(found.request);
   relit.history = std::move(found.history);
   relit.error = found.error;
-  relit.notes.insert(relit.notes.end(), found.notes.begin(), found.notes.end());
-  relit.warnings.insert(relit.warnings.end(), found.warnings.begin(), found.warnings.end());
-  const auto files = write_targets(
-      options, frame, targets, policy, found.products, display ? &*display : nullptr,
-      [&](double done) { told(0.85 + 0.15 * done); }, relit);
+  append(relit.notes, found.notes);
+  append(relit.warnings, found.warnings);
+
+  const Written written =
+      write_targets(job, relit.plan, found.products, display ? &*display : nullptr,
+                    [&](double done) { told(kEstimateShare + (1 - kEstimateShare) * done); });
+  relit.clamped_values = written.clamped_values;
   Stopwatch watch;
-  for (const auto& file : files) file->commit();
-  frame.times.write += watch.lap();
+  for (const auto& file : written.files) file->commit();
+  relit.times = job.frame.times;
+  relit.times.estimate = found.estimate_ms;
+  relit.times.filter = found.filter_ms;
+  relit.times.compose = written.compose_ms;
+  relit.times.write = written.write_ms + watch.lap();
   return relit;
 }
 

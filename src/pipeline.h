@@ -3,49 +3,55 @@
 
 #include <functional>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "color/color.h"
 #include "estimate.h"
-#include "estimators/estimator.h"
 #include "frame.h"
 #include "io/safe_file.h"
-#include "options.h"
+#include "outputs.h"
 
 namespace ssdo {
 
-/// A file to write: every product of the plan, or one.
-struct Target {
-  std::string path;
-  std::optional<std::string> product;  ///< --save
+/// A frame that has been prepared, and the files to make from it.
+struct RelightJob {
+  const FrameOptions& options;
+  const Frame& frame;
+  const std::vector<Target>& targets;
+  OutputPolicy policy;
 };
+
+/// What came of a job.
+struct Relit {
+  Plan plan;                        ///< of the frame, with the slices and steps that were needed
+  StageTimes times;                 ///< of all stages
+  std::size_t clamped_values = 0;   ///< beyond the range of half
+  std::optional<ErrorFound> error;  ///< where the plan asks for it
+  History history;                  ///< of a temporal plan, for the next frame; without a geometry
+  std::vector<std::string> notes;   ///< how colours were transformed, and what the error is
+  std::vector<std::string> warnings;
+};
+
+/// The main job: estimate, filter, compose, colour, write. All targets appear, or none. `told`
+/// hears how far it is, 0..1. Errors: those of the stages.
+Relit relight(const RelightJob& job, const std::function<void(double)>& told, const Past& past);
 
 /// How colours become those of a display, where a target is a picture that shows colours.
 /// Errors: those of DisplayTransform.
-std::optional<DisplayTransform> make_display(const Options& options, const Frame& frame,
-                                             const std::vector<Target>& targets);
+std::optional<DisplayTransform> make_display(const RelightJob& job);
 
-/// The main job on a frame that has been prepared: estimate, filter, compose, colour, write.
-/// All targets appear, or none. `told` hears how far it is, 0..1. `before` is what a temporal plan
-/// takes from the frame before, if there is one.
-struct Relit {
-  std::size_t clamped_values = 0;  ///< beyond the range of half
-  std::vector<std::string> notes;  ///< how colours were transformed, and what the error is
-  std::vector<std::string> warnings;
-  History history;                  ///< of a temporal plan, for the next frame; without a geometry
-  std::optional<ErrorFound> error;  ///< where the plan asks for it
+/// Files that have been written but do not have their names yet: the caller commits them.
+struct Written {
+  std::vector<std::unique_ptr<SafeFile>> files;
+  std::size_t clamped_values = 0;
+  double compose_ms = 0, write_ms = 0;
 };
-Relit relight(const Options& options, Frame& frame, const std::vector<Target>& targets,
-              const OutputPolicy& policy, const std::function<void(double)>& told,
-              const std::optional<History>& before);
 
-/// Writes what the targets show of `products` to temporaries, for the caller to commit. `display`
-/// may be null where no target is a picture of a colour. Adds to the times of the frame.
-std::vector<std::unique_ptr<SafeFile>> write_targets(
-    const Options& options, Frame& frame, const std::vector<Target>& targets,
-    const OutputPolicy& policy, const Products& products, const DisplayTransform* display,
-    const std::function<void(double)>& told, Relit& relit);
+/// Writes what the targets of a job show of `products`. `display` may be null where no target is a
+/// picture of a colour.
+Written write_targets(const RelightJob& job, const Plan& plan, const Products& products,
+                      const DisplayTransform* display, const std::function<void(double)>& told);
 
 }  // namespace ssdo

@@ -13,7 +13,7 @@
 #include "estimators/registry.h"
 #include "io/image_file.h"
 #include "math/luminance.h"
-#include "parallel/isa.h"
+#include "simd/isa.h"
 
 namespace ssdo {
 namespace {
@@ -63,13 +63,13 @@ std::string methods_that_make(std::string_view product, bool ambient) {
 /// Decides what is made, and in which files it goes.
 class ProductChoice {
  public:
-  ProductChoice(const Method& method, const OutputOptions& output, const GBuffer& gbuffer,
-                const std::string& file)
+  ProductChoice(const Method& method, const OutputOptions& output, const Scene& scene,
+                const GBuffer& gbuffer, const std::string& file)
       : method_(method),
         output_(output),
-        albedo_(!gbuffer.albedo.empty()),
+        albedo_(!scene.senders.albedo.empty()),
         ambient_(!gbuffer.ambient.empty()),
-        roughness_(!gbuffer.roughness.empty()),
+        roughness_(!scene.roughness.empty()),
         file_(file) {}
 
   void choose(Plan& plan) const {
@@ -93,12 +93,13 @@ class ProductChoice {
     }
     const bool lit = contains(wanted, "composite") && !ambient_;
     const bool error = contains(wanted, "error") || plan.error;
-    plan.products.ao = contains(wanted, "ao") || (contains(wanted, "composite") && ambient_);
-    plan.products.bent = contains(wanted, "bent");
-    plan.products.reflection = contains(wanted, "reflection");
-    plan.products.error = error;
-    plan.products.direct = contains(wanted, "direct") || lit || error;
-    plan.products.bounce = contains(wanted, "bounce") || lit || (error && albedo_);
+    plan.request.products.ao =
+        contains(wanted, "ao") || (contains(wanted, "composite") && ambient_);
+    plan.request.products.bent = contains(wanted, "bent");
+    plan.request.products.reflection = contains(wanted, "reflection");
+    plan.request.products.error = error;
+    plan.request.products.direct = contains(wanted, "direct") || lit || error;
+    plan.request.products.bounce = contains(wanted, "bounce") || lit || (error && albedo_);
   }
 
  private:
@@ -167,51 +168,52 @@ void explain_composite(Plan& plan, const GBuffer& gbuffer) {
                                "light stays as rendered");
 }
 
-void explain_reflection(Plan& plan, const GBuffer& gbuffer) {
-  if (!plan.products.reflection || !gbuffer.roughness.empty()) return;
+void explain_reflection(Plan& plan, const Scene& scene) {
+  if (!plan.request.products.reflection || !scene.roughness.empty()) return;
   plan.reasons.push_back(
       fmt::format("reflection: roughness {:g} everywhere, there is no layer of it",
-                  plan.parameters.at("roughness")));
+                  plan.request.parameters.at("roughness")));
 }
 
 /// Bounces by a fit belong to the light of a method, not to a product that could be left out.
-void check_multi_bounce(const Plan& plan, const GBuffer& gbuffer, const std::string& file) {
-  const auto wanted = plan.parameters.find("multi-bounce");
-  if (wanted == plan.parameters.end() || wanted->second == 0) return;
-  if (!plan.products.direct || !gbuffer.albedo.empty()) return;
+void check_multi_bounce(const Plan& plan, const Scene& scene, const std::string& file) {
+  const auto wanted = plan.request.parameters.find("multi-bounce");
+  if (wanted == plan.request.parameters.end() || wanted->second == 0) return;
+  if (!plan.request.products.direct || !scene.senders.albedo.empty()) return;
   throw Error(ExitCode::layer,
               fmt::format("{}: --set multi-bounce=1 needs a layer for albedo and none was found by "
                           "name; name one with --aov albedo=LAYER, or leave it out",
                           file));
 }
 
-void choose_bounces(Plan& plan, int wanted, const GBuffer& gbuffer) {
-  plan.bounces = plan.products.bounce ? wanted : 0;
-  if (plan.bounces == 0 || !gbuffer.radiance.empty()) return;
+void choose_bounces(Plan& plan, int wanted, const Scene& scene) {
+  plan.request.bounces = plan.request.products.bounce ? wanted : 0;
+  if (plan.request.bounces == 0 || !scene.senders.radiance.empty()) return;
   float brightest = 0;
-  for (const glm::vec3& c : gbuffer.albedo.pixels) brightest = std::max({brightest, c.x, c.y, c.z});
+  for (const glm::vec3& c : scene.senders.albedo.pixels)
+    brightest = std::max({brightest, c.x, c.y, c.z});
   if (brightest >= kDarkAlbedo) return;
-  plan.bounces = 0;
+  plan.request.bounces = 0;
   plan.reasons.push_back(fmt::format("no bounce: the albedo is {:.2g} at most", double(brightest)));
 }
 
-void explain_light(Plan& plan, const LightModel* light) {
-  if (!plan.products.direct) return;
-  if (!light) {
+void explain_light(Plan& plan, const Light& light) {
+  if (!plan.request.products.direct) return;
+  if (light.is_constant()) {
     plan.reasons.push_back("direct is ao times the environment's one colour: no directions");
     return;
   }
-  for (const Sun& sun : light->suns) {
+  for (const Sun& sun : light.suns) {
     plan.reasons.push_back(fmt::format("a sun {:.2g} degrees wide, {:.3g} of light, by itself",
                                        2 * glm::degrees(sun.angular_radius),
                                        luminance(sun.irradiance)));
   }
   std::string energy;
-  for (const double share : light->band_energy) energy += fmt::format(" {:.1f}", 100 * share);
+  for (const double share : light.band_energy) energy += fmt::format(" {:.1f}", 100 * share);
   plan.reasons.push_back(
       fmt::format("light in spherical harmonics to order {}: bands hold{} % of its energy, and "
                   "those left out {:.1f} % of what a lobe sees",
-                  light->order, energy, 100 * light->residual()));
+                  light.order, energy, 100 * light.residual()));
 }
 
 void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geometry) {
@@ -224,20 +226,20 @@ void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geomet
     return;
   }
   if (model.radius) {
-    plan.radius = float(*model.radius);
-    if (std::isinf(plan.radius) && !plan.method->looks_behind()) {
+    plan.request.radius = float(*model.radius);
+    if (std::isinf(plan.request.radius) && !plan.method->looks_behind()) {
       throw Error(ExitCode::usage,
                   fmt::format("--radius inf: method {} needs a limit", plan.method->name));
     }
-    plan.reasons.push_back(fmt::format("radius {:.4g}: as given", plan.radius));
+    plan.reasons.push_back(fmt::format("radius {:.4g}: as given", plan.request.radius));
   } else if (plan.method->looks_behind()) {
-    plan.radius = INFINITY;
+    plan.request.radius = INFINITY;
     plan.reasons.push_back("radius inf: light is stopped by whatever the frame shows or suggests");
   } else {
-    plan.radius = kAutoRadius * geometry.frame_height_at(geometry.median_depth);
+    plan.request.radius = kAutoRadius * geometry.frame_height_at(geometry.median_depth);
     plan.reasons.push_back(
         fmt::format("radius {:.4g}: {:g} of the frame's height at the median depth {:.4g}",
-                    plan.radius, kAutoRadius, geometry.median_depth));
+                    plan.request.radius, kAutoRadius, geometry.median_depth));
   }
 }
 
@@ -261,61 +263,64 @@ void choose_march(Plan& plan, const ModelOptions& model) {
     if (solids) explain_thickness(plan, model);
     return;
   }
-  plan.slices = model.slices.value_or(slices_of(model.quality));
-  plan.steps = model.steps.value_or(steps_of(model.quality));
-  plan.extend_offscreen = model.extend_offscreen;
-  if ((plan.products.error || plan.error) && plan.slices < 2) {
-    plan.slices = 2;
+  plan.request.slices = model.slices.value_or(slices_of(model.quality));
+  plan.request.steps = model.steps.value_or(steps_of(model.quality));
+  plan.request.extend_offscreen = model.extend_offscreen;
+  if ((plan.request.products.error || plan.error) && plan.request.slices < 2) {
+    plan.request.slices = 2;
     plan.reasons.push_back("2 slices: the noise is the difference of two halves");
   }
-  if (plan.products.error)
+  if (plan.request.products.error)
     plan.reasons.push_back("error: a second run with half of the steps shows what few steps miss");
   explain_thickness(plan, model);
-  if (!plan.extend_offscreen) plan.reasons.push_back("surfaces end with the frame: as asked");
+  if (!plan.request.extend_offscreen)
+    plan.reasons.push_back("surfaces end with the frame: as asked");
 }
 
 }  // namespace
 
 int Plan::samples_per_pixel() const {
-  return method->marches ? 2 * slices * steps : method->samples_per_pixel(parameters);
+  return method->marches ? 2 * request.slices * request.steps
+                         : method->samples_per_pixel(request.parameters);
 }
 
-Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBuffer& gbuffer,
-               const Geometry& geometry, const LightModel* light, const std::string& file) {
+Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Scene& scene,
+               const GBuffer& gbuffer, const std::string& file) {
   Plan plan;
   plan.method = &find_method(model.method);
-  plan.parameters = resolve_parameters(*plan.method, model.set);
+  plan.request.parameters = resolve_parameters(*plan.method, model.set);
   plan.filter = &find_filter(model.filter);
   plan.temporal = model.temporal;
-  plan.seed = model.seed;
+  plan.request.seed = model.seed;
   plan.error = model.error;
-  ProductChoice(*plan.method, output, gbuffer, file).choose(plan);
+  ProductChoice(*plan.method, output, scene, gbuffer, file).choose(plan);
   explain_composite(plan, gbuffer);
-  explain_reflection(plan, gbuffer);
-  check_multi_bounce(plan, gbuffer, file);
-  choose_bounces(plan, model.bounces, gbuffer);
-  explain_light(plan, light);
-  choose_radius(plan, model, geometry);
+  explain_reflection(plan, scene);
+  check_multi_bounce(plan, scene, file);
+  choose_bounces(plan, model.bounces, scene);
+  explain_light(plan, scene.light);
+  choose_radius(plan, model, scene.geometry);
   choose_march(plan, model);
   return plan;
 }
 
 nlohmann::json to_json(const Plan& plan) {
   nlohmann::json j = {{"method", plan.method->name},
-                      {"parameters", plan.parameters},
+                      {"parameters", plan.request.parameters},
                       {"products", plan.make},
-                      {"bounces", plan.bounces},
+                      {"bounces", plan.request.bounces},
                       {"samples_per_pixel", plan.samples_per_pixel()},
                       {"filter", plan.filter->name},
                       {"temporal", plan.temporal},
                       {"reasons", plan.reasons}};
   // JSON knows no infinity.
   if (plan.method->has_radius)
-    j["radius"] = std::isinf(plan.radius) ? nlohmann::json("inf") : nlohmann::json(plan.radius);
+    j["radius"] = std::isinf(plan.request.radius) ? nlohmann::json("inf")
+                                                  : nlohmann::json(plan.request.radius);
   if (plan.method->marches) {
-    j["slices"] = plan.slices;
-    j["steps"] = plan.steps;
-    j["offscreen"] = plan.extend_offscreen ? "extend" : "open";
+    j["slices"] = plan.request.slices;
+    j["steps"] = plan.request.steps;
+    j["offscreen"] = plan.request.extend_offscreen ? "extend" : "open";
   }
   return j;
 }

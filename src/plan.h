@@ -8,27 +8,44 @@
 
 #include "estimators/estimator.h"
 #include "filters/registry.h"
-#include "options.h"
+#include "outputs.h"
 #include "scene/gbuffer.h"
-#include "scene/geometry.h"
-#include "scene/light_model.h"
+#include "scene/light/light.h"
+#include "scene/scene.h"
 
 namespace ssdo {
+
+/// Slices per pixel, and steps on each side of a slice out to the frame's diagonal.
+enum class Quality { draft, standard, final };
+constexpr int slices_of(Quality q) { return q == Quality::final ? 6 : 2; }
+constexpr int steps_of(Quality q) {
+  return q == Quality::draft ? 8 : q == Quality::standard ? 16 : 48;
+}
+
+/// What the user says about the method.
+struct ModelOptions {
+  std::string method = "bitmask";
+  std::optional<double> radius;     ///< scene units or infinity; chosen from the frame if not given
+  std::optional<double> thickness;  ///< scene units or infinity; found in the frame if not given
+  bool extend_offscreen = true;     ///< surfaces go on beyond the frame
+  Quality quality = Quality::standard;
+  std::optional<int> slices, steps;  ///< in place of those of the quality
+  std::optional<double> error;       ///< largest standard error of direct + bounce
+  int bounces = 1;                   ///< 0 to 8
+  unsigned seed = 0;
+  std::vector<std::string> set;  ///< NAME=VALUE of the method
+  std::string filter = "geometry";
+  bool temporal = false;  ///< frames of a sequence share what they find
+};
 
 /// What will be computed for a frame, and why.
 struct Plan {
   const Method* method = nullptr;
-  ParameterValues parameters;
-  ProductSet products;  ///< what the method is asked for
-  float radius = 0;     ///< scene units; 0 of a method without one
-  int bounces = 0;
-  int slices = 0, steps = 0;  ///< of methods that march
-  bool extend_offscreen = true;
+  Request request;                   ///< what the method is asked for
   std::optional<double> error;       ///< to stay below
   std::string isa;                   ///< instruction set of the inner loops
   const Filter* filter = nullptr;    ///< after the estimate
   bool temporal = false;             ///< then the mean with the frames before
-  unsigned seed = 0;                 ///< of the sampling pattern
   std::vector<std::string> make;     ///< products for any of the outputs
   std::vector<std::string> write;    ///< those that every EXR of -o holds, in their order there
   std::string show;                  ///< the one that every picture of -o holds
@@ -41,9 +58,8 @@ struct Plan {
 /// that is written is left out.
 /// Errors: ExitCode::usage for a product that the method does not make, or several for one
 /// picture; ExitCode::layer for one whose layer is missing.
-/// `light` is that of the environment; null where it is constant.
-Plan make_plan(const ModelOptions& model, const OutputOptions& output, const GBuffer& gbuffer,
-               const Geometry& geometry, const LightModel* light, const std::string& file);
+Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Scene& scene,
+               const GBuffer& gbuffer, const std::string& file);
 
 nlohmann::json to_json(const Plan& plan);
 

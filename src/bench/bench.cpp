@@ -17,10 +17,11 @@
 #include "bench/report.h"
 #include "bench/report_files.h"
 #include "bench/subject.h"
+#include "cli/describe.h"
+#include "cli/progress.h"
 #include "estimators/registry.h"
 #include "io/one_line.h"
 #include "pipeline.h"
-#include "progress.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -73,7 +74,6 @@ class Bench {
     report_.surface_pixels = subject_.surface_pixels;
     for (const auto& [product, truth] : subject_.truths)
       report_.truths[product] = truth.file + ":" + truth.layer;
-    frame_.plan = plan_of(standard_setting(find_method("bitmask")));
     if (options_.say.verbose) {
       fmt::print(stderr, "{}", describe(frame_));
     } else if (!options_.say.quiet) {
@@ -114,7 +114,7 @@ class Bench {
   void describe_machine() {
     report_.input = options_.input_file;
     report_.frame = to_json(frame_);
-    report_.pixels = frame_.geometry.surfel.size();
+    report_.pixels = frame_.scene.geometry.surfel.size();
     report_.stages = frame_.times;
     report_.processor = processor_name();
     report_.processors = processor_count();
@@ -128,8 +128,8 @@ class Bench {
     for (const std::string& product : report_.products) {
       if (makes(*setting.method, product)) output.products.push_back(product);
     }
-    return make_plan(setting.applied_to(options_.model), output, frame_.gbuffer, frame_.geometry,
-                     frame_.light_model ? &*frame_.light_model : nullptr, options_.input_file);
+    return make_plan(setting.applied_to(options_.model), output, frame_.scene, frame_.gbuffer,
+                     options_.input_file);
   }
 
   Converged converge_to(const Setting& setting, int seeds) {
@@ -215,7 +215,7 @@ class Bench {
     const Plan plan = plan_of(setting);
     const double work = work_of(setting), before = done_;
     const auto told = [&](std::size_t done, std::size_t count) {
-      tell(before + work * double(done) / double(count) / (1.0 + plan.bounces), setting);
+      tell(before + work * double(done) / double(count) / (1.0 + plan.request.bounces), setting);
     };
     const Measured measured = measure(frame_, plan, told);
     tell(before + work, setting);
@@ -244,14 +244,10 @@ class Bench {
 
   /// An EXR of the products that never gets its name.
   void measure_writing(const Plan& plan, const Products& products) {
-    Relit relit;
-    frame_.plan = plan;
-    const Target target{fs::temp_directory_path() / fmt::format("ssdo_bench_{}.exr", getpid()),
-                        std::nullopt};
-    frame_.times.write = 0;
-    write_targets(
-        options_, frame_, {target}, {.overwrite = true}, products, nullptr, [](double) {}, relit);
-    report_.stages.write = frame_.times.write;
+    const std::vector<Target> targets = {
+        {fs::temp_directory_path() / fmt::format("ssdo_bench_{}.exr", getpid()), std::nullopt}};
+    const RelightJob job{options_, frame_, targets, {.overwrite = true}};
+    report_.stages.write = write_targets(job, plan, products, nullptr, [](double) {}).write_ms;
   }
 
   /// Those on a front, the methods' own defaults and what is recommended.
@@ -271,8 +267,8 @@ class Bench {
   int threads_;
   ThreadLimit limit_;
   Subject subject_;
-  Frame& frame_;
-  Progress progress_;
+  const Frame& frame_;
+  ProgressLine progress_;
   std::vector<const Method*> methods_;
   int rays_ = 0;
   Converged trace_;  ///< the reference of all

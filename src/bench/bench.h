@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "cli/options.h"
 #include "error.h"
-#include "options.h"
 
 namespace ssdo {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "bench/ladder.h"
-#include "options.h"
+#include "cli/options.h"
 #include "plan.h"
 
 namespace ssdo {

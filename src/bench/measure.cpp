@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <ctime>
 
-#include "compose.h"
+#include "color/compose.h"
 #include "estimate.h"
 #include "stopwatch.h"
 
@@ -68,22 +68,23 @@ ProductChannels channels_of(const Frame& frame, const Plan& plan, const Products
   ProductChannels all;
   for (const std::string& name : plan.make) {
     Channels& channels = all[name];
-    channels.window = frame.geometry.window;
-    for (NamedPlane& plane : product_channels(name, frame.gbuffer, frame.geometry, products))
+    channels.window = frame.scene.geometry.window;
+    for (NamedPlane& plane : product_channels(name, frame.scene, frame.gbuffer, products))
       channels.planes.push_back(std::move(plane.pixels));
   }
   return all;
 }
 
-Measured measure(const Frame& frame, const Plan& plan, const TileProgress& progress) {
+Measured measure(const Frame& frame, const Plan& plan, const Progress& progress) {
   Measured out;
   std::vector<Cost> estimates, filters;
   double spent = 0;
   do {
     CostWatch watch;
-    out.products = run_method(frame, plan, out.runs == 0 ? progress : TileProgress());
+    out.products =
+        plan.method->estimate(frame.scene, plan.request, out.runs == 0 ? progress : Progress());
     estimates.push_back(watch.lap());
-    out.products = apply_filter(*plan.filter, std::move(out.products), frame.geometry,
+    out.products = apply_filter(*plan.filter, std::move(out.products), frame.scene.geometry,
                                 plan.method->pattern_size);
     filters.push_back(watch.lap());
     spent += estimates.back().wall_ms + filters.back().wall_ms;
@@ -94,14 +95,16 @@ Measured measure(const Frame& frame, const Plan& plan, const TileProgress& progr
   return out;
 }
 
-Converged converge(const Frame& frame, Plan plan, int seeds, const std::function<void(int)>& told) {
+Converged converge(const Frame& frame, const Plan& plan, int seeds,
+                   const std::function<void(int)>& told) {
   Converged out;
+  Request request = plan.request;
   ProductChannels& mean = out.products;
   ProductChannels second;
   const int half = seeds / 2;
   for (int i = 0; i < seeds; ++i) {
-    ++plan.seed;
-    ProductChannels one = channels_of(frame, plan, run_method(frame, plan, {}));
+    ++request.seed;
+    ProductChannels one = channels_of(frame, plan, plan.method->estimate(frame.scene, request, {}));
     ProductChannels& sum = i < half || seeds == 1 ? mean : second;
     if (sum.empty()) {
       sum = std::move(one);
@@ -119,7 +122,7 @@ Converged converge(const Frame& frame, Plan plan, int seeds, const std::function
 }
 
 ChannelsDifference compare_surfaces(const Frame& frame, const Channels& a, const Channels& b) {
-  const Geometry& g = frame.geometry;
+  const Geometry& g = frame.scene.geometry;
   return compare_channels(a, b, [&](int x, int y) {
     return g.window.contains(x, y) &&
            g.is_surface(g.surfel.index(x - g.window.x0, y - g.window.y0));

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "difference.h"
 #include "frame.h"
+#include "metrics/difference.h"
 
 namespace ssdo {
 
@@ -30,7 +30,7 @@ struct Measured {
 ProductChannels channels_of(const Frame& frame, const Plan& plan, const Products& products);
 
 /// Estimates and filters as the main job does. What is quick runs several times.
-Measured measure(const Frame& frame, const Plan& plan, const TileProgress& progress);
+Measured measure(const Frame& frame, const Plan& plan, const Progress& progress);
 
 /// What samples without end would give: the mean over several seeds, without a filter.
 struct Converged {
@@ -40,7 +40,8 @@ struct Converged {
 
 /// `seeds` is 1 or even; those that follow the plan's own are taken, so that its noise is not that
 /// of what is held to it.
-Converged converge(const Frame& frame, Plan plan, int seeds, const std::function<void(int)>& told);
+Converged converge(const Frame& frame, const Plan& plan, int seeds,
+                   const std::function<void(int)>& told);
 
 /// How far A is from B on the surfaces of the frame.
 ChannelsDifference compare_surfaces(const Frame& frame, const Channels& a, const Channels& b);

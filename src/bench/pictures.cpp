@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "display_image.h"
+#include "color/display_image.h"
 #include "io/image_file.h"
 #include "math/luminance.h"
 
@@ -57,7 +57,7 @@ BenchPictures::BenchPictures(const Frame& frame, const ColorOptions& color)
     : frame_(frame), display_(color, color_tags(frame)) {}
 
 std::string BenchPictures::picture_of(const std::string& product, const Channels& channels) const {
-  const Geometry& g = frame_.geometry;
+  const Geometry& g = frame_.scene.geometry;
   Products products;
   Plane<glm::vec3> colors = colors_over(g.window, channels);
   for (std::size_t i = 0; i < colors.size(); ++i) {
@@ -73,7 +73,7 @@ std::string BenchPictures::picture_of(const std::string& product, const Channels
 }
 
 std::string BenchPictures::map_of(const ChannelsDifference& difference, double scale) const {
-  const Window& window = frame_.geometry.window;
+  const Window& window = frame_.scene.geometry.window;
   const Plane<glm::vec3> colors = colors_over(window, {window, difference.a_minus_b});
   Products products;
   products.ao = Plane<float>(window.width(), window.height());
@@ -85,7 +85,8 @@ std::string BenchPictures::map_of(const ChannelsDifference& difference, double s
 }
 
 std::string BenchPictures::encode(const std::string& product, const Products& products) const {
-  const DisplayImage image = thinned(make_display_image(product, frame_, products, &display_, true));
+  const DisplayImage image =
+      thinned(make_display_image(product, frame_.scene, frame_.gbuffer, products, &display_, true));
   const auto bytes = encode_image("picture.png", image.spec(8), image.values);
   return {bytes.begin(), bytes.end()};
 }

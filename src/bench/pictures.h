@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "color.h"
-#include "difference.h"
+#include "color/color.h"
 #include "frame.h"
+#include "metrics/difference.h"
 
 namespace ssdo {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/pareto.h"
+#include "metrics/pareto.h"
 
 namespace ssdo {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "bench/bench_options.h"
+#include "bench/options.h"
 #include "bench/report.h"
 
 namespace ssdo {

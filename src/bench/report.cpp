@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/report.h"
 
-#include "bench/pareto.h"
+#include "metrics/pareto.h"
 
 namespace ssdo {
 

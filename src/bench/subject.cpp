@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "bench/report_files.h"
+#include "cli/jobs.h"
 #include "error.h"
-#include "jobs.h"
-#include "sequence.h"
+#include "io/sequence.h"
 
 namespace ssdo {
 namespace {
@@ -44,7 +44,7 @@ std::vector<std::string> choose_products(const Options& options, const Subject& 
   std::vector<std::string> products;
   for (const std::string& name : kBenchProducts) {
     // In light that is the same from everywhere, direct is ao times a colour.
-    const bool telling = name == "direct" ? !subject.frame.environment.is_constant()
+    const bool telling = name == "direct" ? !subject.frame.scene.light.is_constant()
                                           : contains(subject.frame.plan.make, name);
     if (contains(asked, name) || subject.truths.contains(name) || (asked.empty() && telling))
       products.push_back(name);
@@ -61,8 +61,8 @@ std::vector<std::string> choose_products(const Options& options, const Subject& 
 
 std::size_t count_surfaces(const Frame& frame) {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < frame.geometry.surfel.size(); ++i)
-    count += frame.geometry.is_surface(i);
+  for (std::size_t i = 0; i < frame.scene.geometry.surfel.size(); ++i)
+    count += frame.scene.geometry.is_surface(i);
   if (count > 0) return count;
   throw Error(ExitCode::failed,
               fmt::format("{}: shows no surface: there is nothing to measure", frame.input));
@@ -70,7 +70,7 @@ std::size_t count_surfaces(const Frame& frame) {
 
 /// A truth of another size would silently be held to a corner of the frame.
 void check_truth(const Truth& truth, const Subject& subject) {
-  const Window &own = subject.frame.geometry.display, &other = truth.display;
+  const Window &own = subject.frame.scene.geometry.display, &other = truth.display;
   if (!(own == other)) {
     throw Error(ExitCode::layer,
                 fmt::format("--truth {}:{}: is {} x {}, and the frame is {} x {}; it has to show "
@@ -102,7 +102,7 @@ Subject read_subject(const Options& options) {
   Options prepared = options;
   prepared.model.method = "bitmask";  // which needs all that any method needs
   prepared.output.products.clear();
-  const Light light(options.light);
+  const Lighting light(options.light);
   subject.frame = prepare_frame(prepared, light, options.input_file, options.input.aovs);
   subject.products = choose_products(options, subject);
   subject.surface_pixels = count_surfaces(subject.frame);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bench/truth.h"
+#include "cli/options.h"
 #include "frame.h"
-#include "options.h"
 
 namespace ssdo {
 

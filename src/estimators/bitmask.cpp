@@ -26,18 +26,18 @@
 // - Sectors of equal angle that count alike read a pit of 0.75 as 0.38 when seen from the side.
 //   Here they count by the integral of the cosine over them. Equal steps of c are cheap to find
 //   (no arc function) and the same for all pixels, so that moments of masks come from tables
-//   (slice_sectors.cpp). The point that stands for a sector differs from slice to slice, or a
-//   gentle curve would show the sectors as bands.
+//   (bitmask/slice_sectors.cpp). The point that stands for a sector differs from slice to slice, or
+//   a gentle curve would show the sectors as bands.
 // - direct is a ratio to the exact unoccluded irradiance E(N): the noise of a few directions
 //   cancels. L is taken in spherical harmonics, of the environment without its suns; each sun is a
-//   direction of its own, tested along the slice that holds it (bitmask_sun.cpp).
+//   direction of its own, tested along the slice that holds it (bitmask/sun.cpp).
 // - bounce takes the radiance of the first surface in each sector; no 1/d^2, so no singularity
-//   (bitmask_bounce.cpp, and bitmask_senders.cpp for what is sent).
+//   (bitmask/bounce.cpp, and bitmask/senders.cpp for what is sent).
 // - What a pixel shows counts for the stretch of the way up to those that are seen before and after
-//   it (bitmask_side-inl.h). Taken for points, few steps see too little: 16 that count for their
+//   it (bitmask/side-inl.h). Taken for points, few steps see too little: 16 that count for their
 //   stretches are nearer to the limit than 24 points.
 // - Backs, surfaces behind what covers them (hidden_geometry.cpp) and beyond the frame
-//   (bitmask_extension-inl.h) are guesses that GTAO does not make.
+//   (bitmask/extension-inl.h) are guesses that GTAO does not make.
 #include "estimators/bitmask.h"
 
 #include <algorithm>
@@ -45,12 +45,12 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
-#include "estimators/bitmask_march.h"
+#include "estimators/bitmask/march.h"
 #include "math/frame.h"
 #include "math/light_range.h"
 #include "math/sequence_numbers.h"
-#include "parallel/isa.h"
-#include "scene/light_model.h"
+#include "scene/light/light.h"
+#include "simd/isa.h"
 
 namespace ssdo {
 namespace {
@@ -75,15 +75,15 @@ InterleavedColor make_color(const Interleaving& layout) {
 }
 
 /// What the light's coefficients weigh the polynomials of add_basis with, channel by channel: these
-/// lack the constants that make spherical harmonics orthonormal. Without light, band 0 alone.
-std::vector<float> basis_weights(const LightModel* light, int order) {
+/// lack the constants that make spherical harmonics orthonormal. Light of order 0 is band 0 alone.
+std::vector<float> basis_weights(const Light& light, int order) {
   const int count = sh_count(order);
   std::vector<float> weights(std::size_t(3 * count), 0.0f);
   for (int c = 0; c < 3; ++c) {
     float* channel = &weights[std::size_t(c * count)];
-    if (!light) channel[0] = 1;
-    for (int i = 0; light && i < count; ++i)
-      channel[i] = kShConstants[std::size_t(i)] * light->coefficients[std::size_t(i)][c];
+    if (light.order == 0) channel[0] = 1;
+    for (int i = 0; light.order > 0 && i < count; ++i)
+      channel[i] = kShConstants[std::size_t(i)] * light.coefficients[std::size_t(i)][c];
   }
   return weights;
 }
@@ -91,27 +91,25 @@ std::vector<float> basis_weights(const LightModel* light, int order) {
 /// The method on one frame.
 class Bitmask {
  public:
-  explicit Bitmask(const EstimateInput& in)
-      : in_(in),
-        scene_(make_march_scene(in.geometry, in.hidden)),
-        layout_(scene_.layout),
-        pattern_(layout_, in.geometry.display, in.slices, in.steps, in.seed),
-        bounce_pattern_(layout_, in.geometry.display, bounce_slices(in.slices),
-                        bounce_steps(in.steps), in.seed, bounce_spacing(in.slices)),
-        march_{scene_, pattern_, in.radius, in.extend_offscreen},
-        bounce_march_{scene_, bounce_pattern_, in.radius, in.extend_offscreen},
+  Bitmask(const Scene& scene, const Request& request, const Progress& progress)
+      : scene_(scene),
+        request_(request),
+        progress_(progress),
+        march_scene_(make_march_scene(scene.geometry, scene.hidden)),
+        layout_(march_scene_.layout),
+        pattern_(layout_, scene.geometry.display, request.slices, request.steps, request.seed),
+        bounce_pattern_(layout_, scene.geometry.display, bounce_slices(request.slices),
+                        bounce_steps(request.steps), request.seed, bounce_spacing(request.slices)),
+        march_{march_scene_, pattern_, request.radius, request.extend_offscreen},
+        bounce_march_{march_scene_, bounce_pattern_, request.radius, request.extend_offscreen},
         ao_(layout_) {
     choose_isa();
-    if (!in.light) {
-      for (int i = 0; i < 4; ++i)
-        constant_irradiance_(i % 2, i / 2) = in.environment.constant_radiance();
-    }
   }
 
   Products run() {
     gather_visibility();
-    if (in_.products.bounce) out_.bounce = picture(gather_bounce());
-    if (in_.products.error) out_.error = picture(error_);
+    if (request_.products.bounce) out_.bounce = picture(gather_bounce());
+    if (request_.products.error) out_.error = picture(error_);
     out_.ao = picture(ao_, 1.0f);
     if (wants_light()) out_.direct = picture(direct_);
     return std::move(out_);
@@ -119,10 +117,7 @@ class Bitmask {
 
  private:
   bool wants_light() const {
-    return in_.products.direct || in_.products.bounce || in_.products.error;
-  }
-  const OctahedralMap& irradiance() const {
-    return in_.light ? in_.light->irradiance : constant_irradiance_;
+    return request_.products.direct || request_.products.bounce || request_.products.error;
   }
 
   /// Calls `work(pixel, index)` for each pixel of a row; index is that of the march.
@@ -131,27 +126,27 @@ class Bitmask {
     for (int first = 0; first < std::min(kPeriod, layout_.width()); ++first) {
       std::ptrdiff_t i = layout_.index(first, y);
       for (int x = first; x < layout_.width(); x += kPeriod)
-        work(in_.geometry.surfel.index(x, y), i++);
+        work(scene_.geometry.surfel.index(x, y), i++);
     }
   }
 
   /// A value of every pixel; `background` where there is no surface.
   Plane<float> picture(const InterleavedPlane& plane, float background = 0) const {
-    auto out = Plane<float>::like(in_.geometry.surfel);
+    auto out = Plane<float>::like(scene_.geometry.surfel);
     for_each_row(layout_.height(), [&](int y) {
       for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
-        out[pixel] = std::isnan(scene_.depth[i]) ? background : plane[i];
+        out[pixel] = std::isnan(march_scene_.depth[i]) ? background : plane[i];
       });
     });
     return out;
   }
 
   Plane<glm::vec3> picture(const InterleavedColor& color) const {
-    auto out = Plane<glm::vec3>::like(in_.geometry.surfel);
+    auto out = Plane<glm::vec3>::like(scene_.geometry.surfel);
     for_each_row(layout_.height(), [&](int y) {
       for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
         const glm::vec3 value(color[0][i], color[1][i], color[2][i]);
-        out[pixel] = std::isnan(scene_.depth[i]) ? glm::vec3(0) : value;
+        out[pixel] = std::isnan(march_scene_.depth[i]) ? glm::vec3(0) : value;
       });
     });
     return out;
@@ -178,10 +173,10 @@ class Bitmask {
   }
 
   void gather_visibility() {
-    const LightModel* light = wants_light() ? in_.light : nullptr;
-    VisibilityJob job{march_, 0, nullptr, &irradiance(), &ao_, nullptr, nullptr, nullptr};
+    const Light& light = scene_.light;
+    VisibilityJob job{march_, 0, nullptr, &light.irradiance, &ao_, nullptr, nullptr, nullptr};
     InterleavedColor bent;
-    if (in_.products.bent) {
+    if (request_.products.bent) {
       bent = make_color(layout_);
       job.bent = &bent;
       job.order = 1;
@@ -190,22 +185,21 @@ class Bitmask {
     if (wants_light()) {
       direct_ = make_color(layout_);
       job.direct = &direct_;
-      if ((light && light->order > 0) || in_.products.error) {
-        job.order = std::max(light ? light->order : 0, 1);
-        weights = basis_weights(light && light->order > 0 ? light : nullptr, job.order);
+      if (light.order > 0 || request_.products.error) {
+        job.order = std::max(light.order, 1);
+        weights = basis_weights(light, job.order);
         job.light = weights.data();
       }
     }
-    if (in_.products.error) {
+    if (request_.products.error) {
       error_ = InterleavedPlane(layout_);
       job.difference = &error_;
     }
     for_each_band(
-        layout_.height(), [&](int y0, int y1) { march_visibility(job, y0, y1); }, in_.progress);
-    if (in_.products.bent) out_.bent = picture(bent);
-    if (light) {
-      for (const Sun& sun : light->suns) add_sun(sun);
-    }
+        layout_.height(), [&](int y0, int y1) { march_visibility(job, y0, y1); }, progress_);
+    if (request_.products.bent) out_.bent = picture(bent);
+    if (!wants_light()) return;
+    for (const Sun& sun : light.suns) add_sun(sun);
   }
 
   /// Adds the light of a sun where it is seen. Members of the pattern look at different points of
@@ -213,8 +207,9 @@ class Bitmask {
   void add_sun(const Sun& sun) {
     SunJob job{march_, {}, {}, &sun, &direct_};
     const glm::mat3 frame = frame_about(sun.direction);
-    const double diagonal = std::hypot(in_.geometry.display.width(), in_.geometry.display.height());
-    const int members = kPeriod * kPeriod, steps = kSunSteps * in_.steps;
+    const double diagonal =
+        std::hypot(scene_.geometry.display.width(), scene_.geometry.display.height());
+    const int members = kPeriod * kPeriod, steps = kSunSteps * request_.steps;
     for (int m = 0; m < members; ++m) {
       const int rank = SlicePattern::rank(m);
       const float angle = float(2 * glm::pi<double>() * fraction(rank * kR2First)),
@@ -228,17 +223,17 @@ class Bitmask {
             float(march_distance((i + start) / steps, diagonal)));
     }
     for_each_band(
-        layout_.height(), [&](int y0, int y1) { march_sun(job, y0, y1); }, in_.progress);
+        layout_.height(), [&](int y0, int y1) { march_sun(job, y0, y1); }, progress_);
   }
 
   /// The light that each pixel's covered surface sends: that of the pixel where it is seen.
   void find_sent_behind(const InterleavedColor& sent, InterleavedColor& behind) const {
-    const bool known = in_.hidden && !in_.hidden->behind_source.empty();
+    const bool known = !scene_.hidden.behind_source.empty();
     for_each_row(layout_.height(), [&](int y) {
       for (InterleavedPlane& plane : behind) plane.fill_row(layout_, y, 0);
       if (!known) return;
       for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
-        const int source = in_.hidden->behind_source[pixel];
+        const int source = scene_.hidden.behind_source[pixel];
         if (source < 0) return;
         const std::ptrdiff_t from =
             layout_.index(source % layout_.width(), source / layout_.width());
@@ -249,27 +244,27 @@ class Bitmask {
 
   /// Each pass is lit by the one before.
   InterleavedColor gather_bounce() {
-    const bool lit = in_.radiance.empty();  // else a layer says what is sent
-    InterleavedColor given = interleaved(lit ? in_.albedo : in_.radiance), bounce = black(),
-                     sent_back, sent_behind = make_color(layout_), gathered = make_color(layout_),
-                     sent_before_last;
+    const bool lit = scene_.senders.radiance.empty();  // else a layer says what is sent
+    InterleavedColor given = interleaved(lit ? scene_.senders.albedo : scene_.senders.radiance),
+                     bounce = black(), sent_back, sent_behind = make_color(layout_),
+                     gathered = make_color(layout_), sent_before_last;
     InterleavedPlane weights(layout_), difference, error;
-    if (lit && in_.light) sent_back = black();
-    if (in_.products.error)
+    const bool two_sided = lit && !scene_.light.is_constant();
+    if (two_sided) sent_back = black();
+    if (request_.products.error)
       difference = InterleavedPlane(layout_), error = InterleavedPlane(layout_);
-    if (lit && in_.bounces > 1) sent_before_last = black();
-    for (int pass = 1; pass <= in_.bounces; ++pass) {
+    if (lit && request_.bounces > 1) sent_before_last = black();
+    for (int pass = 1; pass <= request_.bounces; ++pass) {
       // The last pass asks for the albedo no more.
-      InterleavedColor& sent = lit && pass < in_.bounces ? sent_before_last : given;
-      const bool two_sided = lit && in_.light;
+      InterleavedColor& sent = lit && pass < request_.bounces ? sent_before_last : given;
       if (lit) {
-        const SenderJob senders{scene_,
+        const SenderJob senders{march_scene_,
                                 &ao_,
                                 &given,
                                 &direct_,
                                 pass > 1 ? &bounce : nullptr,
-                                &irradiance(),
-                                in_.light ? &in_.light->suns : nullptr,
+                                &scene_.light.irradiance,
+                                scene_.light.suns,
                                 &sent,
                                 two_sided ? &sent_back : nullptr};
         for_each_band(layout_.height(), [&](int y0, int y1) { find_senders(senders, y0, y1); });
@@ -277,10 +272,10 @@ class Bitmask {
       find_sent_behind(sent, sent_behind);
       BorderValues sent_border[3];
       for (int c = 0; c < 3; ++c) {
-        sent_border[c] = scene_.border.gather(
+        sent_border[c] = march_scene_.border.gather(
             [&](int x, int y) { return sent[std::size_t(c)][layout_.index(x, y)]; });
       }
-      const bool wants_error = in_.products.error && pass == in_.bounces;
+      const bool wants_error = request_.products.error && pass == request_.bounces;
       const BounceJob job{bounce_march_,
                           &ao_,
                           &sent,
@@ -293,10 +288,10 @@ class Bitmask {
                           &bounce,
                           wants_error ? &error : nullptr};
       for_each_band(
-          layout_.height(), [&](int y0, int y1) { march_bounce(job, y0, y1); }, in_.progress);
+          layout_.height(), [&](int y0, int y1) { march_bounce(job, y0, y1); }, progress_);
       for_each_band(layout_.height(), [&](int y0, int y1) { spread_bounce(job, y0, y1); });
     }
-    if (in_.products.error && in_.bounces > 0) {
+    if (request_.products.error && request_.bounces > 0) {
       for_each_row(layout_.height(), [&](int y) {
         for_each_pixel(y, [&](std::size_t, std::ptrdiff_t i) { error_[i] += error[i]; });
       });
@@ -304,18 +299,21 @@ class Bitmask {
     return bounce;
   }
 
-  const EstimateInput& in_;
-  MarchScene scene_;
+  const Scene& scene_;
+  const Request& request_;
+  const Progress& progress_;
+  MarchScene march_scene_;
   const Interleaving& layout_;
   SlicePattern pattern_, bounce_pattern_;
   March march_, bounce_march_;
-  OctahedralMap constant_irradiance_{2};
   InterleavedPlane ao_, error_;
   InterleavedColor direct_;
   Products out_;
 };
 
-Products estimate(const EstimateInput& in) { return Bitmask(in).run(); }
+Products estimate(const Scene& scene, const Request& request, const Progress& progress) {
+  return Bitmask(scene, request, progress).run();
+}
 
 }  // namespace
 

@@ -9,10 +9,7 @@
 
 #include "math/plane.h"
 #include "parallel/tiles.h"
-#include "scene/environment.h"
-#include "scene/geometry.h"
-#include "scene/hidden_geometry.h"
-#include "scene/light_model.h"
+#include "scene/scene.h"
 
 namespace ssdo {
 
@@ -48,28 +45,18 @@ struct Parameter {
 
 using ParameterValues = std::map<std::string, double, std::less<>>;
 
-/// All that a method looks at.
-struct EstimateInput {
-  const Geometry& geometry;
-  const Plane<glm::vec3>& albedo;    ///< of the senders; needed for a bounce
-  const Plane<glm::vec3>& radiance;  ///< what senders give off, where a layer says so; else empty
-  const Environment& environment;
+/// What is asked of a method.
+struct Request {
   ProductSet products;
-  float radius;  ///< scene units; infinity: without limit
-  int bounces;
-  unsigned seed;
-  const ParameterValues& parameters;
-  TileProgress progress;
+  float radius = 0;  ///< scene units; infinity: without limit
+  int bounces = 0;
+  unsigned seed = 0;           ///< of the sampling pattern
+  ParameterValues parameters;  ///< every one that the method has
 
   // Of methods that march through slices of the frame.
-  int slices = 2;  ///< per pixel
-  int steps = 16;  ///< per side of a slice, from one pixel to the frame's diagonal
-  const HiddenGeometry* hidden = nullptr;  ///< null: all that is seen is endless
-  const LightModel* light = nullptr;       ///< of the environment; null: it is constant
-  bool extend_offscreen = true;            ///< surfaces go on beyond the frame
-
-  // Of methods that occlude reflections.
-  const Plane<float>* roughness = nullptr;  ///< 0..1; null or empty: as the parameter says
+  int slices = 2;                ///< per pixel
+  int steps = 16;                ///< per side of a slice, from one pixel to the frame's diagonal
+  bool extend_offscreen = true;  ///< surfaces go on beyond the frame
 };
 
 /// A row in the table of methods.
@@ -80,7 +67,7 @@ struct Method {
   std::vector<Parameter> parameters;
   bool marches;  ///< through slices of the frame, as --slices, --steps and --thickness say
   int (*samples_per_pixel)(const ParameterValues&);  ///< null where it marches
-  Products (*estimate)(const EstimateInput&);
+  Products (*estimate)(const Scene&, const Request&, const Progress&);
   bool has_solids = false;  ///< without marching, takes --thickness and endless radii
   bool has_radius = true;   ///< takes --radius; else its sizes are its own
 

@@ -43,17 +43,17 @@
 #include <limits>
 #include <numbers>
 
-#include "estimators/ambient_light.h"
-#include "estimators/multi_bounce.h"
-#include "estimators/reflection_occlusion.h"
-#include "estimators/tiled_noise.h"
-#include "parallel/isa.h"
+#include "estimators/view_space/ambient_light.h"
+#include "estimators/view_space/multi_bounce.h"
+#include "estimators/view_space/reflection_occlusion.h"
+#include "estimators/view_space/tiled_noise.h"
+#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/gtao.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/view_lanes-inl.h"
+#include "estimators/view_space/lanes-inl.h"
 // After the targets' headers.
 #include <hwy/contrib/math/math-inl.h>
 
@@ -197,24 +197,24 @@ void normalise_all(Plane<glm::vec3>& vectors) {
   }
 }
 
-Plane<glm::vec3> direct_light(const EstimateInput& in, const Products& found, bool bounces) {
-  if (!bounces) return ambient_light(in, found.ao, &found.bent);
+Plane<glm::vec3> direct_light(const Scene& scene, const Products& found, bool bounces) {
+  if (!bounces) return ambient_light(scene, found.ao, &found.bent);
   const Plane<float> open(found.ao.width, found.ao.height, 1.0f);
-  Plane<glm::vec3> direct = ambient_light(in, open, &found.bent);
+  Plane<glm::vec3> direct = ambient_light(scene, open, &found.bent);
   for (std::size_t i = 0; i < direct.size(); ++i)
-    direct[i] *= multi_bounce(found.ao[i], in.albedo[i]);
+    direct[i] *= multi_bounce(found.ao[i], scene.senders.albedo[i]);
   return direct;
 }
 
-Products estimate_gtao(const EstimateInput& in) {
+Products estimate_gtao(const Scene& scene, const Request& request, const Progress& progress) {
   choose_isa();
-  const auto parameter = [&](const char* name) { return in.parameters.find(name)->second; };
+  const auto parameter = [&](const char* name) { return request.parameters.find(name)->second; };
   const int slices = int(parameter("slices"));
   const bool bounces = parameter("multi-bounce") != 0;
-  const ViewPlanes planes = make_view_planes(in.geometry);
+  const ViewPlanes planes = make_view_planes(scene.geometry);
   Products out;
   out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
-  if (in.products.bent || in.products.direct || in.products.reflection)
+  if (request.products.bent || request.products.direct || request.products.reflection)
     out.bent = Plane<glm::vec3>(planes.width(), planes.height(), glm::vec3(0));
   std::vector<SliceTurns> turns;
   for (int i = 0; i < slices; ++i) turns.push_back(turns_of(i, slices));
@@ -222,17 +222,18 @@ Products estimate_gtao(const EstimateInput& in) {
                     std::move(turns),
                     first_steps(),
                     int(parameter("steps")),
-                    planes.fy * in.radius / 2,
-                    float(2 / (double(in.radius) * double(in.radius))),
+                    planes.fy * request.radius / 2,
+                    float(2 / (double(request.radius) * double(request.radius))),
                     float(1 - parameter("thickness")),
                     out.ao,
                     out.bent};
   const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(gtao_of_tile)(job, tile); };
-  for_each_tile(planes.width(), planes.height(), work, in.progress);
-  if (in.products.reflection) out.reflection = reflection_occlusion(in, planes, out.bent);
+  for_each_tile(planes.width(), planes.height(), work, progress);
+  if (request.products.reflection)
+    out.reflection = reflection_occlusion(scene, request, planes, out.bent);
   normalise_all(out.bent);
-  if (in.products.direct) out.direct = direct_light(in, out, bounces);
-  if (!in.products.bent) out.bent = {};
+  if (request.products.direct) out.direct = direct_light(scene, out, bounces);
+  if (!request.products.bent) out.bent = {};
   return out;
 }
 

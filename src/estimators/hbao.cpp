@@ -39,16 +39,16 @@
 #include <numbers>
 #include <utility>
 
-#include "estimators/ambient_light.h"
-#include "estimators/point_kernel.h"
-#include "estimators/tiled_noise.h"
-#include "parallel/isa.h"
+#include "estimators/view_space/ambient_light.h"
+#include "estimators/view_space/point_kernel.h"
+#include "estimators/view_space/tiled_noise.h"
+#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/hbao.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/view_lanes-inl.h"
+#include "estimators/view_space/lanes-inl.h"
 
 #ifndef SSDO_HBAO_JOB_
 #define SSDO_HBAO_JOB_
@@ -147,14 +147,14 @@ TiledNoise noise_of(const std::array<float, 16>& turns, const Function& function
   return TiledNoise(values);
 }
 
-Products estimate(const EstimateInput& in) {
+Products estimate(const Scene& scene, const Request& request, const Progress& progress) {
   choose_isa();
-  const auto parameter = [&](const char* name) { return in.parameters.find(name)->second; };
+  const auto parameter = [&](const char* name) { return request.parameters.find(name)->second; };
   const int steps = int(parameter("steps"));
   const double bias = parameter("bias"), least = parameter("least-distance"),
                farthest = parameter("max-distance");
-  const ViewPlanes planes = make_view_planes(in.geometry);
-  const HbaoPattern pattern = hbao_pattern(in.seed);
+  const ViewPlanes planes = make_view_planes(scene.geometry);
+  const HbaoPattern pattern = hbao_pattern(request.seed);
   Products out;
   out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
   const HbaoJob job{planes,
@@ -162,8 +162,8 @@ Products estimate(const EstimateInput& in) {
                     noise_of(pattern.turn, [](double a) { return std::sin(a); }),
                     TiledNoise(pattern.jitter),
                     steps,
-                    1 / in.radius,
-                    planes.fy * in.radius,
+                    1 / request.radius,
+                    planes.fy * request.radius,
                     float(parameter("max-pixels")),
                     float(bias),
                     float(least * least),
@@ -171,8 +171,8 @@ Products estimate(const EstimateInput& in) {
                     farthest > 0 ? float(-farthest) : std::numeric_limits<float>::lowest(),
                     out.ao};
   const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(hbao_of_tile)(job, tile); };
-  for_each_tile(planes.width(), planes.height(), work, in.progress);
-  if (in.products.direct) out.direct = ambient_light(in, out.ao);
+  for_each_tile(planes.width(), planes.height(), work, progress);
+  if (request.products.direct) out.direct = ambient_light(scene, out.ao);
   return out;
 }
 

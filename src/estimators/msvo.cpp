@@ -39,15 +39,15 @@
 #include <cmath>
 #include <limits>
 
-#include "estimators/ambient_light.h"
-#include "estimators/msvo_scales.h"
-#include "parallel/isa.h"
+#include "estimators/msvo/scales.h"
+#include "estimators/view_space/ambient_light.h"
+#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/msvo.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/view_lanes-inl.h"
+#include "estimators/view_space/lanes-inl.h"
 
 #ifndef SSDO_MSVO_CHORDS_
 #define SSDO_MSVO_CHORDS_
@@ -139,10 +139,10 @@ std::array<ChordPair, 18> checkerboard() {
   return pairs;
 }
 
-Products estimate(const EstimateInput& in) {
+Products estimate(const Scene& scene, const Request& request, const Progress& progress) {
   choose_isa();
-  const auto parameter = [&](const char* name) { return in.parameters.find(name)->second; };
-  const ViewPlanes planes = make_depth_planes(in.geometry);
+  const auto parameter = [&](const char* name) { return request.parameters.find(name)->second; };
+  const ViewPlanes planes = make_depth_planes(scene.geometry);
   std::vector<DepthScale> scales = make_depth_scales(planes, kCoarsest);
   for (int k = 1; k <= kCoarsest; ++k) {
     DepthScale& scale = scales[std::size_t(k)];
@@ -161,19 +161,20 @@ Products estimate(const EstimateInput& in) {
   const double depth_tolerance = std::pow(10, parameter("upsample-tolerance"));
   for (int k = kCoarsest; k > 0; --k) {
     // The display window's width, so that a crop is blurred alike.
-    const int width = (in.geometry.display.width() + (1 << k) - 1) >> k;
+    const int width = (scene.geometry.display.width() + (1 << k) - 1) >> k;
     const double step = 1920.0 / width,
                  tolerance = 1 - std::pow(10, parameter("blur-tolerance")) * step;
     const Upsampling how{float(1 / parameter("far")), float(step), float(tolerance * tolerance),
                          float(depth_tolerance),
                          float(1 / (std::pow(10, parameter("noise-tolerance")) + depth_tolerance))};
     upsample(scales[std::size_t(k)], how, k > 1, scales[std::size_t(k - 1)]);
+    if (progress) progress(std::size_t(kCoarsest - k + 1), std::size_t(kCoarsest));
   }
   Products out;
   out.ao = Plane<float>(planes.width(), planes.height());
   for (int y = 0; y < planes.height(); ++y)
     std::copy_n(scales[0].open.row(y), planes.width(), &out.ao(0, y));
-  if (in.products.direct) out.direct = ambient_light(in, out.ao);
+  if (request.products.direct) out.direct = ambient_light(scene, out.ao);
   return out;
 }
 

@@ -39,15 +39,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "estimators/ambient_light.h"
-#include "estimators/depth_mips.h"
-#include "parallel/isa.h"
+#include "estimators/view_space/ambient_light.h"
+#include "estimators/view_space/depth_mips.h"
+#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/sao.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/view_lanes-inl.h"
+#include "estimators/view_space/lanes-inl.h"
 // After the targets' headers.
 #include <hwy/contrib/math/math-inl.h>
 
@@ -163,26 +163,26 @@ std::vector<SpiralTap> spiral(int count, int turns) {
   return taps;
 }
 
-Products estimate(const EstimateInput& in) {
+Products estimate(const Scene& scene, const Request& request, const Progress& progress) {
   choose_isa();
-  const auto parameter = [&](const char* name) { return in.parameters.find(name)->second; };
+  const auto parameter = [&](const char* name) { return request.parameters.find(name)->second; };
   const int samples = int(parameter("samples"));
-  const ViewPlanes planes = make_view_planes(in.geometry);
+  const ViewPlanes planes = make_view_planes(scene.geometry);
   const DepthMips mips(planes);
   Products out;
   out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
   const SaoJob job{planes,
                    mips,
                    spiral(samples, int(parameter("turns"))),
-                   1 / in.radius,
-                   planes.fy * in.radius,
+                   1 / request.radius,
+                   planes.fy * request.radius,
                    float(5 * parameter("intensity") / samples),
                    float(parameter("bias")),
                    float(parameter("epsilon")),
                    out.ao};
   const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(sao_of_tile)(job, tile); };
-  for_each_tile(planes.width(), planes.height(), work, in.progress);
-  if (in.products.direct) out.direct = ambient_light(in, out.ao);
+  for_each_tile(planes.width(), planes.height(), work, progress);
+  if (request.products.direct) out.direct = ambient_light(scene, out.ao);
   return out;
 }
 

@@ -22,16 +22,16 @@
 // centre stands for all of the pixel: a plane seen at a grazing angle hides itself in part.
 #include "estimators/ssao.h"
 
-#include "estimators/ambient_light.h"
-#include "estimators/point_kernel.h"
-#include "estimators/tiled_noise.h"
-#include "parallel/isa.h"
+#include "estimators/view_space/ambient_light.h"
+#include "estimators/view_space/point_kernel.h"
+#include "estimators/view_space/tiled_noise.h"
+#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/ssao.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/view_lanes-inl.h"
+#include "estimators/view_space/lanes-inl.h"
 
 #ifndef SSDO_SSAO_JOB
 #define SSDO_SSAO_JOB
@@ -91,21 +91,21 @@ namespace {
 
 HWY_EXPORT(ssao_of_tile);
 
-Products estimate_ssao(const EstimateInput& in) {
+Products estimate_ssao(const Scene& scene, const Request& request, const Progress& progress) {
   choose_isa();
-  const ViewPlanes planes = make_view_planes(in.geometry);
+  const ViewPlanes planes = make_view_planes(scene.geometry);
   std::vector<glm::vec3> points =
-      point_kernel(int(in.parameters.at("samples")), 0.1f, true, in.seed);
-  for (glm::vec3& s : points) s *= in.radius;
-  const auto noise = frame_noise(in.seed);
+      point_kernel(int(request.parameters.at("samples")), 0.1f, true, request.seed);
+  for (glm::vec3& s : points) s *= request.radius;
+  const auto noise = frame_noise(request.seed);
   Products out;
   out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
   const SsaoJob job{planes,
                     std::move(points),
                     TiledNoise(coordinate(noise, 0)),
                     TiledNoise(coordinate(noise, 1)),
-                    in.radius,
-                    float(in.parameters.at("bias")) * in.radius,
+                    request.radius,
+                    float(request.parameters.at("bias")) * request.radius,
                     out.ao};
   for_each_tile(
       planes.width(), planes.height(),
@@ -113,8 +113,8 @@ Products estimate_ssao(const EstimateInput& in) {
         HWY_DYNAMIC_DISPATCH(ssao_of_tile)
         (job, tile);
       },
-      in.progress);
-  if (in.products.direct) out.direct = ambient_light(in, out.ao);
+      progress);
+  if (request.products.direct) out.direct = ambient_light(scene, out.ao);
   return out;
 }
 

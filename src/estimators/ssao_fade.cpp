@@ -32,17 +32,17 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "estimators/ambient_light.h"
-#include "estimators/half_resolution.h"
-#include "estimators/point_kernel.h"
-#include "estimators/tiled_noise.h"
-#include "parallel/isa.h"
+#include "estimators/view_space/ambient_light.h"
+#include "estimators/view_space/half_resolution.h"
+#include "estimators/view_space/point_kernel.h"
+#include "estimators/view_space/tiled_noise.h"
+#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/ssao_fade.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/view_lanes-inl.h"
+#include "estimators/view_space/lanes-inl.h"
 
 #ifndef SSDO_SSAO_FADE_JOB
 #define SSDO_SSAO_FADE_JOB
@@ -151,27 +151,27 @@ void shape(const ParameterValues& parameters, const ViewPlanes& planes, Plane<fl
   });
 }
 
-Products estimate_ssao_fade(const EstimateInput& in) {
+Products estimate_ssao_fade(const Scene& scene, const Request& request, const Progress& progress) {
   choose_isa();
-  const auto value = [&](const char* name) { return float(in.parameters.at(name)); };
-  const int upsampling = int(in.parameters.at("upsampling"));
-  const ViewPlanes planes =
-      upsampling == kBilinear ? make_depth_planes(in.geometry) : make_view_planes(in.geometry);
+  const auto value = [&](const char* name) { return float(request.parameters.at(name)); };
+  const int upsampling = int(request.parameters.at("upsampling"));
+  const ViewPlanes planes = upsampling == kBilinear ? make_depth_planes(scene.geometry)
+                                                    : make_view_planes(scene.geometry);
   std::optional<HalfResolution> half;
-  if (upsampling != kNone) half.emplace(in.geometry, planes);
+  if (upsampling != kNone) half.emplace(scene.geometry, planes);
   const ViewPlanes& receivers = half ? half->receivers() : planes;
-  const auto noise = fade_noise(in.seed);
+  const auto noise = fade_noise(request.seed);
   Plane<float> access(receivers.width(), receivers.height(), 1.0f);
   const FadeJob job{receivers,
                     planes,
-                    fade_offsets(in.seed),
+                    fade_offsets(request.seed),
                     TiledNoise(coordinate(noise, 0)),
                     TiledNoise(coordinate(noise, 1)),
                     TiledNoise(coordinate(noise, 2)),
-                    in.radius,
-                    value("epsilon") * in.radius,
-                    value("fade-start") * in.radius,
-                    value("fade-end") * in.radius,
+                    request.radius,
+                    value("epsilon") * request.radius,
+                    value("fade-start") * request.radius,
+                    value("fade-end") * request.radius,
                     access};
   for_each_tile(
       receivers.width(), receivers.height(),
@@ -179,13 +179,13 @@ Products estimate_ssao_fade(const EstimateInput& in) {
         HWY_DYNAMIC_DISPATCH(access_of_tile)
         (job, tile);
       },
-      in.progress);
-  shape(in.parameters, receivers, access);
+      progress);
+  shape(request.parameters, receivers, access);
   Products out;
   out.ao = !half                     ? std::move(access)
            : upsampling == kBilinear ? half->upsample_bilinear(access)
                                      : half->upsample_along_surfaces(access);
-  if (in.products.direct) out.direct = ambient_light(in, out.ao);
+  if (request.products.direct) out.direct = ambient_light(scene, out.ao);
   return out;
 }
 

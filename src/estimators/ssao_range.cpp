@@ -24,16 +24,16 @@
 // viewer hides itself in part.
 #include "estimators/ssao_range.h"
 
-#include "estimators/ambient_light.h"
-#include "estimators/point_kernel.h"
-#include "estimators/tiled_noise.h"
-#include "parallel/isa.h"
+#include "estimators/view_space/ambient_light.h"
+#include "estimators/view_space/point_kernel.h"
+#include "estimators/view_space/tiled_noise.h"
+#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/ssao_range.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/view_lanes-inl.h"
+#include "estimators/view_space/lanes-inl.h"
 
 #ifndef SSDO_SSAO_RANGE_JOB
 #define SSDO_SSAO_RANGE_JOB
@@ -90,29 +90,30 @@ namespace {
 
 HWY_EXPORT(ssao_range_of_tile);
 
-Products estimate_ssao_range(const EstimateInput& in) {
+Products estimate_ssao_range(const Scene& scene, const Request& request, const Progress& progress) {
   choose_isa();
-  const ViewPlanes planes = make_view_planes(in.geometry);
-  const auto noise = frame_noise(in.seed);
+  const ViewPlanes planes = make_view_planes(scene.geometry);
+  const auto noise = frame_noise(request.seed);
   Products out;
   out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
-  const RangeJob job{planes,
-                     point_kernel(int(in.parameters.at("samples")), 0.01f, false, in.seed),
-                     TiledNoise(coordinate(noise, 0)),
-                     TiledNoise(coordinate(noise, 1)),
-                     in.radius,
-                     float(in.parameters.at("range")) * in.radius,
-                     float(in.parameters.at("bias")) * in.radius,
-                     float(in.parameters.at("strength")),
-                     out.ao};
+  const RangeJob job{
+      planes,
+      point_kernel(int(request.parameters.at("samples")), 0.01f, false, request.seed),
+      TiledNoise(coordinate(noise, 0)),
+      TiledNoise(coordinate(noise, 1)),
+      request.radius,
+      float(request.parameters.at("range")) * request.radius,
+      float(request.parameters.at("bias")) * request.radius,
+      float(request.parameters.at("strength")),
+      out.ao};
   for_each_tile(
       planes.width(), planes.height(),
       [&](const Tile& tile) {
         HWY_DYNAMIC_DISPATCH(ssao_range_of_tile)
         (job, tile);
       },
-      in.progress);
-  if (in.products.direct) out.direct = ambient_light(in, out.ao);
+      progress);
+  if (request.products.direct) out.direct = ambient_light(scene, out.ao);
   return out;
 }
 

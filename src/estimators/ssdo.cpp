@@ -32,7 +32,7 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
 
-#include "estimators/half_ball.h"
+#include "estimators/view_space/half_ball.h"
 #include "math/frame.h"
 #include "math/light_range.h"
 #include "scene/usable.h"
@@ -52,14 +52,14 @@ struct Settings {
   float bounce_strength;
   float bounce_singularity;  ///< F_max
 
-  explicit Settings(const EstimateInput& in)
-      : samples(int(in.parameters.at("samples"))),
-        radius(in.radius),
-        bias(float(in.parameters.at("bias")) * in.radius),
-        singularity(float(in.parameters.at("singularity")) * in.radius),
-        strength(float(in.parameters.at("strength"))),
-        bounce_strength(float(in.parameters.at("bounce-strength"))),
-        bounce_singularity(float(in.parameters.at("bounce-singularity"))) {}
+  explicit Settings(const Request& request)
+      : samples(int(request.parameters.at("samples"))),
+        radius(request.radius),
+        bias(float(request.parameters.at("bias")) * request.radius),
+        singularity(float(request.parameters.at("singularity")) * request.radius),
+        strength(float(request.parameters.at("strength"))),
+        bounce_strength(float(request.parameters.at("bounce-strength"))),
+        bounce_singularity(float(request.parameters.at("bounce-singularity"))) {}
 };
 
 /// The points of one member of the pattern, as arrays.
@@ -191,13 +191,13 @@ glm::vec3 share_of(const glm::vec3& part, const glm::vec3& whole) {
 }
 
 /// Visibility of every sample against the environment.
-void gather_direct(const EstimateInput& in, const Settings& settings, const Sampler& sampler,
-                   const Sky* sky, Products& out) {
+void gather_direct(const Scene& scene, const Settings& settings, const Sampler& sampler,
+                   const Sky* sky, const Progress& progress, Products& out) {
   const auto work = [&](const Tile& tile) {
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
         const std::size_t i = out.ao.index(x, y);
-        if (!is_usable(in.geometry.surfel[i])) continue;
+        if (!is_usable(scene.geometry.surfel[i])) continue;
         const Receiver p = sampler.receiver(x, y);
         float visible = 0;
         glm::vec3 lit(0), light(0);
@@ -206,7 +206,7 @@ void gather_direct(const EstimateInput& in, const Settings& settings, const Samp
           sampler.place(p, first, batch);
           for (int k = 0; k < batch.count; ++k) {
             const int q = batch.pixel[std::size_t(k)];
-            const bool hidden = q >= 0 && sampler.is_in_front(in.geometry.surfel[std::size_t(q)],
+            const bool hidden = q >= 0 && sampler.is_in_front(scene.geometry.surfel[std::size_t(q)],
                                                               batch.point(k), p.bias);
             const float cosine = p.samples.cosine[std::size_t(first + k)];
             const float share = hidden ? 1 - settings.strength : 1.0f;
@@ -221,16 +221,16 @@ void gather_direct(const EstimateInput& in, const Settings& settings, const Samp
         out.ao[i] = std::clamp(visible * 2.0f / float(settings.samples), 0.0f, 1.0f);
         if (out.direct.empty()) continue;
         out.direct[i] = sky ? share_of(lit, light) * sky->irradiance(p.normal)
-                            : out.ao[i] * in.environment.constant_radiance();
+                            : out.ao[i] * scene.light.environment.constant_radiance();
       }
     }
   };
-  for_each_tile(out.ao.width, out.ao.height, work, in.progress);
+  for_each_tile(out.ao.width, out.ao.height, work, progress);
 }
 
 /// Light that the surfaces around every pixel send on: `sent` is their radiance.
-Plane<glm::vec3> gather_bounce(const EstimateInput& in, const Settings& settings,
-                               const Sampler& sampler, const Plane<glm::vec3>& sent) {
+Plane<glm::vec3> gather_bounce(const Scene& scene, const Settings& settings, const Sampler& sampler,
+                               const Progress& progress, const Plane<glm::vec3>& sent) {
   Plane<glm::vec3> bounce(sent.width, sent.height, glm::vec3(0));
   const float per_sample = settings.bounce_strength * 2.0f / float(settings.samples);
   const float radius2 = settings.radius * settings.radius;
@@ -238,7 +238,7 @@ Plane<glm::vec3> gather_bounce(const EstimateInput& in, const Settings& settings
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
         const std::size_t i = bounce.index(x, y);
-        if (!is_usable(in.geometry.surfel[i])) continue;
+        if (!is_usable(scene.geometry.surfel[i])) continue;
         const Receiver p = sampler.receiver(x, y);
         glm::vec3 sum(0);
         Batch batch;
@@ -247,7 +247,7 @@ Plane<glm::vec3> gather_bounce(const EstimateInput& in, const Settings& settings
           for (int k = 0; k < batch.count; ++k) {
             const int q = batch.pixel[std::size_t(k)];
             if (q < 0) continue;
-            const Surfel& sender = in.geometry.surfel[std::size_t(q)];
+            const Surfel& sender = scene.geometry.surfel[std::size_t(q)];
             const glm::vec3 to_q = glm::vec3(sender.position) - p.position;
             const float d2 = std::max(glm::dot(to_q, to_q), 1e-20f);
             const float cos_p = std::max(0.0f, glm::dot(to_q, p.normal));
@@ -262,38 +262,38 @@ Plane<glm::vec3> gather_bounce(const EstimateInput& in, const Settings& settings
       }
     }
   };
-  for_each_tile(bounce.width, bounce.height, work, in.progress);
+  for_each_tile(bounce.width, bounce.height, work, progress);
   return bounce;
 }
 
 /// What every pixel sends: its albedo times all the light that arrives, or the layer that says so.
-Plane<glm::vec3> sender_radiance(const EstimateInput& in, const Products& so_far) {
+Plane<glm::vec3> sender_radiance(const Scene& scene, const Products& so_far) {
   Plane<glm::vec3> sent(so_far.ao.width, so_far.ao.height, glm::vec3(0));
   for (std::size_t i = 0; i < sent.size(); ++i) {
-    sent[i] =
-        within_range(in.radiance.empty() ? in.albedo[i] * (so_far.direct[i] + so_far.bounce[i])
-                                         : in.radiance[i]);
+    sent[i] = within_range(scene.senders.radiance.empty()
+                               ? scene.senders.albedo[i] * (so_far.direct[i] + so_far.bounce[i])
+                               : scene.senders.radiance[i]);
   }
   return sent;
 }
 
-Products estimate(const EstimateInput& in) {
-  const Settings settings(in);
-  const Sampler sampler(in.geometry, settings, in.seed);
-  const int width = in.geometry.surfel.width, height = in.geometry.surfel.height;
+Products estimate(const Scene& scene, const Request& request, const Progress& progress) {
+  const Settings settings(request);
+  const Sampler sampler(scene.geometry, settings, request.seed);
+  const int width = scene.geometry.surfel.width, height = scene.geometry.surfel.height;
 
   Products out;
   out.ao = Plane<float>(width, height, 1.0f);
-  if (in.products.direct || in.products.bounce)
+  if (request.products.direct || request.products.bounce)
     out.direct = Plane<glm::vec3>(width, height, glm::vec3(0));
   std::optional<Sky> sky;
-  if (!out.direct.empty() && !in.environment.is_constant()) {
-    sky.emplace(in.environment, settings.samples, in.geometry.world_to_camera);
+  if (!out.direct.empty() && !scene.light.environment.is_constant()) {
+    sky.emplace(scene.light.environment, settings.samples, scene.geometry.world_to_camera);
   }
-  gather_direct(in, settings, sampler, sky ? &*sky : nullptr, out);
-  if (in.products.bounce) out.bounce = Plane<glm::vec3>(width, height, glm::vec3(0));
-  for (int pass = 0; in.products.bounce && pass < in.bounces; ++pass) {
-    out.bounce = gather_bounce(in, settings, sampler, sender_radiance(in, out));
+  gather_direct(scene, settings, sampler, sky ? &*sky : nullptr, progress, out);
+  if (request.products.bounce) out.bounce = Plane<glm::vec3>(width, height, glm::vec3(0));
+  for (int pass = 0; request.products.bounce && pass < request.bounces; ++pass) {
+    out.bounce = gather_bounce(scene, settings, sampler, progress, sender_radiance(scene, out));
   }
   return out;
 }

@@ -31,15 +31,14 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
-#include <optional>
 #include <utility>
 
-#include "estimators/ray_scene.h"
+#include "estimators/trace/ray_scene.h"
 #include "math/frame.h"
 #include "math/light_range.h"
 #include "math/luminance.h"
 #include "math/sobol.h"
-#include "scene/sun.h"
+#include "scene/light/sun.h"
 
 namespace ssdo {
 namespace {
@@ -99,25 +98,25 @@ struct LightSums {
 /// The method on one frame.
 class Trace {
  public:
-  explicit Trace(const EstimateInput& in)
-      : in_(in),
-        samples_(int(in.parameters.at("samples"))),
-        scene_(build_height_field(in.geometry, in.hidden)) {
-    if (in.light && !in.environment.is_constant()) sky_ = take_suns(in.environment).rest;
-  }
+  Trace(const Scene& scene, const Request& request, const Progress& progress)
+      : scene_(scene),
+        request_(request),
+        progress_(progress),
+        samples_(int(request.parameters.at("samples"))),
+        rays_(build_height_field(scene.geometry, scene.hidden)) {}
 
   Products run() {
-    wants_light_ = in_.products.direct || in_.products.bounce || in_.products.error;
+    wants_light_ = request_.products.direct || request_.products.bounce || request_.products.error;
     out_.ao = Plane<float>(width(), height(), 1.0f);
-    if (in_.products.bent) out_.bent = Plane<glm::vec3>(width(), height(), glm::vec3(0));
+    if (request_.products.bent) out_.bent = Plane<glm::vec3>(width(), height(), glm::vec3(0));
     if (wants_light_) out_.direct = Plane<glm::vec3>(width(), height(), glm::vec3(0));
-    if (in_.products.error) luminances_ = Plane<Groups>(width(), height(), Groups{});
+    if (request_.products.error) luminances_ = Plane<Groups>(width(), height(), Groups{});
     for_each_surface([&](std::size_t pixel, const Receiver& p) { gather_visibility(pixel, p); });
-    if (in_.products.bounce) {
+    if (request_.products.bounce) {
       out_.bounce = Plane<glm::vec3>(width(), height(), glm::vec3(0));
-      for (int pass = 1; pass <= in_.bounces; ++pass) gather_bounce(pass == in_.bounces);
+      for (int pass = 1; pass <= request_.bounces; ++pass) gather_bounce(pass == request_.bounces);
     }
-    if (in_.products.error) {
+    if (request_.products.error) {
       out_.error = Plane<float>(width(), height(), 0.0f);
       for (std::size_t i = 0; i < luminances_.size(); ++i)
         out_.error[i] = standard_error(luminances_[i]);
@@ -126,18 +125,18 @@ class Trace {
   }
 
  private:
-  int width() const { return in_.geometry.surfel.width; }
-  int height() const { return in_.geometry.surfel.height; }
+  int width() const { return scene_.geometry.surfel.width; }
+  int height() const { return scene_.geometry.surfel.height; }
   int group_of(int sample) const { return sample * kGroups / samples_; }
 
   Receiver receiver(int x, int y, std::size_t pixel) const {
-    const Geometry& g = in_.geometry;
+    const Geometry& g = scene_.geometry;
     const Surfel& s = g.surfel[pixel];
     const glm::vec3 normal(s.normal), position(s.position);
     const float above = kRoundings * s.normal.w + kFootprints * footprint_of(g, pixel);
     return {glm::dvec3(position) + double(above) * glm::dvec3(normal), normal, frame_about(normal),
             hash_of(std::uint32_t(g.window.x0 - g.display.x0 + x),
-                    std::uint32_t(g.window.y0 - g.display.y0 + y), in_.seed)};
+                    std::uint32_t(g.window.y0 - g.display.y0 + y), request_.seed)};
   }
 
   /// Calls `work(pixel, receiver)` for each pixel that shows a surface.
@@ -148,12 +147,12 @@ class Trace {
         [&](const Tile& tile) {
           for (int y = tile.y0; y < tile.y1; ++y) {
             for (int x = tile.x0; x < tile.x1; ++x) {
-              const std::size_t pixel = in_.geometry.surfel.index(x, y);
-              if (is_solid(in_.geometry, pixel)) work(pixel, receiver(x, y, pixel));
+              const std::size_t pixel = scene_.geometry.surfel.index(x, y);
+              if (is_solid(scene_.geometry, pixel)) work(pixel, receiver(x, y, pixel));
             }
           }
         },
-        in_.progress);
+        progress_);
   }
 
   /// A direction in the hemisphere with the density of the cosine: the disc, lifted.
@@ -166,24 +165,24 @@ class Trace {
   void gather_visibility(std::size_t pixel, const Receiver& p) {
     LightSums light;
     glm::vec3 open_sum(0), sum(0);
-    const glm::mat3 to_world = glm::transpose(in_.geometry.world_to_camera);
+    const glm::mat3 to_world = glm::transpose(scene_.geometry.world_to_camera);
     int open = 0;
     for (int s = 0; s < samples_; ++s) {
       const glm::vec3 to = direction(p, s);
-      const bool is_open = !scene_.is_blocked(p.origin, to, in_.radius);
+      const bool is_open = !rays_.is_blocked(p.origin, to, request_.radius);
       const int g = group_of(s);
       ++light.number[g];
       open += is_open, light.seen[g] += is_open;
       sum += to;
       if (is_open) open_sum += to;
-      if (!wants_light_ || !sky_) continue;
-      const glm::vec3 radiance = sky_->radiance(to_world * to);
+      if (!wants_light_ || scene_.light.is_constant()) continue;
+      const glm::vec3 radiance = scene_.light.sky.radiance(to_world * to);
       light.all[g] += radiance;
       if (is_open) light.open[g] += radiance;
     }
     const float ao = float(open) / float(samples_);
     out_.ao[pixel] = ao;
-    if (in_.products.bent) {
+    if (request_.products.bent) {
       // What the sum over all directions lacks of the normal is added as far as the surface is
       // open, so that an open one is exact.
       const glm::vec3 bent = open_sum + ao * (2.0f / 3 * float(samples_) * p.normal - sum);
@@ -194,14 +193,14 @@ class Trace {
   }
 
   void add_direct(std::size_t pixel, const Receiver& p, const LightSums& light, float ao) {
-    const glm::vec3 unoccluded =
-        in_.light ? in_.light->irradiance(p.normal) : in_.environment.constant_radiance();
-    out_.direct[pixel] = unoccluded * (sky_ ? light.share_of_all(ao) : glm::vec3(ao));
+    const glm::vec3 unoccluded = scene_.light.irradiance(p.normal);
+    const bool even = scene_.light.is_constant();
+    out_.direct[pixel] = unoccluded * (even ? glm::vec3(ao) : light.share_of_all(ao));
     Groups groups{};
     for (int g = 0; g < kGroups; ++g) groups[g] = luminance(unoccluded * light.share_of_group(g));
-    for (std::size_t i = 0; in_.light && i < in_.light->suns.size(); ++i)
-      out_.direct[pixel] += light_of(in_.light->suns[i], std::uint32_t(i), p, groups);
-    if (in_.products.error) luminances_[pixel] = groups;
+    for (std::size_t i = 0; i < scene_.light.suns.size(); ++i)
+      out_.direct[pixel] += light_of(scene_.light.suns[i], std::uint32_t(i), p, groups);
+    if (request_.products.error) luminances_[pixel] = groups;
   }
 
   /// What a sun gives; `groups` gain what it gives in each part of the samples.
@@ -218,7 +217,7 @@ class Trace {
           glm::normalize(frame * glm::vec3(off * std::cos(azimuth), off * std::sin(azimuth), 1));
       if (glm::dot(to, p.normal) <= 0) continue;
       above[group_of(s)] += 1;
-      seen[group_of(s)] += !scene_.is_blocked(p.origin, to, in_.radius);
+      seen[group_of(s)] += !rays_.is_blocked(p.origin, to, request_.radius);
     }
     const glm::vec3 unoccluded = cosine * sun.irradiance;
     float all_seen = 0, all_above = 0;
@@ -231,27 +230,28 @@ class Trace {
 
   /// What each pixel sends: its albedo times all the light that arrives, or the layer that says so.
   glm::vec3 sent_by(std::size_t pixel) const {
-    if (!in_.radiance.empty()) return within_range(in_.radiance[pixel]);
-    return within_range(in_.albedo[pixel] * (out_.direct[pixel] + out_.bounce[pixel]));
+    if (!scene_.senders.radiance.empty()) return within_range(scene_.senders.radiance[pixel]);
+    return within_range(scene_.senders.albedo[pixel] * (out_.direct[pixel] + out_.bounce[pixel]));
   }
 
   /// What the unseen side of a pixel's surface sends.
   glm::vec3 sent_by_back(std::size_t pixel) const {
-    const glm::vec3 normal = -glm::vec3(in_.geometry.surfel[pixel].normal);
-    glm::vec3 light = in_.light->irradiance(normal);
-    for (const Sun& sun : in_.light->suns)
+    const glm::vec3 normal = -glm::vec3(scene_.geometry.surfel[pixel].normal);
+    glm::vec3 light = scene_.light.irradiance(normal);
+    for (const Sun& sun : scene_.light.suns)
       light += std::max(0.0f, glm::dot(normal, sun.direction)) * sun.irradiance;
-    return within_range(in_.albedo[pixel] * (out_.ao[pixel] * light + out_.bounce[pixel]));
+    return within_range(scene_.senders.albedo[pixel] *
+                        (out_.ao[pixel] * light + out_.bounce[pixel]));
   }
 
   void gather_bounce(bool last) {
-    const bool two_sided = in_.light && in_.radiance.empty();
+    const bool two_sided = !scene_.light.is_constant() && scene_.senders.radiance.empty();
     Plane<glm::vec3> sent(width(), height(), glm::vec3(0)), sent_back;
     if (two_sided) sent_back = sent;
     for_each_row(height(), [&](int y) {
       for (int x = 0; x < width(); ++x) {
         const std::size_t pixel = sent.index(x, y);
-        if (!is_solid(in_.geometry, pixel)) continue;
+        if (!is_solid(scene_.geometry, pixel)) continue;
         sent[pixel] = sent_by(pixel);
         if (two_sided) sent_back[pixel] = sent_by_back(pixel);
       }
@@ -261,34 +261,37 @@ class Trace {
       std::array<int, kGroups> number{};
       for (int s = 0; s < samples_; ++s) {
         const glm::vec3 to = direction(p, s);
-        const Owner hit = scene_.first_hit(p.origin, to, in_.radius);
+        const Owner hit = rays_.first_hit(p.origin, to, request_.radius);
         ++number[group_of(s)];
         if (hit.pixel < 0) continue;
         const auto q = std::size_t(hit.pixel);
-        const bool back =
-            two_sided && !hit.covered && glm::dot(glm::vec3(in_.geometry.surfel[q].normal), to) > 0;
+        const bool back = two_sided && !hit.covered &&
+                          glm::dot(glm::vec3(scene_.geometry.surfel[q].normal), to) > 0;
         sums[group_of(s)] += back ? sent_back[q] : sent[q];
       }
       glm::vec3 sum(0);
       for (int g = 0; g < kGroups; ++g) {
         sum += sums[g];
-        if (last && in_.products.error)
+        if (last && request_.products.error)
           luminances_[pixel][g] += luminance(sums[g]) / float(number[g]);
       }
       out_.bounce[pixel] = sum / float(samples_);
     });
   }
 
-  const EstimateInput& in_;
+  const Scene& scene_;
+  const Request& request_;
+  const Progress& progress_;
   int samples_;
-  RayScene scene_;
-  std::optional<Environment> sky_;  ///< without suns; nothing where it is constant
+  RayScene rays_;
   bool wants_light_ = false;
   Plane<Groups> luminances_;  ///< of direct + bounce
   Products out_;
 };
 
-Products estimate(const EstimateInput& in) { return Trace(in).run(); }
+Products estimate(const Scene& scene, const Request& request, const Progress& progress) {
+  return Trace(scene, request, progress).run();
+}
 
 int samples_per_pixel(const ParameterValues& parameters) {
   return int(parameters.find("samples")->second);

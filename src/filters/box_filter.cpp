@@ -11,7 +11,7 @@
 // are left out of the mean, where a texture would give its border.
 #include "filters/box_filter.h"
 
-#include "parallel/isa.h"
+#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/box_filter.cpp"

@@ -16,7 +16,7 @@
 
 #include <cmath>
 
-#include "parallel/isa.h"
+#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/gaussian_filter.cpp"

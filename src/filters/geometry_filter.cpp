@@ -39,7 +39,7 @@
 #include <optional>
 
 #include "filters/tap.h"
-#include "parallel/isa.h"
+#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/geometry_filter.cpp"

@@ -16,7 +16,7 @@
 #include <array>
 #include <cstdlib>
 
-#include "parallel/isa.h"
+#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/normal_filter.cpp"

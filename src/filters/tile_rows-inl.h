@@ -2,11 +2,11 @@
 //
 // Rows of a tile, held apart by component for vector loops; compiled once for every instruction
 // set.
-#if defined(SSDO_TILE_ROWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SSDO_TILE_ROWS_INL_H_
-#undef SSDO_TILE_ROWS_INL_H_
+#if defined(SSDO_FILTERS_TILE_ROWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SSDO_FILTERS_TILE_ROWS_INL_H_
+#undef SSDO_FILTERS_TILE_ROWS_INL_H_
 #else
-#define SSDO_TILE_ROWS_INL_H_
+#define SSDO_FILTERS_TILE_ROWS_INL_H_
 #endif
 
 #include <hwy/aligned_allocator.h>

@@ -7,11 +7,11 @@
 //
 // Differences are averaged, not values: a field that is the same everywhere stays as it is, to the
 // last bit.
-#if defined(SSDO_WINDOW_AVERAGE_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SSDO_WINDOW_AVERAGE_INL_H_
-#undef SSDO_WINDOW_AVERAGE_INL_H_
+#if defined(SSDO_FILTERS_WINDOW_AVERAGE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SSDO_FILTERS_WINDOW_AVERAGE_INL_H_
+#undef SSDO_FILTERS_WINDOW_AVERAGE_INL_H_
 #else
-#define SSDO_WINDOW_AVERAGE_INL_H_
+#define SSDO_FILTERS_WINDOW_AVERAGE_INL_H_
 #endif
 
 #include <algorithm>

@@ -4,7 +4,10 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfInputPart.h>
+#include <ImfIntAttribute.h>
 #include <ImfMultiPartInputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
 #include <ImfTiledInputPart.h>
 #include <fmt/format.h>
 
@@ -148,6 +151,20 @@ std::vector<StoredChannel> ExrReader::read_stored(int index, Names names) const 
   read_or_fail(*this, part, frame_buffer);
   fill_repeated(names, stored);
   return stored;
+}
+
+std::string string_attribute(const Imf::Header& header, const std::string& name) {
+  const auto* found = header.findTypedAttribute<Imf::StringAttribute>(name);
+  return found ? found->value() : "";
+}
+
+int int_attribute(const Imf::Header& header, const std::string& name) {
+  const auto* found = header.findTypedAttribute<Imf::IntAttribute>(name);
+  return found ? found->value() : 0;
+}
+
+std::vector<std::string> views_of(const Imf::Header& header) {
+  return Imf::hasMultiView(header) ? Imf::multiView(header) : std::vector<std::string>();
 }
 
 }  // namespace ssdo

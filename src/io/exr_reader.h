@@ -39,6 +39,15 @@ struct ExrPart {
   Imf::Header header;
 };
 
+/// A string attribute of a header; empty where there is none of this name.
+std::string string_attribute(const Imf::Header& header, const std::string& name);
+
+/// An integer attribute of a header; 0 where there is none of this name.
+int int_attribute(const Imf::Header& header, const std::string& name);
+
+/// The views of a multi-view part, the default one first; empty where it has none.
+std::vector<std::string> views_of(const Imf::Header& header);
+
 /// The pixels of one channel in the type that the file stores, row by row over the data window.
 struct StoredChannel {
   ExrChannel channel;

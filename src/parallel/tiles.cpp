@@ -62,7 +62,7 @@ int from_affinity() {
 
 /// Calls `work(i)` for i from 0 to count - 1.
 void for_each_task(std::size_t count, const std::function<void(std::size_t)>& work,
-                   const TileProgress& progress) {
+                   const Progress& progress) {
   std::mutex mutex;
   std::size_t done = 0;
   tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
@@ -76,7 +76,7 @@ void for_each_task(std::size_t count, const std::function<void(std::size_t)>& wo
 }  // namespace
 
 void for_each_tile(int width, int height, const std::function<void(const Tile&)>& work,
-                   const TileProgress& progress) {
+                   const Progress& progress) {
   const int columns = (width + kTileSize - 1) / kTileSize;
   const int rows = (height + kTileSize - 1) / kTileSize;
   const auto one = [&](std::size_t i) {
@@ -88,7 +88,7 @@ void for_each_tile(int width, int height, const std::function<void(const Tile&)>
 }
 
 void for_each_band(int height, const std::function<void(int y0, int y1)>& work,
-                   const TileProgress& progress) {
+                   const Progress& progress) {
   const auto one = [&](std::size_t i) {
     const int y0 = int(i) * kBandHeight;
     work(y0, std::min(y0 + kBandHeight, height));

@@ -12,17 +12,17 @@ struct Tile {
 
 /// Told after each finished tile or band how many there are and how many are done. May be called
 /// from any thread, never from two at once.
-using TileProgress = std::function<void(std::size_t done, std::size_t count)>;
+using Progress = std::function<void(std::size_t done, std::size_t count)>;
 
 /// Calls `work` once for each tile of a picture, from as many threads as ThreadLimit allows. What
 /// a tile writes must depend on its pixels alone, never on the order of tiles.
 void for_each_tile(int width, int height, const std::function<void(const Tile&)>& work,
-                   const TileProgress& progress = {});
+                   const Progress& progress = {});
 
 /// Calls `work(y0, y1)` once for each band of rows, as for_each_tile() does for tiles: for loops
 /// that are at their best along whole rows.
 void for_each_band(int height, const std::function<void(int y0, int y1)>& work,
-                   const TileProgress& progress = {});
+                   const Progress& progress = {});
 
 /// Calls `work` once for each row.
 void for_each_row(int height, const std::function<void(int y)>& work);

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "scene/projection_model.h"
+#include "scene/camera/projection_model.h"
 
 namespace ssdo {
 namespace {

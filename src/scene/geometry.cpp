@@ -9,7 +9,7 @@
 #include <glm/matrix.hpp>
 
 #include "parallel/tiles.h"
-#include "scene/find_camera.h"
+#include "scene/camera/find_camera.h"
 #include "scene/normal_space.h"
 #include "scene/normals.h"
 #include "scene/silhouettes.h"

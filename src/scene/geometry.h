@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "math/plane.h"
-#include "scene/camera.h"
+#include "scene/camera/camera.h"
 #include "scene/gbuffer.h"
 #include "scene/surfel.h"
 

@@ -25,8 +25,8 @@
 #include <utility>
 #include <vector>
 
+#include "scene/camera/projection_model.h"
 #include "scene/normals.h"
-#include "scene/projection_model.h"
 
 namespace ssdo {
 namespace {

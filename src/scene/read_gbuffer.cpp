@@ -12,7 +12,7 @@
 #include "math/light_range.h"
 #include "scene/background.h"
 #include "scene/depth_encoding.h"
-#include "scene/layer_windows.h"
+#include "scene/layers/windows.h"
 
 namespace ssdo {
 namespace {

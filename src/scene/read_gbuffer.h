@@ -7,7 +7,7 @@
 
 #include "io/exr_reader.h"
 #include "scene/gbuffer.h"
-#include "scene/layers.h"
+#include "scene/layers/layers.h"
 
 namespace ssdo {
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "parallel/isa.h"
+#include "simd/isa.h"
 #include "support/analytic_scene.h"
 
 namespace ssdo::bench {

@@ -5,7 +5,7 @@
 
 #include <hwy/foreach_target.h>
 
-#include "estimators/bitmask_lanes-inl.h"
+#include "estimators/bitmask/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {

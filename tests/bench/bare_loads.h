@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "estimators/bitmask_march.h"
+#include "estimators/bitmask/march.h"
 
 namespace ssdo::bench {
 

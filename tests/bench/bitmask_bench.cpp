@@ -14,8 +14,9 @@
 #include "bench/bare_loads.h"
 #include "estimators/bitmask.h"
 #include "filters/geometry_filter.h"
-#include "parallel/isa.h"
 #include "scene/hidden_geometry.h"
+#include "simd/isa.h"
+#include "support/scene_of.h"
 
 namespace ssdo::bench {
 namespace {
@@ -31,7 +32,7 @@ std::shared_ptr<Plane<glm::vec3>> sky_with_a_sun() {
 
 /// Bare loads of the visibility pass in CPU seconds, on one thread.
 double bare_seconds(const Geometry& g, const HiddenGeometry& hidden, int slices, int steps) {
-  const MarchScene scene = make_march_scene(g, &hidden);
+  const MarchScene scene = make_march_scene(g, hidden);
   const SlicePattern pattern(scene.layout, g.display, slices, steps, 0);
   const March march{scene, pattern, INFINITY, true};
   double best = 1e9;
@@ -60,22 +61,22 @@ void estimate(benchmark::State& state, const std::string& isa, const Size& size,
   force_isa(isa);
   const ThreadLimit limit(threads);
   const Geometry& g = frame_of(size.width, size.height);
-  const HiddenGeometry hidden = find_hidden_geometry(g);
-  const Environment sky(sky_with_a_sun(), {});
-  const LightModel light = model_light(sky, g.world_to_camera);
-  const Plane<glm::vec3> albedo(size.width, size.height, glm::vec3(0.5f)), none;
-  const ParameterValues parameters;
-  const float radius = job.radius_px > 0 ? job.radius_px * kDepth / float(g.camera.fy) : INFINITY;
-  EstimateInput in{g, albedo, none, sky, job.products, radius, job.bounces, 0, parameters, {}};
-  in.slices = job.slices, in.steps = job.steps, in.hidden = &hidden, in.light = &light;
-  for (auto _ : state) benchmark::DoNotOptimize(bitmask_method().estimate(in));
+  Scene scene = scene_of(g, Environment(sky_with_a_sun(), {}), 0.5f);
+  scene.hidden = find_hidden_geometry(g);
+  const Request request{
+      .products = job.products,
+      .radius = job.radius_px > 0 ? job.radius_px * kDepth / float(g.camera.fy) : INFINITY,
+      .bounces = job.bounces,
+      .slices = job.slices,
+      .steps = job.steps};
+  for (auto _ : state) benchmark::DoNotOptimize(bitmask_method().estimate(scene, request, {}));
   const double samples = double(g.surfel.size()) * job.slices * job.steps * 2;
   using benchmark::Counter;
   state.counters["ns/sample"] =
       Counter(samples * 1e-9, Counter::kIsIterationInvariantRate | Counter::kInvert);
   if (threads == 1 && size.width == 1920) {
     state.counters["bare ns/sample"] =
-        bare_seconds(g, hidden, job.slices, job.steps) / samples * 1e9;
+        bare_seconds(g, scene.hidden, job.slices, job.steps) / samples * 1e9;
   }
 }
 

@@ -10,6 +10,7 @@
 #include "bench/ball_frame.h"
 #include "estimators/registry.h"
 #include "filters/registry.h"
+#include "support/scene_of.h"
 
 namespace ssdo::bench {
 namespace {
@@ -58,13 +59,12 @@ void estimate(benchmark::State& state, const std::string& isa, const Row& row, i
   const ThreadLimit limit(threads);
   const Geometry& g = frame_of(1920, 1080);
   const Method& method = find_method(row.method);
-  const Environment even = Environment::constant(glm::vec3(1));
-  const Plane<glm::vec3> grey(g.surfel.width, g.surfel.height, glm::vec3(0.5f)), none;
-  const ParameterValues parameters = resolve_parameters(method, row.set);
-  const float radius = 0.3f * g.frame_height_at(kDepth);
-  const int bounces = row.products.bounce ? 1 : 0;
-  const EstimateInput in{g, grey, none, even, row.products, radius, bounces, 0, parameters, {}};
-  for (auto _ : state) benchmark::DoNotOptimize(method.estimate(in));
+  const Scene scene = scene_of(g, Environment::constant(glm::vec3(1)), 0.5f);
+  const Request request{.products = row.products,
+                        .radius = 0.3f * g.frame_height_at(kDepth),
+                        .bounces = row.products.bounce ? 1 : 0,
+                        .parameters = resolve_parameters(method, row.set)};
+  for (auto _ : state) benchmark::DoNotOptimize(method.estimate(scene, request, {}));
   count_samples(state, double(g.surfel.size()) * row.samples);
 }
 

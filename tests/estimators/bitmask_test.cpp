@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "estimators/bitmask_request.h"
+#include "estimators/bitmask/request.h"
 
 namespace ssdo::test {
 namespace {

@@ -91,18 +91,11 @@ struct SlowGtao {
 
 Products estimate(const Geometry& g, float radius, const std::vector<std::string>& set = {},
                   const Environment& sky = Environment::constant(glm::vec3(1))) {
-  const ParameterValues parameters = resolve_parameters(gtao_method(), set);
-  const Plane<glm::vec3> none;
-  return gtao_method().estimate({g,
-                                 none,
-                                 none,
-                                 sky,
-                                 {.ao = true, .direct = true, .bent = true},
-                                 radius,
-                                 0,
-                                 0,
-                                 parameters,
-                                 {}});
+  return gtao_method().estimate(scene_of(g, sky),
+                                {.products = {.ao = true, .direct = true, .bent = true},
+                                 .radius = radius,
+                                 .parameters = resolve_parameters(gtao_method(), set)},
+                                {});
 }
 
 /// Compares pixels of which no step is doubtful; gives the least ao.
@@ -228,10 +221,10 @@ TEST(Gtao, DirectIsTheLightOfTheBentNormalTimesAo) {
 Products with_albedo(const Geometry& g, const Plane<glm::vec3>& albedo, double multi_bounce) {
   ParameterValues parameters = resolve_parameters(gtao_method(), {});
   parameters["multi-bounce"] = multi_bounce;
-  const Plane<glm::vec3> none;
-  const Environment sky = Environment::constant(glm::vec3(1, 2, 4));
+  Scene scene = scene_of(g, Environment::constant(glm::vec3(1, 2, 4)));
+  scene.senders.albedo = albedo;
   return gtao_method().estimate(
-      {g, albedo, none, sky, {.ao = true, .direct = true}, 2, 0, 0, parameters, {}});
+      scene, {.products = {.ao = true, .direct = true}, .radius = 2, .parameters = parameters}, {});
 }
 
 TEST(Gtao, MultiBounceIsTheFitOfTheReceiversAlbedo) {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "error.h"
-#include "estimators/point_method_request.h"
+#include "estimators/view_space/point_method_request.h"
 #include "parallel/tiles.h"
 #include "support/crop.h"
 

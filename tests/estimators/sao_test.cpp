@@ -8,7 +8,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "estimators/obscurance_request.h"
-#include "estimators/slow_depth_mips.h"
+#include "estimators/view_space/slow_depth_mips.h"
 
 namespace ssdo::test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "estimators/point_method_request.h"
+#include "estimators/view_space/point_method_request.h"
 
 namespace ssdo::test {
 namespace {

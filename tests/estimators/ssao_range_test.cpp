@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "estimators/point_kernel.h"
-#include "estimators/point_method_request.h"
+#include "estimators/view_space/point_kernel.h"
+#include "estimators/view_space/point_method_request.h"
 
 namespace ssdo::test {
 namespace {

@@ -8,11 +8,12 @@
 #include <random>
 
 #include "error.h"
-#include "estimators/half_ball.h"
 #include "estimators/registry.h"
+#include "estimators/view_space/half_ball.h"
 #include "math/frame.h"
 #include "support/analytic_scene.h"
 #include "support/crop.h"
+#include "support/scene_of.h"
 
 namespace ssdo::test {
 namespace {
@@ -20,7 +21,7 @@ namespace {
 const Window kWindow{0, 0, 96, 72};
 
 /// What a test asks of the method; the rest are its defaults.
-struct Request {
+struct SsdoRequest {
   float radius = 1;
   Environment environment = Environment::constant(glm::vec3(1));
   std::vector<std::string> set = {};
@@ -30,21 +31,17 @@ struct Request {
   Plane<glm::vec3> radiance = {};
 };
 
-Products run(const Geometry& geometry, const Request& request) {
+Products run(const Geometry& geometry, const SsdoRequest& request) {
   const Method method = ssdo_method();
-  const ParameterValues parameters = resolve_parameters(method, request.set);
-  const Plane<glm::vec3> albedo(geometry.surfel.width, geometry.surfel.height,
-                                glm::vec3(request.albedo));
-  return method.estimate({geometry,
-                          albedo,
-                          request.radiance,
-                          request.environment,
-                          {.ao = true, .direct = true, .bounce = request.bounces > 0},
-                          request.radius,
-                          request.bounces,
-                          request.seed,
-                          parameters,
-                          {}});
+  Scene scene = scene_of(geometry, request.environment, request.albedo);
+  scene.senders.radiance = request.radiance;
+  return method.estimate(scene,
+                         {.products = {.ao = true, .direct = true, .bounce = request.bounces > 0},
+                          .radius = request.radius,
+                          .bounces = request.bounces,
+                          .seed = request.seed,
+                          .parameters = resolve_parameters(method, request.set)},
+                         {});
 }
 
 Camera tilted(Camera projection, double tilt_degrees, double distance = 6) {
@@ -186,7 +183,7 @@ TEST(Ssdo, BounceIsTheListingsSum) {
   const Geometry g = geometry_of(
       scene, look_at(camera_from_fov(40, kWindow, 1), {0, -4, 3}, {0, -0.3, 0.3}, {0, 0, 1}),
       kWindow);
-  Request request{.radius = 0.8f, .bounces = 1};
+  SsdoRequest request{.radius = 0.8f, .bounces = 1};
   request.radiance = Plane<glm::vec3>(kWindow.width(), kWindow.height());
   for (std::size_t i = 0; i < request.radiance.size(); ++i)
     request.radiance[i] = {0.8f, float(i % 7), 0};
@@ -228,7 +225,7 @@ TEST(Ssdo, ACropFarEnoughInsideIsThatPartOfTheWhole) {
   const Camera camera =
       look_at(camera_from_fov(40, kWindow, 1), {0, -4, 3}, {0, 0, 0.3}, {0, 0, 1});
   const Geometry g = geometry_of(scene, camera, kWindow);
-  const Request request{.radius = 0.2f, .bounces = 1};
+  const SsdoRequest request{.radius = 0.2f, .bounces = 1};
   const Products all = run(g, request), of_part = run(crop(g, part), request);
   // A radius is at most 8 pixels here, and a bounce comes from pixels that look as far themselves.
   const int margin = 16;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "estimators/bitmask_request.h"
+#include "estimators/bitmask/request.h"
 #include "estimators/trace.h"
 
 namespace ssdo::test {
@@ -18,26 +18,16 @@ struct TraceRequest {
 };
 
 inline Products run_trace(const Geometry& g, const TraceRequest& request) {
-  const Plane<glm::vec3> albedo(g.surfel.width, g.surfel.height, glm::vec3(request.albedo)),
-      no_radiance;
-  std::optional<LightModel> light;
-  if (!request.environment.is_constant())
-    light = model_light(request.environment, g.world_to_camera);
+  Scene scene = scene_of(g, request.environment, request.albedo);
+  if (request.hidden) scene.hidden = *request.hidden;
   ProductSet products = request.products;
   products.bounce = request.bounces > 0;
-  const ParameterValues parameters = {{"samples", double(request.samples)}};
-  return trace_method().estimate({.geometry = g,
-                                  .albedo = albedo,
-                                  .radiance = no_radiance,
-                                  .environment = request.environment,
-                                  .products = products,
+  return trace_method().estimate(scene,
+                                 {.products = products,
                                   .radius = request.radius,
                                   .bounces = request.bounces,
-                                  .seed = 0,
-                                  .parameters = parameters,
-                                  .progress = {},
-                                  .hidden = request.hidden,
-                                  .light = light ? &*light : nullptr});
+                                  .parameters = {{"samples", double(request.samples)}}},
+                                 {});
 }
 
 }  // namespace ssdo::test

@@ -27,20 +27,20 @@ struct Errors {
 };
 
 /// A frame, the radii of its truth, and the environment that lights it.
-struct Scene {
+struct Subject {
   std::string name, environment;
   double radius_small, radius_large;
 };
-const Scene kStillLife{"still_life", "sky.exr", 0.5, 2},
+const Subject kStillLife{"still_life", "sky.exr", 0.5, 2},
     kRoomCorner{"room_corner", "studio.exr", 0.25, 1};
 
 struct Case {
   std::string method;
-  Scene scene;
+  Subject scene;
   Errors recorded;
 };
 
-std::array<Plane<float>, 3> read_truth(const Scene& scene, const std::string& name,
+std::array<Plane<float>, 3> read_truth(const Subject& scene, const std::string& name,
                                        const std::string& layer) {
   const ExrReader file(kData + "truth/" + scene.name + "/" + name + ".exr");
   const std::string prefix = "ViewLayer." + layer + ".";
@@ -86,31 +86,19 @@ struct Result {
   Products products;
 };
 
-Result run(const std::string& method, const Scene& scene, const std::string& environment,
+Result run(const std::string& method, const Subject& scene, const std::string& environment,
            std::optional<double> radius) {
-  Options options;
+  FrameOptions options;
   options.model.method = method;
   if (method == "trace") options.model.set = {"samples=16"};
   if (find_method(method).has_radius) options.model.radius = radius;
   options.light.env = environment;
-  Frame frame = prepare_frame(options, Light(options.light), kData + scene.name + ".exr", {});
+  Frame frame = prepare_frame(options, Lighting(options.light), kData + scene.name + ".exr", {});
   const Plan& plan = frame.plan;
-  const Products raw = plan.method->estimate({frame.geometry,
-                                              frame.gbuffer.albedo,
-                                              frame.gbuffer.radiance,
-                                              frame.environment,
-                                              plan.products,
-                                              plan.radius,
-                                              plan.bounces,
-                                              0,
-                                              plan.parameters,
-                                              {},
-                                              plan.slices,
-                                              plan.steps,
-                                              &frame.hidden,
-                                              frame.light_model ? &*frame.light_model : nullptr});
-  Products filtered = filter_geometry(raw, frame.geometry, plan.method->pattern_size);
-  return {std::move(frame.geometry), std::move(filtered)};
+  Geometry& geometry = frame.scene.geometry;
+  Products filtered = filter_geometry(plan.method->estimate(frame.scene, plan.request, {}),
+                                      geometry, plan.method->pattern_size);
+  return {std::move(geometry), std::move(filtered)};
 }
 
 /// Notices a loss, and a gain that a later loss would hide.

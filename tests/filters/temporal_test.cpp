@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/continuity.h"
 #include "filters/temporal.h"
+#include "filters/continuity.h"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 #include "estimators/bitmask.h"
 #include "filters/geometry_filter.h"
 #include "parallel/tiles.h"
-#include "scene/hidden_geometry.h"
 #include "support/analytic_scene.h"
 #include "support/random_frame.h"
+#include "support/scene_of.h"
 
 namespace ssdo::test {
 namespace {
@@ -416,21 +416,11 @@ class Flicker {
 
 /// Occlusion as draft quality finds it, not filtered.
 Products occlusion(const Geometry& g, unsigned seed) {
-  const Environment white = Environment::constant(glm::vec3(1));
-  const HiddenGeometry hidden = find_hidden_geometry(g);
-  return bitmask_method().estimate({.geometry = g,
-                                    .albedo = {},
-                                    .radiance = {},
-                                    .environment = white,
-                                    .products = {.ao = true},
-                                    .radius = 1.5f,
-                                    .bounces = 0,
-                                    .seed = seed,
-                                    .parameters = {},
-                                    .progress = {},
-                                    .slices = 2,
-                                    .steps = 10,
-                                    .hidden = &hidden});
+  Scene scene = scene_of(g);
+  scene.hidden = find_hidden_geometry(g);
+  return bitmask_method().estimate(
+      scene, {.products = {.ao = true}, .radius = 1.5f, .seed = seed, .slices = 2, .steps = 10},
+      {});
 }
 
 TEST(Temporal, TakesTheFlickerOfNoiseAwayUnderAMovingCamera) {

@@ -8,25 +8,22 @@
 
 #include "estimators/registry.h"
 #include "hard/hard_cases.h"
-#include "scene/hidden_geometry.h"
-#include "scene/light_model.h"
+#include "support/scene_of.h"
 
 namespace ssdo::test {
 
-/// All that a method makes of a frame under a light, before a filter. `set` as with --set.
-inline Products run_method(const Method& method, const HardFrame& frame, const LightModel* light,
+/// All that a method makes of a frame in its light, before a filter. `set` as with --set.
+inline Products run_method(const Method& method, const HardFrame& frame,
                            const std::vector<std::string>& set = {}) {
-  const Geometry& g = frame.geometry;
-  const ParameterValues parameters = resolve_parameters(method, set);
-  const Plane<glm::vec3> no_radiance;
-  const HiddenGeometry hidden = method.looks_behind() ? find_hidden_geometry(g) : HiddenGeometry();
-  const int bounces = method.products.bounce ? frame.bounces : 0;
-  EstimateInput in{
-      g, frame.albedo, no_radiance, frame.environment, method.products, frame.radius, bounces,
-      0, parameters,   {}};
-  in.hidden = &hidden;
-  in.light = light;
-  return method.estimate(in);
+  Scene scene = scene_of(frame.geometry, frame.environment);
+  scene.senders.albedo = frame.albedo;
+  if (method.looks_behind()) scene.hidden = find_hidden_geometry(frame.geometry);
+  return method.estimate(scene,
+                         {.products = method.products,
+                          .radius = frame.radius,
+                          .bounces = method.products.bounce ? frame.bounces : 0,
+                          .parameters = resolve_parameters(method, set)},
+                         {});
 }
 
 template <class Value>

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/environment.h"
+#include "scene/light/environment.h"
 #include "support/analytic_scene.h"
 #include "support/frame_file.h"
 

@@ -68,13 +68,12 @@ class HardCases : public testing::TestWithParam<HardCase> {
 };
 
 TEST_P(HardCases, ThroughEveryMethod) {
-  const LightModel light = model_light(frame_.environment, frame_.geometry.world_to_camera);
   for (const Method& method : methods()) {
     SCOPED_TRACE(fmt::format("method {}", method.name));
     std::optional<Products> first;
     for (const int threads : {1, 2, 7}) {
       const ThreadLimit limit(threads);
-      Products products = run_method(method, frame_, &light, settings_of(method));
+      Products products = run_method(method, frame_, settings_of(method));
       if (first) {
         EXPECT_TRUE(same_bits(products, *first)) << threads << " threads give other bits";
       } else {

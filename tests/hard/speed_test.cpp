@@ -9,7 +9,7 @@
 
 #include "bench/ball_frame.h"
 #include "bench/bare_loads.h"
-#include "estimators/bitmask_request.h"
+#include "estimators/bitmask/request.h"
 #include "parallel/tiles.h"
 #include "support/report.h"
 
@@ -35,7 +35,7 @@ TEST(Speed, OfAoAsARatioToBareLoads) {
   const std::string isa = choose_isa();
   const Geometry& g = bench::frame_of(960, 540);
   const HiddenGeometry hidden = find_hidden_geometry(g);
-  const MarchScene scene = make_march_scene(g, &hidden);
+  const MarchScene scene = make_march_scene(g, hidden);
   const SlicePattern pattern(scene.layout, g.display, kSlices, kSteps, 0);
   const March march{scene, pattern, kNoLimit, true};
   volatile float sum = 0;  // not-a-number, as background is; asked for, so that the loads are made

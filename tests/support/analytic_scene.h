@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "scene/camera.h"
+#include "scene/camera/camera.h"
 #include "scene/geometry.h"
 
 namespace ssdo::test {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "error.h"
-#include "parallel/isa.h"
+#include "simd/isa.h"
 
 namespace ssdo::test {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "color.h"
+#include "color/color.h"
 #include "error.h"
 #include "support/error_matchers.h"
 #include "support/temp_dir.h"

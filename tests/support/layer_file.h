@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/layers.h"
+#include "scene/layers/layers.h"
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cli/options.h"
+#include "error.h"
+
+namespace ssdo {
+
+/// The main job and `info`, over one frame or a sequence. Reads the next frame while this one is
+/// computed, where there is more than one thread. Prints one line per failed frame and returns the
+/// exit code of the first; what is wrong before the first frame is thrown.
+ExitCode run_batch(const Options& options);
+
+}  // namespace ssdo

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/bench_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <set>
+
+#include "bench/truth.h"
+#include "error.h"
+#include "math/number.h"
+
+namespace ssdo {
+namespace {
+
+/// What a ladder chooses itself, and what only a job with outputs has.
+const std::set<std::string> kRefused = {
+    "--method",   "--quality", "--slices",        "--steps",         "--error",
+    "--temporal", "--output",  "--save",          "--pixel-type",    "--compression",
+    "--bits",     "--frames",  "--keep-channels", "--skip-existing", "--on-error",
+    "--dry-run",  "--stats",   "--list-methods"};
+
+/// Groups of options that change what the main job computes.
+const std::set<std::string> kCarried = {"Input", "Camera", "Light", "Model"};
+
+WantedError read_want(const std::string& text) {
+  const auto equals = text.rfind('=');
+  const bool named = equals != std::string::npos;
+  const auto value = parse_number(named ? text.substr(equals + 1) : text);
+  if (!value || *value <= 0) {
+    throw Error(ExitCode::usage,
+                fmt::format("--want {}: expected a positive error, or PRODUCT=ERROR", text));
+  }
+  return {named ? text.substr(0, equals) : "", *value};
+}
+
+/// An option as it was given: its name and one value, or its name alone.
+void carry(const CLI::Option& option, BenchOptions& out) {
+  if (option.get_items_expected_max() == 0) {
+    out.carried.push_back({option.get_name()});
+    return;
+  }
+  for (const std::string& value : option.results())
+    out.carried.push_back({option.get_name(), value});
+}
+
+}  // namespace
+
+CLI::App* add_bench(CLI::App& app, Options& o) {
+  CLI::App* bench = app.add_subcommand("bench",
+                                       "speed against error of methods and settings on "
+                                       "this frame, and the setting for a wanted error")
+                        ->fallthrough();
+  bench
+      ->add_option("--report", o.bench.reports,
+                   "write .html (a page with charts and maps), .csv or .json; repeatable")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  bench
+      ->add_option(
+          "--truth", o.bench.truths,
+          "what a product has to be, repeatable; the layer's name tells which product: AO, "
+          "DiffDir, DiffInd; else ao=FILE:LAYER")
+      ->type_name("[PRODUCT=]FILE:LAYER")
+      ->allow_extra_args(false);
+  bench->add_option("--methods", o.bench.methods, "those to measure; default: all")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  bench
+      ->add_option("--want", o.bench.want_texts,
+                   "name the cheapest setting whose error is this at most, repeatable; of the "
+                   "first product, or of the one that is named")
+      ->type_name("[PRODUCT=]E")
+      ->allow_extra_args(false);
+  return bench;
+}
+
+void finish_bench(const CLI::App& app, Options& o) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() == 0) continue;
+    const std::string name = option->get_name();
+    if (kRefused.contains(name)) {
+      throw Error(ExitCode::usage,
+                  fmt::format("bench takes no {}: {}", name,
+                              name == "--method" ? "name methods with --methods"
+                                                 : "it tries settings and writes reports alone"));
+    }
+    if (kCarried.contains(option->get_group())) carry(*option, o.bench);
+  }
+  for (const std::string& text : o.bench.want_texts) o.bench.wants.push_back(read_want(text));
+}
+
+}  // namespace ssdo

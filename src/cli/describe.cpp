@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/describe.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <glm/matrix.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cli/listing.h"
+#include "io/exr_parts.h"
+#include "io/one_line.h"
+
+namespace ssdo {
+namespace {
+
+using nlohmann::json;
+
+std::string describe_camera(const Frame& frame) {
+  const Camera& c = frame.scene.geometry.camera;
+  const int width = frame.scene.geometry.display.width();
+  std::string text = frame.report.camera_source;
+  if (frame.scene.geometry.median_depth <= 0) return text;
+  text += c.orthographic
+              ? fmt::format(": orthographic, {:.4g} wide", width / c.fx)
+              : fmt::format(": {:.3f} degrees, f {:.2f} px", c.hfov_degrees(width), c.fx);
+  if (std::abs(c.fy - c.fx) > 1e-3 * c.fx) text += fmt::format(" x {:.2f} px", c.fy);
+  text += fmt::format(", centre {:.2f} {:.2f}", c.cx, c.cy);
+  if (const auto& r = frame.report.residual) {
+    text += fmt::format("; P lands {:.2g} px from its pixel (median), {:.2g} px (99 %)",
+                        r->median_px, r->p99_px);
+  }
+  return text;
+}
+
+/// Its channels; where they do not tell, which part or file they stand in.
+std::string describe_layer(const Frame& frame, const Layer& layer) {
+  const ExrReader& file = frame.files[std::size_t(layer.file)];
+  std::string text =
+      fmt::format("{} ({}{})", fmt::join(layer.channels, ", "), layer.half ? "half" : "float",
+                  layer.by_request ? ", by --aov" : "");
+  if (file.parts().size() > 1) text += " in " + label(file.parts()[std::size_t(layer.part)]);
+  if (layer.file != 0) text += " of " + file.path().string();
+  return text;
+}
+
+std::string describe_normals(const Frame& frame) {
+  const GeometryReport& report = frame.report;
+  const auto& layer = frame.layers[Role::normal];
+  std::string text = layer ? describe_layer(frame, *layer) : "no layer";
+  if (!report.normal_space.empty()) text += "; " + report.normal_space;
+  if (layer) text += fmt::format(", {:.1f} % agree with P", 100 * report.normal_agreement);
+  if (layer && report.normals_rebuilt > 0)
+    text += fmt::format("; {} rebuilt from P", report.normals_rebuilt);
+  if (report.normals_turned > 0)
+    text += fmt::format("; {} turned to the viewer", report.normals_turned);
+  return text;
+}
+
+json camera_json(const Frame& frame) {
+  const Camera& c = frame.scene.geometry.camera;
+  json rows = json::array();
+  const glm::dvec3 translation = -(c.rotation * c.origin);
+  for (int row = 0; row < 3; ++row) {
+    rows.push_back({c.rotation[0][row], c.rotation[1][row], c.rotation[2][row], translation[row]});
+  }
+  rows.push_back({0.0, 0.0, 0.0, 1.0});
+  json j = {{"source", frame.report.camera_source},
+            {"type", c.orthographic ? "ortho" : "persp"},
+            {"fx", c.fx},
+            {"fy", c.fy},
+            {"cx", c.cx},
+            {"cy", c.cy},
+            {"hfov_deg", c.hfov_degrees(frame.scene.geometry.display.width())},
+            {"world_to_camera", rows},
+            {"world_handedness", glm::determinant(c.rotation) < 0 ? "left" : "right"}};
+  if (const auto& r = frame.report.residual) {
+    j["residual_px"] = {{"median", r->median_px}, {"p99", r->p99_px}, {"max", r->max_px}};
+  }
+  return j;
+}
+
+std::size_t surface_pixels(const Frame& frame) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < frame.scene.geometry.surfel.size(); ++i)
+    count += frame.scene.geometry.is_surface(i);
+  return count;
+}
+
+json layers_json(const Frame& frame) {
+  json layers = json::object();
+  for (std::size_t i = 0; i < kRoleCount; ++i) {
+    if (const auto& layer = frame.layers.layers[i]) {
+      layers[std::string(role_name(Role(i)))] = {
+          {"layer", layer->name}, {"channels", layer->channels},
+          {"part", layer->part},  {"file", frame.files[std::size_t(layer->file)].path().string()},
+          {"half", layer->half},  {"by_request", layer->by_request}};
+    }
+  }
+  return layers;
+}
+
+}  // namespace
+
+std::string describe(const Frame& frame) {
+  const Window& display = frame.scene.geometry.display;
+  std::string text =
+      fmt::format("{}: {} x {}\n", printable(frame.input), display.width(), display.height());
+  const auto line = [&](std::string_view key, const std::string& value) {
+    text += fmt::format("  {:<10}{}\n", key, printable(value));
+  };
+  if (!(frame.scene.geometry.window == display)) {
+    line("window", "data " + text_of(frame.scene.geometry.window));
+  }
+  for (std::size_t i = 0; i < kRoleCount; ++i) {
+    const auto& layer = frame.layers.layers[i];
+    if (Role(i) == Role::normal)
+      line("normal", describe_normals(frame));
+    else if (layer)
+      line(role_name(Role(i)), describe_layer(frame, *layer));
+  }
+  line("camera", describe_camera(frame));
+  line("surfaces", fmt::format("{} of {} pixels ({} background, {} broken), median depth {:.4g}",
+                               surface_pixels(frame), frame.scene.geometry.surfel.size(),
+                               frame.gbuffer.background_pixels, frame.gbuffer.bad_pixels,
+                               frame.scene.geometry.median_depth));
+  line("light", frame.light);
+  line("plan", fmt::format("{}: {} ({} samples per pixel, {} bounce(s), filter {}{})",
+                           fmt::join(frame.plan.make, ", "), frame.plan.method->name,
+                           frame.plan.samples_per_pixel(), frame.plan.request.bounces,
+                           frame.plan.filter->name, frame.plan.temporal ? " and temporal" : ""));
+  for (const std::string& reason : frame.plan.reasons) line("", reason);
+  for (const std::string& line_of_history : frame.history) line("history", line_of_history);
+  for (const std::string& warning : frame.warnings()) line("warning", warning);
+  return text;
+}
+
+nlohmann::json to_json(const Frame& frame) {
+  const Geometry& g = frame.scene.geometry;
+  return {{"file", frame.input},
+          {"width", g.display.width()},
+          {"height", g.display.height()},
+          {"data_window", window_json(g.window)},
+          {"display_window", window_json(g.display)},
+          {"parts", parts_json(frame.files.front())},
+          {"layers", layers_json(frame)},
+          {"camera", camera_json(frame)},
+          {"normals",
+           {{"space", frame.report.normal_space},
+            {"agreement", frame.report.normal_agreement},
+            {"rebuilt", frame.report.normals_rebuilt},
+            {"turned", frame.report.normals_turned}}},
+          {"pixels", g.surfel.size()},
+          {"surface_pixels", surface_pixels(frame)},
+          {"background_pixels", frame.gbuffer.background_pixels},
+          {"bad_pixels", frame.gbuffer.bad_pixels},
+          {"median_depth", g.median_depth},
+          {"light", frame.light},
+          {"plan", to_json(frame.plan)},
+          {"history", frame.history},
+          {"warnings", frame.warnings()}};
+}
+
+}  // namespace ssdo

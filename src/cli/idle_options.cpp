@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/idle_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+
+#include "estimators/registry.h"
+#include "io/image_file.h"
+
+namespace ssdo {
+namespace {
+
+using Condition = std::function<bool(const Options&)>;
+
+/// When an option has no effect, and what would give it one.
+struct IdleRule {
+  std::vector<std::string_view> options;
+  Condition idle;
+  std::string_view reason;
+};
+
+const Method& method_of(const Options& o) { return find_method(o.model.method); }
+
+/// Whether the run has outputs, and none of them is of the kind.
+template <typename Kind>
+Condition no_output(Kind kind) {
+  return [kind](const Options& o) {
+    if (o.command != Command::relight || (o.output.files.empty() && o.output.saves.empty()))
+      return false;
+    return std::none_of(o.output.files.begin(), o.output.files.end(), kind) &&
+           std::none_of(o.output.saves.begin(), o.output.saves.end(),
+                        [&](const SaveRequest& save) { return kind(save.path); });
+  };
+}
+
+bool is_picture(const std::string& path) { return is_display_image(path); }
+bool is_exr(const std::string& path) { return !is_picture(path); }
+bool is_deep_picture(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  return is_picture(path) && ending.find_first_of("jJ") == ending.npos;
+}
+
+const std::vector<IdleRule>& rules() {
+  static const std::vector<IdleRule> all = {
+      {{"--motion-scale"},
+       [](const Options& o) { return !o.model.temporal; },
+       "motion is used with --temporal only"},
+      {{"--quality", "--offscreen"},
+       [](const Options& o) { return o.command != Command::bench && !method_of(o).marches; },
+       "the method takes no slices and steps"},
+      {{"--quality"},
+       [](const Options& o) { return o.model.slices && o.model.steps; },
+       "--slices and --steps stand in its place"},
+      {{"--bounces"},
+       [](const Options& o) {
+         return o.command != Command::bench && !method_of(o).products.bounce;
+       },
+       "the method makes no bounce"},
+      {{"--products"},
+       [](const Options& o) { return o.output.files.empty() && !o.output.saves.empty(); },
+       "it is for files of -o, and --save names its product"},
+      {{"--pixel-type", "--compression", "--keep-channels"},
+       no_output(is_exr),
+       "no output is an EXR"},
+      {{"--bits"}, no_output(is_deep_picture), "no output is PNG or TIFF"},
+      {{"--ocio", "--colorspace", "--display", "--view", "--look"},
+       no_output(is_picture),
+       "no output is PNG, JPEG or TIFF"},
+  };
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> idle_options(const std::set<std::string>& given, const Options& options) {
+  std::vector<std::string> lines;
+  for (const IdleRule& rule : rules()) {
+    for (const std::string_view option : rule.options) {
+      if (given.contains(std::string(option)) && rule.idle(options))
+        lines.push_back(fmt::format("{} has no effect: {}", option, rule.reason));
+    }
+  }
+  return lines;
+}
+
+}  // namespace ssdo

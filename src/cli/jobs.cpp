@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/jobs.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "error.h"
+#include "io/image_file.h"
+#include "io/picture_layers.h"
+#include "io/sequence.h"
+
+namespace ssdo {
+namespace {
+
+std::vector<Target> targets_of(const OutputOptions& output) {
+  std::vector<Target> targets;
+  for (const std::string& path : output.files) targets.push_back({path, std::nullopt});
+  for (const SaveRequest& save : output.saves) targets.push_back({save.path, save.product});
+  return targets;
+}
+
+void check_kinds(const std::vector<Target>& targets) {
+  for (const Target& target : targets) {
+    if (!has_exr_ending(target.path) && !is_display_image(target.path)) {
+      throw Error(
+          ExitCode::usage,
+          fmt::format("{}: unknown kind of output; use .exr, .png, .jpg or .tif", target.path));
+    }
+  }
+}
+
+Job single_job(const Options& options, std::vector<Target> targets) {
+  if (options.model.temporal) {
+    throw Error(
+        ExitCode::usage,
+        fmt::format("{}: --temporal needs a sequence, such as shot.####.exr", options.input_file));
+  }
+  if (options.batch.frames) {
+    throw Error(ExitCode::usage,
+                fmt::format("{}: --frames needs a pattern in the input's name, such as "
+                            "shot.####.exr",
+                            options.input_file));
+  }
+  for (const Target& target : targets) {
+    if (is_pattern(target.path)) {
+      throw Error(ExitCode::usage, fmt::format("{}: has a frame pattern, but the input {} has none",
+                                               target.path, options.input_file));
+    }
+  }
+  return {std::nullopt, options.input_file, options.input.aovs, std::move(targets)};
+}
+
+Job job_of_frame(const Options& options, const std::vector<Target>& targets, int frame) {
+  Job job{frame, expand_pattern(options.input_file, frame), options.input.aovs, targets};
+  for (LayerRequest& request : job.aovs) request.file = expand_pattern(request.file, frame);
+  for (Target& target : job.targets) target.path = expand_pattern(target.path, frame);
+  return job;
+}
+
+std::vector<Job> jobs_of_sequence(const Options& options, const std::vector<Target>& targets) {
+  const auto frames =
+      options.batch.frames ? *options.batch.frames : find_frames(options.input_file);
+  if (frames.empty()) {
+    throw Error(ExitCode::input,
+                fmt::format("{}: no frame of this sequence exists", options.input_file));
+  }
+  for (const Target& target : targets) {
+    if (frames.size() > 1 && !is_pattern(target.path)) {
+      throw Error(ExitCode::usage,
+                  fmt::format("{}: {} frames would go to this one file; put a pattern into its "
+                              "name, such as out.####.exr",
+                              target.path, frames.size()));
+    }
+  }
+  std::vector<Job> jobs;
+  for (int frame : frames) jobs.push_back(job_of_frame(options, targets, frame));
+  return jobs;
+}
+
+RunFiles files_of(const Options& options, const std::vector<Job>& jobs) {
+  RunFiles files;
+  for (const Job& job : jobs) {
+    const auto inputs = inputs_of(options, job.input, job.aovs);
+    files.inputs.insert(files.inputs.end(), inputs.begin(), inputs.end());
+    for (const Target& target : job.targets)
+      files.outputs.push_back({target.product ? "--save" : "-o", target.path});
+  }
+  if (!options.say.stats.empty()) files.outputs.push_back({"--stats", options.say.stats});
+  return files;
+}
+
+}  // namespace
+
+std::vector<Job> plan_jobs(const Options& options) {
+  std::vector<Target> targets = targets_of(options.output);
+  check_kinds(targets);
+  std::vector<Job> jobs = is_pattern(options.input_file)
+                              ? jobs_of_sequence(options, targets)
+                              : std::vector{single_job(options, std::move(targets))};
+  if (options.command == Command::relight) check_run_files(files_of(options, jobs));
+  return jobs;
+}
+
+std::vector<RunFile> inputs_of(const Options& options, const std::string& frame,
+                               const std::vector<LayerRequest>& aovs) {
+  const char* const ocio = std::getenv("OCIO");
+  std::vector<RunFile> inputs = {{"INPUT", frame},
+                                 {"--env", parse_picture_name(options.light.env).file},
+                                 {"--camera", options.camera.file},
+                                 {"--ocio", options.color.ocio},
+                                 {"$OCIO", ocio ? ocio : ""},
+                                 {"--config", options.config_file}};
+  for (const LayerRequest& request : aovs) inputs.push_back({"--aov", request.file});
+  return inputs;
+}
+
+}  // namespace ssdo

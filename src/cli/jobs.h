@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+#include "io/run_files.h"
+#include "pipeline.h"
+
+namespace ssdo {
+
+/// One frame of a run, with its own files in the place of patterns.
+struct Job {
+  std::optional<int> frame;
+  std::string input;
+  std::vector<LayerRequest> aovs;
+  std::vector<Target> targets;
+};
+
+/// The frames of a run in their order.
+/// Errors: ExitCode::usage for patterns, frames and kinds of output that do not fit together;
+/// ExitCode::input for a sequence without frames; those of check_run_files, over all frames.
+std::vector<Job> plan_jobs(const Options& options);
+
+/// Every file that a frame is made from: the frame, those of --aov, --env, --camera, --config and
+/// the OpenColorIO config.
+std::vector<RunFile> inputs_of(const Options& options, const std::string& frame,
+                               const std::vector<LayerRequest>& aovs);
+
+}  // namespace ssdo

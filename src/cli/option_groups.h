@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "cli/options.h"
+
+namespace ssdo {
+
+/// Declares the options of the main job, group by group as the help shows them. What a value means
+/// is read as the option is set, so that an error can name the line of a config file.
+void add_main_options(CLI::App& app, Options& options);
+
+}  // namespace ssdo

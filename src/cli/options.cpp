@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <set>
+
+#include "cli/bench_options.h"
+#include "cli/config_file.h"
+#include "cli/idle_options.h"
+#include "cli/option_groups.h"
+#include "cli/option_values.h"
+#include "error.h"
+#include "io/one_line.h"
+
+namespace ssdo {
+namespace {
+
+CLI::App* add_compare(CLI::App& app, CompareOptions& o) {
+  CLI::App* compare =
+      app.add_subcommand("compare", "error between two images, layer by layer: FILE or FILE:LAYER");
+  compare->add_option("A", o.a, "image or layer to measure")->required();
+  compare->add_option("B", o.b, "image or layer to hold it to")->required();
+  compare->add_option("--mask", o.mask, "compare only pixels where this is not 0")
+      ->type_name("FILE[:LAYER]");
+  compare->add_option("--diff", o.diff, "write A - B")->type_name("OUT.exr");
+  compare->add_option("--fail-above", o.fail_above, "exit with 1 if the RMSE of a layer is above")
+      ->type_name("RMSE")
+      ->check(between(0, 1e38));
+  compare
+      ->add_option("--max-invalid", o.max_invalid,
+                   "share of pixels that may be valid in one image only under --fail-above")
+      ->type_name("SHARE")
+      ->capture_default_str()
+      ->check(between(0, 1));
+  compare->add_flag("--json", o.json, "as JSON");
+  compare->add_flag("--overwrite", o.policy.overwrite, "replace the output of --diff");
+  compare->add_flag("--create-dirs", o.policy.create_dirs, "make its folder");
+  return compare;
+}
+
+CLI::App* add_info(CLI::App& app, Options& o) {
+  CLI::App* info =
+      app.add_subcommand("info", "say what was found, what would be done and why; write nothing")
+          ->fallthrough();
+  info->add_flag("--json", o.say.json, "as JSON");
+  return info;
+}
+
+std::string shown(const CLI::Option& option) {
+  return option.get_positional() ? option.get_single_name() : option.get_name();
+}
+
+/// An empty value is what an unset variable of a script leaves; it stands for nothing.
+void refuse_empty_values(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_items_expected_max() == 0) continue;
+    for (const std::string& value : option->results()) {
+      if (value.empty()) {
+        throw Error(ExitCode::usage, fmt::format("{}: its value is empty; give one or leave it out",
+                                                 shown(*option)));
+      }
+    }
+  }
+}
+
+std::set<std::string> names_given(const CLI::App& app) {
+  std::set<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() > 0) names.insert(option->get_name());
+  }
+  return names;
+}
+
+/// `compare` reads no frame: nothing of the main job means anything beside it.
+void refuse_options_of_the_main_job(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() > 0) {
+      throw Error(ExitCode::usage,
+                  fmt::format("compare takes no {}; see ssdo compare --help", shown(*option)));
+    }
+  }
+}
+
+/// Refuses what does not fit together.
+void check(const Options& o) {
+  if (o.input_file.empty()) throw Error(ExitCode::usage, "no INPUT given; see ssdo --help");
+  if (o.command == Command::relight && o.output.files.empty() && o.output.saves.empty() &&
+      !o.say.dry_run) {
+    throw Error(ExitCode::usage,
+                fmt::format("{}: no output given; name one with -o OUTPUT", o.input_file));
+  }
+}
+
+}  // namespace
+
+ParsedOptions parse_options(int argc, const char* const* argv) {
+  ParsedOptions parsed;
+  Options& o = parsed.options;
+  CLI::App app{
+      "Puts light back into a rendered frame: occlusion, environment light and bounces from a "
+      "G-buffer.",
+      "ssdo"};
+  app.set_version_flag("--version", std::string("ssdo ") + SSDO_VERSION)->configurable(false);
+  app.add_option("INPUT", o.input_file, "multilayer EXR, or a sequence: shot.####.exr")->group("");
+  bool list = false;
+  app.add_flag("--list-methods", list, "print the methods, their products and parameters")
+      ->configurable(false)
+      ->group("Model");
+  add_main_options(app, o);
+  app.require_subcommand(0, 1);
+  const CLI::App* const info = add_info(app, o);
+  const CLI::App* const bench = add_bench(app, o);
+  const CLI::App* const compare = add_compare(app, o.compare);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    parsed.print = app.help();
+    return parsed;
+  } catch (const CLI::CallForVersion&) {
+    parsed.print = std::string("ssdo ") + SSDO_VERSION + "\n";
+    return parsed;
+  } catch (const CLI::ParseError& e) {
+    throw Error(ExitCode::usage, one_line(e.what()) + "; see ssdo --help");
+  }
+  refuse_empty_values(app);
+  for (const CLI::App* command : app.get_subcommands()) refuse_empty_values(*command);
+  if (list) {
+    o.command = Command::list_methods;
+    return parsed;
+  }
+  if (compare->parsed()) {
+    o.command = Command::compare;
+    refuse_options_of_the_main_job(app);
+    return parsed;
+  }
+  if (info->parsed()) o.command = Command::info;
+  if (bench->parsed()) o.command = Command::bench;
+  const std::set<std::string> given = names_given(app);
+  if (!o.config_file.empty()) read_config_file(o.config_file, app);
+  if (o.command == Command::bench) finish_bench(app, o);
+  check(o);
+  o.warnings = idle_options(given, o);
+  return parsed;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "color/display_image.h"
+
+#include "color/compose.h"
+#include "parallel/tiles.h"
+
+namespace ssdo {
+namespace {
+
+/// Calls visit(index in the image, index in the planes) for every pixel that both windows show.
+template <class Visit>
+void for_each_shown_pixel(const Geometry& geometry, const Visit& visit) {
+  const Window &display = geometry.display, &data = geometry.window;
+  for (int y = std::max(display.y0, data.y0); y < std::min(display.y1, data.y1); ++y) {
+    for (int x = std::max(display.x0, data.x0); x < std::min(display.x1, data.x1); ++x) {
+      visit(
+          std::size_t(y - display.y0) * std::size_t(display.width()) + std::size_t(x - display.x0),
+          geometry.surfel.index(x - data.x0, y - data.y0));
+    }
+  }
+}
+
+void apply_display(Plane<glm::vec3>& colors, const DisplayTransform& display) {
+  for_each_row(colors.height, [&](int y) {
+    display.apply({&colors(0, y), std::size_t(colors.width)});
+  });
+}
+
+}  // namespace
+
+bool needs_display(const std::string& product) {
+  return product != "ao" && product != "error" && product != "bent" && product != "reflection";
+}
+
+DisplayImage make_display_image(const std::string& product, const Scene& scene,
+                                const GBuffer& gbuffer, const Products& products,
+                                const DisplayTransform* display, bool with_alpha) {
+  const Geometry& geometry = scene.geometry;
+  DisplayImage image;
+  image.width = geometry.display.width();
+  image.height = geometry.display.height();
+  image.pixel_aspect = gbuffer.pixel_aspect;
+  const bool grey = product == "ao" || product == "error" || product == "reflection";
+  image.channels = grey ? 1 : product == "composite" && with_alpha ? 4 : 3;
+  const auto channels = std::size_t(image.channels);
+  image.values.assign(geometry.display.area() * channels, 0.0f);
+  if (!needs_display(product)) {
+    // Data as they are; directions as colours usually show them, -1..1 in 0..1.
+    const float scale = grey ? 1.0f : 0.5f, offset = grey ? 0.0f : 0.5f;
+    const std::vector<NamedPlane> planes = product_channels(product, scene, gbuffer, products);
+    for_each_shown_pixel(geometry, [&](std::size_t to, std::size_t from) {
+      for (std::size_t c = 0; c < channels; ++c)
+        image.values[to * channels + c] = scale * planes[c].pixels[from] + offset;
+    });
+    return image;
+  }
+  Plane<glm::vec3> colors = product == "composite" ? composite(scene, gbuffer, products)
+                            : product == "direct"  ? products.direct
+                                                   : products.bounce;
+  const Plane<float> alpha = coverage(scene, gbuffer);
+  if (product == "composite" && !with_alpha) {
+    for (std::size_t i = 0; i < colors.size(); ++i) colors[i] *= alpha[i];
+    glm::vec3 black(0);  // which some views lift
+    display->apply({&black, 1});
+    for (std::size_t i = 0; i < image.values.size(); ++i) image.values[i] = black[int(i % 3)];
+  }
+  apply_display(colors, *display);
+  for_each_shown_pixel(geometry, [&](std::size_t to, std::size_t from) {
+    if (alpha[from] <= 0) return;
+    for (int c = 0; c < 3; ++c) image.values[to * channels + std::size_t(c)] = colors[from][c];
+    if (channels == 4) image.values[to * 4 + 3] = alpha[from];
+  });
+  return image;
+}
+
+}  // namespace ssdo

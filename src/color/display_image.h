@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "color/color.h"
+#include "estimators/estimator.h"
+#include "io/image_file.h"
+#include "scene/gbuffer.h"
+#include "scene/scene.h"
+
+namespace ssdo {
+
+/// A product as a display shows it: interleaved values in 0..1 over the display window.
+struct DisplayImage {
+  int width = 0, height = 0, channels = 3;
+  float pixel_aspect = 1;
+  std::vector<float> values;
+
+  ImageSpec spec(int bits) const { return {width, height, channels, bits, pixel_aspect}; }
+};
+
+/// Whether a product is a colour, which goes through the display transform; visibility does not.
+bool needs_display(const std::string& product);
+
+/// The composite comes with its alpha, not premultiplied, or, where `with_alpha` is false, over
+/// black: premultiplied before the display transform, as light adds up, which is how compositors
+/// show and convert a premultiplied EXR. Direct and bounce come as RGB; ao, error and reflection as
+/// grey; bent as RGB with 1/2 for 0. What the data window does not cover is empty. `display` may be
+/// null where needs_display is false.
+DisplayImage make_display_image(const std::string& product, const Scene& scene,
+                                const GBuffer& gbuffer, const Products& products,
+                                const DisplayTransform* display, bool with_alpha);
+
+}  // namespace ssdo

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "estimators/bitmask/march_scene.h"
+#include "estimators/bitmask/slice_pattern.h"
+#include "math/octahedral_map.h"
+#include "parallel/interleaved.h"
+#include "scene/light/sun.h"
+
+namespace ssdo {
+
+using InterleavedColor = std::array<InterleavedPlane, 3>;
+
+/// What all marches share.
+struct March {
+  const MarchScene& scene;
+  const SlicePattern& pattern;
+  float radius;  ///< scene units, or infinity
+  bool extend;   ///< surfaces go on beyond the frame
+};
+
+/// How open each pixel is, and to which light.
+struct VisibilityJob {
+  March march;
+  /// Bands of spherical harmonics that light is gathered in, up to 4; 0: no direction matters.
+  int order;
+  /// Weights of the basis polynomials, (order + 1)^2 for red, then green, then blue.
+  const float* light;               ///< null: it comes from everywhere alike
+  const OctahedralMap* irradiance;  ///< over pi, by normal, where nothing is in the way
+
+  InterleavedPlane* ao;
+  InterleavedColor* bent;        ///< unit; null: not wanted
+  InterleavedColor* direct;      ///< null: not wanted
+  InterleavedPlane* difference;  ///< standard error of its luminance, signed; null: not wanted
+};
+
+/// What each pixel sends to others, and its unseen side.
+struct SenderJob {
+  const MarchScene& scene;
+  const InterleavedPlane* ao;
+  const InterleavedColor *albedo, *direct;
+  const InterleavedColor* bounce;   ///< that has arrived so far; null: none
+  const OctahedralMap* irradiance;  ///< over pi, by normal, where nothing is in the way
+  const std::vector<Sun>& suns;
+  InterleavedColor* sent;       ///< may be the albedo
+  InterleavedColor* sent_back;  ///< null: the same
+};
+
+/// What each pixel receives from the first surface in every direction: the mean radiance of what
+/// hides the environment, times how much of it is hidden.
+struct BounceJob {
+  March march;
+  const InterleavedPlane* ao;
+  const InterleavedColor* sent;         ///< radiance of what is seen
+  const InterleavedColor* sent_back;    ///< of its other side; null: the same
+  const InterleavedColor* sent_behind;  ///< of what is covered
+  const BorderValues* sent_border;      ///< of what goes on beyond the frame, three
+
+  // What the pixels that march have met.
+  InterleavedColor* gathered;  ///< sum of radiance
+  InterleavedPlane* weights;   ///< sum of the weights
+  InterleavedPlane*
+      difference;  ///< error of the luminance of the mean, times them; null: not wanted
+
+  InterleavedColor* bounce;
+  InterleavedPlane* error;  ///< standard error of its luminance, signed; null: not wanted
+};
+
+/// The direct light of a sun, where it is seen.
+struct SunJob {
+  struct Direction {
+    float x, y, z;
+  };
+  March march;
+  /// For each member of the pattern a unit direction to a point of the sun, and where on the way
+  /// there the march looks, near to far.
+  std::array<Direction, Interleaving::kPeriod * Interleaving::kPeriod> directions;
+  std::array<std::vector<float>, Interleaving::kPeriod * Interleaving::kPeriod> distances_px;
+  const Sun* sun;
+  InterleavedColor* direct;  ///< added to
+};
+
+/// All work on rows y0 to y1 of the picture.
+void march_visibility(const VisibilityJob& job, int y0, int y1);
+void march_bounce(const BounceJob& job, int y0, int y1);
+void spread_bounce(const BounceJob& job, int y0, int y1);  ///< after all of march_bounce
+void march_sun(const SunJob& job, int y0, int y1);
+void find_senders(const SenderJob& job, int y0, int y1);
+
+}  // namespace ssdo

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "parallel/interleaved.h"
+#include "scene/geometry.h"
+#include "scene/hidden_geometry.h"
+
+namespace ssdo {
+
+/// What is endless, in the units of MarchScene: within 1e-4 of the direction of the view ray.
+constexpr float kEndlessShare = 1e4f, kEndlessLength = 1e15f;
+
+/// Values of the pixels at the frame's border. The first and the last row are stored as the rows of
+/// an InterleavedPlane are, the first and the last column as they come.
+class BorderLayout {
+ public:
+  explicit BorderLayout(const Interleaving& layout)
+      : frame_(layout), row_(layout.stride() * Interleaving::kPeriod) {}
+
+  std::ptrdiff_t in_row(bool last, int comb, int column) const {
+    return (last ? row_ : 0) + frame_.index(0, comb, column);
+  }
+  std::ptrdiff_t in_column(bool last, int y) const {
+    return 2 * row_ + (last ? frame_.height() : 0) + y;
+  }
+
+  /// `value(x, y)` of all pixels at the border.
+  template <class Value>
+  std::vector<float> gather(const Value& value) const {
+    const int w = frame_.width(), h = frame_.height();
+    std::vector<float> values(std::size_t(2 * (row_ + h)));
+    for (const bool last : {false, true}) {
+      for (int x = 0; x < w; ++x)
+        values[std::size_t((last ? row_ : 0) + frame_.index(x, 0))] = value(x, last ? h - 1 : 0);
+      for (int y = 0; y < h; ++y)
+        values[std::size_t(in_column(last, y))] = value(last ? w - 1 : 0, y);
+    }
+    return values;
+  }
+
+ private:
+  Interleaving frame_;
+  std::ptrdiff_t row_;
+};
+
+using BorderValues = std::vector<float>;
+
+/// The frame as a march reads it. Positions are known from depths: where the camera's ray through
+/// the middle of a pixel meets the tangent plane of what the pixel shows. Planes are not-a-number
+/// where there is nothing.
+///
+/// Thicknesses are a share of the depth in front, or a length in scene units where the camera is
+/// orthographic.
+struct MarchScene {
+  Interleaving layout;
+  bool orthographic;
+  float fx, fy;                ///< pixels per unit of slope, or per scene unit
+  float axis_x, axis_y;        ///< pixel of the display window that the camera's axis meets
+  int first_x, first_y;        ///< pixel (0, 0) in the display window
+  InterleavedPlane depth;      ///< along the axis, positive
+  InterleavedPlane thickness;  ///< from the front to the back
+  InterleavedPlane behind;     ///< depth of the surface that is covered
+  InterleavedPlane behind_thickness;
+  InterleavedPlane nx, ny, nz;  ///< unit normal, camera space
+  InterleavedPlane rounding;    ///< distance by which storing P may have moved it
+  BorderLayout border;
+  BorderValues border_depth, border_normal[3];
+  BorderValues border_thickness;  ///< in scene units
+};
+
+/// `hidden` may be empty: then all that is seen is endless.
+MarchScene make_march_scene(const Geometry& geometry, const HiddenGeometry& hidden);
+
+}  // namespace ssdo

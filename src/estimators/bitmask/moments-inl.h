@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Which directions are open, in spherical harmonics: the visible set of a pixel against the light
+// of the environment, for a vector of pixels.
+//
+// On the circle of a slice, harmonics of order L are sums of cos(k theta) and sin(k theta) up to
+// k = L. So the moments of a set of sectors up to L say all that they will ever be asked, and
+// 2 L + 2 equally spaced directions, weighted to have the same moments, stand for the set. They are
+// L + 1 lines: harmonics of an even order are the same at both ends, those of an odd one opposite.
+#if defined(SSDO_BITMASK_MOMENTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SSDO_BITMASK_MOMENTS_INL_H_
+#undef SSDO_BITMASK_MOMENTS_INL_H_
+#else
+#define SSDO_BITMASK_MOMENTS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "estimators/bitmask/lanes-inl.h"
+#include "estimators/bitmask/light-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace ssdo::HWY_NAMESPACE {
+
+/// table[index], index in 0..15.
+HWY_INLINE V lookup16(const float* HWY_RESTRICT table, VU index) {
+  const D d;
+  const DI di;
+  if constexpr (hn::MaxLanes(d) == 16) {
+    return hn::TableLookupLanes(hn::Load(d, table), hn::IndicesFromVec(d, index));
+  } else if constexpr (hn::MaxLanes(d) == 8) {
+    const auto low = hn::IndicesFromVec(d, hn::And(index, hn::Set(DU(), 7u)));
+    const M upper = hn::RebindMask(d, index > hn::Set(DU(), 7u));
+    return hn::IfThenElse(upper, hn::TableLookupLanes(hn::Load(d, table + 8), low),
+                          hn::TableLookupLanes(hn::Load(d, table), low));
+  } else {
+    return hn::GatherIndex(d, table, hn::BitCast(di, index));
+  }
+}
+
+/// table[index], index in 0..31.
+HWY_INLINE V lookup32(const float* HWY_RESTRICT table, VU index) {
+  const D d;
+  const DU du;
+  if constexpr (hn::MaxLanes(d) == 16) {
+    const auto low = hn::IndicesFromVec(d, hn::And(index, hn::Set(du, 15u)));
+    return hn::IfThenElse(hn::RebindMask(d, index > hn::Set(du, 15u)),
+                          hn::TableLookupLanes(hn::Load(d, table + 16), low),
+                          hn::TableLookupLanes(hn::Load(d, table), low));
+  } else {
+    return hn::GatherIndex(d, table, hn::BitCast(DI(), index));
+  }
+}
+
+/// Moments of a set of sectors with respect to the angle from V; sine(0) is 0.
+template <int kDegree>
+struct RawMoments {
+  V cosine[kDegree + 1], sine[kDegree + 1];
+};
+
+/// All of them, each from `lookup(moment)` with the numbering of SliceSectors.
+template <int kDegree, class Lookup>
+HWY_INLINE RawMoments<kDegree> raw_moments(const Lookup& lookup) {
+  RawMoments<kDegree> m;
+  // Moment 0 is not asked for where only the cosine with the normal is: degree 1.
+  m.cosine[0] = kDegree > 1 ? lookup(0) : hn::Zero(D());
+  m.sine[0] = hn::Zero(D());
+  for (int k = 1; k <= kDegree; ++k) {
+    m.cosine[k] = lookup(k);
+    m.sine[k] = lookup(SliceSectors::sine_moment(k));
+  }
+  return m;
+}
+
+template <int kDegree>
+HWY_INLINE RawMoments<kDegree> moments_of_first(VU count) {
+  const SliceSectors& sectors = slice_sectors();
+  return raw_moments<kDegree>(
+      [&](int m) HWY_ATTR { return lookup32(sectors.of_first[std::size_t(m)].data(), count); });
+}
+
+template <int kDegree>
+HWY_INLINE RawMoments<kDegree> moments_of_bits(VU bits) {
+  const SliceSectors& sectors = slice_sectors();
+  VU groups[8];
+  for (int g = 0; g < 8; ++g)
+    groups[g] = hn::And(hn::ShiftRightSame(bits, 4 * g), hn::Set(DU(), 15u));
+  return raw_moments<kDegree>([&](int m) HWY_ATTR {
+    const float* table = sectors.of_group[std::size_t(m)].data();
+    V sum = lookup16(table, groups[0]);
+    for (int g = 1; g < 8; ++g) sum = sum + lookup16(table + 16 * g, groups[g]);
+    return sum;
+  });
+}
+
+/// The same with the cosine to the normal as a weight, around the circle of a slice.
+template <int kOrder>
+struct CircleMoments {
+  V cosine[kOrder + 1], sine[kOrder + 1];
+
+  HWY_INLINE CircleMoments() {
+    for (int k = 0; k <= kOrder; ++k) cosine[k] = sine[k] = hn::Zero(D());
+  }
+
+  /// Adds sectors of one half: (n_v cos + n_t sin) cos(k theta), and with sin(k theta), whose sign
+  /// is the other half's turned round.
+  HWY_INLINE void add(const RawMoments<kOrder + 1>& m, V n_v, V n_t, bool forward) {
+    const D d;
+    const V half = hn::Set(d, 0.5f);
+    cosine[0] = hn::MulAdd(n_v, m.cosine[1], hn::MulAdd(n_t, m.sine[1], cosine[0]));
+    const V v = n_v * half, t = n_t * half;
+    for (int k = 1; k <= kOrder; ++k) {
+      const V c = dot2(v, t, m.cosine[k + 1] + m.cosine[k - 1], m.sine[k + 1] - m.sine[k - 1]);
+      const V s = dot2(v, t, m.sine[k + 1] + m.sine[k - 1], m.cosine[k - 1] - m.cosine[k + 1]);
+      cosine[k] = cosine[k] + c;
+      sine[k] = forward ? sine[k] + s : sine[k] - s;
+    }
+  }
+
+  /// Weights of the direction at this angle, one of 2 kOrder + 2, with that of the opposite one
+  /// added and subtracted.
+  HWY_INLINE void at(const float* cosines, const float* sines, V& both, V& difference) const {
+    const D d;
+    V sums[2] = {cosine[0] * hn::Set(d, 0.5f), hn::Zero(d)};
+    for (int k = 1; k <= kOrder; ++k) {
+      V& sum = sums[k % 2];
+      sum = hn::MulAdd(cosine[k], hn::Set(d, cosines[k]), sum);
+      sum = hn::MulAdd(sine[k], hn::Set(d, sines[k]), sum);
+    }
+    const V scale = hn::Set(d, 2.0f / (kOrder + 1));
+    both = sums[0] * scale, difference = sums[1] * scale;
+  }
+};
+
+/// cos and sin of k times each of kOrder + 1 angles that divide the half-circle equally.
+template <int kOrder>
+struct CircleDirections {
+  static constexpr int kCount = kOrder + 1;
+  float cosine[kCount][kOrder + 1], sine[kCount][kOrder + 1];
+
+  CircleDirections() {
+    for (int j = 0; j < kCount; ++j) {
+      for (int k = 0; k <= kOrder; ++k) {
+        const double angle = 3.14159265358979324 * j * k / kCount;
+        cosine[j][k] = float(std::cos(angle)), sine[j][k] = float(std::sin(angle));
+      }
+    }
+  }
+};
+
+/// Calls `add(i, value)` for each basis polynomial of the bands from 2 to kOrder in the unit
+/// direction (x, y, z): the real spherical harmonics without their constants, l*l + l + m.
+template <int kOrder, class Add>
+HWY_INLINE void for_each_high_basis(V x, V y, V z, const Add& add) {
+  const D d;
+  const auto number = [&](float value) HWY_ATTR { return hn::Set(d, value); };
+  if constexpr (kOrder >= 2) {
+    const V xx = x * x, yy = y * y, zz = z * z, xy = x * y;
+    const V x2y2 = xx - yy;
+    add(4, xy), add(5, y * z), add(6, hn::MulSub(number(3), zz, number(1))), add(7, x * z);
+    add(8, x2y2);
+    if constexpr (kOrder >= 3) {
+      const V y3 = y * hn::MulSub(number(3), xx, yy), x3 = x * hn::NegMulAdd(number(3), yy, xx);
+      const V z5 = hn::MulSub(number(5), zz, number(1));
+      add(9, y3), add(10, xy * z), add(11, y * z5);
+      add(12, z * hn::MulSub(number(5), zz, number(3))), add(13, x * z5), add(14, z * x2y2);
+      add(15, x3);
+      if constexpr (kOrder >= 4) {
+        const V z71 = hn::MulSub(number(7), zz, number(1)),
+                z73 = z * hn::MulSub(number(7), zz, number(3));
+        add(16, xy * x2y2), add(17, y3 * z), add(18, xy * z71), add(19, y * z73);
+        add(20, hn::MulAdd(hn::MulSub(number(35), zz, number(30)), zz, number(3)));
+        add(21, x * z73), add(22, x2y2 * z71), add(23, x3 * z);
+        add(24, xx * hn::NegMulAdd(number(3), yy, xx) - yy * hn::MulSub(number(3), xx, yy));
+      }
+    }
+  }
+}
+
+/// Sums over slices, of what is hidden and of all that is above the tangent plane.
+template <int kOrder>
+struct Moments {
+  static constexpr int kCount = (kOrder + 1) * (kOrder + 1);
+
+  V hidden[kCount], whole[kCount];
+
+  HWY_INLINE Moments() {
+    for (int i = 0; i < kCount; ++i) hidden[i] = whole[i] = hn::Zero(D());
+  }
+
+  /// Bands 0 and 1 come from the moments as they are: ao and the bent normal are the same to the
+  /// bit whatever the order.
+  HWY_INLINE void add(const Receiver& p, const SliceFrame& f,
+                      const CircleMoments<kOrder>& hidden_of_slice,
+                      const CircleMoments<kOrder>& whole_of_slice) {
+    add_low_bands(p, f, hidden_of_slice, hidden);
+    add_low_bands(p, f, whole_of_slice, whole);
+    if constexpr (kOrder > 1) {
+      const D d;
+      static const CircleDirections<kOrder> directions;
+      for (int j = 0; j < CircleDirections<kOrder>::kCount; ++j) {
+        const float *cosines = directions.cosine[j], *sines = directions.sine[j];
+        const V c = hn::Set(d, cosines[1]), s = hn::Set(d, sines[1]);
+        V h[2], w[2];
+        hidden_of_slice.at(cosines, sines, h[0], h[1]);
+        whole_of_slice.at(cosines, sines, w[0], w[1]);
+        for (int k = 0; k < 2; ++k) h[k] = h[k] * f.weight, w[k] = w[k] * f.weight;
+        for_each_high_basis<kOrder>(dot2(c, s, p.vx, f.tx), dot2(c, s, p.vy, f.ty),
+                                    dot2(c, s, p.vz, f.tz), [&](int i, V value) HWY_ATTR {
+                                      const int odd = i >= 9 && i < 16;  // band 3
+                                      hidden[i] = hn::MulAdd(h[odd], value, hidden[i]);
+                                      whole[i] = hn::MulAdd(w[odd], value, whole[i]);
+                                    });
+      }
+    }
+  }
+
+  /// Share of the hemisphere, weighted by the cosine, that is open.
+  HWY_INLINE V open_share() const {
+    const D d;
+    const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    return hn::IfThenElse(whole[0] > zero, hn::Clamp(one - hidden[0] / whole[0], zero, one), one);
+  }
+
+  /// The part of the light with these weights that is visible. Part and whole are sums over the
+  /// same directions, so that their noise cancels: what is open has all of it.
+  HWY_INLINE V share_of_light(const float* light, V otherwise) const {
+    const D d;
+    V lost = hn::Zero(d), total = hn::Zero(d);
+    for (int i = 0; i < kCount; ++i) {
+      const V l = hn::Set(d, light[i]);
+      lost = hn::MulAdd(l, hidden[i], lost);
+      total = hn::MulAdd(l, whole[i], total);
+    }
+    const V one = hn::Set(d, 1.0f);
+    const V share = hn::Clamp(one - lost / total, hn::Zero(d), one);
+    return hn::IfThenElse(total > hn::Zero(d), share, otherwise);
+  }
+
+  /// The mean open direction; `closed` where nothing is open. Of an open surface it is the normal,
+  /// whatever the slices: what their sum over all directions lacks of it is added as far as the
+  /// surface is open.
+  HWY_INLINE Color bent_normal(const Receiver& p, V ao, const Normals& closed) const {
+    const D d;
+    const V full = hn::Set(d, 2.0f / 3) * whole[0];
+    const auto along = [&](V normal, int band) HWY_ATTR {  // bands of order 1 are y, z, x
+      return hn::MulAdd(ao, hn::MulSub(full, normal, whole[band]), whole[band] - hidden[band]);
+    };
+    const V x = along(p.nx, 3), y = along(p.ny, 1), z = along(p.nz, 2);
+    const V length2 = dot3(x, y, z, x, y, z);
+    const M has_length = length2 > hn::Zero(d);
+    const V scale = hn::Set(d, 1.0f) / hn::Sqrt(length2);
+    return {hn::IfThenElse(has_length, x * scale, closed.x),
+            hn::IfThenElse(has_length, y * scale, closed.y),
+            hn::IfThenElse(has_length, z * scale, closed.z)};
+  }
+
+  HWY_INLINE Moments minus(const Moments& other) const {
+    Moments rest = *this;
+    for (int i = 0; i < kCount; ++i) {
+      rest.hidden[i] = hidden[i] - other.hidden[i];
+      rest.whole[i] = whole[i] - other.whole[i];
+    }
+    return rest;
+  }
+
+ private:
+  HWY_INLINE static void add_low_bands(const Receiver& p, const SliceFrame& f,
+                                       const CircleMoments<kOrder>& of_slice, V* sum) {
+    sum[0] = hn::MulAdd(f.weight, of_slice.cosine[0], sum[0]);
+    if constexpr (kOrder > 0) {
+      const V along_v = f.weight * of_slice.cosine[1], along_t = f.weight * of_slice.sine[1];
+      sum[1] = sum[1] + dot2(along_v, along_t, p.vy, f.ty);
+      sum[2] = sum[2] + dot2(along_v, along_t, p.vz, f.tz);
+      sum[3] = sum[3] + dot2(along_v, along_t, p.vx, f.tx);
+    }
+  }
+};
+
+}  // namespace ssdo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

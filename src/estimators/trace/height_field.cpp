@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A node is a piece of surface in one pixel: the one that the pixel shows, or the one that goes on
+// behind it (hidden_geometry.h). Nodes of neighbouring pixels are joined where neither lies farther
+// than kSurfaceGap footprints from the other's tangent plane. Four pixels around a corner make a
+// cell:
+//
+//   a---b   All four joined: two triangles from centre to centre, and two between their backs.
+//   |   |   Else each group of joined nodes has the quarters of its own pixels, which end halfway
+//   d---c   to the others: there the surface goes on as its tangent plane, and a wall along the
+//           view rays leads from its front to its back.
+#include "estimators/trace/height_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+
+#include "parallel/tiles.h"
+
+namespace ssdo {
+namespace {
+
+constexpr int kRowsOfBlock = 32;
+
+/// A place of the picture, and the heights of a front and a back there.
+struct Point {
+  glm::vec2 at;
+  float front, back;
+};
+
+Point middle(const Point& a, const Point& b) {
+  return {0.5f * (a.at + b.at), 0.5f * (a.front + b.front), 0.5f * (a.back + b.back)};
+}
+
+/// The corners of a cell, in the order around it.
+constexpr int kCornerX[] = {0, 1, 1, 0}, kCornerY[] = {0, 0, 1, 1};
+
+class Builder {
+ public:
+  Builder(const Geometry& geometry, const HiddenGeometry& hidden)
+      : geometry_(geometry),
+        hidden_(hidden),
+        width_(geometry.surfel.width),
+        height_(geometry.surfel.height),
+        per_pixel_(float(1 / std::min(geometry.camera.fx, geometry.camera.fy))),
+        out_{PictureSpace(geometry), {}, {}} {}
+
+  HeightField build() {
+    make_nodes();
+    std::vector<Block> blocks(std::size_t(height_ + kRowsOfBlock - 1) / kRowsOfBlock);
+    for_each_row(int(blocks.size()), [&](int b) {
+      const int end = std::min((b + 1) * kRowsOfBlock, height_);
+      // Cells hang over the border by one pixel on every side.
+      for (int y = b == 0 ? -1 : b * kRowsOfBlock; y < end; ++y) {
+        for (int x = -1; x < width_; ++x) add_cell(x, y, blocks[std::size_t(b)]);
+      }
+    });
+    for (Block& block : blocks) append(block);
+    return std::move(out_);
+  }
+
+ private:
+  struct Node {
+    int pixel = -1;
+    bool covered = false;
+    std::uint32_t corner = 0;  ///< its front in the sheets
+  };
+
+  /// What rows of the frame add.
+  struct Block {
+    std::vector<std::array<std::uint32_t, 3>> sheets;
+    TriangleMesh cuts;
+  };
+
+  bool goes_on_behind(std::size_t pixel) const {
+    return !hidden_.behind.empty() && hidden_.behind_source[pixel] >= 0 &&
+           is_solid(geometry_, pixel) &&
+           is_solid(geometry_, std::size_t(hidden_.behind_source[pixel]));
+  }
+
+  /// Corners: fronts pixel by pixel, covered surfaces, then the backs of both in the same order.
+  void make_nodes() {
+    TriangleMesh& sheets = out_.sheets;
+    const std::size_t count = geometry_.surfel.size();
+    covered_.assign(!hidden_.behind.empty() ? count : 0, 0);
+    sheets.corners.reserve(2 * count);
+    sheets.owners.reserve(2 * count);
+    backs_.reserve(count);
+    bool all_endless = true;
+    const auto add = [&](const glm::vec3& position, int source, bool covered) {
+      sheets.corners.push_back(out_.space.point(position));
+      sheets.owners.push_back({sheets.corners.back().z, source, covered});
+      const float thickness = !hidden_.thickness.empty()
+                                  ? std::max(hidden_.thickness[std::size_t(source)], 0.0f)
+                                  : std::numeric_limits<float>::infinity();
+      all_endless &= std::isinf(thickness);
+      backs_.push_back(out_.space.height_behind(sheets.corners.back().z, position, thickness));
+      finite_.push_back(!std::isinf(thickness));
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool solid = is_solid(geometry_, i);
+      add(solid ? glm::vec3(geometry_.surfel[i].position) : glm::vec3(0, 0, -1), int(i), false);
+    }
+    for (std::size_t i = 0; i < covered_.size(); ++i) {
+      if (!goes_on_behind(i)) continue;
+      covered_[i] = std::uint32_t(sheets.corners.size());
+      add(position_behind(i), hidden_.behind_source[i], true);
+    }
+    nodes_ = std::uint32_t(sheets.corners.size());
+    if (all_endless) return;
+    for (std::uint32_t n = 0; n < nodes_; ++n) {
+      sheets.corners.emplace_back(glm::vec2(sheets.corners[n]), backs_[n]);
+      sheets.owners.push_back(sheets.owners[n]);
+    }
+  }
+
+  glm::vec3 position_behind(std::size_t pixel) const {
+    const glm::vec3 p(geometry_.surfel[pixel].position);
+    const glm::vec3 along = out_.space.orthographic() ? glm::vec3(0, 0, -1) : glm::normalize(p);
+    return p + hidden_.behind[pixel] * along;
+  }
+
+  /// The nodes of one pixel: what it shows, and what goes on behind.
+  std::array<std::optional<Node>, 2> nodes_at(int x, int y) const {
+    std::array<std::optional<Node>, 2> nodes;
+    if (x < 0 || y < 0 || x >= width_ || y >= height_) return nodes;
+    const std::size_t pixel = geometry_.surfel.index(x, y);
+    if (!is_solid(geometry_, pixel)) return nodes;
+    nodes[0] = Node{int(pixel), false, std::uint32_t(pixel)};
+    if (!covered_.empty() && covered_[pixel] != 0)
+      nodes[1] = Node{int(pixel), true, covered_[pixel]};
+    return nodes;
+  }
+
+  glm::vec3 position(const Node& n) const {
+    const auto pixel = std::size_t(n.pixel);
+    return n.covered ? position_behind(pixel) : glm::vec3(geometry_.surfel[pixel].position);
+  }
+  glm::vec3 normal(const Node& n) const {
+    return glm::vec3(geometry_.surfel[std::size_t(out_.sheets.owners[n.corner].pixel)].normal);
+  }
+  const glm::vec3& corner(const Node& n) const { return out_.sheets.corners[n.corner]; }
+
+  bool joined(const Node& a, const Node& b) const {
+    const glm::vec3 p = position(a), q = position(b), step = q - p;
+    const float gap =
+        std::max(std::abs(glm::dot(step, normal(a))), std::abs(glm::dot(step, normal(b))));
+    const float depth = out_.space.orthographic() ? 1.0f : std::min(-p.z, -q.z);
+    return gap <= kSurfaceGap * per_pixel_ * depth;
+  }
+
+  /// Where the tangent plane of a node is at a place of the picture. Nothing where that is farther
+  /// than halfway to `other`, the surface on the far side of the cut, or to twice or half its own
+  /// depth.
+  std::optional<Point> continued(const Node& n, const glm::vec2& at, const Node* other) const {
+    const glm::vec3& c = corner(n);
+    const float step = glm::dot(out_.space.slope(position(n), normal(n)), at - glm::vec2(c));
+    const float room = other ? std::abs(corner(*other).z - c.z) : std::abs(c.z);
+    if (!(std::abs(step) <= 0.5f * room)) return std::nullopt;
+    const float front = c.z + step, back = backs_[n.corner];
+    return Point{at, front, out_.space.orthographic() ? back + step : back * (front / c.z)};
+  }
+
+  Point point(const Node& n) const { return {glm::vec2(corner(n)), corner(n).z, backs_[n.corner]}; }
+
+  void add_cell(int x, int y, Block& block) const {
+    std::array<std::array<std::optional<Node>, 2>, 4> at;
+    bool any = false, simple = true;
+    for (int k = 0; k < 4; ++k) {
+      at[k] = nodes_at(x + kCornerX[k], y + kCornerY[k]);
+      any |= at[k][0].has_value();
+      simple &= at[k][0].has_value() && !at[k][1];
+    }
+    if (!any) return;
+    Links links = link(at);
+    if (simple && links.count() == 4)
+      return add_sheet({*at[0][0], *at[1][0], *at[2][0], *at[3][0]}, block);
+    const Camera& camera = geometry_.camera;
+    const glm::vec2 centre_px(glm::dvec2(geometry_.window.x0 + x + 1 - camera.cx,
+                                         geometry_.window.y0 + y + 1 - camera.cy));
+    for (int k = 0; k < 4; ++k) {
+      for (int layer = 0; layer < 2; ++layer) {
+        if (!at[k][layer] || links.seen[k][layer]) continue;
+        add_group(at, links, k, layer, centre_px, block);
+      }
+    }
+  }
+
+  /// For each side k of a cell, from corner k to the next, and each layer at its start: the layer
+  /// at its end that it is joined to, or -1.
+  struct Links {
+    int to[4][2] = {{-1, -1}, {-1, -1}, {-1, -1}, {-1, -1}};
+    bool seen[4][2] = {};
+    int count() const {
+      int n = 0;
+      for (const auto& side : to) n += (side[0] >= 0) + (side[1] >= 0);
+      return n;
+    }
+    /// The layer at the start of side k that is joined to `layer` at its end.
+    int from(int k, int layer) const { return to[k][0] == layer ? 0 : to[k][1] == layer ? 1 : -1; }
+  };
+  using Cell = std::array<std::array<std::optional<Node>, 2>, 4>;
+
+  Links link(const Cell& at) const {
+    constexpr int kPairs[][2] = {{0, 0}, {1, 1}, {0, 1}, {1, 0}};
+    Links links;
+    for (int k = 0; k < 4; ++k) {
+      const int next = (k + 1) % 4;
+      bool taken[2] = {};
+      for (const auto& [a, b] : kPairs) {
+        if (!at[k][a] || !at[next][b] || links.to[k][a] >= 0 || taken[b]) continue;
+        if (!joined(*at[k][a], *at[next][b])) continue;
+        links.to[k][a] = b;
+        taken[b] = true;
+      }
+    }
+    return links;
+  }
+
+  /// The nodes that are joined to one of them, one in each corner, from the first on; layers[k] is
+  /// -1 where there is none.
+  struct Group {
+    int layers[4] = {-1, -1, -1, -1};
+    bool joined_to_next[4] = {};
+  };
+
+  static Group walk(Links& links, int corner, int layer) {
+    Group group;
+    group.layers[corner] = layer;
+    links.seen[corner][layer] = true;
+    for (int k = corner, l = layer; (l = links.to[k][l]) >= 0;) {
+      const int next = (k + 1) % 4;
+      if (group.layers[next] >= 0) {
+        group.joined_to_next[k] = group.layers[next] == l;
+        break;
+      }
+      if (links.seen[next][l]) break;
+      group.joined_to_next[k] = true;
+      group.layers[next] = l;
+      links.seen[next][l] = true;
+      k = next;
+    }
+    for (int k = corner, l = layer;;) {
+      const int before = (k + 3) % 4;
+      l = links.from(before, l);
+      if (l < 0 || group.layers[before] >= 0 || links.seen[before][l]) break;
+      group.joined_to_next[before] = true;
+      group.layers[before] = l;
+      links.seen[before][l] = true;
+      k = before;
+    }
+    return group;
+  }
+
+  void add_group(const Cell& at, Links& links, int corner, int layer, const glm::vec2& centre_px,
+                 Block& block) const {
+    const Group group = walk(links, corner, layer);
+    std::array<const Node*, 4> nodes{};
+    int size = 0, sides = 0;
+    for (int k = 0; k < 4; ++k) {
+      if (group.layers[k] < 0) continue;
+      nodes[k] = &*at[k][group.layers[k]];
+      ++size;
+      sides += group.joined_to_next[k];
+    }
+    // Three joins around four corners leave a cut that ends in the cell: the surface is whole.
+    if (size == 4 && sides >= 3)
+      return add_sheet({*nodes[0], *nodes[1], *nodes[2], *nodes[3]}, block);
+
+    Point centre{centre_px, 0, 0};
+    glm::vec2 at_all(0);
+    bool all_continued = true;
+    for (int k = 0; k < 4; ++k) {
+      if (!nodes[k]) continue;
+      const Node* across = at[(k + 2) % 4][0] ? &*at[(k + 2) % 4][0] : nullptr;
+      const auto p = continued(*nodes[k], centre_px, nodes[(k + 2) % 4] ? nullptr : across);
+      const Point here = p.value_or(point(*nodes[k]));
+      all_continued &= p.has_value();
+      at_all += here.at / float(size);
+      centre.front += here.front / float(size);
+      centre.back += here.back / float(size);
+    }
+    if (!all_continued) centre.at = at_all;
+    for (int k = 0; k < 4; ++k) {
+      if (!nodes[k]) continue;
+      const Node& n = *nodes[k];
+      const auto side = [&](int to, bool is_joined) {
+        if (is_joined) return middle(point(n), point(*nodes[to]));
+        const glm::vec2 px = centre_px + 0.5f * glm::vec2(kCornerX[k] + kCornerX[to] - 1,
+                                                          kCornerY[k] + kCornerY[to] - 1);
+        return continued(n, px, at[to][0] ? &*at[to][0] : nullptr).value_or(point(n));
+      };
+      const int next = (k + 1) % 4, before = (k + 3) % 4;
+      const bool to_next = group.joined_to_next[k], to_before = group.joined_to_next[before];
+      const Point after = side(next, to_next), ahead = side(before, to_before);
+      add_quarter(n, {point(n), after, centre, ahead}, block);
+      if (!to_next) add_wall(n, after, centre, block);
+      if (!to_before) add_wall(n, centre, ahead, block);
+    }
+  }
+
+  /// Fronts and backs between four centres.
+  void add_sheet(const std::array<Node, 4>& nodes, Block& block) const {
+    // The shorter diagonal follows a crease better.
+    const bool first = std::abs(corner(nodes[0]).z - corner(nodes[2]).z) <=
+                       std::abs(corner(nodes[1]).z - corner(nodes[3]).z);
+    const int order[2][3] = {{0, 1, first ? 2 : 3}, {first ? 0 : 1, 2, 3}};
+    bool back = false;
+    for (const Node& n : nodes) back |= finite_[n.corner];
+    for (const auto& [a, b, c] : order) {
+      const std::uint32_t i = nodes[a].corner, j = nodes[b].corner, k = nodes[c].corner;
+      block.sheets.push_back({i, j, k});
+      if (back) block.sheets.push_back({i + nodes_, k + nodes_, j + nodes_});
+    }
+  }
+
+  static glm::vec3 front(const Point& p) { return {p.at, p.front}; }
+  static glm::vec3 back(const Point& p) { return {p.at, p.back}; }
+
+  void add_quarter(const Node& n, const std::array<Point, 4>& p, Block& block) const {
+    add_quad(n, {front(p[0]), front(p[1]), front(p[2]), front(p[3])}, block.cuts);
+    if (finite_[n.corner])
+      add_quad(n, {back(p[0]), back(p[3]), back(p[2]), back(p[1])}, block.cuts);
+  }
+
+  void add_wall(const Node& n, const Point& a, const Point& b, Block& block) const {
+    // Embree knows where a triangle ends to 1e-7 of its length. Endless walls of parallel views are
+    // cut where this is still far below a pixel; those of perspective are no longer than 1 / depth.
+    const float exact = float(width_ + height_);
+    if (!out_.space.orthographic() || std::min(a.front - a.back, b.front - b.back) <= exact)
+      return add_quad(n, {front(a), front(b), back(b), back(a)}, block.cuts);
+    const glm::vec3 a_between(a.at, a.front - exact), b_between(b.at, b.front - exact);
+    add_quad(n, {front(a), front(b), b_between, a_between}, block.cuts);
+    add_quad(n, {a_between, b_between, back(b), back(a)}, block.cuts);
+  }
+
+  void add_quad(const Node& n, const std::array<glm::vec3, 4>& p, TriangleMesh& mesh) const {
+    const auto first = std::uint32_t(mesh.corners.size());
+    for (const glm::vec3& corner : p) {
+      mesh.corners.push_back(corner);
+      mesh.owners.push_back(out_.sheets.owners[n.corner]);
+    }
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+  }
+
+  void append(Block& block) {
+    std::vector<std::array<std::uint32_t, 3>>& sheets = out_.sheets.triangles;
+    sheets.insert(sheets.end(), block.sheets.begin(), block.sheets.end());
+    TriangleMesh& cuts = out_.cuts;
+    const auto first = std::uint32_t(cuts.corners.size());
+    cuts.corners.insert(cuts.corners.end(), block.cuts.corners.begin(), block.cuts.corners.end());
+    cuts.owners.insert(cuts.owners.end(), block.cuts.owners.begin(), block.cuts.owners.end());
+    for (const auto& [a, b, c] : block.cuts.triangles)
+      cuts.triangles.push_back({a + first, b + first, c + first});
+    block = {};
+  }
+
+  const Geometry& geometry_;
+  const HiddenGeometry& hidden_;
+  int width_, height_;
+  float per_pixel_;                     ///< footprint per unit of depth
+  std::vector<std::uint32_t> covered_;  ///< the node behind each pixel; 0: none
+  std::vector<float> backs_;            ///< heights of the backs of nodes
+  std::vector<bool> finite_;            ///< nodes that are not endless
+  std::uint32_t nodes_ = 0;
+  HeightField out_;
+};
+
+}  // namespace
+
+HeightField build_height_field(const Geometry& geometry, const HiddenGeometry& hidden) {
+  return Builder(geometry, hidden).build();
+}
+
+}  // namespace ssdo

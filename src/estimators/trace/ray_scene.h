@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+
+#include "estimators/trace/height_field.h"
+
+namespace ssdo {
+
+/// A height field that answers rays in camera space, through Embree. May be asked from many threads
+/// at once.
+class RayScene {
+ public:
+  /// Errors: ExitCode::failed where memory does not suffice.
+  explicit RayScene(HeightField field);
+  ~RayScene();
+
+  // Directions are unit vectors; a reach may be infinite. What a solid has behind its front counts
+  // as far as that front is within reach too: how far things go on that are far away, no frame
+  // says.
+
+  /// Whether a ray meets anything.
+  bool is_blocked(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
+
+  /// Whose surface a ray meets first; pixel -1 for nothing.
+  Owner first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
+
+ private:
+  struct Embree;
+  HeightField field_;
+  std::unique_ptr<Embree> embree_;
+};
+
+}  // namespace ssdo

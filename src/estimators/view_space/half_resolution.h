@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "estimators/view_space/view_planes.h"
+
+namespace ssdo {
+
+/// A frame at half its width and height: of every 2 x 2 pixels of the display window the lower
+/// right one, which is the one that a lookup at their common corner gives. Where the data window
+/// ends before it, its neighbour in the window.
+class HalfResolution {
+ public:
+  /// `full` are planes of the frame; they have to live as long as this.
+  HalfResolution(const Geometry& geometry, const ViewPlanes& full);
+
+  /// The pixels that are evaluated, with their own rays. Only receivers: points are projected to
+  /// the full planes.
+  const ViewPlanes& receivers() const { return receivers_; }
+
+  /// Bilinear upsampling of values at half resolution, as textures have it: it takes a value to
+  /// lie in the middle of its 2 x 2 pixels and knows nothing of edges. Background: 1.
+  Plane<float> upsample_bilinear(const Plane<float>& half) const;
+
+  /// The same four values, each weighted by how well its pixel's position lies on the tangent
+  /// plane of the pixel that asks; where none does, the value of the pixel nearest in depth.
+  /// Background: 1. Needs the normals of the full planes.
+  Plane<float> upsample_along_surfaces(const Plane<float>& half) const;
+
+  /// The entries of the half frame around the pixels of the full one, along one axis; padded at
+  /// the end by a vector.
+  struct Taps {
+    std::vector<int> before, after;
+    std::vector<float> share;  ///< of the one after, 0..1
+  };
+
+ private:
+  const ViewPlanes& full_;
+  Taps columns_, rows_;
+  ViewPlanes receivers_;
+};
+
+}  // namespace ssdo

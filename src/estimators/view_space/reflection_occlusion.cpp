@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Reflection occlusion by cones: Jimenez et al., "Practical Realtime Strategies for Accurate
+// Indirect Occlusion", 2016, section 6, in the form that engines run.
+//
+// What a rough surface mirrors lies in a cone about the reflected direction r, what is visible in
+// one about the bent normal b. Their angles are s = max(roughness, 0.1) pi and u = |b| pi strength;
+// with w the angle between r and b, D = |s - u| and S = s + u,
+//
+//   occlusion = smoothstep(1 - saturate((w - D) / (S - D))) saturate((u - 0.1) / 0.2)
+//
+// is 1 where one cone lies within the other and 0 where they do not touch, or where the visible
+// cone is all but closed. b must not be made unit before.
+//
+// Known faults, kept: of gtao, the length of b says how well its slices agree on a direction, not
+// how narrow each is, so that what is hidden evenly from all sides counts as open; so does a
+// narrow visible cone within a wide specular one; s reaches pi, beyond the surface, for a
+// roughness of 1.
+#include "estimators/view_space/reflection_occlusion.h"
+
+#include <numbers>
+
+#include "parallel/tiles.h"
+#include "simd/isa.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "estimators/view_space/reflection_occlusion.cpp"
+#include <hwy/foreach_target.h>
+
+#include "estimators/view_space/lanes-inl.h"
+// After the targets' headers.
+#include <hwy/contrib/math/math-inl.h>
+
+#ifndef SSDO_REFLECTION_JOB_
+#define SSDO_REFLECTION_JOB_
+namespace ssdo {
+
+struct ReflectionJob {
+  const ViewPlanes& planes;
+  const Plane<glm::vec3>& bent;
+  const Plane<float>* layer;  ///< of roughness; null: the number
+  float roughness, strength;
+  Plane<float>& open;
+};
+
+// In radians, of the visible cone; the roughness of the narrowest specular cone.
+constexpr float kClosed = 0.1f, kOpening = 0.2f, kSharpest = 0.1f;
+
+}  // namespace ssdo
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace ssdo::HWY_NAMESPACE {
+
+/// The occlusion of a cone of `specular` about the unit vector r by one of `visible` about b.
+HWY_INLINE V overlap_of_cones(V specular, const V3& r, V visible, const V3& b, V length) {
+  const V cosine = dot(b, r) / hn::Max(length, set(1e-20f));
+  const V between = hn::Acos(D(), hn::Min(hn::Max(cosine, set(-1)), set(1)));
+  // S - D is twice the smaller angle.
+  const V apart = (between - hn::Abs(specular - visible)) / (set(2) * hn::Min(specular, visible));
+  const V opened = hn::Min((visible - set(kClosed)) / set(kOpening), set(1));
+  const V overlap = smoothstep(set(0), set(1), set(1) - saturate(apart)) * opened;
+  return hn::IfThenElseZero(visible > set(kClosed), overlap);
+}
+
+void reflection_of_tile(const ReflectionJob& job, const Tile& tile) {
+  const ViewPlanes& planes = job.planes;
+  const V pi = set(float(std::numbers::pi)), strength = set(job.strength) * pi;
+  for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
+    const Receivers p = load_receivers(planes, x, y);
+    const V3 viewer = direction_to_viewer(planes, x, y);
+    // What a mirror there shows the viewer.
+    const V3 r = p.normal * (set(2) * dot(p.normal, viewer)) - viewer;
+    const V3 b = load_vectors(&job.bent(0, y), x, tile);
+    const V roughness = job.layer ? load_pixels(&(*job.layer)(0, y), x, tile) : set(job.roughness);
+    const V length = hn::Sqrt(dot(b, b));
+    const V open =
+        overlap_of_cones(hn::Max(roughness, set(kSharpest)) * pi, r, length * strength, b, length);
+    store_pixels(hn::IfThenElse(p.valid, open, set(1)), x, tile, &job.open(0, y));
+  });
+}
+
+}  // namespace ssdo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ssdo {
+
+HWY_EXPORT(reflection_of_tile);
+
+Plane<float> reflection_occlusion(const Scene& scene, const Request& request,
+                                  const ViewPlanes& planes, const Plane<glm::vec3>& bent) {
+  choose_isa();
+  Plane<float> open(bent.width, bent.height, 1.0f);
+  const bool layer = !scene.roughness.empty();
+  const ReflectionJob job{planes,
+                          bent,
+                          layer ? &scene.roughness : nullptr,
+                          float(request.parameters.at("roughness")),
+                          float(request.parameters.at("reflection-strength")),
+                          open};
+  const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(reflection_of_tile)(job, tile); };
+  for_each_tile(planes.width(), planes.height(), work, {});
+  return open;
+}
+
+}  // namespace ssdo
+#endif

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/exr_writer.h"
+#include "io/safe_file.h"
+
+namespace ssdo {
+
+/// A product and the file that it alone goes to.
+struct SaveRequest {
+  std::string product, path;
+};
+
+struct OutputOptions {
+  std::vector<std::string> files;     ///< -o
+  std::vector<SaveRequest> saves;     ///< --save
+  std::vector<std::string> products;  ///< empty: all that the inputs allow
+  Imf::PixelType pixel_type = Imf::HALF;
+  std::optional<Imf::Compression> compression;  ///< the input's where not given
+  int bits = 8;                                 ///< per channel of PNG and TIFF: 8 or 16
+  bool keep_channels = false;
+  OutputPolicy policy;
+};
+
+/// A file to write: every product of the plan, or one.
+struct Target {
+  std::string path;
+  std::optional<std::string> product;  ///< --save
+};
+
+}  // namespace ssdo

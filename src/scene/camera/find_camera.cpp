@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/camera/find_camera.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <optional>
+
+#include "error.h"
+#include "scene/camera/fit.h"
+
+namespace ssdo {
+namespace {
+
+/// The projection that the options give, without a pose unless it stands in a file.
+std::optional<Camera> camera_from_options(const GBuffer& g, const CameraOptions& options,
+                                          GeometryReport& report) {
+  if (!options.file.empty()) {
+    report.camera_source = "--camera " + options.file;
+    return read_camera(options.file, g.display, g.pixel_aspect);
+  }
+  if (options.fov) {
+    report.camera_source = fmt::format("--fov {:g}", *options.fov);
+    return camera_from_fov(*options.fov, g.display, g.pixel_aspect);
+  }
+  if (options.ortho) {
+    report.camera_source = fmt::format("--ortho {:g}", *options.ortho);
+    return camera_from_ortho_width(*options.ortho, g.display, g.pixel_aspect);
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void throw_undetermined(const GBuffer& g, const std::string& file) {
+  throw Error(
+      ExitCode::layer,
+      g.position.empty()
+          ? fmt::format("{}: has depth but no position, which leaves the camera open; give "
+                        "--fov DEGREES, --ortho WIDTH or --camera FILE.json",
+                        file)
+          : fmt::format("{}: the camera cannot be fitted from P, whose pixels lie in one "
+                        "plane or are too few; give --fov DEGREES, --ortho WIDTH or --camera "
+                        "FILE.json",
+                        file));
+}
+
+/// Pixels whose neighbours all show something: at the edge of what a frame shows, P may be an
+/// average with the background, far from where its pixel looks.
+Plane<unsigned char> inner_pixels(const Plane<unsigned char>& valid) {
+  Plane<unsigned char> inner(valid.width, valid.height);
+  for (int y = 1; y + 1 < valid.height; ++y) {
+    for (int x = 1; x + 1 < valid.width; ++x) {
+      inner(x, y) =
+          valid(x, y) && valid(x - 1, y) && valid(x + 1, y) && valid(x, y - 1) && valid(x, y + 1);
+    }
+  }
+  return inner;
+}
+
+/// The camera by pixels that are surely no averages, or else by all.
+std::optional<Camera> fit_camera(const GBuffer& g) {
+  const auto fitted = ssdo::fit_camera(g.position, inner_pixels(g.valid), g.window);
+  return fitted ? fitted : ssdo::fit_camera(g.position, g.valid, g.window);
+}
+
+/// The most by which storing P may have moved it along one axis, in scene units.
+double rounding_of_positions(const GBuffer& g) {
+  float largest = 0;
+  for (std::size_t i = 0; i < g.position.size(); ++i) {
+    if (!g.valid[i]) continue;
+    const glm::vec3 p = glm::abs(g.position[i]);
+    largest = std::max({largest, p.x, p.y, p.z});
+  }
+  return double(largest) * g.position_step;
+}
+
+/// The camera of --camera, if P keeps to its pixels under it: in the world that the file's pose
+/// leads from, or in camera space.
+std::optional<FoundCamera> pose_by_file(const GBuffer& g, const Camera& given,
+                                        GeometryReport& report) {
+  const double step = rounding_of_positions(g);
+  if (explains(given, g.position, g.valid, g.window, step)) return FoundCamera{given, given, true};
+  const auto in_camera_space = in_own_space(given, g.position, g.valid, g.window);
+  if (!in_camera_space) return std::nullopt;
+  report.camera_source += ", with P in camera space";
+  return FoundCamera{given, *in_camera_space, true};
+}
+
+/// The camera of --fov or --ortho with a pose that P tells.
+std::optional<FoundCamera> pose_by_positions(const GBuffer& g, const Camera& given) {
+  const auto posed = fit_pose(given, g.position, g.valid, g.window, rounding_of_positions(g));
+  return posed ? std::optional(FoundCamera{*posed, *posed, false}) : std::nullopt;
+}
+
+}  // namespace
+
+FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,
+                        GeometryReport& report) {
+  const auto given = camera_from_options(g, options, report);
+  const bool by_file = given && !options.file.empty();
+  if (g.position.empty()) {
+    if (!given) throw_undetermined(g, file);
+    return {*given, *given, by_file};
+  }
+  std::optional<FoundCamera> found;
+  if (given) found = by_file ? pose_by_file(g, *given, report) : pose_by_positions(g, *given);
+  if (!found) {
+    if (const auto fitted = fit_camera(g)) {
+      found = {*fitted, *fitted, false};
+      if (given) {
+        report.warnings.push_back(
+            fmt::format("{} contradicts P, whose own camera has {:.2f} degrees; P wins",
+                        report.camera_source, fitted->hfov_degrees(g.display.width())));
+      }
+      report.camera_source = "fitted from P";
+    } else if (by_file) {
+      found = {*given, *given, true};
+    } else if (given) {
+      throw Error(ExitCode::layer, fmt::format("{}: P does not project to its own pixels under {}; "
+                                               "give --camera FILE.json",
+                                               file, report.camera_source));
+    } else {
+      throw_undetermined(g, file);
+    }
+  }
+  report.residual = measure_residual(found->of_positions, g.position, g.valid, g.window);
+  if (report.residual->median_px > 0.5) {
+    report.warnings.push_back(
+        fmt::format("camera ({}): half of the positions miss their pixels by {:.2g} px or more; "
+                    "is this P of this camera?",
+                    report.camera_source, report.residual->median_px));
+  }
+  return *found;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/camera/fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "scene/camera/projection_model.h"
+
+namespace ssdo {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// The eigenvector of the smallest eigenvalue: the unit x that makes |A x| least, from A^T A.
+Eigen::VectorXd null_vector(const Eigen::MatrixXd& normal_matrix) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal_matrix).eigenvectors().col(0);
+}
+
+/// Direct linear transform: M (3 x 4) with pixel ~ M (p, 1), split by an RQ decomposition into
+/// K [R | t] with a positive diagonal of K and the points in front.
+ProjectionModel direct_linear_transform(const Samples& samples, const Window& window) {
+  const Vector2d middle(0.5 * (window.x0 + window.x1), 0.5 * (window.y0 + window.y1));
+  const double half = 0.5 * std::hypot(window.width(), window.height());
+  Eigen::MatrixXd ata = Eigen::MatrixXd::Zero(12, 12);
+  for (const Sample& s : samples.items) {
+    const Eigen::Vector4d h(s.p.x(), s.p.y(), s.p.z(), 1);
+    const Vector2d uv = (s.pixel - middle) / half;
+    Eigen::Matrix<double, 2, 12> rows = Eigen::Matrix<double, 2, 12>::Zero();
+    rows.block<1, 4>(0, 0) = h.transpose();
+    rows.block<1, 4>(0, 8) = -uv.x() * h.transpose();
+    rows.block<1, 4>(1, 4) = h.transpose();
+    rows.block<1, 4>(1, 8) = -uv.y() * h.transpose();
+    ata += rows.transpose() * rows;
+  }
+  const Eigen::VectorXd m = null_vector(ata);
+  Eigen::Matrix<double, 3, 4> matrix;
+  for (int i = 0; i < 3; ++i) matrix.row(i) = m.segment<4>(4 * i).transpose();
+  // w of the centroid is the last entry: the points are in front where it is positive.
+  if (matrix(2, 3) < 0) matrix = -matrix;
+
+  // RQ by the QR of the matrix turned upside down.
+  const Matrix3d flip = Vector3d::Ones().asDiagonal().toDenseMatrix().rowwise().reverse();
+  const Eigen::HouseholderQR<Matrix3d> qr((flip * matrix.leftCols<3>()).transpose());
+  Matrix3d k = flip * Matrix3d(qr.matrixQR().triangularView<Eigen::Upper>()).transpose() * flip;
+  Matrix3d r = flip * Matrix3d(qr.householderQ()).transpose();
+  const Matrix3d sign = k.diagonal().cwiseSign().asDiagonal();
+  k = k * sign;
+  r = sign * r;
+
+  ProjectionModel model;
+  model.rotation = r;
+  model.translation = k.triangularView<Eigen::Upper>().solve(matrix.col(3));
+  k /= k(2, 2);
+  model.fx = half * k(0, 0);
+  model.fy = half * k(1, 1);
+  model.cx = middle.x() + half * k(0, 2);
+  model.cy = middle.y() + half * k(1, 2);
+  return model;
+}
+
+/// Whether the samples leave their plane by no more than what moves them within their pixels:
+/// rounding of P far from the origin gives a plane a thickness that tells nothing.
+bool is_flat(const ProjectionModel& model, const Samples& samples) {
+  const double distance = model.translation.norm();
+  return samples.spread[0] < 3 * reprojection_rms(model, samples) * distance / model.fx;
+}
+
+/// The affine camera: least squares for pixel = B p + b, its rows made orthogonal.
+ProjectionModel fit_affine(const Samples& samples) {
+  Eigen::Matrix4d ata = Eigen::Matrix4d::Zero();
+  Eigen::Matrix<double, 4, 2> atb = Eigen::Matrix<double, 4, 2>::Zero();
+  for (const Sample& s : samples.items) {
+    const Eigen::Vector4d h(s.p.x(), s.p.y(), s.p.z(), 1);
+    ata += h * h.transpose();
+    atb += h * s.pixel.transpose();
+  }
+  const Eigen::Matrix<double, 4, 2> solution = ata.ldlt().solve(atb);
+  const Vector3d across = solution.col(0).head<3>(), down = solution.col(1).head<3>();
+  ProjectionModel model;
+  model.orthographic = true;
+  model.fx = across.norm();
+  model.fy = down.norm();
+  const Vector3d bisector = (across.normalized() + down.normalized()).normalized();
+  const Vector3d other = (across.normalized() - down.normalized()).normalized();
+  model.rotation.row(0) = (bisector + other).normalized();
+  model.rotation.row(1) = (bisector - other).normalized();
+  // Without perspective the picture does not tell the two sides of the axis apart: take the
+  // right-handed one.
+  model.rotation.row(2) = model.rotation.row(0).cross(model.rotation.row(1));
+  model.cx = solution(3, 0);
+  model.cy = solution(3, 1);
+  return model;
+}
+
+/// Computer-vision axes and normalised samples to the tool's camera in the space of P.
+Camera to_camera(const ProjectionModel& model, const Samples& samples, const Window& window) {
+  Camera camera;
+  camera.orthographic = model.orthographic;
+  const double per_unit = model.orthographic ? 1 / samples.scale : 1;
+  camera.fx = model.fx * per_unit;
+  camera.fy = model.fy * per_unit;
+  camera.cx = model.cx;
+  camera.cy = model.cy;
+  Vector3d translation = model.translation * samples.scale;
+  if (model.orthographic) {
+    // The axis may run anywhere: through the middle of the frame, and behind every sample.
+    camera.cx = 0.5 * (window.x0 + window.x1);
+    camera.cy = 0.5 * (window.y0 + window.y1);
+    double nearest = 0;
+    for (const Sample& s : samples.items) {
+      nearest = std::min(nearest, (model.rotation.row(2) * s.p).value());
+    }
+    translation = {(model.cx - camera.cx) / camera.fx, (model.cy - camera.cy) / camera.fy,
+                   samples.scale * (1 - nearest)};
+  }
+  const Vector3d origin = samples.centre - model.rotation.transpose() * translation;
+  const Matrix3d rotation = Vector3d(1, -1, -1).asDiagonal() * model.rotation;
+  for (int row = 0; row < 3; ++row) {
+    camera.origin[row] = origin[row];
+    for (int column = 0; column < 3; ++column) camera.rotation[column][row] = rotation(row, column);
+  }
+  return camera;
+}
+
+/// A plane seen by a known projection: the homography from the plane to directions holds two
+/// columns of the rotation and the translation (Zhang 2000, section 3.1).
+ProjectionModel pose_of_plane(const Samples& samples, const Camera& projection) {
+  const Vector3d e1 = samples.axes.col(2), e2 = samples.axes.col(1);
+  Eigen::MatrixXd ata = Eigen::MatrixXd::Zero(9, 9);
+  for (const Sample& s : samples.items) {
+    const Vector3d h(e1.dot(s.p), e2.dot(s.p), 1);
+    const double u = (s.pixel.x() - projection.cx) / projection.fx;
+    const double v = (s.pixel.y() - projection.cy) / projection.fy;
+    Eigen::Matrix<double, 2, 9> rows = Eigen::Matrix<double, 2, 9>::Zero();
+    rows.block<1, 3>(0, 0) = h.transpose();
+    rows.block<1, 3>(0, 6) = -u * h.transpose();
+    rows.block<1, 3>(1, 3) = h.transpose();
+    rows.block<1, 3>(1, 6) = -v * h.transpose();
+    ata += rows.transpose() * rows;
+  }
+  const Eigen::VectorXd m = null_vector(ata);
+  Matrix3d h;
+  for (int i = 0; i < 3; ++i) h.row(i) = m.segment<3>(3 * i).transpose();
+  h *= (h(2, 2) < 0 ? -2 : 2) / (h.col(0).norm() + h.col(1).norm());
+
+  Matrix3d on_plane, in_space;
+  on_plane << h.col(0), h.col(1), h.col(0).cross(h.col(1));
+  in_space << e1, e2, e1.cross(e2);
+  const Eigen::JacobiSVD<Matrix3d> svd(on_plane, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  ProjectionModel model;
+  model.rotation = svd.matrixU() * svd.matrixV().transpose() * in_space.transpose();
+  model.translation = h.col(2);
+  model.fx = projection.fx, model.fy = projection.fy;
+  model.cx = projection.cx, model.cy = projection.cy;
+  return model;
+}
+
+}  // namespace
+
+std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
+                                 const Plane<unsigned char>& valid, const Window& window) {
+  const Samples samples = collect_samples(positions, valid, window);
+  // A plane is flat to the rounding of float: 1e-5 of its extent.
+  if (samples.items.size() < 6 || samples.spread[0] < 1e-5 * samples.spread[2]) return std::nullopt;
+
+  ProjectionModel affine = fit_affine(samples);
+  affine = fit_affine(inliers(affine, samples));
+  const double affine_rms = reprojection_rms(affine, inliers(affine, samples));
+
+  ProjectionModel model = direct_linear_transform(samples, window);
+  Samples used = samples;
+  for (int round = 0; round < 3; ++round) {
+    refine(model, used, false);
+    used = inliers(model, samples);
+    if (used.items.size() < 6) return std::nullopt;
+  }
+  // Perspective contains the affine camera as a limit, so it fits an orthographic frame as well,
+  // with a focal length that means nothing.
+  if (affine_rms < 0.02 || affine_rms <= 1.02 * reprojection_rms(model, used)) {
+    return to_camera(affine, samples, window);
+  }
+  if (is_flat(model, used) || !(focal_uncertainty(model, used) < 0.01)) return std::nullopt;
+  return to_camera(model, samples, window);
+}
+
+std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>& positions,
+                               const Plane<unsigned char>& valid, const Window& window,
+                               double step) {
+  if (const auto own = in_own_space(projection, positions, valid, window)) return own;
+  const Samples samples = collect_samples(positions, valid, window);
+  if (projection.orthographic || samples.items.size() < 4 ||
+      samples.spread[1] < 1e-5 * samples.spread[2]) {
+    return std::nullopt;
+  }
+  ProjectionModel model = pose_of_plane(samples, projection);
+  refine(model, samples, true);
+  const Camera camera = to_camera(model, samples, window);
+  return explains(camera, positions, valid, window, step) ? std::optional(camera) : std::nullopt;
+}
+
+bool explains(const Camera& camera, const Plane<glm::vec3>& positions,
+              const Plane<unsigned char>& valid, const Window& window, double step) {
+  const Samples samples = collect_samples(positions, valid, window);
+  const auto in_camera_space = [&](const Vector3d& p) {
+    const Vector3d at = samples.centre + samples.scale * p;
+    return camera.to_camera({at.x(), at.y(), at.z()});
+  };
+  const double depth = -in_camera_space(Vector3d::Zero()).z;
+  if (!camera.orthographic && !(depth > 0)) return false;
+  std::vector<double> misses;
+  for (const Sample& s : samples.items) {
+    const glm::dvec2 at = camera.project(in_camera_space(s.p));
+    misses.push_back(std::hypot(at.x - s.pixel.x(), at.y - s.pixel.y()));
+  }
+  return quantile(misses, 0.5) < 0.5 + step * camera.fx / (camera.orthographic ? 1.0 : depth);
+}
+
+std::optional<Camera> in_own_space(const Camera& projection, const Plane<glm::vec3>& positions,
+                                   const Plane<unsigned char>& valid, const Window& window) {
+  // The picture tells the signs of x and y; that of z is what brings surfaces before the camera.
+  std::size_t before = 0, behind = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (!valid[i]) continue;
+    before += positions[i].z < 0;
+    behind += positions[i].z > 0;
+  }
+  for (const double x : {1.0, -1.0}) {
+    for (const double y : {1.0, -1.0}) {
+      Camera camera = projection;
+      camera.rotation = glm::dmat3(1);
+      camera.rotation[0][0] = x, camera.rotation[1][1] = y;
+      camera.rotation[2][2] = before >= behind ? 1.0 : -1.0;
+      camera.origin = glm::dvec3(0);
+      if (explains(camera, positions, valid, window)) return camera;
+    }
+  }
+  return std::nullopt;
+}
+
+Residual measure_residual(const Camera& camera, const Plane<glm::vec3>& positions,
+                          const Plane<unsigned char>& valid, const Window& window) {
+  std::vector<double> d;
+  for (int y = 0; y < positions.height; ++y) {
+    for (int x = 0; x < positions.width; ++x) {
+      if (!valid(x, y)) continue;
+      const glm::dvec2 at = camera.project(camera.to_camera(glm::dvec3(positions(x, y))));
+      const double miss = std::hypot(at.x - (window.x0 + x + 0.5), at.y - (window.y0 + y + 0.5));
+      d.push_back(std::isfinite(miss) ? miss : 1e30);
+    }
+  }
+  if (d.empty()) return {};
+  return {quantile(d, 0.5), quantile(d, 0.99), *std::max_element(d.begin(), d.end())};
+}
+
+}  // namespace ssdo

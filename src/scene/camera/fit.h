@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <optional>
+
+#include "math/plane.h"
+#include "scene/camera/camera.h"
+
+namespace ssdo {
+
+/// Finds the camera under which every position projects to the centre of its own pixel.
+///
+/// Direct linear transform in double over recentred and scaled coordinates (Hartley and Zisserman,
+/// Multiple View Geometry, 7.1; 6.3 for the affine camera), then Gauss-Newton on the ten parameters
+/// of a camera without skew, with pixels that do not belong to the fit left out (averaged
+/// silhouettes lie on no surface).
+///
+/// `positions` are over `window`; a pixel takes part where `valid` is not 0. Returns nothing where
+/// P leaves the camera undetermined: fewer than six pixels, all of them in a plane, or a focal
+/// length that the pixels do not pin down to 1 %.
+std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
+                                 const Plane<unsigned char>& valid, const Window& window);
+
+/// Finds the pose of a camera whose projection is known, from positions that may lie in a plane.
+/// Returns nothing for fewer than four pixels or pixels in a line, or where no pose brings the
+/// positions within half a pixel and `step`, by which P may have been rounded, in scene units.
+std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>& positions,
+                               const Plane<unsigned char>& valid, const Window& window,
+                               double step = 0);
+
+/// Whether the positions lie before the camera and half of them project to within half a pixel of
+/// their own, and `step`, by which P
+/// may have been rounded, in scene units.
+bool explains(const Camera& camera, const Plane<glm::vec3>& positions,
+              const Plane<unsigned char>& valid, const Window& window, double step = 0);
+
+/// The camera with the projection of `projection` for P in camera space, with whatever signs of the
+/// axes; nothing where P is not in camera space.
+std::optional<Camera> in_own_space(const Camera& projection, const Plane<glm::vec3>& positions,
+                                   const Plane<unsigned char>& valid, const Window& window);
+
+/// How well `camera` explains the positions.
+Residual measure_residual(const Camera& camera, const Plane<glm::vec3>& positions,
+                          const Plane<unsigned char>& valid, const Window& window);
+
+}  // namespace ssdo

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/layers/layers.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+#include "error.h"
+#include "io/sequence.h"
+#include "scene/layers/candidates.h"
+#include "scene/layers/groups.h"
+#include "scene/layers/names.h"
+
+namespace ssdo {
+namespace {
+
+constexpr std::array<std::string_view, kRoleCount> kRoleNames = {
+    "position", "normal",   "albedo",  "depth",     "alpha",
+    "beauty",   "radiance", "ambient", "roughness", "motion"};
+
+/// Where layers are looked for, best first: a role is taken from the first set that has it.
+using Tiers = std::vector<std::vector<LayerGroup>>;
+
+template <class Keep>
+std::vector<LayerGroup> those_of(const std::vector<LayerGroup>& groups, const Keep& keep) {
+  std::vector<LayerGroup> kept;
+  std::copy_if(groups.begin(), groups.end(), std::back_inserter(kept), keep);
+  return kept;
+}
+
+std::string quoted(const std::vector<std::string>& names) {
+  return fmt::format("'{}'", fmt::join(names, "', '"));
+}
+
+/// The other parts of the view of `part`, which complete it. Not those with a position of their
+/// own where it has one: they show something else. Where it has a depth alone, positions and
+/// depths of others are left out alike.
+std::vector<LayerGroup> parts_beside(const std::vector<LayerGroup>& part,
+                                     const std::vector<LayerGroup>& all) {
+  const bool position = !best_candidates(Role::position, part).empty();
+  const bool depth = !best_candidates(Role::depth, part).empty();
+  const auto is_beside = [&](const LayerGroup& group) {
+    if (group.part == part[0].part || !same_view(group.view, part[0].view)) return false;
+    const auto own = those_of(all, [&](const LayerGroup& g) { return g.part == group.part; });
+    if (!position && !depth) return true;
+    return best_candidates(Role::position, own).empty() &&
+           (position || best_candidates(Role::depth, own).empty());
+  };
+  return those_of(all, is_beside);
+}
+
+/// Nothing has the name of a request: it was meant as FILE:LAYER if what stands before the last
+/// colon can only be a file.
+void refuse_missing_file(const LayerRequest& request) {
+  const std::string file = request.layer.substr(0, request.layer.rfind(':'));
+  const bool is_name = lower(file).ends_with(".exr") || file.find('/') != file.npos;
+  if (!request.file.empty() || file == request.layer || !is_name) return;
+  throw Error(ExitCode::input, fmt::format("{}: does not exist; check --aov {}={}", file,
+                                           role_name(request.role), request.layer));
+}
+
+[[noreturn]] void throw_no_part(const ExrReader& frame, const std::string& wanted) {
+  std::vector<std::string> names;
+  for (const ExrPart& part : frame.parts())
+    names.push_back(fmt::format("{} '{}'{}", part.index, part.name, part.deep ? " (deep)" : ""));
+  throw Error(ExitCode::layer, fmt::format("{}: no flat part or view '{}'; the file has {}",
+                                           frame.path().string(), wanted, fmt::join(names, ", ")));
+}
+
+/// The groups of the frame that --part selects: a part by name or number, completed by the other
+/// parts of its view, or else a view.
+Tiers select_part(const ExrReader& frame, const std::vector<LayerGroup>& groups,
+                  const std::string& wanted) {
+  if (wanted.empty()) return {groups};
+  const auto part = those_of(groups, [&](const LayerGroup& group) {
+    return frame.parts()[std::size_t(group.part)].name == wanted ||
+           std::to_string(group.part) == wanted;
+  });
+  if (!part.empty()) return {part, parts_beside(part, groups)};
+  const auto view =
+      those_of(groups, [&](const LayerGroup& group) { return lower(group.view) == lower(wanted); });
+  if (view.empty()) throw_no_part(frame, wanted);
+  return {view};
+}
+
+/// Finds the layers of one frame.
+class LayerFinder {
+ public:
+  LayerFinder(const std::vector<const ExrReader*>& files, const std::vector<LayerRequest>& requests,
+              const std::string& only_part)
+      : files_(files), requests_(requests) {
+    for (std::size_t f = 0; f < files.size(); ++f)
+      groups_.push_back(group_channels(*files[f], int(f)));
+    if (groups_[0].empty() && only_part.empty()) {
+      throw Error(ExitCode::input,
+                  fmt::format("{}: holds deep images only; ssdo reads flat ones: flatten it first",
+                              frame()));
+    }
+    tiers_ = select_part(*files[0], groups_[0], only_part);
+  }
+
+  /// The layer that is requested for the role, or else, if `by_name`, the one with the best name.
+  std::optional<Layer> find(Role role, bool by_name) const {
+    std::optional<Layer> found;
+    for (const LayerRequest& request : requests_) {
+      if (request.role == role) found = find_requested(request);
+    }
+    return found || !by_name ? found : find_by_name(role);
+  }
+
+  /// Restricts the search to the view of this layer, so that no frame is made of two.
+  void keep_view_of(const Layer& lead) {
+    if (lead.file != 0 || views_of(groups_[0]).empty()) return;
+    const auto own = std::find_if(groups_[0].begin(), groups_[0].end(), [&](const LayerGroup& g) {
+      return g.part == lead.part && g.layer == split_channel(lead.channels[0]).first;
+    });
+    const std::string view = own->view;
+    for (auto& groups : tiers_)
+      groups = those_of(groups, [&](const LayerGroup& g) { return same_view(g.view, view); });
+  }
+
+ private:
+  std::string frame() const { return files_[0]->path().string(); }
+
+  std::optional<Layer> find_by_name(Role role) const {
+    for (const auto& groups : tiers_) {
+      const std::vector<Candidate> best = best_candidates(role, groups);
+      if (best.size() > 1) throw_ambiguous(role, best);
+      if (!best.empty()) return best[0].layer;
+    }
+    return std::nullopt;
+  }
+
+  [[noreturn]] void throw_ambiguous(Role role, const std::vector<Candidate>& best) const {
+    std::vector<std::string> names, views;
+    for (const Candidate& c : best) {
+      names.push_back(c.layer.name);
+      if (std::find(views.begin(), views.end(), c.view) == views.end()) views.push_back(c.view);
+    }
+    const bool of_views = views.size() == best.size() && !views_of(groups_[0]).empty() &&
+                          std::find(views.begin(), views.end(), "") == views.end();
+    const std::string by_view =
+        of_views ? fmt::format("a view with --part {}, or ", fmt::join(views, " or --part ")) : "";
+    throw Error(
+        ExitCode::layer,
+        fmt::format("{}: {} layers could be {}: {}; choose {}one with --aov {}=LAYER", frame(),
+                    best.size(), role_name(role), quoted(names), by_view, role_name(role)));
+  }
+
+  Layer find_requested(const LayerRequest& request) const {
+    std::size_t file = 0;
+    for (std::size_t f = 1; f < files_.size() && !request.file.empty(); ++f) {
+      if (files_[f]->path() == request.file) file = f;
+    }
+    std::vector<Layer> found;
+    for (const auto& groups : file == 0 ? tiers_ : Tiers()) {
+      if (found.empty()) found = layers_named(request.layer, request.role, groups);
+    }
+    if (found.empty()) found = layers_named(request.layer, request.role, groups_[file]);
+    if (found.size() == 1) {
+      found[0].by_request = true;
+      return found[0];
+    }
+    if (found.empty()) refuse_missing_file(request);
+    std::vector<std::string> names;
+    for (const LayerGroup& group : groups_[file]) {
+      if (as_layer(group, request.role)) names.push_back(group.name);
+    }
+    throw Error(ExitCode::layer,
+                fmt::format("{}: {} layer '{}' with channels for {}; the file has {}",
+                            files_[file]->path().string(), found.empty() ? "no" : "more than one",
+                            request.layer, role_name(request.role),
+                            names.empty() ? "none that fits" : quoted(names)));
+  }
+
+  const std::vector<const ExrReader*>& files_;
+  const std::vector<LayerRequest>& requests_;
+  std::vector<std::vector<LayerGroup>> groups_;  ///< by file
+  Tiers tiers_;                                  ///< of the frame
+};
+
+}  // namespace
+
+std::string_view role_name(Role role) { return kRoleNames[std::size_t(role)]; }
+
+std::optional<Role> role_from_name(std::string_view name) {
+  for (std::size_t i = 0; i < kRoleCount; ++i) {
+    if (kRoleNames[i] == name) return Role(i);
+  }
+  return std::nullopt;
+}
+
+LayerRequest parse_layer_request(const std::string& text) {
+  const auto equals = text.find('=');
+  const auto role = role_from_name(text.substr(0, equals));
+  if (equals == std::string::npos || !role || equals + 1 == text.size()) {
+    throw Error(ExitCode::usage,
+                fmt::format("--aov {}: expected ROLE=LAYER or ROLE=FILE:LAYER with ROLE one of {}",
+                            text, fmt::join(kRoleNames, ", ")));
+  }
+  LayerRequest request{*role, "", text.substr(equals + 1)};
+  // A colon may stand in a layer's name: it ends a file's where that is a file, or a sequence.
+  const auto colon = request.layer.rfind(':');
+  if (colon == std::string::npos) return request;
+  const std::string file = request.layer.substr(0, colon);
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  if ((exists(status) && !is_directory(status)) || is_pattern(file)) {
+    request.file = file;
+    request.layer = request.layer.substr(colon + 1);
+  }
+  return request;
+}
+
+void require_position(const LayerTable& table, const ExrReader& frame, const std::string& advice) {
+  if (table[Role::position] || table[Role::depth]) return;
+  std::string text = "name one with --aov position=LAYER or --aov depth=LAYER";
+  for (const LayerGroup& group : group_channels(frame, 0)) {
+    if (normalise(group.path).find("samplerinfo") == std::string::npos) continue;
+    if (!as_layer(group, Role::position)) continue;
+    text = fmt::format("if '{0}' was rendered with type Point, say --aov \"position={0}\"",
+                       group.name);
+  }
+  throw Error(ExitCode::layer, fmt::format("{}: no layer for position or depth found by name; {}{}",
+                                           frame.path().string(), text, advice));
+}
+
+LayerTable find_layers(const std::vector<const ExrReader*>& files,
+                       const std::vector<LayerRequest>& requests, const std::string& only_part,
+                       const std::vector<Role>& unused) {
+  LayerFinder finder(files, requests, only_part);
+  LayerTable table;
+  const auto find = [&](Role role) {
+    const bool used = std::find(unused.begin(), unused.end(), role) == unused.end();
+    if (!table[role]) table[role] = finder.find(role, used);
+  };
+  for (const Role role : {Role::position, Role::depth}) {
+    find(role);
+    if (!table[role]) continue;
+    finder.keep_view_of(*table[role]);
+    break;
+  }
+  for (std::size_t i = 0; i < kRoleCount; ++i) find(Role(i));
+  return table;
+}
+
+std::vector<std::string> files_of_frame(const std::string& input,
+                                        const std::vector<LayerRequest>& aovs) {
+  std::vector<std::string> files = {input};
+  for (const LayerRequest& request : aovs) {
+    const bool known =
+        request.file.empty() || std::find(files.begin(), files.end(), request.file) != files.end();
+    if (!known) files.push_back(request.file);
+  }
+  return files;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/layers/windows.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+
+#include "error.h"
+#include "io/exr_parts.h"
+
+namespace ssdo {
+namespace {
+
+using Files = std::vector<const ExrReader*>;
+
+constexpr float kSameAspect = 1e-4f;
+
+const ExrPart& part_of(const Files& files, const Layer& layer) {
+  return files[std::size_t(layer.file)]->parts()[std::size_t(layer.part)];
+}
+
+Role lead_of(const LayerTable& table) {
+  return table[Role::position] ? Role::position : Role::depth;
+}
+
+/// "part 2 'Albedo' of half.exr", or the file where it has no other part.
+std::string text_of(const ExrReader& file, const ExrPart& part) {
+  const std::string path = file.path().string();
+  return file.parts().size() > 1 ? label(part) + " of " + path : path;
+}
+
+/// "albedo 'Albedo' in half.exr".
+std::string text_of(const Files& files, Role role, const Layer& layer) {
+  return fmt::format("{} '{}' in {}", role_name(role), layer.name,
+                     text_of(*files[std::size_t(layer.file)], part_of(files, layer)));
+}
+
+/// What a surface gets that lies outside the layer's data window.
+std::string_view consequence(Role role) {
+  switch (role) {
+    case Role::normal:
+      return "have their normal rebuilt from P";
+    case Role::alpha:
+    case Role::depth:
+      return "count as background";
+    case Role::motion:
+      return "have no history";
+    case Role::roughness:
+      return "have a roughness of 0";
+    default:
+      return "are black in it";
+  }
+}
+
+/// Whether the frame shows a surface there, whatever the layers say that end before it.
+bool shows_surface(const GBuffer& g, std::size_t i, Role role) {
+  const bool decides = role == Role::alpha || role == Role::depth;
+  if (!decides || g.position.empty()) return g.valid[i] != 0;
+  const glm::vec3 p = g.position[i];
+  return std::isfinite(p.x + p.y + p.z) && p != glm::vec3(0);
+}
+
+void note_data_window(const Files& files, Role role, const Layer& layer, GBuffer& g) {
+  const Window &all = g.window, &own = part_of(files, layer).data_window;
+  std::size_t surfaces = 0, left_out = 0;
+  for (std::size_t i = 0; i < g.valid.size(); ++i) {
+    const int x = all.x0 + int(i % std::size_t(g.valid.width)),
+              y = all.y0 + int(i / std::size_t(g.valid.width));
+    const bool outside = !own.contains(x, y), surface = shows_surface(g, i, role);
+    surfaces += surface;
+    left_out += surface && outside;
+    if (outside && role == Role::normal) g.normal[i] = glm::vec3(0);
+  }
+  if (left_out == 0) return;
+  g.warnings.push_back(fmt::format("{} ends at its data window {}: {} of {} surfaces {}",
+                                   text_of(files, role, layer), text_of(own), left_out, surfaces,
+                                   consequence(role)));
+}
+
+}  // namespace
+
+void check_display_windows(const Files& files, const LayerTable& table,
+                           const std::vector<Role>& roles) {
+  const Role lead = lead_of(table);
+  const Window& wanted = part_of(files, *table[lead]).display_window;
+  for (const Role role : roles) {
+    if (!table[role]) continue;
+    const Window& own = part_of(files, *table[role]).display_window;
+    if (own == wanted) continue;
+    throw Error(ExitCode::layer,
+                fmt::format("{}: {} has the display window {}, and {} has {}; layers of a frame "
+                            "share one: render or resize them to one size",
+                            files[0]->path().string(), text_of(files, role, *table[role]),
+                            text_of(own), text_of(files, lead, *table[lead]), text_of(wanted)));
+  }
+}
+
+void note_data_windows(const Files& files, const LayerTable& table, const std::vector<Role>& roles,
+                       GBuffer& g) {
+  const float aspect = part_of(files, *table[lead_of(table)]).header.pixelAspectRatio();
+  std::set<const ExrPart*> noted;
+  for (const Role role : roles) {
+    if (!table[role]) continue;
+    const ExrPart& part = part_of(files, *table[role]);
+    const bool unused = role == Role::depth && g.depth.empty();  // it contradicts P
+    if (!unused && !(part.data_window == g.window)) note_data_window(files, role, *table[role], g);
+    const float own = part.header.pixelAspectRatio();
+    if (std::abs(own - aspect) <= kSameAspect * aspect || !noted.insert(&part).second) continue;
+    g.warnings.push_back(fmt::format(
+        "{} has pixels of aspect {:.4g}, and {} those of {:.4g}; pixels are matched one to one",
+        text_of(*files[std::size_t(table[role]->file)], part), own, role_name(lead_of(table)),
+        aspect));
+  }
+}
+
+}  // namespace ssdo

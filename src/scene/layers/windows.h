@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "io/exr_reader.h"
+#include "scene/gbuffer.h"
+#include "scene/layers/layers.h"
+
+namespace ssdo {
+
+/// Layers of one frame cover one picture, be they in several parts or files: throws
+/// ExitCode::layer where the display window of one is not that of the position, or else of the
+/// depth. Data windows may differ, as renderers that crop or add overscan write them.
+void check_display_windows(const std::vector<const ExrReader*>& files, const LayerTable& table,
+                           const std::vector<Role>& roles);
+
+/// Warns of layers whose data window leaves out pixels where there is a surface, by how many, and
+/// of pixels of another aspect. A normal that is left out becomes 0, which is rebuilt.
+void note_data_windows(const std::vector<const ExrReader*>& files, const LayerTable& table,
+                       const std::vector<Role>& roles, GBuffer& gbuffer);
+
+}  // namespace ssdo

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/light/environment.h"
+
+#include <cmath>
+#include <cstdint>
+#include <glm/gtc/constants.hpp>
+#include <glm/matrix.hpp>
+#include <glm/trigonometric.hpp>
+#include <vector>
+
+#include "parallel/tiles.h"
+
+namespace ssdo {
+namespace {
+
+constexpr float kPi = glm::pi<float>();
+constexpr int kBlurredSize = 64;       ///< nodes are 3 degrees apart, the lobes 10 or wider
+constexpr int kBlurSourceWidth = 128;  ///< patches of 2.8 degrees
+
+}  // namespace
+
+Environment Environment::constant(const glm::vec3& radiance) {
+  Environment environment;
+  environment.constant_ = radiance;
+  return environment;
+}
+
+Environment::Environment(std::shared_ptr<const Plane<glm::vec3>> lat_long,
+                         const EnvironmentFrame& frame)
+    : map_(std::move(lat_long)), frame_(frame), gain_(std::exp2(frame.exposure_stops)) {}
+
+glm::vec3 Environment::direction_at(float polar, float azimuth) const {
+  const float across = std::sin(polar);
+  if (frame_.up == UpAxis::z) {
+    return {across * std::cos(azimuth), across * std::sin(azimuth), std::cos(polar)};
+  }
+  return {across * std::sin(azimuth), std::cos(polar), across * std::cos(azimuth)};
+}
+
+float Environment::azimuth_of(int x) const {
+  // The map turned by +rotate shows at azimuth a what the unturned map shows at a - rotate.
+  const float u = (float(x) + 0.5f) / float(map_->width);
+  return 2 * kPi * (0.5f - u) + glm::radians(frame_.rotate_degrees);
+}
+
+glm::vec3 Environment::texel_direction(int x, int y) const {
+  return direction_at(kPi * (float(y) + 0.5f) / float(map_->height), azimuth_of(x));
+}
+
+glm::vec2 Environment::texel_at(const glm::vec3& d) const {
+  const bool z_up = frame_.up == UpAxis::z;
+  const float azimuth =
+      (z_up ? std::atan2(d.y, d.x) : std::atan2(d.x, d.z)) - glm::radians(frame_.rotate_degrees);
+  const float height = glm::clamp(z_up ? d.z : d.y, -1.0f, 1.0f);
+  const float u = 0.5f - azimuth / (2 * kPi), v = std::acos(height) / kPi;
+  return {(u - std::floor(u)) * float(map_->width), v * float(map_->height)};
+}
+
+float Environment::texel_solid_angle(int y) const {
+  const float top = std::cos(kPi * float(y) / float(map_->height));
+  const float bottom = std::cos(kPi * float(y + 1) / float(map_->height));
+  return (top - bottom) * 2 * kPi / float(map_->width);
+}
+
+glm::vec3 Environment::radiance(const glm::vec3& d) const {
+  if (is_constant()) return constant_;
+  const Plane<glm::vec3>& map = *map_;
+  const glm::vec2 at = texel_at(d) - 0.5f;
+  const float x = at.x, y = glm::clamp(at.y, 0.0f, float(map.height - 1));
+  const int x0 = int(std::floor(x)), y0 = int(y);
+  const auto column = [&](int c) { return (c + map.width) % map.width; };
+  const int y1 = std::min(y0 + 1, map.height - 1);
+  const float fx = x - float(x0), fy = y - float(y0);
+  return gain_ * glm::mix(glm::mix(map(column(x0), y0), map(column(x0 + 1), y0), fx),
+                          glm::mix(map(column(x0), y1), map(column(x0 + 1), y1), fx), fy);
+}
+
+glm::vec3 Environment::mean() const {
+  if (is_constant()) return constant_;
+  glm::dvec3 sum(0);
+  for (int y = 0; y < map_->height; ++y) {
+    glm::dvec3 row(0);
+    for (int x = 0; x < map_->width; ++x) row += glm::dvec3((*map_)(x, y));
+    sum += row * double(texel_solid_angle(y));
+  }
+  return gain_ * glm::vec3(sum / (4 * glm::pi<double>()));
+}
+
+std::vector<Environment::Patch> Environment::patches(const glm::mat3& world_to_camera,
+                                                     int columns) const {
+  const Plane<glm::vec3>& map = *map_;
+  const int rows = std::min(map.height, std::max(1, columns / 2));
+  columns = std::min(map.width, columns);
+  std::vector<Patch> sky(std::size_t(columns) * std::size_t(rows));
+  // Unit vectors around the horizon, so that the loop over texels has no trigonometry.
+  std::vector<glm::vec3> horizon(std::size_t(map.width));
+  for (int x = 0; x < map.width; ++x) horizon[x] = direction_at(kPi / 2, azimuth_of(x));
+  const auto first_texel = [](int patch, int patches, int texels) {
+    return int(std::int64_t(patch) * texels / patches);
+  };
+  for_each_row(rows, [&](int row) {
+    Patch* const in_row = &sky[std::size_t(row) * std::size_t(columns)];
+    const int end_y = first_texel(row + 1, rows, map.height);
+    for (int y = first_texel(row, rows, map.height); y < end_y; ++y) {
+      const float polar = kPi * (float(y) + 0.5f) / float(map.height);
+      const glm::vec3 pole = direction_at(0, 0) * std::cos(polar);
+      const float across = std::sin(polar), omega = texel_solid_angle(y);
+      for (int column = 0; column < columns; ++column) {
+        const int x0 = first_texel(column, columns, map.width);
+        const int x1 = first_texel(column + 1, columns, map.width);
+        glm::vec3 light(0), around(0);
+        float weights = 0;
+        for (int x = x0; x < x1; ++x) {
+          const glm::vec3 c = gain_ * map(x, y);
+          const float weight = std::abs(c.x + c.y + c.z) + 1e-6f;
+          light += c;
+          around += weight * horizon[x];
+          weights += weight;
+        }
+        Patch& patch = in_row[column];
+        patch.direction += omega * (across * around + weights * pole);
+        patch.power += omega * light;
+        patch.solid_angle += omega * float(x1 - x0);
+      }
+    }
+    for (int column = 0; column < columns; ++column) {
+      in_row[column].direction = world_to_camera * glm::normalize(in_row[column].direction);
+    }
+  });
+  return sky;
+}
+
+OctahedralMap Environment::blurred(float solid_angle, const glm::mat3& world_to_camera) const {
+  const std::vector<Patch> sky = patches(world_to_camera, kBlurSourceWidth);
+  OctahedralMap out(kBlurredSize);
+  // The lobe max(0, cos - c) / (1 - c) integrates to pi (1 - c).
+  const float edge = std::max(-1.0f, 1 - solid_angle / kPi);
+  for_each_row(out.size(), [&](int y) {
+    for (int x = 0; x < out.size(); ++x) {
+      const glm::vec3 d = out.direction_of(x, y);
+      glm::vec3 sum(0);
+      float weights = 0;
+      for (const Patch& patch : sky) {
+        const float w = std::max(0.0f, glm::dot(d, patch.direction) - edge);
+        sum += w * patch.power;
+        weights += w * patch.solid_angle;
+      }
+      out(x, y) = weights > 0 ? sum / weights : radiance(glm::transpose(world_to_camera) * d);
+    }
+  });
+  return out;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "math/octahedral_map.h"
+#include "math/spherical_harmonics.h"
+#include "scene/light/environment.h"
+#include "scene/light/sun.h"
+
+namespace ssdo {
+
+/// A light that some order holds but for this share of it counts as limited to these bands, and
+/// keeps them all. Else a model keeps the smallest order that misses no more than kLightResidual:
+/// on seven frames lit by four maps, direct light with order 4 is no closer to a path tracer.
+constexpr double kBandLimited = 0.005, kLightResidual = 0.1;
+
+/// The light that falls on a scene, in the forms that estimators ask for. Camera space, except for
+/// the two environments.
+struct Light {
+  Environment environment = Environment::constant(glm::vec3(0));  ///< all of it
+  Environment sky = Environment::constant(glm::vec3(0));          ///< without the suns
+  std::vector<Sun> suns;                                          ///< strongest first, at most 4
+
+  /// Of the radiance without the suns, by spherical harmonic. All orders are filled.
+  std::array<glm::vec3, kShCount> coefficients{};
+
+  int order = 0;  ///< 0..4: bands above it are not worth computing
+
+  /// Share that each band has of the energy without the suns: the brightness squared, over the
+  /// sphere, seen in patches of 1.4 degrees. Zeros for a black map.
+  std::array<double, kShOrder + 1> band_energy{};
+
+  /// For each order, what the bands above it hold: RMS over directions and channels after a blur
+  /// by a lobe as wide as a cone of 30 degrees about its axis, relative to the mean brightness.
+  std::array<double, kShOrder + 1> residuals{};
+  double residual() const { return residuals[order]; }
+
+  /// Unoccluded irradiance over pi without the suns, by normal. From the map, not from the bands.
+  OctahedralMap irradiance{2};
+
+  /// Whether it comes from everywhere alike: one colour, no directions.
+  bool is_constant() const { return environment.is_constant(); }
+};
+
+/// Errors: none; maps that are black or have negative texels give finite models.
+Light model_light(const Environment& environment, const glm::mat3& world_to_camera);
+
+}  // namespace ssdo

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "math/plane.h"
+#include "scene/geometry.h"
+#include "scene/hidden_geometry.h"
+#include "scene/light/light.h"
+
+namespace ssdo {
+
+/// What the visible surfaces do with light, by pixel.
+struct Senders {
+  Plane<glm::vec3> albedo;    ///< needed for a bounce; else may be empty
+  Plane<glm::vec3> radiance;  ///< what they send, where a layer says so; else empty
+};
+
+/// All that is known about what a frame shows, in camera space and scene units: what an estimator
+/// looks at.
+struct Scene {
+  Geometry geometry;
+  HiddenGeometry hidden;  ///< empty: everything that is seen is infinitely thick
+  Senders senders;
+  Light light;
+  Plane<float> roughness;  ///< 0..1; empty: the same everywhere, a parameter of the method
+};
+
+}  // namespace ssdo

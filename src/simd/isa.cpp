@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simd/isa.h"
+
+#include <fmt/format.h>
+#include <hwy/targets.h>
+
+#include <cstdlib>
+#include <string_view>
+
+#include "error.h"
+
+namespace ssdo {
+
+std::string choose_isa() {
+  struct Choice {
+    std::string_view name;
+    std::int64_t targets;
+  };
+  static constexpr Choice choices[] = {
+      {"avx512", HWY_AVX3_DL | HWY_AVX3}, {"avx2", HWY_AVX2}, {"scalar", HWY_SCALAR}};
+  const char* variable = std::getenv("SSDO_ISA");
+  const std::string_view wanted = variable ? variable : "";
+  const std::int64_t supported = hwy::SupportedTargets() | HWY_SCALAR;
+  for (const Choice& choice : choices) {
+    if (!wanted.empty() && choice.name != wanted) continue;
+    const std::int64_t usable = choice.targets & supported;
+    if (usable != 0) {
+      hwy::GetChosenTarget().Update(usable);
+      return std::string(choice.name);
+    }
+    if (!wanted.empty()) {
+      throw Error(ExitCode::usage,
+                  fmt::format("$SSDO_ISA is '{}', which this processor lacks", wanted));
+    }
+  }
+  throw Error(ExitCode::usage,
+              fmt::format("$SSDO_ISA is '{}'; expected scalar, avx2 or avx512", wanted));
+}
+
+}  // namespace ssdo

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Camera files: what `ssdo info --json` writes comes back, and what describes no camera is refused
+// (issue 18).
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <glm/matrix.hpp>
+#include <nlohmann/json.hpp>
+
+#include "scene/camera/camera.h"
+#include "support/error_matchers.h"
+#include "support/frame_file.h"
+#include "support/run_tool.h"
+
+namespace ssdo::test {
+namespace {
+
+using nlohmann::json;
+
+class CameraFile : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return dir_ / name; }
+  Camera read(const std::string& text) const {
+    std::ofstream(path("c.json")) << text;
+    return read_camera(path("c.json"), {0, 0, 64, 48}, 1);
+  }
+  void expect_refused(const std::string& text, const std::string& says) const {
+    EXPECT_THAT(error_of([&] { read(text); }), IsError(ExitCode::input, says)) << text;
+  }
+  static std::string with_matrix(const std::string& rows, const std::string& more = "") {
+    return R"({"fx": 50, )" + more + R"("world_to_camera": )" + rows + "}";
+  }
+  TempDir dir_;
+};
+
+TEST_F(CameraFile, FieldsOfViewAndSizesAreThoseOfACamera) {
+  for (const char* degrees : {"0", "-40", "180", "400", "1e308"})
+    expect_refused(std::string(R"({"hfov_deg": )") + degrees + "}", "hfov_deg is ");
+  for (const char* text : {R"({"hfov_deg": "40"})", R"({"hfov_deg": null})", R"({"fx": 1e999})",
+                           R"({"fx": NaN})", "[]", "7", "", "{}", R"({"type": 3, "fx": 1})"})
+    expect_refused(text, "");
+  for (const char* width : {"0", "-3"})
+    expect_refused(std::string(R"({"type": "ortho", "ortho_width": )") + width + "}",
+                   "ortho_width is ");
+  expect_refused(R"({"fx": 0})", "fx is 0");
+  expect_refused(R"({"fx": 50, "fy": -50})", "fy is -50");
+  expect_refused(R"({"fx": 50, "cx": 1e300})", "cx is ");
+  EXPECT_NEAR(read(R"({"hfov_deg": 90})").fx, 32, 1e-9);
+}
+
+TEST_F(CameraFile, APoseIsARigidMatrixForColumnVectors) {
+  expect_refused(with_matrix("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[1,2,3,1]]"),
+                 "the last row of world_to_camera is 1 2 3 1, not 0 0 0 1");
+  expect_refused(with_matrix("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,2]]"), "the last row");
+  expect_refused(with_matrix("[[1,0,0],[0,1,0],[0,0,1]]"), "four rows of four");
+  expect_refused(with_matrix("[[1,0,0,0],[0,1,0,0]]"), "four rows of four");
+  expect_refused(with_matrix("[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]"), "four rows of four");
+  expect_refused(with_matrix("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1],[0,0,0,1]]"),
+                 "four rows of four");
+  expect_refused(with_matrix("[[1,0,0,0],[0,1,0,0],[0,0,null,0],[0,0,0,1]]"), "");
+  expect_refused(with_matrix("[[2,0,0,0],[0,2,0,0],[0,0,2,0],[0,0,0,1]]"), "scales or shears");
+  EXPECT_NEAR(read(with_matrix("[[1,0,0,0],[0,1,0,0],[0,0,1,-5]]")).origin.z, 5, 1e-12)
+      << "the last row may be missing";
+}
+
+TEST_F(CameraFile, AMirrorIsRefusedUnlessTheFileDeclaresIt) {
+  const std::string mirror = "[[1,0,0,0],[0,1,0,0],[0,0,-1,0],[0,0,0,1]]";
+  expect_refused(with_matrix(mirror), "mirrors (its determinant is -1)");
+  expect_refused(with_matrix(mirror, R"("world_handedness": "right", )"), "mirrors");
+  expect_refused(with_matrix(mirror, R"("world_handedness": "LEFT", )"), "use 'right' or 'left'");
+  expect_refused(
+      with_matrix("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]", R"("world_handedness": "left", )"),
+      "does not mirror");
+  EXPECT_NEAR(
+      glm::determinant(read(with_matrix(mirror, R"("world_handedness": "left", )")).rotation), -1,
+      1e-12);
+}
+
+/// P in a left-handed space fits a camera that mirrors, and so does its file.
+TEST_F(CameraFile, WhatInfoWritesComesBack) {
+  for (const bool left : {false, true}) {
+    Picture picture = small_picture();
+    for (std::size_t i = 0; left && i < picture.position.size(); ++i) {
+      picture.position[i].z *= -1;
+      picture.normal[i].z *= -1;
+    }
+    write_frame(path("in.exr"), frame_of(picture));
+    const Finished told = run_tool({"info", path("in.exr"), "--json"});
+    ASSERT_EQ(told.code, 0) << told.err;
+    const json camera = json::parse(told.out)["camera"];
+    EXPECT_EQ(camera["world_handedness"], left ? "left" : "right");
+    const Camera back = read(camera.dump());
+    EXPECT_NEAR(back.fx, camera["fx"].get<double>(), 1e-9);
+    EXPECT_NEAR(glm::determinant(back.rotation), left ? -1 : 1, 1e-3);
+    EXPECT_EQ(
+        run_tool({path("in.exr"), "-o", path("out.exr"), "--overwrite", "--camera", path("c.json")})
+            .code,
+        0);
+  }
+}
+
+}  // namespace
+}  // namespace ssdo::test

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/camera/fit.h"
+
+#include <Imath/half.h>
+#include <gtest/gtest.h>
+
+#include <glm/trigonometric.hpp>
+#include <random>
+
+#include "support/analytic_scene.h"
+
+namespace ssdo::test {
+namespace {
+
+const Window kWindow{0, 0, 160, 90};
+
+/// Ground and spheres: positions that fill space.
+Surface still_life(const glm::dvec3& offset = glm::dvec3(0)) {
+  return all_of({plane(offset, {0, 0, 1}), sphere(offset + glm::dvec3(0, 0, 1), 1),
+                 sphere(offset + glm::dvec3(-2, 1, 0.5), 0.5),
+                 sphere(offset + glm::dvec3(2, 2, 1.5), 1.5)});
+}
+
+Camera above(Camera projection, const glm::dvec3& offset = glm::dvec3(0), double distance = 8) {
+  return look_at(projection, offset + distance * glm::normalize(glm::dvec3(0.3, -1, 0.6)),
+                 offset + glm::dvec3(0, 0, 0.5), {0, 0, 1});
+}
+
+/// Checks that the fit of a picture finds the camera it was taken with.
+void expect_found(const Picture& picture, double tolerance_px, double tolerance_focal) {
+  const auto fitted = fit_camera(picture.position, picture.valid, picture.window);
+  ASSERT_TRUE(fitted);
+  const Residual residual =
+      measure_residual(*fitted, picture.position, picture.valid, picture.window);
+  EXPECT_LT(residual.p99_px, tolerance_px);
+  EXPECT_EQ(fitted->orthographic, picture.camera.orthographic);
+  EXPECT_NEAR(fitted->fx / picture.camera.fx, 1, tolerance_focal);
+  EXPECT_NEAR(fitted->fy / picture.camera.fy, 1, tolerance_focal);
+  for (int i = 0; i < 9; ++i) {
+    EXPECT_NEAR(fitted->rotation[i / 3][i % 3], picture.camera.rotation[i / 3][i % 3],
+                tolerance_focal);
+  }
+}
+
+TEST(CameraFit, FindsPerspectiveCameras) {
+  for (const double fov : {1.0, 20.0, 58.0, 110.0, 150.0}) {
+    SCOPED_TRACE(fov);
+    const double distance = fov < 5 ? 200 : fov > 100 ? 3 : 8;
+    expect_found(
+        take_picture(still_life(), above(camera_from_fov(fov, kWindow, 1), {}, distance), kWindow),
+        0.01, fov < 5 ? 2e-3 : 1e-4);
+  }
+}
+
+TEST(CameraFit, FindsShiftedLensAndPixelAspect) {
+  Camera camera = camera_from_fov(50, kWindow, 2.0);
+  camera.cx += 31, camera.cy -= 17;
+  expect_found(take_picture(still_life(), above(camera), kWindow), 0.01, 1e-4);
+}
+
+TEST(CameraFit, FindsCropsInDisplayPixels) {
+  const Camera camera = above(camera_from_fov(50, kWindow, 1));
+  const Window crop{40, 20, 150, 80};
+  const auto fitted = fit_camera(take_picture(still_life(), camera, crop).position,
+                                 take_picture(still_life(), camera, crop).valid, crop);
+  ASSERT_TRUE(fitted);
+  EXPECT_NEAR(fitted->cx, camera.cx, 0.01);
+  EXPECT_NEAR(fitted->cy, camera.cy, 0.01);
+}
+
+TEST(CameraFit, FindsOrthographicCameras) {
+  const Picture picture =
+      take_picture(still_life(), above(camera_from_ortho_width(7, kWindow, 1)), kWindow);
+  expect_found(picture, 0.01, 1e-4);
+  const auto fitted = fit_camera(picture.position, picture.valid, kWindow);
+  for (std::size_t i = 0; i < picture.position.size(); ++i) {
+    if (picture.valid[i]) {
+      EXPECT_LT(fitted->to_camera(glm::dvec3(picture.position[i])).z, 0)
+          << "in front of the camera";
+    }
+  }
+}
+
+TEST(CameraFit, FindsCamerasOfLeftHandedWorlds) {
+  Picture picture = take_picture(still_life(), above(camera_from_fov(50, kWindow, 1)), kWindow);
+  for (glm::vec3& p : picture.position.pixels) p.y = -p.y;
+  const auto fitted = fit_camera(picture.position, picture.valid, kWindow);
+  ASSERT_TRUE(fitted);
+  EXPECT_NEAR(glm::determinant(fitted->rotation), -1, 1e-6);
+  EXPECT_LT(measure_residual(*fitted, picture.position, picture.valid, kWindow).p99_px, 0.01);
+}
+
+TEST(CameraFit, SurvivesAWorldOriginFarAway) {
+  const glm::dvec3 offset(1e6, -2e6, 5e5);
+  const Picture picture =
+      take_picture(still_life(offset), above(camera_from_fov(50, kWindow, 1), offset), kWindow);
+  const auto fitted = fit_camera(picture.position, picture.valid, kWindow);
+  ASSERT_TRUE(fitted);
+  // Float has steps of 1/8 here, several pixels each; the camera is found through their mean.
+  EXPECT_NEAR(fitted->fx / picture.camera.fx, 1, 0.02);
+}
+
+TEST(CameraFit, SurvivesHalfPositionsAndAveragedSilhouettes) {
+  Picture picture = take_picture(still_life(), above(camera_from_fov(50, kWindow, 1)), kWindow);
+  std::mt19937 random(1);
+  for (std::size_t i = 0; i < picture.position.size(); ++i) {
+    for (int c = 0; c < 3; ++c) picture.position[i][c] = float(half(picture.position[i][c]));
+    if (random() % 20 == 0) picture.position[i] *= 0.5f;  // half surface, half nothing
+  }
+  const auto fitted = fit_camera(picture.position, picture.valid, kWindow);
+  ASSERT_TRUE(fitted);
+  EXPECT_NEAR(fitted->fx / picture.camera.fx, 1, 1e-3);
+  EXPECT_LT(measure_residual(*fitted, picture.position, picture.valid, kWindow).median_px, 0.2);
+}
+
+TEST(CameraFit, RefusesWhatDoesNotDetermineACamera) {
+  const Camera camera = above(camera_from_fov(50, kWindow, 1));
+  const Picture flat = take_picture(plane({}, {0, 0, 1}), camera, kWindow);
+  EXPECT_FALSE(fit_camera(flat.position, flat.valid, kWindow)) << "one plane";
+
+  Picture few = take_picture(still_life(), camera, kWindow);
+  few.valid = Plane<unsigned char>(kWindow.width(), kWindow.height(), 0);
+  EXPECT_FALSE(fit_camera(few.position, few.valid, kWindow)) << "no pixel";
+  for (int i = 0; i < 5; ++i) few.valid(30 * i + 5, 17 * i + 5) = 1;
+  EXPECT_FALSE(fit_camera(few.position, few.valid, kWindow)) << "five pixels";
+}
+
+TEST(CameraFit, RefusesAPlaneThatRoundingMadeThick) {
+  const glm::dvec3 offset(3e5, -1e5, 2e5);
+  const Camera camera = above(camera_from_fov(50, kWindow, 1), offset);
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(0.1, -0.2, 1));
+  const Picture rounded = take_picture(plane(offset, normal), camera, kWindow);
+  EXPECT_FALSE(fit_camera(rounded.position, rounded.valid, kWindow));
+}
+
+TEST(PoseFit, FindsThePoseOfAPlane) {
+  const Camera projection = camera_from_fov(50, kWindow, 1);
+  const Picture flat = take_picture(plane({}, {0, 0, 1}), above(projection), kWindow);
+  const auto posed = fit_pose(projection, flat.position, flat.valid, kWindow);
+  ASSERT_TRUE(posed);
+  EXPECT_LT(measure_residual(*posed, flat.position, flat.valid, kWindow).p99_px, 0.01);
+  EXPECT_NEAR(glm::distance(posed->origin, flat.camera.origin), 0, 1e-3);
+}
+
+TEST(PoseFit, KnowsCameraSpaceWithAnyAxes) {
+  const Camera projection = camera_from_fov(50, kWindow, 1);
+  Picture flat =
+      take_picture(plane({0, 0, -5}, glm::normalize(glm::dvec3(0.2, 1, 0.4))), projection, kWindow);
+  for (const glm::vec3& axes : {glm::vec3(1, 1, 1), glm::vec3(1, 1, -1)}) {
+    Picture turned = flat;
+    for (glm::vec3& p : turned.position.pixels) p *= axes;
+    const auto posed = fit_pose(projection, turned.position, turned.valid, kWindow);
+    ASSERT_TRUE(posed);
+    EXPECT_TRUE(posed->is_camera_space(5));
+  }
+}
+
+TEST(PoseFit, RefusesAProjectionThatCannotBe) {
+  const Picture flat =
+      take_picture(plane({}, {0, 0, 1}), above(camera_from_fov(50, kWindow, 1)), kWindow);
+  EXPECT_FALSE(fit_pose(camera_from_fov(20, kWindow, 1), flat.position, flat.valid, kWindow));
+}
+
+}  // namespace
+}  // namespace ssdo::test
