@@ -5,15 +5,16 @@
 //
 //   error = sqrt(noise^2 + steps^2)
 //
-// Noise is the difference of two halves of the slices. It goes through the filter with its sign, as
-// the light does, so that it shrinks as the noise of the light does, and is squared only then. The
-// method sees to it that both halves cover all directions (SlicePattern::half_sign).
+// `noise` is measured as the difference of two halves of the slices. The signed difference goes
+// through the filter as the light does, so that it shrinks as the noise of the light does, and is
+// squared after that. Both halves cover all directions (SlicePattern::half_sign).
 //
-// Steps is what half of the steps would change. What few steps miss is the same in every slice, so
-// that halves of the slices cannot tell. It falls about as 1 / steps: as much as the second half
-// of the steps has changed is left to be changed. This costs a second run, of half the steps.
+// `steps` is the bias of few steps. It is the same in every slice, so that halves of the slices do
+// not show it; a second run with half of the steps does. The bias falls about as 1 / steps: what
+// the second half of the steps changed is about what remains.
 //
-// Both are one draw of an error. Its size is the root mean square among neighbours on a surface.
+// Each is one draw of a random error. Its size is the root mean square over neighbours on the same
+// surface.
 #include "estimate.h"
 
 #include <fmt/format.h>
@@ -27,7 +28,7 @@
 namespace ssdo {
 namespace {
 
-// The most that --error goes to: beyond them rounding and the guesses of the model count for more.
+// The most that --error goes to: beyond, rounding and guessed geometry cause larger errors.
 constexpr int kMostSlices = 64, kMostSteps = 128;
 
 double rms_over_surfaces(const Plane<float>& plane, const Geometry& geometry) {
@@ -40,7 +41,7 @@ double rms_over_surfaces(const Plane<float>& plane, const Geometry& geometry) {
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-/// The plane alone, as products that a filter takes.
+/// Products that hold this plane alone, for a filter.
 Products as_error(Plane<float> plane) {
   Products products;
   products.error = std::move(plane);
@@ -59,9 +60,9 @@ Plane<float> size_of(Plane<float> draw, const Geometry& geometry) {
 
 /// The noise of the filtered light, from the filtered difference of two halves of the slices.
 Plane<float> noise_of(Plane<float> difference, const Plan& plan) {
-  // The directions of one pixel are evenly spaced, so that its error is that of a half divided by
-  // 2; a difference is what independent halves would have, and too large by sqrt(2^2 - 1). Those of
-  // the pixels that a filter averages are as good as independent. Both measured on seven frames.
+  // The slices of one pixel are evenly spaced, so that doubling them halves the error, and the
+  // difference of halves overestimates it by sqrt(2^2 - 1). Pixels that a filter averages have
+  // independent slices: no correction. Both measured on seven frames.
   const bool one_pixel = plan.method->marches && !plan.filter->apply;
   for (float& e : difference.pixels) e /= one_pixel ? std::sqrt(3.0f) : 1.0f;
   return difference;
@@ -72,7 +73,7 @@ float brightness(const Products& products, std::size_t i) {
   return direct + (products.bounce.empty() ? 0 : luminance(products.bounce[i]));
 }
 
-/// What half of the steps would change of direct + bounce, not filtered.
+/// The change of direct + bounce from half of the steps to all, not filtered.
 Plane<float> change_by_steps(const Scene& scene, const Method& method, Request fewer,
                              const Products& products, const Progress& progress) {
   fewer.steps = fewer.steps > 1 ? fewer.steps / 2 : 2;
@@ -151,10 +152,10 @@ class Round {
   double passes_, finished_ = 0;
 };
 
-/// Raises what is too few for the error `wanted`. False where that is at its most.
+/// Raises slices and steps towards the error `wanted`. False if they are at their most.
 bool refine(Request& request, double wanted, const ErrorFound& found) {
   const double each = wanted / std::sqrt(2.0), larger = std::max(found.noise, found.steps);
-  // A step too short costs another round. `power`: the error falls as count^(-1 / power).
+  // Too small an increase costs another round. The error falls as count^(-1 / power).
   const auto raise = [&](int& count, int most, double part, double power) {
     if (count >= most || (part <= each && part < larger)) return false;
     const double factor = std::clamp(std::pow(part / each, power), 1.5, 8.0);

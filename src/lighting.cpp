@@ -32,12 +32,12 @@ std::optional<glm::vec3> parse_color(const std::string& text) {
   return std::nullopt;
 }
 
-/// Below it products in half are black.
+/// Smaller values are 0 in half.
 constexpr float kSmallestHalf = 5.9604645e-08f;
 
 float brightest_channel(const glm::vec3& c) { return std::max({c.x, c.y, c.z}); }
 
-/// The texels in other primaries. What lies outside them has negative channels.
+/// The texels in other primaries; colours outside their gamut get negative channels.
 Plane<glm::vec3> convert(const Plane<glm::vec3>& map, const glm::mat3& matrix) {
   auto out = Plane<glm::vec3>::like(map);
   for_each_row(map.height, [&](int y) {

@@ -50,8 +50,8 @@ struct Request {
   ProductSet products;
   float radius = 0;  ///< scene units; infinity: without limit
   int bounces = 0;
-  unsigned seed = 0;           ///< of the sampling pattern
-  ParameterValues parameters;  ///< every one that the method has
+  unsigned seed = 0;             ///< of the sampling pattern
+  ParameterValues parameters{};  ///< every one that the method has
 
   // Of methods that march through slices of the frame.
   int slices = 2;                ///< per pixel

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Whether a frame goes on from the one before. A pixel tells where the other camera looked at its
-// point: it saw the same surface there, of the same albedo; another albedo, or through it, which
-// is against one shot. A cut is where less than half of those that tell are for it.
+// Whether a frame continues the shot of the frame before. Pixels are reprojected to the other
+// camera. A pixel is evidence for one shot if that camera saw the same surface there with the same
+// albedo, and against it if the albedo differs or the camera looked through the surface. It is a
+// cut if less than half of the evidence is for one shot.
 //
-//   the same albedo: within the range of the pixels around p', and 0.05 + 1/8 of its upper end
+//   same albedo: within the range of the pixels around p', widened by 0.05 + 1/8 of its upper end
 //
-// A range and not a mean, as a texture of single pixels shows other samples when the camera moves.
+// A range instead of a mean, because a texture of single pixels is sampled elsewhere when the
+// camera moves.
 #include "filters/continuity.h"
 
 #include <algorithm>
@@ -20,12 +22,12 @@
 namespace ssdo {
 namespace {
 
-constexpr int kEvery = 4;  ///< one pixel of so many in a row and in a column tells
+constexpr int kEvery = 4;  ///< every 4th pixel of every 4th row is reprojected
 
-// Of cuts: the least part that goes on within a shot, and pixels that have to tell.
+// A cut: the least share of the evidence that is for one shot, and the fewest pixels to decide by.
 constexpr double kLeastKept = 0.5, kLeastPixels = 16;
 
-// Of motion that is held to the cameras: least pixels of theirs, and factor to be off.
+// Motion against cameras: ignore camera motion below 0.1 px; flag a median ratio off by 30 %.
 constexpr double kLeastMove = 0.1, kMostDifference = 0.3;
 
 bool is_like(const glm::vec3& now, const Plane<glm::vec3>& before, const Footprint& at) {
@@ -41,7 +43,7 @@ bool is_like(const glm::vec3& now, const Plane<glm::vec3>& before, const Footpri
   return true;
 }
 
-/// What the pixels of `now` tell.
+/// Counts the evidence of the pixels of `now`.
 void add_pixels(Continuity& sum, const View& before, const View& now,
                 const Plane<glm::vec2>& motion) {
   const Reprojection reprojection(before.geometry, now.geometry);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The tests are those at the top of temporal.cpp.
+// temporal.cpp derives the tests.
 #include "filters/reprojection.h"
 
 #include <cmath>
@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kLeastCosine = 0.9;  ///< normals 26 degrees apart are of two surfaces
 constexpr double kLeastShare = 0.1;   ///< of the bilinear weight
-constexpr double kSlant = 2;          ///< a thing's way, over what the picture shows of it
-constexpr double kBehind = 0.02;      ///< of the depth: so much farther is behind, not beside
+constexpr double kSlant = 2;          ///< length of a motion over the part of it across the view
+constexpr double kBehind = 0.02;      ///< of the depth: a surface farther by this share is occluded
 
 bool shows_same(const Surfel& q, const glm::dvec3& p, const glm::dvec3& normal, double limit) {
   const glm::dvec3 away = glm::dvec3(q.position) - p, other(q.normal);

@@ -12,25 +12,24 @@
 //   N_p . N_q >= 0.9,
 //
 // their weights scaled to a sum of 1. Where they have less than a tenth of the weight, p was
-// hidden, outside the picture, or has moved: it begins anew with n = 0. The two distances to
-// tangent planes do not grow with that between q and p, so that a surface which hides p from the
-// camera before is told from it even at grazing angles.
+// occluded, outside the picture, or has moved: the mean restarts with n = 0. The limit of the two
+// distances to tangent planes does not grow with the distance between q and p, so that a surface
+// which occluded p in the frame before is recognised even at grazing angles.
 //
-// What moves by itself keeps its history where a motion layer tells p'. Its P was another one, by
-// an unknown vector d, of which the picture shows the part m across the view: the distance between
-// the p' of the layer and that of the cameras, in scene units at p. The limit of both distances to
-// tangent planes grows by 2 m, the length of a d that is up to 60 degrees out of the picture's
-// plane; what comes straight at the viewer begins anew. Where the layer tells what the cameras
-// tell, nothing of the test changes: what a moving thing uncovers stands still itself, and is held
-// to its own P. Normals are compared as they are, so that a thing may turn by 26 degrees a frame.
+// A moving object keeps its history where a motion layer gives p'. Its P has changed by an unknown
+// vector d. The picture shows only the component of d across the view: m, the distance between the
+// p' of the layer and the p' of the cameras, in scene units at p. The limit of both distances to
+// tangent planes grows by 2 m, which allows a d up to 60 degrees out of the picture's plane; an
+// object that moves straight at the viewer restarts. Where layer and cameras agree, m is 0 and the
+// test is unchanged, so that a static background uncovered by a moving object is held to its own P.
+// Normals are not turned, so that an object may rotate by 26 degrees per frame.
 //
-// What differs from its use in games: a mean over all frames up to the 16th, so that a camera at
-// rest converges to it, and only then one that forgets; P is known, so no motion vectors are needed
-// for what stands still; there is no clamp to the colours of the neighbours, which takes noise for
-// light.
+// What differs from games: the mean counts all frames up to the 16th and becomes exponential only
+// then, so that a static camera converges; P is known, so that static surfaces need no motion
+// vectors; colours are not clamped to those of the neighbours, which would take noise for light.
 //
-// Known faults: light that changes where the surface does not, such as the shadow of what moves,
-// arrives over 16 frames; the bent normal of what turns lags behind it.
+// Known faults: light that changes on a static surface, such as a moving shadow, lags by 16 frames;
+// the bent normal of a rotating object lags too.
 #include "filters/temporal.h"
 
 #include <algorithm>
@@ -44,7 +43,7 @@
 namespace ssdo {
 namespace {
 
-constexpr float kMostFrames = 15;  ///< of history: the mean counts 16 with the present one
+constexpr float kMostFrames = 15;  ///< of history; with the present frame the mean counts 16
 
 bool same_products(const Products& a, const Products& b) {
   return a.ao.empty() == b.ao.empty() && a.direct.empty() == b.direct.empty() &&

@@ -12,7 +12,7 @@ std::string one_line(std::string message);
 
 /// Text that may hold a name from a file or a path, fit for one line of a terminal or a log: every
 /// byte of a control character, of a character that ends a line or reorders text, and of what is
-/// not UTF-8 becomes \xHH. All text that ssdo prints and did not write itself goes through this.
+/// not UTF-8 becomes \xHH. All text from files that ssdo prints goes through this.
 std::string printable(std::string_view text);
 
 }  // namespace ssdo

@@ -8,17 +8,18 @@
 namespace ssdo {
 namespace {
 
-/// Coverage down to here is none.
+/// Alpha up to this is no coverage.
 constexpr float kLeastAlpha = 1e-4f;
 
-/// Not-a-number is below nothing.
+/// False for not-a-number.
 bool is_missing(const glm::vec3& p) { return !(glm::length(p) < kEmptyDepth); }
 
 bool shows_nothing(float depth, float background_depth) {
   return !(depth < background_depth && depth > 0);
 }
 
-/// A layer of normals that are 0 on every position says nothing of the background.
+/// Whether the layer of normals holds anything: one that is 0 at every position shows no
+/// background.
 bool has_normals(const GBuffer& g) {
   for (std::size_t i = 0; i < g.normal.size(); ++i) {
     if (g.normal[i] != glm::vec3(0)) return true;
@@ -26,7 +27,7 @@ bool has_normals(const GBuffer& g) {
   return false;
 }
 
-/// What P and the depth beside it agree on; empties a depth that contradicts P.
+/// The relation between P and the depth; empties a depth that contradicts P.
 std::optional<DepthModel> hold_depth_to_position(GBuffer& g) {
   if (g.position.empty() || g.depth.empty()) return std::nullopt;
   Plane<unsigned char> counts(g.window.width(), g.window.height());

@@ -13,8 +13,8 @@ inline constexpr float kEmptyDepth = 1e9f;
 
 /// Fills `valid` and counts background and broken pixels. A pixel is background where anything says
 /// so: alpha is 0; P is 0, not finite, or kEmptyDepth or more; N is 0; or the depth is
-/// `background_depth` or more, not finite, 0 or less. P or N of 0 counts for nothing where a depth
-/// shows that very surface, and N of 0 for nothing in a layer that is 0 throughout.
+/// `background_depth` or more, not finite, 0 or less. P or N of 0 does not count where the
+/// depth agrees with P there, and N of 0 does not count in a layer that is 0 everywhere.
 ///
 /// Where there is P, a depth that contradicts it (depth_model.h) is left out with a warning, and
 /// the plane is emptied. A P that is not finite counts as broken where a depth shows a surface.

@@ -30,7 +30,8 @@ void decode(Plane<float>& depth, DepthKind kind, const GBufferOptions& options) 
   }
 }
 
-/// The z of a camera that looks along -z, apart from pixels that show nothing.
+/// Whether the depth is the z of a camera that looks along -z: negative wherever there is a
+/// surface.
 void turn_negative(GBuffer& g) {
   bool negative = false;
   for (const float z : g.depth.pixels) {

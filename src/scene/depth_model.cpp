@@ -14,15 +14,15 @@ namespace ssdo {
 namespace {
 
 constexpr std::size_t kMostSamples = 20000;
-constexpr int kRounds = 4;  ///< of leaving out what does not fit
+constexpr int kRounds = 4;  ///< of leaving out outliers
 constexpr double kTolerance = 0.05;
 
 /// Share of the pixels with a depth that has to agree: averaged silhouettes do not, and in grass
 /// they may be a third of the frame.
 constexpr double kLeastShare = 0.5;
 
-/// A unit of depth this far from one of P is another. Positions in a plane tell only the part of
-/// the gradient that lies in the plane: then it may be shorter.
+/// The gradient of a depth in the units of P has the length 1 to this tolerance. Positions in one
+/// plane show only the component of the gradient in that plane, which may be shorter.
 constexpr double kUnitLength = 0.05;
 constexpr double kFlat = 1e-3;  ///< thickness of such a plane over its extent
 
@@ -62,7 +62,7 @@ glm::dvec4 fit_affine(const std::vector<Pixel>& pixels, const std::vector<double
   return {x[0], x[1], x[2], x[3]};
 }
 
-/// Whether the positions lie in a plane, whose normal they leave open.
+/// Whether the positions lie in one plane, so that the gradient along its normal is unknown.
 bool is_flat(const std::vector<Pixel>& pixels) {
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (const Pixel& pixel : pixels) {
@@ -123,7 +123,7 @@ std::optional<DepthModel> DepthModel::fit(const Plane<glm::vec3>& positions,
       std::vector<double> misses;
       for (const Pixel& pixel : pixels)
         misses.push_back(std::abs(model.depth_of(pixel.p) - pixel.depth) / pixel.depth);
-      // What misses by more than three times the median is of another surface, or an average.
+      // A miss of more than three times the median is another surface, or an average over an edge.
       const double limit = std::max(3 * quantile(misses, 0.5), kTolerance);
       for (std::size_t i = 0; i < pixels.size(); ++i) used[i] = misses[i] <= limit;
     }

@@ -10,12 +10,12 @@
 
 namespace ssdo {
 
-/// What a depth layer has to be where P is known, whatever the camera: planar depth is an affine
+/// Checks a depth layer against P without knowing the camera: planar depth is an affine
 /// function of P whose gradient is the unit vector along the axis; the square of a distance from
 /// the camera is |P|^2 and an affine function.
 class DepthModel {
  public:
-  static constexpr std::size_t kFewestPixels = 4;  ///< that have both, to tell anything
+  static constexpr std::size_t kFewestPixels = 4;  ///< with both P and depth; fewer decide nothing
 
   /// Fits both kinds to the pixels of `counts`, whose depths are positive. Nothing where neither
   /// is right for most of them, that is, where the depth contradicts P: remapped, in another unit,
@@ -30,7 +30,7 @@ class DepthModel {
  private:
   double depth_of(const glm::dvec3& from_centre) const;
 
-  /// Of depth, in units of P: 1 where the two have the same.
+  /// Units of P per unit of depth: 1 where both have the same unit.
   double length_of_unit() const;
 
   DepthKind kind_ = DepthKind::planar;

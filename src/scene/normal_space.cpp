@@ -42,12 +42,13 @@ constexpr float kOverRounding = 32;
 
 constexpr float kWithin = 0.6f;  ///< cosine of 53 degrees
 
-/// A space is better than another at a pixel if its cosine is so much larger. It replaces the
-/// space of P if it is better at this many times as many pixels, and at a fair number of them.
+/// At one pixel, a space is better than another if its cosine is larger by this. It replaces the
+/// space of P if it is better at this many times as many pixels as it is worse, and at enough of
+/// them.
 constexpr float kBetter = 0.1f;
 constexpr std::size_t kTimesBetter = 3, kLeastBetter = 8, kSmallestShare = 500;
 
-/// A space is turned against another from 2 degrees on: precision and shading do less.
+/// Rotations below 2 degrees count as none: precision and shading cause as much.
 const float kLeastTurn = std::cos(glm::radians(2.0f));
 constexpr int kFitRounds = 12;
 constexpr double kOutliers = 0.2;           ///< share of the pixels that is left out
@@ -86,7 +87,7 @@ bool is_usable(const glm::vec3& n) {
   return length > 1e-8f && length < 1e8f;
 }
 
-/// A pixel whose stored normal can be held to P.
+/// A smooth pixel, where the stored normal can be compared with the gradient of P.
 struct Witness {
   glm::vec3 gradient, stored;  ///< unit; in camera space, and as stored
 };

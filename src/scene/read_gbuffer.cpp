@@ -111,7 +111,7 @@ void undo_normal_encoding(GBuffer& g) {
   g.warnings.push_back("normals are encoded as 0..1; decoded with 2n - 1");
 }
 
-/// What is not finite, or beyond all light, becomes 0: black, smooth, or a normal to be rebuilt.
+/// Values that are not finite or out of range become 0: black, smooth, or a normal to be rebuilt.
 /// The pixel counts as broken.
 template <class T>
 void clear_broken(GBuffer& g, Plane<T>& values) {

@@ -44,8 +44,8 @@ std::optional<Camera> camera_from_options(const GBuffer& g, const CameraOptions&
                         file));
 }
 
-/// Pixels whose neighbours all show something: at the edge of what a frame shows, P may be an
-/// average with the background, far from where its pixel looks.
+/// Pixels whose neighbours all show surfaces. Beside background, P may be an average with the
+/// background, which does not project to its pixel.
 Plane<unsigned char> inner_pixels(const Plane<unsigned char>& valid) {
   Plane<unsigned char> inner(valid.width, valid.height);
   for (int y = 1; y + 1 < valid.height; ++y) {
@@ -57,7 +57,7 @@ Plane<unsigned char> inner_pixels(const Plane<unsigned char>& valid) {
   return inner;
 }
 
-/// The camera by pixels that are surely no averages, or else by all.
+/// The camera from pixels that cannot be averages with the background, or else from all.
 std::optional<Camera> fit_camera(const GBuffer& g) {
   const auto fitted = ssdo::fit_camera(g.position, inner_pixels(g.valid), g.window);
   return fitted ? fitted : ssdo::fit_camera(g.position, g.valid, g.window);
@@ -74,8 +74,8 @@ double rounding_of_positions(const GBuffer& g) {
   return double(largest) * g.position_step;
 }
 
-/// The camera of --camera, if P keeps to its pixels under it: in the world that the file's pose
-/// leads from, or in camera space.
+/// The camera of --camera, if P projects to its own pixels under it, taken as world space with the
+/// pose of the file, or as camera space.
 std::optional<FoundCamera> pose_by_file(const GBuffer& g, const Camera& given,
                                         GeometryReport& report) {
   const double step = rounding_of_positions(g);
@@ -86,7 +86,7 @@ std::optional<FoundCamera> pose_by_file(const GBuffer& g, const Camera& given,
   return FoundCamera{given, *in_camera_space, true};
 }
 
-/// The camera of --fov or --ortho with a pose that P tells.
+/// The camera of --fov or --ortho with the pose fitted from P.
 std::optional<FoundCamera> pose_by_positions(const GBuffer& g, const Camera& given) {
   const auto posed = fit_pose(given, g.position, g.valid, g.window, rounding_of_positions(g));
   return posed ? std::optional(FoundCamera{*posed, *posed, false}) : std::nullopt;

@@ -9,15 +9,15 @@
 
 namespace ssdo {
 
-/// The camera of the frame, and what leads from P as it is stored to camera space: the same, unless
-/// P is in camera space already while a file gives the pose.
+/// The camera of the frame, and the transform from stored P to camera space. They are the same
+/// unless P is stored in camera space and a file gives the pose.
 struct FoundCamera {
   Camera camera, of_positions;
   bool by_file = false;  ///< --camera gave the pose, and so the world
 };
 
-/// Decides by projection: a camera that the options give is taken if P keeps to its pixels under
-/// it, or if there is nothing better; else the one that P itself shows, with a warning.
+/// Decides by projection: the camera of the options is used if P projects to its own pixels under
+/// it, or if no camera fits better; else the camera fitted from P, with a warning.
 /// Errors: ExitCode::layer where neither P nor the options determine the camera.
 FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,
                         GeometryReport& report);

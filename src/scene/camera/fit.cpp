@@ -62,8 +62,8 @@ ProjectionModel direct_linear_transform(const Samples& samples, const Window& wi
   return model;
 }
 
-/// Whether the samples leave their plane by no more than what moves them within their pixels:
-/// rounding of P far from the origin gives a plane a thickness that tells nothing.
+/// Whether the samples lie in one plane, to within the rounding of P: far from the origin, rounding
+/// alone gives a plane some thickness.
 bool is_flat(const ProjectionModel& model, const Samples& samples) {
   const double distance = model.translation.norm();
   return samples.spread[0] < 3 * reprojection_rms(model, samples) * distance / model.fx;
@@ -88,8 +88,8 @@ ProjectionModel fit_affine(const Samples& samples) {
   const Vector3d other = (across.normalized() - down.normalized()).normalized();
   model.rotation.row(0) = (bisector + other).normalized();
   model.rotation.row(1) = (bisector - other).normalized();
-  // Without perspective the picture does not tell the two sides of the axis apart: take the
-  // right-handed one.
+  // Without perspective, mirroring along the axis leaves the picture unchanged: take the
+  // right-handed solution.
   model.rotation.row(2) = model.rotation.row(0).cross(model.rotation.row(1));
   model.cx = solution(3, 0);
   model.cy = solution(3, 1);
@@ -221,7 +221,7 @@ bool explains(const Camera& camera, const Plane<glm::vec3>& positions,
 
 std::optional<Camera> in_own_space(const Camera& projection, const Plane<glm::vec3>& positions,
                                    const Plane<unsigned char>& valid, const Window& window) {
-  // The picture tells the signs of x and y; that of z is what brings surfaces before the camera.
+  // The signs of x and y follow from the picture, that of z from surfaces being before the camera.
   std::size_t before = 0, behind = 0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (!valid[i]) continue;

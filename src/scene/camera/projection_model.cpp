@@ -56,7 +56,7 @@ Samples collect_samples(const Plane<glm::vec3>& positions, const Plane<unsigned 
                         const Window& window) {
   std::size_t count = 0;
   for (unsigned char v : valid.pixels) count += v != 0;
-  // An odd stride does not fall in step with the rows.
+  // An odd stride, so that samples do not line up in columns.
   const std::size_t stride = (count / kMaxSamples) | 1;
 
   Samples samples;

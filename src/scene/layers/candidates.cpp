@@ -47,7 +47,7 @@ std::vector<std::string> keys_of(const LayerGroup& group, const Layer& layer) {
 
 bool is_scalar(Role role) { return component_sets(role)[0].size() == 1; }
 
-/// The claims of a group's single channels, as of a bare "Z".
+/// Candidates from single channels of a group, such as a bare "Z".
 void add_scalars(Role role, const LayerGroup& group, std::vector<Candidate>& found) {
   for (const auto& [component, channel] : group.components) {
     if (role == Role::depth && is_coordinate(group, component)) continue;
@@ -74,7 +74,7 @@ std::vector<Layer> fitting_layers(const LayerGroup& group, Role role) {
 }
 
 void add_candidates(Role role, const LayerGroup& group, std::vector<Candidate>& found) {
-  // Blender's has four; two of such a name may be anything.
+  // Blender's Vector has four channels; two channels of that name are not trusted.
   if (role == Role::motion && !group.find("w")) return;
   for (const Layer& layer : fitting_layers(group, role)) {
     const std::vector<std::string> keys = keys_of(group, layer);

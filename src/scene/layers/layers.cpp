@@ -36,8 +36,8 @@ std::string quoted(const std::vector<std::string>& names) {
 }
 
 /// The other parts of the view of `part`, which complete it. Not those with a position of their
-/// own where it has one: they show something else. Where it has a depth alone, positions and
-/// depths of others are left out alike.
+/// own where it has one, which show something else. Where it has only a depth, parts with a
+/// position or a depth of their own are left out.
 std::vector<LayerGroup> parts_beside(const std::vector<LayerGroup>& part,
                                      const std::vector<LayerGroup>& all) {
   const bool position = !best_candidates(Role::position, part).empty();
@@ -52,7 +52,7 @@ std::vector<LayerGroup> parts_beside(const std::vector<LayerGroup>& part,
   return those_of(all, is_beside);
 }
 
-/// Nothing has the name of a request: it was meant as FILE:LAYER if what stands before the last
+/// No layer has the requested name. The request was meant as FILE:LAYER if the text before the last
 /// colon can only be a file.
 void refuse_missing_file(const LayerRequest& request) {
   const std::string file = request.layer.substr(0, request.layer.rfind(':'));
@@ -202,7 +202,7 @@ LayerRequest parse_layer_request(const std::string& text) {
                             text, fmt::join(kRoleNames, ", ")));
   }
   LayerRequest request{*role, "", text.substr(equals + 1)};
-  // A colon may stand in a layer's name: it ends a file's where that is a file, or a sequence.
+  // A layer name may contain a colon: it separates a file only where that file or sequence exists.
   const auto colon = request.layer.rfind(':');
   if (colon == std::string::npos) return request;
   const std::string file = request.layer.substr(0, colon);

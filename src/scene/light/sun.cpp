@@ -15,13 +15,13 @@ namespace {
 
 constexpr float kPi = glm::pi<float>();
 constexpr std::size_t kMaxSuns = 4;
-constexpr int kMaxTries = 16;       ///< bright places looked at, suns or not
+constexpr int kMaxTries = 16;       ///< bright places examined, whether suns or not
 constexpr int kPatchColumns = 128;  ///< patches of 2.8 degrees
-constexpr float kMinShare = 0.05f;  ///< of the irradiance, which is how dark the shadow gets
+constexpr float kMinShare = 0.05f;  ///< of the irradiance: how much darker its shadow is
 const float kMaxRadius = glm::radians(5.0f);
 
-/// Texels brighter than this share of the brightest are one source with it. A source that is less
-/// than five times as bright as what surrounds it cannot reach kMinShare within kMaxRadius.
+/// Connected texels brighter than this share of the brightest belong to the same source. A source
+/// less than five times as bright as its surroundings cannot reach kMinShare within kMaxRadius.
 constexpr float kCoreShare = 0.2f;
 
 using Patch = Environment::Patch;
@@ -157,7 +157,7 @@ std::optional<Sun> SunSearch::take(const Core& core, float irradiance) {
     const double distance = glm::distance(d, sun.direction);
     weights += weight;
     squares += weight * distance * distance;
-    // A channel that is darker here than around keeps its texels and gives the sun nothing.
+    // A channel that is darker here than around keeps its texels and adds nothing to the sun.
     for (int c = 0; c < 3; ++c) map_(x, y)[c] = power[c] > 0 ? background[c] : map_(x, y)[c];
   });
   // The mean square over a disc is half its radius squared.
@@ -187,7 +187,7 @@ SunsAndRest SunSearch::run() {
     if (near > kMinShare * irradiance) core = grow(brightest_near(d));
     if (core) sun = take(*core, irradiance);
     if (sun) suns.push_back(*sun);
-    // Nothing around here is looked at again. Beside a sun may be another.
+    // This place is not examined again; another sun may stand beside it.
     const float done = (sun ? 2 * core->radius : kMaxRadius) + 2 * kPi / kPatchColumns;
     for (Patch& patch : sky) {
       if (glm::dot(patch.direction, d) >= std::cos(done)) patch.power = glm::vec3(0);

@@ -22,7 +22,7 @@ inline float brightness(const glm::vec3& c) { return (c.x + c.y + c.z) / 3; }
 /// An environment in two parts whose light adds up to the whole.
 struct SunsAndRest {
   std::vector<Sun> suns;  ///< strongest first, at most 4, directions in world space
-  Environment rest;       ///< where the suns were it continues what surrounds them
+  Environment rest;       ///< suns are filled with the radiance around them
 };
 
 /// Takes out what is within 5 degrees of a point and gives at least 5 % of the irradiance of a

@@ -7,6 +7,7 @@
 
 #include "estimators/view_space/ambient_light.h"
 #include "support/analytic_scene.h"
+#include "support/scene_of.h"
 
 namespace ssdo::test {
 namespace {
