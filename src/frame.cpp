@@ -100,9 +100,9 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const st
   ModelOptions model = options.model;
   if (model.temporal) model.seed += unsigned(number);
   frame.plan = make_plan(model, options.output, scene, frame.gbuffer, input);
-  if (frame.plan.method->looks_behind()) {
-    scene.hidden = model.thickness ? constant_thickness(scene.geometry, float(*model.thickness))
-                                   : find_hidden_geometry(scene.geometry);
+  if (frame.plan.method->takes_solids()) {
+    scene.solids = model.thickness ? constant_thickness(scene.geometry, float(*model.thickness))
+                                   : guess_solids(scene.geometry);
   }
   frame.times.prepare = watch.lap();
   return frame;

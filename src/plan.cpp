@@ -227,12 +227,12 @@ void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geomet
   }
   if (model.radius) {
     plan.request.radius = float(*model.radius);
-    if (std::isinf(plan.request.radius) && !plan.method->looks_behind()) {
+    if (std::isinf(plan.request.radius) && !plan.method->takes_solids()) {
       throw Error(ExitCode::usage,
                   fmt::format("--radius inf: method {} needs a limit", plan.method->name));
     }
     plan.reasons.push_back(fmt::format("radius {:.4g}: as given", plan.request.radius));
-  } else if (plan.method->looks_behind()) {
+  } else if (plan.method->takes_solids()) {
     plan.request.radius = INFINITY;
     plan.reasons.push_back("radius inf: light is stopped by whatever the frame shows or suggests");
   } else {

@@ -16,7 +16,7 @@ namespace {
 /// Whether the setting's method takes an option as it was given.
 bool reaches(const std::vector<std::string>& option, const Setting& setting) {
   if (option[0] == "--radius" && !setting.method->has_radius) return false;
-  if (setting.method->looks_behind()) return true;
+  if (setting.method->takes_solids()) return true;
   return option[0] != "--thickness" && !(option[0] == "--radius" && option.back() == "inf");
 }
 

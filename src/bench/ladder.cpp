@@ -114,7 +114,7 @@ std::string Setting::name() const { return fmt::format("{} {}", method->name, la
 ModelOptions Setting::applied_to(const ModelOptions& model) const {
   ModelOptions out = model;
   out.method = method->name;
-  if (!method->looks_behind()) {
+  if (!method->takes_solids()) {
     out.thickness.reset();
     if (out.radius && std::isinf(*out.radius)) out.radius.reset();
   }

@@ -4,17 +4,17 @@
 // Practical Real-Time Strategies for Accurate Indirect Occlusion) with the bitmask of Therrien,
 // Levesque and Gilet (2023, Screen Space Indirect Lighting with Visibility Bitmask).
 //
-// A slice is a plane through the view ray; its two halves are marched over the frame. In the half
+// A slice is a plane through the view ray; its two sides are marched over the frame. On the side
 // along T, a unit vector perpendicular to V, a direction at angle t from V has the cosine
 // n_v cos t + n_t sin t to the normal and, as slices turn about V, the measure |sin t| dt:
 //
 //   M(S) = int_S (n_v c + n_t s) dc,   c = cos t, s = sin t
 //
-// 32 sectors divide a half equally in c, which is in solid angle. What is seen in a pixel hides
-// those between its front and its back, which lies behind it on its own view ray; a mask gathers
-// them near to far. Then
+// 32 sectors divide a side equally in c, which is in solid angle. A solid of a pixel hides those
+// between its front and its back, which lies behind it on its own view ray; a mask gathers them
+// near to far. Then
 //
-//   ao      = 1 - sum w M(hidden) / sum w M(all)               over the halves of all slices
+//   ao      = 1 - sum w M(hidden) / sum w M(all)               over the sides of all slices
 //   direct  = E(N)/pi * (1 - sum w int_hidden L dM / sum w int_all L dM)    channel by channel
 //   bounce  = (1 - ao) * sum w sum_q M(newly hidden by q) L_out(q) / sum w M(hidden)
 //
@@ -36,7 +36,7 @@
 // - What a pixel shows counts for the stretch of the way up to those that are seen before and after
 //   it (bitmask/side-inl.h). Taken for points, few steps see too little: 16 that count for their
 //   stretches are nearer to the limit than 24 points.
-// - Backs, surfaces behind what covers them (hidden_geometry.cpp) and beyond the frame
+// - Backs, layers of solids behind what is seen (scene/solids.cpp) and surfaces beyond the frame
 //   (bitmask/extension-inl.h) are guesses that GTAO does not make.
 #include "estimators/bitmask.h"
 
@@ -95,7 +95,7 @@ class Bitmask {
       : scene_(scene),
         request_(request),
         progress_(progress),
-        march_scene_(make_march_scene(scene.geometry, scene.hidden)),
+        march_scene_(make_march_scene(scene.geometry, scene.solids, request.receivers)),
         layout_(march_scene_.layout),
         pattern_(layout_, scene.geometry.display, request.slices, request.steps, request.seed),
         bounce_pattern_(layout_, scene.geometry.display, bounce_slices(request.slices),
@@ -109,7 +109,12 @@ class Bitmask {
   Products run() {
     gather_visibility();
     if (request_.products.bounce) out_.bounce = picture(gather_bounce());
-    if (request_.products.error) out_.error = picture(error_);
+    if (request_.products.error) {
+      const bool bounces = bounce_error_.data() != nullptr;
+      out_.error = of_receivers(0.0f, [&](std::ptrdiff_t i) {
+        return bounces ? error_[i] + bounce_error_[i] : error_[i];
+      });
+    }
     out_.ao = picture(ao_, 1.0f);
     if (wants_light()) out_.direct = picture(direct_);
     return std::move(out_);
@@ -120,7 +125,26 @@ class Bitmask {
     return request_.products.direct || request_.products.bounce || request_.products.error;
   }
 
-  /// Calls `work(pixel, index)` for each pixel of a row; index is that of the march.
+  bool senders_need_light() const { return scene_.senders.radiance.empty(); }
+
+  /// The pixels whose own light is found: all of the raster where they send it to others.
+  Window lit_part() const {
+    const bool sends = request_.products.bounce && request_.bounces > 0 && senders_need_light();
+    return sends ? march_scene_.raster() : march_scene_.receivers;
+  }
+
+  /// Calls `work(part)` for bands of a part of the raster.
+  template <class Work>
+  static void for_each_band_of(const Window& part, const Work& work, const Progress& progress) {
+    for_each_band(
+        part.height(),
+        [&](int y0, int y1) {
+          work(Window{part.x0, part.y0 + y0, part.x1, part.y0 + y1});
+        },
+        progress);
+  }
+
+  /// Calls `work(pixel, index)` for each pixel of a row of the raster; index is that of the march.
   template <class Work>
   void for_each_pixel(int y, const Work& work) const {
     for (int first = 0; first < std::min(kPeriod, layout_.width()); ++first) {
@@ -130,26 +154,31 @@ class Bitmask {
     }
   }
 
-  /// A value of every pixel; `background` where there is no surface.
-  Plane<float> picture(const InterleavedPlane& plane, float background = 0) const {
-    auto out = Plane<float>::like(scene_.geometry.surfel);
-    for_each_row(layout_.height(), [&](int y) {
-      for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
-        out[pixel] = std::isnan(march_scene_.depth[i]) ? background : plane[i];
-      });
+  /// `value(index)` of every receiver; `background` where there is no surface.
+  template <class T, class Value>
+  Plane<T> of_receivers(const T& background, const Value& value) const {
+    const Window& to = march_scene_.receivers;
+    Plane<T> out;
+    out.width = to.width(), out.height = to.height();
+    out.pixels.resize(to.area());
+    for_each_row(to.height(), [&](int y) {
+      for (int first = 0; first < std::min(kPeriod, to.width()); ++first) {
+        std::ptrdiff_t i = layout_.index(to.x0 + first, to.y0 + y);
+        for (int x = first; x < to.width(); x += kPeriod, ++i)
+          out(x, y) = std::isnan(march_scene_.depth()[i]) ? background : value(i);
+      }
     });
     return out;
   }
 
+  Plane<float> picture(const InterleavedPlane& plane, float background = 0) const {
+    return of_receivers(background, [&](std::ptrdiff_t i) { return plane[i]; });
+  }
+
   Plane<glm::vec3> picture(const InterleavedColor& color) const {
-    auto out = Plane<glm::vec3>::like(scene_.geometry.surfel);
-    for_each_row(layout_.height(), [&](int y) {
-      for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
-        const glm::vec3 value(color[0][i], color[1][i], color[2][i]);
-        out[pixel] = std::isnan(march_scene_.depth[i]) ? glm::vec3(0) : value;
-      });
+    return of_receivers(glm::vec3(0), [&](std::ptrdiff_t i) {
+      return glm::vec3(color[0][i], color[1][i], color[2][i]);
     });
-    return out;
   }
 
   InterleavedColor black() const {
@@ -160,7 +189,7 @@ class Bitmask {
     return color;
   }
 
-  /// The other way, within the range of light.
+  /// A value of every pixel in the order of the march, clamped to the range of light.
   InterleavedColor interleaved(const Plane<glm::vec3>& picture) const {
     InterleavedColor color = black();
     for_each_row(layout_.height(), [&](int y) {
@@ -195,8 +224,8 @@ class Bitmask {
       error_ = InterleavedPlane(layout_);
       job.difference = &error_;
     }
-    for_each_band(
-        layout_.height(), [&](int y0, int y1) { march_visibility(job, y0, y1); }, progress_);
+    for_each_band_of(
+        lit_part(), [&](const Window& part) { march_visibility(job, part); }, progress_);
     if (request_.products.bent) out_.bent = picture(bent);
     if (!wants_light()) return;
     for (const Sun& sun : light.suns) add_sun(sun);
@@ -222,38 +251,45 @@ class Bitmask {
         job.distances_px[std::size_t(m)].push_back(
             float(march_distance((i + start) / steps, diagonal)));
     }
-    for_each_band(
-        layout_.height(), [&](int y0, int y1) { march_sun(job, y0, y1); }, progress_);
+    for_each_band_of(
+        lit_part(), [&](const Window& part) { march_sun(job, part); }, progress_);
   }
 
-  /// The light that each pixel's covered surface sends: that of the pixel where it is seen.
-  void find_sent_behind(const InterleavedColor& sent, InterleavedColor& behind) const {
-    const bool known = !scene_.hidden.behind_source.empty();
+  /// The light that the solids of a layer send: that of the pixels that show them.
+  void find_sent_behind(int layer, const InterleavedColor& sent, InterleavedColor& behind) const {
     for_each_row(layout_.height(), [&](int y) {
       for (InterleavedPlane& plane : behind) plane.fill_row(layout_, y, 0);
-      if (!known) return;
       for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
-        const int source = scene_.hidden.behind_source[pixel];
-        if (source < 0) return;
+        const int sender = scene_.solids.at(layer, pixel).sender;
+        if (sender < 0) return;
         const std::ptrdiff_t from =
-            layout_.index(source % layout_.width(), source / layout_.width());
+            layout_.index(sender % layout_.width(), sender / layout_.width());
         for (std::size_t c = 0; c < 3; ++c) behind[c][i] = sent[c][from];
       });
     });
   }
 
+  /// A part of the raster with so many pixels around it.
+  Window grown(const Window& part, int by) const {
+    return {std::max(part.x0 - by, 0), std::max(part.y0 - by, 0),
+            std::min(part.x1 + by, layout_.width()), std::min(part.y1 + by, layout_.height())};
+  }
+
   /// Each pass is lit by the one before.
   InterleavedColor gather_bounce() {
-    const bool lit = scene_.senders.radiance.empty();  // else a layer says what is sent
+    const bool lit = senders_need_light();  // else a layer says what is sent
     InterleavedColor given = interleaved(lit ? scene_.senders.albedo : scene_.senders.radiance),
-                     bounce = black(), sent_back, sent_behind = make_color(layout_),
-                     gathered = make_color(layout_), sent_before_last;
-    InterleavedPlane weights(layout_), difference, error;
+                     bounce = black(), sent_back, gathered = make_color(layout_), sent_before_last;
+    std::vector<InterleavedColor> sent_behind;
+    for (std::size_t k = 0; k < scene_.solids.behind.size(); ++k)
+      sent_behind.push_back(make_color(layout_));
+    InterleavedPlane weights(layout_), difference;
     const bool two_sided = lit && !scene_.light.is_constant();
     if (two_sided) sent_back = black();
-    if (request_.products.error)
-      difference = InterleavedPlane(layout_), error = InterleavedPlane(layout_);
+    if (request_.products.error && request_.bounces > 0)
+      difference = InterleavedPlane(layout_), bounce_error_ = InterleavedPlane(layout_);
     if (lit && request_.bounces > 1) sent_before_last = black();
+    const Window raster = march_scene_.raster();
     for (int pass = 1; pass <= request_.bounces; ++pass) {
       // The last pass asks for the albedo no more.
       InterleavedColor& sent = lit && pass < request_.bounces ? sent_before_last : given;
@@ -267,9 +303,10 @@ class Bitmask {
                                 scene_.light.suns,
                                 &sent,
                                 two_sided ? &sent_back : nullptr};
-        for_each_band(layout_.height(), [&](int y0, int y1) { find_senders(senders, y0, y1); });
+        for_each_band_of(raster, [&](const Window& part) { find_senders(senders, part); }, {});
       }
-      find_sent_behind(sent, sent_behind);
+      for (int k = 1; k < scene_.solids.layers(); ++k)
+        find_sent_behind(k, sent, sent_behind[std::size_t(k - 1)]);
       BorderValues sent_border[3];
       for (int c = 0; c < 3; ++c) {
         sent_border[c] = march_scene_.border.gather(
@@ -286,15 +323,13 @@ class Bitmask {
                           &weights,
                           wants_error ? &difference : nullptr,
                           &bounce,
-                          wants_error ? &error : nullptr};
-      for_each_band(
-          layout_.height(), [&](int y0, int y1) { march_bounce(job, y0, y1); }, progress_);
-      for_each_band(layout_.height(), [&](int y0, int y1) { spread_bounce(job, y0, y1); });
-    }
-    if (request_.products.error && request_.bounces > 0) {
-      for_each_row(layout_.height(), [&](int y) {
-        for_each_pixel(y, [&](std::size_t, std::ptrdiff_t i) { error_[i] += error[i]; });
-      });
+                          wants_error ? &bounce_error_ : nullptr};
+      // What the last pass brings is sent no further.
+      const Window to = pass < request_.bounces && lit ? raster : march_scene_.receivers;
+      for_each_band_of(
+          grown(to, bounce_pattern_.spacing() - 1),
+          [&](const Window& part) { march_bounce(job, part); }, progress_);
+      for_each_band_of(to, [&](const Window& part) { spread_bounce(job, part); }, {});
     }
     return bounce;
   }
@@ -306,7 +341,7 @@ class Bitmask {
   const Interleaving& layout_;
   SlicePattern pattern_, bounce_pattern_;
   March march_, bounce_march_;
-  InterleavedPlane ao_, error_;
+  InterleavedPlane ao_, error_, bounce_error_;
   InterleavedColor direct_;
   Products out_;
 };

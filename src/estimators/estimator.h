@@ -23,8 +23,9 @@ struct ProductSet {
   bool error = false;
 };
 
-/// The planes that were asked for, over the geometry's window; the others are empty. Linear,
-/// without the receiver's albedo. Background: ao and reflection 1, all else 0.
+/// The planes that were asked for, over the geometry's window or the request's receivers; the
+/// others are empty. Linear, without the receiver's albedo. Background: ao and reflection 1, all
+/// else 0.
 struct Products {
   Plane<float> ao;
   Plane<glm::vec3> direct, bounce;
@@ -57,6 +58,9 @@ struct Request {
   int slices = 2;                ///< per pixel
   int steps = 16;                ///< per side of a slice, from one pixel to the frame's diagonal
   bool extend_offscreen = true;  ///< surfaces go on beyond the frame
+  /// Pixels that gather, within the geometry's window: products have its size, and all of the
+  /// geometry blocks and sends. Area 0: the whole window.
+  Window receivers;
 };
 
 /// A row in the table of methods.
@@ -71,8 +75,8 @@ struct Method {
   bool has_solids = false;  ///< without marching, takes --thickness and endless radii
   bool has_radius = true;   ///< takes --radius; else its sizes are its own
 
-  /// Whether it looks at what the frame hides.
-  bool looks_behind() const { return marches || has_solids; }
+  /// Whether it takes the solids of the scene.
+  bool takes_solids() const { return marches || has_solids; }
 };
 
 }  // namespace ssdo

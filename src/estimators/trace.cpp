@@ -16,7 +16,7 @@
 // What a surface sends is its albedo times all the light that arrives, as in method bitmask: the
 // side that is not seen has the light of its own side, as far as the seen one is open.
 //
-// What a solid has behind its front counts as far as that front is within the radius too, as there:
+// The back of a solid counts only if its front is within the radius, as there:
 // beside the endless side walls of far things, the ground of a closed room read 0.10 RMSE off a
 // path tracer, against 0.04.
 //
@@ -39,6 +39,8 @@
 #include "math/luminance.h"
 #include "math/sobol.h"
 #include "scene/light/sun.h"
+#include "scene/one_surface.h"
+#include "scene/usable.h"
 
 namespace ssdo {
 namespace {
@@ -103,7 +105,8 @@ class Trace {
         request_(request),
         progress_(progress),
         samples_(int(request.parameters.at("samples"))),
-        rays_(build_height_field(scene.geometry, scene.hidden)) {}
+        footprint_(scene.geometry.camera),
+        rays_(build_height_field(scene.geometry, scene.solids)) {}
 
   Products run() {
     wants_light_ = request_.products.direct || request_.products.bounce || request_.products.error;
@@ -133,7 +136,7 @@ class Trace {
     const Geometry& g = scene_.geometry;
     const Surfel& s = g.surfel[pixel];
     const glm::vec3 normal(s.normal), position(s.position);
-    const float above = kRoundings * s.normal.w + kFootprints * footprint_of(g, pixel);
+    const float above = kRoundings * s.normal.w + kFootprints * footprint_.at(-position.z);
     return {glm::dvec3(position) + double(above) * glm::dvec3(normal), normal, frame_about(normal),
             hash_of(std::uint32_t(g.window.x0 - g.display.x0 + x),
                     std::uint32_t(g.window.y0 - g.display.y0 + y), request_.seed)};
@@ -148,7 +151,7 @@ class Trace {
           for (int y = tile.y0; y < tile.y1; ++y) {
             for (int x = tile.x0; x < tile.x1; ++x) {
               const std::size_t pixel = scene_.geometry.surfel.index(x, y);
-              if (is_solid(scene_.geometry, pixel)) work(pixel, receiver(x, y, pixel));
+              if (is_usable(scene_.geometry.surfel[pixel])) work(pixel, receiver(x, y, pixel));
             }
           }
         },
@@ -251,7 +254,7 @@ class Trace {
     for_each_row(height(), [&](int y) {
       for (int x = 0; x < width(); ++x) {
         const std::size_t pixel = sent.index(x, y);
-        if (!is_solid(scene_.geometry, pixel)) continue;
+        if (!is_usable(scene_.geometry.surfel[pixel])) continue;
         sent[pixel] = sent_by(pixel);
         if (two_sided) sent_back[pixel] = sent_by_back(pixel);
       }
@@ -263,9 +266,9 @@ class Trace {
         const glm::vec3 to = direction(p, s);
         const Owner hit = rays_.first_hit(p.origin, to, request_.radius);
         ++number[group_of(s)];
-        if (hit.pixel < 0) continue;
-        const auto q = std::size_t(hit.pixel);
-        const bool back = two_sided && !hit.covered &&
+        if (hit.sender < 0) continue;
+        const auto q = std::size_t(hit.sender);
+        const bool back = two_sided && hit.layer == 0 &&
                           glm::dot(glm::vec3(scene_.geometry.surfel[q].normal), to) > 0;
         sums[group_of(s)] += back ? sent_back[q] : sent[q];
       }
@@ -283,6 +286,7 @@ class Trace {
   const Request& request_;
   const Progress& progress_;
   int samples_;
+  PixelFootprint footprint_;
   RayScene rays_;
   bool wants_light_ = false;
   Plane<Groups> luminances_;  ///< of direct + bounce

@@ -18,7 +18,7 @@ class Interleaving {
  public:
   static constexpr int kPeriod = 8;
   static constexpr int kShift = 3;  ///< x / kPeriod is x >> kShift
-  static constexpr int kPad = 16;  ///< the widest vector
+  static constexpr int kPad = 16;   ///< the widest vector
 
   /// `phase` is the column of the display window that the first pixel has, modulo kPeriod.
   Interleaving(int width, int height, int phase)
@@ -35,9 +35,10 @@ class Interleaving {
   std::ptrdiff_t stride() const { return stride_; }
   std::size_t size() const { return std::size_t(stride_) * std::size_t(height_) * kPeriod; }
 
-  /// Index of entry `column` of the row that holds every eighth pixel of row `y` from `comb` on.
-  std::ptrdiff_t index(int y, int comb, int column) const {
-    return (std::ptrdiff_t(y) * kPeriod + comb) * stride_ + kPad + column;
+  /// Index of entry `column` of the row that holds every eighth pixel of row `y` from
+  /// `column_phase` on.
+  std::ptrdiff_t index(int y, int column_phase, int column) const {
+    return (std::ptrdiff_t(y) * kPeriod + column_phase) * stride_ + kPad + column;
   }
   /// Index of a pixel.
   std::ptrdiff_t index(int x, int y) const {

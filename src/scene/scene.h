@@ -5,12 +5,12 @@
 
 #include "math/plane.h"
 #include "scene/geometry.h"
-#include "scene/hidden_geometry.h"
 #include "scene/light/light.h"
+#include "scene/solids.h"
 
 namespace ssdo {
 
-/// What the visible surfaces do with light, by pixel.
+/// What the visible surfaces do with light, by pixel: what the sender of a solid indexes.
 struct Senders {
   Plane<glm::vec3> albedo;    ///< needed for a bounce; else may be empty
   Plane<glm::vec3> radiance;  ///< what they send, where a layer says so; else empty
@@ -20,7 +20,7 @@ struct Senders {
 /// looks at.
 struct Scene {
   Geometry geometry;
-  HiddenGeometry hidden;  ///< empty: everything that is seen is infinitely thick
+  Solids solids;
   Senders senders;
   Light light;
   Plane<float> roughness;  ///< 0..1; empty: the same everywhere, a parameter of the method

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "parallel/tiles.h"
+#include "scene/one_surface.h"
 
 namespace ssdo {
 namespace {
@@ -57,7 +58,7 @@ constexpr Step kAxes[] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
 class Silhouettes {
  public:
   Silhouettes(const Geometry& geometry, const Residual& residual)
-      : g_(geometry), stray_(kUsualStray * residual.median_px) {}
+      : g_(geometry), footprint_(geometry.camera), stray_(kUsualStray * residual.median_px) {}
 
   /// What the pixel is to hold instead of an average; nothing where it holds none.
   std::optional<Surfel> mended(int x, int y) const {
@@ -100,10 +101,7 @@ class Silhouettes {
 
   glm::dvec2 middle(int x, int y) const { return {g_.window.x0 + x + 0.5, g_.window.y0 + y + 0.5}; }
 
-  double footprint(const Surfel& s) const {
-    const double depth = g_.camera.orthographic ? 1.0 : -double(s.position.z);
-    return depth / std::min(g_.camera.fx, g_.camera.fy);
-  }
+  double footprint(const Surfel& s) const { return double(footprint_.at(-s.position.z)); }
 
   /// The surface of a pixel that keeps to it.
   const Surfel* surface(int x, int y) const {
@@ -150,6 +148,7 @@ class Silhouettes {
   }
 
   const Geometry& g_;
+  PixelFootprint footprint_;
   double stray_;
 };
 

@@ -14,18 +14,19 @@ float bare_loads_of_pixels(const March& march, int y0, int y1) {
   const D d;
   const MarchScene& scene = march.scene;
   V sum = hn::Zero(d);
-  for_each_vector(scene, y0, y1, [&](std::ptrdiff_t at, int y, int comb, int column) HWY_ATTR {
-    const int row = (y + scene.first_y) & (Interleaving::kPeriod - 1);
-    for (const Slice& slice : march.pattern.member(comb, row)) {
+  const Window rows{0, y0, scene.layout.width(), y1};
+  for_each_vector(scene, rows, [&](const Place& place) HWY_ATTR {
+    const int row = (place.y + scene.first_y) & (Interleaving::kPeriod - 1);
+    for (const Slice& slice : march.pattern.member(place.column_phase, row)) {
       for (const SliceSide& side : slice.sides) {
         for (const SliceStep& step : side.steps) {
-          const int q_row = y + step.row, first = column + step.column_shift;
+          const int q_row = place.y + step.row, first = place.column + step.column_shift;
           if (q_row < 0 || q_row >= scene.layout.height() || first >= scene.layout.columns() ||
               first + int(hn::Lanes(d)) <= 0)
             break;
-          const std::ptrdiff_t i = at + step.offset;
-          for (const InterleavedPlane* plane : {&scene.depth, &scene.behind})
-            sum = sum + hn::LoadU(d, plane->data() + i);
+          const std::ptrdiff_t i = place.index + step.offset;
+          for (const MarchLayer& layer : scene.layers)
+            sum = sum + hn::LoadU(d, layer.depth.data() + i);
         }
       }
     }

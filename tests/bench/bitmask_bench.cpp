@@ -14,7 +14,7 @@
 #include "bench/bare_loads.h"
 #include "estimators/bitmask.h"
 #include "filters/geometry_filter.h"
-#include "scene/hidden_geometry.h"
+#include "scene/solids.h"
 #include "simd/isa.h"
 #include "support/scene_of.h"
 
@@ -31,8 +31,8 @@ std::shared_ptr<Plane<glm::vec3>> sky_with_a_sun() {
 }
 
 /// Bare loads of the visibility pass in CPU seconds, on one thread.
-double bare_seconds(const Geometry& g, const HiddenGeometry& hidden, int slices, int steps) {
-  const MarchScene scene = make_march_scene(g, hidden);
+double bare_seconds(const Geometry& g, const Solids& solids, int slices, int steps) {
+  const MarchScene scene = make_march_scene(g, solids);
   const SlicePattern pattern(scene.layout, g.display, slices, steps, 0);
   const March march{scene, pattern, INFINITY, true};
   double best = 1e9;
@@ -62,7 +62,7 @@ void estimate(benchmark::State& state, const std::string& isa, const Size& size,
   const ThreadLimit limit(threads);
   const Geometry& g = frame_of(size.width, size.height);
   Scene scene = scene_of(g, Environment(sky_with_a_sun(), {}), 0.5f);
-  scene.hidden = find_hidden_geometry(g);
+  scene.solids = guess_solids(g);
   const Request request{
       .products = job.products,
       .radius = job.radius_px > 0 ? job.radius_px * kDepth / float(g.camera.fy) : INFINITY,
@@ -76,7 +76,7 @@ void estimate(benchmark::State& state, const std::string& isa, const Size& size,
       Counter(samples * 1e-9, Counter::kIsIterationInvariantRate | Counter::kInvert);
   if (threads == 1 && size.width == 1920) {
     state.counters["bare ns/sample"] =
-        bare_seconds(g, scene.hidden, job.slices, job.steps) / samples * 1e9;
+        bare_seconds(g, scene.solids, job.slices, job.steps) / samples * 1e9;
   }
 }
 
@@ -95,10 +95,10 @@ void filter(benchmark::State& state, const std::string& isa, const Size& size, i
                                        Counter::kIsIterationInvariantRate | Counter::kInvert);
 }
 
-void hidden_geometry(benchmark::State& state, const Size& size) {
+void solids(benchmark::State& state, const Size& size) {
   const ThreadLimit limit(1);
   const Geometry& g = frame_of(size.width, size.height);
-  for (auto _ : state) benchmark::DoNotOptimize(find_hidden_geometry(g));
+  for (auto _ : state) benchmark::DoNotOptimize(guess_solids(g));
 }
 
 void add(const std::string& name, const auto& run) {
@@ -128,7 +128,7 @@ void add_all() {
           [=](auto& s) { estimate(s, isa, kSizes[0], limited, 1); });
     }
   }
-  add("hidden_geometry/1080p", [](auto& s) { hidden_geometry(s, kSizes[0]); });
+  add("solids/1080p", [](auto& s) { solids(s, kSizes[0]); });
 }
 
 }  // namespace

@@ -12,14 +12,14 @@ struct TraceRequest {
   ProductSet products = {.ao = true};
   int samples = 64;
   Environment environment = Environment::constant(glm::vec3(1));
-  const HiddenGeometry* hidden = nullptr;
+  const Solids* solids = nullptr;
   float albedo = 0.8f;
   int bounces = 0;
 };
 
 inline Products run_trace(const Geometry& g, const TraceRequest& request) {
   Scene scene = scene_of(g, request.environment, request.albedo);
-  if (request.hidden) scene.hidden = *request.hidden;
+  if (request.solids) scene.solids = *request.solids;
   ProductSet products = request.products;
   products.bounce = request.bounces > 0;
   return trace_method().estimate(scene,

@@ -162,8 +162,8 @@ TEST(Trace, AThinThingHidesWhatIsInItsThickness) {
   const Geometry g = geometry_of(scene, camera, kFine);
   double before = 1;
   for (const double thickness : {1e-4, 0.2, 0.5}) {
-    const HiddenGeometry hidden = constant_thickness(g, float(thickness));
-    const Products out = run_trace(g, {.radius = kNoLimit, .hidden = &hidden});
+    const Solids solids = constant_thickness(g, float(thickness));
+    const Products out = run_trace(g, {.radius = kNoLimit, .solids = &solids});
     const double found = middle(
         kFine, [&](int x, int y) { return double(out.ao(x, y)); }, 8);
     const Surface bar = all_of({strip, cut(plane({0, 0, gap - thickness}, {0, 0, 1}), in_strip),
@@ -216,9 +216,9 @@ Environment gradient_sky() {
 
 TEST(Trace, AnyNumberOfThreadsGivesTheSameBits) {
   const Geometry g = geometry_of(still_life(), still_camera(), kStill);
-  const HiddenGeometry hidden = find_hidden_geometry(g);
+  const Solids solids = guess_solids(g);
   TraceRequest request = all_products();
-  request.hidden = &hidden;
+  request.solids = &solids;
   request.environment = gradient_sky();
   std::vector<Products> outs;
   for (const int threads : {1, 2, 7, 7}) {
@@ -346,9 +346,9 @@ TEST(Trace, BrokenPixelsBreakNoOthers) {
       g.surfel(20 + 7 * k++, 40).normal[c] = bad;
     }
   }
-  const HiddenGeometry hidden = find_hidden_geometry(g);
+  const Solids solids = guess_solids(g);
   TraceRequest request = all_products();
-  request.hidden = &hidden;
+  request.solids = &solids;
   request.environment = gradient_sky();
   request.albedo = INFINITY;
   const Products out = run_trace(g, request);

@@ -417,7 +417,7 @@ class Flicker {
 /// Occlusion as draft quality finds it, not filtered.
 Products occlusion(const Geometry& g, unsigned seed) {
   Scene scene = scene_of(g);
-  scene.hidden = find_hidden_geometry(g);
+  scene.solids = guess_solids(g);
   return bitmask_method().estimate(
       scene, {.products = {.ao = true}, .radius = 1.5f, .seed = seed, .slices = 2, .steps = 10},
       {});

@@ -34,15 +34,15 @@ TEST(Speed, OfAoAsARatioToBareLoads) {
   const ThreadLimit limit(1);
   const std::string isa = choose_isa();
   const Geometry& g = bench::frame_of(960, 540);
-  const HiddenGeometry hidden = find_hidden_geometry(g);
-  const MarchScene scene = make_march_scene(g, hidden);
+  const Solids solids = guess_solids(g);
+  const MarchScene scene = make_march_scene(g, solids);
   const SlicePattern pattern(scene.layout, g.display, kSlices, kSteps, 0);
   const March march{scene, pattern, kNoLimit, true};
   volatile float sum = 0;  // not-a-number, as background is; asked for, so that the loads are made
   const double bare = seconds([&] { sum = bench::bare_loads(march, 0, g.surfel.height); });
   Products products;
   const double ao = seconds([&] {
-    products = run(g, {.radius = kNoLimit, .slices = kSlices, .steps = kSteps, .hidden = &hidden});
+    products = run(g, {.radius = kNoLimit, .slices = kSlices, .steps = kSteps, .solids = &solids});
   });
   const double samples = double(g.surfel.size()) * kSlices * kSteps * 2 * 1e-9;
   write_report("speed.md", fmt::format("ao of method bitmask, {}, one thread, 960 x 540: {:.3f} ns "

@@ -9,9 +9,9 @@
 #define HWY_TARGET_INCLUDE "estimators/bitmask/bounce.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/bitmask/half-inl.h"
 #include "estimators/bitmask/light-inl.h"
 #include "estimators/bitmask/moments-inl.h"
+#include "estimators/bitmask/side-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -41,7 +41,7 @@ HWY_INLINE M faces(const MarchScene& scene, std::ptrdiff_t q, const SliceStep& s
   const D d;
   const auto load = [&](const InterleavedPlane& plane)
                         HWY_ATTR { return hn::LoadU(d, plane.data() + q); };
-  const V depth = load(scene.depth);
+  const V depth = load(scene.depth());
   V qx = hn::MulAdd(hn::Set(d, step.dx), hn::Set(d, 1 / scene.fx), p.slope_x),
     qy = hn::MulAdd(hn::Set(d, step.dy), hn::Set(d, -1 / scene.fy), p.slope_y);
   if constexpr (!kOrthographic) qx = qx * depth, qy = qy * depth;
@@ -50,7 +50,7 @@ HWY_INLINE M faces(const MarchScene& scene, std::ptrdiff_t q, const SliceStep& s
 }
 
 /// Measure of a set of sectors: the integral of the cosine to the normal.
-HWY_INLINE V measure_of(const Receiver& p, const Half& half, VU bits) {
+HWY_INLINE V measure_of(const Receiver& p, const SideFrame& side, VU bits) {
   const DU du;
   const VU one = hn::Set(du, 1u), last = hn::Set(du, 31u);
   const VU first = hn::PopulationCount(hn::AndNot(bits, bits - one));
@@ -61,70 +61,65 @@ HWY_INLINE V measure_of(const Receiver& p, const Half& half, VU bits) {
       const float* table = slice_sectors().of_first[std::size_t(m)].data();
       return lookup32(table, end) - lookup32(table, begin);
     };
-    return dot2(p.facing, half.n_t, moment(1), moment(SliceSectors::sine_moment(1)));
+    return dot2(p.facing, side.n_t, moment(1), moment(SliceSectors::sine_moment(1)));
   }
   const auto moments = moments_of_bits<1>(bits);
-  return dot2(p.facing, half.n_t, moments.cosine[1], moments.sine[1]);
+  return dot2(p.facing, side.n_t, moments.cosine[1], moments.sine[1]);
 }
 
 template <bool kOrthographic>
-void gather(const BounceJob& job, int y0, int y1) {
+void gather(const BounceJob& job, const Window& part) {
   const March& march = job.march;
-  for_each_receiver(
-      march, y0, y1,
-      [&](const Place& place, const Receiver& p, const std::vector<Slice>& slices, float reach)
-          HWY_ATTR {
-            const D d;
-            const DU du;
-            const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
-            Light light = no_light(), first_half = light;
-            for (int k = 0; k < count_of_slices; ++k) {
-              if (k == firsts) first_half = light;
-              const Slice& slice = slices[std::size_t(slice_at(k, count_of_slices))];
-              const SliceFrame f = slice_frame(march.scene, p, slice);
-              for (const bool forward : {true, false}) {
-                const Half half =
-                    half_of(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
-                const auto receive = [&](VU bits, const auto& sent) HWY_ATTR {
-                  if (hn::AllTrue(du, bits == hn::Zero(du))) return;
-                  light.add(f.weight * measure_of(p, half, bits), sent());
-                };
-                march_half<kOrthographic>(
-                    march, p, half, slice, forward, place, reach,
-                    [&](std::ptrdiff_t q, const SliceStep& step, VU bits) HWY_ATTR {
-                      receive(bits, [&]() HWY_ATTR {
-                        const Color front = load_color(*job.sent, q);
-                        if (!job.sent_back) return front;
-                        const Color back = load_color(*job.sent_back, q);
-                        const M seen = faces<kOrthographic>(march.scene, q, step, p);
-                        return Color{hn::IfThenElse(seen, front.r, back.r),
-                                     hn::IfThenElse(seen, front.g, back.g),
-                                     hn::IfThenElse(seen, front.b, back.b)};
-                      });
-                    },
-                    [&](std::ptrdiff_t q, const SliceStep&, VU bits) HWY_ATTR {
-                      receive(bits, [&]() HWY_ATTR { return load_color(*job.sent_behind, q); });
-                    },
-                    [&](const Border& border, VU bits) HWY_ATTR {
-                      receive(bits, [&]() HWY_ATTR {
-                        return Color{border(job.sent_border[0]), border(job.sent_border[1]),
-                                     border(job.sent_border[2])};
-                      });
-                    });
-              }
-            }
-            store_color(light.sum, *job.gathered, place.index);
-            hn::StoreU(light.weights, d, job.weights->data() + place.index);
-            if (!job.difference) return;
-            // Where one half has met nothing, the other is all that is known.
-            const Light second_half = light.minus(first_half);
-            const V zero = hn::Zero(d);
-            const V difference = luminance(first_half.mean()) - luminance(second_half.mean());
-            const M both = hn::And(first_half.weights > zero, second_half.weights > zero);
-            hn::StoreU(hn::IfThenElseZero(both, difference) * light.weights *
-                           hn::Set(d, error_of_difference(march, place, firsts, count_of_slices)),
-                       d, job.difference->data() + place.index);
-          });
+  for_each_receiver(march, part, [&](const Receiver& p, const std::vector<Slice>& slices) HWY_ATTR {
+    const D d;
+    const DU du;
+    const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
+    Light light = no_light(), first_half = light;
+    for (int k = 0; k < count_of_slices; ++k) {
+      if (k == firsts) first_half = light;
+      const Slice& slice = slices[std::size_t(slice_at(k, count_of_slices))];
+      const SliceFrame f = slice_frame(march.scene, p, slice);
+      for (const bool forward : {true, false}) {
+        const SideFrame side =
+            side_frame(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
+        const auto receive = [&](VU bits, const auto& sent) HWY_ATTR {
+          if (hn::AllTrue(du, bits == hn::Zero(du))) return;
+          light.add(f.weight * measure_of(p, side, bits), sent());
+        };
+        march_side<kOrthographic>(
+            march, p, side, slice, forward,
+            [&](int layer, std::ptrdiff_t q, const SliceStep& step, VU bits) HWY_ATTR {
+              receive(bits, [&]() HWY_ATTR {
+                if (layer > 0) return load_color((*job.sent_behind)[std::size_t(layer - 1)], q);
+                const Color front = load_color(*job.sent, q);
+                if (!job.sent_back) return front;
+                const Color back = load_color(*job.sent_back, q);
+                const M seen = faces<kOrthographic>(march.scene, q, step, p);
+                return Color{hn::IfThenElse(seen, front.r, back.r),
+                             hn::IfThenElse(seen, front.g, back.g),
+                             hn::IfThenElse(seen, front.b, back.b)};
+              });
+            },
+            [&](const Border& border, VU bits) HWY_ATTR {
+              receive(bits, [&]() HWY_ATTR {
+                return Color{border(job.sent_border[0]), border(job.sent_border[1]),
+                             border(job.sent_border[2])};
+              });
+            });
+      }
+    }
+    store_color(light.sum, *job.gathered, p.place.index);
+    hn::StoreU(light.weights, d, job.weights->data() + p.place.index);
+    if (!job.difference) return;
+    // Where one half has met nothing, the other is all that is known.
+    const Light second_half = light.minus(first_half);
+    const V zero = hn::Zero(d);
+    const V difference = luminance(first_half.mean()) - luminance(second_half.mean());
+    const M both = hn::And(first_half.weights > zero, second_half.weights > zero);
+    hn::StoreU(hn::IfThenElseZero(both, difference) * light.weights *
+                   hn::Set(d, error_of_difference(march, p.place, firsts, count_of_slices)),
+               d, job.difference->data() + p.place.index);
+  });
 }
 
 /// How much a neighbour, (dx, dy) pixels away, is on the receiver's surface: as the filter has it.
@@ -135,7 +130,7 @@ HWY_INLINE V likeness(const MarchScene& scene, const Receiver& p, std::ptrdiff_t
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   const auto load = [&](const InterleavedPlane& plane)
                         HWY_ATTR { return hn::LoadU(d, plane.data() + q); };
-  const V depth = load(scene.depth);
+  const V depth = load(scene.depth());
   const M valid = hn::And(p.valid, depth == depth);
   V qx = p.slope_x + hn::Set(d, float(dx) / scene.fx),
     qy = p.slope_y - hn::Set(d, float(dy) / scene.fy);
@@ -155,13 +150,14 @@ HWY_INLINE void for_each_gatherer(const MarchScene& scene, int spacing, const Pl
                                   const Visit& visit) {
   constexpr int kPeriod = Interleaving::kPeriod;
   const Interleaving& layout = scene.layout;
-  const int off_x = place.comb & (spacing - 1), off_y = (place.y + scene.first_y) & (spacing - 1);
+  const int off_x = place.column_phase & (spacing - 1),
+            off_y = (place.y + scene.first_y) & (spacing - 1);
   for (int dy = -off_y; dy <= off_y; dy += spacing) {
     if (place.y + dy < 0 || place.y + dy >= layout.height()) continue;
     for (int dx = -off_x; dx <= off_x; dx += spacing) {
-      const int comb = place.comb + dx;
-      visit(layout.index(place.y + dy, comb & (kPeriod - 1),
-                         place.column + (comb >> Interleaving::kShift)),
+      const int column_phase = place.column_phase + dx;
+      visit(layout.index(place.y + dy, column_phase & (kPeriod - 1),
+                         place.column + (column_phase >> Interleaving::kShift)),
             dx, dy);
     }
   }
@@ -169,19 +165,19 @@ HWY_INLINE void for_each_gatherer(const MarchScene& scene, int spacing, const Pl
 
 /// Gives every pixel its bounce from those that have gathered light.
 template <bool kOrthographic>
-void spread(const BounceJob& job, int y0, int y1) {
+void spread(const BounceJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
-  for_each_vector(scene, y0, y1, [&](std::ptrdiff_t i, int y, int comb, int column) HWY_ATTR {
+  for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
     const D d;
+    const std::ptrdiff_t i = place.index;
     const V zero = hn::Zero(d);
-    const Receiver p = load_receiver(scene, i, y, comb, column);
+    const Receiver p = load_receiver(scene, place);
     Light of_surface = no_light(), of_all = no_light();
     V difference = zero;
     for_each_gatherer(
-        scene, job.march.pattern.spacing(), {i, y, comb, column},
-        [&](std::ptrdiff_t q, int dx, int dy) HWY_ATTR {
+        scene, job.march.pattern.spacing(), place, [&](std::ptrdiff_t q, int dx, int dy) HWY_ATTR {
           const V weights = hn::LoadU(d, job.weights->data() + q);
-          const V depth = hn::LoadU(d, scene.depth.data() + q);
+          const V depth = hn::LoadU(d, scene.depth().data() + q);
           const M found = hn::And(depth == depth, weights > zero);
           if (hn::AllFalse(d, found)) return;
           const auto known = [&](V v) HWY_ATTR { return hn::IfThenElseZero(found, v); };
@@ -197,7 +193,8 @@ void spread(const BounceJob& job, int y0, int y1) {
             difference =
                 hn::MulAdd(known(hn::LoadU(d, job.difference->data() + q)), like, difference);
         });
-    // Where ao has found what no march has met, it is near, and lit alike.
+    // ao may see an occluder that no march for the bounce met; it is assumed to be close and to
+    // send what the receiver sends.
     const Color own = load_color(*job.sent, i);
     const Color surface = of_surface.mean(), all = of_all.mean();
     const M on_surface = of_surface.weights > zero, anywhere = of_all.weights > zero;
@@ -217,12 +214,12 @@ void spread(const BounceJob& job, int y0, int y1) {
   });
 }
 
-void gather_in_pixels(const BounceJob& job, int y0, int y1) {
-  job.march.scene.orthographic ? gather<true>(job, y0, y1) : gather<false>(job, y0, y1);
+void gather_in_pixels(const BounceJob& job, const Window& part) {
+  job.march.scene.orthographic ? gather<true>(job, part) : gather<false>(job, part);
 }
 
-void spread_to_pixels(const BounceJob& job, int y0, int y1) {
-  job.march.scene.orthographic ? spread<true>(job, y0, y1) : spread<false>(job, y0, y1);
+void spread_to_pixels(const BounceJob& job, const Window& part) {
+  job.march.scene.orthographic ? spread<true>(job, part) : spread<false>(job, part);
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -234,12 +231,12 @@ namespace ssdo {
 HWY_EXPORT(gather_in_pixels);
 HWY_EXPORT(spread_to_pixels);
 
-void march_bounce(const BounceJob& job, int y0, int y1) {
-  HWY_DYNAMIC_DISPATCH(gather_in_pixels)(job, y0, y1);
+void march_bounce(const BounceJob& job, const Window& part) {
+  HWY_DYNAMIC_DISPATCH(gather_in_pixels)(job, part);
 }
 
-void spread_bounce(const BounceJob& job, int y0, int y1) {
-  HWY_DYNAMIC_DISPATCH(spread_to_pixels)(job, y0, y1);
+void spread_bounce(const BounceJob& job, const Window& part) {
+  HWY_DYNAMIC_DISPATCH(spread_to_pixels)(job, part);
 }
 
 }  // namespace ssdo

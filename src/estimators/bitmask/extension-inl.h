@@ -32,8 +32,8 @@ struct Border {
 
 /// The way out along (dx, dy), a unit vector in pixels; `shared` by all lanes or not. In the latter
 /// case it may lead `aside_px` away from there, a whole number, along the border.
-HWY_INLINE Border border_along(const MarchScene& scene, const Receiver& p, int comb, int column,
-                               V dx, V dy, bool shared, float aside_px = 0) {
+HWY_INLINE Border border_along(const MarchScene& scene, const Receiver& p, V dx, V dy, bool shared,
+                               float aside_px = 0) {
   const D d;
   const DI di;
   const Interleaving& layout = scene.layout;
@@ -50,11 +50,11 @@ HWY_INLINE Border border_along(const MarchScene& scene, const Receiver& p, int c
   border.distance_px = hn::Min(to_side, to_end);
   border.in_one_row = shared && hn::AllFalse(d, hn::And(through_side, p.valid));
   if (border.in_one_row) {
-    const int column_of_lane_0 = comb + int(hn::GetLane(aside));
+    const int column_of_lane_0 = p.place.column_phase + int(hn::GetLane(aside));
     border.dx = aside;
     border.dy = hn::IfThenElse(downwards, bottom, zero) - p.y;
     border.first = scene.border.in_row(hn::GetLane(dy) > 0, column_of_lane_0 & (kPeriod - 1),
-                                       column + (column_of_lane_0 >> Interleaving::kShift));
+                                       p.place.column + (column_of_lane_0 >> Interleaving::kShift));
     return border;
   }
   const V beside = hn::Set(d, aside_px);
@@ -95,8 +95,8 @@ struct Extension {
 /// The surface at the frame's border goes on beyond it as its tangent plane does, within the
 /// radius and for as many of its own widths.
 template <bool kOrthographic>
-HWY_INLINE Extension extend(const March& march, const Receiver& p, const Half& half,
-                            const Border& border, float reach, float widths) {
+HWY_INLINE Extension extend(const March& march, const Receiver& p, const SideFrame& side,
+                            const Border& border, float widths) {
   const D d;
   const MarchScene& scene = march.scene;
   const V zero = hn::Zero(d);
@@ -104,19 +104,19 @@ HWY_INLINE Extension extend(const March& march, const Receiver& p, const Half& h
   const V rise = hn::MulAdd(border.dx, p.rise_x, hn::MulAdd(border.dy, p.rise_y, p.rise));
   Extension e;
   e.above = height_above<kOrthographic>(p, rise, depth);
-  e.s = dot2(border.dx, border.dy, half.across_x, half.across_y);
+  e.s = dot2(border.dx, border.dy, side.across_x, side.across_y);
   if constexpr (!kOrthographic) e.s = e.s * depth;
-  e.v = hn::NegMulAdd(e.s, half.slope, e.above);
+  e.v = hn::NegMulAdd(e.s, side.slope, e.above);
   e.distance2 = dot2(e.s, e.v, e.s, e.v);
   const V radius2 = hn::Set(d, march.radius * march.radius);
-  e.exists = hn::And(e.distance2 < radius2, border.distance_px <= hn::Set(d, reach));
+  e.exists = hn::And(e.distance2 < radius2, border.distance_px <= hn::Set(d, p.reach_px));
   if (hn::AllFalse(d, e.exists)) return e;
 
   // The line in which the tangent plane cuts the slice, away from the frame.
   const V mx = border(scene.border_normal[0]), my = border(scene.border_normal[1]),
           mz = border(scene.border_normal[2]);
   V line_s = dot3(mx, my, mz, p.vx, p.vy, p.vz);
-  V line_v = zero - dot3(mx, my, mz, half.tx, half.ty, half.tz);
+  V line_v = zero - dot3(mx, my, mz, side.tx, side.ty, side.tz);
   const V scale = reciprocal_sqrt(dot2(line_s, line_v, line_s, line_v));
   line_s = line_s * scale, line_v = line_v * scale;
   const V frame = hn::Set(d, kExtension * float(scene.layout.height()) / scene.fy);
@@ -137,29 +137,28 @@ HWY_INLINE Extension extend(const March& march, const Receiver& p, const Half& h
     length = hn::Min(length, hn::Sqrt(hn::MulAdd(along, along, radius2 - e.distance2)) - along);
   }
   e.end_s = hn::MulAdd(length, line_s, e.s), e.end_v = hn::MulAdd(length, line_v, e.v);
-  e.end_above = hn::MulAdd(e.end_s, half.slope, e.end_v);
+  e.end_above = hn::MulAdd(e.end_s, side.slope, e.end_v);
   return e;
 }
 
 /// The sectors that it hides, and those that the last pixel before it hides.
 template <bool kOrthographic>
-HWY_INLINE VU extend_side(const March& march, const Receiver& p, const Half& half,
-                          const Border& border, float reach, float phase) {
+HWY_INLINE VU extend_side(const March& march, const Receiver& p, const SideFrame& side,
+                          const Border& border) {
   const D d;
   const DU du;
-  const Extension e = extend<kOrthographic>(march, p, half, border, reach, 1e9f);
+  const Extension e = extend<kOrthographic>(march, p, side, border, 1e9f);
   if (hn::AllFalse(d, e.exists)) return hn::Zero(du);
-  const V start = start_of_sectors(phase);
-  const VU here = sector_of(e.v, e.distance2, start);
+  const VU here = sector_of(e.v, e.distance2, side.start);
   const VU leans_across = hn::VecFromMask(du, hn::RebindMask(du, e.end_s < hn::Zero(d)));
-  const VU there =
-      hn::AndNot(leans_across, sector_of(e.end_v, dot2(e.end_s, e.end_v, e.end_s, e.end_v), start));
+  const VU there = hn::AndNot(
+      leans_across, sector_of(e.end_v, dot2(e.end_s, e.end_v, e.end_s, e.end_v), side.start));
   const VU beyond = hn::IfThenElseZero(
       hn::RebindMask(du, e.exists),
       hn::AndNot(bits_from(hn::Max(here, there)), bits_from(hn::Min(here, there))));
   // The border is a sample too: the last step may be far from it.
   return hn::Or(beyond,
-                sectors_behind<kOrthographic>(p, half, e.s, e.above, e.depth, march.radius, start));
+                sectors_behind<kOrthographic>(p, side, e.s, e.above, e.depth, march.radius));
 }
 
 }  // namespace ssdo::HWY_NAMESPACE

@@ -30,9 +30,6 @@ using V = hn::Vec<D>;
 using VU = hn::Vec<DU>;
 using M = hn::Mask<D>;
 
-/// Least cosine between normal and view: a smooth normal that leans away from the viewer is bent
-/// back to here. A plane tilted by 89.9 degrees has 0.0017.
-constexpr float kLeastFacing = 1e-3f;
 /// Error of a height above a tangent plane, over the distance to the viewer: 4 units in the last
 /// place.
 constexpr float kHeightError = 2.4e-7f;
@@ -66,15 +63,24 @@ HWY_INLINE VU bits_from(VU first) {
 }
 
 /// Columns of the picture that the lanes stand for.
-HWY_INLINE V lane_columns(const Interleaving& layout, int comb, int column) {
+HWY_INLINE V lane_columns(const Interleaving& layout, int column_phase, int column) {
   const DI di;
   constexpr int kPeriod = Interleaving::kPeriod;
   return hn::ConvertTo(D(), hn::Iota(di, 0) * hn::Set(di, kPeriod) +
-                                hn::Set(di, column * kPeriod + comb - layout.phase()));
+                                hn::Set(di, column * kPeriod + column_phase - layout.phase()));
 }
+
+/// Where in the raster a vector of pixels is: every eighth one of row `y` from `column_phase` on,
+/// of which it holds those from `column` on.
+struct Place {
+  std::ptrdiff_t index;
+  int y, column_phase, column;
+};
 
 /// One lane's pixel that gathers.
 struct Receiver {
+  Place place;         ///< of all lanes
+  float reach_px = 0;  ///< of all lanes: no pixel farther away can be within the radius
   V x, y;              ///< pixel
   V slope_x, slope_y;  ///< of the ray through it, or its place where the camera is orthographic
   V px, py, pz;        ///< position
@@ -88,13 +94,14 @@ struct Receiver {
   M valid;
 };
 
-HWY_INLINE Receiver load_receiver(const MarchScene& scene, std::ptrdiff_t i, int y, int comb,
-                                  int column) {
+HWY_INLINE Receiver load_receiver(const MarchScene& scene, const Place& place) {
   const D d;
+  const auto [i, y, column_phase, column] = place;
   Receiver p;
+  p.place = place;
   hwy::Prefetch(scene.rounding.data() + i + 4 * hn::Lanes(d));  // nothing else comes by here
-  const V depth = hn::LoadU(d, scene.depth.data() + i);
-  p.x = lane_columns(scene.layout, comb, column), p.y = hn::Set(d, float(y));
+  const V depth = hn::LoadU(d, scene.depth().data() + i);
+  p.x = lane_columns(scene.layout, column_phase, column), p.y = hn::Set(d, float(y));
   p.nx = hn::LoadU(d, scene.nx.data() + i);
   p.ny = hn::LoadU(d, scene.ny.data() + i);
   p.nz = hn::LoadU(d, scene.nz.data() + i);
@@ -158,16 +165,6 @@ HWY_INLINE float reach_px(const MarchScene& scene, const Receiver& p, float radi
   return f * hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(p.valid, all)));
 }
 
-/// Half of a slice, seen from the receiver. Its points have coordinates (s, v) along T and V.
-struct Half {
-  V tx, ty, tz;          ///< unit, perpendicular to V
-  V across_x, across_y;  ///< s of a point of a ray is its depth times across_x dx + across_y dy
-  V slope;               ///< n_t / n_v
-  V n_t;
-  VU above;        ///< the sectors above the tangent plane, whose number is
-  VU above_count;  ///< 0..31: the last sector leads away from the viewer
-};
-
 /// The number of the first sector whose point lies behind a direction with the cosine c to V. The
 /// point of sector i is at i + phase; `start` is start_of_sectors(phase).
 HWY_INLINE VU sector_at(V c, V start) {
@@ -197,20 +194,31 @@ HWY_INLINE SlicePoint back_of(const Receiver& p, V s, V v, V depth) {
   return {hn::MulAdd(depth, s, s), hn::MulAdd(depth, v - p.distance, v)};
 }
 
+/// One side of a slice, seen from the receiver. Its points have coordinates (s, v) along T and V.
+struct SideFrame {
+  V tx, ty, tz;          ///< unit, perpendicular to V
+  V across_x, across_y;  ///< s of a point of a ray is its depth times across_x dx + across_y dy
+  V slope;               ///< n_t / n_v
+  V n_t;
+  V start;         ///< start_of_sectors() of the side's phase
+  VU above;        ///< the sectors above the tangent plane, whose number is
+  VU above_count;  ///< 0..31: the last sector leads away from the viewer
+};
+
 /// The sectors that a surface hides which lies at s, `above` the receiver's tangent plane, and
 /// reaches back by `depth`.
 template <bool kOrthographic>
-HWY_INLINE VU sectors_behind(const Receiver& p, const Half& half, V s, V above, V depth,
-                             float radius, V start) {
+HWY_INLINE VU sectors_behind(const Receiver& p, const SideFrame& side, V s, V above, V depth,
+                             float radius) {
   const D d;
   // The pixel's centre lies beside the slice. Moved into it along the receiver's tangent plane, a
   // sample keeps its height above that plane: a plane stays open whatever its tilt.
-  const V v = hn::NegMulAdd(s, half.slope, above);
+  const V v = hn::NegMulAdd(s, side.slope, above);
   const V distance2 = dot2(s, v, s, v);
   const M meets = hn::And(above > hn::Zero(d), distance2 <= hn::Set(d, radius * radius));
-  const VU from = sector_of(v, distance2, start);
+  const VU from = sector_of(v, distance2, side.start);
   const SlicePoint back = back_of<kOrthographic>(p, s, v, depth);
-  const VU to = sector_of(back.v, dot2(back.s, back.v, back.s, back.v), start);
+  const VU to = sector_of(back.v, dot2(back.s, back.v, back.s, back.v), side.start);
   return hn::IfThenElseZero(hn::RebindMask(DU(), meets),
                             hn::AndNot(bits_from(to), bits_from(from)));
 }
@@ -236,41 +244,46 @@ HWY_INLINE SliceFrame slice_frame(const MarchScene& scene, const Receiver& p, co
   return f;
 }
 
-HWY_INLINE Half half_of(const MarchScene& scene, const Receiver& p, const SliceFrame& f,
-                        bool forward, float phase) {
+/// The side along the slice's direction, where `forward`, or against it.
+HWY_INLINE SideFrame side_frame(const MarchScene& scene, const Receiver& p, const SliceFrame& f,
+                                bool forward, float phase) {
   const D d;
   const DU du;
   const auto turn = [&](V v) HWY_ATTR { return forward ? v : hn::Zero(d) - v; };
-  Half half;
-  half.tx = turn(f.tx), half.ty = turn(f.ty), half.tz = turn(f.tz);
-  half.n_t = turn(f.n_t);
-  half.across_x = half.tx * hn::Set(d, 1 / scene.fx);
-  half.across_y = half.ty * hn::Set(d, -1 / scene.fy);
-  half.slope = half.n_t / p.facing;
+  SideFrame side;
+  side.tx = turn(f.tx), side.ty = turn(f.ty), side.tz = turn(f.tz);
+  side.n_t = turn(f.n_t);
+  side.across_x = side.tx * hn::Set(d, 1 / scene.fx);
+  side.across_y = side.ty * hn::Set(d, -1 / scene.fy);
+  side.slope = side.n_t / p.facing;
   // In the slice the tangent plane leads away from V by pi/2 more than the normal does. Points
   // that rounding could lift above it do not count, nor does a sector that lies more below it than
   // above: its integral is negative.
   const V cosine =
-      hn::NegMulAdd(half.n_t, reciprocal_sqrt(dot2(half.n_t, p.facing, half.n_t, p.facing)),
+      hn::NegMulAdd(side.n_t, reciprocal_sqrt(dot2(side.n_t, p.facing, side.n_t, p.facing)),
                     hn::Set(d, kCosineError));
-  const V start = start_of_sectors(phase > 0.5f ? phase : 0.5f);
-  half.above_count = hn::Min(sector_at(cosine, start), hn::Set(du, 31u));
-  half.above = hn::Not(bits_from(half.above_count));
-  return half;
+  const V last_above = start_of_sectors(phase > 0.5f ? phase : 0.5f);
+  side.above_count = hn::Min(sector_at(cosine, last_above), hn::Set(du, 31u));
+  side.start = start_of_sectors(phase);
+  side.above = hn::Not(bits_from(side.above_count));
+  return side;
 }
 
-/// Calls `work(index, y, comb, column)` for each vector of pixels that shows a surface.
+/// Calls `work(place)` for each vector of pixels of a part of the raster that shows a surface;
+/// pixels beside the part may be among its lanes.
 template <class Work>
-HWY_INLINE void for_each_vector(const MarchScene& scene, int y0, int y1, const Work& work) {
+HWY_INLINE void for_each_vector(const MarchScene& scene, const Window& part, const Work& work) {
   const D d;
   const Interleaving& layout = scene.layout;
-  constexpr int kPeriod = Interleaving::kPeriod;
-  for (int y = y0; y < y1; ++y) {
-    for (int comb = 0; comb < kPeriod; ++comb) {
-      for (int column = 0; column < layout.columns(); column += int(hn::Lanes(d))) {
-        const std::ptrdiff_t i = layout.index(y, comb, column);
-        const V depth = hn::LoadU(d, scene.depth.data() + i);
-        if (!hn::AllFalse(d, depth == depth)) work(i, y, comb, column);
+  const int lanes = int(hn::Lanes(d));
+  const int begin = ((part.x0 + layout.phase()) >> Interleaving::kShift) & -lanes,
+            end = ((part.x1 - 1 + layout.phase()) >> Interleaving::kShift) + 1;
+  for (int y = part.y0; y < part.y1; ++y) {
+    for (int column_phase = 0; column_phase < Interleaving::kPeriod; ++column_phase) {
+      for (int column = begin; column < end; column += lanes) {
+        const std::ptrdiff_t i = layout.index(y, column_phase, column);
+        const V depth = hn::LoadU(d, scene.depth().data() + i);
+        if (!hn::AllFalse(d, depth == depth)) work(Place{i, y, column_phase, column});
       }
     }
   }

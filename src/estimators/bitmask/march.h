@@ -54,10 +54,10 @@ struct SenderJob {
 struct BounceJob {
   March march;
   const InterleavedPlane* ao;
-  const InterleavedColor* sent;         ///< radiance of what is seen
-  const InterleavedColor* sent_back;    ///< of its other side; null: the same
-  const InterleavedColor* sent_behind;  ///< of what is covered
-  const BorderValues* sent_border;      ///< of what goes on beyond the frame, three
+  const InterleavedColor* sent;                      ///< radiance of layer 0
+  const InterleavedColor* sent_back;                 ///< of its other side; null: the same
+  const std::vector<InterleavedColor>* sent_behind;  ///< of layers 1, 2, ...
+  const BorderValues* sent_border;                   ///< of what goes on beyond the frame, three
 
   // What the pixels that march have met.
   InterleavedColor* gathered;  ///< sum of radiance
@@ -83,11 +83,12 @@ struct SunJob {
   InterleavedColor* direct;  ///< added to
 };
 
-/// All work on rows y0 to y1 of the picture.
-void march_visibility(const VisibilityJob& job, int y0, int y1);
-void march_bounce(const BounceJob& job, int y0, int y1);
-void spread_bounce(const BounceJob& job, int y0, int y1);  ///< after all of march_bounce
-void march_sun(const SunJob& job, int y0, int y1);
-void find_senders(const SenderJob& job, int y0, int y1);
+/// All work on a part of the raster, and may write to pixels beside it in the same rows.
+void march_visibility(const VisibilityJob& job, const Window& part);
+void march_bounce(const BounceJob& job, const Window& part);
+/// After march_bounce of the part and, where the pattern has a spacing, of the pixels around it.
+void spread_bounce(const BounceJob& job, const Window& part);
+void march_sun(const SunJob& job, const Window& part);
+void find_senders(const SenderJob& job, const Window& part);
 
 }  // namespace ssdo

@@ -16,47 +16,44 @@ namespace {
 constexpr int kPeriod = Interleaving::kPeriod;
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
-/// Least share of the normal along a ray that meets its plane: a plane tilted by 89.9 degrees has
-/// 0.0017.
-constexpr float kLeastFacing = 1e-3f;
-
-/// What a pixel holds in the planes of MarchScene.
+/// What a pixel shows, in the planes of MarchScene.
 struct Cell {
-  float depth = kNothing, thickness = kNothing, behind = kNothing, behind_thickness = kNothing;
-  glm::vec4 normal{kNothing};  ///< and the rounding
+  float depth = kNothing, ray_length = 1;  ///< the ray's per unit of depth
+  glm::vec4 normal{kNothing};              ///< and the rounding
 };
 
-/// The cells of a frame.
+/// What a solid holds in the planes of MarchLayer.
+struct Span {
+  float depth = kNothing, thickness = kNothing;
+};
+
+/// The cells of a raster.
 class Cells {
  public:
-  Cells(const Geometry& g, const HiddenGeometry& hidden, const MarchScene& scene)
-      : g_(g),
-        hidden_(hidden),
-        scene_(scene),
-        endless_(scene.orthographic ? kEndlessLength : kEndlessShare) {}
+  Cells(const Geometry& g, const MarchScene& scene)
+      : g_(g), scene_(scene), endless_(scene.orthographic ? kEndlessLength : kEndlessShare) {}
 
   Cell at(int x, int y) const {
     Cell cell;
-    const std::size_t from = g_.surfel.index(x, y);
-    const Surfel& s = g_.surfel[from];
+    const Surfel& s = g_.surfel(x, y);
     if (!is_usable(s)) return cell;
     const glm::vec2 slope((float(x + scene_.first_x) - scene_.axis_x) / scene_.fx,
                           (scene_.axis_y - float(y + scene_.first_y)) / scene_.fy);
-    const float length = scene_.orthographic ? 1.0f : std::sqrt(1 + glm::dot(slope, slope));
-    cell.depth = depth_on_ray(s, slope, length);
+    if (!scene_.orthographic) cell.ray_length = std::sqrt(1 + glm::dot(slope, slope));
+    cell.depth = depth_on_ray(s, slope, cell.ray_length);
     cell.normal = s.normal;
-    cell.thickness = endless_;
-    if (hidden_.thickness.empty()) return cell;
-    const float per_distance = scene_.orthographic ? 1.0f : 1 / (cell.depth * length);
-    cell.thickness = std::min(hidden_.thickness[from] * per_distance, endless_);
-    if (hidden_.behind.empty() || hidden_.behind_source[from] < 0) return cell;
-    const float behind = std::min(hidden_.behind[from] * per_distance, endless_);
-    const float thickness =
-        hidden_.thickness[std::size_t(hidden_.behind_source[from])] * per_distance;
-    cell.behind = scene_.orthographic ? cell.depth + behind : cell.depth * (1 + behind);
-    cell.behind_thickness =
-        std::min(scene_.orthographic ? thickness : thickness / (1 + behind), endless_);
     return cell;
+  }
+
+  Span span(const Cell& cell, const Solid& solid) const {
+    if (solid.sender < 0) return {};
+    if (scene_.orthographic) {
+      return {cell.depth + std::min(solid.distance, endless_), std::min(solid.thickness, endless_)};
+    }
+    const float per_length = 1 / (cell.depth * cell.ray_length);
+    const float behind = std::min(solid.distance * per_length, endless_);
+    return {cell.depth * (1 + behind),
+            std::min(solid.thickness * per_length / (1 + behind), endless_)};
   }
 
  private:
@@ -77,30 +74,27 @@ class Cells {
   }
 
   const Geometry& g_;
-  const HiddenGeometry& hidden_;
   const MarchScene& scene_;
   const float endless_;
 };
 
 }  // namespace
 
-MarchScene make_march_scene(const Geometry& g, const HiddenGeometry& hidden) {
-  const bool orthographic = g.camera.orthographic;
+MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Window& receivers) {
   const Interleaving layout(g.surfel.width, g.surfel.height,
                             (g.window.x0 - g.display.x0) & (kPeriod - 1));
   const auto plane = [&] { return InterleavedPlane(layout); };
   MarchScene scene{layout,
-                   orthographic,
+                   {receivers.x0 - g.window.x0, receivers.y0 - g.window.y0,
+                    receivers.x1 - g.window.x0, receivers.y1 - g.window.y0},
+                   g.camera.orthographic,
                    float(g.camera.fx),
                    float(g.camera.fy),
                    float(g.camera.cx - g.display.x0 - 0.5),
                    float(g.camera.cy - g.display.y0 - 0.5),
                    g.window.x0 - g.display.x0,
                    g.window.y0 - g.display.y0,
-                   plane(),
-                   plane(),
-                   plane(),
-                   plane(),
+                   {},
                    plane(),
                    plane(),
                    plane(),
@@ -109,31 +103,37 @@ MarchScene make_march_scene(const Geometry& g, const HiddenGeometry& hidden) {
                    {},
                    {},
                    {}};
-  const Cells cells(g, hidden, scene);
+  if (receivers.area() == 0) scene.receivers = scene.raster();
+  for (int k = 0; k < solids.layers(); ++k) scene.layers.push_back({plane(), plane()});
+  const Cells cells(g, scene);
   for_each_row(g.surfel.height, [&](int y) {
     constexpr int kPad = Interleaving::kPad;
-    for (int comb = 0; comb < kPeriod; ++comb) {
-      const std::ptrdiff_t row = layout.index(y, comb, 0);
+    for (int column_phase = 0; column_phase < kPeriod; ++column_phase) {
+      const std::ptrdiff_t row = layout.index(y, column_phase, 0);
       for (int column = -kPad; column < int(layout.stride()) - kPad; ++column) {
-        const int x = column * kPeriod + comb - layout.phase();
+        const int x = column * kPeriod + column_phase - layout.phase();
         const Cell cell = x >= 0 && x < g.surfel.width ? cells.at(x, y) : Cell();
         const std::ptrdiff_t i = row + column;
-        scene.depth[i] = cell.depth, scene.thickness[i] = cell.thickness;
-        scene.behind[i] = cell.behind, scene.behind_thickness[i] = cell.behind_thickness;
         scene.nx[i] = cell.normal.x, scene.ny[i] = cell.normal.y, scene.nz[i] = cell.normal.z;
         scene.rounding[i] = cell.normal.w;
+        for (int k = 0; k < solids.layers(); ++k) {
+          const Span span = std::isnan(cell.depth)
+                                ? Span()
+                                : cells.span(cell, solids.at(k, g.surfel.index(x, y)));
+          MarchLayer& layer = scene.layers[std::size_t(k)];
+          layer.depth[i] = span.depth, layer.thickness[i] = span.thickness;
+        }
       }
     }
   });
   scene.border_depth =
-      scene.border.gather([&](int x, int y) { return scene.depth[layout.index(x, y)]; });
+      scene.border.gather([&](int x, int y) { return scene.depth()[layout.index(x, y)]; });
   for (int c = 0; c < 3; ++c) {
     scene.border_normal[c] =
         scene.border.gather([&](int x, int y) { return g.surfel(x, y).normal[c]; });
   }
   scene.border_thickness = scene.border.gather([&](int x, int y) {
-    return hidden.thickness.empty() ? kEndlessLength
-                                    : std::min(hidden.thickness(x, y), kEndlessLength);
+    return std::min(solids.at(0, g.surfel.index(x, y)).thickness, kEndlessLength);
   });
   return scene;
 }

@@ -5,12 +5,16 @@
 
 #include "parallel/interleaved.h"
 #include "scene/geometry.h"
-#include "scene/hidden_geometry.h"
+#include "scene/solids.h"
 
 namespace ssdo {
 
-/// What is endless, in the units of MarchScene: within 1e-4 of the direction of the view ray.
+/// What is endless, in the units of MarchLayer: within 1e-4 of the direction of the view ray.
 constexpr float kEndlessShare = 1e4f, kEndlessLength = 1e15f;
+
+/// Least cosine between a normal and the view ray that divisions by it allow: a plane tilted by
+/// 89.9 degrees has 0.0017. A smooth normal that leans farther away is bent back to here.
+constexpr float kLeastFacing = 1e-3f;
 
 /// Values of the pixels at the frame's border. The first and the last row are stored as the rows of
 /// an InterleavedPlane are, the first and the last column as they come.
@@ -19,8 +23,8 @@ class BorderLayout {
   explicit BorderLayout(const Interleaving& layout)
       : frame_(layout), row_(layout.stride() * Interleaving::kPeriod) {}
 
-  std::ptrdiff_t in_row(bool last, int comb, int column) const {
-    return (last ? row_ : 0) + frame_.index(0, comb, column);
+  std::ptrdiff_t in_row(bool last, int column_phase, int column) const {
+    return (last ? row_ : 0) + frame_.index(0, column_phase, column);
   }
   std::ptrdiff_t in_column(bool last, int y) const {
     return 2 * row_ + (last ? frame_.height() : 0) + y;
@@ -47,30 +51,38 @@ class BorderLayout {
 
 using BorderValues = std::vector<float>;
 
-/// The frame as a march reads it. Positions are known from depths: where the camera's ray through
-/// the middle of a pixel meets the tangent plane of what the pixel shows. Planes are not-a-number
-/// where there is nothing.
-///
-/// Thicknesses are a share of the depth in front, or a length in scene units where the camera is
-/// orthographic.
+/// One layer of solids; not-a-number where there is none. Thicknesses are a share of the depth in
+/// front, or a length in scene units where the camera is orthographic.
+struct MarchLayer {
+  InterleavedPlane depth;      ///< of the front, along the axis, positive
+  InterleavedPlane thickness;  ///< from the front to the back
+};
+
+/// A raster of pixels as a march reads it: all of them can block and send, those of `receivers`
+/// gather. Positions are known from depths: where the camera's ray through the middle of a pixel
+/// meets the tangent plane of what the pixel shows. Normals belong to layer 0; the fronts of the
+/// layers behind it face the viewer. Planes are not-a-number where there is nothing.
 struct MarchScene {
   Interleaving layout;
+  Window receivers;  ///< pixels of the raster, whose first is (0, 0)
   bool orthographic;
-  float fx, fy;                ///< pixels per unit of slope, or per scene unit
-  float axis_x, axis_y;        ///< pixel of the display window that the camera's axis meets
-  int first_x, first_y;        ///< pixel (0, 0) in the display window
-  InterleavedPlane depth;      ///< along the axis, positive
-  InterleavedPlane thickness;  ///< from the front to the back
-  InterleavedPlane behind;     ///< depth of the surface that is covered
-  InterleavedPlane behind_thickness;
-  InterleavedPlane nx, ny, nz;  ///< unit normal, camera space
-  InterleavedPlane rounding;    ///< distance by which storing P may have moved it
+  float fx, fy;                    ///< pixels per unit of slope, or per scene unit
+  float axis_x, axis_y;            ///< pixel of the display window that the camera's axis meets
+  int first_x, first_y;            ///< pixel (0, 0) in the display window
+  std::vector<MarchLayer> layers;  ///< near to far; layer 0 is what pixels show
+  InterleavedPlane nx, ny, nz;     ///< unit normal of layer 0, camera space
+  InterleavedPlane rounding;       ///< distance by which storing P may have moved layer 0
   BorderLayout border;
   BorderValues border_depth, border_normal[3];
   BorderValues border_thickness;  ///< in scene units
+
+  const InterleavedPlane& depth() const { return layers.front().depth; }  ///< of what pixels show
+  Window raster() const { return {0, 0, layout.width(), layout.height()}; }
 };
 
-/// `hidden` may be empty: then all that is seen is endless.
-MarchScene make_march_scene(const Geometry& geometry, const HiddenGeometry& hidden);
+/// `receivers` as Request has them: in the coordinates of the geometry's window, and within it;
+/// area 0: all of it.
+MarchScene make_march_scene(const Geometry& geometry, const Solids& solids,
+                            const Window& receivers = {});
 
 }  // namespace ssdo

@@ -102,8 +102,8 @@ struct CircleMoments {
     for (int k = 0; k <= kOrder; ++k) cosine[k] = sine[k] = hn::Zero(D());
   }
 
-  /// Adds sectors of one half: (n_v cos + n_t sin) cos(k theta), and with sin(k theta), whose sign
-  /// is the other half's turned round.
+  /// Adds sectors of one side: (n_v cos + n_t sin) cos(k theta), and with sin(k theta), whose sign
+  /// is the opposite on the other side.
   HWY_INLINE void add(const RawMoments<kOrder + 1>& m, V n_v, V n_t, bool forward) {
     const D d;
     const V half = hn::Set(d, 0.5f);

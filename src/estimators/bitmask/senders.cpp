@@ -15,11 +15,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-void sent_by_pixels(const SenderJob& job, int y0, int y1) {
+void sent_by_pixels(const SenderJob& job, const Window& part) {
   const MarchScene& scene = job.scene;
-  for_each_vector(scene, y0, y1, [&](std::ptrdiff_t i, int, int, int) HWY_ATTR {
+  for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
     const D d;
-    const V depth = hn::LoadU(d, scene.depth.data() + i);
+    const std::ptrdiff_t i = place.index;
+    const V depth = hn::LoadU(d, scene.depth().data() + i);
     const Color albedo = load_color(*job.albedo, i);
     Color bounce = set_color(glm::vec3(0));
     if (job.bounce) bounce = load_color(*job.bounce, i);
@@ -46,8 +47,8 @@ namespace ssdo {
 
 HWY_EXPORT(sent_by_pixels);
 
-void find_senders(const SenderJob& job, int y0, int y1) {
-  HWY_DYNAMIC_DISPATCH(sent_by_pixels)(job, y0, y1);
+void find_senders(const SenderJob& job, const Window& part) {
+  HWY_DYNAMIC_DISPATCH(sent_by_pixels)(job, part);
 }
 
 }  // namespace ssdo

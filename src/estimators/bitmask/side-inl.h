@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// One side of a slice, marched over the frame by a vector of pixels; see bitmask.cpp.
-//
-// Steps grow with the distance, so that a march sees few pixels of what is far. Taken for points
-// they lose half a step at the upper edge of all that rises, and what is thinner than a step: over
-// seven frames ao came out 0.023 too open at 24 steps. So each pixel stands for its stretch of the
-// way, over which its surface goes on as its tangent plane. On a plane this is exact, and over an
-// edge, or something thin, right on average, as where steps fall differs from pixel to pixel.
+// One side of a slice, marched over the frame and beyond it by a vector of pixels; see bitmask.cpp.
 #if defined(SSDO_BITMASK_SIDE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_SIDE_INL_H_
 #undef SSDO_BITMASK_SIDE_INL_H_
@@ -17,184 +11,118 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
-#include "estimators/bitmask/lanes-inl.h"
+#include "estimators/bitmask/extension-inl.h"
+#include "estimators/bitmask/piece-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// A straight piece of surface in a slice.
-struct Piece {
-  V inner_s, inner_v, outer_s, outer_v;
-};
-
-/// Where a piece ends: a share of the way to its pixel, at this depth. `rise` and `across` are
-/// those of the pixel.
-template <bool kOrthographic>
-HWY_INLINE void end_at(const Receiver& p, const Half& half, V share, V depth, V rise, V across,
-                       V& s, V& v) {
-  s = across * share;
-  if constexpr (!kOrthographic) s = s * depth;
-  const V end_rise = hn::MulAdd(share, rise - p.rise, p.rise);
-  v = hn::NegMulAdd(s, half.slope, height_above<kOrthographic>(p, end_rise, depth));
+/// The order in which slices are taken: every other one first, so that each half of them covers
+/// all directions.
+HWY_INLINE int slice_at(int k, int count) {
+  const int firsts = (count + 1) / 2;
+  return k < firsts ? 2 * k : 2 * (k - firsts) + 1;
 }
 
-/// Most that depth grows or shrinks, as a factor, from a pixel to the ends of its piece: a piece of
-/// a plane that is seen edge-on, or meets the horizon within the step, ends before.
-constexpr float kMostDeepening = 2;
-
-/// The piece that the pixel at `i` stands for. `rise` and `across` are those of its middle.
-template <bool kOrthographic>
-HWY_INLINE Piece piece_at(const MarchScene& scene, const Receiver& p, const Half& half,
-                          const SliceStep& step, std::ptrdiff_t i, V depth, V rise, V across) {
-  const D d;
-  const auto load = [&](const InterleavedPlane& plane)
-                        HWY_ATTR { return hn::LoadU(d, plane.data() + i); };
-  const V mx = load(scene.nx), my = load(scene.ny), mz = load(scene.nz);
-  const V ex = hn::Set(d, step.dx / scene.fx), ey = hn::Set(d, -step.dy / scene.fy);
-  // M.r, r the ray through the pixel, and how much it changes over the way there.
-  const V one = hn::Set(d, 1.0f);
-  V m_ray = hn::Zero(d) - mz;
-  if constexpr (!kOrthographic)
-    m_ray = hn::MulAdd(mx, p.slope_x + ex, hn::MulAdd(my, p.slope_y + ey, m_ray));
-  m_ray = hn::Min(m_ray, hn::Set(d, -1e-9f));
-  const V m_way = dot2(mx, my, ex, ey);
-  const auto end = [&](float of_way, bool inner, V& s, V& v) HWY_ATTR {
-    V share = hn::Set(d, of_way), end_depth;
-    if constexpr (kOrthographic) {
-      // Depth has no scale here: it changes by no more than the way is long.
-      const V limit = hn::Abs(across), change = (one - share) * m_way / m_ray;
-      const V limited = hn::Clamp(change, hn::Zero(d) - limit, limit);
-      share = hn::IfThenElse(limited != change, one - limited * m_ray / m_way, share);
-      end_depth = depth + limited;
-    } else {
-      V end_ray = hn::MulAdd(share - one, m_way, m_ray);
-      const V limited = hn::Clamp(end_ray, hn::Set(d, kMostDeepening) * m_ray,
-                                  hn::Set(d, 1 / kMostDeepening) * m_ray);
-      const M beyond = limited != end_ray;
-      if (!hn::AllFalse(d, beyond)) {
-        share = hn::IfThenElse(beyond, one + (limited - m_ray) / m_way, share);
-        end_ray = limited;
-      }
-      end_depth = depth * m_ray / end_ray;
-    }
-    // Where a round thing turns away, its tangent plane would come far before it.
-    if (inner) end_depth = hn::Max(end_depth, depth);
-    end_at<kOrthographic>(p, half, share, end_depth, rise, across, s, v);
-  };
-  Piece piece;
-  end(step.inner, true, piece.inner_s, piece.inner_v);
-  end(step.outer, false, piece.outer_s, piece.outer_v);
-  return piece;
+/// The difference of two halves, with `first` of `count` slices in one of them, is the standard
+/// error of the whole times this, with the sign of the pattern's member.
+HWY_INLINE float error_of_difference(const March& march, const Place& place, int first, int count) {
+  const int row = (place.y + march.scene.first_y) & (Interleaving::kPeriod - 1);
+  return march.pattern.half_sign(place.column_phase, row) *
+         std::sqrt(float(first) * float(count - first)) / float(count);
 }
 
-/// The piece of what is covered at this depth. Its slope is unknown: it faces the viewer.
-template <bool kOrthographic>
-HWY_INLINE Piece covered_piece(const Receiver& p, const Half& half, const SliceStep& step, V depth,
-                               V rise, V across) {
-  const D d;
-  const V inner = hn::Set(d, step.inner), outer = hn::Set(d, step.outer);
-  Piece piece;
-  end_at<kOrthographic>(p, half, inner, depth, rise, across, piece.inner_s, piece.inner_v);
-  end_at<kOrthographic>(p, half, outer, depth, rise, across, piece.outer_s, piece.outer_v);
-  return piece;
-}
-
-/// Leaves what lies within the radius. Gives where that is anything.
-HWY_INLINE M clip(Piece& piece, float radius) {
-  const D d;
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const V s = piece.inner_s, v = piece.inner_v, ls = piece.outer_s - s, lv = piece.outer_v - v;
-  const V per_length = one / hn::Sqrt(hn::Max(dot2(ls, lv, ls, lv), hn::Set(d, 1e-30f)));
-  const V us = ls * per_length, uv = lv * per_length;
-  // The line comes as near to the receiver as `nearest`, at its `foot`, and is within the radius
-  // for half a chord to both sides.
-  const V nearest = hn::MulSub(s, uv, v * us), foot = zero - dot2(s, v, us, uv),
-          half_chord2 = hn::NegMulAdd(nearest, nearest, hn::Set(d, radius * radius));
-  const V half_chord = hn::Sqrt(hn::Max(half_chord2, zero));
-  const V from = hn::Max(zero, (foot - half_chord) * per_length),
-          to = hn::Min(one, (foot + half_chord) * per_length);
-  piece.inner_s = hn::MulAdd(from, ls, s), piece.inner_v = hn::MulAdd(from, lv, v);
-  piece.outer_s = hn::MulAdd(to, ls, s), piece.outer_v = hn::MulAdd(to, lv, v);
-  return hn::And(half_chord2 > zero, from < to);
-}
-
-/// The sectors that a piece hides whose middle lies at s, `above` the receiver's tangent plane, and
-/// reaches back by `depth`.
-template <bool kOrthographic>
-HWY_INLINE VU sectors_behind_piece(const Receiver& p, const Half& half, Piece piece, V s, V above,
-                                   V depth, float radius, V start) {
-  const D d;
-  M meets = above > hn::Zero(d);
-  if (radius < 1e18f) meets = hn::And(meets, clip(piece, radius));
-  const auto sector = [&](V x, V y) HWY_ATTR { return sector_of(y, dot2(x, y, x, y), start); };
-  const VU inner = sector(piece.inner_s, piece.inner_v),
-           outer = sector(piece.outer_s, piece.outer_v);
-  const SlicePoint back = back_of<kOrthographic>(p, s, hn::NegMulAdd(s, half.slope, above), depth);
-  const VU from = hn::Min(inner, outer),
-           to = hn::Max(hn::Max(inner, outer), sector(back.s, back.v));
-  return hn::IfThenElseZero(hn::RebindMask(DU(), meets),
-                            hn::AndNot(bits_from(to), bits_from(from)));
-}
-
-/// Marches from near to far and gives the sectors that stay open. `seen` and `covered` hear of
-/// samples of what is seen and of what it covers: their index, how far in pixels they lie from the
-/// receiver, and the sectors in which they are the first.
-template <bool kOrthographic, class Seen, class Covered>
-HWY_INLINE VU march_side(const March& march, const Receiver& p, const Half& half,
-                         const SliceSide& side, std::ptrdiff_t at, int y, int column, float reach,
-                         const Seen& seen, const Covered& covered) {
+/// Marches one side over the raster, near to far, and gives the sectors that stay open. `on_met`
+/// hears of every solid that is met: its layer, its index, the step, and the sectors in which it is
+/// the first.
+template <bool kOrthographic, class Met>
+HWY_INLINE VU march_raster(const March& march, const Receiver& p, const SideFrame& side,
+                           const std::vector<SliceStep>& steps, const Met& on_met) {
   const D d;
   const MarchScene& scene = march.scene;
-  const V zero = hn::Zero(d), start = start_of_sectors(side.phase);
+  const MarchLayer& seen = scene.layers.front();
+  const int layers = int(scene.layers.size());
+  const V zero = hn::Zero(d);
   const int height = scene.layout.height(), columns = scene.layout.columns();
   const int lanes = int(hn::Lanes(d));
-  VU open = half.above;
-  for (const SliceStep& step : side.steps) {
-    const int row = y + step.row, first = column + step.column_shift;
-    if (step.inner_px > reach || row < 0 || row >= height || first >= columns || first + lanes <= 0)
+  VU open = side.above;
+  for (const SliceStep& step : steps) {
+    const int row = p.place.y + step.row, first = p.place.column + step.column_shift;
+    if (step.inner_px > p.reach_px || row < 0 || row >= height || first >= columns ||
+        first + lanes <= 0)
       break;
-    const std::ptrdiff_t i = at + step.offset;
-    const auto load = [&](const InterleavedPlane& plane)
-                          HWY_ATTR { return hn::LoadU(d, plane.data() + i); };
+    const std::ptrdiff_t i = p.place.index + step.offset;
     // The next vector of receivers looks at the pixels beside these. There are too many such
     // streams for the processor to see.
-    hwy::Prefetch(scene.depth.data() + i + 2 * lanes - 1);
-    hwy::Prefetch(scene.behind.data() + i + 2 * lanes - 1);
-    hwy::Prefetch(scene.thickness.data() + i + 2 * lanes - 1);
-    hwy::Prefetch(scene.nx.data() + i + 2 * lanes - 1);
-    hwy::Prefetch(scene.ny.data() + i + 2 * lanes - 1);
-    hwy::Prefetch(scene.nz.data() + i + 2 * lanes - 1);
+    const auto prefetch = [&](const InterleavedPlane& plane)
+                              HWY_ATTR { hwy::Prefetch(plane.data() + i + 2 * lanes - 1); };
+    for (const InterleavedPlane* plane :
+         {&seen.depth, &seen.thickness, &scene.nx, &scene.ny, &scene.nz})
+      prefetch(*plane);
+    const auto load = [&](const InterleavedPlane& plane)
+                          HWY_ATTR { return hn::LoadU(d, plane.data() + i); };
     const V dx = hn::Set(d, step.dx), dy = hn::Set(d, step.dy);
-    const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise));
-    const V depth = load(scene.depth), behind = load(scene.behind);
-    const V above = height_above<kOrthographic>(p, rise, depth),
-            above_behind = height_above<kOrthographic>(p, rise, behind);
-    const M rises_behind = above_behind > zero;
-    if (hn::AllFalse(d, hn::Or(above > zero, rises_behind))) continue;
-    const V across = dot2(dx, dy, half.across_x, half.across_y);
-    const auto sectors = [&](V of_depth, V of_above, V thickness, const auto& piece) HWY_ATTR {
-      const V s = kOrthographic ? across : of_depth * across;
-      return step.inner == step.outer
-                 ? sectors_behind<kOrthographic>(p, half, s, of_above, thickness, march.radius,
-                                                 start)
-                 : sectors_behind_piece<kOrthographic>(p, half, piece(), s, of_above, thickness,
-                                                       march.radius, start);
+    const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise)),
+            across = dot2(dx, dy, side.across_x, side.across_y);
+    const auto meet = [&](int layer, V depth, V above, const auto& piece) HWY_ATTR {
+      const V s = kOrthographic ? across : depth * across,
+              thickness = load(scene.layers[std::size_t(layer)].thickness);
+      const VU bits =
+          step.inner == step.outer
+              ? sectors_behind<kOrthographic>(p, side, s, above, thickness, march.radius)
+              : sectors_behind_piece<kOrthographic>(p, side, piece(), s, above, thickness,
+                                                    march.radius);
+      on_met(layer, i, step, hn::And(open, bits));
+      open = hn::AndNot(bits, open);
     };
-    const VU bits = sectors(depth, above, load(scene.thickness), [&]() HWY_ATTR {
-      return piece_at<kOrthographic>(scene, p, half, step, i, depth, rise, across);
-    });
-    seen(i, step, hn::And(open, bits));
-    open = hn::AndNot(bits, open);
-    if (!hn::AllFalse(d, rises_behind)) {
-      const VU bits_behind =
-          sectors(behind, above_behind, load(scene.behind_thickness), [&]() HWY_ATTR {
-            return covered_piece<kOrthographic>(p, half, step, behind, rise, across);
-          });
-      covered(i, step, hn::And(open, bits_behind));
-      open = hn::AndNot(bits_behind, open);
+    const V depth = load(seen.depth), above = height_above<kOrthographic>(p, rise, depth);
+    if (!hn::AllFalse(d, above > zero)) {
+      meet(0, depth, above, [&]() HWY_ATTR {
+        return piece_at<kOrthographic>(scene, p, side, step, i, depth, rise, across);
+      });
+    }
+    for (int k = 1; k < layers; ++k) {
+      const InterleavedPlane& fronts = scene.layers[std::size_t(k)].depth;
+      prefetch(fronts);
+      const V front = load(fronts), front_above = height_above<kOrthographic>(p, rise, front);
+      if (hn::AllFalse(d, front_above > zero)) continue;
+      meet(k, front, front_above, [&]() HWY_ATTR {
+        return piece_facing_viewer<kOrthographic>(p, side, step, front, rise, across);
+      });
     }
   }
   return open;
+}
+
+/// The same over the raster and beyond it. `on_beyond` hears of the sectors that are hidden beyond.
+template <bool kOrthographic, class Met, class Beyond>
+HWY_INLINE VU march_side(const March& march, const Receiver& p, const SideFrame& side,
+                         const Slice& slice, bool forward, const Met& on_met,
+                         const Beyond& on_beyond) {
+  const D d;
+  const VU open =
+      march_raster<kOrthographic>(march, p, side, slice.sides[forward ? 0 : 1].steps, on_met);
+  if (!march.extend || hn::AllTrue(DU(), open == hn::Zero(DU()))) return open;
+  const float sign = forward ? 1.0f : -1.0f;
+  const Border border =
+      border_along(march.scene, p, hn::Set(d, sign * slice.dx), hn::Set(d, sign * slice.dy), true);
+  const VU bits = extend_side<kOrthographic>(march, p, side, border);
+  on_beyond(border, hn::And(open, bits));
+  return hn::AndNot(bits, open);
+}
+
+/// Calls `work(receiver, slices)` for each vector of pixels of a part of the raster that marches
+/// and shows a surface.
+template <class Work>
+HWY_INLINE void for_each_receiver(const March& march, const Window& part, const Work& work) {
+  for_each_vector(march.scene, part, [&](const Place& place) HWY_ATTR {
+    const int row = (place.y + march.scene.first_y) & (Interleaving::kPeriod - 1);
+    const std::vector<Slice>& slices = march.pattern.member(place.column_phase, row);
+    if (slices.empty()) return;
+    Receiver p = load_receiver(march.scene, place);
+    p.reach_px = reach_px(march.scene, p, march.radius);
+    work(p, slices);
+  });
 }
 
 }  // namespace ssdo::HWY_NAMESPACE

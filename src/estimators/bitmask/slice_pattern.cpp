@@ -76,16 +76,16 @@ void share_the_way(std::vector<SliceStep>& steps) {
   }
 }
 
-/// The side that starts at column `comb` and row `line` of a block. `start` in 0..1 places each
-/// distance in its stratum.
-SliceSide make_side(const Interleaving& layout, int comb, int line, double dx, double dy, int steps,
-                    double diagonal, double start, float phase) {
+/// The side that starts at column `column_phase` and row `line` of a block. `start` in 0..1 places
+/// each distance in its stratum.
+SliceSide make_side(const Interleaving& layout, int column_phase, int line, double dx, double dy,
+                    int steps, double diagonal, double start, float phase) {
   SliceSide side;
   side.phase = phase;
   for (int i = 0; i < steps; ++i) {
     const double distance = march_distance((i + start) / steps, diagonal);
     const bool far = march_distance((i + 1 + start) / steps, diagonal) - distance > kLongStep;
-    const int x = far ? to_block(distance * dx, comb) : int(std::lround(distance * dx)),
+    const int x = far ? to_block(distance * dx, column_phase) : int(std::lround(distance * dx)),
               y = far ? to_block(distance * dy, line) : int(std::lround(distance * dy));
     const bool repeated =
         !side.steps.empty() && side.steps.back().dx == float(x) && side.steps.back().row == y;
@@ -93,9 +93,9 @@ SliceSide make_side(const Interleaving& layout, int comb, int line, double dx, d
     SliceStep step;
     step.dx = float(x), step.dy = float(y);
     step.row = y;
-    step.column_shift = (comb + x) >> Interleaving::kShift;
-    step.offset =
-        layout.index(y, (comb + x) & (kPeriod - 1), step.column_shift) - layout.index(0, comb, 0);
+    step.column_shift = (column_phase + x) >> Interleaving::kShift;
+    step.offset = layout.index(y, (column_phase + x) & (kPeriod - 1), step.column_shift) -
+                  layout.index(0, column_phase, 0);
     side.steps.push_back(step);
   }
   share_the_way(side.steps);

@@ -27,7 +27,7 @@ struct SliceStep {
   float inner_px;
 };
 
-/// One half of a slice.
+/// One side of a slice.
 struct SliceSide {
   std::vector<SliceStep> steps;  ///< near to far
   float phase;  ///< in 0..1: where in every sector the point lies that stands for it

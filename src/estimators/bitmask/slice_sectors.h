@@ -5,8 +5,9 @@
 
 namespace ssdo {
 
-/// The sectors of half a slice: 32 pieces of equal width in the cosine of the angle theta from the
-/// view direction, from 1 to -1, which is in solid angle. Bit i of a mask stands for sector i.
+/// The sectors of one side of a slice: 32 pieces of equal width in the cosine of the angle theta
+/// from the view direction, from 1 to -1, which is in solid angle. Bit i of a mask stands for
+/// sector i.
 struct SliceSectors {
   static constexpr int kCount = 32;
   static constexpr float kPerCosine = kCount / 2.0f;

@@ -32,7 +32,7 @@ struct SunRay {
 };
 
 HWY_INLINE SunRay sun_ray(const MarchScene& scene, const Receiver& p, const SunJob::Direction& to,
-                          Half& half) {
+                          SideFrame& side) {
   const D d;
   const V lx = hn::Set(d, to.x), ly = hn::Set(d, to.y), lz = hn::Set(d, to.z);
   SunRay ray;
@@ -41,11 +41,11 @@ HWY_INLINE SunRay sun_ray(const MarchScene& scene, const Receiver& p, const SunJ
           tz = hn::NegMulAdd(ray.v, p.vz, lz);
   ray.s = hn::Sqrt(dot3(tx, ty, tz, tx, ty, tz));
   const V scale = hn::Set(d, 1.0f) / hn::Max(ray.s, hn::Set(d, 1e-6f));
-  half.tx = tx * scale, half.ty = ty * scale, half.tz = tz * scale;
-  half.n_t = dot3(p.nx, p.ny, p.nz, half.tx, half.ty, half.tz);
-  half.slope = half.n_t / p.facing;
-  half.across_x = half.tx * hn::Set(d, 1 / scene.fx);
-  half.across_y = half.ty * hn::Set(d, -1 / scene.fy);
+  side.tx = tx * scale, side.ty = ty * scale, side.tz = tz * scale;
+  side.n_t = dot3(p.nx, p.ny, p.nz, side.tx, side.ty, side.tz);
+  side.slope = side.n_t / p.facing;
+  side.across_x = side.tx * hn::Set(d, 1 / scene.fx);
+  side.across_y = side.ty * hn::Set(d, -1 / scene.fy);
 
   const V depth = hn::Zero(d) - p.pz;
   V dx = hn::Set(d, scene.fx) * lx, dy = hn::Set(d, -scene.fy) * ly;
@@ -65,10 +65,10 @@ HWY_INLINE SunRay sun_ray(const MarchScene& scene, const Receiver& p, const SunJ
 /// Which lanes that look see a surface in the ray, which lies at s, `above` the receiver's tangent
 /// plane, and reaches back by what `load_depth` gives: few rays ask.
 template <bool kOrthographic, class LoadDepth>
-HWY_INLINE M blocks(const Receiver& p, const Half& half, const SunRay& ray, M looks, V s, V above,
-                    float radius, const LoadDepth& load_depth) {
+HWY_INLINE M blocks(const Receiver& p, const SideFrame& side, const SunRay& ray, M looks, V s,
+                    V above, float radius, const LoadDepth& load_depth) {
   const D d;
-  const V v = hn::NegMulAdd(s, half.slope, above);
+  const V v = hn::NegMulAdd(s, side.slope, above);
   const M near = hn::And(above > hn::Zero(d), dot2(s, v, s, v) <= hn::Set(d, radius * radius));
   const M front_above = hn::And(hn::And(looks, near), s * ray.v <= v * ray.s);
   if (hn::AllFalse(d, front_above)) return front_above;
@@ -87,24 +87,23 @@ HWY_INLINE V middle_of_block(V pixel) {
 /// How many of the surfaces that go on beyond the frame let rays pass, 0..1. `turn` in 0..1 differs
 /// from member to member of the pattern.
 template <bool kOrthographic>
-HWY_INLINE V open_beyond(const March& march, const Receiver& p, const Half& half, const SunRay& ray,
-                         int comb, int column, float reach, M open, float turn) {
+HWY_INLINE V open_beyond(const March& march, const Receiver& p, const SideFrame& side,
+                         const SunRay& ray, M open, float turn) {
   const D d;
   const V zero = hn::Zero(d);
   const float apart_px = 2 * kWitnessReach * float(march.scene.layout.height()) / kWitnesses;
   V passed = zero;
   for (int k = 0; k < kWitnesses; ++k) {
     const float aside_px = std::round((float(k) + turn - 0.5f * kWitnesses) * apart_px);
-    const Border border =
-        border_along(march.scene, p, comb, column, ray.step_x, ray.step_y, false, aside_px);
-    const Extension e = extend<kOrthographic>(march, p, half, border, reach, kSunWidths);
+    const Border border = border_along(march.scene, p, ray.step_x, ray.step_y, false, aside_px);
+    const Extension e = extend<kOrthographic>(march, p, side, border, kSunWidths);
     // The ray passes between both ends of the piece.
     const V here = e.s * ray.v - e.v * ray.s, there = e.end_s * ray.v - e.end_v * ray.s;
     const M leaves = hn::And(e.exists, border.distance_px < ray.end_px);
     const M crosses = hn::And(leaves, here * there <= zero);
     const M rises = hn::Or(e.above > zero, e.end_above > zero);
     // The last step may be far from the border.
-    const M meets = blocks<kOrthographic>(p, half, ray, hn::And(open, leaves), e.s, e.above,
+    const M meets = blocks<kOrthographic>(p, side, ray, hn::And(open, leaves), e.s, e.above,
                                           march.radius, [&]() HWY_ATTR { return e.depth; });
     const M hides = hn::Or(meets, hn::And(crosses, rises));
     passed = passed + hn::IfThenElseZero(hn::AndNot(hides, open), hn::Set(d, 1.0f / kWitnesses));
@@ -113,22 +112,22 @@ HWY_INLINE V open_beyond(const March& march, const Receiver& p, const Half& half
 }
 
 template <bool kOrthographic>
-void sun(const SunJob& job, int y0, int y1) {
+void sun(const SunJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
-  for_each_vector(scene, y0, y1, [&](std::ptrdiff_t at, int y, int comb, int column) HWY_ATTR {
+  for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
     const D d;
     const DI di;
     constexpr int kPeriod = Interleaving::kPeriod;
     const Interleaving& layout = scene.layout;
     const V zero = hn::Zero(d);
-    const int member = ((y + job.march.scene.first_y) & (kPeriod - 1)) * kPeriod + comb;
-    const Receiver p = load_receiver(scene, at, y, comb, column);
-    Half half;
-    const SunRay ray = sun_ray(scene, p, job.directions[std::size_t(member)], half);
+    const int member = ((place.y + scene.first_y) & (kPeriod - 1)) * kPeriod + place.column_phase;
+    Receiver p = load_receiver(scene, place);
+    p.reach_px = reach_px(scene, p, job.march.radius);
+    SideFrame side;
+    const SunRay ray = sun_ray(scene, p, job.directions[std::size_t(member)], side);
     const V right = hn::Set(d, float(layout.width() - 1)),
             bottom = hn::Set(d, float(layout.height() - 1));
-    const float reach = reach_px(scene, p, job.march.radius);
-    M open = hn::And(p.valid, dot2(half.n_t, p.facing, ray.s, ray.v) > zero);
+    M open = hn::And(p.valid, dot2(side.n_t, p.facing, ray.s, ray.v) > zero);
     float before = 0;
     for (const float distance : job.distances_px[std::size_t(member)]) {
       const V t = hn::Set(d, distance);
@@ -140,7 +139,7 @@ void sun(const SunJob& job, int y0, int y1) {
       const M inside = hn::And(hn::And(qx_px >= zero, qx_px <= right),
                                hn::And(hn::And(qy_px >= zero, qy_px <= bottom), t < ray.end_px));
       const M looks = hn::And(inside, open);
-      if (distance > reach || hn::AllFalse(d, looks)) break;
+      if (distance > p.reach_px || hn::AllFalse(d, looks)) break;
       const auto shifted =
           hn::ConvertTo(di, hn::IfThenElseZero(looks, qx_px)) + hn::Set(di, layout.phase());
       const auto line = hn::ConvertTo(di, hn::IfThenElseZero(looks, qy_px)) * hn::Set(di, kPeriod) +
@@ -152,30 +151,30 @@ void sun(const SunJob& job, int y0, int y1) {
                               HWY_ATTR { return hn::GatherIndex(d, plane.data(), index); };
       const V dx = qx_px - p.x, dy = qy_px - p.y;
       const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise)),
-              across = dot2(dx, dy, half.across_x, half.across_y);
-      const auto hides = [&](V depth, const InterleavedPlane& thickness) HWY_ATTR {
-        return blocks<kOrthographic>(p, half, ray, looks, kOrthographic ? across : depth * across,
-                                     height_above<kOrthographic>(p, rise, depth), job.march.radius,
-                                     [&]() HWY_ATTR { return gather(thickness); });
-      };
-      open = hn::AndNot(hides(gather(scene.depth), scene.thickness), open);
-      open = hn::AndNot(hides(gather(scene.behind), scene.behind_thickness), open);
+              across = dot2(dx, dy, side.across_x, side.across_y);
+      for (const MarchLayer& layer : scene.layers) {
+        const V depth = gather(layer.depth);
+        const M hides =
+            blocks<kOrthographic>(p, side, ray, looks, kOrthographic ? across : depth * across,
+                                  height_above<kOrthographic>(p, rise, depth), job.march.radius,
+                                  [&]() HWY_ATTR { return gather(layer.thickness); });
+        open = hn::AndNot(hides, open);
+      }
     }
     V visible = hn::IfThenElseZero(open, hn::Set(d, 1.0f));
     if (job.march.extend && !hn::AllFalse(d, open)) {
       const float turn = (float(SlicePattern::rank(member)) + 0.5f) / (kPeriod * kPeriod);
-      visible =
-          open_beyond<kOrthographic>(job.march, p, half, ray, comb, column, reach, open, turn);
+      visible = open_beyond<kOrthographic>(job.march, p, side, ray, open, turn);
     }
-    const V cosine = load_normals(scene, at, p.valid).facing(job.sun->direction);
-    store_color(
-        mul_add(set_color(job.sun->irradiance), visible * cosine, load_color(*job.direct, at)),
-        *job.direct, at);
+    const V cosine = load_normals(scene, place.index, p.valid).facing(job.sun->direction);
+    store_color(mul_add(set_color(job.sun->irradiance), visible * cosine,
+                        load_color(*job.direct, place.index)),
+                *job.direct, place.index);
   });
 }
 
-void sun_of_pixels(const SunJob& job, int y0, int y1) {
-  job.march.scene.orthographic ? sun<true>(job, y0, y1) : sun<false>(job, y0, y1);
+void sun_of_pixels(const SunJob& job, const Window& part) {
+  job.march.scene.orthographic ? sun<true>(job, part) : sun<false>(job, part);
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -186,8 +185,8 @@ namespace ssdo {
 
 HWY_EXPORT(sun_of_pixels);
 
-void march_sun(const SunJob& job, int y0, int y1) {
-  HWY_DYNAMIC_DISPATCH(sun_of_pixels)(job, y0, y1);
+void march_sun(const SunJob& job, const Window& part) {
+  HWY_DYNAMIC_DISPATCH(sun_of_pixels)(job, part);
 }
 
 }  // namespace ssdo

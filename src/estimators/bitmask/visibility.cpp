@@ -6,88 +6,84 @@
 #define HWY_TARGET_INCLUDE "estimators/bitmask/visibility.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/bitmask/half-inl.h"
 #include "estimators/bitmask/moments-inl.h"
+#include "estimators/bitmask/side-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
 template <bool kOrthographic, int kOrder>
-void visibility(const VisibilityJob& job, int y0, int y1) {
+void visibility(const VisibilityJob& job, const Window& part) {
   const March& march = job.march;
-  for_each_receiver(
-      march, y0, y1,
-      [&](const Place& place, const Receiver& p, const std::vector<Slice>& slices,
-          float reach) HWY_ATTR {
-        const D d;
-        const DU du;
-        const auto ignore = [](auto&&...) HWY_ATTR {};
-        const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
-        Moments<kOrder> sum, first_half;
-        for (int k = 0; k < count_of_slices; ++k) {
-          if (k == firsts) first_half = sum;
-          const Slice& slice = slices[std::size_t(slice_at(k, count_of_slices))];
-          const SliceFrame f = slice_frame(march.scene, p, slice);
-          CircleMoments<kOrder> hidden, whole;
-          for (const bool forward : {true, false}) {
-            const Half half =
-                half_of(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
-            const VU open = march_half<kOrthographic>(march, p, half, slice, forward, place, reach,
-                                                      ignore, ignore, ignore);
-            const VU bits = hn::AndNot(open, half.above);
-            whole.add(moments_of_first<kOrder + 1>(half.above_count), p.facing, half.n_t, forward);
-            if (hn::AllTrue(du, bits == hn::Zero(du))) continue;
-            hidden.add(moments_of_bits<kOrder + 1>(bits), p.facing, half.n_t, forward);
-          }
-          sum.add(p, f, hidden, whole);
-        }
-        const std::ptrdiff_t i = place.index;
-        const V ao = sum.open_share();
-        hn::StoreU(hn::IfThenElse(p.valid, ao, hn::Set(d, 1.0f)), d, job.ao->data() + i);
-        if (!job.bent && !job.direct) return;
-        const Normals normals = load_normals(march.scene, i, p.valid);
-        if constexpr (kOrder > 0) {
-          if (job.bent) store_color(sum.bent_normal(p, ao, normals), *job.bent, i);
-        }
-        if (!job.direct) return;
-        const Color unoccluded = look_up(*job.irradiance, normals);
-        const auto visible = [&](const Moments<kOrder>& moments) HWY_ATTR {
-          if (!job.light) return scaled(unoccluded, ao);
-          const auto share = [&](int c) HWY_ATTR {
-            return moments.share_of_light(job.light + c * Moments<kOrder>::kCount, ao);
-          };
-          return product(unoccluded, Color{share(0), share(1), share(2)});
-        };
-        store_color(visible(sum), *job.direct, i);
-        if (job.difference) {
-          const V difference =
-              luminance(visible(first_half)) - luminance(visible(sum.minus(first_half)));
-          hn::StoreU(
-              difference * hn::Set(d, error_of_difference(march, place, firsts, count_of_slices)),
-              d, job.difference->data() + i);
-        }
-      });
+  for_each_receiver(march, part, [&](const Receiver& p, const std::vector<Slice>& slices) HWY_ATTR {
+    const D d;
+    const DU du;
+    const auto ignore = [](auto&&...) HWY_ATTR {};
+    const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
+    Moments<kOrder> sum, first_half;
+    for (int k = 0; k < count_of_slices; ++k) {
+      if (k == firsts) first_half = sum;
+      const Slice& slice = slices[std::size_t(slice_at(k, count_of_slices))];
+      const SliceFrame f = slice_frame(march.scene, p, slice);
+      CircleMoments<kOrder> hidden, whole;
+      for (const bool forward : {true, false}) {
+        const SideFrame side =
+            side_frame(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
+        const VU open = march_side<kOrthographic>(march, p, side, slice, forward, ignore, ignore);
+        const VU bits = hn::AndNot(open, side.above);
+        whole.add(moments_of_first<kOrder + 1>(side.above_count), p.facing, side.n_t, forward);
+        if (hn::AllTrue(du, bits == hn::Zero(du))) continue;
+        hidden.add(moments_of_bits<kOrder + 1>(bits), p.facing, side.n_t, forward);
+      }
+      sum.add(p, f, hidden, whole);
+    }
+    const std::ptrdiff_t i = p.place.index;
+    const V ao = sum.open_share();
+    hn::StoreU(hn::IfThenElse(p.valid, ao, hn::Set(d, 1.0f)), d, job.ao->data() + i);
+    if (!job.bent && !job.direct) return;
+    const Normals normals = load_normals(march.scene, i, p.valid);
+    if constexpr (kOrder > 0) {
+      if (job.bent) store_color(sum.bent_normal(p, ao, normals), *job.bent, i);
+    }
+    if (!job.direct) return;
+    const Color unoccluded = look_up(*job.irradiance, normals);
+    const auto visible = [&](const Moments<kOrder>& moments) HWY_ATTR {
+      if (!job.light) return scaled(unoccluded, ao);
+      const auto share = [&](int c) HWY_ATTR {
+        return moments.share_of_light(job.light + c * Moments<kOrder>::kCount, ao);
+      };
+      return product(unoccluded, Color{share(0), share(1), share(2)});
+    };
+    store_color(visible(sum), *job.direct, i);
+    if (job.difference) {
+      const V difference =
+          luminance(visible(first_half)) - luminance(visible(sum.minus(first_half)));
+      hn::StoreU(
+          difference * hn::Set(d, error_of_difference(march, p.place, firsts, count_of_slices)), d,
+          job.difference->data() + i);
+    }
+  });
 }
 
 template <bool kOrthographic>
-void visibility_in_order(const VisibilityJob& job, int y0, int y1) {
+void visibility_in_order(const VisibilityJob& job, const Window& part) {
   switch (job.order) {
     case 0:
-      return visibility<kOrthographic, 0>(job, y0, y1);
+      return visibility<kOrthographic, 0>(job, part);
     case 1:
-      return visibility<kOrthographic, 1>(job, y0, y1);
+      return visibility<kOrthographic, 1>(job, part);
     case 2:
-      return visibility<kOrthographic, 2>(job, y0, y1);
+      return visibility<kOrthographic, 2>(job, part);
     case 3:
-      return visibility<kOrthographic, 3>(job, y0, y1);
+      return visibility<kOrthographic, 3>(job, part);
     default:
-      return visibility<kOrthographic, 4>(job, y0, y1);
+      return visibility<kOrthographic, 4>(job, part);
   }
 }
 
-void visibility_of_pixels(const VisibilityJob& job, int y0, int y1) {
-  job.march.scene.orthographic ? visibility_in_order<true>(job, y0, y1)
-                               : visibility_in_order<false>(job, y0, y1);
+void visibility_of_pixels(const VisibilityJob& job, const Window& part) {
+  job.march.scene.orthographic ? visibility_in_order<true>(job, part)
+                               : visibility_in_order<false>(job, part);
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -98,8 +94,8 @@ namespace ssdo {
 
 HWY_EXPORT(visibility_of_pixels);
 
-void march_visibility(const VisibilityJob& job, int y0, int y1) {
-  HWY_DYNAMIC_DISPATCH(visibility_of_pixels)(job, y0, y1);
+void march_visibility(const VisibilityJob& job, const Window& part) {
+  HWY_DYNAMIC_DISPATCH(visibility_of_pixels)(job, part);
 }
 
 }  // namespace ssdo

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A node is a piece of surface in one pixel: the one that the pixel shows, or the one that goes on
-// behind it (hidden_geometry.h). Nodes of neighbouring pixels are joined where neither lies farther
-// than kSurfaceGap footprints from the other's tangent plane. Four pixels around a corner make a
-// cell:
+// A node is the front of a solid in one pixel: in layer 0 what the pixel shows (scene/solids.h).
+// Nodes of neighbouring pixels are joined where they are on one surface (scene/one_surface.h). Four
+// pixels around a corner make a cell:
 //
 //   a---b   All four joined: two triangles from centre to centre, and two between their backs.
 //   |   |   Else each group of joined nodes has the quarters of its own pixels, which end halfway
@@ -14,10 +13,12 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <optional>
+#include <utility>
 
 #include "parallel/tiles.h"
+#include "scene/one_surface.h"
+#include "scene/usable.h"
 
 namespace ssdo {
 namespace {
@@ -39,12 +40,12 @@ constexpr int kCornerX[] = {0, 1, 1, 0}, kCornerY[] = {0, 0, 1, 1};
 
 class Builder {
  public:
-  Builder(const Geometry& geometry, const HiddenGeometry& hidden)
+  Builder(const Geometry& geometry, const Solids& solids)
       : geometry_(geometry),
-        hidden_(hidden),
+        solids_(solids),
         width_(geometry.surfel.width),
         height_(geometry.surfel.height),
-        per_pixel_(float(1 / std::min(geometry.camera.fx, geometry.camera.fy))),
+        footprint_(geometry.camera),
         out_{PictureSpace(geometry), {}, {}} {}
 
   HeightField build() {
@@ -62,10 +63,19 @@ class Builder {
   }
 
  private:
+  /// The front of a solid.
   struct Node {
-    int pixel = -1;
-    bool covered = false;
-    std::uint32_t corner = 0;  ///< its front in the sheets
+    int pixel = -1, layer = 0;
+    std::uint32_t corner = 0;  ///< in the sheets
+  };
+
+  /// The nodes of one pixel, near to far.
+  struct Nodes {
+    std::array<Node, kMostLayers> node;
+    int count = 0;
+
+    const Node& operator[](int k) const { return node[std::size_t(k)]; }
+    const Node* first() const { return count > 0 ? &node[0] : nullptr; }
   };
 
   /// What rows of the frame add.
@@ -74,39 +84,42 @@ class Builder {
     TriangleMesh cuts;
   };
 
-  bool goes_on_behind(std::size_t pixel) const {
-    return !hidden_.behind.empty() && hidden_.behind_source[pixel] >= 0 &&
-           is_solid(geometry_, pixel) &&
-           is_solid(geometry_, std::size_t(hidden_.behind_source[pixel]));
+  bool is_solid(std::size_t pixel) const { return is_usable(geometry_.surfel[pixel]); }
+
+  bool has_solid(int layer, std::size_t pixel) const {
+    const int sender = solids_.at(layer, pixel).sender;
+    return sender >= 0 && is_solid(pixel) && is_solid(std::size_t(sender));
   }
 
-  /// Corners: fronts pixel by pixel, covered surfaces, then the backs of both in the same order.
+  /// Corners: fronts layer by layer and pixel by pixel, then the backs in the same order. In layer
+  /// 0 every pixel has one.
   void make_nodes() {
     TriangleMesh& sheets = out_.sheets;
     const std::size_t count = geometry_.surfel.size();
-    covered_.assign(!hidden_.behind.empty() ? count : 0, 0);
     sheets.corners.reserve(2 * count);
     sheets.owners.reserve(2 * count);
     backs_.reserve(count);
     bool all_endless = true;
-    const auto add = [&](const glm::vec3& position, int source, bool covered) {
+    const auto add = [&](const glm::vec3& position, int layer, const Solid& solid) {
       sheets.corners.push_back(out_.space.point(position));
-      sheets.owners.push_back({sheets.corners.back().z, source, covered});
-      const float thickness = !hidden_.thickness.empty()
-                                  ? std::max(hidden_.thickness[std::size_t(source)], 0.0f)
-                                  : std::numeric_limits<float>::infinity();
+      sheets.owners.push_back({sheets.corners.back().z, solid.sender, layer});
+      const float thickness = std::max(solid.thickness, 0.0f);
       all_endless &= std::isinf(thickness);
       backs_.push_back(out_.space.height_behind(sheets.corners.back().z, position, thickness));
       finite_.push_back(!std::isinf(thickness));
     };
     for (std::size_t i = 0; i < count; ++i) {
-      const bool solid = is_solid(geometry_, i);
-      add(solid ? glm::vec3(geometry_.surfel[i].position) : glm::vec3(0, 0, -1), int(i), false);
+      add(is_solid(i) ? glm::vec3(geometry_.surfel[i].position) : glm::vec3(0, 0, -1), 0,
+          solids_.at(0, i));
     }
-    for (std::size_t i = 0; i < covered_.size(); ++i) {
-      if (!goes_on_behind(i)) continue;
-      covered_[i] = std::uint32_t(sheets.corners.size());
-      add(position_behind(i), hidden_.behind_source[i], true);
+    for (int layer = 1; layer < solids_.layers(); ++layer) {
+      behind_.emplace_back(count, 0);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!has_solid(layer, i)) continue;
+        behind_.back()[i] = std::uint32_t(sheets.corners.size());
+        const Solid solid = solids_.at(layer, i);
+        add(point_behind(geometry_, i, solid.distance), layer, solid);
+      }
     }
     nodes_ = std::uint32_t(sheets.corners.size());
     if (all_endless) return;
@@ -116,39 +129,31 @@ class Builder {
     }
   }
 
-  glm::vec3 position_behind(std::size_t pixel) const {
-    const glm::vec3 p(geometry_.surfel[pixel].position);
-    const glm::vec3 along = out_.space.orthographic() ? glm::vec3(0, 0, -1) : glm::normalize(p);
-    return p + hidden_.behind[pixel] * along;
-  }
-
-  /// The nodes of one pixel: what it shows, and what goes on behind.
-  std::array<std::optional<Node>, 2> nodes_at(int x, int y) const {
-    std::array<std::optional<Node>, 2> nodes;
+  Nodes nodes_at(int x, int y) const {
+    Nodes nodes;
     if (x < 0 || y < 0 || x >= width_ || y >= height_) return nodes;
     const std::size_t pixel = geometry_.surfel.index(x, y);
-    if (!is_solid(geometry_, pixel)) return nodes;
-    nodes[0] = Node{int(pixel), false, std::uint32_t(pixel)};
-    if (!covered_.empty() && covered_[pixel] != 0)
-      nodes[1] = Node{int(pixel), true, covered_[pixel]};
+    if (!is_solid(pixel)) return nodes;
+    nodes.node[0] = {int(pixel), 0, std::uint32_t(pixel)};
+    nodes.count = 1;
+    for (std::size_t k = 0; k < behind_.size(); ++k) {
+      if (behind_[k][pixel] == 0) continue;
+      nodes.node[std::size_t(nodes.count++)] = {int(pixel), int(k + 1), behind_[k][pixel]};
+    }
     return nodes;
   }
 
-  glm::vec3 position(const Node& n) const {
-    const auto pixel = std::size_t(n.pixel);
-    return n.covered ? position_behind(pixel) : glm::vec3(geometry_.surfel[pixel].position);
-  }
-  glm::vec3 normal(const Node& n) const {
-    return glm::vec3(geometry_.surfel[std::size_t(out_.sheets.owners[n.corner].pixel)].normal);
+  SurfacePoint surface_point(const Node& n) const {
+    const auto pixel = std::size_t(n.pixel),
+               sender = std::size_t(out_.sheets.owners[n.corner].sender);
+    return {n.layer == 0 ? glm::vec3(geometry_.surfel[pixel].position)
+                         : point_behind(geometry_, pixel, solids_.at(n.layer, pixel).distance),
+            glm::vec3(geometry_.surfel[sender].normal)};
   }
   const glm::vec3& corner(const Node& n) const { return out_.sheets.corners[n.corner]; }
 
   bool joined(const Node& a, const Node& b) const {
-    const glm::vec3 p = position(a), q = position(b), step = q - p;
-    const float gap =
-        std::max(std::abs(glm::dot(step, normal(a))), std::abs(glm::dot(step, normal(b))));
-    const float depth = out_.space.orthographic() ? 1.0f : std::min(-p.z, -q.z);
-    return gap <= kSurfaceGap * per_pixel_ * depth;
+    return on_one_surface(surface_point(a), surface_point(b), footprint_);
   }
 
   /// Where the tangent plane of a node is at a place of the picture. Nothing where that is farther
@@ -156,7 +161,8 @@ class Builder {
   /// depth.
   std::optional<Point> continued(const Node& n, const glm::vec2& at, const Node* other) const {
     const glm::vec3& c = corner(n);
-    const float step = glm::dot(out_.space.slope(position(n), normal(n)), at - glm::vec2(c));
+    const SurfacePoint here = surface_point(n);
+    const float step = glm::dot(out_.space.slope(here.position, here.normal), at - glm::vec2(c));
     const float room = other ? std::abs(corner(*other).z - c.z) : std::abs(c.z);
     if (!(std::abs(step) <= 0.5f * room)) return std::nullopt;
     const float front = c.z + step, back = backs_[n.corner];
@@ -165,55 +171,69 @@ class Builder {
 
   Point point(const Node& n) const { return {glm::vec2(corner(n)), corner(n).z, backs_[n.corner]}; }
 
+  using Cell = std::array<Nodes, 4>;
+
   void add_cell(int x, int y, Block& block) const {
-    std::array<std::array<std::optional<Node>, 2>, 4> at;
+    Cell at;
     bool any = false, simple = true;
-    for (int k = 0; k < 4; ++k) {
+    for (std::size_t k = 0; k < 4; ++k) {
       at[k] = nodes_at(x + kCornerX[k], y + kCornerY[k]);
-      any |= at[k][0].has_value();
-      simple &= at[k][0].has_value() && !at[k][1];
+      any |= at[k].count > 0;
+      simple &= at[k].count == 1;
     }
     if (!any) return;
     Links links = link(at);
     if (simple && links.count() == 4)
-      return add_sheet({*at[0][0], *at[1][0], *at[2][0], *at[3][0]}, block);
+      return add_sheet({at[0][0], at[1][0], at[2][0], at[3][0]}, block);
     const Camera& camera = geometry_.camera;
     const glm::vec2 centre_px(glm::dvec2(geometry_.window.x0 + x + 1 - camera.cx,
                                          geometry_.window.y0 + y + 1 - camera.cy));
     for (int k = 0; k < 4; ++k) {
-      for (int layer = 0; layer < 2; ++layer) {
-        if (!at[k][layer] || links.seen[k][layer]) continue;
+      for (int layer = 0; layer < at[std::size_t(k)].count; ++layer) {
+        if (links.seen[k][layer]) continue;
         add_group(at, links, k, layer, centre_px, block);
       }
     }
   }
 
-  /// For each side k of a cell, from corner k to the next, and each layer at its start: the layer
-  /// at its end that it is joined to, or -1.
+  /// For each side k of a cell, from corner k to the next, and each node at its start: the node at
+  /// its end that it is joined to, or -1.
   struct Links {
-    int to[4][2] = {{-1, -1}, {-1, -1}, {-1, -1}, {-1, -1}};
-    bool seen[4][2] = {};
+    int to[4][kMostLayers];
+    bool seen[4][kMostLayers] = {};
+
+    Links() {
+      for (auto& side : to) std::fill(std::begin(side), std::end(side), -1);
+    }
     int count() const {
       int n = 0;
-      for (const auto& side : to) n += (side[0] >= 0) + (side[1] >= 0);
+      for (const auto& side : to)
+        n += int(std::count_if(std::begin(side), std::end(side), [](int l) { return l >= 0; }));
       return n;
     }
-    /// The layer at the start of side k that is joined to `layer` at its end.
-    int from(int k, int layer) const { return to[k][0] == layer ? 0 : to[k][1] == layer ? 1 : -1; }
+    /// The node at the start of side k that is joined to node `l` at its end.
+    int from(int k, int l) const {
+      const auto* found = std::find(std::begin(to[k]), std::end(to[k]), l);
+      return found == std::end(to[k]) ? -1 : int(found - std::begin(to[k]));
+    }
   };
-  using Cell = std::array<std::array<std::optional<Node>, 2>, 4>;
 
+  /// Joins what is of one layer first, then across layers.
   Links link(const Cell& at) const {
-    constexpr int kPairs[][2] = {{0, 0}, {1, 1}, {0, 1}, {1, 0}};
     Links links;
     for (int k = 0; k < 4; ++k) {
-      const int next = (k + 1) % 4;
-      bool taken[2] = {};
-      for (const auto& [a, b] : kPairs) {
-        if (!at[k][a] || !at[next][b] || links.to[k][a] >= 0 || taken[b]) continue;
-        if (!joined(*at[k][a], *at[next][b])) continue;
-        links.to[k][a] = b;
-        taken[b] = true;
+      const Nodes &here = at[std::size_t(k)], &next = at[std::size_t(k + 1) % 4];
+      bool taken[kMostLayers] = {};
+      for (const bool same_layer : {true, false}) {
+        for (int a = 0; a < here.count; ++a) {
+          for (int b = 0; b < next.count; ++b) {
+            if ((here[a].layer == next[b].layer) != same_layer || links.to[k][a] >= 0 || taken[b])
+              continue;
+            if (!joined(here[a], next[b])) continue;
+            links.to[k][a] = b;
+            taken[b] = true;
+          }
+        }
       }
     }
     return links;
@@ -261,7 +281,7 @@ class Builder {
     int size = 0, sides = 0;
     for (int k = 0; k < 4; ++k) {
       if (group.layers[k] < 0) continue;
-      nodes[k] = &*at[k][group.layers[k]];
+      nodes[k] = &at[k][group.layers[k]];
       ++size;
       sides += group.joined_to_next[k];
     }
@@ -274,7 +294,7 @@ class Builder {
     bool all_continued = true;
     for (int k = 0; k < 4; ++k) {
       if (!nodes[k]) continue;
-      const Node* across = at[(k + 2) % 4][0] ? &*at[(k + 2) % 4][0] : nullptr;
+      const Node* across = at[(k + 2) % 4].first();
       const auto p = continued(*nodes[k], centre_px, nodes[(k + 2) % 4] ? nullptr : across);
       const Point here = p.value_or(point(*nodes[k]));
       all_continued &= p.has_value();
@@ -290,7 +310,7 @@ class Builder {
         if (is_joined) return middle(point(n), point(*nodes[to]));
         const glm::vec2 px = centre_px + 0.5f * glm::vec2(kCornerX[k] + kCornerX[to] - 1,
                                                           kCornerY[k] + kCornerY[to] - 1);
-        return continued(n, px, at[to][0] ? &*at[to][0] : nullptr).value_or(point(n));
+        return continued(n, px, at[to].first()).value_or(point(n));
       };
       const int next = (k + 1) % 4, before = (k + 3) % 4;
       const bool to_next = group.joined_to_next[k], to_before = group.joined_to_next[before];
@@ -359,20 +379,21 @@ class Builder {
   }
 
   const Geometry& geometry_;
-  const HiddenGeometry& hidden_;
+  const Solids& solids_;
   int width_, height_;
-  float per_pixel_;                     ///< footprint per unit of depth
-  std::vector<std::uint32_t> covered_;  ///< the node behind each pixel; 0: none
-  std::vector<float> backs_;            ///< heights of the backs of nodes
-  std::vector<bool> finite_;            ///< nodes that are not endless
+  PixelFootprint footprint_;
+  std::vector<std::vector<std::uint32_t>>
+      behind_;                ///< layers 1, 2, ...: the pixels' nodes; 0: none
+  std::vector<float> backs_;  ///< heights of the backs of nodes
+  std::vector<bool> finite_;  ///< nodes that are not endless
   std::uint32_t nodes_ = 0;
   HeightField out_;
 };
 
 }  // namespace
 
-HeightField build_height_field(const Geometry& geometry, const HiddenGeometry& hidden) {
-  return Builder(geometry, hidden).build();
+HeightField build_height_field(const Geometry& geometry, const Solids& solids) {
+  return Builder(geometry, solids).build();
 }
 
 }  // namespace ssdo

@@ -17,13 +17,12 @@ class RayScene {
   ~RayScene();
 
   // Directions are unit vectors; a reach may be infinite. What a solid has behind its front counts
-  // as far as that front is within reach too: how far things go on that are far away, no frame
-  // says.
+  // only if that front is within reach too: how far back a distant thing goes is not known.
 
   /// Whether a ray meets anything.
   bool is_blocked(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
 
-  /// Whose surface a ray meets first; pixel -1 for nothing.
+  /// Whose surface a ray meets first; sender -1 for nothing.
   Owner first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
 
  private:

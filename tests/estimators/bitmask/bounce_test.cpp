@@ -155,16 +155,16 @@ TEST(BitmaskBounce, InAClosedBoxNothingOutshinesTheSky) {
   const Camera camera =
       look_at(camera_from_fov(90, kWindow, 1), {0.1, -2.5, 1.6}, {0, 2, 1}, {0, 0, 1});
   const Geometry g = geometry_of(box, camera, kWindow);
-  const HiddenGeometry local = find_hidden_geometry(g);
+  const Solids local = guess_solids(g);
   double brightest = 0, least = 1;
-  for (const HiddenGeometry* hidden : {static_cast<const HiddenGeometry*>(nullptr), &local}) {
+  for (const Solids* solids : {static_cast<const Solids*>(nullptr), &local}) {
     for (const bool extend : {false, true}) {
       for (const float radius : {1.0f, kNoLimit}) {
         const Products out = run(g, {.radius = radius,
                                      .products = {.ao = true, .direct = true},
                                      .slices = 3,
                                      .steps = 12,
-                                     .hidden = hidden,
+                                     .solids = solids,
                                      .extend = extend,
                                      .albedo = 1,
                                      .bounces = 8});

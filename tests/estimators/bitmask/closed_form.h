@@ -17,7 +17,7 @@ const Window kFineWindow{0, 0, 480, 400};
 using Formula = std::function<double(const glm::dvec3& position_world)>;
 
 /// What a scene hides of itself, where that is not everything.
-using Backs = std::function<HiddenGeometry(const Geometry&, const Camera&)>;
+using Backs = std::function<Solids(const Geometry&, const Camera&)>;
 
 /// The same view in a frame of half as many pixels each way.
 inline Window halved(const Window& w) { return {w.x0 / 2, w.y0 / 2, w.x1 / 2, w.y1 / 2}; }
@@ -30,8 +30,8 @@ inline Camera halved(Camera camera) {
 inline double error_of_ao(const Surface& scene, const Camera& camera, const Window& window,
                           BitmaskRequest request, const Formula& formula, const Backs& backs) {
   const Geometry g = geometry_of(scene, camera, window);
-  std::optional<HiddenGeometry> hidden;
-  if (backs) request.hidden = &hidden.emplace(backs(g, camera));
+  std::optional<Solids> solids;
+  if (backs) request.solids = &solids.emplace(backs(g, camera));
   const Products out = run(g, request);
   return middle(
       window,

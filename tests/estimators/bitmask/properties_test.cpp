@@ -49,9 +49,9 @@ std::size_t count_differences(const Products& a, const Products& b) {
 
 TEST(BitmaskProperties, AnyNumberOfThreadsGivesTheSameBits) {
   const Geometry g = geometry_of(still_life(), camera(), kWindow);
-  const HiddenGeometry hidden = find_hidden_geometry(g);
+  const Solids solids = guess_solids(g);
   BitmaskRequest request = all_products();
-  request.hidden = &hidden;
+  request.solids = &solids;
   std::vector<Products> outs;
   for (const int threads : {1, 2, 7}) {
     const ThreadLimit limit(threads);

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "estimators/bitmask.h"
-#include "scene/hidden_geometry.h"
 #include "scene/light/light.h"
+#include "scene/solids.h"
 #include "support/analytic_scene.h"
 #include "support/scene_of.h"
 
@@ -27,17 +27,18 @@ struct BitmaskRequest {
   Environment environment = Environment::constant(glm::vec3(1));
   ProductSet products = {.ao = true};
   int slices = 12, steps = 4096;
-  const HiddenGeometry* hidden = nullptr;
+  const Solids* solids = nullptr;
   bool extend = true;
   float albedo = 0.8f;
   int bounces = 0;
   Plane<glm::vec3> radiance = {};
+  Window receivers = {};
 };
 
 inline Products run(const Geometry& geometry, const BitmaskRequest& request) {
   Scene scene = scene_of(geometry, request.environment, request.albedo);
   scene.senders.radiance = request.radiance;
-  if (request.hidden) scene.hidden = *request.hidden;
+  if (request.solids) scene.solids = *request.solids;
   ProductSet products = request.products;
   products.bounce = request.bounces > 0;
   return bitmask_method().estimate(scene,
@@ -46,7 +47,8 @@ inline Products run(const Geometry& geometry, const BitmaskRequest& request) {
                                     .bounces = request.bounces,
                                     .slices = request.slices,
                                     .steps = request.steps,
-                                    .extend_offscreen = request.extend},
+                                    .extend_offscreen = request.extend,
+                                    .receivers = request.receivers},
                                    {});
 }
 

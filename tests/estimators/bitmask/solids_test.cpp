@@ -19,16 +19,16 @@ struct Ball {
 
   Surface scene() const { return all_of({plane({}, {0, 0, 1}), sphere(centre, radius)}); }
 
-  HiddenGeometry hidden(const Geometry& g, const Camera& camera) const {
-    HiddenGeometry hidden = constant_thickness(g, kNoLimit);
+  Solids solids(const Geometry& g, const Camera& camera) const {
+    Solids solids = constant_thickness(g, kNoLimit);
     for (int y = 0; y < g.window.height(); ++y) {
       for (int x = 0; x < g.window.width(); ++x) {
         const Ray ray = ray_through(camera, x + 0.5, y + 0.5);
         const auto hit = sphere(centre, radius)(ray);
-        if (hit) hidden.thickness(x, y) = float(-2 * radius * glm::dot(hit->normal, ray.direction));
+        if (hit) solids.thickness(x, y) = float(-2 * radius * glm::dot(hit->normal, ray.direction));
       }
     }
-    return hidden;
+    return solids;
   }
 
   /// Share of the cosine that a sphere above the horizon covers.
@@ -42,7 +42,7 @@ void expect_ball(const std::string& name, const Ball& ball, const Camera& camera
   expect_closed_form(
       name, ball.scene(), camera, {.radius = kNoLimit},
       [&](const glm::dvec3& p) { return 1 - ball.form_factor(p); },
-      [&](const Geometry& g, const Camera& c) { return ball.hidden(g, c); });
+      [&](const Geometry& g, const Camera& c) { return ball.solids(g, c); });
 }
 
 TEST(BitmaskSolids, ASphereHidesItsFormFactor) {

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "estimators/bitmask/request.h"
-#include "scene/hidden_geometry.h"
+#include "scene/solids.h"
 
 namespace ssdo::test {
 namespace {
@@ -22,7 +22,7 @@ Environment one_sun() {
 /// Share of the pixels that have the sun where rays do not, or the other way round.
 double share_that_differs(const Surface& scene, const Camera& camera, const Window& window) {
   const Geometry g = geometry_of(scene, camera, window);
-  const HiddenGeometry hidden = find_hidden_geometry(g);
+  const Solids solids = guess_solids(g);
   const Environment environment = one_sun();
   const Light light = model_light(environment, g.world_to_camera);
   EXPECT_EQ(light.suns.size(), 1u);
@@ -33,7 +33,7 @@ double share_that_differs(const Surface& scene, const Camera& camera, const Wind
                                .products = {.ao = true, .direct = true},
                                .slices = 2,
                                .steps = 200,
-                               .hidden = &hidden});
+                               .solids = &solids});
   double differs = 0, shadows = 0;
   for (int y = 0; y < window.height(); ++y) {
     for (int x = 0; x < window.width(); ++x) {
@@ -72,7 +72,7 @@ TEST(BitmaskSun, WhatGoesOnBeyondTheFrameIsNotDrawnAcrossIt) {
   const Camera camera =
       look_at(camera_from_fov(40, window, 1), {0, -3, 1.5}, {0, 0, 0.3}, {0, 0, 1});
   const Geometry g = geometry_of(scene, camera, window);
-  const HiddenGeometry hidden = find_hidden_geometry(g);
+  const Solids solids = guess_solids(g);
   auto map = std::make_shared<Plane<glm::vec3>>(256, 128, glm::vec3(0));
   (*map)(64, 21) = glm::vec3(8000);
   EnvironmentFrame frame;
@@ -82,7 +82,7 @@ TEST(BitmaskSun, WhatGoesOnBeyondTheFrameIsNotDrawnAcrossIt) {
                                .products = {.ao = true, .direct = true},
                                .slices = 2,
                                .steps = 64,
-                               .hidden = &hidden});
+                               .solids = &solids});
   // On the floor, where the way to the sun passes the fence above the frame's upper edge.
   float most = 0;
   for (const glm::vec3& light : out.direct.pixels) most = std::max(most, light.x);

@@ -1,36 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// One depth layer does not know how thick things are, nor what they cover, and that is the largest
-// error of all screen-space light: an order above sampling noise. Two guesses, both from runs of
-// pixels along a line of the frame that lie on one surface:
+// One depth layer does not know how thick things are, nor what is behind them, and that is the
+// largest error of all screen-space light: an order above sampling noise. Two guesses, both from
+// runs of pixels along a line of the frame that lie on one surface:
 //
 // - Things are as thick as they are wide. The width at a pixel is the least length, in space, of
 //   the runs through it in four directions (rows, columns, diagonals). A run that ends where
-//   something nearer begins tells only how much of the thing is seen: it counts kPartlySeen times;
-//   one with both ends covered, or at the frame's border, tells nothing. So walls and grounds are
-//   endless, blades of grass are thin, and a box is as deep as it is wide.
+//   something nearer begins shows only a part of the thing: it counts kPartlySeen times; one with
+//   both ends behind something, or at the frame's border, shows nothing of its width. So walls and
+//   grounds are endless, blades of grass are thin, and a box is as deep as it is wide.
 //
-// - What is covered goes on behind. Where a run ends and something farther begins, the farther
+// - Surfaces go on as a second layer. Where a run ends and something farther begins, the farther
 //   surface continues behind the run as its tangent plane. Each pixel takes the surface that
 //   reaches it from the nearest end of its runs.
 //
 // Measured against path-traced occlusion on the seven frames that this was developed with: see man
 // ssdo-methods.
-#include "scene/hidden_geometry.h"
+#include "scene/solids.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <utility>
 
 #include "parallel/tiles.h"
+#include "scene/normals.h"
+#include "scene/one_surface.h"
 
 namespace ssdo {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// What a run that is covered at one end counts for.
+/// What a run counts for that goes on behind something at one end.
 constexpr float kPartlySeen = 3;
 
 /// The lines of pixels in one of four directions.
@@ -40,7 +43,12 @@ struct Direction {
 constexpr Direction kDirections[] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
 
 /// How a pixel meets a neighbour.
-enum class Meets : unsigned char { same_surface, ends, covered, border };
+enum class Meets : unsigned char {
+  same_surface,
+  ends,         ///< before something farther, or nothing
+  goes_behind,  ///< something nearer
+  border,
+};
 
 /// Pixels (x, y), (x + dx, y + dy), ... of one surface, and what is before and after them.
 struct Run {
@@ -55,9 +63,7 @@ struct Run {
 
 class Runs {
  public:
-  explicit Runs(const Geometry& geometry)
-      : geometry_(geometry),
-        per_pixel_(float(1 / std::min(geometry.camera.fx, geometry.camera.fy))) {}
+  explicit Runs(const Geometry& geometry) : geometry_(geometry), footprint_(geometry.camera) {}
 
   /// Calls `work(run)` for all runs of one direction. Runs do not overlap.
   template <class Work>
@@ -73,10 +79,7 @@ class Runs {
     });
   }
 
-  /// Width of what a pixel shows, in scene units.
-  float footprint(const Surfel& s) const {
-    return geometry_.camera.orthographic ? per_pixel_ : -s.position.z * per_pixel_;
-  }
+  float footprint(const Surfel& s) const { return footprint_.at(-s.position.z); }
 
   bool contains(int x, int y) const {
     return x >= 0 && y >= 0 && x < geometry_.surfel.width && y < geometry_.surfel.height;
@@ -102,21 +105,21 @@ class Runs {
         if (run.after != Meets::same_surface) break;
       }
       work(run);
-      before = run.after == Meets::ends ? Meets::covered : Meets::ends;
+      before = run.after == Meets::ends ? Meets::goes_behind : Meets::ends;
     }
   }
 
   Meets meet(const Surfel& a, const Surfel& b) const {
     if (b.position.w == 0) return Meets::ends;
-    const glm::vec3 step(b.position - a.position);
-    const float gap = std::max(std::abs(glm::dot(step, glm::vec3(a.normal))),
-                               std::abs(glm::dot(step, glm::vec3(b.normal))));
-    if (gap <= kSurfaceGap * std::min(footprint(a), footprint(b))) return Meets::same_surface;
-    return a.position.z > b.position.z ? Meets::ends : Meets::covered;
+    const auto point = [](const Surfel& s) {
+      return SurfacePoint{glm::vec3(s.position), glm::vec3(s.normal)};
+    };
+    if (on_one_surface(point(a), point(b), footprint_)) return Meets::same_surface;
+    return a.position.z > b.position.z ? Meets::ends : Meets::goes_behind;
   }
 
   const Geometry& geometry_;
-  float per_pixel_;  ///< footprint per unit of depth
+  PixelFootprint footprint_;
 };
 
 float width_of(const Run& run, const Geometry& geometry, const Runs& runs) {
@@ -129,10 +132,10 @@ float width_of(const Run& run, const Geometry& geometry, const Runs& runs) {
   return (between + ends) * (unknown_ends == 1 ? kPartlySeen : 1.0f);
 }
 
-/// Continues the surface beyond one end of a run behind it. `distance_px` holds how far away the
-/// surface is that each pixel has so far.
+/// Continues the surface beyond one end of a run behind it, in `out`. `distance_px` holds how far
+/// away the surface is that each pixel has so far.
 void continue_behind(const Run& run, bool at_start, const Geometry& geometry, const Runs& runs,
-                     Plane<float>& distance_px, HiddenGeometry& out) {
+                     Plane<float>& distance_px, SolidLayer& out) {
   if ((at_start ? run.before : run.after) != Meets::ends) return;
   const int beyond = at_start ? -1 : run.length;
   const int source_x = run.x_at(beyond), source_y = run.y_at(beyond);
@@ -146,40 +149,53 @@ void continue_behind(const Run& run, bool at_start, const Geometry& geometry, co
     const float away_px = float(k + 1) * run.step_px();
     if (away_px >= distance_px[pixel]) continue;
     const glm::vec3 front(geometry.surfel[pixel].position);
-    const glm::vec3 along =
-        geometry.camera.orthographic ? glm::vec3(0, 0, -1) : glm::normalize(front);
-    const float depth = glm::dot(normal, point - front) / glm::dot(normal, along);
-    if (!(depth > 0 && depth < kInfinity)) continue;
+    const glm::vec3 along = -direction_to_viewer(front, geometry.camera.orthographic);
+    const float distance = glm::dot(normal, point - front) / glm::dot(normal, along);
+    if (!(distance > 0 && distance < kInfinity)) continue;
     distance_px[pixel] = away_px;
-    out.behind[pixel] = depth;
-    out.behind_source[pixel] = int(source);
+    out.distance[pixel] = distance;
+    out.sender[pixel] = int(source);
   }
 }
 
 }  // namespace
 
-HiddenGeometry constant_thickness(const Geometry& geometry, float thickness) {
-  return {Plane<float>(geometry.surfel.width, geometry.surfel.height, thickness), {}, {}};
+glm::vec3 point_behind(const Geometry& geometry, std::size_t pixel, float distance) {
+  const glm::vec3 p(geometry.surfel[pixel].position);
+  return p - distance * direction_to_viewer(p, geometry.camera.orthographic);
 }
 
-HiddenGeometry find_hidden_geometry(const Geometry& geometry) {
+Solids constant_thickness(const Geometry& geometry, float thickness) {
+  return {Plane<float>(geometry.surfel.width, geometry.surfel.height, thickness), {}};
+}
+
+Solids guess_solids(const Geometry& geometry) {
   const int w = geometry.surfel.width, h = geometry.surfel.height;
-  HiddenGeometry out{Plane<float>(w, h, kInfinity), Plane<float>(w, h, kInfinity),
-                     Plane<int>(w, h, -1)};
+  Plane<float> thickness(w, h, kInfinity), distance_px(w, h, kInfinity);
+  SolidLayer second{Origin::guessed, Plane<float>(w, h, kInfinity), Plane<float>(w, h, kInfinity),
+                    Plane<int>(w, h, -1)};
   const Runs runs(geometry);
-  Plane<float> distance_px(w, h, kInfinity);
   for (const Direction& direction : kDirections) {
     runs.for_each(direction, [&](const Run& run) {
       const float width = width_of(run, geometry, runs);
       for (int i = 0; i < run.length; ++i) {
-        float& thickness = out.thickness(run.x_at(i), run.y_at(i));
-        thickness = std::min(thickness, width);
+        float& least = thickness(run.x_at(i), run.y_at(i));
+        least = std::min(least, width);
       }
-      continue_behind(run, true, geometry, runs, distance_px, out);
-      continue_behind(run, false, geometry, runs, distance_px, out);
+      continue_behind(run, true, geometry, runs, distance_px, second);
+      continue_behind(run, false, geometry, runs, distance_px, second);
     });
   }
-  return out;
+  // A surface is as thick behind something as at the pixel that shows it.
+  for_each_row(h, [&](int y) {
+    for (int x = 0; x < w; ++x) {
+      const int sender = second.sender(x, y);
+      if (sender >= 0) second.thickness(x, y) = thickness[std::size_t(sender)];
+    }
+  });
+  Solids solids{std::move(thickness), {}};
+  solids.behind.push_back(std::move(second));
+  return solids;
 }
 
 }  // namespace ssdo

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "estimators/view_space/picture_space.h"
+#include "estimators/trace/picture_space.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ PictureSpace::PictureSpace(const Geometry& g)
     : orthographic_(g.camera.orthographic), fx_(g.camera.fx), fy_(g.camera.fy) {
   double logarithms = 0, count = 0, farthest = 0;
   for (std::size_t i = 0; i < g.surfel.size(); ++i) {
-    if (!is_solid(g, i)) continue;
+    if (!is_usable(g.surfel[i])) continue;
     const glm::vec3 p(g.surfel[i].position);
     logarithms += std::log(double(-p.z));
     count += 1;
@@ -62,16 +62,6 @@ glm::vec2 PictureSpace::slope(const glm::vec3& p, const glm::vec3& n) const {
 float PictureSpace::height_behind(float h, const glm::vec3& p, float length) const {
   if (orthographic_) return float(std::max(h - scale_ * length, endless_));
   return h / (1 + length / glm::length(p));
-}
-
-bool is_solid(const Geometry& geometry, std::size_t pixel) {
-  return is_usable(geometry.surfel[pixel]);
-}
-
-float footprint_of(const Geometry& geometry, std::size_t pixel) {
-  const Camera& camera = geometry.camera;
-  const double depth = camera.orthographic ? 1.0 : -double(geometry.surfel[pixel].position.z);
-  return float(depth / std::min(camera.fx, camera.fy));
 }
 
 }  // namespace ssdo

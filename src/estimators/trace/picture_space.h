@@ -41,11 +41,4 @@ class PictureSpace {
   double endless_;  ///< lowest height of parallel views
 };
 
-/// Whether a pixel shows a surface that light transport can work with: in front of the viewer, of
-/// finite numbers.
-bool is_solid(const Geometry& geometry, std::size_t pixel);
-
-/// Width of what a pixel shows, in scene units.
-float footprint_of(const Geometry& geometry, std::size_t pixel);
-
 }  // namespace ssdo

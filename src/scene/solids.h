@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "math/plane.h"
+#include "scene/geometry.h"
+
+namespace ssdo {
+
+/// How it is known that a solid is where it is.
+enum class Origin : std::uint8_t {
+  seen,      ///< the pixel shows its front
+  guessed,   ///< the pixels around suggest it
+  measured,  ///< another picture shows it
+};
+
+/// Most solids of one pixel, with the one that is seen. Every march tests all layers at each step.
+constexpr int kMostLayers = 4;
+
+/// A solid on the view ray of a pixel. Lengths are in scene units along that ray, infinite where
+/// there is no end.
+struct Solid {
+  float distance = 0;   ///< from the surface that the pixel shows to this solid's front
+  float thickness = 0;  ///< from its front to its back
+  int sender = -1;      ///< the pixel that shows its surface; -1: there is no solid
+};
+
+/// At most one solid behind the surface that each pixel shows; planes as large as the geometry's.
+struct SolidLayer {
+  Origin origin;
+  Plane<float> distance, thickness;
+  Plane<int> sender;
+};
+
+/// The solids on the view ray of every pixel of a geometry, near to far: layer 0 is what the pixel
+/// shows, the others are behind it. Without planes everything that is seen is endless.
+struct Solids {
+  Plane<float> thickness;          ///< of layer 0, from front to back; empty: infinite
+  std::vector<SolidLayer> behind;  ///< layers 1, 2, ..., kMostLayers - 1 at most
+
+  int layers() const { return 1 + int(behind.size()); }
+
+  Origin origin(int layer) const {
+    return layer == 0 ? Origin::seen : behind[std::size_t(layer - 1)].origin;
+  }
+
+  /// The solid of a layer at a pixel that shows a surface.
+  Solid at(int layer, std::size_t pixel) const {
+    if (layer > 0) {
+      const SolidLayer& of = behind[std::size_t(layer - 1)];
+      return {of.distance[pixel], of.thickness[pixel], of.sender[pixel]};
+    }
+    constexpr float kEndless = std::numeric_limits<float>::infinity();
+    return {0, thickness.empty() ? kEndless : thickness[pixel], int(pixel)};
+  }
+};
+
+/// The point at this distance behind the surface that a pixel shows, on its view ray.
+glm::vec3 point_behind(const Geometry& geometry, std::size_t pixel, float distance);
+
+/// What a frame alone suggests: how thick things are, and a second layer; see solids.cpp.
+Solids guess_solids(const Geometry& geometry);
+
+/// Everything that is seen is as thick as `thickness`, which may be infinite; one layer.
+Solids constant_thickness(const Geometry& geometry, float thickness);
+
+}  // namespace ssdo

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The solids of a frame as triangles, and whose surface rays meet.
+#include "estimators/trace/height_field.h"
+
+#include <gtest/gtest.h>
+
+#include "estimators/trace/ray_scene.h"
+#include "support/analytic_scene.h"
+
+namespace ssdo::test {
+namespace {
+
+const Window kWindow{0, 0, 64, 48};
+constexpr std::size_t kPixels = 64 * 48, kCells = 63 * 47;
+
+Camera view(bool orthographic) {
+  return look_at(
+      orthographic ? camera_from_ortho_width(4, kWindow, 1) : camera_from_fov(40, kWindow, 1),
+      {0, 0, 6}, {0, 0, 0}, {0, 1, 0});
+}
+
+Surface wall() { return plane({}, {0, 0, 1}); }
+
+/// A square of 1.2 x 1.2 at z = 1.
+Surface card() {
+  return cut(plane({0, 0, 1}, {0, 0, 1}),
+             [](const glm::dvec3& p) { return std::abs(p.x) < 0.6 && std::abs(p.y) < 0.6; });
+}
+
+Geometry card_before_wall(bool orthographic) {
+  return geometry_of(all_of({wall(), card()}), view(orthographic), kWindow);
+}
+
+TEST(HeightField, OfAnEndlessPlaneIsOneSheetOfFronts) {
+  for (const bool orthographic : {false, true}) {
+    const Geometry g = geometry_of(wall(), view(orthographic), kWindow);
+    const HeightField field = build_height_field(g, {});
+    EXPECT_EQ(field.sheets.triangles.size(), 2 * kCells);
+    EXPECT_EQ(field.sheets.corners.size(), kPixels) << "no backs";
+    for (std::size_t i = 0; i < kPixels; ++i) {
+      const glm::vec3 p(g.surfel[i].position);
+      EXPECT_LT(glm::distance(field.space.position(field.sheets.corners[i]), p), 1e-5f);
+      EXPECT_EQ(field.sheets.owners[i].sender, int(i));
+      EXPECT_EQ(field.sheets.owners[i].layer, 0);
+    }
+  }
+}
+
+TEST(HeightField, HasBacksBehindFrontsOnTheirViewRays) {
+  for (const bool orthographic : {false, true}) {
+    const Geometry g = geometry_of(wall(), view(orthographic), kWindow);
+    const HeightField field = build_height_field(g, constant_thickness(g, 0.5f));
+    EXPECT_EQ(field.sheets.triangles.size(), 4 * kCells);
+    ASSERT_EQ(field.sheets.corners.size(), 2 * kPixels);
+    for (std::size_t i = 0; i < kPixels; ++i) {
+      const glm::vec3 back = field.space.position(field.sheets.corners[kPixels + i]);
+      EXPECT_LT(glm::distance(back, point_behind(g, i, 0.5f)), 1e-4f);
+    }
+  }
+}
+
+TEST(HeightField, GoesOnBehindWhatIsSeenWithoutACut) {
+  for (const bool orthographic : {false, true}) {
+    const Geometry g = card_before_wall(orthographic);
+    const RayScene rays(build_height_field(g, guess_solids(g)));
+    int behind = 0;
+    for (std::size_t i = 0; i < kPixels; ++i) {
+      // From halfway between card and wall, straight to the wall.
+      const glm::dvec3 p(g.surfel[i].position);
+      if (p.z < -5.5) continue;
+      const Owner hit = rays.first_hit(p - glm::dvec3(0, 0, 0.9), {0, 0, -1}, 0.2);
+      ASSERT_GE(hit.sender, 0) << "the second layer has no holes";
+      EXPECT_EQ(hit.layer, 1);
+      EXPECT_LT(g.surfel[std::size_t(hit.sender)].position.z, -5.5f) << "the wall sends";
+      ++behind;
+    }
+    EXPECT_GT(behind, 100);
+  }
+}
+
+TEST(HeightField, HoldsALayerWhateverItsNumber) {
+  const Geometry g = card_before_wall(false);
+  const Solids guess = guess_solids(g);
+  Solids third = guess;
+  SolidLayer& nothing = third.behind.emplace_back(guess.behind.front());
+  std::swap(nothing, third.behind.front());
+  for (int& sender : third.behind.front().sender.pixels) sender = -1;
+  const HeightField two = build_height_field(g, guess), three = build_height_field(g, third);
+  EXPECT_EQ(two.sheets.corners, three.sheets.corners);
+  EXPECT_EQ(two.sheets.triangles, three.sheets.triangles);
+  EXPECT_EQ(two.cuts.corners, three.cuts.corners);
+  EXPECT_EQ(three.sheets.owners[kPixels].layer, 2);
+}
+
+TEST(HeightField, HoldsAsManyLayersAsAPixelHas) {
+  const Geometry g = card_before_wall(false);
+  Solids solids = constant_thickness(g, 0.1f);
+  for (const float distance : {0.3f, 0.6f}) {
+    SolidLayer layer{Origin::measured, Plane<float>(64, 48, distance), Plane<float>(64, 48, 0.1f),
+                     Plane<int>(64, 48, -1)};
+    for (std::size_t i = 0; i < kPixels; ++i)
+      if (g.surfel[i].position.z > -5.5) layer.sender[i] = int(i);
+    solids.behind.push_back(std::move(layer));
+  }
+  const RayScene rays(build_height_field(g, solids));
+  const std::size_t middle = g.surfel.index(32, 24);
+  const glm::dvec3 along = glm::normalize(glm::dvec3(g.surfel[middle].position));
+  for (const auto& [from, layer] : {std::pair{-0.05, 0}, {0.2, 1}, {0.5, 2}}) {
+    const glm::dvec3 origin = glm::dvec3(g.surfel[middle].position) + from * along;
+    EXPECT_EQ(rays.first_hit(origin, along, 0.15).layer, layer) << from;
+    EXPECT_EQ(rays.first_hit(origin, along, 0.15).sender, int(middle)) << from;
+    EXPECT_FALSE(rays.is_blocked(origin, along, 0.04)) << from;
+  }
+}
+
+}  // namespace
+}  // namespace ssdo::test
