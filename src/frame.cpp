@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <string_view>
+#include <utility>
 
 #include "estimators/registry.h"
 #include "stopwatch.h"
@@ -61,24 +62,19 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const st
   Frame frame;
   frame.input = input;
   Stopwatch watch;
-  for (const std::string& path : files_of_frame(input, aovs)) frame.files.emplace_back(path);
-  std::vector<const ExrReader*> files;
-  for (const ExrReader& file : frame.files) files.push_back(&file);
   // Names that nothing asks for are no reason to refuse a frame.
   std::vector<Role> unused;
   if (!find_method(options.model.method).products.reflection) unused.push_back(Role::roughness);
   if (!options.model.temporal) unused.push_back(Role::motion);
-  frame.layers = find_layers(files, aovs, options.input.part, unused);
-  require_position(frame.layers, frame.files.front(),
-                   options.input.listed ? "" : " ('ssdo info' lists the layers)");
-  frame.gbuffer = read_gbuffer(files, frame.layers, options.input.gbuffer);
-  frame.times.read = watch.lap();
+  View view = read_view(input, aovs, options.input, options.camera, unused);
+  frame.files = std::move(view.files);
+  frame.layers = std::move(view.layers);
+  frame.gbuffer = std::move(view.gbuffer);
+  frame.report = std::move(view.report);
+  frame.times.read = view.read_ms;
 
   Scene& scene = frame.scene;
-  scene.geometry = build_geometry(frame.gbuffer, options.camera, input, frame.report);
-  // From here on there is one position and one normal: those of the geometry.
-  frame.gbuffer.position = frame.gbuffer.normal = {};
-  frame.gbuffer.depth = {};
+  scene.geometry = std::move(view.geometry);
   scene.senders = {std::move(frame.gbuffer.albedo), std::move(frame.gbuffer.radiance)};
   scene.roughness = std::move(frame.gbuffer.roughness);
 
@@ -104,7 +100,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const st
     scene.solids = model.thickness ? constant_thickness(scene.geometry, float(*model.thickness))
                                    : guess_solids(scene.geometry);
   }
-  frame.times.prepare = watch.lap();
+  frame.times.prepare = watch.lap() - frame.times.read;
   return frame;
 }
 

@@ -12,18 +12,10 @@
 #include "plan.h"
 #include "scene/gbuffer.h"
 #include "scene/layers/layers.h"
-#include "scene/read_gbuffer.h"
 #include "scene/scene.h"
+#include "scene/view.h"
 
 namespace ssdo {
-
-/// Which layers are read, and how.
-struct InputOptions {
-  std::vector<LayerRequest> aovs;
-  std::string part;  ///< name or number; empty: all
-  GBufferOptions gbuffer;
-  bool listed = false;  ///< the user has seen the list of layers: errors need not say where it is
-};
 
 /// All that the user says about the result.
 struct FrameOptions {

@@ -44,7 +44,7 @@ bool is_like(const glm::vec3& now, const Plane<glm::vec3>& before, const Footpri
 }
 
 /// Counts the evidence of the pixels of `now`.
-void add_pixels(Continuity& sum, const View& before, const View& now,
+void add_pixels(Continuity& sum, const FrameSurfaces& before, const FrameSurfaces& now,
                 const Plane<glm::vec2>& motion) {
   const Reprojection reprojection(before.geometry, now.geometry);
   const bool colored = !before.albedo.empty() && !now.albedo.empty();
@@ -68,7 +68,8 @@ void add_pixels(Continuity& sum, const View& before, const View& now,
 
 bool Continuity::is_cut() const { return met >= kLeastPixels && kept < kLeastKept * met; }
 
-Continuity compare_frames(const View& before, const View& now, const Plane<glm::vec2>& motion) {
+Continuity compare_frames(const FrameSurfaces& before, const FrameSurfaces& now,
+                          const Plane<glm::vec2>& motion) {
   Continuity still, moving;
   add_pixels(still, before, now, {});
   add_pixels(still, now, before, {});

@@ -10,7 +10,7 @@
 namespace ssdo {
 
 /// A frame of a sequence as the next one remembers it.
-struct View {
+struct FrameSurfaces {
   const Geometry& geometry;        ///< must know the world
   const Plane<glm::vec3>& albedo;  ///< empty where there is none
 };
@@ -27,7 +27,8 @@ struct Continuity {
 /// Compares every fourth pixel in a row and in a column. What is new in the picture, and what
 /// something else may have hidden, says nothing. `motion` is that of temporal.h; of the frames as
 /// they are and with motion, the result is the one of which more is kept.
-Continuity compare_frames(const View& before, const View& now, const Plane<glm::vec2>& motion = {});
+Continuity compare_frames(const FrameSurfaces& before, const FrameSurfaces& now,
+                          const Plane<glm::vec2>& motion = {});
 
 /// Whether motion seems to have other units or signs than accumulate takes: along an axis, on most
 /// surfaces that the cameras move, it is not within 30 % of what P and the cameras say. Cameras

@@ -22,7 +22,7 @@ struct Shot {
   Geometry geometry;
   Plane<glm::vec3> albedo;
 
-  View view() const { return {geometry, albedo}; }
+  FrameSurfaces view() const { return {geometry, albedo}; }
 };
 
 using Texture = std::function<glm::vec3(const glm::dvec3& world)>;

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "io/exr_reader.h"
+#include "scene/gbuffer.h"
+#include "scene/geometry.h"
+#include "scene/layers/layers.h"
+#include "scene/read_gbuffer.h"
+
+namespace ssdo {
+
+/// Which layers are read, and how.
+struct InputOptions {
+  std::vector<LayerRequest> aovs;
+  std::string part;  ///< name or number; empty: all
+  GBufferOptions gbuffer;
+  bool listed = false;  ///< the user has seen the list of layers: errors need not say where it is
+};
+
+/// What one camera shows: a G-buffer, from its files to its surfaces in camera space.
+struct View {
+  std::deque<ExrReader> files;  ///< the frame, then the files that --aov names
+  LayerTable layers;
+  GBuffer gbuffer;  ///< without position, normal and depth: the geometry has them
+  Geometry geometry;
+  GeometryReport report;
+  double read_ms = 0;  ///< wall time of what was read, without the geometry
+};
+
+/// Reads the file `input` and the files that `aovs` name: read, layers, gbuffer, camera, geometry.
+/// `aovs` are the requests for layers, with files of this very frame. The roles in `unused` are
+/// filled on request only.
+/// Errors: those of the stages.
+View read_view(const std::string& input, const std::vector<LayerRequest>& aovs,
+               const InputOptions& options, const CameraOptions& camera,
+               const std::vector<Role>& unused);
+
+}  // namespace ssdo
