@@ -100,7 +100,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const st
   ModelOptions model = options.model;
   if (model.temporal) model.seed += unsigned(number);
   frame.plan = make_plan(model, options.output, scene, frame.gbuffer, input);
-  if (frame.plan.method->looks_behind()) {
+  if (frame.plan.method->takes.thickness) {
     scene.hidden = model.thickness ? constant_thickness(scene.geometry, float(*model.thickness))
                                    : find_hidden_geometry(scene.geometry);
   }
