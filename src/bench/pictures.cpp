@@ -65,10 +65,10 @@ std::string BenchPictures::picture_of(const std::string& product, const Channels
   }
   Products products;
   if (const auto* plane = std::get_if<Plane<glm::vec3> Products::*>(&shown.plane)) {
-    products.** plane = std::move(colors);
+    products.*(*plane) = std::move(colors);
   } else if (const auto* grey = std::get_if<Plane<float> Products::*>(&shown.plane)) {
-    products.** grey = Plane<float>(g.window.width(), g.window.height());
-    for (std::size_t i = 0; i < colors.size(); ++i) (products.**grey)[i] = luminance(colors[i]);
+    products.*(*grey) = Plane<float>(g.window.width(), g.window.height());
+    for (std::size_t i = 0; i < colors.size(); ++i) (products.*(*grey))[i] = luminance(colors[i]);
   }
   return encode(product, products);
 }

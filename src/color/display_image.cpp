@@ -30,7 +30,7 @@ void apply_display(Plane<glm::vec3>& colors, const DisplayTransform& display) {
 Plane<glm::vec3> colors_of(const Product& product, const Scene& scene, const GBuffer& gbuffer,
                            const Products& products) {
   const auto* plane = std::get_if<Plane<glm::vec3> Products::*>(&product.plane);
-  return plane ? products.**plane : composite(scene, gbuffer, products);
+  return plane ? products.*(*plane) : composite(scene, gbuffer, products);
 }
 
 }  // namespace
