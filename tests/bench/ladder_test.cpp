@@ -17,9 +17,10 @@ namespace {
 
 int samples_of(const Setting& setting) {
   const ModelOptions model = setting.applied_to({});
-  const Request request{.parameters = resolve_parameters(*setting.method, model.set),
-                        .slices = model.slices.value_or(0),
-                        .steps = model.steps.value_or(0)};
+  Request request;
+  request.parameters = resolve_parameters(*setting.method, model.set);
+  request.slices = model.slices.value_or(0);
+  request.steps = model.steps.value_or(0);
   return setting.method->samples_per_pixel(request);
 }
 
