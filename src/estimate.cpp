@@ -63,7 +63,7 @@ Plane<float> noise_of(Plane<float> difference, const Plan& plan) {
   // The slices of one pixel are evenly spaced, so that doubling them halves the error, and the
   // difference of halves overestimates it by sqrt(2^2 - 1). Pixels that a filter averages have
   // independent slices: no correction. Both measured on seven frames.
-  const bool one_pixel = plan.method->marches && !plan.filter->apply;
+  const bool one_pixel = plan.method->takes.march && !plan.filter->apply;
   for (float& e : difference.pixels) e /= one_pixel ? std::sqrt(3.0f) : 1.0f;
   return difference;
 }
@@ -91,7 +91,7 @@ class Round {
   Round(const Scene& scene, const Plan& plan, const Request& request,
         const std::function<void(double)>& told)
       : scene_(scene), plan_(plan), request_(request), told_(told) {
-    compares_steps_ = request.products.error && plan.method->marches;
+    compares_steps_ = request.products.error && plan.method->takes.march;
     passes_ = (compares_steps_ ? 2.0 : 1.0) * (1.0 + request.bounces);
   }
 
@@ -169,7 +169,7 @@ bool refine(Request& request, double wanted, const ErrorFound& found) {
 
 std::string describe(const ErrorFound& found, const Method& method, const Request& request) {
   std::string text = fmt::format("error of direct + bounce {:.2g}", found.all);
-  if (method.marches)
+  if (method.takes.march)
     text += fmt::format(": {:.2g} is the noise of {} slices, {:.2g} the bias of {} steps",
                         found.noise, request.slices, found.steps, request.steps);
   return text;

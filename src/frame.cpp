@@ -96,7 +96,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const st
   ModelOptions model = options.model;
   if (model.temporal) model.seed += unsigned(number);
   frame.plan = make_plan(model, options.output, scene, frame.gbuffer, input);
-  if (frame.plan.method->takes_solids()) {
+  if (frame.plan.method->takes.thickness) {
     scene.solids = model.thickness ? constant_thickness(scene.geometry, float(*model.thickness))
                                    : guess_solids(scene.geometry);
   }

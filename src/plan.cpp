@@ -4,28 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include "error.h"
 #include "estimators/registry.h"
-#include "io/image_file.h"
 #include "math/luminance.h"
+#include "product_choice.h"
 #include "simd/isa.h"
 
 namespace ssdo {
 namespace {
-
-constexpr std::array<std::string_view, 7> kProducts = {"ao",     "bent",  "reflection", "direct",
-                                                       "bounce", "error", "composite"};
-
-/// What an EXR holds where --products is not given, as far as frame and method allow.
-constexpr std::array<std::string_view, 4> kUsualProducts = {"ao", "direct", "bounce", "composite"};
-
-/// --products all: whatever frame and method allow.
-constexpr std::string_view kAll = "all";
 
 /// Share of the frame's height at the median depth, of methods that need a limit. Of 0.1 to 2, the
 /// one with the least error of direct light against a path tracer on five of seven frames.
@@ -34,131 +24,44 @@ constexpr float kAutoRadius = 0.3f;
 /// A bounce from surfaces that are darker than this everywhere is below 1 % of the light.
 constexpr float kDarkAlbedo = 0.01f;
 
-using Names = std::vector<std::string>;
-
-bool contains(const Names& names, std::string_view name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-bool makes(const Method& method, std::string_view product, bool ambient) {
-  const ProductSet& can = method.products;
-  if (product == "composite" && ambient) return can.ao;
-  return product == "ao"           ? can.ao
-         : product == "bent"       ? can.bent
-         : product == "reflection" ? can.reflection
-         : product == "bounce"     ? can.bounce
-         : product == "error"      ? can.error
-                                   : can.direct;
-}
-
-std::string methods_that_make(std::string_view product, bool ambient) {
-  std::string names;
-  for (const Method& method : methods()) {
-    if (makes(method, product, ambient))
-      names += (names.empty() ? "" : ", ") + std::string(method.name);
-  }
-  return names;
-}
-
-/// Decides what is made, and in which files it goes.
-class ProductChoice {
- public:
-  ProductChoice(const Method& method, const OutputOptions& output, const Scene& scene,
-                const GBuffer& gbuffer, const std::string& file)
-      : method_(method),
-        output_(output),
-        albedo_(!scene.senders.albedo.empty()),
-        ambient_(!gbuffer.ambient.empty()),
-        roughness_(!scene.roughness.empty()),
-        file_(file) {}
-
-  void choose(Plan& plan) const {
-    const auto is_picture = [](const std::string& path) { return is_display_image(path); };
-    const auto pictures = std::count_if(output_.files.begin(), output_.files.end(), is_picture);
-    const bool only_saves = output_.files.empty() && !output_.saves.empty();
-    if (std::size_t(pictures) < output_.files.size() || (output_.files.empty() && !only_saves)) {
-      plan.write = of_exr();
-      if (output_.products.empty() && !albedo_)
-        plan.reasons.push_back(ambient_ ? "no bounce: there is no albedo"
-                                        : "no bounce and no composite: there is no albedo");
-    }
-    Names wanted = output_.products;
-    std::erase(wanted, kAll);
-    wanted.insert(wanted.end(), plan.write.begin(), plan.write.end());
-    for (const SaveRequest& save : output_.saves) wanted.push_back(save.product);
-    if (pictures > 0) wanted.push_back(plan.show = of_picture());
-    for (const std::string& name : wanted) check(name);
-    for (const std::string_view name : kProducts) {
-      if (contains(wanted, name)) plan.make.emplace_back(name);
-    }
-    const bool lit = contains(wanted, "composite") && !ambient_;
-    const bool error = contains(wanted, "error") || plan.error;
-    plan.request.products.ao =
-        contains(wanted, "ao") || (contains(wanted, "composite") && ambient_);
-    plan.request.products.bent = contains(wanted, "bent");
-    plan.request.products.reflection = contains(wanted, "reflection");
-    plan.request.products.error = error;
-    plan.request.products.direct = contains(wanted, "direct") || lit || error;
-    plan.request.products.bounce = contains(wanted, "bounce") || lit || (error && albedo_);
-  }
-
- private:
-  bool needs_albedo(std::string_view product) const {
-    return product == "bounce" || (product == "composite" && !ambient_);
-  }
-
-  Names of_exr() const {
-    Names names;
-    for (const std::string_view name : kProducts) {
-      // Without a layer reflections have a roughness that only who asks for them can know.
-      const bool possible = makes(method_, name, ambient_) && (albedo_ || !needs_albedo(name)) &&
-                            (roughness_ || name != "reflection");
-      const bool usual =
-          std::find(kUsualProducts.begin(), kUsualProducts.end(), name) != kUsualProducts.end();
-      const bool if_possible = output_.products.empty() ? usual : contains(output_.products, kAll);
-      if (contains(output_.products, name) || (if_possible && possible)) names.emplace_back(name);
-    }
-    return names;
-  }
-
-  /// What a picture shows: the composite, or the only product that the user names.
-  std::string of_picture() const {
-    if (output_.products.empty() || contains(output_.products, "composite") ||
-        contains(output_.products, kAll)) {
-      return "composite";
-    }
-    if (output_.products.size() == 1) return output_.products[0];
-    throw Error(ExitCode::usage,
-                "a picture shows one product, and --products names several without "
-                "the composite; give each a file with --save PRODUCT=FILE");
-  }
-
-  void check(const std::string& name) const {
-    if (std::find(kProducts.begin(), kProducts.end(), name) == kProducts.end()) {
-      throw Error(
-          ExitCode::usage,
-          fmt::format("product '{}': there are ao, bent, reflection, direct, bounce, error, "
-                      "composite, and all",
-                      name));
-    }
-    if (!makes(method_, name, ambient_)) {
-      throw Error(ExitCode::usage, fmt::format("method {} makes no {}; these do: {}", method_.name,
-                                               name, methods_that_make(name, ambient_)));
-    }
-    if (!albedo_ && needs_albedo(name)) {
-      throw Error(
-          ExitCode::layer,
-          fmt::format("{}: {} needs a layer for albedo and none was found by name; name one "
-                      "with --aov albedo=LAYER, or another product with --save PRODUCT=FILE",
-                      file_, name));
-    }
-  }
-
-  const Method& method_;
-  const OutputOptions& output_;
-  bool albedo_, ambient_, roughness_;  ///< layers that the frame has
-  const std::string& file_;
+struct OptionOfModel {
+  std::string_view name;
+  bool given, taken;
 };
+
+/// A method has --slices and --steps where it marches, or as parameters of these names.
+void refuse_options(const Method& method, const ModelOptions& model) {
+  const Takes& takes = method.takes;
+  const OptionOfModel options[] = {
+      {"--radius", model.radius.has_value(), takes.radius},
+      {"--thickness", model.thickness.has_value(), takes.thickness},
+      {"--slices", model.slices.has_value(), takes.march || find_parameter(method, "slices")},
+      {"--steps", model.steps.has_value(), takes.march || find_parameter(method, "steps")},
+      {"--error", model.error.has_value(), takes.march}};
+  for (const OptionOfModel& option : options) {
+    if (option.given && !option.taken) {
+      throw Error(ExitCode::usage,
+                  fmt::format("method {} takes no {}; see --list-methods for its parameters",
+                              method.name, option.name));
+    }
+  }
+}
+
+/// A parameter that has an option of its own: slices or steps of a method that does not march.
+void set_by_option(Plan& plan, const std::string& name, std::optional<int> value,
+                   const ModelOptions& model) {
+  const Parameter* parameter = find_parameter(*plan.method, name);
+  if (!value || !parameter) return;
+  for (const std::string& setting : model.set) {
+    if (setting.starts_with(name + "=")) {
+      throw Error(ExitCode::usage,
+                  fmt::format("--{} {} and --set {} set the same; give one of them", name, *value,
+                              setting));
+    }
+  }
+  check_value(*parameter, *value, fmt::format("--{} {}", name, *value));
+  plan.request.parameters[name] = *value;
+}
 
 void explain_composite(Plan& plan, const GBuffer& gbuffer) {
   if (gbuffer.ambient.empty() || !contains(plan.make, "composite")) return;
@@ -217,22 +120,16 @@ void explain_light(Plan& plan, const Light& light) {
 }
 
 void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geometry) {
-  if (!plan.method->has_radius) {
-    if (model.radius) {
-      throw Error(ExitCode::usage,
-                  fmt::format("method {} takes no --radius; see --list-methods for its parameters",
-                              plan.method->name));
-    }
-    return;
-  }
+  const Takes& takes = plan.method->takes;
+  if (!takes.radius) return;
   if (model.radius) {
     plan.request.radius = float(*model.radius);
-    if (std::isinf(plan.request.radius) && !plan.method->takes_solids()) {
+    if (std::isinf(plan.request.radius) && !takes.endless_radius) {
       throw Error(ExitCode::usage,
                   fmt::format("--radius inf: method {} needs a limit", plan.method->name));
     }
     plan.reasons.push_back(fmt::format("radius {:.4g}: as given", plan.request.radius));
-  } else if (plan.method->takes_solids()) {
+  } else if (takes.endless_radius) {
     plan.request.radius = INFINITY;
     plan.reasons.push_back("radius inf: light is stopped by whatever the frame shows or suggests");
   } else {
@@ -244,6 +141,7 @@ void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geomet
 }
 
 void explain_thickness(Plan& plan, const ModelOptions& model) {
+  if (!plan.method->takes.thickness) return;
   plan.reasons.push_back(model.thickness
                              ? fmt::format("thickness {:.4g}: as given", *model.thickness)
                              : std::string("thickness: as wide as it looks, and what is covered "
@@ -252,17 +150,7 @@ void explain_thickness(Plan& plan, const ModelOptions& model) {
 
 void choose_march(Plan& plan, const ModelOptions& model) {
   plan.isa = choose_isa();
-  if (!plan.method->marches) {
-    const bool solids = plan.method->has_solids;
-    const bool asked = model.slices || model.steps || (model.thickness && !solids) || model.error;
-    if (asked) {
-      throw Error(ExitCode::usage, fmt::format("method {} takes no --slices, --steps{} or --error; "
-                                               "see --list-methods for its parameters",
-                                               plan.method->name, solids ? "" : ", --thickness"));
-    }
-    if (solids) explain_thickness(plan, model);
-    return;
-  }
+  if (!plan.method->takes.march) return;
   plan.request.slices = model.slices.value_or(slices_of(model.quality));
   plan.request.steps = model.steps.value_or(steps_of(model.quality));
   plan.request.extend_offscreen = model.extend_offscreen;
@@ -272,34 +160,34 @@ void choose_march(Plan& plan, const ModelOptions& model) {
   }
   if (plan.request.products.error)
     plan.reasons.push_back("error: a second run with half of the steps shows what few steps miss");
-  explain_thickness(plan, model);
   if (!plan.request.extend_offscreen)
     plan.reasons.push_back("surfaces end with the frame: as asked");
 }
 
 }  // namespace
 
-int Plan::samples_per_pixel() const {
-  return method->marches ? 2 * request.slices * request.steps
-                         : method->samples_per_pixel(request.parameters);
-}
+int Plan::samples_per_pixel() const { return method->samples_per_pixel(request); }
 
 Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Scene& scene,
                const GBuffer& gbuffer, const std::string& file) {
   Plan plan;
   plan.method = &find_method(model.method);
+  refuse_options(*plan.method, model);
   plan.request.parameters = resolve_parameters(*plan.method, model.set);
+  set_by_option(plan, "slices", model.slices, model);
+  set_by_option(plan, "steps", model.steps, model);
   plan.filter = &find_filter(model.filter);
   plan.temporal = model.temporal;
   plan.request.seed = model.seed;
   plan.error = model.error;
-  ProductChoice(*plan.method, output, scene, gbuffer, file).choose(plan);
+  choose_products(plan, output, scene, gbuffer, file);
   explain_composite(plan, gbuffer);
   explain_reflection(plan, scene);
   check_multi_bounce(plan, scene, file);
   choose_bounces(plan, model.bounces, scene);
   explain_light(plan, scene.light);
   choose_radius(plan, model, scene.geometry);
+  explain_thickness(plan, model);
   choose_march(plan, model);
   return plan;
 }
@@ -314,10 +202,10 @@ nlohmann::json to_json(const Plan& plan) {
                       {"temporal", plan.temporal},
                       {"reasons", plan.reasons}};
   // JSON knows no infinity.
-  if (plan.method->has_radius)
+  if (plan.method->takes.radius)
     j["radius"] = std::isinf(plan.request.radius) ? nlohmann::json("inf")
                                                   : nlohmann::json(plan.request.radius);
-  if (plan.method->marches) {
+  if (plan.method->takes.march) {
     j["slices"] = plan.request.slices;
     j["steps"] = plan.request.steps;
     j["offscreen"] = plan.request.extend_offscreen ? "extend" : "open";

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "estimators/estimator.h"
+#include "estimators/registry.h"
 #include "filters/registry.h"
 #include "outputs.h"
 #include "scene/gbuffer.h"
@@ -24,7 +24,7 @@ constexpr int steps_of(Quality q) {
 
 /// What the user says about the method.
 struct ModelOptions {
-  std::string method = "bitmask";
+  std::string method{methods().front().name};
   std::optional<double> radius;     ///< scene units or infinity; chosen from the frame if not given
   std::optional<double> thickness;  ///< scene units or infinity; found in the frame if not given
   bool extend_offscreen = true;     ///< surfaces go on beyond the frame

@@ -29,17 +29,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How much slower a ray is than a sample of the other methods; for the progress bar only.
-constexpr double kRayCost = 30;
-
-/// What the ends of a map of errors of ao stand for. Maps of light end at the mean of the light.
-constexpr double kAoScale = 0.25;
-
-bool makes(const Method& method, const std::string& product) {
-  return product == "ao"       ? method.products.ao
-         : product == "direct" ? method.products.direct
-                               : method.products.bounce;
-}
+/// What the ends of a map of errors of a share stand for. Maps of light end at its mean.
+constexpr double kShareScale = 0.25;
 
 /// Measures one frame.
 class Bench {
@@ -89,8 +80,9 @@ class Bench {
       const auto& names = options_.bench.methods;
       const bool asked = std::find(names.begin(), names.end(), method.name) != names.end();
       if (!names.empty() && !asked) continue;
-      const bool useful = std::any_of(report_.products.begin(), report_.products.end(),
-                                      [&](const std::string& p) { return makes(method, p); });
+      const bool useful =
+          std::any_of(report_.products.begin(), report_.products.end(),
+                      [&](const std::string& p) { return makes(method, find_product(p)); });
       if (!useful && asked) {
         throw Error(ExitCode::usage, fmt::format("--methods {}: makes none of {}", method.name,
                                                  fmt::join(report_.products, ", ")));
@@ -98,17 +90,18 @@ class Bench {
       if (useful) methods_.push_back(&method);
     }
     rays_ = reference_rays(report_.surface_pixels);
-    const Ladder trace = ladder_of(find_method("trace"), rays_);
-    work_ += trace.seeds * work_of(trace.limit);
+    const Settings reference = settings_of(reference_method(), rays_);
+    work_ += reference.seeds * work_of(reference.limit);
     for (const Method* method : methods_) {
-      const Ladder ladder = ladder_of(*method, rays_);
-      if (method->name != "trace") work_ += ladder.seeds * work_of(ladder.limit);
-      for (const Setting& setting : ladder.settings) work_ += work_of(setting);
+      const Settings settings = settings_of(*method, rays_);
+      if (!method->is_reference) work_ += settings.seeds * work_of(settings.limit);
+      for (const Setting& setting : settings.ladder) work_ += work_of(setting);
     }
   }
 
+  /// In samples of a usual method, per pixel.
   double work_of(const Setting& setting) const {
-    return plan_of(setting).samples_per_pixel() * (setting.method->name == "trace" ? kRayCost : 1);
+    return plan_of(setting).samples_per_pixel() * setting.method->sample_cost;
   }
 
   void describe_machine() {
@@ -126,7 +119,7 @@ class Bench {
   Plan plan_of(const Setting& setting) const {
     OutputOptions output;
     for (const std::string& product : report_.products) {
-      if (makes(*setting.method, product)) output.products.push_back(product);
+      if (makes(*setting.method, find_product(product))) output.products.push_back(product);
     }
     return make_plan(setting.applied_to(options_.model), output, frame_.scene, frame_.gbuffer,
                      options_.input_file);
@@ -145,15 +138,17 @@ class Bench {
   }
 
   void measure_reference() {
-    const Ladder ladder = ladder_of(find_method("trace"), rays_);
-    trace_ = converge_to(ladder.limit, ladder.seeds);
+    const Settings settings = settings_of(reference_method(), rays_);
+    trace_ = converge_to(settings.limit, settings.seeds);
     for (const std::string& product : report_.products) {
       const Channels& reference = reference_of(product);
       const double mean = compare_surfaces(frame_, reference, reference).figures.mean_b;
-      report_.error_scale[product] = product == "ao" || !(mean > 0) ? kAoScale : mean;
+      report_.error_scale[product] =
+          has_absolute_error(product) || !(mean > 0) ? kShareScale : mean;
     }
     if (!pictures_) return;
-    BenchReference truth{"truth", {}}, trace{"trace, converged", {}};
+    BenchReference truth{"truth", {}},
+        trace{fmt::format("{}, converged", reference_method().name), {}};
     for (const std::string& product : report_.products) {
       trace.pictures[product] = pictures_->picture_of(product, trace_.products.at(product));
       if (subject_.truths.contains(product))
@@ -189,8 +184,8 @@ class Bench {
 
   /// The noise of a limit is the standard error of the mean of its two halves: the size of half
   /// their difference.
-  void add_limit(const Ladder& ladder, const Converged& limit) {
-    BenchLimit out{ladder.limit, ladder.seeds, errors_of(limit.products)};
+  void add_limit(const Settings& settings, const Converged& limit) {
+    BenchLimit out{settings.limit, settings.seeds, errors_of(limit.products)};
     for (const auto& [product, half] : limit.half_difference) {
       Channels off = limit.products.at(product);
       for (std::size_t c = 0; c < off.planes.size(); ++c) {
@@ -203,12 +198,12 @@ class Bench {
   }
 
   void measure_method(const Method& method) {
-    const Ladder ladder = ladder_of(method, rays_);
-    const bool is_trace = method.name == "trace";
-    const Converged own = is_trace ? Converged() : converge_to(ladder.limit, ladder.seeds);
-    const Converged& limit = is_trace ? trace_ : own;
-    add_limit(ladder, limit);
-    for (const Setting& setting : ladder.settings) measure_setting(setting, limit);
+    const Settings settings = settings_of(method, rays_);
+    const Converged own =
+        method.is_reference ? Converged() : converge_to(settings.limit, settings.seeds);
+    const Converged& limit = method.is_reference ? trace_ : own;
+    add_limit(settings, limit);
+    for (const Setting& setting : settings.ladder) measure_setting(setting, limit);
   }
 
   void measure_setting(const Setting& setting, const Converged& limit) {

@@ -15,9 +15,10 @@ namespace {
 
 /// Whether the setting's method takes an option as it was given.
 bool reaches(const std::vector<std::string>& option, const Setting& setting) {
-  if (option[0] == "--radius" && !setting.method->has_radius) return false;
-  if (setting.method->takes_solids()) return true;
-  return option[0] != "--thickness" && !(option[0] == "--radius" && option.back() == "inf");
+  const Takes& takes = setting.method->takes;
+  if (option[0] == "--thickness") return takes.thickness;
+  if (option[0] != "--radius") return true;
+  return option.back() == "inf" ? takes.endless_radius : takes.radius;
 }
 
 }  // namespace

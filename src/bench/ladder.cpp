@@ -10,147 +10,92 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
 
-#include "error.h"
+#include "estimators/registry.h"
 
 namespace ssdo {
 namespace {
 
-Setting march(int slices, int steps) {
-  Setting s;
-  s.slices = slices;
-  s.steps = steps;
-  s.label = fmt::format("{} x {}", slices, steps);
+/// Of a parameter, or of the slices and steps of a method that marches.
+double default_of(const Method& method, std::string_view name) {
+  if (!method.takes.march) return find_parameter(method, name)->value;
+  return name == "slices" ? slices_of(Quality::standard) : steps_of(Quality::standard);
+}
+
+bool is_default(const Method& method, const Rung& rung) {
+  return std::all_of(rung.values.begin(), rung.values.end(), [&](const auto& value) {
+    return value.second == default_of(method, value.first);
+  });
+}
+
+std::string label_of(const Method& method, const Rung& rung) {
+  std::string label = rung.label;
+  for (const auto& [name, value] : rung.values) {
+    if (!rung.label.empty()) break;
+    const std::string_view unit = find_parameter(method, name)->unit;
+    label += fmt::format("{}{} {}", label.empty() ? "" : ", ", value, unit.empty() ? name : unit);
+  }
+  if (!method.takes.march) return label;
   for (const auto& [name, quality] : {std::pair{"draft", Quality::draft},
                                       {"standard", Quality::standard},
                                       {"final", Quality::final}}) {
-    if (slices == slices_of(quality) && steps == steps_of(quality))
-      s.label += fmt::format(" ({})", name);
+    const Rung same = slices_and_steps(slices_of(quality), steps_of(quality));
+    if (rung.values == same.values) label += fmt::format(" ({})", name);
   }
-  return s;
+  return label;
 }
 
-Setting with(std::string label, std::vector<std::string> set) {
-  Setting s;
-  s.label = std::move(label);
-  s.set = std::move(set);
-  return s;
-}
-
-Setting samples(int count, const char* noun = "samples") {
-  return with(fmt::format("{} {}", count, noun), {fmt::format("samples={}", count)});
-}
-
-std::vector<Setting> each(std::initializer_list<int> counts, Setting (*make)(int)) {
-  std::vector<Setting> all;
-  for (const int count : counts) all.push_back(make(count));
-  return all;
-}
-
-/// Taps on a spiral cover the disc evenly where its turns are near their number times the golden
-/// ratio, as McGuire's 7 turns of 11 are, and share no factor with it.
-Setting spiral(int count) {
-  int turns = int(0.618 * count + 0.5);
-  while (std::gcd(turns, count) != 1) ++turns;
-  return with(fmt::format("{} samples, {} turns", count, turns),
-              {fmt::format("samples={}", count), fmt::format("turns={}", turns)});
-}
-
-Setting horizons(int slices, int steps) {
-  return with(fmt::format("{} x {}", slices, steps),
-              {fmt::format("slices={}", slices), fmt::format("steps={}", steps)});
-}
-
-Setting taps(int steps) {
-  return with(fmt::format("4 x {} taps", steps), {fmt::format("steps={}", steps)});
-}
-
-Setting resolution(int upsampling) {
-  static constexpr std::array kNames = {"every pixel", "half, bilinear", "half, along surfaces"};
-  return with(kNames[std::size_t(upsampling)], {fmt::format("upsampling={}", upsampling)});
-}
-
-Setting points(int count) { return samples(count); }
-Setting rays(int count) { return samples(count, "rays"); }
-
-Ladder plain_ladder_of(std::string_view method, int reference) {
-  if (method == "bitmask") {
-    return {{march(1, 6), march(2, 8), march(2, 16), march(2, 24), march(4, 32), march(6, 48),
-             march(12, 64)},
-            march(32, 96),
-            2};
-  }
-  if (method == "trace") return {each({4, 16, 64}, rays), rays(reference), 2};
-  if (method == "ssdo") return {each({8, 16, 32, 64, 128}, points), points(512), 4};
-  if (method == "ssao" || method == "ssao-range")
-    return {each({16, 32, 64, 128}, points), points(512), 8};
-  if (method == "ssao-fade") return {each({1, 2, 0}, resolution), resolution(0), 128};
-  if (method == "hbao") return {each({2, 3, 6, 12, 24}, taps), taps(32), 64};
-  if (method == "gtao") {
-    return {{horizons(1, 2), horizons(2, 2), horizons(3, 4), horizons(6, 8)}, horizons(32, 32), 1};
-  }
-  if (method == "sao") return {each({7, 11, 23, 47}, spiral), spiral(1013), 1};
-  return {{with("four scales", {})}, with("four scales", {}), 1};
-}
-
-/// Whether a setting is what the method does when nothing is asked for.
-bool is_default(const Method& method, const Setting& s) {
-  if (method.marches)
-    return s.slices == slices_of(Quality::standard) && s.steps == steps_of(Quality::standard);
-  return std::all_of(s.set.begin(), s.set.end(), [&](const std::string& text) {
-    return std::any_of(method.parameters.begin(), method.parameters.end(), [&](const Parameter& p) {
-      return text == fmt::format("{}={:g}", p.name, p.value);
-    });
-  });
+Setting setting_of(const Method& method, Rung rung) {
+  rung.label = label_of(method, rung);
+  const bool standard = is_default(method, rung);
+  return {&method, std::move(rung), standard};
 }
 
 }  // namespace
 
-std::string Setting::name() const { return fmt::format("{} {}", method->name, label); }
+std::string Setting::name() const { return fmt::format("{} {}", method->name, rung.label); }
 
 ModelOptions Setting::applied_to(const ModelOptions& model) const {
   ModelOptions out = model;
   out.method = method->name;
-  if (!method->takes_solids()) {
-    out.thickness.reset();
-    if (out.radius && std::isinf(*out.radius)) out.radius.reset();
+  const Takes& takes = method->takes;
+  if (!takes.thickness) out.thickness.reset();
+  if (!takes.radius || (!takes.endless_radius && out.radius && std::isinf(*out.radius)))
+    out.radius.reset();
+  for (const auto& [name, value] : rung.values) {
+    if (takes.march)
+      (name == "slices" ? out.slices : out.steps) = value;
+    else
+      out.set.push_back(fmt::format("{}={}", name, value));
   }
-  if (!method->has_radius) out.radius.reset();
-  if (method->marches) {
-    out.slices = slices;
-    out.steps = steps;
-  }
-  out.set.insert(out.set.end(), set.begin(), set.end());
   return out;
 }
 
 std::vector<std::string> Setting::arguments() const {
   std::vector<std::string> words = {"--method", std::string(method->name)};
-  if (method->marches) {
-    words.insert(words.end(),
-                 {"--slices", std::to_string(slices), "--steps", std::to_string(steps)});
+  for (const auto& [name, value] : rung.values) {
+    if (method->takes.march)
+      words.insert(words.end(), {fmt::format("--{}", name), std::to_string(value)});
+    else
+      words.insert(words.end(), {"--set", fmt::format("{}={}", name, value)});
   }
-  for (const std::string& text : set) words.insert(words.end(), {"--set", text});
   return words;
 }
 
-Ladder ladder_of(const Method& method, int reference) {
-  Ladder ladder = plain_ladder_of(method.name, reference);
-  ladder.limit.method = &method;
-  for (Setting& s : ladder.settings) {
-    s.method = &method;
-    s.standard = is_default(method, s);
-  }
-  return ladder;
+Settings settings_of(const Method& method, int rays) {
+  Settings settings;
+  for (const Rung& rung : method.ladder.rungs) settings.ladder.push_back(setting_of(method, rung));
+  Rung limit = method.ladder.limit;
+  if (method.is_reference) limit.values.front().second = rays;
+  settings.limit = setting_of(method, std::move(limit));
+  settings.seeds = method.ladder.seeds;
+  return settings;
 }
 
 Setting standard_setting(const Method& method) {
-  const Ladder ladder = ladder_of(method, 0);
-  return *std::find_if(ladder.settings.begin(), ladder.settings.end(),
-                       [](const Setting& s) { return s.standard; });
+  const std::vector<Setting> ladder = settings_of(method, 0).ladder;
+  return *std::find_if(ladder.begin(), ladder.end(), [](const Setting& s) { return s.standard; });
 }
 
 int reference_rays(std::size_t surface_pixels) {

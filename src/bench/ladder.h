@@ -12,10 +12,8 @@ namespace ssdo {
 /// One quality of one method.
 struct Setting {
   const Method* method = nullptr;
-  std::string label;             ///< "2 x 24", "16 samples"
-  int slices = 0, steps = 0;     ///< of a method that marches
-  std::vector<std::string> set;  ///< NAME=VALUE of another
-  bool standard = false;         ///< what the main job does when it is asked for nothing
+  Rung rung;              ///< labelled "2 x 24", "16 samples"
+  bool standard = false;  ///< what the main job does when it is asked for nothing
 
   /// The method and its label.
   std::string name() const;
@@ -28,15 +26,15 @@ struct Setting {
   std::vector<std::string> arguments() const;
 };
 
-/// Settings of one method from cheap to dear, and what they converge to.
-struct Ladder {
-  std::vector<Setting> settings;
-  Setting limit;  ///< so many samples that its own noise does not count
-  int seeds = 1;  ///< of the limit, whose mean is taken: 1 or an even number
+/// The ladder of a method.
+struct Settings {
+  std::vector<Setting> ladder;
+  Setting limit;
+  int seeds = 1;
 };
 
-/// The ladder of each method of the table. `rays` is that of the limit of method trace, per seed.
-Ladder ladder_of(const Method& method, int rays);
+/// `rays` is how many samples per seed the limit of the reference has; others have their own.
+Settings settings_of(const Method& method, int rays);
 
 /// The one that the main job takes.
 Setting standard_setting(const Method& method);

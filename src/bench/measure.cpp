@@ -129,8 +129,12 @@ ChannelsDifference compare_surfaces(const Frame& frame, const Channels& a, const
   });
 }
 
+bool has_absolute_error(const std::string& product) {
+  return find_product(product).kind == ProductKind::share;
+}
+
 double error_of(const std::string& product, const Difference& difference) {
-  return product == "ao" ? difference.rmse : difference.relative_rmse();
+  return has_absolute_error(product) ? difference.rmse : difference.relative_rmse();
 }
 
 }  // namespace ssdo

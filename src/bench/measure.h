@@ -46,7 +46,11 @@ Converged converge(const Frame& frame, const Plan& plan, int seeds,
 /// How far A is from B on the surfaces of the frame.
 ChannelsDifference compare_surfaces(const Frame& frame, const Channels& a, const Channels& b);
 
-/// The figure that a product is judged by: RMSE of ao, RMSE relative to the mean of others.
+/// Whether the error of a product is judged as it is: that of a share; of others, it is relative to
+/// the mean.
+bool has_absolute_error(const std::string& product);
+
+/// The figure that a product is judged by: RMSE or relative RMSE.
 double error_of(const std::string& product, const Difference& difference);
 
 }  // namespace ssdo

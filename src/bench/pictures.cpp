@@ -58,16 +58,17 @@ BenchPictures::BenchPictures(const Frame& frame, const ColorOptions& color)
 
 std::string BenchPictures::picture_of(const std::string& product, const Channels& channels) const {
   const Geometry& g = frame_.scene.geometry;
-  Products products;
   Plane<glm::vec3> colors = colors_over(g.window, channels);
+  const Product& shown = find_product(product);
   for (std::size_t i = 0; i < colors.size(); ++i) {
-    if (!g.is_surface(i)) colors[i] = glm::vec3(product == "ao" ? 1 : 0);
+    if (!g.is_surface(i)) colors[i] = glm::vec3(shown.background);
   }
-  if (product == "ao") {
-    products.ao = Plane<float>(g.window.width(), g.window.height());
-    for (std::size_t i = 0; i < colors.size(); ++i) products.ao[i] = luminance(colors[i]);
-  } else {
-    (product == "direct" ? products.direct : products.bounce) = std::move(colors);
+  Products products;
+  if (const auto* plane = std::get_if<Plane<glm::vec3> Products::*>(&shown.plane)) {
+    products.*(*plane) = std::move(colors);
+  } else if (const auto* grey = std::get_if<Plane<float> Products::*>(&shown.plane)) {
+    products.*(*grey) = Plane<float>(g.window.width(), g.window.height());
+    for (std::size_t i = 0; i < colors.size(); ++i) (products.*(*grey))[i] = luminance(colors[i]);
   }
   return encode(product, products);
 }

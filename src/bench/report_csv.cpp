@@ -35,12 +35,12 @@ std::string to_csv(const BenchReport& report) {
       if (errors == row.errors.end()) continue;
       const bool on_front = std::find(front.begin(), front.end(), i) != front.end();
       text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                          row.setting.method->name, field(row.setting.label), row.samples_per_pixel,
-                          report.filter, row.runs, row.estimate.cpu_ms, row.estimate.wall_ms,
-                          row.filter.cpu_ms, row.filter.wall_ms, report.cpu_ms_per_megapixel(row),
-                          report.wall_ms_per_megapixel(row), product, field(errors->second.noise),
-                          field(errors->second.approximation), field(errors->second.model),
-                          on_front ? 1 : 0, field(row.command));
+                          row.setting.method->name, field(row.setting.rung.label),
+                          row.samples_per_pixel, report.filter, row.runs, row.estimate.cpu_ms,
+                          row.estimate.wall_ms, row.filter.cpu_ms, row.filter.wall_ms,
+                          report.cpu_ms_per_megapixel(row), report.wall_ms_per_megapixel(row),
+                          product, field(errors->second.noise), field(errors->second.approximation),
+                          field(errors->second.model), on_front ? 1 : 0, field(row.command));
     }
   }
   return text;

@@ -26,7 +26,7 @@ json to_json(const Cost& cost) { return {{"cpu_ms", cost.cpu_ms}, {"wall_ms", co
 
 json row_json(const BenchReport& report, const BenchRow& row) {
   return {{"method", row.setting.method->name},
-          {"setting", row.setting.label},
+          {"setting", row.setting.rung.label},
           {"standard", row.setting.standard},
           {"samples_per_pixel", row.samples_per_pixel},
           {"runs", row.runs},
@@ -40,7 +40,7 @@ json row_json(const BenchReport& report, const BenchRow& row) {
 
 json limit_json(const BenchLimit& limit) {
   return {{"method", limit.setting.method->name},
-          {"setting", limit.setting.label},
+          {"setting", limit.setting.rung.label},
           {"seeds", limit.seeds},
           {"errors", to_json(limit.errors)}};
 }
@@ -60,7 +60,7 @@ json to_json(const BenchReport& report) {
   json fronts = json::object(), metrics = json::object();
   for (const std::string& product : report.products) {
     fronts[product] = report.front(product);
-    metrics[product] = product == "ao" ? "rmse" : "relative_rmse";
+    metrics[product] = has_absolute_error(product) ? "rmse" : "relative_rmse";
   }
   json rows = json::array(), limits = json::array();
   for (const BenchRow& row : report.rows) rows.push_back(row_json(report, row));

@@ -36,7 +36,8 @@ std::string heading(const BenchReport& report) {
   std::string bottom = fmt::format("{:<31} {:>9} {:>9}", "method and setting", "/ MP", "/ MP");
   for (const std::string& product : report.products) {
     const bool truth = report.truths.contains(product);
-    const std::string figure = product == "ao" ? "ao, RMSE" : product + ", relative RMSE";
+    const std::string figure =
+        product + (has_absolute_error(product) ? ", RMSE" : ", relative RMSE");
     top += fmt::format("  {:<{}}", figure, truth ? 24 : 16);
     bottom += fmt::format("  {:>7} {:>7}", "noise", "trace");
     if (truth) bottom += fmt::format(" {:>7}", "truth");

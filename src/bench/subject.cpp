@@ -10,14 +10,11 @@
 #include "bench/report_files.h"
 #include "cli/jobs.h"
 #include "error.h"
+#include "estimators/registry.h"
 #include "io/sequence.h"
 
 namespace ssdo {
 namespace {
-
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 std::map<std::string, Truth> read_truths(const std::vector<std::string>& texts) {
   std::map<std::string, Truth> truths;
@@ -36,13 +33,13 @@ std::map<std::string, Truth> read_truths(const std::vector<std::string>& texts) 
 std::vector<std::string> choose_products(const Options& options, const Subject& subject) {
   const std::vector<std::string>& asked = options.output.products;
   for (const std::string& name : asked) {
-    if (!contains(kBenchProducts, name)) {
+    if (!contains(measured_products(), name)) {
       throw Error(ExitCode::usage, fmt::format("product '{}': bench measures {}", name,
-                                               fmt::join(kBenchProducts, ", ")));
+                                               fmt::join(measured_products(), ", ")));
     }
   }
   std::vector<std::string> products;
-  for (const std::string& name : kBenchProducts) {
+  for (const std::string& name : measured_products()) {
     // In light that is the same from everywhere, direct is ao times a colour.
     const bool telling = name == "direct" ? !subject.frame.scene.light.is_constant()
                                           : contains(subject.frame.plan.make, name);
@@ -85,6 +82,12 @@ void check_truth(const Truth& truth, const Subject& subject) {
                           truth.file, truth.layer, valid, subject.surface_pixels));
 }
 
+/// One that needs all that any method needs: it looks behind what is seen too.
+const Method& thorough_method() {
+  const auto all = methods();
+  return *std::find_if(all.begin(), all.end(), [](const Method& m) { return m.takes.thickness; });
+}
+
 }  // namespace
 
 Subject read_subject(const Options& options) {
@@ -100,7 +103,7 @@ Subject read_subject(const Options& options) {
   check_report_files(options.bench.reports, std::move(inputs), options.output.policy);
 
   Options prepared = options;
-  prepared.model.method = "bitmask";  // which needs all that any method needs
+  prepared.model.method = thorough_method().name;
   prepared.output.products.clear();
   const Lighting light(options.light);
   subject.frame = prepare_frame(prepared, light, options.input_file, options.input.aovs);

@@ -15,7 +15,7 @@ namespace ssdo {
 struct Subject {
   Frame frame;                          ///< prepared with all that any method needs
   std::map<std::string, Truth> truths;  ///< by product
-  std::vector<std::string> products;    ///< in the order of kBenchProducts
+  std::vector<std::string> products;    ///< in the order of measured_products()
   std::size_t surface_pixels = 0;
 };
 

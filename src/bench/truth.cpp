@@ -3,9 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
-#include <string_view>
+#include <sstream>
 
 #include "error.h"
 #include "io/picture_layers.h"
@@ -25,23 +24,36 @@ std::string plain_word(const std::string& name) {
 
 /// The product that renderers, and this tool, give a layer of that name; empty if none.
 std::string product_of(const PictureLayer& layer) {
-  struct Known {
-    std::string_view word, product;
-  };
-  static constexpr Known kNames[] = {
-      {"ao", "ao"},         {"ambientocclusion", "ao"}, {"occlusion", "ao"},
-      {"direct", "direct"}, {"diffdir", "direct"},      {"diffusedirect", "direct"},
-      {"bounce", "bounce"}, {"diffind", "bounce"},      {"diffuseindirect", "bounce"}};
-  for (const Known& known : kNames) {
-    if (plain_word(layer.name) == known.word) return std::string(known.product);
+  const std::string word = plain_word(layer.name);
+  for (const Product& product : kProducts) {
+    std::istringstream names(std::string(product.name) + ' ' + std::string(product.aka));
+    for (std::string name; product.measured && names >> name;) {
+      if (name == word) return std::string(product.name);
+    }
   }
   return "";
 }
 
+/// "ao=TEXT, direct=TEXT, ...".
+std::string with_each_product(const std::string& text) {
+  std::string all;
+  for (const std::string& product : measured_products())
+    all += fmt::format("{}{}={}", all.empty() ? "" : ", ", product, text);
+  return all;
+}
+
 }  // namespace
 
+std::vector<std::string> measured_products() {
+  std::vector<std::string> names;
+  for (const Product& product : kProducts) {
+    if (product.measured) names.emplace_back(product.name);
+  }
+  return names;
+}
+
 TruthRequest parse_truth(const std::string& text) {
-  for (const std::string& product : kBenchProducts) {
+  for (const std::string& product : measured_products()) {
     if (text.starts_with(product + "=")) return {product, text.substr(product.size() + 1)};
   }
   return {"", text};
@@ -60,11 +72,11 @@ Truth read_truth(const TruthRequest& request) {
   truth.file = name.file;
   truth.layer = shown_name(layer);
   if (truth.product.empty()) {
-    throw Error(ExitCode::usage,
-                fmt::format("--truth {}: the name '{}' does not tell what it is the truth of; "
-                            "write ao={}, direct={} or bounce={}",
-                            request.picture, shown_name(layer), request.picture, request.picture,
-                            request.picture));
+    throw Error(
+        ExitCode::usage,
+        fmt::format("--truth {}: the name '{}' does not tell what it is the truth of; "
+                    "write one of {}",
+                    request.picture, shown_name(layer), with_each_product(request.picture)));
   }
   truth.channels = {picture.window(layer), picture.read(layer)};
   truth.display = picture.exr() ? picture.exr()->parts()[std::size_t(layer.part)].display_window

@@ -9,7 +9,7 @@
 namespace ssdo {
 
 /// The products whose error is measured, in the order of tables.
-inline const std::vector<std::string> kBenchProducts = {"ao", "direct", "bounce"};
+std::vector<std::string> measured_products();
 
 /// What --truth names: FILE:LAYER, and the product that it is the truth of.
 struct TruthRequest {
@@ -17,7 +17,7 @@ struct TruthRequest {
   std::string picture;
 };
 
-/// [ao=|direct=|bounce=]FILE[:LAYER].
+/// [PRODUCT=]FILE[:LAYER], where bench measures the product.
 TruthRequest parse_truth(const std::string& text);
 
 /// A layer, and what it is the truth of.

@@ -33,6 +33,15 @@ std::string describe_filters() {
   return text;
 }
 
+std::string describe_products() {
+  std::string usual;
+  for (const Product& product : kProducts) {
+    if (product.usual) usual += (usual.empty() ? "" : ",") + std::string(product.name);
+  }
+  return fmt::format("of {}, or {}; default: {} as far as the inputs allow", product_names(),
+                     kAllProducts, usual);
+}
+
 void add_input(CLI::App& app, Options& o) {
   app.add_option_function<Texts>(
          "--aov",
@@ -192,9 +201,7 @@ void add_output(CLI::App& app, Options& o) {
       ->type_name("OUTPUT")
       ->allow_extra_args(false)
       ->group("Output");
-  app.add_option("--products", o.output.products,
-                 "of ao, bent, reflection, direct, bounce, error, composite, or all; default: "
-                 "ao,direct,bounce,composite as far as the inputs allow")
+  app.add_option("--products", o.output.products, describe_products())
       ->type_name("LIST")
       ->delimiter(',')
       ->allow_extra_args(false)

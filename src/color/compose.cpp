@@ -4,19 +4,29 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <type_traits>
 
 #include "math/light_range.h"
 
 namespace ssdo {
 namespace {
 
-void append_color(std::vector<NamedPlane>& out, const std::string& prefix,
-                  const Plane<glm::vec3>& colors) {
-  for (int c = 0; c < 3; ++c) {
-    NamedPlane named{prefix + "RGB"[c], Plane<float>(colors.width, colors.height)};
-    for (std::size_t i = 0; i < colors.size(); ++i) named.pixels[i] = colors[i][c];
-    out.push_back(std::move(named));
+/// Channel `c` of a plane.
+Plane<float> channel(const Plane<float>& values, int /*c*/) { return values; }
+Plane<float> channel(const Plane<glm::vec3>& colors, int c) {
+  Plane<float> out(colors.width, colors.height);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = colors[i][c];
+  return out;
+}
+
+/// Directions from camera space into the space of the input's normals.
+Plane<glm::vec3> in_input_space(Plane<glm::vec3> directions, const glm::mat3& normals_to_camera) {
+  // The one is turned against the other, so that the transpose is the inverse.
+  for (glm::vec3& d : directions.pixels) {
+    const glm::vec3 seen = d;
+    for (int c = 0; c < 3; ++c) d[c] = glm::dot(normals_to_camera[c], seen);
   }
+  return directions;
 }
 
 /// beauty - ambient (1 - ao), or ambient ao without a beauty. Occlusion says how much of the sky is
@@ -57,37 +67,30 @@ Plane<glm::vec3> composite(const Scene& scene, const GBuffer& gbuffer, const Pro
   return out;
 }
 
-std::vector<NamedPlane> product_channels(const std::string& product, const Scene& scene,
+std::vector<NamedPlane> product_channels(const std::string& name, const Scene& scene,
                                          const GBuffer& gbuffer, const Products& products) {
+  const Product& wanted = find_product(name);
   std::vector<NamedPlane> out;
-  if (product == "ao") {
-    out.push_back({"ao.Y", products.ao});
-  } else if (product == "reflection") {
-    out.push_back({"reflection.Y", products.reflection});
-  } else if (product == "error") {
-    out.push_back({"error.Y", products.error});
-  } else if (product == "bent") {
-    for (int c = 0; c < 3; ++c) {
-      NamedPlane named{std::string("bent.") + "XYZ"[c],
-                       Plane<float>(products.bent.width, products.bent.height)};
-      // The space of the input's normals is turned against camera space, so its transpose is its
-      // inverse.
-      const glm::vec3 axis = scene.geometry.normals_to_camera[c];
-      for (std::size_t i = 0; i < named.pixels.size(); ++i)
-        named.pixels[i] = glm::dot(axis, products.bent[i]);
-      out.push_back(std::move(named));
-    }
-  } else if (product == "direct") {
-    append_color(out, "direct.", products.direct);
-  } else if (product == "bounce") {
-    append_color(out, "bounce.", products.bounce);
-  } else {
-    Plane<glm::vec3> color = composite(scene, gbuffer, products);
-    Plane<float> alpha = coverage(scene, gbuffer);
-    for (std::size_t i = 0; i < color.size(); ++i) color[i] *= alpha[i];
-    append_color(out, "", color);
-    out.push_back({"A", std::move(alpha)});
-  }
+  const auto append = [&](const std::string& prefix, const auto& plane) {
+    for (const char letter : wanted.channels.substr(0, sizeof(plane[0]) / sizeof(float)))
+      out.push_back({prefix + letter, channel(plane, int(out.size()))});
+  };
+  for_each_plane(
+      [&](const Product& product, const auto& plane) {
+        if (&product != &wanted) return;
+        if constexpr (std::is_same_v<decltype(plane), const Plane<glm::vec3>&>) {
+          if (product.kind == ProductKind::direction)
+            return append(name + ".", in_input_space(plane, scene.geometry.normals_to_camera));
+        }
+        append(name + ".", plane);
+      },
+      products);
+  if (wanted.in) return out;
+  Plane<glm::vec3> color = composite(scene, gbuffer, products);
+  Plane<float> alpha = coverage(scene, gbuffer);
+  for (std::size_t i = 0; i < color.size(); ++i) color[i] *= alpha[i];
+  append("", color);
+  out.push_back({"A", std::move(alpha)});
   return out;
 }
 

@@ -25,9 +25,9 @@ Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer);
 /// with the rest of the beauty, where there is one, as it was. Not premultiplied.
 Plane<glm::vec3> composite(const Scene& scene, const GBuffer& gbuffer, const Products& products);
 
-/// The channels of one product: R G B A (premultiplied) for "composite", ao.Y, error.Y,
-/// reflection.Y, bent.X/Y/Z in the space of the input's normals, direct.R/G/B, bounce.R/G/B.
-std::vector<NamedPlane> product_channels(const std::string& product, const Scene& scene,
+/// The channels of the product `name`, as the table of products has them: directions in the space
+/// of the input's normals, the composite premultiplied.
+std::vector<NamedPlane> product_channels(const std::string& name, const Scene& scene,
                                          const GBuffer& gbuffer, const Products& products);
 
 }  // namespace ssdo

@@ -26,39 +26,46 @@ void apply_display(Plane<glm::vec3>& colors, const DisplayTransform& display) {
   });
 }
 
+/// What the display transform is given of a product that is light.
+Plane<glm::vec3> colors_of(const Product& product, const Scene& scene, const GBuffer& gbuffer,
+                           const Products& products) {
+  const auto* plane = std::get_if<Plane<glm::vec3> Products::*>(&product.plane);
+  return plane ? products.*(*plane) : composite(scene, gbuffer, products);
+}
+
 }  // namespace
 
 bool needs_display(const std::string& product) {
-  return product != "ao" && product != "error" && product != "bent" && product != "reflection";
+  return find_product(product).kind == ProductKind::light;
 }
 
-DisplayImage make_display_image(const std::string& product, const Scene& scene,
-                                const GBuffer& gbuffer, const Products& products,
-                                const DisplayTransform* display, bool with_alpha) {
+DisplayImage make_display_image(const std::string& name, const Scene& scene, const GBuffer& gbuffer,
+                                const Products& products, const DisplayTransform* display,
+                                bool with_alpha) {
   const Geometry& geometry = scene.geometry;
+  const Product& product = find_product(name);
+  const bool has_alpha = product.channels == "RGBA";
   DisplayImage image;
   image.width = geometry.display.width();
   image.height = geometry.display.height();
   image.pixel_aspect = gbuffer.pixel_aspect;
-  const bool grey = product == "ao" || product == "error" || product == "reflection";
-  image.channels = grey ? 1 : product == "composite" && with_alpha ? 4 : 3;
+  const bool grey = product.channels.size() == 1;
+  image.channels = has_alpha && !with_alpha ? 3 : int(product.channels.size());
   const auto channels = std::size_t(image.channels);
   image.values.assign(geometry.display.area() * channels, 0.0f);
-  if (!needs_display(product)) {
+  if (product.kind != ProductKind::light) {
     // Data as they are; directions as colours usually show them, -1..1 in 0..1.
     const float scale = grey ? 1.0f : 0.5f, offset = grey ? 0.0f : 0.5f;
-    const std::vector<NamedPlane> planes = product_channels(product, scene, gbuffer, products);
+    const std::vector<NamedPlane> planes = product_channels(name, scene, gbuffer, products);
     for_each_shown_pixel(geometry, [&](std::size_t to, std::size_t from) {
       for (std::size_t c = 0; c < channels; ++c)
         image.values[to * channels + c] = scale * planes[c].pixels[from] + offset;
     });
     return image;
   }
-  Plane<glm::vec3> colors = product == "composite" ? composite(scene, gbuffer, products)
-                            : product == "direct"  ? products.direct
-                                                   : products.bounce;
+  Plane<glm::vec3> colors = colors_of(product, scene, gbuffer, products);
   const Plane<float> alpha = coverage(scene, gbuffer);
-  if (product == "composite" && !with_alpha) {
+  if (has_alpha && !with_alpha) {
     for (std::size_t i = 0; i < colors.size(); ++i) colors[i] *= alpha[i];
     glm::vec3 black(0);  // which some views lift
     display->apply({&black, 1});

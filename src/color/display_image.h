@@ -21,16 +21,16 @@ struct DisplayImage {
   ImageSpec spec(int bits) const { return {width, height, channels, bits, pixel_aspect}; }
 };
 
-/// Whether a product is a colour, which goes through the display transform; visibility does not.
+/// Whether a product is light, which goes through the display transform; visibility does not.
 bool needs_display(const std::string& product);
 
-/// The composite comes with its alpha, not premultiplied, or, where `with_alpha` is false, over
-/// black: premultiplied before the display transform, as light adds up, which is how compositors
-/// show and convert a premultiplied EXR. Direct and bounce come as RGB; ao, error and reflection as
-/// grey; bent as RGB with 1/2 for 0. What the data window does not cover is empty. `display` may be
-/// null where needs_display is false.
-DisplayImage make_display_image(const std::string& product, const Scene& scene,
-                                const GBuffer& gbuffer, const Products& products,
-                                const DisplayTransform* display, bool with_alpha);
+/// Products that are light come as colours of the display. The composite comes with its alpha, not
+/// premultiplied, or, where `with_alpha` is false, over black: premultiplied before the display
+/// transform, as light adds up, which is how compositors show and convert a premultiplied EXR.
+/// Directions come as RGB with 1/2 for 0, all else as grey. What the data window does not cover is
+/// empty. `display` may be null where needs_display is false.
+DisplayImage make_display_image(const std::string& name, const Scene& scene, const GBuffer& gbuffer,
+                                const Products& products, const DisplayTransform* display,
+                                bool with_alpha);
 
 }  // namespace ssdo

@@ -353,14 +353,19 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
 }  // namespace
 
 Method bitmask_method() {
-  return {"bitmask",
-          "slices with a visibility bitmask; light and bounce from the same march",
-          {.ao = true, .direct = true, .bounce = true, .bent = true, .error = true},
-          kPeriod,
-          {},
-          true,
-          nullptr,
-          estimate};
+  return {
+      .name = "bitmask",
+      .summary = "slices with a visibility bitmask; light and bounce from the same march",
+      .products = {.ao = true, .direct = true, .bounce = true, .bent = true, .error = true},
+      .takes = {.radius = true, .endless_radius = true, .thickness = true, .march = true},
+      .pattern_size = kPeriod,
+      .samples_per_pixel = [](const Request& r) { return 2 * r.slices * r.steps; },
+      .estimate = estimate,
+      .ladder = {.rungs = {slices_and_steps(1, 6), slices_and_steps(2, 8), slices_and_steps(2, 16),
+                           slices_and_steps(2, 24), slices_and_steps(4, 32),
+                           slices_and_steps(6, 48), slices_and_steps(12, 64)},
+                 .limit = slices_and_steps(32, 96),
+                 .seeds = 2}};
 }
 
 }  // namespace ssdo

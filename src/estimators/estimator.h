@@ -1,38 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <glm/vec3.hpp>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "math/plane.h"
+#include "estimators/ladder.h"
+#include "estimators/products.h"
 #include "parallel/tiles.h"
 #include "scene/scene.h"
 
 namespace ssdo {
-
-/// What a method may be asked for. Definitions: man ssdo, PRODUCTS.
-struct ProductSet {
-  bool ao = false;
-  bool direct = false;
-  bool bounce = false;
-  bool bent = false;
-  bool reflection = false;
-  bool error = false;
-};
-
-/// The planes that were asked for, over the geometry's window or the request's receivers; the
-/// others are empty. Linear, without the receiver's albedo. Background: ao and reflection 1, all
-/// else 0.
-struct Products {
-  Plane<float> ao;
-  Plane<glm::vec3> direct, bounce;
-  Plane<glm::vec3> bent;    ///< unit, camera space
-  Plane<float> reflection;  ///< share of a reflection that is not occluded
-  Plane<float> error;  ///< of the luminance of direct + bounce, with the sign of one draw of noise
-};
 
 /// A parameter of one method, set with --set NAME=VALUE.
 struct Parameter {
@@ -63,20 +42,26 @@ struct Request {
   Window receivers;
 };
 
+/// The options of the model that a method takes.
+struct Takes {
+  bool radius = false;          ///< --radius; without it, the method's sizes are its own
+  bool endless_radius = false;  ///< --radius inf, which then is what `auto` chooses
+  bool thickness = false;       ///< --thickness: the method looks behind what is seen
+  bool march = false;           ///< --quality, --slices, --steps, --offscreen and --error
+};
+
 /// A row in the table of methods.
 struct Method {
   std::string_view name, summary;
   ProductSet products;  ///< what it can make
-  int pattern_size;     ///< its noise repeats every pattern_size pixels
-  std::vector<Parameter> parameters;
-  bool marches;  ///< through slices of the frame, as --slices, --steps and --thickness say
-  int (*samples_per_pixel)(const ParameterValues&);  ///< null where it marches
-  Products (*estimate)(const Scene&, const Request&, const Progress&);
-  bool has_solids = false;  ///< without marching, takes --thickness and endless radii
-  bool has_radius = true;   ///< takes --radius; else its sizes are its own
-
-  /// Whether it takes the solids of the scene.
-  bool takes_solids() const { return marches || has_solids; }
+  Takes takes;
+  int pattern_size = 1;  ///< its noise repeats every pattern_size pixels
+  std::vector<Parameter> parameters = {};
+  int (*samples_per_pixel)(const Request&) = nullptr;
+  Products (*estimate)(const Scene&, const Request&, const Progress&) = nullptr;
+  Ladder ladder;
+  double sample_cost = 1;     ///< time of a sample, about, in those of other methods
+  bool is_reference = false;  ///< the one that bench holds all others to
 };
 
 }  // namespace ssdo

@@ -241,23 +241,29 @@ Products estimate_gtao(const Scene& scene, const Request& request, const Progres
 
 Method gtao_method() {
   return {
-      "gtao",
-      "horizons in slices with the cosine, Jimenez et al. 2016",
-      {.ao = true, .direct = true, .bent = true, .reflection = true},
-      kPattern,
-      {
-          {"slices", 2, 1, 64, "", "per pixel", true},
-          {"steps", 2, 1, 256, "", "per side of a slice", true},
-          {"thickness", 1, 0, 1, "", "share of a horizon that lower surfaces beyond it leave",
-           false},
-          {"multi-bounce", 0, 0, 1, "", "1: direct with light between surfaces, by their albedo",
-           true},
-          {"roughness", 0.5, 0, 1, "", "of what mirrors, where there is no layer of it", false},
-          {"reflection-strength", 0.5, 0, 1, "", "1/2: slices that agree see a half-ball", false},
-      },
-      false,
-      [](const ParameterValues& p) { return 2 * int(p.at("slices")) * int(p.at("steps")); },
-      estimate_gtao,
+      .name = "gtao",
+      .summary = "horizons in slices with the cosine, Jimenez et al. 2016",
+      .products = {.ao = true, .direct = true, .bent = true, .reflection = true},
+      .takes = {.radius = true},
+      .pattern_size = kPattern,
+      .parameters =
+          {
+              {"slices", 2, 1, 64, "", "per pixel", true},
+              {"steps", 2, 1, 256, "", "per side of a slice", true},
+              {"thickness", 1, 0, 1, "", "share of a horizon that lower surfaces beyond it leave"},
+              {"multi-bounce", 0, 0, 1, "",
+               "1: direct with light between surfaces, by their albedo", true},
+              {"roughness", 0.5, 0, 1, "", "of what mirrors, where there is no layer of it"},
+              {"reflection-strength", 0.5, 0, 1, "", "1/2: slices that agree see a half-ball"},
+          },
+      .samples_per_pixel =
+          [](const Request& r) {
+            return 2 * int(r.parameters.at("slices")) * int(r.parameters.at("steps"));
+          },
+      .estimate = estimate_gtao,
+      .ladder = {.rungs = {slices_and_steps(1, 2), slices_and_steps(2, 2), slices_and_steps(3, 4),
+                           slices_and_steps(6, 8)},
+                 .limit = slices_and_steps(32, 32)},
   };
 }
 

@@ -33,6 +33,8 @@
 // near surfaces smaller, the more pixels the picture has.
 #include "estimators/hbao.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -187,24 +189,29 @@ HbaoPattern hbao_pattern(unsigned seed) {
 }
 
 Method hbao_method() {
+  const auto taps = [](int steps) {
+    return Rung{{{"steps", steps}}, fmt::format("4 x {} taps", steps)};
+  };
   return {
-      "hbao",
-      "horizon-based ambient occlusion, four directions of taps in the picture",
-      {.ao = true, .direct = true},
-      TiledNoise::kSize,
-      {
-          {"steps", 3, 1, 256, "", "taps in each of the four directions", true},
-          {"bias", 0.05, 0, 0.99, "", "sine above the tangent plane below which nothing hides",
-           false},
-          {"strength", 1, 0, 10, "", "how much an occluder takes away", false},
-          {"least-distance", 0.1, 1e-6, 1, "radii", "nearer surfaces count as this far away",
-           false},
-          {"max-pixels", 128, 1, 1e6, "pixels", "to which the radius in the picture is cut", false},
-          {"max-distance", 0, 0, 1e30, "units", "deeper surfaces are left open; 0: none", false},
-      },
-      false,
-      [](const ParameterValues& p) { return 4 * int(p.at("steps")); },
-      estimate,
+      .name = "hbao",
+      .summary = "horizon-based ambient occlusion, four directions of taps in the picture",
+      .products = {.ao = true, .direct = true},
+      .takes = {.radius = true},
+      .pattern_size = TiledNoise::kSize,
+      .parameters =
+          {
+              {"steps", 3, 1, 256, "", "taps in each of the four directions", true},
+              {"bias", 0.05, 0, 0.99, "", "sine above the tangent plane below which nothing hides"},
+              {"strength", 1, 0, 10, "", "how much an occluder takes away"},
+              {"least-distance", 0.1, 1e-6, 1, "radii", "nearer surfaces count as this far away"},
+              {"max-pixels", 128, 1, 1e6, "pixels", "to which the radius in the picture is cut"},
+              {"max-distance", 0, 0, 1e30, "units", "deeper surfaces are left open; 0: none"},
+          },
+      .samples_per_pixel = [](const Request& r) { return 4 * int(r.parameters.at("steps")); },
+      .estimate = estimate,
+      .ladder = {.rungs = {taps(2), taps(3), taps(6), taps(12), taps(24)},
+                 .limit = taps(32),
+                 .seeds = 64},
   };
 }
 

@@ -182,24 +182,24 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
 
 Method msvo_method() {
   return {
-      "msvo",
-      "multi-scale volumetric obscurance, as in Unity, with sizes in pixels",
-      {.ao = true, .direct = true},
-      1,
-      {
-          {"intensity", 1, 0, 4, "", "gain of the obscurance", false},
-          {"thickness", 1, 1, 10, "chords", "over which what is in front is forgiven", false},
-          {"far", 1000, 1e-6, 1e9, "units", "far plane, the unit of the tolerances", false},
-          {"noise-tolerance", 0, -8, 0, "log10", "the less, the more fine pixels turn open", false},
-          {"blur-tolerance", -4.6, -8, -1, "log10", "of bends that are blurred across", false},
-          {"upsample-tolerance", -12, -12, -1, "log10", "of depths between scales", false},
-      },
-      false,
+      .name = "msvo",
+      .summary = "multi-scale volumetric obscurance, as in Unity, with sizes in pixels",
+      .products = {.ao = true, .direct = true},
+      .takes = {},
+      .pattern_size = 1,
+      .parameters =
+          {
+              {"intensity", 1, 0, 4, "", "gain of the obscurance"},
+              {"thickness", 1, 1, 10, "chords", "over which what is in front is forgiven"},
+              {"far", 1000, 1e-6, 1e9, "units", "far plane, the unit of the tolerances"},
+              {"noise-tolerance", 0, -8, 0, "log10", "the less, the more fine pixels turn open"},
+              {"blur-tolerance", -4.6, -8, -1, "log10", "of bends that are blurred across"},
+              {"upsample-tolerance", -12, -12, -1, "log10", "of depths between scales"},
+          },
       // 36 of each pixel of four scales: 36 (1/4 + 1/16 + 1/64 + 1/256).
-      [](const ParameterValues&) { return 12; },
-      estimate,
-      /* has_solids */ false,
-      /* has_radius */ false,
+      .samples_per_pixel = [](const Request&) { return 12; },
+      .estimate = estimate,
+      .ladder = {.rungs = {{{}, "four scales"}}, .limit = {{}, "four scales"}},
   };
 }
 

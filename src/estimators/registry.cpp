@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -48,27 +49,45 @@ const Method& find_method(std::string_view name) {
               fmt::format("--method {}: no such method; there is {}", name, names));
 }
 
+const Method& reference_method() {
+  const auto all = methods();
+  return *std::find_if(all.begin(), all.end(), [](const Method& m) { return m.is_reference; });
+}
+
+bool makes(const Method& method, const Product& product, bool ambient) {
+  return contains(method.products, made_of(product, ambient));
+}
+
+const Parameter* find_parameter(const Method& method, std::string_view name) {
+  for (const Parameter& parameter : method.parameters) {
+    if (parameter.name == name) return &parameter;
+  }
+  return nullptr;
+}
+
+void check_value(const Parameter& parameter, double value, const std::string& written) {
+  if (value >= parameter.low && value <= parameter.high &&
+      (!parameter.whole || value == std::floor(value)))
+    return;
+  throw Error(
+      ExitCode::usage,
+      fmt::format("{}: {} takes {} from {:g} to {:g}", written, parameter.name,
+                  parameter.whole ? "whole numbers" : "values", parameter.low, parameter.high));
+}
+
 ParameterValues resolve_parameters(const Method& method, const std::vector<std::string>& settings) {
   ParameterValues values;
   for (const Parameter& p : method.parameters) values[std::string(p.name)] = p.value;
   for (const std::string& setting : settings) {
     const auto equals = setting.find('=');
     const std::string name = setting.substr(0, equals);
-    const Parameter* parameter = nullptr;
-    for (const Parameter& p : method.parameters) {
-      if (p.name == name) parameter = &p;
-    }
+    const Parameter* parameter = find_parameter(method, name);
     if (equals == std::string::npos || !parameter) {
       throw Error(ExitCode::usage, fmt::format("--set {}: method {} has the parameters {}", setting,
                                                method.name, parameter_names(method)));
     }
     const auto value = parse_number(std::string_view(setting).substr(equals + 1));
-    if (!value || *value < parameter->low || *value > parameter->high ||
-        (parameter->whole && *value != std::floor(*value))) {
-      throw Error(ExitCode::usage, fmt::format("--set {}: {} takes {} from {:g} to {:g}", setting,
-                                               name, parameter->whole ? "whole numbers" : "values",
-                                               parameter->low, parameter->high));
-    }
+    check_value(*parameter, value.value_or(NAN), "--set " + setting);
     values[name] = *value;
   }
   return values;
@@ -77,11 +96,12 @@ ParameterValues resolve_parameters(const Method& method, const std::vector<std::
 std::string describe_methods() {
   std::string text;
   for (const Method& method : methods()) {
-    const ProductSet& can = method.products;
-    text += fmt::format("{}  {}\n  products: ao{}{}{}{}{}\n", method.name, method.summary,
-                        can.bent ? ", bent" : "", can.reflection ? ", reflection" : "",
-                        can.direct ? ", direct" : "", can.bounce ? ", bounce" : "",
-                        can.error ? ", error" : "");
+    std::string products;
+    for (const Product& product : kProducts) {
+      if (product.in && method.products.*product.in)
+        products += (products.empty() ? "" : ", ") + std::string(product.name);
+    }
+    text += fmt::format("{}  {}\n  products: {}\n", method.name, method.summary, products);
     for (const Parameter& p : method.parameters) {
       text += fmt::format("  {:<20} {:>8g}  {:g} to {:g} {}  {}\n", p.name, p.value, p.low, p.high,
                           p.unit, p.meaning);

@@ -10,11 +10,25 @@
 
 namespace ssdo {
 
-/// Every method, in the order of --list-methods.
+/// Every method, in the order of --list-methods. The first is the default.
 std::span<const Method> methods();
 
 /// Errors: ExitCode::usage with the names that exist.
 const Method& find_method(std::string_view name);
+
+/// The one that bench holds all others to.
+const Method& reference_method();
+
+/// Whether the method makes what the product is made of in a frame that has its ambient light, or
+/// in one that has not.
+bool makes(const Method& method, const Product& product, bool ambient = false);
+
+/// Null where the method has none of that name.
+const Parameter* find_parameter(const Method& method, std::string_view name);
+
+/// `written` is what the user wrote, for the message.
+/// Errors: ExitCode::usage for a value out of the parameter's range.
+void check_value(const Parameter& parameter, double value, const std::string& written);
 
 /// The method's defaults with `settings` ("NAME=VALUE") laid over them.
 /// Errors: ExitCode::usage for a name the method does not have or a value out of its range.

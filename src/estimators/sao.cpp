@@ -38,6 +38,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "estimators/view_space/ambient_light.h"
 #include "estimators/view_space/depth_mips.h"
@@ -186,25 +187,34 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
   return out;
 }
 
+/// Taps cover the disc evenly where the turns of the spiral are near their number times the golden
+/// ratio, as McGuire's 7 turns of 11 are, and share no factor with it.
+Rung spiral(int samples) {
+  int turns = int(0.618 * samples + 0.5);
+  while (std::gcd(turns, samples) != 1) ++turns;
+  return {{{"samples", samples}, {"turns", turns}}};
+}
+
 }  // namespace
 
 Method sao_method() {
   return {
-      "sao",
-      "scalable ambient obscurance, McGuire et al. 2012",
-      {.ao = true, .direct = true},
-      4,
-      {
-          {"samples", 11, 1, 1024, "", "taps per pixel", true},
-          {"turns", 7, 1, 1024, "", "of the spiral; shares no factor with samples", true},
-          {"intensity", 1, 0, 100, "", "gain of the obscurance", false},
-          {"bias", 0.01, 0, 1, "radii", "surfaces lower above the tangent plane do not hide",
-           false},
-          {"epsilon", 0.01, 1e-6, 1, "radii^2", "holds back the nearest surfaces", false},
-      },
-      false,
-      [](const ParameterValues& p) { return int(p.at("samples")); },
-      estimate,
+      .name = "sao",
+      .summary = "scalable ambient obscurance, McGuire et al. 2012",
+      .products = {.ao = true, .direct = true},
+      .takes = {.radius = true},
+      .pattern_size = 4,
+      .parameters =
+          {
+              {"samples", 11, 1, 1024, "", "taps per pixel", true},
+              {"turns", 7, 1, 1024, "", "of the spiral; shares no factor with samples", true},
+              {"intensity", 1, 0, 100, "", "gain of the obscurance"},
+              {"bias", 0.01, 0, 1, "radii", "surfaces lower above the tangent plane do not hide"},
+              {"epsilon", 0.01, 1e-6, 1, "radii^2", "holds back the nearest surfaces"},
+          },
+      .samples_per_pixel = [](const Request& r) { return int(r.parameters.at("samples")); },
+      .estimate = estimate,
+      .ladder = {.rungs = {spiral(7), spiral(11), spiral(23), spiral(47)}, .limit = spiral(1013)},
   };
 }
 

@@ -122,17 +122,21 @@ Products estimate_ssao(const Scene& scene, const Request& request, const Progres
 
 Method ssao_method() {
   return {
-      "ssao",
-      "points in the normal's half-ball with a range check, Chapman 2013",
-      {.ao = true, .direct = true},
-      TiledNoise::kSize,
-      {
-          {"samples", 64, 1, 1024, "", "points per pixel", true},
-          {"bias", 0.05, 0, 1, "radii", "how far in front of a point a surface has to be", false},
-      },
-      false,
-      [](const ParameterValues& p) { return int(p.at("samples")); },
-      estimate_ssao,
+      .name = "ssao",
+      .summary = "points in the normal's half-ball with a range check, Chapman 2013",
+      .products = {.ao = true, .direct = true},
+      .takes = {.radius = true},
+      .pattern_size = TiledNoise::kSize,
+      .parameters =
+          {
+              {"samples", 64, 1, 1024, "", "points per pixel", true},
+              {"bias", 0.05, 0, 1, "radii", "how far in front of a point a surface has to be"},
+          },
+      .samples_per_pixel = [](const Request& r) { return int(r.parameters.at("samples")); },
+      .estimate = estimate_ssao,
+      .ladder = {.rungs = rungs_of("samples", {16, 32, 64, 128}),
+                 .limit = {{{"samples", 512}}},
+                 .seeds = 8},
   };
 }
 

@@ -192,26 +192,34 @@ Products estimate_ssao_fade(const Scene& scene, const Request& request, const Pr
 }  // namespace
 
 Method ssao_fade_method() {
+  const Rung every_pixel{{{"upsampling", kNone}}, "every pixel"},
+      bilinear{{{"upsampling", 1}}, "half, bilinear"},
+      along_surfaces{{{"upsampling", 2}}, "half, along surfaces"};
   return {
-      "ssao-fade",
-      "14 potential occluders with a linear fade at half resolution, Luna 2016",
-      {.ao = true, .direct = true},
-      2 * TiledNoise::kSize,
-      {
-          {"epsilon", 0.1, 0, 100, "radii", "what is nearer to the viewer by less does not occlude",
-           false},
-          {"fade-start", 0.4, 0, 1000, "radii", "where occluders begin to lose weight", false},
-          {"fade-end", 2, 0, 1000, "radii", "where they have none left", false},
-          {"power", 2, 0, 64, "", "contrast", false},
-          {"upsampling", 1, 0, 2, "",
-           "0: at every pixel; at half resolution, 1: bilinear, 2: along surfaces", true},
-          {"distance-start", 0, 0, 1e12, "scene units", "where the effect begins to fade", false},
-          {"distance-end", 0, 0, 1e12, "scene units", "where it is gone; 0: nowhere", false},
-      },
-      false,
+      .name = "ssao-fade",
+      .summary = "14 potential occluders with a linear fade at half resolution, Luna 2016",
+      .products = {.ao = true, .direct = true},
+      .takes = {.radius = true},
+      .pattern_size = 2 * TiledNoise::kSize,
+      .parameters =
+          {
+              {"epsilon", 0.1, 0, 100, "radii",
+               "what is nearer to the viewer by less does not occlude"},
+              {"fade-start", 0.4, 0, 1000, "radii", "where occluders begin to lose weight"},
+              {"fade-end", 2, 0, 1000, "radii", "where they have none left"},
+              {"power", 2, 0, 64, "", "contrast"},
+              {"upsampling", 1, 0, 2, "",
+               "0: at every pixel; at half resolution, 1: bilinear, 2: along surfaces", true},
+              {"distance-start", 0, 0, 1e12, "scene units", "where the effect begins to fade"},
+              {"distance-end", 0, 0, 1e12, "scene units", "where it is gone; 0: nowhere"},
+          },
       // At half resolution 3.5 for each pixel of the frame.
-      [](const ParameterValues& p) { return int(p.at("upsampling")) == kNone ? 14 : 4; },
-      estimate_ssao_fade,
+      .samples_per_pixel =
+          [](const Request& r) { return int(r.parameters.at("upsampling")) == kNone ? 14 : 4; },
+      .estimate = estimate_ssao_fade,
+      .ladder = {.rungs = {bilinear, along_surfaces, every_pixel},
+                 .limit = every_pixel,
+                 .seeds = 128},
   };
 }
 

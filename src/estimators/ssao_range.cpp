@@ -121,21 +121,25 @@ Products estimate_ssao_range(const Scene& scene, const Request& request, const P
 
 Method ssao_range_method() {
   return {
-      "ssao-range",
-      "points in the normal's half-ball against the pixel's own depth, hard range check",
-      {.ao = true, .direct = true},
-      TiledNoise::kSize,
-      {
-          {"samples", 64, 1, 1024, "", "points per pixel", true},
-          {"range", 1, 0, 1000, "radii", "surfaces nearer to the viewer by more do not occlude",
-           false},
-          {"bias", 0.05, 0, 100, "radii", "surfaces nearer to the viewer by less do not occlude",
-           false},
-          {"strength", 1, 0, 10, "", "how much an occluder takes away", false},
-      },
-      false,
-      [](const ParameterValues& p) { return int(p.at("samples")); },
-      estimate_ssao_range,
+      .name = "ssao-range",
+      .summary = "points in the normal's half-ball against the pixel's own depth, hard range check",
+      .products = {.ao = true, .direct = true},
+      .takes = {.radius = true},
+      .pattern_size = TiledNoise::kSize,
+      .parameters =
+          {
+              {"samples", 64, 1, 1024, "", "points per pixel", true},
+              {"range", 1, 0, 1000, "radii",
+               "surfaces nearer to the viewer by more do not occlude"},
+              {"bias", 0.05, 0, 100, "radii",
+               "surfaces nearer to the viewer by less do not occlude"},
+              {"strength", 1, 0, 10, "", "how much an occluder takes away"},
+          },
+      .samples_per_pixel = [](const Request& r) { return int(r.parameters.at("samples")); },
+      .estimate = estimate_ssao_range,
+      .ladder = {.rungs = rungs_of("samples", {16, 32, 64, 128}),
+                 .limit = {{{"samples", 512}}},
+                 .seeds = 8},
   };
 }
 

@@ -302,22 +302,26 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
 
 Method ssdo_method() {
   return {
-      "ssdo",
-      "directional occlusion and one bounce, Ritschel et al. 2009",
-      {.ao = true, .direct = true, .bounce = true},
-      kPatternSize,
-      {
-          {"samples", 16, 1, 1024, "", "points per pixel", true},
-          {"bias", 0.001, 0, 1, "radii", "how far in front of a point a surface has to be", false},
-          {"singularity", 1, 0, 100, "radii", "surfaces farther in front than this do not occlude",
-           false},
-          {"strength", 1, 0, 10, "", "how much an occluder takes away", false},
-          {"bounce-strength", 1, 0, 100, "", "gain of the bounce", false},
-          {"bounce-singularity", 1, 0, 1e6, "", "largest form factor of a sample", false},
-      },
-      false,
-      [](const ParameterValues& p) { return int(p.at("samples")); },
-      estimate,
+      .name = "ssdo",
+      .summary = "directional occlusion and one bounce, Ritschel et al. 2009",
+      .products = {.ao = true, .direct = true, .bounce = true},
+      .takes = {.radius = true},
+      .pattern_size = kPatternSize,
+      .parameters =
+          {
+              {"samples", 16, 1, 1024, "", "points per pixel", true},
+              {"bias", 0.001, 0, 1, "radii", "how far in front of a point a surface has to be"},
+              {"singularity", 1, 0, 100, "radii",
+               "surfaces farther in front than this do not occlude"},
+              {"strength", 1, 0, 10, "", "how much an occluder takes away"},
+              {"bounce-strength", 1, 0, 100, "", "gain of the bounce"},
+              {"bounce-singularity", 1, 0, 1e6, "", "largest form factor of a sample"},
+          },
+      .samples_per_pixel = [](const Request& r) { return int(r.parameters.at("samples")); },
+      .estimate = estimate,
+      .ladder = {.rungs = rungs_of("samples", {8, 16, 32, 64, 128}),
+                 .limit = {{{"samples", 512}}},
+                 .seeds = 4},
   };
 }
 

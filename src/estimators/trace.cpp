@@ -297,22 +297,22 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
   return Trace(scene, request, progress).run();
 }
 
-int samples_per_pixel(const ParameterValues& parameters) {
-  return int(parameters.find("samples")->second);
-}
-
 }  // namespace
 
 Method trace_method() {
   return {.name = "trace",
           .summary = "rays against the frame as thick solids: slow, the yardstick of the others",
           .products = {.ao = true, .direct = true, .bounce = true, .bent = true, .error = true},
+          .takes = {.radius = true, .endless_radius = true, .thickness = true},
           .pattern_size = 1,
           .parameters = {{"samples", 64, kGroups, 65536, "rays", "per pixel and bounce", true}},
-          .marches = false,
-          .samples_per_pixel = samples_per_pixel,
+          .samples_per_pixel = [](const Request& r) { return int(r.parameters.at("samples")); },
           .estimate = estimate,
-          .has_solids = true};
+          .ladder = {.rungs = rungs_of("samples", {4, 16, 64}),
+                     .limit = {{{"samples", 512}}},
+                     .seeds = 2},
+          .sample_cost = 30,
+          .is_reference = true};
 }
 
 }  // namespace ssdo

@@ -24,9 +24,11 @@ inline std::vector<Tap> transposed(std::vector<Tap> taps) {
 
 /// Planes of the same sizes, whose values are whatever was in memory.
 inline Products like(const Products& other) {
-  const auto plane = [](const auto& p) { return std::decay_t<decltype(p)>::like(p); };
-  return {plane(other.ao),   plane(other.direct),     plane(other.bounce),
-          plane(other.bent), plane(other.reflection), plane(other.error)};
+  Products products;
+  for_each_plane([](const Product&, auto& to,
+                    const auto& from) { to = std::decay_t<decltype(from)>::like(from); },
+                 products, other);
+  return products;
 }
 
 /// Runs `pass` from `noisy` with each window in turn, each on what the one before has left.

@@ -36,6 +36,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <type_traits>
 
 #include "filters/reprojection.h"
 #include "parallel/tiles.h"
@@ -46,9 +47,11 @@ namespace {
 constexpr float kMostFrames = 15;  ///< of history; with the present frame the mean counts 16
 
 bool same_products(const Products& a, const Products& b) {
-  return a.ao.empty() == b.ao.empty() && a.direct.empty() == b.direct.empty() &&
-         a.bounce.empty() == b.bounce.empty() && a.bent.empty() == b.bent.empty() &&
-         a.reflection.empty() == b.reflection.empty() && a.error.empty() == b.error.empty();
+  bool same = true;
+  for_each_plane([&](const Product&, const auto& one,
+                     const auto& other) { same = same && one.empty() == other.empty(); },
+                 a, b);
+  return same;
 }
 
 template <class T>
@@ -61,8 +64,35 @@ T average(const Plane<T>& plane, const Footprint& at) {
 
 /// value = (n h + value) / (n + 1), as a step for the same reason.
 template <class T>
-void mix(Plane<T>& values, std::size_t i, const T& history, float frames) {
-  values[i] += (frames / (frames + 1)) * (history - values[i]);
+void mix(T& value, const T& history, float frames) {
+  value += (frames / (frames + 1)) * (history - value);
+}
+
+/// Adds to pixel `i` of each product what `old` has at `at`; `turn` leads from the camera space of
+/// `old` to the present one.
+void mix_products(Products& mean, std::size_t i, const Products& old, const Footprint& at,
+                  const glm::mat3& turn, float frames) {
+  for_each_plane(
+      [&](const Product& product, auto& values, const auto& before) {
+        if (values.empty()) return;
+        auto history = average(before, at);
+        if constexpr (std::is_same_v<decltype(history), glm::vec3>) {
+          if (product.kind == ProductKind::direction) history = turn * history;
+        }
+        mix(values[i], history, frames);
+      },
+      mean, old);
+}
+
+/// What rounding, or the mean of directions, has left of a product's kind.
+float within_its_kind(float value, ProductKind kind) {
+  return kind == ProductKind::share ? std::clamp(value, 0.0f, 1.0f) : value;
+}
+
+glm::vec3 within_its_kind(const glm::vec3& value, ProductKind kind) {
+  if (kind != ProductKind::direction) return value;
+  const float length = glm::length(value);
+  return length > 0 ? value / length : glm::vec3(0);
 }
 
 }  // namespace
@@ -88,14 +118,7 @@ History accumulate(const History* before, const Geometry& geometry, const Produc
       const Footprint at = reprojection.find(geometry.surfel[i], told);
       if (at.count == 0) continue;
       const float frames = std::min(average(before->frames, at), kMostFrames);
-      Products& mean = after.mean;
-      const Products& old = before->mean;
-      if (!mean.ao.empty()) mix(mean.ao, i, average(old.ao, at), frames);
-      if (!mean.direct.empty()) mix(mean.direct, i, average(old.direct, at), frames);
-      if (!mean.bounce.empty()) mix(mean.bounce, i, average(old.bounce, at), frames);
-      if (!mean.bent.empty()) mix(mean.bent, i, turn * average(old.bent, at), frames);
-      if (!mean.reflection.empty()) mix(mean.reflection, i, average(old.reflection, at), frames);
-      if (!mean.error.empty()) mix(mean.error, i, average(old.error, at), frames);
+      mix_products(after.mean, i, before->mean, at, turn, frames);
       after.frames[i] = frames + 1;
     }
   });
@@ -104,13 +127,11 @@ History accumulate(const History* before, const Geometry& geometry, const Produc
 
 Products products_of(const History& history) {
   Products products = history.mean;
-  for (Plane<float>* shares : {&products.ao, &products.reflection})
-    for (float& share : shares->pixels)
-      share = std::clamp(share, 0.0f, 1.0f);  // rounding leaves it
-  for (glm::vec3& bent : products.bent.pixels) {
-    const float length = glm::length(bent);
-    bent = length > 0 ? bent / length : glm::vec3(0);
-  }
+  for_each_plane(
+      [](const Product& product, auto& plane) {
+        for (auto& value : plane.pixels) value = within_its_kind(value, product.kind);
+      },
+      products);
   return products;
 }
 

@@ -65,21 +65,19 @@ struct Part {
 
 /// Those planes that exist.
 inline std::vector<Part> parts_of(const Products& noisy, Products& out) {
+  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
   std::vector<Part> parts;
-  const auto add = [&](const Plane<float>& from, Plane<float>& to, Finish finish, bool shadowed) {
-    if (!from.empty()) parts.push_back({from.pixels.data(), to.pixels.data(), 1, finish, shadowed});
-  };
-  const auto add3 = [&](const Plane<glm::vec3>& from, Plane<glm::vec3>& to, Finish finish,
-                        bool shadowed) {
-    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-    if (!from.empty()) parts.push_back({&from.pixels[0].x, &to.pixels[0].x, 3, finish, shadowed});
-  };
-  add3(noisy.direct, out.direct, Finish::none, true);
-  add3(noisy.bounce, out.bounce, Finish::none, false);
-  add3(noisy.bent, out.bent, Finish::normalise, false);
-  add(noisy.ao, out.ao, Finish::clamp, true);
-  add(noisy.reflection, out.reflection, Finish::clamp, true);
-  add(noisy.error, out.error, Finish::none, false);
+  for_each_plane(
+      [&](const Product& product, const auto& from, auto& to) {
+        if (from.empty()) return;
+        const Finish finish = product.kind == ProductKind::share       ? Finish::clamp
+                              : product.kind == ProductKind::direction ? Finish::normalise
+                                                                       : Finish::none;
+        parts.push_back({reinterpret_cast<const float*>(from.pixels.data()),
+                         reinterpret_cast<float*>(to.pixels.data()),
+                         int(sizeof(from[0]) / sizeof(float)), finish, product.shadowed});
+      },
+      noisy, out);
   return parts;
 }
 

@@ -16,34 +16,51 @@ namespace ssdo::test {
 namespace {
 
 int samples_of(const Setting& setting) {
-  if (setting.method->marches) return 2 * setting.slices * setting.steps;
-  return setting.method->samples_per_pixel(resolve_parameters(*setting.method, setting.set));
+  const ModelOptions model = setting.applied_to({});
+  Request request;
+  request.parameters = resolve_parameters(*setting.method, model.set);
+  request.slices = model.slices.value_or(0);
+  request.steps = model.steps.value_or(0);
+  return setting.method->samples_per_pixel(request);
 }
 
 TEST(Ladder, OfEveryMethodHasItsDefaultAndALimitBeyondAll) {
   for (const Method& method : methods()) {
-    const Ladder ladder = ladder_of(method, 128);
+    const Settings settings = settings_of(method, 128);
     int defaults = 0, most = 0;
     std::set<std::string> names;
-    for (const Setting& setting : ladder.settings) {
+    for (const Setting& setting : settings.ladder) {
       EXPECT_EQ(setting.method, &method);
       EXPECT_TRUE(names.insert(setting.name()).second) << setting.name() << " twice";
-      EXPECT_NO_THROW(resolve_parameters(method, setting.set)) << setting.name();
+      EXPECT_NO_THROW(samples_of(setting)) << setting.name();
       defaults += setting.standard;
       most = std::max(most, samples_of(setting));
     }
     EXPECT_EQ(defaults, 1) << method.name;
-    EXPECT_GE(samples_of(ladder.limit) * ladder.seeds, most) << method.name;
-    EXPECT_TRUE(ladder.seeds == 1 || ladder.seeds % 2 == 0) << method.name;
-    const Setting standard = standard_setting(method);
-    ModelOptions plain;
-    if (method.marches) {
+    EXPECT_GE(samples_of(settings.limit) * settings.seeds, most) << method.name;
+    EXPECT_TRUE(settings.seeds == 1 || settings.seeds % 2 == 0) << method.name;
+    const ModelOptions plain, standard = standard_setting(method).applied_to(plain);
+    if (method.takes.march) {
       EXPECT_EQ(standard.slices, slices_of(plain.quality));
       EXPECT_EQ(standard.steps, steps_of(plain.quality));
     } else {
       EXPECT_EQ(resolve_parameters(method, standard.set), resolve_parameters(method, {}));
     }
   }
+}
+
+TEST(Ladder, LabelsSayWhatASettingIs) {
+  const auto labels_of = [](const char* method) {
+    std::vector<std::string> labels;
+    for (const Setting& setting : settings_of(find_method(method), 256).ladder)
+      labels.push_back(setting.rung.label);
+    labels.push_back(settings_of(find_method(method), 256).limit.rung.label);
+    return labels;
+  };
+  EXPECT_THAT(labels_of("bitmask"),
+              testing::IsSupersetOf({"1 x 6", "2 x 16 (standard)", "6 x 48 (final)", "32 x 96"}));
+  EXPECT_THAT(labels_of("trace"), testing::ElementsAre("4 rays", "16 rays", "64 rays", "256 rays"));
+  EXPECT_THAT(labels_of("sao"), testing::Contains("11 samples, 7 turns"));
 }
 
 TEST(Ladder, ASettingTakesThePlaceOfMethodAndQualityAlone) {

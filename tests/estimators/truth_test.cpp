@@ -91,7 +91,7 @@ Result run(const std::string& method, const Subject& scene, const std::string& e
   FrameOptions options;
   options.model.method = method;
   if (method == "trace") options.model.set = {"samples=16"};
-  if (find_method(method).has_radius) options.model.radius = radius;
+  if (find_method(method).takes.radius) options.model.radius = radius;
   options.light.env = environment;
   Frame frame = prepare_frame(options, Lighting(options.light), kData + scene.name + ".exr", {});
   const Plan& plan = frame.plan;

@@ -17,7 +17,7 @@ inline Products run_method(const Method& method, const HardFrame& frame,
                            const std::vector<std::string>& set = {}) {
   Scene scene = scene_of(frame.geometry, frame.environment);
   scene.senders.albedo = frame.albedo;
-  if (method.takes_solids()) scene.solids = guess_solids(frame.geometry);
+  if (method.takes.thickness) scene.solids = guess_solids(frame.geometry);
   return method.estimate(scene,
                          {.products = method.products,
                           .radius = frame.radius,
@@ -33,9 +33,11 @@ bool same_bits(const Plane<Value>& a, const Plane<Value>& b) {
 }
 
 inline bool same_bits(const Products& a, const Products& b) {
-  return same_bits(a.ao, b.ao) && same_bits(a.direct, b.direct) && same_bits(a.bounce, b.bounce) &&
-         same_bits(a.bent, b.bent) && same_bits(a.reflection, b.reflection) &&
-         same_bits(a.error, b.error);
+  bool same = true;
+  for_each_plane([&](const Product&, const auto& one,
+                     const auto& other) { same = same && same_bits(one, other); },
+                 a, b);
+  return same;
 }
 
 }  // namespace ssdo::test

@@ -24,7 +24,7 @@ bool is_sane(const glm::vec3& v) {
 
 /// The first fault of one product.
 template <class Value, class Fine>
-std::string fault_of(const char* name, const Plane<Value>& plane, const Geometry& g,
+std::string fault_of(std::string_view name, const Plane<Value>& plane, const Geometry& g,
                      const Value& background, const Fine& is_fine) {
   if (plane.empty()) return "";
   if (plane.size() != g.surfel.size()) return fmt::format("{} has another size", name);
@@ -39,27 +39,31 @@ std::string fault_of(const char* name, const Plane<Value>& plane, const Geometry
                      testing::PrintToString(*reinterpret_cast<const float*>(&plane[first])));
 }
 
+bool is_fine(float v, ProductKind kind) {
+  return kind == ProductKind::share ? v >= 0 && v <= 1 : is_sane(v);
+}
+bool is_fine(const glm::vec3& v, ProductKind kind) {
+  const bool unit = v == glm::vec3(0) || std::abs(glm::length(v) - 1) < 1e-4f;
+  return is_sane(v) && (kind != ProductKind::direction || unit);
+}
+
 /// What is wrong with products of this geometry, in words; empty if nothing is.
-std::string find_fault(const Products& p, const Geometry& g) {
-  const auto finite = [](const auto& v) { return is_sane(v); };
-  const auto share = [](float v) { return v >= 0 && v <= 1; };
-  const auto direction = [](const glm::vec3& v) {
-    return is_sane(v) && (v == glm::vec3(0) || std::abs(glm::length(v) - 1) < 1e-4f);
-  };
-  const glm::vec3 dark(0);
-  std::string fault = fault_of("ao", p.ao, g, 1.0f, share);
-  if (fault.empty()) fault = fault_of("reflection", p.reflection, g, 1.0f, share);
-  if (fault.empty()) fault = fault_of("direct", p.direct, g, dark, finite);
-  if (fault.empty()) fault = fault_of("bounce", p.bounce, g, dark, finite);
-  if (fault.empty()) fault = fault_of("bent", p.bent, g, dark, direction);
-  if (fault.empty()) fault = fault_of("error", p.error, g, 0.0f, finite);
+std::string find_fault(const Products& products, const Geometry& g) {
+  std::string fault;
+  for_each_plane(
+      [&](const Product& product, const auto& plane) {
+        using Value = std::decay_t<decltype(plane[0])>;
+        if (fault.empty())
+          fault = fault_of(product.name, plane, g, Value(product.background),
+                           [&](const Value& v) { return is_fine(v, product.kind); });
+      },
+      products);
   return fault;
 }
 
-/// Rays of `trace` are slow; few show as much of what breaks.
+/// Rays are slow; few show as much of what breaks.
 std::vector<std::string> settings_of(const Method& method) {
-  return method.name == "trace" ? std::vector<std::string>{"samples=16"}
-                                : std::vector<std::string>{};
+  return method.is_reference ? std::vector<std::string>{"samples=16"} : std::vector<std::string>{};
 }
 
 class HardCases : public testing::TestWithParam<HardCase> {
@@ -91,11 +95,14 @@ TEST_P(HardCases, ThroughEveryMethod) {
 TEST_P(HardCases, ThroughEveryFilter) {
   const Products noisy = random_products(frame_.geometry, 1);
   Products clean = noisy;  // as methods leave the background
-  for (std::size_t i = 0; i < clean.ao.size(); ++i) {
-    if (frame_.geometry.is_surface(i)) continue;
-    clean.ao[i] = clean.reflection[i] = 1, clean.error[i] = 0;
-    clean.direct[i] = clean.bounce[i] = clean.bent[i] = glm::vec3(0);
-  }
+  for_each_plane(
+      [&](const Product& product, auto& plane) {
+        for (std::size_t i = 0; i < plane.size(); ++i) {
+          if (!frame_.geometry.is_surface(i))
+            plane[i] = std::decay_t<decltype(plane[i])>(product.background);
+        }
+      },
+      clean);
   const auto check = [&](std::string_view name, const std::function<Products()>& filter) {
     SCOPED_TRACE(fmt::format("filter {}", name));
     std::optional<Products> first;

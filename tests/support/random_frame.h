@@ -41,22 +41,26 @@ inline Geometry random_geometry(int width, int height, unsigned seed) {
   return g;
 }
 
+/// A value of a product as methods before a filter make it.
+inline float random_value(Random& random, ProductKind kind, float) {
+  return between(random, kind == ProductKind::share ? 0.0f : -1.0f, 1);
+}
+inline glm::vec3 random_value(Random& random, ProductKind kind, const glm::vec3&) {
+  const glm::vec3 v = vector_of(random, 1);
+  return kind == ProductKind::direction ? glm::normalize(glm::vec3(0, 0, 1.5f) + v) : v;
+}
+
 /// All products, with values on the background too.
 inline Products random_products(const Geometry& g, unsigned seed) {
   Random random(seed);
-  const int w = g.surfel.width, h = g.surfel.height;
-  Products p;
-  p.ao = p.reflection = p.error = Plane<float>(w, h);
-  p.direct = p.bounce = p.bent = Plane<glm::vec3>(w, h);
-  for (std::size_t i = 0; i < p.ao.size(); ++i) {
-    p.ao[i] = between(random, 0, 1);
-    p.direct[i] = vector_of(random, 1);
-    p.bounce[i] = vector_of(random, 1);
-    p.bent[i] = glm::normalize(glm::vec3(0, 0, 1.5f) + vector_of(random, 1));
-    p.error[i] = between(random, -1, 1);
-    p.reflection[i] = between(random, 0, 1);
-  }
-  return p;
+  Products products;
+  for_each_plane(
+      [&](const Product& product, auto& plane) {
+        plane = std::decay_t<decltype(plane)>::like(g.surfel);
+        for (auto& value : plane.pixels) value = random_value(random, product.kind, value);
+      },
+      products);
+  return products;
 }
 
 inline double difference(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b); }

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The one table of products. Definitions: man ssdo, PRODUCTS.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "math/plane.h"
+
+namespace ssdo {
+
+/// Those that a method may be asked for.
+struct ProductSet {
+  bool ao = false;
+  bool direct = false;
+  bool bounce = false;
+  bool bent = false;
+  bool reflection = false;
+  bool error = false;
+
+  bool operator==(const ProductSet&) const = default;
+};
+
+/// Planes over the receivers of the request: those that were asked for, and others that the method
+/// found on its way; the rest are empty. Linear, without the receiver's albedo.
+struct Products {
+  Plane<float> ao;
+  Plane<glm::vec3> direct, bounce;
+  Plane<glm::vec3> bent;    ///< unit, camera space
+  Plane<float> reflection;  ///< share of a reflection that is not occluded
+  Plane<float> error;  ///< of the luminance of direct + bounce, with the sign of one draw of noise
+};
+
+/// What the values of a product are. It decides how filters, --temporal and pictures treat them.
+enum class ProductKind {
+  share,      ///< 0..1: means are clamped to it; grey in a picture
+  light,      ///< a colour: goes through the display transform
+  direction,  ///< a unit vector: means are normalised; written in the space of the input's normals
+  deviation,  ///< of any sign; grey in a picture
+};
+
+/// A row in the table of products.
+struct Product {
+  std::string_view name;
+  ProductKind kind;
+  std::string_view channels;  ///< a letter for each, in an EXR behind "NAME." if it is estimated
+  bool ProductSet::*in = nullptr;  ///< its place in a set; null: composed of others
+  std::variant<std::monostate, Plane<float> Products::*, Plane<glm::vec3> Products::*> plane = {};
+  ProductSet made_of = {};  ///< what a method has to make for it
+  ProductSet with = {};     ///< added to that where the method makes it and the layers exist
+  ProductSet made_of_ambient = {};  ///< in place of both, where the frame has its ambient light
+  std::string_view needs = "";      ///< role of a layer that it is not made without
+  std::string_view all_needs = "";  ///< role of a layer without which --products all leaves it out
+  float background = 0;             ///< its value where there is no surface
+  bool usual = false;               ///< made where --products is not given
+  bool shadowed = false;      ///< steps of its brightness are edges of shadows, which filters keep
+  bool measured = false;      ///< by bench
+  std::string_view aka = "";  ///< names that renderers give such a layer, in lower case
+};
+
+/// In the order of lists and files.
+inline constexpr std::array<Product, 7> kProducts = {{
+    {.name = "ao",
+     .kind = ProductKind::share,
+     .channels = "Y",
+     .in = &ProductSet::ao,
+     .plane = &Products::ao,
+     .made_of = {.ao = true},
+     .background = 1,
+     .usual = true,
+     .shadowed = true,
+     .measured = true,
+     .aka = "ambientocclusion occlusion"},
+    {.name = "bent",
+     .kind = ProductKind::direction,
+     .channels = "XYZ",
+     .in = &ProductSet::bent,
+     .plane = &Products::bent,
+     .made_of = {.bent = true}},
+    // Without a layer of it, roughness is a parameter that only the user knows.
+    {.name = "reflection",
+     .kind = ProductKind::share,
+     .channels = "Y",
+     .in = &ProductSet::reflection,
+     .plane = &Products::reflection,
+     .made_of = {.reflection = true},
+     .all_needs = "roughness",
+     .background = 1,
+     .shadowed = true},
+    {.name = "direct",
+     .kind = ProductKind::light,
+     .channels = "RGB",
+     .in = &ProductSet::direct,
+     .plane = &Products::direct,
+     .made_of = {.direct = true},
+     .usual = true,
+     .shadowed = true,
+     .measured = true,
+     .aka = "diffdir diffusedirect"},
+    {.name = "bounce",
+     .kind = ProductKind::light,
+     .channels = "RGB",
+     .in = &ProductSet::bounce,
+     .plane = &Products::bounce,
+     .made_of = {.bounce = true},
+     .needs = "albedo",
+     .usual = true,
+     .measured = true,
+     .aka = "diffind diffuseindirect"},
+    {.name = "error",
+     .kind = ProductKind::deviation,
+     .channels = "Y",
+     .in = &ProductSet::error,
+     .plane = &Products::error,
+     .made_of = {.direct = true, .error = true},
+     .with = {.bounce = true}},
+    {.name = "composite",
+     .kind = ProductKind::light,
+     .channels = "RGBA",
+     .made_of = {.direct = true},
+     .with = {.bounce = true},
+     .made_of_ambient = {.ao = true},
+     .needs = "albedo",
+     .usual = true},
+}};
+
+/// --products all: whatever frame and method allow.
+inline constexpr std::string_view kAllProducts = "all";
+
+/// Errors: ExitCode::usage with the names that exist.
+const Product& find_product(std::string_view name);
+
+/// "ao, bent, ...".
+std::string product_names();
+
+/// What a method has to make for the product in a frame that has its ambient light, or in one that
+/// has not.
+const ProductSet& made_of(const Product& product, bool ambient);
+
+/// Whether `larger` has all of `smaller`.
+bool contains(const ProductSet& larger, const ProductSet& smaller);
+ProductSet operator|(const ProductSet& a, const ProductSet& b);
+ProductSet operator&(const ProductSet& a, const ProductSet& b);
+
+/// Whether a list of products has `name`.
+bool contains(const std::vector<std::string>& names, std::string_view name);
+
+/// Calls visit(product, plane of each of `all`) for every product that is estimated; the planes,
+/// some of which may be empty, are Plane<float> or Plane<glm::vec3>.
+template <class Visit, class... All>
+void for_each_plane(const Visit& visit, All&... all) {
+  for (const Product& product : kProducts) {
+    if (const auto* scalar = std::get_if<Plane<float> Products::*>(&product.plane))
+      visit(product, all.**scalar...);
+    else if (const auto* vector = std::get_if<Plane<glm::vec3> Products::*>(&product.plane))
+      visit(product, all.**vector...);
+  }
+}
+
+}  // namespace ssdo
