@@ -12,6 +12,7 @@
 #include "bench/bench.h"
 #include "cli/batch.h"
 #include "cli/options.h"
+#include "cli/resources.h"
 #include "compare.h"
 #include "error.h"
 #include "estimators/registry.h"
@@ -38,12 +39,14 @@ ssdo::ExitCode run(int argc, char** argv) {
     fmt::print("{}", report.text);
     return report.code;
   }
+  const ssdo::Resources resources(parsed.options.threads);
   if (parsed.options.command == ssdo::Command::bench) {
-    const ssdo::BenchOutcome outcome = ssdo::bench(parsed.options);
+    const ssdo::BenchOutcome outcome =
+        ssdo::bench(parsed.options, resources.threads(), resources.isa());
     fmt::print("{}", outcome.text);
     return outcome.code;
   }
-  return ssdo::run_batch(parsed.options);
+  return ssdo::run_batch(parsed.options, resources);
 }
 
 /// Opens the standard streams that the caller has closed: the first file to be written would take

@@ -13,7 +13,6 @@
 #include "estimators/registry.h"
 #include "io/image_file.h"
 #include "math/luminance.h"
-#include "simd/isa.h"
 
 namespace ssdo {
 namespace {
@@ -251,7 +250,6 @@ void explain_thickness(Plan& plan, const ModelOptions& model) {
 }
 
 void choose_march(Plan& plan, const ModelOptions& model) {
-  plan.isa = choose_isa();
   if (!plan.method->marches) {
     const bool solids = plan.method->has_solids;
     const bool asked = model.slices || model.steps || (model.thickness && !solids) || model.error;

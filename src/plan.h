@@ -43,7 +43,6 @@ struct Plan {
   const Method* method = nullptr;
   Request request;                   ///< what the method is asked for
   std::optional<double> error;       ///< to stay below
-  std::string isa;                   ///< instruction set of the inner loops
   const Filter* filter = nullptr;    ///< after the estimate
   bool temporal = false;             ///< then the mean with the frames before
   std::vector<std::string> make;     ///< products for any of the outputs

@@ -44,13 +44,14 @@ bool makes(const Method& method, const std::string& product) {
 /// Measures one frame.
 class Bench {
  public:
-  explicit Bench(const Options& options)
+  Bench(const Options& options, int threads, const std::string& isa)
       : options_(options),
-        threads_(choose_thread_count(options.threads)),
-        limit_(threads_),
         subject_(read_subject(options)),
         frame_(subject_.frame),
-        progress_(options.batch.progress, options.say.quiet) {}
+        progress_(options.batch.progress, options.say.quiet) {
+    report_.threads = threads;
+    report_.isa = isa;
+  }
 
   BenchOutcome run() {
     Stopwatch watch;
@@ -118,8 +119,6 @@ class Bench {
     report_.stages = frame_.times;
     report_.processor = processor_name();
     report_.processors = processor_count();
-    report_.threads = threads_;
-    report_.isa = frame_.plan.isa;
     report_.filter = frame_.plan.filter->name;
   }
 
@@ -264,8 +263,6 @@ class Bench {
   }
 
   const Options& options_;
-  int threads_;
-  ThreadLimit limit_;
   Subject subject_;
   const Frame& frame_;
   ProgressLine progress_;
@@ -279,6 +276,8 @@ class Bench {
 
 }  // namespace
 
-BenchOutcome bench(const Options& options) { return Bench(options).run(); }
+BenchOutcome bench(const Options& options, int threads, const std::string& isa) {
+  return Bench(options, threads, isa).run();
+}
 
 }  // namespace ssdo

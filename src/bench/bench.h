@@ -14,8 +14,9 @@ struct BenchOutcome {
   ExitCode code = ExitCode::done;
 };
 
-/// Measures the settings of the methods on one frame and writes the reports.
+/// Measures the settings of the methods on one frame and writes the reports, which say on how many
+/// threads and on which instruction set.
 /// Errors: those of prepare_frame, make_plan and read_truth; ExitCode::output for reports.
-BenchOutcome bench(const Options& options);
+BenchOutcome bench(const Options& options, int threads, const std::string& isa);
 
 }  // namespace ssdo

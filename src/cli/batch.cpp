@@ -21,7 +21,6 @@
 #include "io/image_file.h"
 #include "io/json_text.h"
 #include "io/one_line.h"
-#include "parallel/tiles.h"
 #include "pipeline.h"
 
 namespace ssdo {
@@ -57,10 +56,9 @@ bool all_done(const Job& job) {
 /// Runs the jobs one after another.
 class Batch {
  public:
-  explicit Batch(const Options& options)
+  Batch(const Options& options, const Resources& resources)
       : options_(options),
-        threads_(choose_thread_count(options.threads)),
-        limit_(threads_),
+        resources_(resources),
         jobs_(plan_jobs(options)),
         progress_(options.batch.progress, options.say.quiet) {}
 
@@ -153,7 +151,7 @@ class Batch {
                       "keep them with --pixel-type float",
                       job.input, relit.clamped_values));
     }
-    statistics_.add(frame, job.frame, job.targets, threads_, relit);
+    statistics_.add(frame, job.frame, job.targets, resources_, relit);
     if (!options_.model.temporal) return;
     history_ = std::move(relit.history);
     history_->geometry = std::move(frame.scene.geometry);
@@ -223,7 +221,7 @@ class Batch {
   }
 
   Frame start_next(std::size_t i, Frame frame) {
-    if (threads_ > 1 && i + 1 < jobs_.size() && !options_.batch.skip_existing) {
+    if (resources_.threads() > 1 && i + 1 < jobs_.size() && !options_.batch.skip_existing) {
       next_index_ = i + 1;
       next_ = std::async(std::launch::async, [this, n = i + 1] { return prepare(n); });
     }
@@ -283,8 +281,7 @@ class Batch {
   }
 
   const Options& options_;
-  int threads_;
-  ThreadLimit limit_;
+  const Resources& resources_;
   std::vector<Job> jobs_;
   std::optional<Lighting> light_;  ///< read after the first listing of `info`
   ProgressLine progress_;
@@ -297,6 +294,8 @@ class Batch {
 
 }  // namespace
 
-ExitCode run_batch(const Options& options) { return Batch(options).run(); }
+ExitCode run_batch(const Options& options, const Resources& resources) {
+  return Batch(options, resources).run();
+}
 
 }  // namespace ssdo

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include "cli/option_values.h"
+#include "cli/threads.h"
 #include "estimators/registry.h"
 #include "filters/registry.h"
 #include "io/sequence.h"
-#include "parallel/tiles.h"
 
 namespace ssdo {
 namespace {

@@ -22,7 +22,8 @@ std::size_t peak_rss_bytes() {
 }  // namespace
 
 void Statistics::add(const Frame& frame, std::optional<int> number,
-                     const std::vector<Target>& targets, int threads, const Relit& relit) {
+                     const std::vector<Target>& targets, const Resources& resources,
+                     const Relit& relit) {
   const StageTimes& t = relit.times;
   const Plan& plan = relit.plan;
   nlohmann::json outputs = nlohmann::json::array();
@@ -33,8 +34,8 @@ void Statistics::add(const Frame& frame, std::optional<int> number,
       {"output", targets.size() == 1 ? outputs[0] : outputs},
       {"width", frame.scene.geometry.window.width()},
       {"height", frame.scene.geometry.window.height()},
-      {"threads", threads},
-      {"isa", plan.isa},
+      {"threads", resources.threads()},
+      {"isa", resources.isa()},
       {"method", plan.method->name},
       {"samples_per_pixel", plan.samples_per_pixel()},
       {"bounces", plan.request.bounces},

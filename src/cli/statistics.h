@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/resources.h"
 #include "frame.h"
 #include "pipeline.h"
 
@@ -15,7 +16,7 @@ namespace ssdo {
 class Statistics {
  public:
   void add(const Frame& frame, std::optional<int> number, const std::vector<Target>& targets,
-           int threads, const Relit& relit);
+           const Resources& resources, const Relit& relit);
 
   /// A log is replaced where an image would not be.
   static OutputPolicy policy(OutputPolicy of_images) {
