@@ -24,11 +24,8 @@ Setting march(int slices, int steps) {
   s.slices = slices;
   s.steps = steps;
   s.label = fmt::format("{} x {}", slices, steps);
-  for (const auto& [name, quality] : {std::pair{"draft", Quality::draft},
-                                      {"standard", Quality::standard},
-                                      {"final", Quality::final}}) {
-    if (slices == slices_of(quality) && steps == steps_of(quality))
-      s.label += fmt::format(" ({})", name);
+  for (const QualityLevel& level : kQualities) {
+    if (slices == level.slices && steps == level.steps) s.label += fmt::format(" ({})", level.name);
   }
   return s;
 }
