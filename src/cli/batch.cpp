@@ -21,6 +21,7 @@
 #include "io/image_file.h"
 #include "io/json_text.h"
 #include "io/one_line.h"
+#include "io/standard_output.h"
 #include "pipeline.h"
 
 namespace ssdo {
@@ -247,14 +248,13 @@ class Batch {
   void print_info(const std::string& text) {
     if (options_.say.json) return;
     progress_.clear();
-    fmt::print("{}", text);
-    std::fflush(stdout);  // before an error line
+    print_out(text);
   }
 
   void print_infos() const {
     if (!options_.say.json || infos_.empty()) return;
     const nlohmann::json& shown = infos_.size() == 1 ? infos_[0] : infos_;
-    fmt::print("{}\n", json_text(shown, 2));
+    print_out(json_text(shown, 2) + "\n");
   }
 
   /// One line on standard error. A terminal that is gone does not stop the work.
