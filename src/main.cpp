@@ -8,10 +8,10 @@
 #include <exception>
 #include <new>
 
-#include "bench/bench.h"
 #include "cli/batch.h"
 #include "cli/options.h"
 #include "cli/resources.h"
+#include "cli/run_bench.h"
 #include "compare.h"
 #include "error.h"
 #include "estimators/registry.h"
@@ -40,12 +40,8 @@ ssdo::ExitCode run(int argc, char** argv) {
     return report.code;
   }
   const ssdo::Resources resources(parsed.options.threads);
-  if (parsed.options.command == ssdo::Command::bench) {
-    const ssdo::BenchOutcome outcome =
-        ssdo::bench(parsed.options, resources.threads(), resources.isa());
-    ssdo::print_out(outcome.text);
-    return outcome.code;
-  }
+  if (parsed.options.command == ssdo::Command::bench)
+    return ssdo::run_bench(parsed.options, resources);
   return ssdo::run_batch(parsed.options, resources);
 }
 

@@ -74,14 +74,15 @@ class Batch {
     }
     print_infos();
     if (has_statistics() && !options_.say.dry_run)
-      statistics_.write(options_.say.stats, Statistics::policy(options_.output.policy));
+      write_statistics(options_.say.stats, policy_of_statistics(options_.output.policy),
+                       statistics_);
     return code;
   }
 
  private:
   ExitCode run_jobs() {
     if (has_statistics())
-      check_output(options_.say.stats, Statistics::policy(options_.output.policy));
+      check_output(options_.say.stats, policy_of_statistics(options_.output.policy));
     ExitCode code = ExitCode::done;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
       if (options_.command == Command::info) list(jobs_[i]);
@@ -152,7 +153,7 @@ class Batch {
                       "keep them with --pixel-type float",
                       job.input, relit.clamped_values));
     }
-    statistics_.add(frame, job.frame, job.targets, resources_, relit);
+    statistics_.push_back(statistics_of(frame, job, resources_, relit));
     if (!options_.model.temporal) return;
     history_ = std::move(relit.history);
     history_->geometry = std::move(frame.scene.geometry);
@@ -231,9 +232,9 @@ class Batch {
 
   /// Comes before all that can fail, so that `info` says what a file holds in any case.
   void list(const Job& job) {
-    const Listing listing = list_layers(job.input, job.aovs);
-    infos_.push_back(listing.json);
-    print_info(listing.text);
+    const std::deque<ExrReader> files = open_files(job.input, job.aovs);
+    infos_.push_back(listing_json(job.input, files));
+    print_info(list_layers(files));
   }
 
   void show(const Frame& frame) {
@@ -285,8 +286,7 @@ class Batch {
   std::vector<Job> jobs_;
   std::optional<Lighting> light_;  ///< read after the first listing of `info`
   ProgressLine progress_;
-  Statistics statistics_;
-  nlohmann::json infos_ = nlohmann::json::array();
+  nlohmann::json statistics_ = nlohmann::json::array(), infos_ = nlohmann::json::array();
   std::size_t next_index_ = 0;
   std::future<Frame> next_;
   std::optional<History> history_;  ///< of the frame before, where --temporal asks for it

@@ -108,7 +108,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   add_main_options(app, o);
   app.require_subcommand(0, 1);
   const CLI::App* const info = add_info(app, o);
-  const CLI::App* const bench = add_bench(app, o);
+  const CLI::App* const bench = add_bench(app, o.bench);
   const CLI::App* const compare = add_compare(app, o.compare);
   try {
     app.parse(argc, argv);
@@ -136,7 +136,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   if (bench->parsed()) o.command = Command::bench;
   const std::set<std::string> given = names_given(app);
   if (!o.config_file.empty()) read_config_file(o.config_file, app);
-  if (o.command == Command::bench) finish_bench(app, o);
+  if (o.command == Command::bench) finish_bench(app, o.bench);
   check(o);
   o.warnings = idle_options(given, o);
   return parsed;
