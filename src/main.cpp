@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <malloc.h>
 #include <unistd.h>
 
@@ -9,25 +8,27 @@
 #include <exception>
 #include <new>
 
-#include "bench/bench.h"
 #include "cli/batch.h"
 #include "cli/options.h"
+#include "cli/resources.h"
+#include "cli/run_bench.h"
 #include "compare.h"
 #include "error.h"
 #include "estimators/registry.h"
 #include "io/one_line.h"
 #include "io/safe_file.h"
+#include "io/standard_output.h"
 
 namespace {
 
 ssdo::ExitCode run(int argc, char** argv) {
   const ssdo::ParsedOptions parsed = ssdo::parse_options(argc, argv);
   if (parsed.print) {
-    fmt::print("{}", *parsed.print);
+    ssdo::print_out(*parsed.print);
     return ssdo::ExitCode::done;
   }
   if (parsed.options.command == ssdo::Command::list_methods) {
-    fmt::print("{}", ssdo::describe_methods());
+    ssdo::print_out(ssdo::describe_methods());
     return ssdo::ExitCode::done;
   }
   for (const std::string& warning : parsed.options.warnings) {
@@ -35,15 +36,13 @@ ssdo::ExitCode run(int argc, char** argv) {
   }
   if (parsed.options.command == ssdo::Command::compare) {
     const ssdo::CompareReport report = ssdo::compare(parsed.options.compare);
-    fmt::print("{}", report.text);
+    ssdo::print_out(report.text);
     return report.code;
   }
-  if (parsed.options.command == ssdo::Command::bench) {
-    const ssdo::BenchOutcome outcome = ssdo::bench(parsed.options);
-    fmt::print("{}", outcome.text);
-    return outcome.code;
-  }
-  return ssdo::run_batch(parsed.options);
+  const ssdo::Resources resources(parsed.options.threads);
+  if (parsed.options.command == ssdo::Command::bench)
+    return ssdo::run_bench(parsed.options, resources);
+  return ssdo::run_batch(parsed.options, resources);
 }
 
 /// Opens the standard streams that the caller has closed: the first file to be written would take
@@ -78,15 +77,13 @@ int main(int argc, char** argv) {
   ssdo::ExitCode code = ssdo::ExitCode::failed;
   try {
     code = run(argc, argv);
+    ssdo::print_out("");  // progress lines that are still in the buffer
   } catch (const ssdo::Error& e) {
     code = fail(e.code, e.what());
   } catch (const std::bad_alloc&) {
     code = fail(code, "not enough memory for this frame");
   } catch (const std::exception& e) {
     code = fail(code, e.what());
-  }
-  if (std::fflush(stdout) != 0 && code == ssdo::ExitCode::done) {
-    code = fail(ssdo::ExitCode::output, "standard output cannot be written; is its disk full?");
   }
   return int(code);
 }

@@ -12,7 +12,6 @@
 #include "estimators/registry.h"
 #include "math/luminance.h"
 #include "product_choice.h"
-#include "simd/isa.h"
 
 namespace ssdo {
 namespace {
@@ -149,7 +148,6 @@ void explain_thickness(Plan& plan, const ModelOptions& model) {
 }
 
 void choose_march(Plan& plan, const ModelOptions& model) {
-  plan.isa = choose_isa();
   if (!plan.method->takes.march) return;
   plan.request.slices = model.slices.value_or(slices_of(model.quality));
   plan.request.steps = model.steps.value_or(steps_of(model.quality));

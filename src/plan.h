@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "estimators/registry.h"
@@ -15,12 +17,20 @@
 
 namespace ssdo {
 
-/// Slices per pixel, and steps on each side of a slice out to the frame's diagonal.
 enum class Quality { draft, standard, final };
-constexpr int slices_of(Quality q) { return q == Quality::final ? 6 : 2; }
-constexpr int steps_of(Quality q) {
-  return q == Quality::draft ? 8 : q == Quality::standard ? 16 : 48;
-}
+
+/// What --quality means.
+struct QualityLevel {
+  std::string_view name;
+  Quality quality;
+  int slices;  ///< per pixel
+  int steps;   ///< on each side of a slice, out to the frame's diagonal
+};
+inline constexpr std::array<QualityLevel, 3> kQualities = {{{"draft", Quality::draft, 2, 8},
+                                                            {"standard", Quality::standard, 2, 16},
+                                                            {"final", Quality::final, 6, 48}}};
+constexpr int slices_of(Quality quality) { return kQualities[std::size_t(quality)].slices; }
+constexpr int steps_of(Quality quality) { return kQualities[std::size_t(quality)].steps; }
 
 /// What the user says about the method.
 struct ModelOptions {
@@ -43,7 +53,6 @@ struct Plan {
   const Method* method = nullptr;
   Request request;                   ///< what the method is asked for
   std::optional<double> error;       ///< to stay below
-  std::string isa;                   ///< instruction set of the inner loops
   const Filter* filter = nullptr;    ///< after the estimate
   bool temporal = false;             ///< then the mean with the frames before
   std::vector<std::string> make;     ///< products for any of the outputs

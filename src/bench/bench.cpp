@@ -14,13 +14,9 @@
 #include "bench/machine.h"
 #include "bench/pictures.h"
 #include "bench/recommend.h"
-#include "bench/report.h"
 #include "bench/report_files.h"
-#include "bench/subject.h"
-#include "cli/describe.h"
-#include "cli/progress.h"
+#include "error.h"
 #include "estimators/registry.h"
-#include "io/one_line.h"
 #include "pipeline.h"
 #include "stopwatch.h"
 
@@ -35,49 +31,43 @@ constexpr double kShareScale = 0.25;
 /// Measures one frame.
 class Bench {
  public:
-  explicit Bench(const Options& options)
-      : options_(options),
-        threads_(choose_thread_count(options.threads)),
-        limit_(threads_),
-        subject_(read_subject(options)),
-        frame_(subject_.frame),
-        progress_(options.batch.progress, options.say.quiet) {}
+  Bench(const BenchJob& job, const Subject& subject, const BenchProgress& progress)
+      : job_(job), subject_(subject), frame_(subject.frame), progress_(progress) {
+    if (wants_page(job.options.reports)) pictures_.emplace(frame_, job.frame.color);
+  }
 
-  BenchOutcome run() {
+  BenchReport run() {
     Stopwatch watch;
     describe_subject();
     choose_methods();
-    describe_machine();
     measure_reference();
     for (const Method* method : methods_) measure_method(*method);
-    recommend(report_, options_.bench.wants);
+    recommend(report_, job_.options.wants);
     keep_pictures_of_note();
-    progress_.clear();
     report_.seconds = watch.lap() * 1e-3;
-    write_reports(report_, options_.bench.reports, options_.output.policy);
-    const bool failed = !options_.bench.wants.empty() && !report_.recommended;
-    return {to_table(report_), failed ? ExitCode::failed : ExitCode::done};
+    return std::move(report_);
   }
 
  private:
   void describe_subject() {
+    report_.input = job_.input;
     report_.products = subject_.products;
+    report_.width = frame_.scene.geometry.display.width();
+    report_.height = frame_.scene.geometry.display.height();
+    report_.pixels = frame_.scene.geometry.surfel.size();
     report_.surface_pixels = subject_.surface_pixels;
     for (const auto& [product, truth] : subject_.truths)
       report_.truths[product] = truth.file + ":" + truth.layer;
-    if (options_.say.verbose) {
-      fmt::print(stderr, "{}", describe(frame_));
-    } else if (!options_.say.quiet) {
-      for (const std::string& warning : frame_.warnings())
-        fmt::print(stderr, "ssdo: {}\n", printable(options_.input_file + ": warning: " + warning));
-    }
-    if (wants_page(options_.bench.reports)) pictures_.emplace(frame_, options_.color);
+    report_.stages = frame_.times;
+    report_.processor = processor_name();
+    report_.processors = processor_count();
+    report_.filter = frame_.plan.filter->name;
   }
 
   void choose_methods() {
-    for (const std::string& name : options_.bench.methods) find_method(name);
+    const std::vector<std::string>& names = job_.options.methods;
+    for (const std::string& name : names) find_method(name);
     for (const Method& method : methods()) {
-      const auto& names = options_.bench.methods;
       const bool asked = std::find(names.begin(), names.end(), method.name) != names.end();
       if (!names.empty() && !asked) continue;
       const bool useful =
@@ -104,25 +94,13 @@ class Bench {
     return plan_of(setting).samples_per_pixel() * setting.method->sample_cost;
   }
 
-  void describe_machine() {
-    report_.input = options_.input_file;
-    report_.frame = to_json(frame_);
-    report_.pixels = frame_.scene.geometry.surfel.size();
-    report_.stages = frame_.times;
-    report_.processor = processor_name();
-    report_.processors = processor_count();
-    report_.threads = threads_;
-    report_.isa = frame_.plan.isa;
-    report_.filter = frame_.plan.filter->name;
-  }
-
   Plan plan_of(const Setting& setting) const {
     OutputOptions output;
     for (const std::string& product : report_.products) {
       if (makes(*setting.method, find_product(product))) output.products.push_back(product);
     }
-    return make_plan(setting.applied_to(options_.model), output, frame_.scene, frame_.gbuffer,
-                     options_.input_file);
+    return make_plan(setting.applied_to(job_.frame.model), output, frame_.scene, frame_.gbuffer,
+                     job_.input);
   }
 
   Converged converge_to(const Setting& setting, int seeds) {
@@ -134,7 +112,7 @@ class Bench {
 
   void tell(double done, const Setting& setting) {
     done_ = done;
-    progress_.tell(done / work_, setting.name());
+    progress_(done / work_, setting.name());
   }
 
   void measure_reference() {
@@ -221,7 +199,7 @@ class Bench {
                  measured.filter,
                  measured.runs,
                  errors_of(products),
-                 command_of(options_, setting, plan),
+                 command_of(job_, setting, plan),
                  {}};
     for (const auto& [product, channels] : products) {
       row.errors[product].noise = error_between(product, channels, limit.products.at(product));
@@ -241,7 +219,7 @@ class Bench {
   void measure_writing(const Plan& plan, const Products& products) {
     const std::vector<Target> targets = {
         {fs::temp_directory_path() / fmt::format("ssdo_bench_{}.exr", getpid()), std::nullopt}};
-    const RelightJob job{options_, frame_, targets, {.overwrite = true}};
+    const RelightJob job{job_.frame, frame_, targets, {.overwrite = true}};
     report_.stages.write = write_targets(job, plan, products, nullptr, [](double) {}).write_ms;
   }
 
@@ -258,12 +236,10 @@ class Bench {
     }
   }
 
-  const Options& options_;
-  int threads_;
-  ThreadLimit limit_;
-  Subject subject_;
+  const BenchJob& job_;
+  const Subject& subject_;
   const Frame& frame_;
-  ProgressLine progress_;
+  const BenchProgress& progress_;
   std::vector<const Method*> methods_;
   int rays_ = 0;
   Converged trace_;  ///< the reference of all
@@ -274,6 +250,8 @@ class Bench {
 
 }  // namespace
 
-BenchOutcome bench(const Options& options) { return Bench(options).run(); }
+BenchReport bench(const BenchJob& job, const Subject& subject, const BenchProgress& progress) {
+  return Bench(job, subject, progress).run();
+}
 
 }  // namespace ssdo

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
 
-#include "cli/options.h"
-#include "error.h"
+#include "bench/options.h"
+#include "bench/report.h"
+#include "bench/subject.h"
 
 namespace ssdo {
 
-/// What `ssdo bench` prints; ExitCode::failed where no setting has the error that was wanted.
-struct BenchOutcome {
-  std::string text;
-  ExitCode code = ExitCode::done;
-};
+/// Hears how far the bench is, 0..1, and which setting it measures.
+using BenchProgress = std::function<void(double done, const std::string& setting)>;
 
-/// Measures the settings of the methods on one frame and writes the reports.
-/// Errors: those of prepare_frame, make_plan and read_truth; ExitCode::output for reports.
-BenchOutcome bench(const Options& options);
+/// Measures the settings of the methods on one frame and recommends one where an error is wanted.
+/// `subject` is that of the job. The caller adds what the report says of the frame, the threads and
+/// the instruction set. Errors: those of make_plan; ExitCode::usage for a method of the job that
+/// does not exist or makes none of the products.
+BenchReport bench(const BenchJob& job, const Subject& subject, const BenchProgress& progress);
 
 }  // namespace ssdo

@@ -40,14 +40,14 @@ std::string shell_word(const std::string& word) {
   return out + "'";
 }
 
-std::string command_of(const Options& options, const Setting& setting, const Plan& plan) {
-  std::vector<std::string> words = {"ssdo", options.input_file};
-  for (const auto& option : options.bench.carried) {
+std::string command_of(const BenchJob& job, const Setting& setting, const Plan& plan) {
+  std::vector<std::string> words = {"ssdo", job.input};
+  for (const auto& option : job.options.carried) {
     if (reaches(option, setting)) words.insert(words.end(), option.begin(), option.end());
   }
   const auto own = setting.arguments();
   words.insert(words.end(), own.begin(), own.end());
-  const std::string stem = std::filesystem::path(options.input_file).stem().string();
+  const std::string stem = std::filesystem::path(job.input).stem().string();
   words.insert(words.end(), {"--products", fmt::format("{}", fmt::join(plan.make, ",")), "-o",
                              stem + "_relit.exr"});
   for (std::string& word : words) word = shell_word(word);

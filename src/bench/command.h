@@ -4,7 +4,7 @@
 #include <string>
 
 #include "bench/ladder.h"
-#include "cli/options.h"
+#include "bench/options.h"
 #include "plan.h"
 
 namespace ssdo {
@@ -15,6 +15,6 @@ std::string shell_word(const std::string& word);
 
 /// The command line of the main job that does what was measured: the setting, the options of the
 /// bench that reach it, the products, and an output in the current folder.
-std::string command_of(const Options& options, const Setting& setting, const Plan& plan);
+std::string command_of(const BenchJob& job, const Setting& setting, const Plan& plan);
 
 }  // namespace ssdo

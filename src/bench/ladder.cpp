@@ -37,11 +37,9 @@ std::string label_of(const Method& method, const Rung& rung) {
     label += fmt::format("{}{} {}", label.empty() ? "" : ", ", value, unit.empty() ? name : unit);
   }
   if (!method.takes.march) return label;
-  for (const auto& [name, quality] : {std::pair{"draft", Quality::draft},
-                                      {"standard", Quality::standard},
-                                      {"final", Quality::final}}) {
-    const Rung same = slices_and_steps(slices_of(quality), steps_of(quality));
-    if (rung.values == same.values) label += fmt::format(" ({})", name);
+  for (const QualityLevel& level : kQualities) {
+    if (rung.values == slices_and_steps(level.slices, level.steps).values)
+      label += fmt::format(" ({})", level.name);
   }
   return label;
 }

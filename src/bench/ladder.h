@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/options.h"
 #include "estimators/estimator.h"
+#include "plan.h"
 
 namespace ssdo {
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "frame.h"
+
 namespace ssdo {
 
 /// The largest error that is wanted of a product.
@@ -14,15 +16,21 @@ struct WantedError {
 
 /// What `ssdo bench` is asked for beside the options of the main job.
 struct BenchOptions {
-  std::vector<std::string> methods;     ///< empty: all
-  std::vector<std::string> truths;      ///< [PRODUCT=]FILE:LAYER
-  std::vector<std::string> reports;     ///< files that end in .html, .csv or .json
-  std::vector<std::string> want_texts;  ///< --want as it was written
+  std::vector<std::string> methods;  ///< empty: all
+  std::vector<std::string> truths;   ///< [PRODUCT=]FILE:LAYER
+  std::vector<std::string> reports;  ///< files that end in .html, .csv or .json
   std::vector<WantedError> wants;
 
   /// Arguments of the main job that the command line gave, option by option, for the commands that
   /// it recommends.
   std::vector<std::vector<std::string>> carried;
+};
+
+/// One frame to measure on.
+struct BenchJob {
+  std::string input;          ///< file of the frame
+  const FrameOptions& frame;  ///< of the main job, for all settings
+  const BenchOptions& options;
 };
 
 }  // namespace ssdo

@@ -3,7 +3,7 @@
 
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -60,8 +60,9 @@ struct BenchReference {
 
 struct BenchReport {
   std::string input;
-  nlohmann::json frame;  ///< what was found and decided: of `ssdo info --json`, for method bitmask
-  StageTimes stages;     ///< all but estimate and filter, of the main job to one EXR
+  std::string frame;          ///< JSON of what was found and decided, for method bitmask
+  StageTimes stages;          ///< all but estimate and filter, of the main job to one EXR
+  int width = 0, height = 0;  ///< of the display window
   std::size_t pixels = 0, surface_pixels = 0;
   std::string processor, isa, filter;
   int processors = 0, threads = 0;

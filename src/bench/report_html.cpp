@@ -4,6 +4,7 @@
 // URIs.
 #include <OpenImageIO/strutil.h>
 
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "bench/report.h"

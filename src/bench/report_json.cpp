@@ -67,7 +67,7 @@ json to_json(const BenchReport& report) {
   for (const BenchLimit& limit : report.limits) limits.push_back(limit_json(limit));
   return {{"version", SSDO_VERSION},
           {"input", report.input},
-          {"frame", report.frame},
+          {"frame", json::parse(report.frame)},
           {"pixels", report.pixels},
           {"surface_pixels", report.surface_pixels},
           {"machine",

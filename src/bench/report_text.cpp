@@ -69,9 +69,8 @@ std::string recommendation(const BenchReport& report) {
 std::string to_table(const BenchReport& report) {
   std::string text = fmt::format(
       "{}: {} x {}, {} of {} pixels show surfaces; {} thread(s), {} ({}); filter {}; {:.0f} s\n",
-      printable(report.input), report.frame.at("width").get<int>(),
-      report.frame.at("height").get<int>(), report.surface_pixels, report.pixels, report.threads,
-      report.processor, report.isa, report.filter, report.seconds);
+      printable(report.input), report.width, report.height, report.surface_pixels, report.pixels,
+      report.threads, report.processor, report.isa, report.filter, report.seconds);
   for (const auto& [product, layer] : report.truths)
     text += fmt::format("truth of {}: {}\n", product, printable(layer));
   text += heading(report);

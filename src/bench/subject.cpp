@@ -8,10 +8,8 @@
 #include <utility>
 
 #include "bench/report_files.h"
-#include "cli/jobs.h"
 #include "error.h"
 #include "estimators/registry.h"
-#include "io/sequence.h"
 
 namespace ssdo {
 namespace {
@@ -30,8 +28,8 @@ std::map<std::string, Truth> read_truths(const std::vector<std::string>& texts) 
 }
 
 /// Those that are asked for or have a truth; else all that tell something about the frame.
-std::vector<std::string> choose_products(const Options& options, const Subject& subject) {
-  const std::vector<std::string>& asked = options.output.products;
+std::vector<std::string> choose_products(const BenchJob& job, const Subject& subject) {
+  const std::vector<std::string>& asked = job.frame.output.products;
   for (const std::string& name : asked) {
     if (!contains(measured_products(), name)) {
       throw Error(ExitCode::usage, fmt::format("product '{}': bench measures {}", name,
@@ -46,7 +44,7 @@ std::vector<std::string> choose_products(const Options& options, const Subject& 
     if (contains(asked, name) || subject.truths.contains(name) || (asked.empty() && telling))
       products.push_back(name);
   }
-  for (const WantedError& want : options.bench.wants) {
+  for (const WantedError& want : job.options.wants) {
     if (!want.product.empty() && !contains(products, want.product)) {
       throw Error(ExitCode::usage,
                   fmt::format("--want {}={:g}: {} is not measured; there is {}", want.product,
@@ -90,24 +88,18 @@ const Method& thorough_method() {
 
 }  // namespace
 
-Subject read_subject(const Options& options) {
-  if (is_pattern(options.input_file)) {
-    throw Error(ExitCode::usage,
-                fmt::format("{}: is a sequence, and bench measures one frame; name the file of one",
-                            options.input_file));
-  }
+Subject read_subject(const BenchJob& job, std::vector<RunFile> inputs) {
   Subject subject;
-  subject.truths = read_truths(options.bench.truths);
-  std::vector<RunFile> inputs = inputs_of(options, options.input_file, options.input.aovs);
+  subject.truths = read_truths(job.options.truths);
   for (const auto& [product, truth] : subject.truths) inputs.push_back({"--truth", truth.file});
-  check_report_files(options.bench.reports, std::move(inputs), options.output.policy);
+  check_report_files(job.options.reports, std::move(inputs), job.frame.output.policy);
 
-  Options prepared = options;
+  FrameOptions prepared = job.frame;
   prepared.model.method = thorough_method().name;
   prepared.output.products.clear();
-  const Lighting light(options.light);
-  subject.frame = prepare_frame(prepared, light, options.input_file, options.input.aovs);
-  subject.products = choose_products(options, subject);
+  const Lighting light(prepared.light);
+  subject.frame = prepare_frame(prepared, light, job.input, prepared.input.aovs);
+  subject.products = choose_products(job, subject);
   subject.surface_pixels = count_surfaces(subject.frame);
   for (const auto& [product, truth] : subject.truths) check_truth(truth, subject);
   return subject;

@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "bench/options.h"
 #include "bench/truth.h"
-#include "cli/options.h"
 #include "frame.h"
+#include "io/run_files.h"
 
 namespace ssdo {
 
@@ -20,10 +21,10 @@ struct Subject {
 };
 
 /// Reads the frame and its truths, and refuses what cannot be measured or reported before any time
-/// is spent.
-/// Errors: those of prepare_frame, read_truth and check_report_files; ExitCode::usage for a
-/// sequence and for products that are not measured; layer for a truth that does not show the frame;
-/// failed for a frame without a surface.
-Subject read_subject(const Options& options);
+/// is spent. `inputs` are the files of the job that no report may replace; truths are added.
+/// Errors: those of prepare_frame, read_truth and check_report_files; ExitCode::usage for products
+/// that are not measured; layer for a truth that does not show the frame; failed for a frame
+/// without a surface.
+Subject read_subject(const BenchJob& job, std::vector<RunFile> inputs);
 
 }  // namespace ssdo

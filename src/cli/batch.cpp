@@ -21,7 +21,7 @@
 #include "io/image_file.h"
 #include "io/json_text.h"
 #include "io/one_line.h"
-#include "parallel/tiles.h"
+#include "io/standard_output.h"
 #include "pipeline.h"
 
 namespace ssdo {
@@ -57,10 +57,9 @@ bool all_done(const Job& job) {
 /// Runs the jobs one after another.
 class Batch {
  public:
-  explicit Batch(const Options& options)
+  Batch(const Options& options, const Resources& resources)
       : options_(options),
-        threads_(choose_thread_count(options.threads)),
-        limit_(threads_),
+        resources_(resources),
         jobs_(plan_jobs(options)),
         progress_(options.batch.progress, options.say.quiet) {}
 
@@ -75,14 +74,15 @@ class Batch {
     }
     print_infos();
     if (has_statistics() && !options_.say.dry_run)
-      statistics_.write(options_.say.stats, Statistics::policy(options_.output.policy));
+      write_statistics(options_.say.stats, policy_of_statistics(options_.output.policy),
+                       statistics_);
     return code;
   }
 
  private:
   ExitCode run_jobs() {
     if (has_statistics())
-      check_output(options_.say.stats, Statistics::policy(options_.output.policy));
+      check_output(options_.say.stats, policy_of_statistics(options_.output.policy));
     ExitCode code = ExitCode::done;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
       if (options_.command == Command::info) list(jobs_[i]);
@@ -153,7 +153,7 @@ class Batch {
                       "keep them with --pixel-type float",
                       job.input, relit.clamped_values));
     }
-    statistics_.add(frame, job.frame, job.targets, threads_, relit);
+    statistics_.push_back(statistics_of(frame, job, resources_, relit));
     if (!options_.model.temporal) return;
     history_ = std::move(relit.history);
     history_->geometry = std::move(frame.scene.geometry);
@@ -223,7 +223,7 @@ class Batch {
   }
 
   Frame start_next(std::size_t i, Frame frame) {
-    if (threads_ > 1 && i + 1 < jobs_.size() && !options_.batch.skip_existing) {
+    if (resources_.threads() > 1 && i + 1 < jobs_.size() && !options_.batch.skip_existing) {
       next_index_ = i + 1;
       next_ = std::async(std::launch::async, [this, n = i + 1] { return prepare(n); });
     }
@@ -232,9 +232,9 @@ class Batch {
 
   /// Comes before all that can fail, so that `info` says what a file holds in any case.
   void list(const Job& job) {
-    const Listing listing = list_layers(job.input, job.aovs);
-    infos_.push_back(listing.json);
-    print_info(listing.text);
+    const std::deque<ExrReader> files = open_files(job.input, job.aovs);
+    infos_.push_back(listing_json(job.input, files));
+    print_info(list_layers(files));
   }
 
   void show(const Frame& frame) {
@@ -249,14 +249,13 @@ class Batch {
   void print_info(const std::string& text) {
     if (options_.say.json) return;
     progress_.clear();
-    fmt::print("{}", text);
-    std::fflush(stdout);  // before an error line
+    print_out(text);
   }
 
   void print_infos() const {
     if (!options_.say.json || infos_.empty()) return;
     const nlohmann::json& shown = infos_.size() == 1 ? infos_[0] : infos_;
-    fmt::print("{}\n", json_text(shown, 2));
+    print_out(json_text(shown, 2) + "\n");
   }
 
   /// One line on standard error. A terminal that is gone does not stop the work.
@@ -283,13 +282,11 @@ class Batch {
   }
 
   const Options& options_;
-  int threads_;
-  ThreadLimit limit_;
+  const Resources& resources_;
   std::vector<Job> jobs_;
   std::optional<Lighting> light_;  ///< read after the first listing of `info`
   ProgressLine progress_;
-  Statistics statistics_;
-  nlohmann::json infos_ = nlohmann::json::array();
+  nlohmann::json statistics_ = nlohmann::json::array(), infos_ = nlohmann::json::array();
   std::size_t next_index_ = 0;
   std::future<Frame> next_;
   std::optional<History> history_;  ///< of the frame before, where --temporal asks for it
@@ -297,6 +294,8 @@ class Batch {
 
 }  // namespace
 
-ExitCode run_batch(const Options& options) { return Batch(options).run(); }
+ExitCode run_batch(const Options& options, const Resources& resources) {
+  return Batch(options, resources).run();
+}
 
 }  // namespace ssdo

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/options.h"
+#include "cli/resources.h"
 #include "error.h"
 
 namespace ssdo {
@@ -9,6 +10,6 @@ namespace ssdo {
 /// The main job and `info`, over one frame or a sequence. Reads the next frame while this one is
 /// computed, where there is more than one thread. Prints one line per failed frame and returns the
 /// exit code of the first; what is wrong before the first frame is thrown.
-ExitCode run_batch(const Options& options);
+ExitCode run_batch(const Options& options, const Resources& resources);
 
 }  // namespace ssdo

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <set>
 
 #include "bench/truth.h"
@@ -46,37 +47,42 @@ void carry(const CLI::Option& option, BenchOptions& out) {
 
 }  // namespace
 
-CLI::App* add_bench(CLI::App& app, Options& o) {
+CLI::App* add_bench(CLI::App& app, BenchOptions& o) {
   CLI::App* bench = app.add_subcommand("bench",
                                        "speed against error of methods and settings on "
                                        "this frame, and the setting for a wanted error")
                         ->fallthrough();
   bench
-      ->add_option("--report", o.bench.reports,
+      ->add_option("--report", o.reports,
                    "write .html (a page with charts and maps), .csv or .json; repeatable")
       ->type_name("FILE")
       ->allow_extra_args(false);
   bench
       ->add_option(
-          "--truth", o.bench.truths,
+          "--truth", o.truths,
           "what a product has to be, repeatable; the layer's name tells which product: AO, "
           "DiffDir, DiffInd; else ao=FILE:LAYER")
       ->type_name("[PRODUCT=]FILE:LAYER")
       ->allow_extra_args(false);
-  bench->add_option("--methods", o.bench.methods, "those to measure; default: all")
+  bench->add_option("--methods", o.methods, "those to measure; default: all")
       ->type_name("LIST")
       ->delimiter(',')
       ->allow_extra_args(false);
   bench
-      ->add_option("--want", o.bench.want_texts,
-                   "name the cheapest setting whose error is this at most, repeatable; of the "
-                   "first product, or of the one that is named")
+      ->add_option_function<std::vector<std::string>>(
+          "--want",
+          [&](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) o.wants.push_back(read_want(text));
+          },
+          "name the cheapest setting whose error is this at most, repeatable; of the first "
+          "product, "
+          "or of the one that is named")
       ->type_name("[PRODUCT=]E")
       ->allow_extra_args(false);
   return bench;
 }
 
-void finish_bench(const CLI::App& app, Options& o) {
+void finish_bench(const CLI::App& app, BenchOptions& o) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0) continue;
     const std::string name = option->get_name();
@@ -86,9 +92,8 @@ void finish_bench(const CLI::App& app, Options& o) {
                               name == "--method" ? "name methods with --methods"
                                                  : "it tries settings and writes reports alone"));
     }
-    if (kCarried.contains(option->get_group())) carry(*option, o.bench);
+    if (kCarried.contains(option->get_group())) carry(*option, o);
   }
-  for (const std::string& text : o.bench.want_texts) o.bench.wants.push_back(read_want(text));
 }
 
 }  // namespace ssdo

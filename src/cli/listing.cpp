@@ -113,19 +113,32 @@ json parts_json(const ExrReader& file) {
 
 json window_json(const Window& w) { return {w.x0, w.y0, w.x1 - 1, w.y1 - 1}; }
 
-Listing list_layers(const std::string& input, const std::vector<LayerRequest>& aovs) {
-  Listing listing{"", {{"file", input}, {"parts", json::array()}}};
+std::deque<ExrReader> open_files(const std::string& input, const std::vector<LayerRequest>& aovs) {
+  std::deque<ExrReader> files;
   for (const std::string& path : files_of_frame(input, aovs)) {
     try {
-      const ExrReader file(path);
-      listing.text += list_file(file);
-      if (path == input)
-        listing.json["parts"] = parts_json(file);
-      else
-        listing.json["other_files"].push_back({{"file", path}, {"parts", parts_json(file)}});
+      files.emplace_back(path);
     } catch (const Error&) {
       // The run that follows opens the file again and says what is wrong with it.
     }
+  }
+  return files;
+}
+
+std::string list_layers(const std::deque<ExrReader>& files) {
+  std::string text;
+  for (const ExrReader& file : files) text += list_file(file);
+  return text;
+}
+
+json listing_json(const std::string& input, const std::deque<ExrReader>& files) {
+  json listing = {{"file", input}, {"parts", json::array()}};
+  for (const ExrReader& file : files) {
+    if (file.path() == input)
+      listing["parts"] = parts_json(file);
+    else
+      listing["other_files"].push_back(
+          {{"file", file.path().string()}, {"parts", parts_json(file)}});
   }
   return listing;
 }

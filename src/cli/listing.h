@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <deque>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -9,14 +10,16 @@
 
 namespace ssdo {
 
-/// What the headers of a frame's files hold, whether or not it makes a frame.
-struct Listing {
-  std::string text;     ///< a line per part with its windows, and one per layer with its channels
-  nlohmann::json json;  ///< "file" and its "parts"; "other_files" where --aov names some
-};
+// What the headers of a frame's files hold, whether or not it makes a frame.
 
-/// Lists the files of a frame. One that cannot be opened is left out: it has no parts.
-Listing list_layers(const std::string& input, const std::vector<LayerRequest>& aovs);
+/// Opens the files of a frame. One that cannot be opened is left out.
+std::deque<ExrReader> open_files(const std::string& input, const std::vector<LayerRequest>& aovs);
+
+/// A line per part with its windows, and one per layer with its channels.
+std::string list_layers(const std::deque<ExrReader>& files);
+
+/// "file" and its "parts"; "other_files" where there are some.
+nlohmann::json listing_json(const std::string& input, const std::deque<ExrReader>& files);
 
 /// The parts of a file with their windows and channels.
 nlohmann::json parts_json(const ExrReader& file);

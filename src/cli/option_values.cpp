@@ -3,10 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "error.h"
 #include "math/number.h"
@@ -14,7 +15,19 @@
 namespace ssdo {
 namespace {
 
+constexpr std::array<std::pair<std::string_view, DepthKind>, 3> kDepthKinds = {
+    {{"planar", DepthKind::planar}, {"ray", DepthKind::ray}, {"inverse", DepthKind::inverse}}};
+constexpr std::string_view kNormalized = "normalized:";  ///< and NEAR,FAR
+
 [[noreturn]] void throw_usage(const std::string& message) { throw Error(ExitCode::usage, message); }
+
+/// Two numbers, A,B; nothing for any other text.
+std::optional<std::pair<double, double>> read_pair(const std::string& text) {
+  const auto comma = text.find(',');
+  if (comma == std::string::npos) return std::nullopt;
+  const auto a = parse_number(text.substr(0, comma)), b = parse_number(text.substr(comma + 1));
+  return a && b ? std::optional(std::pair(*a, *b)) : std::nullopt;
+}
 
 }  // namespace
 
@@ -27,68 +40,36 @@ std::optional<double> read_length(const std::string& option, std::string_view te
   return value;
 }
 
+std::string depth_kind_forms() {
+  std::string names;
+  for (const auto& [name, kind] : kDepthKinds)
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+  return fmt::format("{} or {}NEAR,FAR", names, kNormalized);
+}
+
 void read_depth_kind(const std::string& text, GBufferOptions& out) {
-  static const std::string normalized = "normalized:";
-  if (text == "planar") {
-    out.depth_kind = DepthKind::planar;
-  } else if (text == "ray") {
-    out.depth_kind = DepthKind::ray;
-  } else if (text == "inverse") {
-    out.depth_kind = DepthKind::inverse;
-  } else {
-    const auto comma = text.find(',');
-    const bool shaped = text.starts_with(normalized) && comma != std::string::npos;
-    const auto near = shaped
-                          ? parse_number(text.substr(normalized.size(), comma - normalized.size()))
-                          : std::nullopt;
-    const auto far = shaped ? parse_number(text.substr(comma + 1)) : std::nullopt;
-    if (!near || !far || *near == *far) {
-      throw_usage(
-          fmt::format("--depth-kind {}: expected planar, ray, inverse or normalized:NEAR,FAR "
-                      "in scene units",
-                      text));
-    }
-    out.depth_kind = DepthKind::normalized;
-    out.depth_near = float(*near);
-    out.depth_far = float(*far);
+  for (const auto& [name, kind] : kDepthKinds) {
+    if (text != name) continue;
+    out.depth_kind = kind;
+    return;
   }
+  const bool normalized = text.starts_with(kNormalized);
+  const auto range = read_pair(normalized ? text.substr(kNormalized.size()) : "");
+  if (!range || range->first == range->second) {
+    throw_usage(
+        fmt::format("--depth-kind {}: expected {} in scene units", text, depth_kind_forms()));
+  }
+  out.depth_kind = DepthKind::normalized;
+  out.depth_near = float(range->first);
+  out.depth_far = float(range->second);
 }
 
 glm::vec2 read_motion_scale(const std::string& text) {
-  const auto comma = text.find(',');
-  const auto x = parse_number(text.substr(0, comma)),
-             y = comma == std::string::npos ? std::nullopt : parse_number(text.substr(comma + 1));
-  if (!x || !y || !std::isfinite(*x) || !std::isfinite(*y) || *x == 0 || *y == 0) {
+  const auto scale = read_pair(text);
+  const auto usable = [](double factor) { return std::isfinite(factor) && factor != 0; };
+  if (!scale || !usable(scale->first) || !usable(scale->second))
     throw_usage(fmt::format("--motion-scale {}: expected two factors X,Y, such as -1,-1", text));
-  }
-  return {float(*x), float(*y)};
-}
-
-Quality read_quality(std::string_view text) {
-  return text == "draft" ? Quality::draft : text == "final" ? Quality::final : Quality::standard;
-}
-
-ProgressStyle read_progress_style(std::string_view text) {
-  return text == "none"      ? ProgressStyle::none
-         : text == "tractor" ? ProgressStyle::tractor
-         : text == "alfred"  ? ProgressStyle::alfred
-         : text == "openjd"  ? ProgressStyle::openjd
-                             : ProgressStyle::automatic;
-}
-
-Imf::Compression read_compression(const std::string& name) {
-  static const std::vector<std::pair<std::string, Imf::Compression>> names = {
-      {"none", Imf::NO_COMPRESSION},   {"rle", Imf::RLE_COMPRESSION},
-      {"zips", Imf::ZIPS_COMPRESSION}, {"zip", Imf::ZIP_COMPRESSION},
-      {"piz", Imf::PIZ_COMPRESSION},   {"pxr24", Imf::PXR24_COMPRESSION},
-      {"b44", Imf::B44_COMPRESSION},   {"b44a", Imf::B44A_COMPRESSION},
-      {"dwaa", Imf::DWAA_COMPRESSION}, {"dwab", Imf::DWAB_COMPRESSION}};
-  for (const auto& [known, compression] : names) {
-    if (known == name) return compression;
-  }
-  throw_usage(fmt::format(
-      "--compression {}: expected none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab",
-      name));
+  return {float(scale->first), float(scale->second)};
 }
 
 SaveRequest read_save(const std::string& text) {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "cli/options.h"
+
+namespace CLI {
+class Validator;
+}
 
 namespace ssdo {
 
@@ -15,19 +18,14 @@ namespace ssdo {
 /// A length in scene units: a positive number or inf; nothing for auto.
 std::optional<double> read_length(const std::string& option, std::string_view text);
 
-/// planar, ray, inverse or normalized:NEAR,FAR.
+/// The forms of --depth-kind, for help and messages: "planar, ray, inverse or ...".
+std::string depth_kind_forms();
+
+/// One of those forms.
 void read_depth_kind(const std::string& text, GBufferOptions& out);
 
 /// X,Y: two factors.
 glm::vec2 read_motion_scale(const std::string& text);
-
-/// draft, standard or final.
-Quality read_quality(std::string_view text);
-
-/// none, tractor, alfred, openjd; all else is auto.
-ProgressStyle read_progress_style(std::string_view text);
-
-Imf::Compression read_compression(const std::string& name);
 
 /// PRODUCT=FILE.
 SaveRequest read_save(const std::string& text);

@@ -9,7 +9,7 @@
 #include "cli/bench_options.h"
 #include "cli/config_file.h"
 #include "cli/idle_options.h"
-#include "cli/option_groups.h"
+#include "cli/main_options.h"
 #include "cli/option_values.h"
 #include "error.h"
 #include "io/one_line.h"
@@ -48,10 +48,6 @@ CLI::App* add_info(CLI::App& app, Options& o) {
   return info;
 }
 
-std::string shown(const CLI::Option& option) {
-  return option.get_positional() ? option.get_single_name() : option.get_name();
-}
-
 /// An empty value is what an unset variable of a script leaves; it stands for nothing.
 void refuse_empty_values(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
@@ -59,7 +55,7 @@ void refuse_empty_values(const CLI::App& app) {
     for (const std::string& value : option->results()) {
       if (value.empty()) {
         throw Error(ExitCode::usage, fmt::format("{}: its value is empty; give one or leave it out",
-                                                 shown(*option)));
+                                                 option->get_name()));
       }
     }
   }
@@ -78,7 +74,7 @@ void refuse_options_of_the_main_job(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() > 0) {
       throw Error(ExitCode::usage,
-                  fmt::format("compare takes no {}; see ssdo compare --help", shown(*option)));
+                  fmt::format("compare takes no {}; see ssdo compare --help", option->get_name()));
     }
   }
 }
@@ -103,7 +99,8 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
       "G-buffer.",
       "ssdo"};
   app.set_version_flag("--version", std::string("ssdo ") + SSDO_VERSION)->configurable(false);
-  app.add_option("INPUT", o.input_file, "multilayer EXR, or a sequence: shot.####.exr")->group("");
+  app.add_option("INPUT", o.input_file, "multilayer EXR, or a sequence: shot.####.exr")
+      ->type_name("");
   bool list = false;
   app.add_flag("--list-methods", list, "print the methods, their products and parameters")
       ->configurable(false)
@@ -111,7 +108,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   add_main_options(app, o);
   app.require_subcommand(0, 1);
   const CLI::App* const info = add_info(app, o);
-  const CLI::App* const bench = add_bench(app, o);
+  const CLI::App* const bench = add_bench(app, o.bench);
   const CLI::App* const compare = add_compare(app, o.compare);
   try {
     app.parse(argc, argv);
@@ -139,7 +136,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   if (bench->parsed()) o.command = Command::bench;
   const std::set<std::string> given = names_given(app);
   if (!o.config_file.empty()) read_config_file(o.config_file, app);
-  if (o.command == Command::bench) finish_bench(app, o);
+  if (o.command == Command::bench) finish_bench(app, o.bench);
   check(o);
   o.warnings = idle_options(given, o);
   return parsed;

@@ -38,7 +38,7 @@ struct Options : FrameOptions {
   SayOptions say;
   CompareOptions compare;
   BenchOptions bench;
-  int threads = 0;                    ///< 0: choose
+  std::optional<int> threads;         ///< chosen where not given
   std::string config_file;            ///< that was read; empty: none
   std::vector<std::string> warnings;  ///< options that have no effect beside the others
 };

@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "error.h"
 #include "io/json_text.h"
@@ -21,20 +22,20 @@ std::size_t peak_rss_bytes() {
 
 }  // namespace
 
-void Statistics::add(const Frame& frame, std::optional<int> number,
-                     const std::vector<Target>& targets, int threads, const Relit& relit) {
+nlohmann::json statistics_of(const Frame& frame, const Job& job, const Resources& resources,
+                             const Relit& relit) {
   const StageTimes& t = relit.times;
   const Plan& plan = relit.plan;
   nlohmann::json outputs = nlohmann::json::array();
-  for (const Target& target : targets) outputs.push_back(target.path);
-  frames_.push_back({
-      {"frame", number ? nlohmann::json(*number) : nlohmann::json()},
+  for (const Target& target : job.targets) outputs.push_back(target.path);
+  nlohmann::json out = {
+      {"frame", job.frame ? nlohmann::json(*job.frame) : nlohmann::json()},
       {"input", frame.input},
-      {"output", targets.size() == 1 ? outputs[0] : outputs},
+      {"output", outputs.size() == 1 ? outputs[0] : outputs},
       {"width", frame.scene.geometry.window.width()},
       {"height", frame.scene.geometry.window.height()},
-      {"threads", threads},
-      {"isa", plan.isa},
+      {"threads", resources.threads()},
+      {"isa", resources.isa()},
       {"method", plan.method->name},
       {"samples_per_pixel", plan.samples_per_pixel()},
       {"bounces", plan.request.bounces},
@@ -52,16 +53,22 @@ void Statistics::add(const Frame& frame, std::optional<int> number,
       {"bad_pixels", frame.gbuffer.bad_pixels},
       {"plan", to_json(plan)},
       {"history", frame.history},
-  });
+  };
   if (const auto& error = relit.error)
-    frames_.back()["error"] = {
-        {"rms", error->all}, {"noise", error->noise}, {"steps", error->steps}};
+    out["error"] = {{"rms", error->all}, {"noise", error->noise}, {"steps", error->steps}};
+  return out;
 }
 
-void Statistics::write(const std::string& path, const OutputPolicy& policy) const {
+OutputPolicy policy_of_statistics(OutputPolicy of_images) {
+  of_images.overwrite = true;
+  return of_images;
+}
+
+void write_statistics(const std::string& path, const OutputPolicy& policy,
+                      const nlohmann::json& frames) {
   SafeFile file(path, policy);
   std::ofstream out(file.temporary());
-  out << json_text(frames_, 2) << '\n';
+  out << json_text(frames, 2) << '\n';
   out.close();
   if (!out)
     throw Error(ExitCode::output, fmt::format("{}: the statistics could not be written", path));

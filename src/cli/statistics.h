@@ -1,33 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <optional>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <vector>
 
+#include "cli/jobs.h"
+#include "cli/resources.h"
 #include "frame.h"
 #include "pipeline.h"
 
 namespace ssdo {
 
-/// What --stats writes: an array with one object per frame that was done; see man ssdo, STATISTICS.
-class Statistics {
- public:
-  void add(const Frame& frame, std::optional<int> number, const std::vector<Target>& targets,
-           int threads, const Relit& relit);
+/// What --stats says about one frame that was done; see man ssdo, STATISTICS.
+nlohmann::json statistics_of(const Frame& frame, const Job& job, const Resources& resources,
+                             const Relit& relit);
 
-  /// A log is replaced where an image would not be.
-  static OutputPolicy policy(OutputPolicy of_images) {
-    of_images.overwrite = true;
-    return of_images;
-  }
+/// The policy for the file of --stats: a log is replaced where an image would not be.
+OutputPolicy policy_of_statistics(OutputPolicy of_images);
 
-  /// Writes what has been added. Errors: ExitCode::output.
-  void write(const std::string& path, const OutputPolicy& policy) const;
-
- private:
-  nlohmann::json frames_ = nlohmann::json::array();
-};
+/// Writes an array with what statistics_of() says of each frame. Errors: ExitCode::output.
+void write_statistics(const std::string& path, const OutputPolicy& policy,
+                      const nlohmann::json& frames);
 
 }  // namespace ssdo

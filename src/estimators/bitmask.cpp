@@ -50,7 +50,6 @@
 #include "math/light_range.h"
 #include "math/sequence_numbers.h"
 #include "scene/light/light.h"
-#include "simd/isa.h"
 
 namespace ssdo {
 namespace {
@@ -102,9 +101,7 @@ class Bitmask {
                         bounce_steps(request.steps), request.seed, bounce_spacing(request.slices)),
         march_{march_scene_, pattern_, request.radius, request.extend_offscreen},
         bounce_march_{march_scene_, bounce_pattern_, request.radius, request.extend_offscreen},
-        ao_(layout_) {
-    choose_isa();
-  }
+        ao_(layout_) {}
 
   Products run() {
     gather_visibility();

@@ -47,7 +47,6 @@
 #include "estimators/view_space/multi_bounce.h"
 #include "estimators/view_space/reflection_occlusion.h"
 #include "estimators/view_space/tiled_noise.h"
-#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/gtao.cpp"
@@ -207,7 +206,6 @@ Plane<glm::vec3> direct_light(const Scene& scene, const Products& found, bool bo
 }
 
 Products estimate_gtao(const Scene& scene, const Request& request, const Progress& progress) {
-  choose_isa();
   const auto parameter = [&](const char* name) { return request.parameters.find(name)->second; };
   const int slices = int(parameter("slices"));
   const bool bounces = parameter("multi-bounce") != 0;

@@ -44,7 +44,6 @@
 #include "estimators/view_space/ambient_light.h"
 #include "estimators/view_space/point_kernel.h"
 #include "estimators/view_space/tiled_noise.h"
-#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/hbao.cpp"
@@ -150,7 +149,6 @@ TiledNoise noise_of(const std::array<float, 16>& turns, const Function& function
 }
 
 Products estimate(const Scene& scene, const Request& request, const Progress& progress) {
-  choose_isa();
   const auto parameter = [&](const char* name) { return request.parameters.find(name)->second; };
   const int steps = int(parameter("steps"));
   const double bias = parameter("bias"), least = parameter("least-distance"),

@@ -41,7 +41,6 @@
 
 #include "estimators/msvo/scales.h"
 #include "estimators/view_space/ambient_light.h"
-#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/msvo.cpp"
@@ -140,7 +139,6 @@ std::array<ChordPair, 18> checkerboard() {
 }
 
 Products estimate(const Scene& scene, const Request& request, const Progress& progress) {
-  choose_isa();
   const auto parameter = [&](const char* name) { return request.parameters.find(name)->second; };
   const ViewPlanes planes = make_depth_planes(scene.geometry);
   std::vector<DepthScale> scales = make_depth_scales(planes, kCoarsest);

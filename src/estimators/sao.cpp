@@ -42,7 +42,6 @@
 
 #include "estimators/view_space/ambient_light.h"
 #include "estimators/view_space/depth_mips.h"
-#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/sao.cpp"
@@ -165,7 +164,6 @@ std::vector<SpiralTap> spiral(int count, int turns) {
 }
 
 Products estimate(const Scene& scene, const Request& request, const Progress& progress) {
-  choose_isa();
   const auto parameter = [&](const char* name) { return request.parameters.find(name)->second; };
   const int samples = int(parameter("samples"));
   const ViewPlanes planes = make_view_planes(scene.geometry);

@@ -25,7 +25,6 @@
 #include "estimators/view_space/ambient_light.h"
 #include "estimators/view_space/point_kernel.h"
 #include "estimators/view_space/tiled_noise.h"
-#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/ssao.cpp"
@@ -92,7 +91,6 @@ namespace {
 HWY_EXPORT(ssao_of_tile);
 
 Products estimate_ssao(const Scene& scene, const Request& request, const Progress& progress) {
-  choose_isa();
   const ViewPlanes planes = make_view_planes(scene.geometry);
   std::vector<glm::vec3> points =
       point_kernel(int(request.parameters.at("samples")), 0.1f, true, request.seed);

@@ -36,7 +36,6 @@
 #include "estimators/view_space/half_resolution.h"
 #include "estimators/view_space/point_kernel.h"
 #include "estimators/view_space/tiled_noise.h"
-#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/ssao_fade.cpp"
@@ -152,7 +151,6 @@ void shape(const ParameterValues& parameters, const ViewPlanes& planes, Plane<fl
 }
 
 Products estimate_ssao_fade(const Scene& scene, const Request& request, const Progress& progress) {
-  choose_isa();
   const auto value = [&](const char* name) { return float(request.parameters.at(name)); };
   const int upsampling = int(request.parameters.at("upsampling"));
   const ViewPlanes planes = upsampling == kBilinear ? make_depth_planes(scene.geometry)

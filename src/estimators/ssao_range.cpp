@@ -27,7 +27,6 @@
 #include "estimators/view_space/ambient_light.h"
 #include "estimators/view_space/point_kernel.h"
 #include "estimators/view_space/tiled_noise.h"
-#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/ssao_range.cpp"
@@ -91,7 +90,6 @@ namespace {
 HWY_EXPORT(ssao_range_of_tile);
 
 Products estimate_ssao_range(const Scene& scene, const Request& request, const Progress& progress) {
-  choose_isa();
   const ViewPlanes planes = make_view_planes(scene.geometry);
   const auto noise = frame_noise(request.seed);
   Products out;

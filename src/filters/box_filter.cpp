@@ -11,8 +11,6 @@
 // are left out of the mean, where a texture would give its border.
 #include "filters/box_filter.h"
 
-#include "simd/isa.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/box_filter.cpp"
 #include <hwy/foreach_target.h>
@@ -44,7 +42,6 @@ namespace ssdo {
 HWY_EXPORT(box_tile);
 
 Products filter_box(Products noisy, const Geometry& geometry, int pattern_size) {
-  choose_isa();
   std::vector<Tap> window;
   const int first = -(pattern_size / 2);
   for (int dy = first; dy < first + pattern_size; ++dy) {

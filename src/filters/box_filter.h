@@ -7,7 +7,7 @@
 namespace ssdo {
 
 /// The mean of the T x T pixels of the sampling pattern, across edges; see box_filter.cpp. What is
-/// done to each product is as with filter_geometry(). Errors: those of choose_isa().
+/// done to each product is as with filter_geometry().
 Products filter_box(Products noisy, const Geometry& geometry, int pattern_size);
 
 }  // namespace ssdo

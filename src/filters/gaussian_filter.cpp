@@ -16,8 +16,6 @@
 
 #include <cmath>
 
-#include "simd/isa.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/gaussian_filter.cpp"
 #include <hwy/foreach_target.h>
@@ -55,7 +53,6 @@ HWY_EXPORT(gaussian_tile);
 Products filter_gaussian(Products noisy, const Geometry& geometry, int /*pattern_size*/) {
   constexpr int kRadius = 5, kRounds = 3;
   constexpr double kSigma = 2.5;
-  choose_isa();
   std::vector<Tap> row;
   for (int i = -kRadius; i <= kRadius; ++i)
     row.push_back({i, 0, float(std::exp(-i * i / (2 * kSigma * kSigma)))});

@@ -8,7 +8,7 @@ namespace ssdo {
 
 /// A separable Gaussian that leaves out other depths and normals; see gaussian_filter.cpp. The size
 /// of the pattern does not count. What is done to each product is as with filter_geometry(), after
-/// every pass. Errors: those of choose_isa().
+/// every pass.
 Products filter_gaussian(Products noisy, const Geometry& geometry, int pattern_size);
 
 }  // namespace ssdo

@@ -39,7 +39,6 @@
 #include <optional>
 
 #include "filters/tap.h"
-#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/geometry_filter.cpp"
@@ -350,7 +349,6 @@ HWY_EXPORT(filter_corners);
 
 Products filter_geometry(Products noisy, const Geometry& geometry, int pattern_size) {
   constexpr int kMostAtOnce = 4;
-  choose_isa();
   const int width = geometry.surfel.width, height = geometry.surfel.height;
   const bool twice = pattern_size > kMostAtOnce;
   Products means = like(noisy);

@@ -16,8 +16,6 @@
 #include <array>
 #include <cstdlib>
 
-#include "simd/isa.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/normal_filter.cpp"
 #include <hwy/foreach_target.h>
@@ -55,7 +53,6 @@ HWY_EXPORT(normal_tile);
 Products filter_normal(Products noisy, const Geometry& geometry, int /*pattern_size*/) {
   constexpr std::array<double, 4> kWeights = {0.37004405286, 0.31718061674, 0.19823788546,
                                               0.11453744493};
-  choose_isa();
   std::vector<Tap> row;
   for (int i = -3; i <= 3; ++i) row.push_back({i, 0, float(kWeights[std::size_t(std::abs(i))])});
   return in_passes(std::move(noisy), geometry, {row, transposed(row)},

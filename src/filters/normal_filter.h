@@ -8,7 +8,7 @@ namespace ssdo {
 
 /// Seven taps along rows and then columns, weighted by how alike the normals are; see
 /// normal_filter.cpp. The size of the pattern does not count. What is done to each product is as
-/// with filter_geometry(), after every pass. Errors: those of choose_isa().
+/// with filter_geometry(), after every pass.
 Products filter_normal(Products noisy, const Geometry& geometry, int pattern_size);
 
 }  // namespace ssdo

@@ -23,7 +23,7 @@ std::span<const Filter> filters();
 /// Errors: ExitCode::usage with the names that exist.
 const Filter& find_filter(std::string_view name);
 
-/// The products after the filter. Errors: those of choose_isa().
+/// The products after the filter.
 Products apply_filter(const Filter& filter, Products noisy, const Geometry& geometry,
                       int pattern_size);
 

@@ -27,16 +27,7 @@ void for_each_band(int height, const std::function<void(int y0, int y1)>& work,
 /// Calls `work` once for each row.
 void for_each_row(int height, const std::function<void(int y)>& work);
 
-inline constexpr int kMostThreads = 4096;
-
-/// How many threads to use: `requested` if positive, else $SSDO_THREADS, else $CUE_THREADS, else
-/// $SLURM_CPUS_PER_TASK, else the CPU quota of the control group, else the processors that this
-/// process may run on. A scheduler's variable that is not 1 to kMostThreads is passed over: who
-/// submits a job does not set it.
-/// Errors: ExitCode::usage for an $SSDO_THREADS that is not 1 to kMostThreads.
-int choose_thread_count(int requested);
-
-/// Holds the whole process (our loops, OpenEXR and OpenImageIO) to `count` threads while it lives.
+/// Holds for_each_tile() and its like to `count` threads while it lives, in the whole process.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int count);

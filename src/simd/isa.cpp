@@ -4,22 +4,17 @@
 #include <fmt/format.h>
 #include <hwy/targets.h>
 
-#include <cstdlib>
-#include <string_view>
-
 #include "error.h"
 
 namespace ssdo {
 
-std::string choose_isa() {
+std::string choose_isa(std::string_view wanted) {
   struct Choice {
     std::string_view name;
     std::int64_t targets;
   };
   static constexpr Choice choices[] = {
       {"avx512", HWY_AVX3_DL | HWY_AVX3}, {"avx2", HWY_AVX2}, {"scalar", HWY_SCALAR}};
-  const char* variable = std::getenv("SSDO_ISA");
-  const std::string_view wanted = variable ? variable : "";
   const std::int64_t supported = hwy::SupportedTargets() | HWY_SCALAR;
   for (const Choice& choice : choices) {
     if (!wanted.empty() && choice.name != wanted) continue;

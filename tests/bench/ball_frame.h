@@ -48,9 +48,6 @@ inline const Geometry& frame_of(int width, int height) {
 }
 
 /// Has all vector loops run on an instruction set.
-inline void force_isa(const std::string& isa) {
-  setenv("SSDO_ISA", isa.c_str(), 1);
-  choose_isa();
-}
+inline void force_isa(const std::string& isa) { choose_isa(isa); }
 
 }  // namespace ssdo::bench

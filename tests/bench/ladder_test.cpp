@@ -100,15 +100,16 @@ TEST(Command, IsQuotedForAShell) {
 }
 
 TEST(Command, HasWhatReachesTheSetting) {
-  Options options;
-  options.input_file = "shots/a b.exr";
-  options.bench.carried = {{"--env", "sky.exr"}, {"--thickness", "2"}, {"--radius", "inf"}};
+  const FrameOptions frame;
+  BenchOptions options;
+  options.carried = {{"--env", "sky.exr"}, {"--thickness", "2"}, {"--radius", "inf"}};
+  const BenchJob job{"shots/a b.exr", frame, options};
   Plan plan;
   plan.make = {"ao", "direct"};
-  EXPECT_EQ(command_of(options, standard_setting(find_method("ssao")), plan),
+  EXPECT_EQ(command_of(job, standard_setting(find_method("ssao")), plan),
             "ssdo 'shots/a b.exr' --env sky.exr --method ssao --set samples=64 "
             "--products ao,direct -o 'a b_relit.exr'");
-  EXPECT_EQ(command_of(options, standard_setting(find_method("bitmask")), plan),
+  EXPECT_EQ(command_of(job, standard_setting(find_method("bitmask")), plan),
             "ssdo 'shots/a b.exr' --env sky.exr --thickness 2 --radius inf --method bitmask "
             "--slices 2 --steps 16 --products ao,direct -o 'a b_relit.exr'");
 }

@@ -32,7 +32,7 @@ double seconds(const Work& work) {
 
 TEST(Speed, OfAoAsARatioToBareLoads) {
   const ThreadLimit limit(1);
-  const std::string isa = choose_isa();
+  const std::string isa = choose_isa("");
   const Geometry& g = bench::frame_of(960, 540);
   const Solids solids = guess_solids(g);
   const MarchScene scene = make_march_scene(g, solids);

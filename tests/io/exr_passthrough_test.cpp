@@ -18,7 +18,7 @@
 #include <limits>
 
 #include "io/exr_writer.h"
-#include "parallel/tiles.h"
+#include "io/threads.h"
 #include "support/error_matchers.h"
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
@@ -214,7 +214,7 @@ TEST(PassThrough, SameInputGivesSameBytes) {
 
 /// Writes an EXR in a child process that may write files of `bytes` at most. Gives its exit code.
 int write_with_limit(const fs::path& input_path, const fs::path& output, rlim_t bytes) {
-  const ThreadLimit alone(1);  // a child has none of the threads that OpenEXR would wait for
+  limit_io_threads(1);  // a child has none of the threads that OpenEXR would wait for
   const pid_t child = fork();
   if (child == 0) {
     remove_temporaries_on_signals();

@@ -27,7 +27,6 @@
 #include <limits>
 
 #include "parallel/tiles.h"
-#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/msvo/scales.cpp"
@@ -184,7 +183,6 @@ std::vector<DepthScale> make_depth_scales(const ViewPlanes& planes, int coarsest
 }
 
 void upsample(const DepthScale& coarse, const Upsampling& how, bool multiply, DepthScale& fine) {
-  choose_isa();
   // One row more on both sides, as fine pixels of the border look beyond it.
   PaddedPlane rows(DepthScale::layout(coarse.width, coarse.height)),
       blurred(DepthScale::layout(coarse.width, coarse.height + 2));

@@ -46,7 +46,7 @@ struct Upsampling {
 };
 
 /// Blurs `coarse.open` along surfaces and multiplies `fine.open` by it, or, where `fine` has
-/// nothing of its own, sets it. Errors: those of choose_isa().
+/// nothing of its own, sets it.
 void upsample(const DepthScale& coarse, const Upsampling& how, bool multiply, DepthScale& fine);
 
 }  // namespace ssdo

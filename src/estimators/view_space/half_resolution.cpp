@@ -10,8 +10,6 @@
 // q leaves the tangent plane of p over t, as in geometry_filter.cpp.
 #include "estimators/view_space/half_resolution.h"
 
-#include "simd/isa.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/view_space/half_resolution.cpp"
 #include <hwy/foreach_target.h>
@@ -162,7 +160,6 @@ Plane<float> HalfResolution::upsample_bilinear(const Plane<float>& half) const {
 }
 
 Plane<float> HalfResolution::upsample_along_surfaces(const Plane<float>& half) const {
-  choose_isa();
   Plane<float> out(full_.width(), full_.height(), 1.0f);
   const UpsamplingJob job{full_, receivers_, half, columns_, rows_, out};
   for_each_tile(out.width, out.height, [&](const Tile& tile) {

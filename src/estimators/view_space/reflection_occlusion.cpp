@@ -21,7 +21,6 @@
 #include <numbers>
 
 #include "parallel/tiles.h"
-#include "simd/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/view_space/reflection_occlusion.cpp"
@@ -90,7 +89,6 @@ HWY_EXPORT(reflection_of_tile);
 
 Plane<float> reflection_occlusion(const Scene& scene, const Request& request,
                                   const ViewPlanes& planes, const Plane<glm::vec3>& bent) {
-  choose_isa();
   Plane<float> open(bent.width, bent.height, 1.0f);
   const bool layer = !scene.roughness.empty();
   const ReflectionJob job{planes,

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/main_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <type_traits>
+#include <utility>
+
+#include "cli/option_values.h"
+#include "cli/threads.h"
+#include "estimators/products.h"
+#include "estimators/registry.h"
+#include "filters/registry.h"
+#include "io/sequence.h"
+
+namespace ssdo {
+namespace {
+
+using Text = std::string;
+using Texts = std::vector<std::string>;
+
+/// The names that an option takes, and the value that each stands for.
+template <class T>
+using Choices = std::vector<std::pair<Text, T>>;
+
+/// Adds options to one group of the help. `type` is what the help calls the value.
+class Group {
+ public:
+  Group(CLI::App& app, const Text& name) : app_(app), name_(name) {}
+
+  /// Sets `field`, and shows what it holds already where that is a number or a text.
+  template <class T>
+  CLI::Option* value(const Text& flag, const Text& type, T& field, const Text& help) {
+    CLI::Option* option = app_.add_option(flag, field, help)->type_name(type)->group(name_);
+    if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, Text>) option->capture_default_str();
+    return option;
+  }
+
+  /// Calls `read` with the text.
+  CLI::Option* text(const Text& flag, const Text& type, std::function<void(const Text&)> read,
+                    const Text& help) {
+    return app_.add_option_function<Text>(flag, read, help)->type_name(type)->group(name_);
+  }
+
+  /// Takes one value each time it is given.
+  CLI::Option* repeatable(const Text& flag, const Text& type, Texts& field, const Text& help) {
+    return value(flag, type, field, help)->allow_extra_args(false);
+  }
+
+  /// Calls `read` with the text of each time it is given.
+  CLI::Option* each(const Text& flag, const Text& type, std::function<void(const Text&)> read,
+                    const Text& help) {
+    const auto read_all = [read](const Texts& texts) {
+      for (const Text& text : texts) read(text);
+    };
+    return app_.add_option_function<Texts>(flag, read_all, help)
+        ->type_name(type)
+        ->allow_extra_args(false)
+        ->group(name_);
+  }
+
+  /// Sets `field` to what one of the names stands for. Help and errors list the names.
+  template <class T>
+  void choice(const Text& flag, T& field, const std::type_identity_t<Choices<T>>& choices,
+              const Text& help) {
+    Texts names;
+    for (const auto& [name, value] : choices) names.push_back(name);
+    const auto set = [flag, &field, choices, names](const Text& text) {
+      for (const auto& [name, value] : choices) {
+        if (name != text) continue;
+        field = value;
+        return;
+      }
+      throw Error(ExitCode::usage,
+                  fmt::format("{} {}: expected one of {}", flag, text, fmt::join(names, ", ")));
+    };
+    CLI::Option* option = text(flag, fmt::format("{{{}}}", fmt::join(names, ",")), set, help);
+    for (const auto& [name, value] : choices) {
+      if (value == field) option->default_str(name);
+    }
+  }
+
+  CLI::Option* flag(const Text& name, bool& field, const Text& help) {
+    return app_.add_flag(name, field, help)->group(name_);
+  }
+
+ private:
+  CLI::App& app_;
+  Text name_;
+};
+
+Text role_names() {
+  Text names;
+  for (std::size_t i = 0; i < kRoleCount; ++i) names += fmt::format(" {}", role_name(Role(i)));
+  return names;
+}
+
+void add_input(CLI::App& app, InputOptions& o) {
+  Group group(app, "Input");
+  group.each(
+      "--aov", "ROLE=LAYER", [&](const Text& text) { o.aovs.push_back(parse_layer_request(text)); },
+      "ROLE=LAYER or ROLE=FILE:LAYER, roles" + role_names());
+  group.value("--part", "NAME|N", o.part,
+              "look for layers in this part or view, and what completes it");
+  group.text(
+      "--depth-kind", "KIND", [&](const Text& text) { read_depth_kind(text, o.gbuffer); },
+      "what a depth layer measures: " + depth_kind_forms());
+  group
+      .text(
+          "--motion-scale", "X,Y",
+          [&](const Text& text) { o.gbuffer.motion_scale = read_motion_scale(text); },
+          "turns a motion layer into pixels to the frame before, x right, y up; default 1,1")
+      ->allow_extra_args(false);
+  group
+      .value("--background-depth", "Z", o.gbuffer.background_depth,
+             "depth from which on a pixel is background")
+      ->check(positive());
+}
+
+void add_camera(CLI::App& app, CameraOptions& o) {
+  Group group(app, "Camera");
+  CLI::Option* file =
+      group.value("--camera", "FILE.json", o.file, "camera as JSON; without it, fitted from P");
+  CLI::Option* fov =
+      group.value("--fov", "DEG", o.fov, "horizontal field of view, where P does not tell")
+          ->check(between(0.01, 179))
+          ->excludes(file);
+  group.value("--ortho", "WIDTH", o.ortho, "width of an orthographic frame in scene units")
+      ->check(positive())
+      ->excludes(file)
+      ->excludes(fov);
+}
+
+void add_light(CLI::App& app, LightOptions& o) {
+  Group group(app, "Light");
+  group.value("--env", "FILE[:LAYER]|R,G,B", o.env, "lat-long map, or a constant colour");
+  group
+      .value("--env-rotate", "DEG", o.rotate_degrees,
+             "turn the map about the up axis, counter-clockwise from above")
+      ->check(between(-1e6, 1e6));
+  group.choice("--env-up", o.up, {{"auto", std::nullopt}, {"y", UpAxis::y}, {"z", UpAxis::z}},
+               "axis that points up; auto is z for Blender's files, else y");
+  group.value("--env-exposure", "STOPS", o.exposure_stops, "brighten the environment")
+      ->check(between(-100, 100));
+}
+
+/// The options that say how finely a method looks.
+void add_quality(Group& group, ModelOptions& o) {
+  Choices<Quality> names;
+  Text sizes;
+  for (const QualityLevel& level : kQualities) {
+    names.emplace_back(level.name, level.quality);
+    sizes += fmt::format("{} {} {} x {}", sizes.empty() ? ":" : ",", level.name, level.slices,
+                         level.steps);
+  }
+  group.choice("--quality", o.quality, names, "slices x steps per side" + sizes);
+  group.value("--slices", "K", o.slices, "slices of each pixel, in place of the quality's")
+      ->check(CLI::Range(1, 256));
+  group
+      .value("--steps", "S", o.steps,
+             "steps from a pixel to the frame's diagonal, in place of the quality's")
+      ->check(CLI::Range(1, 256));
+  group
+      .value("--error", "E", o.error,
+             "take more slices and steps until the error of direct + bounce is E or less")
+      ->check(positive());
+}
+
+void add_model(CLI::App& app, ModelOptions& o) {
+  Group group(app, "Model");
+  group
+      .text(
+          "--method", "NAME", [&](const Text& text) { o.method = find_method(text).name; },
+          "estimator; see --list-methods")
+      ->default_str(o.method);
+  group
+      .text(
+          "--radius", "R|auto|inf",
+          [&](const Text& text) { o.radius = read_length("--radius", text); },
+          "reach of occluders in scene units; auto: chosen from the frame")
+      ->default_str("auto");
+  group
+      .text(
+          "--thickness", "T|auto|inf",
+          [&](const Text& text) { o.thickness = read_length("--thickness", text); },
+          "of what is seen, in scene units; auto: from the width of its picture")
+      ->default_str("auto");
+  group.choice("--offscreen", o.extend_offscreen, {{"extend", true}, {"open", false}},
+               "beyond the frame surfaces go on (extend) or end (open)");
+  add_quality(group, o);
+  group.value("--bounces", "N", o.bounces, "bounces of light between surfaces")
+      ->check(CLI::Range(0, 8));
+  group.value("--seed", "N", o.seed, "of the sampling pattern");
+  group.repeatable("--set", "NAME=VALUE", o.set, "a parameter of the method; see --list-methods");
+  Text filter_list;
+  for (const Filter& filter : filters())
+    filter_list += fmt::format("\n{}: {}", filter.name, filter.summary);
+  group
+      .text(
+          "--filter", "NAME", [&](const Text& text) { o.filter = find_filter(text).name; },
+          "of the sampling pattern:" + filter_list)
+      ->default_str(o.filter);
+  group.flag("--temporal", o.temporal,
+             "average over the frames of a sequence what they show of the same surface");
+}
+
+Text describe_products() {
+  Text usual;
+  for (const Product& product : kProducts) {
+    if (product.usual) usual += (usual.empty() ? "" : ",") + Text(product.name);
+  }
+  return fmt::format("of {}, or {}; default: {} as far as the inputs allow", product_names(),
+                     kAllProducts, usual);
+}
+
+void add_output(CLI::App& app, OutputOptions& o) {
+  Group group(app, "Output");
+  group.repeatable("-o,--output", "OUTPUT", o.files,
+                   "output, repeatable: .exr holds the products, .png .jpg .tif the composite");
+  group.repeatable("--products", "LIST", o.products, describe_products())->delimiter(',');
+  group.each(
+      "--save", "PRODUCT=FILE", [&](const Text& text) { o.saves.push_back(read_save(text)); },
+      "a product in a file of its own, repeatable");
+  group.choice("--pixel-type", o.pixel_type, {{"half", Imf::HALF}, {"float", Imf::FLOAT}},
+               "of EXR outputs");
+  group.choice("--compression", o.compression,
+               {{"none", Imf::NO_COMPRESSION},
+                {"rle", Imf::RLE_COMPRESSION},
+                {"zips", Imf::ZIPS_COMPRESSION},
+                {"zip", Imf::ZIP_COMPRESSION},
+                {"piz", Imf::PIZ_COMPRESSION},
+                {"pxr24", Imf::PXR24_COMPRESSION},
+                {"b44", Imf::B44_COMPRESSION},
+                {"b44a", Imf::B44A_COMPRESSION},
+                {"dwaa", Imf::DWAA_COMPRESSION},
+                {"dwab", Imf::DWAB_COMPRESSION}},
+               "of EXR outputs; default: the input's");
+  group.choice("--bits", o.bits, {{"8", 8}, {"16", 16}}, "per channel of PNG and TIFF outputs");
+  group.flag("--keep-channels", o.keep_channels,
+             "pass the input's other channels and parts through");
+  group.flag("--overwrite", o.policy.overwrite, "replace outputs that exist");
+  group.flag("--create-dirs", o.policy.create_dirs, "make missing folders of outputs");
+}
+
+void add_color(CLI::App& app, ColorOptions& o) {
+  Group group(app, "Colour");
+  group.value("--ocio", "FILE", o.ocio, "OpenColorIO config; over $OCIO over the built-in one");
+  group.value("--colorspace", "NAME", o.colorspace, "of the input's colours");
+  group.value("--display", "NAME", o.display, "display of PNG, JPEG and TIFF outputs");
+  group.value("--view", "NAME", o.view, "view of that display");
+  group.value("--look", "NAME", o.look, "look applied before the view");
+}
+
+void add_batch(CLI::App& app, BatchOptions& o) {
+  Group group(app, "Batch");
+  group.text(
+      "--frames", "RANGE", [&](const Text& text) { o.frames = parse_frames(text); },
+      "frames of a sequence: 1001-1010,1020-1030x2; default: all that exist");
+  group.flag("--skip-existing", o.skip_existing, "skip frames whose outputs exist and can be read");
+  group.choice("--on-error", o.on_error,
+               {{"stop", OnError::stop}, {"continue", OnError::keep_going}},
+               "stop or continue with the next frame");
+  group.choice("--progress", o.progress,
+               {{"auto", ProgressStyle::automatic},
+                {"none", ProgressStyle::none},
+                {"tractor", ProgressStyle::tractor},
+                {"alfred", ProgressStyle::alfred},
+                {"openjd", ProgressStyle::openjd}},
+               "auto is a bar on a terminal; others are lines for a scheduler");
+}
+
+void add_say(CLI::App& app, SayOptions& o) {
+  Group group(app, "Say");
+  CLI::Option* verbose = group.flag("-v,--verbose", o.verbose, "say what was found and decided");
+  group.flag("-q,--quiet", o.quiet, "say nothing but errors")->excludes(verbose);
+  group.flag("--dry-run", o.dry_run, "say what would be done, and stop");
+  group.value("--stats", "FILE.json", o.stats,
+              "write times, memory and the plan of every frame; replaced if it exists");
+}
+
+}  // namespace
+
+void add_main_options(CLI::App& app, Options& o) {
+  add_input(app, o.input);
+  add_camera(app, o.camera);
+  add_light(app, o.light);
+  add_model(app, o.model);
+  add_output(app, o.output);
+  add_color(app, o.color);
+  add_batch(app, o.batch);
+  Group(app, "Resources")
+      .value("--threads", "N", o.threads,
+             "over $SSDO_THREADS, $CUE_THREADS, $SLURM_CPUS_PER_TASK; default: all processors")
+      ->check(CLI::Range(1, kMostThreads));
+  add_say(app, o.say);
+  Group(app, "Say")
+      .value("--config", "FILE.toml", o.config_file,
+             "options from a TOML file; the command line wins")
+      ->configurable(false);
+}
+
+}  // namespace ssdo

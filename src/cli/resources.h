@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "parallel/tiles.h"
+
+namespace ssdo {
+
+/// What a run takes of the machine: chosen once, before any work, and held while this lives.
+class Resources {
+ public:
+  /// Limits the whole process to the threads of choose_thread_count() and to the instruction set
+  /// that $SSDO_ISA names. Errors: those of choose_thread_count() and choose_isa().
+  explicit Resources(std::optional<int> requested_threads);
+
+  int threads() const { return threads_; }
+  const std::string& isa() const { return isa_; }  ///< avx512, avx2 or scalar
+
+ private:
+  int threads_;
+  ThreadLimit limit_;
+  std::string isa_;
+};
+
+}  // namespace ssdo

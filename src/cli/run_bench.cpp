@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/run_bench.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/bench.h"
+#include "bench/report_files.h"
+#include "cli/describe.h"
+#include "cli/jobs.h"
+#include "cli/progress.h"
+#include "io/json_text.h"
+#include "io/one_line.h"
+#include "io/sequence.h"
+#include "io/standard_output.h"
+
+namespace ssdo {
+namespace {
+
+void say_what_was_found(const Frame& frame, const SayOptions& say) {
+  if (say.verbose) {
+    fmt::print(stderr, "{}", describe(frame));
+  } else if (!say.quiet) {
+    for (const std::string& warning : frame.warnings())
+      fmt::print(stderr, "ssdo: {}\n", printable(frame.input + ": warning: " + warning));
+  }
+}
+
+}  // namespace
+
+ExitCode run_bench(const Options& options, const Resources& resources) {
+  const std::string& input = options.input_file;
+  if (is_pattern(input)) {
+    throw Error(ExitCode::usage,
+                fmt::format("{}: is a sequence, and bench measures one frame; name the file of one",
+                            input));
+  }
+  const BenchJob job{input, options, options.bench};
+  const Subject subject = read_subject(job, inputs_of(options, input, options.input.aovs));
+  say_what_was_found(subject.frame, options.say);
+
+  ProgressLine progress(options.batch.progress, options.say.quiet);
+  BenchReport report = bench(
+      job, subject, [&](double done, const std::string& setting) { progress.tell(done, setting); });
+  progress.clear();
+  report.frame = json_text(to_json(subject.frame));
+  report.threads = resources.threads();
+  report.isa = resources.isa();
+  write_reports(report, options.bench.reports, options.output.policy);
+  print_out(to_table(report));
+  return options.bench.wants.empty() || report.recommended ? ExitCode::done : ExitCode::failed;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/threads.h"
+
+#include <fmt/format.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+
+#include "error.h"
+#include "math/number.h"
+
+namespace ssdo {
+namespace {
+
+std::string_view variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+/// A whole number from 1 to kMostThreads; nothing for any other text.
+std::optional<int> parse_count(std::string_view text) {
+  const auto count = parse_number(text);
+  const bool fits = count && *count >= 1 && *count <= kMostThreads && *count == std::floor(*count);
+  return fits ? std::optional(int(*count)) : std::nullopt;
+}
+
+std::optional<int> from_user() {
+  const std::string_view text = variable("SSDO_THREADS");
+  if (text.empty()) return std::nullopt;
+  if (const auto count = parse_count(text)) return count;
+  throw Error(ExitCode::usage,
+              fmt::format("$SSDO_THREADS is '{}'; expected a number of threads from 1 to {}", text,
+                          kMostThreads));
+}
+
+std::optional<int> from_control_group() {
+  std::ifstream in("/sys/fs/cgroup/cpu.max");
+  std::string line;
+  std::getline(in, line);
+  return processors_of_quota(line);
+}
+
+int from_affinity() {
+  cpu_set_t set;
+  return sched_getaffinity(0, sizeof set, &set) == 0 ? std::max(1, CPU_COUNT(&set)) : 1;
+}
+
+}  // namespace
+
+int choose_thread_count(std::optional<int> requested) {
+  if (requested) return *requested;
+  if (const auto count = from_user()) return *count;
+  for (const char* name : {"CUE_THREADS", "SLURM_CPUS_PER_TASK"}) {
+    if (const auto count = parse_count(variable(name))) return *count;
+  }
+  const int processors = from_affinity();
+  return std::min(processors, from_control_group().value_or(processors));
+}
+
+std::optional<int> processors_of_quota(const std::string& cpu_max) {
+  std::istringstream in(cpu_max);
+  double quota = 0, period = 0;
+  if (!(in >> quota >> period) || quota <= 0 || period <= 0) return std::nullopt;
+  return std::max(1, int(std::ceil(quota / period)));
+}
+
+}  // namespace ssdo

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace ssdo {
+
+inline constexpr int kMostThreads = 4096;
+
+/// How many threads to use: `requested` if given, else $SSDO_THREADS, else $CUE_THREADS, else
+/// $SLURM_CPUS_PER_TASK, else the CPU quota of the control group, else the processors that this
+/// thread may run on; never more than those beside a quota. A scheduler's variable that is not 1 to
+/// kMostThreads is passed over: who submits a job does not set it.
+/// Errors: ExitCode::usage for an $SSDO_THREADS that is not 1 to kMostThreads.
+int choose_thread_count(std::optional<int> requested);
+
+/// The processors of a quota of control groups v2, rounded up: "200000 100000", microseconds of
+/// each period of so many, are 2. Nothing for "max" and for what is no quota.
+std::optional<int> processors_of_quota(const std::string& cpu_max);
+
+}  // namespace ssdo

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/threads.h"
+
+#include <ImfThreading.h>
+#include <OpenImageIO/imageio.h>
+
+#include <cstdlib>
+#include <string>
+
+namespace ssdo {
+
+void limit_io_threads(int count) {
+  // OpenEXR counts helpers beside the calling thread: 0 makes it work alone.
+  OPENEXR_IMF_NAMESPACE::setGlobalThreadCount(count == 1 ? 0 : count);
+  // OpenImageIO starts $CUE_THREADS threads, be they 99999, before it can be told another number.
+  setenv("OPENIMAGEIO_THREADS", std::to_string(count).c_str(), 1);
+  OIIO::attribute("threads", count);
+  OIIO::attribute("exr_threads", count == 1 ? -1 : count);
+}
+
+}  // namespace ssdo
