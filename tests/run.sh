@@ -10,6 +10,6 @@ sanitizer=${1:-}
 folder=$root/build/${sanitizer:-release}
 options=(-DSSDO_TESTS=ON -DSSDO_SANITIZE="$sanitizer")
 [ -z "${CI:-}" ] || options+=(-DSSDO_WERROR=ON)
-build "$folder" "${options[@]}"
+build "$folder" all "${options[@]}"
 ctest --test-dir "$folder" --output-on-failure --parallel "$(nproc)"
 cat "$folder"/reports/*.md

@@ -23,10 +23,10 @@ build_packages=(g++ cmake ninja-build pkg-config libopenexr-dev libopenimageio-d
   libtomlplusplus-dev)
 test_packages=(libgtest-dev libgmock-dev groff chromium)
 
-# build FOLDER [cmake options]: configures and builds into FOLDER.
+# build FOLDER TARGET [cmake options]: configures FOLDER and builds TARGET in it.
 build() {
-  local folder=$1
-  shift
+  local folder=$1 target=$2
+  shift 2
   cmake -S "$root" -B "$folder" -G Ninja "$@" >"$folder.log" 2>&1 || { cat "$folder.log"; return 1; }
-  cmake --build "$folder"
+  cmake --build "$folder" --target "$target"
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -85,7 +86,7 @@ TEST(Ambient, CostsOcclusionAloneAndThePlanSaysSo) {
     flags.insert(flags.begin(), {"info", dir / "in.exr", "--json", "--products", "composite"});
     const Finished done = run_tool(flags);
     EXPECT_EQ(done.code, 0) << done.err;
-    return json::parse(done.out)["plan"];
+    return parse_json(done.out)["plan"];
   };
   const json ambient = plan({"--aov", "ambient=ViewLayer.Sky"});
   EXPECT_EQ(ambient["bounces"], 0);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -36,7 +37,7 @@ class Shot : public testing::Test {
     }
     return frames;
   }
-  json stats() const { return json::parse(read_file(dir_ / "stats.json")); }
+  json stats() const { return parse_json(read_file(dir_ / "stats.json")); }
   TempDir dir_;
 };
 
@@ -60,7 +61,7 @@ TEST_F(Shot, TheFolderOfItsStatisticsIsMadeWhereThatOfItsImagesIs) {
   EXPECT_THAT(refused.error_line(), HasSubstr("give --create-dirs"));
   EXPECT_THAT(done(), ElementsAre()) << "found before any work";
   EXPECT_EQ(run({"--frames", "1", "--create-dirs", "--stats", log}).code, 0);
-  EXPECT_EQ(json::parse(read_file(log)).size(), 1u);
+  EXPECT_EQ(parse_json(read_file(log)).size(), 1u);
 }
 
 TEST_F(Shot, AMissingFrameIsNamedAndStopsOrNot) {

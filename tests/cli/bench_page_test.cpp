@@ -7,6 +7,7 @@
 
 #include "support/bench_frame.h"
 #include "support/browser.h"
+#include "support/parse_json.h"
 
 namespace ssdo::test {
 namespace {
@@ -26,7 +27,7 @@ class BenchPage : public testing::Test {
     const Finished done = run_tool(
         frame_.arguments({"--truth", frame_.truth + ":AO", "--report", page, "--report", figures}));
     EXPECT_EQ(done.code, 0) << done.err;
-    report_ = json::parse(read_file(figures));
+    report_ = parse_json(read_file(figures));
     browser_.open_page("file://" + page);
   }
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "support/bench_frame.h"
+#include "support/parse_json.h"
 
 namespace ssdo::test {
 namespace {
@@ -33,7 +34,7 @@ class Bench : public testing::Test {
     arguments.insert(arguments.end(), {"--report", path("r.json"), "--overwrite"});
     const Finished done = run_tool(arguments);
     EXPECT_EQ(done.code, 0) << done.err;
-    return json::parse(read_file(path("r.json")));
+    return parse_json(read_file(path("r.json")));
   }
 
   void fails(const std::vector<std::string>& more, int code, const std::string& text) const {
@@ -69,7 +70,7 @@ TEST_F(Bench, TheErrorOfARowIsThatOfItsCommand) {
           run_tool({"compare", relit + ":" + product, frame_.truth + ":" + layer, "--mask",
                     frame_.frame + ":Normal", "--json"});
       ASSERT_EQ(compared.code, 0) << compared.err;
-      const json layer_figures = json::parse(compared.out)["layers"][0];
+      const json layer_figures = parse_json(compared.out)["layers"][0];
       const double expected =
           layer_figures[std::string(product) == "ao" ? "rmse" : "relative_rmse"];
       EXPECT_NEAR(row["errors"][product]["model"], expected, 1e-9) << line << ", " << product;
@@ -121,7 +122,7 @@ TEST_F(Bench, CsvAndTableSayWhatJsonSays) {
   const Finished done = run_tool(with_truth(
       {"--report", path("r.csv"), "--report", path("r.json"), "--products", "ao,direct"}));
   ASSERT_EQ(done.code, 0) << done.err;
-  const json report = json::parse(read_file(path("r.json")));
+  const json report = parse_json(read_file(path("r.json")));
   std::istringstream csv(read_file(path("r.csv")));
   std::string line;
   std::getline(csv, line);
@@ -163,7 +164,7 @@ TEST_F(Bench, RecommendsTheCheapestOrNamesTheBest) {
   const Finished none = run_tool(with_truth({"--want", "1e-6", "--report", path("none.json")}));
   EXPECT_EQ(none.code, 1);
   EXPECT_THAT(none.out, HasSubstr("No setting has an error of ao 1e-06. The best is "));
-  const json best = json::parse(read_file(path("none.json")))["recommendation"];
+  const json best = parse_json(read_file(path("none.json")))["recommendation"];
   EXPECT_EQ(best["reached"], false);
   EXPECT_THAT(none.out, HasSubstr(std::string(best["command"])));
 }

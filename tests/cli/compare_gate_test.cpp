@@ -11,6 +11,7 @@
 
 #include "io/image_file.h"
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -61,7 +62,7 @@ class CompareGate : public testing::Test {
   json layer(const std::string& a, const std::string& b) const {
     const Finished done = run_tool({"compare", path(a), path(b), "--json"});
     EXPECT_EQ(done.code, 0) << done.err;
-    return json::parse(done.out).at("layers").at(0);
+    return parse_json(done.out).at("layers").at(0);
   }
 
   TempDir dir_;
@@ -181,7 +182,7 @@ TEST_F(CompareGate, ChannelsWithoutACounterpartAreListed) {
   const Finished done = gate("a.exr", "b.exr");
   EXPECT_EQ(done.code, 0);
   EXPECT_THAT(done.out, HasSubstr("only in A: bounce.R\nonly in B: error.Y\n"));
-  const json all = json::parse(run_tool({"compare", path("a.exr"), path("b.exr"), "--json"}).out);
+  const json all = parse_json(run_tool({"compare", path("a.exr"), path("b.exr"), "--json"}).out);
   EXPECT_THAT(all["only_in_a"], ElementsAre("bounce.R"));
   EXPECT_THAT(all["only_in_b"], ElementsAre("error.Y"));
 }

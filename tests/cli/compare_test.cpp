@@ -12,6 +12,7 @@
 
 #include "math/sequence_numbers.h"
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -47,7 +48,7 @@ class Compare : public testing::Test {
     arguments.push_back("--json");
     const Finished done = run_tool(arguments);
     EXPECT_EQ(done.code, 0) << done.err;
-    const json all = json::parse(done.out).at("layers");
+    const json all = parse_json(done.out).at("layers");
     EXPECT_EQ(all.size(), 1u);
     return all.at(0);
   }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -31,7 +32,7 @@ class Config : public testing::Test {
     flags.insert(flags.begin(), {"info", path("in.exr"), "--json", "--config", path("o.toml")});
     const Finished done = run_tool(flags);
     EXPECT_EQ(done.code, 0) << done.err;
-    return json::parse(done.out);
+    return parse_json(done.out);
   }
   TempDir dir_;
 };

@@ -12,6 +12,7 @@
 
 #include "math/luminance.h"
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -72,7 +73,7 @@ class ErrorProduct : public testing::TestWithParam<std::string> {
         lit.brightness[i] += luminance(glm::vec3(r[i], g[i], b[i]));
     }
     if (with_error) lit.error = channel(path("out.exr"), "error.Y");
-    lit.statistics = json::parse(read_file(path("stats.json")))[0];
+    lit.statistics = parse_json(read_file(path("stats.json")))[0];
     lit.messages = done.err;
     return lit;
   }
@@ -174,7 +175,7 @@ TEST(ErrorThatCannotBeReached, EndsWithAWarning) {
   EXPECT_EQ(done.code, 0);
   EXPECT_THAT(done.error_line(), testing::StartsWith("ssdo: ")) << "it is said once";
   EXPECT_THAT(done.error_line(), HasSubstr("warning: --error 1e-09 is not reached"));
-  const json plan = json::parse(read_file(stats))[0]["plan"];
+  const json plan = parse_json(read_file(stats))[0]["plan"];
   EXPECT_EQ(plan["slices"], 64);
   EXPECT_EQ(plan["steps"], 128);
 }

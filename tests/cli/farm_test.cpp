@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -84,7 +85,7 @@ TEST_F(Farm, AFrameIsDoneOnlyWithAllItsOutputs) {
   EXPECT_EQ(third.code, 0);
   EXPECT_THAT(third.out, testing::EndsWith("openjd_progress: 100\n"));
   EXPECT_THAT(third.err, HasSubstr("skipped"));
-  EXPECT_EQ(json::parse(read_file(path("stats.json"))).size(), 0u) << "nothing was made";
+  EXPECT_EQ(parse_json(read_file(path("stats.json"))).size(), 0u) << "nothing was made";
 }
 
 TEST_F(Farm, SkippedFramesNeedNoInput) {
@@ -96,7 +97,7 @@ TEST_F(Farm, SkippedFramesNeedNoInput) {
 TEST_F(Farm, StatisticsOfAChunkThatBreaksOffHoldWhatWasDone) {
   fs::remove(in(2));
   EXPECT_EQ(run({"--frames", "1-3", "--stats", path("stats.json")}).code, 3);
-  const json stats = json::parse(read_file(path("stats.json")));
+  const json stats = parse_json(read_file(path("stats.json")));
   ASSERT_EQ(stats.size(), 1u);
   EXPECT_EQ(stats[0]["frame"], 1);
 }
@@ -106,7 +107,7 @@ TEST_F(Farm, SeveralOutputsOfAFrameAreAllInItsStatistics) {
                  "--slices", "3", "--steps", "4", "--bounces", "2"})
                 .code,
             0);
-  const json frame = json::parse(read_file(path("stats.json"))).at(0);
+  const json frame = parse_json(read_file(path("stats.json"))).at(0);
   EXPECT_EQ(frame["output"], json({out(2), path("out.0002.png")}));
   EXPECT_EQ(frame["samples_per_pixel"], 2 * 3 * 4);
   EXPECT_THAT(frame["isa"].get<std::string>(), testing::AnyOf("avx512", "avx2", "scalar"));
@@ -145,7 +146,7 @@ TEST_F(Farm, NonsenseOfASchedulerIsPassedOver) {
     const Finished done = run({"--frames", "1", "--overwrite", "--stats", path("stats.json")},
                               {.variables = variables});
     EXPECT_EQ(done.code, 0) << done.err;
-    return json::parse(read_file(path("stats.json"))).at(0).at("threads").get<int>();
+    return parse_json(read_file(path("stats.json"))).at(0).at("threads").get<int>();
   };
   for (const std::string value : {"", "many", "0", "-2", "2.5", "99999", "1e99"}) {
     EXPECT_EQ(threads({{"CUE_THREADS", value}, {"SLURM_CPUS_PER_TASK", "3"}}), 3) << value;
@@ -156,7 +157,7 @@ TEST_F(Farm, NonsenseOfASchedulerIsPassedOver) {
 TEST_F(Farm, InfoOfASequenceIsAnArray) {
   const Finished done = run_tool({"info", path("in.####.exr"), "--frames", "1-2", "--json"});
   EXPECT_EQ(done.code, 0);
-  const json frames = json::parse(done.out);
+  const json frames = parse_json(done.out);
   ASSERT_EQ(frames.size(), 2u);
   EXPECT_EQ(frames[0]["file"], in(1));
   EXPECT_EQ(frames[1]["file"], in(2));

@@ -9,6 +9,7 @@
 
 #include "support/exr_fixture.h"
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -88,17 +89,17 @@ TEST_F(InfoListing, IsValidJsonWithTheError) {
     words.push_back("--json");
     const Finished done = run_tool(words);
     EXPECT_EQ(done.code, failure.code);
-    const json found = json::parse(done.out);
+    const json found = parse_json(done.out);
     EXPECT_EQ(found["file"], failure.words[0]);
     EXPECT_EQ(found["parts"].size(), 1u);
     EXPECT_EQ(found["parts"][0]["deep"], failure.part == "deep scanlines");
     EXPECT_EQ(found["error"]["code"], failure.code);
     EXPECT_EQ("ssdo: " + found["error"]["message"].get<std::string>(), done.error_line());
   }
-  const json missing = json::parse(run_tool({"info", path("gone.exr"), "--json"}).out);
+  const json missing = parse_json(run_tool({"info", path("gone.exr"), "--json"}).out);
   EXPECT_EQ(missing["parts"], json::array());
   EXPECT_EQ(missing["error"]["code"], 3);
-  EXPECT_FALSE(json::parse(run_tool({"info", path("in.exr"), "--json"}).out).contains("error"));
+  EXPECT_FALSE(parse_json(run_tool({"info", path("in.exr"), "--json"}).out).contains("error"));
 }
 
 TEST_F(InfoListing, OfASequenceHasAnEntryForEveryFrame) {
@@ -107,7 +108,7 @@ TEST_F(InfoListing, OfASequenceHasAnEntryForEveryFrame) {
   std::filesystem::copy_file(path("in.exr"), path("shot.3.exr"));
   const Finished done = run_tool({"info", path("shot.@.exr"), "--json", "--on-error", "continue"});
   EXPECT_EQ(done.code, 4);
-  const json frames = json::parse(done.out);
+  const json frames = parse_json(done.out);
   ASSERT_EQ(frames.size(), 3u);
   EXPECT_TRUE(frames[0].contains("plan") && frames[2].contains("plan"));
   EXPECT_EQ(frames[1]["error"]["code"], 4);
@@ -159,7 +160,7 @@ TEST_F(InfoListing, ListsTheFilesOfAovsToo) {
   const Finished done = run_tool({"info", path("in.exr"), "--aov", aov});
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr(path("none.exr") + ": 1 part, 3 channels"));
-  const json found = json::parse(run_tool({"info", path("in.exr"), "--aov", aov, "--json"}).out);
+  const json found = parse_json(run_tool({"info", path("in.exr"), "--aov", aov, "--json"}).out);
   EXPECT_EQ(found["other_files"][0]["file"], path("none.exr"));
   EXPECT_EQ(found["other_files"][0]["parts"][0]["channels"].size(), 3u);
 }
@@ -197,7 +198,7 @@ TEST_F(InfoListing, NamesAreSafeToPrint) {
   }
   const Finished found = run_tool({"info", other, "--json"});
   EXPECT_EQ(found.out.find('\033'), std::string::npos) << found.out;
-  EXPECT_EQ(json::parse(found.out)["parts"].size(), 1u) << "JSON for all that";
+  EXPECT_EQ(parse_json(found.out)["parts"].size(), 1u) << "JSON for all that";
   EXPECT_THAT(run_tool({"info", path("odd.exr")}).out,
               HasSubstr("albedo\\x1b]0;owned\\x07\\x9b\\x0a"));
 }

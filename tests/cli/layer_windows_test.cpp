@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -43,7 +44,7 @@ class LayerWindows : public testing::Test {
                        const std::string& frame = "in.exr") const {
     const Finished done = info(aovs, frame);
     EXPECT_EQ(done.code, 0) << done.err;
-    return nlohmann::json::parse(done.out)["warnings"].dump();
+    return parse_json(done.out)["warnings"].dump();
   }
   TempDir dir_;
 };
@@ -99,8 +100,7 @@ TEST_F(LayerWindows, SurfacesThatALayerLeavesOutAreCounted) {
   const std::string count = std::to_string(above) + " of " + std::to_string(surfaces) + " surfaces";
   EXPECT_THAT(warnings({"albedo=" + from("crop.exr", "DiffCol")}),
               AllOf(HasSubstr(count), HasSubstr("0,12 to 63,47"), HasSubstr("black")));
-  const nlohmann::json found =
-      nlohmann::json::parse(info({"normal=" + from("crop.exr", "Normal")}).out);
+  const nlohmann::json found = parse_json(info({"normal=" + from("crop.exr", "Normal")}).out);
   EXPECT_THAT(found["warnings"].dump(), AllOf(HasSubstr(count), HasSubstr("rebuilt from P")));
   EXPECT_EQ(found["surface_pixels"], surfaces);
   EXPECT_EQ(found["bad_pixels"], 0);
@@ -114,7 +114,7 @@ TEST_F(LayerWindows, SurfacesWithoutANormalStaySurfaces) {
   part.channels.erase("ViewLayer.Depth.Z");
   write_frame(path("p.exr"), part);
   const auto surfaces = [&](const std::vector<std::string>& aovs) {
-    return nlohmann::json::parse(info(aovs, "p.exr").out)["surface_pixels"].get<int>();
+    return parse_json(info(aovs, "p.exr").out)["surface_pixels"].get<int>();
   };
   EXPECT_EQ(surfaces({"normal=" + from("crop.exr", "Normal")}), surfaces({}));
 }
@@ -139,7 +139,7 @@ TEST_F(LayerWindows, PixelsOfAnotherAspectAreWarnedOfOnce) {
   const Finished done =
       info({"albedo=" + from("wide.exr", "DiffCol"), "normal=" + from("wide.exr", "Normal")});
   ASSERT_EQ(done.code, 0) << done.err;
-  const auto list = nlohmann::json::parse(done.out)["warnings"];
+  const auto list = parse_json(done.out)["warnings"];
   EXPECT_EQ(
       std::count_if(list.begin(), list.end(),
                     [](const std::string& w) { return w.find("aspect 2") != std::string::npos; }),

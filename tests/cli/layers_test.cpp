@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -17,7 +18,7 @@ json info(const std::string& path, std::vector<std::string> flags = {}) {
   flags.insert(flags.begin(), {"info", path, "--json"});
   const Finished done = run_tool(flags);
   EXPECT_EQ(done.code, 0) << done.err;
-  return done.code == 0 ? json::parse(done.out) : json();
+  return done.code == 0 ? parse_json(done.out) : json();
 }
 
 /// ao of a frame, as floats.
@@ -60,7 +61,7 @@ TEST(Info, FindsLayersAndCameraOfRealFramesWithoutFlags) {
   for (const auto& [frame, camera_file] : real_frames()) {
     SCOPED_TRACE(frame);
     const json found = info(frame);
-    const json truth = json::parse(std::ifstream(camera_file));
+    const json truth = parse_json(read_file(camera_file));
     EXPECT_EQ(found["layers"]["position"]["layer"], "ViewLayer.Position");
     EXPECT_EQ(found["layers"]["normal"]["layer"], "ViewLayer.Normal");
     EXPECT_EQ(found["layers"]["albedo"]["layer"], "ViewLayer.DiffCol");

@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -40,7 +40,7 @@ TEST(MainJob, RelightsTheStillLifeWithoutFurtherFlags) {
                                               "bounce.R", "direct.B", "direct.G", "direct.R"));
   EXPECT_EQ(string_attribute(exr, "Scene"), "still_life") << "the input's header is kept";
   EXPECT_NE(string_attribute(exr, "ssdo/version"), "");
-  EXPECT_EQ(nlohmann::json::parse(string_attribute(exr, "ssdo/plan")).at("method"), "bitmask");
+  EXPECT_EQ(parse_json(string_attribute(exr, "ssdo/plan")).at("method"), "bitmask");
 
   const auto image = OIIO::ImageInput::open(png);
   ASSERT_TRUE(image);
@@ -91,7 +91,7 @@ TEST(MainJob, ACropSeesWhatTheWholeFrameSees) {
   const Window whole{0, 0, 96, 72};
   write_frame(dir / "whole.exr", frame_of(small_picture(whole, whole)));
   // The camera that the tool itself finds in the whole frame.
-  const auto info = nlohmann::json::parse(relight({"info", dir / "whole.exr", "--json"}).out);
+  const auto info = parse_json(relight({"info", dir / "whole.exr", "--json"}).out);
   std::ofstream(dir / "camera.json") << info.at("camera");
   const auto run = [&](const std::string& name) {
     relight({dir / (name + ".exr"), "-o", dir / (name + "_out.exr"), "--overwrite", "--camera",
@@ -293,7 +293,7 @@ TEST(MainJob, BrokenPixelsAreCountedAndMakeNoNaN) {
   part.channels["ViewLayer.DiffCol.G"](14, 10) = INFINITY;
   write_frame(dir / "in.exr", part);
   relight({dir / "in.exr", "-o", dir / "out.exr", "--stats", dir / "stats.json"});
-  EXPECT_EQ(nlohmann::json::parse(read_file(dir / "stats.json"))[0].at("bad_pixels"), 5);
+  EXPECT_EQ(parse_json(read_file(dir / "stats.json"))[0].at("bad_pixels"), 5);
   for (const std::string& name : channel_names(dir / "out.exr")) {
     for (const float v : channel(dir / "out.exr", name).pixels)
       ASSERT_TRUE(std::isfinite(v)) << name;

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 #include "support/terminal.h"
 
@@ -70,8 +71,7 @@ TEST_F(Messages, AMethodWithoutARadiusClaimsNone) {
   EXPECT_EQ(told.code, 0) << told.err;
   EXPECT_THAT(told.out, Not(HasSubstr("radius")));
   const auto plan_of = [&](const std::string& method) {
-    return json::parse(
-        run_tool({"info", path("in.exr"), "--json", "--method", method}).out)["plan"];
+    return parse_json(run_tool({"info", path("in.exr"), "--json", "--method", method}).out)["plan"];
   };
   EXPECT_FALSE(plan_of("msvo").contains("radius"));
   EXPECT_TRUE(plan_of("sao").contains("radius"));
@@ -149,7 +149,7 @@ TEST_F(Messages, ADryRunAndInfoWriteNothing) {
 TEST_F(Messages, InfoListsEveryChannelWithItsType) {
   const Finished done = run_tool({"info", path("half.exr"), "--json"});
   ASSERT_EQ(done.code, 0) << done.err;
-  const json j = json::parse(done.out);
+  const json j = parse_json(done.out);
   EXPECT_EQ(j["file"], path("half.exr"));
   EXPECT_EQ(j["width"], 64);
   EXPECT_EQ(j["height"], 48);

@@ -3,9 +3,8 @@
 // The product reflection through the binary: where roughness comes from, and who makes it.
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
-
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -50,7 +49,7 @@ TEST(ReflectionProduct, IsAmongAllProductsOnlyWhereRoughnessIsKnown) {
     const Finished done =
         run_tool({"info", dir / "in.exr", "--method", "gtao", "--products", "all", "--json"});
     EXPECT_EQ(done.code, 0) << done.err;
-    return nlohmann::json::parse(done.out)["plan"]["products"].get<std::vector<std::string>>();
+    return parse_json(done.out)["plan"]["products"].get<std::vector<std::string>>();
   };
   write_with(dir, {});
   EXPECT_THAT(products(), Not(Contains("reflection")));

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -40,7 +41,7 @@ Plane<float> ao(const TempDir& dir, const std::string& name) {
 json plan_of(const TempDir& dir, const std::string& name) {
   const ExrReader file(dir / (name + ".exr"));
   const auto* text = file.parts()[0].header.findTypedAttribute<Imf::StringAttribute>("ssdo/plan");
-  return json::parse(text->value());
+  return parse_json(text->value());
 }
 
 TEST(TemporalRuns, AverageFramesWhosePatternsComeFromTheirNumbers) {
@@ -179,7 +180,7 @@ TEST(Filters, AreNamedInThePlan) {
   for (const std::string name : {"none", "box", "gaussian", "normal", "geometry"}) {
     const Finished done = run_tool({"info", dir / "in.5.exr", "--json", "--filter", name});
     ASSERT_EQ(done.code, 0) << done.err;
-    EXPECT_EQ(json::parse(done.out)["plan"]["filter"], name);
+    EXPECT_EQ(parse_json(done.out)["plan"]["filter"], name);
   }
 }
 

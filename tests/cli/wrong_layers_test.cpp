@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -53,7 +54,7 @@ struct Pose {
 };
 
 Pose pose() {
-  const json rows = json::parse(std::ifstream(data("still_life.camera.json")))["world_to_camera"];
+  const json rows = parse_json(read_file(data("still_life.camera.json")))["world_to_camera"];
   Pose p;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) p.rotation[column][row] = rows[row][column];
@@ -191,7 +192,7 @@ TEST_F(WrongLayers, PixelsWithoutNeighboursKeepTheirNormals) {
   write_frame(dir_ / "checkerboard.exr", part);
   const Finished done = run_tool({"info", dir_ / "checkerboard.exr", "--json"});
   ASSERT_EQ(done.code, 0) << done.err;
-  const json found = json::parse(done.out);
+  const json found = parse_json(done.out);
   EXPECT_EQ(found["normals"]["space"], "the space of P");
   EXPECT_EQ(found["normals"]["rebuilt"], 0);
 }

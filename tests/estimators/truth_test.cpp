@@ -11,6 +11,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "estimators/recorded_errors.h"
 #include "estimators/registry.h"
 #include "filters/geometry_filter.h"
 #include "frame.h"
@@ -20,11 +21,6 @@ namespace ssdo::test {
 namespace {
 
 const std::string kData = std::string(SSDO_SOURCE_DIR) + "/data/";
-
-/// RMSE of ao at the two radii of the truth; of light relative to its mean.
-struct Errors {
-  double ao_small, ao_large, direct, bounce;
-};
 
 /// A frame, the radii of its truth, and the environment that lights it.
 struct Subject {
@@ -37,8 +33,17 @@ const Subject kStillLife{"still_life", "sky.exr", 0.5, 2},
 struct Case {
   std::string method;
   Subject scene;
-  Errors recorded;
+  TruthErrors recorded;
 };
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const RecordedErrors& errors : kRecordedErrors) {
+    all.push_back({errors.method, kStillLife, errors.still_life});
+    all.push_back({errors.method, kRoomCorner, errors.room_corner});
+  }
+  return all;
+}
 
 std::array<Plane<float>, 3> read_truth(const Subject& scene, const std::string& name,
                                        const std::string& layer) {
@@ -132,33 +137,11 @@ TEST_P(Truth, ErrorsAreThoseRecorded) {
   expect_recorded("bounce", bounce, bounce.mean, recorded.bounce);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Frames, Truth,
-    testing::Values(Case{"bitmask", kStillLife, {0.0444, 0.0485, 0.1362, 0.3609}},
-                    Case{"bitmask", kRoomCorner, {0.0319, 0.0295, 0.1800, 0.2764}},
-                    Case{"trace", kStillLife, {0.0619, 0.0848, 0.1628, 0.5890}},
-                    Case{"trace", kRoomCorner, {0.0380, 0.0573, 0.1135, 0.2303}},
-                    Case{"ssdo", kStillLife, {0.1198, 0.2273, 0.2521, 1.1047}},
-                    Case{"ssdo", kRoomCorner, {0.0665, 0.1286, 0.1742, 0.7202}},
-                    Case{"ssao", kStillLife, {0.1547, 0.2154, 0.2521, 0}},
-                    Case{"ssao", kRoomCorner, {0.1028, 0.2074, 0.2027, 0}},
-                    Case{"ssao-range", kStillLife, {0.1401, 0.2250, 0.2569, 0}},
-                    Case{"ssao-range", kRoomCorner, {0.1111, 0.1599, 0.1758, 0}},
-                    Case{"ssao-fade", kStillLife, {0.1116, 0.2009, 0.2649, 0}},
-                    Case{"ssao-fade", kRoomCorner, {0.0624, 0.1081, 0.1933, 0}},
-                    Case{"hbao", kStillLife, {0.1558, 0.2040, 0.2707, 0}},
-                    Case{"hbao", kRoomCorner, {0.0996, 0.1871, 0.2024, 0}},
-                    Case{"gtao", kStillLife, {0.1562, 0.2127, 0.3400, 0}},
-                    Case{"gtao", kRoomCorner, {0.1126, 0.2379, 0.4346, 0}},
-                    Case{"sao", kStillLife, {0.1445, 0.1703, 0.3210, 0}},
-                    Case{"sao", kRoomCorner, {0.0897, 0.1647, 0.2605, 0}},
-                    Case{"msvo", kStillLife, {0.1885, 0.2130, 0.2584, 0}},
-                    Case{"msvo", kRoomCorner, {0.4106, 0.2461, 0.3154, 0}}),
-    [](const auto& one) {
-      std::string name = one.param.method + "_" + one.param.scene.name;
-      std::replace(name.begin(), name.end(), '-', '_');
-      return name;
-    });
+INSTANTIATE_TEST_SUITE_P(Frames, Truth, testing::ValuesIn(cases()), [](const auto& one) {
+  std::string name = one.param.method + "_" + one.param.scene.name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 }  // namespace
 }  // namespace ssdo::test

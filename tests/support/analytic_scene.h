@@ -29,64 +29,22 @@ struct Ray {
 using Surface = std::function<std::optional<Hit>(const Ray&)>;
 
 /// The plane through `point`, one-sided or not does not matter to a camera.
-inline Surface plane(const glm::dvec3& point, const glm::dvec3& normal) {
-  return [=](const Ray& ray) -> std::optional<Hit> {
-    const double t = glm::dot(point - ray.origin, normal) / glm::dot(ray.direction, normal);
-    if (!(t > 1e-9)) return std::nullopt;
-    return Hit{t, normal};
-  };
-}
+Surface plane(const glm::dvec3& point, const glm::dvec3& normal);
 
-inline Surface sphere(const glm::dvec3& centre, double radius) {
-  return [=](const Ray& ray) -> std::optional<Hit> {
-    const glm::dvec3 o = ray.origin - centre;
-    const double b = glm::dot(o, ray.direction), c = glm::dot(o, o) - radius * radius,
-                 d = b * b - c;
-    if (d < 0 || -b - std::sqrt(d) < 1e-9) return std::nullopt;
-    const double t = -b - std::sqrt(d);
-    return Hit{t, (o + t * ray.direction) / radius};
-  };
-}
+Surface sphere(const glm::dvec3& centre, double radius);
 
 /// The part of a surface where `keep` holds.
-inline Surface cut(Surface surface, std::function<bool(const glm::dvec3&)> keep) {
-  return [=](const Ray& ray) -> std::optional<Hit> {
-    const auto hit = surface(ray);
-    return hit && keep(ray.origin + hit->distance * ray.direction) ? hit : std::nullopt;
-  };
-}
+Surface cut(Surface surface, std::function<bool(const glm::dvec3&)> keep);
 
 /// The nearest of several surfaces.
-inline Surface all_of(std::vector<Surface> surfaces) {
-  return [=](const Ray& ray) {
-    std::optional<Hit> nearest;
-    for (const Surface& surface : surfaces) {
-      const auto hit = surface(ray);
-      if (hit && (!nearest || hit->distance < nearest->distance)) nearest = hit;
-    }
-    return nearest;
-  };
-}
+Surface all_of(std::vector<Surface> surfaces);
 
 /// A camera at `eye` that looks at `target`, in a world with `up` up.
-inline Camera look_at(Camera projection, const glm::dvec3& eye, const glm::dvec3& target,
-                      const glm::dvec3& up) {
-  const glm::dvec3 back = glm::normalize(eye - target),
-                   right = glm::normalize(glm::cross(up, back));
-  const glm::dmat3 to_world(right, glm::cross(back, right), back);
-  projection.rotation = glm::transpose(to_world);
-  projection.origin = eye;
-  return projection;
-}
+Camera look_at(Camera projection, const glm::dvec3& eye, const glm::dvec3& target,
+               const glm::dvec3& up);
 
 /// The world-space ray through the centre of a pixel of the display window.
-inline Ray ray_through(const Camera& camera, double px, double py) {
-  const glm::dmat3 to_world = glm::transpose(camera.rotation);
-  const glm::dvec3 on_plane = camera.unproject({px, py}, camera.orthographic ? 0.0 : 1.0);
-  if (camera.orthographic)
-    return {camera.origin + to_world * on_plane, to_world * glm::dvec3(0, 0, -1)};
-  return {camera.origin, glm::normalize(to_world * on_plane)};
-}
+Ray ray_through(const Camera& camera, double px, double py);
 
 /// World-space positions and normals of every pixel, and which pixels show a surface.
 struct Picture {
@@ -96,47 +54,9 @@ struct Picture {
   Plane<unsigned char> valid;
 };
 
-inline Picture take_picture(const Surface& scene, const Camera& camera, const Window& window) {
-  Picture picture{window, camera, Plane<glm::vec3>(window.width(), window.height()),
-                  Plane<glm::vec3>(window.width(), window.height()),
-                  Plane<unsigned char>(window.width(), window.height())};
-  for (int y = window.y0; y < window.y1; ++y) {
-    for (int x = window.x0; x < window.x1; ++x) {
-      const Ray ray = ray_through(camera, x + 0.5, y + 0.5);
-      const auto hit = scene(ray);
-      if (!hit) continue;
-      const std::size_t i = picture.position.index(x - window.x0, y - window.y0);
-      picture.position[i] = glm::vec3(ray.origin + hit->distance * ray.direction);
-      const bool away = glm::dot(hit->normal, ray.direction) > 0;
-      picture.normal[i] = glm::vec3(away ? -hit->normal : hit->normal);
-      picture.valid[i] = 1;
-    }
-  }
-  return picture;
-}
+Picture take_picture(const Surface& scene, const Camera& camera, const Window& window);
 
 /// The same in camera space, rounded once from double, as estimators take it.
-inline Geometry geometry_of(const Surface& scene, const Camera& camera, const Window& window) {
-  Geometry g;
-  g.window = g.display = window;
-  g.camera = camera;
-  g.world_known = true;
-  g.world_to_camera = glm::mat3(camera.rotation);
-  g.surfel = Plane<Surfel>(window.width(), window.height());
-  for (int y = window.y0; y < window.y1; ++y) {
-    for (int x = window.x0; x < window.x1; ++x) {
-      const Ray ray = ray_through(camera, x + 0.5, y + 0.5);
-      const auto hit = scene(ray);
-      if (!hit) continue;
-      const std::size_t i = g.surfel.index(x - window.x0, y - window.y0);
-      const glm::dvec3 p = camera.to_camera(ray.origin + hit->distance * ray.direction);
-      const glm::dvec3 n = glm::dot(hit->normal, ray.direction) > 0 ? -hit->normal : hit->normal;
-      g.surfel[i].position = glm::vec4(glm::vec3(p), 1);
-      g.surfel[i].normal =
-          glm::vec4(glm::vec3(camera.rotation * n), float(glm::length(p)) / 16777216);
-    }
-  }
-  return g;
-}
+Geometry geometry_of(const Surface& scene, const Camera& camera, const Window& window);
 
 }  // namespace ssdo::test

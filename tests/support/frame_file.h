@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfMultiPartOutputFile.h>
-#include <ImfOutputPart.h>
-#include <ImfPartType.h>
-#include <half.h>
+#include <ImfPixelType.h>
 
 #include <filesystem>
 #include <glm/vec3.hpp>
@@ -15,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "io/exr_reader.h"
 #include "support/analytic_scene.h"
 
 namespace ssdo::test {
@@ -28,91 +22,27 @@ struct FramePart {
   Imf::PixelType type = Imf::FLOAT;
   Imf::Header extra;  ///< attributes to take over
 
+  /// Adds a channel for each component.
   void add(const std::string& layer, const Plane<glm::vec3>& values,
-           const std::string& components = "XYZ") {
-    for (int c = 0; c < 3; ++c) {
-      Plane<float> plane(values.width, values.height);
-      for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = values[i][c];
-      channels[layer + "." + components[std::size_t(c)]] = plane;
-    }
-  }
+           const std::string& components = "XYZ");
 };
 
 /// P, N, albedo 1/2 and depth of a picture, under the names that Blender uses.
-inline FramePart frame_of(const Picture& picture, const std::string& prefix = "ViewLayer.") {
-  FramePart part{"", picture.window, picture.window, {}, Imf::FLOAT, {}};
-  part.add(prefix + "Position", picture.position);
-  part.add(prefix + "Normal", picture.normal);
-  part.add(prefix + "DiffCol",
-           Plane<glm::vec3>(picture.position.width, picture.position.height, glm::vec3(0.5f)),
-           "RGB");
-  Plane<float> depth(picture.position.width, picture.position.height, 1e10f);
-  for (std::size_t i = 0; i < depth.size(); ++i) {
-    if (picture.valid[i])
-      depth[i] = float(-picture.camera.to_camera(glm::dvec3(picture.position[i])).z);
-  }
-  part.channels[prefix + "Depth.Z"] = depth;
-  return part;
-}
+FramePart frame_of(const Picture& picture, const std::string& prefix = "ViewLayer.");
 
-inline Imath::Box2i box_of(const Window& w) { return {{w.x0, w.y0}, {w.x1 - 1, w.y1 - 1}}; }
+Imath::Box2i box_of(const Window& w);
 
-inline void write_frame(const std::filesystem::path& path, const std::vector<FramePart>& parts) {
-  std::vector<Imf::Header> headers;
-  for (const FramePart& part : parts) {
-    Imf::Header header = part.extra;
-    header.displayWindow() = box_of(part.display);
-    header.dataWindow() = box_of(part.data);
-    header.compression() = Imf::ZIP_COMPRESSION;
-    header.setType(Imf::SCANLINEIMAGE);
-    if (!part.name.empty()) header.setName(part.name);
-    for (const auto& [name, plane] : part.channels)
-      header.channels().insert(name, Imf::Channel(part.type));
-    headers.push_back(header);
-  }
-  Imf::MultiPartOutputFile file(path.c_str(), headers.data(), int(headers.size()));
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    Imf::FrameBuffer buffer;
-    std::vector<std::vector<half>> halves;
-    halves.reserve(parts[p].channels.size());
-    for (const auto& [name, plane] : parts[p].channels) {
-      const void* base = plane.pixels.data();
-      if (parts[p].type == Imf::HALF) {
-        halves.emplace_back(plane.pixels.begin(), plane.pixels.end());
-        base = halves.back().data();
-      }
-      buffer.insert(name, Imf::Slice::Make(parts[p].type, base, box_of(parts[p].data)));
-    }
-    Imf::OutputPart part(file, int(p));
-    part.setFrameBuffer(buffer);
-    part.writePixels(parts[p].data.height());
-  }
-}
+void write_frame(const std::filesystem::path& path, const std::vector<FramePart>& parts);
 
-inline void write_frame(const std::filesystem::path& path, const FramePart& part) {
-  write_frame(path, std::vector<FramePart>{part});
-}
+void write_frame(const std::filesystem::path& path, const FramePart& part);
 
 /// Ground and a sphere, seen from above: small, and enough to fit a camera to.
-inline Picture small_picture(const Window& window = {0, 0, 64, 48},
-                             const Window& display = {0, 0, 64, 48}) {
-  const Surface scene = all_of({plane({}, {0, 0, 1}), sphere({0.2, 0, 0.6}, 0.6)});
-  const Camera camera =
-      look_at(camera_from_fov(40, display, 1), {0, -4, 3}, {0, 0, 0.3}, {0, 0, 1});
-  return take_picture(scene, camera, window);
-}
+Picture small_picture(const Window& window = {0, 0, 64, 48},
+                      const Window& display = {0, 0, 64, 48});
 
 /// One channel of an EXR.
-inline Plane<float> channel(const std::filesystem::path& path, const std::string& name,
-                            int part = 0) {
-  return ExrReader(path).read(part, std::vector{name})[0];
-}
+Plane<float> channel(const std::filesystem::path& path, const std::string& name, int part = 0);
 
-inline std::vector<std::string> channel_names(const std::filesystem::path& path, int part = 0) {
-  const ExrReader file(path);
-  std::vector<std::string> names;
-  for (const ExrChannel& c : file.parts()[std::size_t(part)].channels) names.push_back(c.name);
-  return names;
-}
+std::vector<std::string> channel_names(const std::filesystem::path& path, int part = 0);
 
 }  // namespace ssdo::test

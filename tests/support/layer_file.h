@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <ImfStandardAttributes.h>
-
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "scene/layers/layers.h"
-#include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
 namespace ssdo::test {
@@ -26,42 +24,20 @@ struct LayerPart {
 class LayerFile {
  public:
   explicit LayerFile(const Channels& names) : LayerFile(std::vector<LayerPart>{{"", names}}) {}
-  explicit LayerFile(const std::vector<LayerPart>& parts) {
-    std::vector<Imf::Header> headers;
-    for (const LayerPart& part : parts) {
-      std::vector<TestChannel> channels;
-      for (const std::string& name : part.channels) channels.push_back({name});
-      Imf::Header header = test_header({{0, 0}, {1, 1}}, channels);
-      if (!part.name.empty()) header.setName(part.name);
-      if (!part.view.empty()) header.setView(part.view);
-      if (!part.multi_view.empty()) Imf::addMultiView(header, part.multi_view);
-      headers.push_back(header);
-    }
-    write_test_exr(path(), headers);
-  }
+  explicit LayerFile(const std::vector<LayerPart>& parts);
 
-  LayerTable find(const std::vector<std::string>& aov = {}, const std::string& part = "") const {
-    const ExrReader reader(path());
-    std::vector<LayerRequest> requests;
-    for (const std::string& text : aov) requests.push_back(parse_layer_request(text));
-    return find_layers({&reader}, requests, part);
-  }
+  /// The layers that --aov and --part find.
+  LayerTable find(const std::vector<std::string>& aov = {}, const std::string& part = "") const;
   std::filesystem::path path() const { return dir_ / "frame.exr"; }
 
  private:
   TempDir dir_;
 };
 
-inline Channels channels_of(const LayerTable& table, Role role) {
-  return table[role] ? table[role]->channels : Channels{};
-}
+Channels channels_of(const LayerTable& table, Role role);
 
-inline std::string name_of(const LayerTable& table, Role role) {
-  return table[role] ? table[role]->name : "none";
-}
+std::string name_of(const LayerTable& table, Role role);
 
-inline int part_of(const LayerTable& table, Role role) {
-  return table[role] ? table[role]->part : -1;
-}
+int part_of(const LayerTable& table, Role role);
 
 }  // namespace ssdo::test

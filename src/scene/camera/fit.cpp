@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/type_ptr.hpp>
 #include <vector>
 
 #include "scene/camera/projection_model.h"
@@ -14,6 +15,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+
+Vector3d eigen(const glm::dvec3& v) { return Vector3d(glm::value_ptr(v)); }
+Matrix3d eigen(const glm::dmat3& m) { return Matrix3d(glm::value_ptr(m)); }
 
 /// The eigenvector of the smallest eigenvalue: the unit x that makes |A x| least, from A^T A.
 Eigen::VectorXd null_vector(const Eigen::MatrixXd& normal_matrix) {
@@ -27,8 +31,8 @@ ProjectionModel direct_linear_transform(const Samples& samples, const Window& wi
   const double half = 0.5 * std::hypot(window.width(), window.height());
   Eigen::MatrixXd ata = Eigen::MatrixXd::Zero(12, 12);
   for (const Sample& s : samples.items) {
-    const Eigen::Vector4d h(s.p.x(), s.p.y(), s.p.z(), 1);
-    const Vector2d uv = (s.pixel - middle) / half;
+    const Eigen::Vector4d h(s.p.x, s.p.y, s.p.z, 1);
+    const Vector2d uv = (Vector2d(s.pixel.x, s.pixel.y) - middle) / half;
     Eigen::Matrix<double, 2, 12> rows = Eigen::Matrix<double, 2, 12>::Zero();
     rows.block<1, 4>(0, 0) = h.transpose();
     rows.block<1, 4>(0, 8) = -uv.x() * h.transpose();
@@ -44,16 +48,20 @@ ProjectionModel direct_linear_transform(const Samples& samples, const Window& wi
 
   // RQ by the QR of the matrix turned upside down.
   const Matrix3d flip = Vector3d::Ones().asDiagonal().toDenseMatrix().rowwise().reverse();
-  const Eigen::HouseholderQR<Matrix3d> qr((flip * matrix.leftCols<3>()).transpose());
-  Matrix3d k = flip * Matrix3d(qr.matrixQR().triangularView<Eigen::Upper>()).transpose() * flip;
-  Matrix3d r = flip * Matrix3d(qr.householderQ()).transpose();
+  const Matrix3d turned = (flip * matrix.leftCols<3>()).transpose();
+  // Of any size, as the eigenvectors are: a fixed one takes ten seconds to compile.
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(turned);
+  const Matrix3d upper = qr.matrixQR().triangularView<Eigen::Upper>();
+  const Matrix3d q = Eigen::MatrixXd(qr.householderQ());
+  Matrix3d k = flip * upper.transpose() * flip, r = flip * q.transpose();
   const Matrix3d sign = k.diagonal().cwiseSign().asDiagonal();
   k = k * sign;
   r = sign * r;
 
   ProjectionModel model;
-  model.rotation = r;
-  model.translation = k.triangularView<Eigen::Upper>().solve(matrix.col(3));
+  const Vector3d translation = k.triangularView<Eigen::Upper>().solve(matrix.col(3));
+  model.rotation = glm::make_mat3(r.data());
+  model.translation = glm::make_vec3(translation.data());
   k /= k(2, 2);
   model.fx = half * k(0, 0);
   model.fy = half * k(1, 1);
@@ -65,7 +73,7 @@ ProjectionModel direct_linear_transform(const Samples& samples, const Window& wi
 /// Whether the samples lie in one plane, to within the rounding of P: far from the origin, rounding
 /// alone gives a plane some thickness.
 bool is_flat(const ProjectionModel& model, const Samples& samples) {
-  const double distance = model.translation.norm();
+  const double distance = eigen(model.translation).norm();
   return samples.spread[0] < 3 * reprojection_rms(model, samples) * distance / model.fx;
 }
 
@@ -74,9 +82,9 @@ ProjectionModel fit_affine(const Samples& samples) {
   Eigen::Matrix4d ata = Eigen::Matrix4d::Zero();
   Eigen::Matrix<double, 4, 2> atb = Eigen::Matrix<double, 4, 2>::Zero();
   for (const Sample& s : samples.items) {
-    const Eigen::Vector4d h(s.p.x(), s.p.y(), s.p.z(), 1);
+    const Eigen::Vector4d h(s.p.x, s.p.y, s.p.z, 1);
     ata += h * h.transpose();
-    atb += h * s.pixel.transpose();
+    atb += h * Vector2d(s.pixel.x, s.pixel.y).transpose();
   }
   const Eigen::Matrix<double, 4, 2> solution = ata.ldlt().solve(atb);
   const Vector3d across = solution.col(0).head<3>(), down = solution.col(1).head<3>();
@@ -86,11 +94,13 @@ ProjectionModel fit_affine(const Samples& samples) {
   model.fy = down.norm();
   const Vector3d bisector = (across.normalized() + down.normalized()).normalized();
   const Vector3d other = (across.normalized() - down.normalized()).normalized();
-  model.rotation.row(0) = (bisector + other).normalized();
-  model.rotation.row(1) = (bisector - other).normalized();
+  Matrix3d rotation;
+  rotation.row(0) = (bisector + other).normalized();
+  rotation.row(1) = (bisector - other).normalized();
   // Without perspective, mirroring along the axis leaves the picture unchanged: take the
   // right-handed solution.
-  model.rotation.row(2) = model.rotation.row(0).cross(model.rotation.row(1));
+  rotation.row(2) = rotation.row(0).cross(rotation.row(1));
+  model.rotation = glm::make_mat3(rotation.data());
   model.cx = solution(3, 0);
   model.cy = solution(3, 1);
   return model;
@@ -105,20 +115,21 @@ Camera to_camera(const ProjectionModel& model, const Samples& samples, const Win
   camera.fy = model.fy * per_unit;
   camera.cx = model.cx;
   camera.cy = model.cy;
-  Vector3d translation = model.translation * samples.scale;
+  const Matrix3d axes = eigen(model.rotation);
+  Vector3d translation = eigen(model.translation) * samples.scale;
   if (model.orthographic) {
     // The axis may run anywhere: through the middle of the frame, and behind every sample.
     camera.cx = 0.5 * (window.x0 + window.x1);
     camera.cy = 0.5 * (window.y0 + window.y1);
     double nearest = 0;
     for (const Sample& s : samples.items) {
-      nearest = std::min(nearest, (model.rotation.row(2) * s.p).value());
+      nearest = std::min(nearest, (axes.row(2) * eigen(s.p)).value());
     }
     translation = {(model.cx - camera.cx) / camera.fx, (model.cy - camera.cy) / camera.fy,
                    samples.scale * (1 - nearest)};
   }
-  const Vector3d origin = samples.centre - model.rotation.transpose() * translation;
-  const Matrix3d rotation = Vector3d(1, -1, -1).asDiagonal() * model.rotation;
+  const Vector3d origin = eigen(samples.centre) - axes.transpose() * translation;
+  const Matrix3d rotation = Vector3d(1, -1, -1).asDiagonal() * axes;
   for (int row = 0; row < 3; ++row) {
     camera.origin[row] = origin[row];
     for (int column = 0; column < 3; ++column) camera.rotation[column][row] = rotation(row, column);
@@ -129,12 +140,12 @@ Camera to_camera(const ProjectionModel& model, const Samples& samples, const Win
 /// A plane seen by a known projection: the homography from the plane to directions holds two
 /// columns of the rotation and the translation (Zhang 2000, section 3.1).
 ProjectionModel pose_of_plane(const Samples& samples, const Camera& projection) {
-  const Vector3d e1 = samples.axes.col(2), e2 = samples.axes.col(1);
+  const Vector3d e1 = eigen(samples.axes[2]), e2 = eigen(samples.axes[1]);
   Eigen::MatrixXd ata = Eigen::MatrixXd::Zero(9, 9);
   for (const Sample& s : samples.items) {
-    const Vector3d h(e1.dot(s.p), e2.dot(s.p), 1);
-    const double u = (s.pixel.x() - projection.cx) / projection.fx;
-    const double v = (s.pixel.y() - projection.cy) / projection.fy;
+    const Vector3d h(e1.dot(eigen(s.p)), e2.dot(eigen(s.p)), 1);
+    const double u = (s.pixel.x - projection.cx) / projection.fx;
+    const double v = (s.pixel.y - projection.cy) / projection.fy;
     Eigen::Matrix<double, 2, 9> rows = Eigen::Matrix<double, 2, 9>::Zero();
     rows.block<1, 3>(0, 0) = h.transpose();
     rows.block<1, 3>(0, 6) = -u * h.transpose();
@@ -152,8 +163,9 @@ ProjectionModel pose_of_plane(const Samples& samples, const Camera& projection) 
   in_space << e1, e2, e1.cross(e2);
   const Eigen::JacobiSVD<Matrix3d> svd(on_plane, Eigen::ComputeFullU | Eigen::ComputeFullV);
   ProjectionModel model;
-  model.rotation = svd.matrixU() * svd.matrixV().transpose() * in_space.transpose();
-  model.translation = h.col(2);
+  const Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose() * in_space.transpose();
+  model.rotation = glm::make_mat3(rotation.data());
+  model.translation = {h(0, 2), h(1, 2), h(2, 2)};
   model.fx = projection.fx, model.fy = projection.fy;
   model.cx = projection.cx, model.cy = projection.cy;
   return model;
@@ -205,16 +217,15 @@ std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>&
 bool explains(const Camera& camera, const Plane<glm::vec3>& positions,
               const Plane<unsigned char>& valid, const Window& window, double step) {
   const Samples samples = collect_samples(positions, valid, window);
-  const auto in_camera_space = [&](const Vector3d& p) {
-    const Vector3d at = samples.centre + samples.scale * p;
-    return camera.to_camera({at.x(), at.y(), at.z()});
+  const auto in_camera_space = [&](const glm::dvec3& p) {
+    return camera.to_camera(samples.centre + samples.scale * p);
   };
-  const double depth = -in_camera_space(Vector3d::Zero()).z;
+  const double depth = -in_camera_space(glm::dvec3(0)).z;
   if (!camera.orthographic && !(depth > 0)) return false;
   std::vector<double> misses;
   for (const Sample& s : samples.items) {
     const glm::dvec2 at = camera.project(in_camera_space(s.p));
-    misses.push_back(std::hypot(at.x - s.pixel.x(), at.y - s.pixel.y()));
+    misses.push_back(std::hypot(at.x - s.pixel.x, at.y - s.pixel.y));
   }
   return quantile(misses, 0.5) < 0.5 + step * camera.fx / (camera.orthographic ? 1.0 : depth);
 }

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/camera/projection_model.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/type_ptr.hpp>
 
 namespace ssdo {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector2d;
 using Eigen::Vector3d;
+
+Vector3d eigen(const glm::dvec3& v) { return Vector3d(glm::value_ptr(v)); }
+Matrix3d eigen(const glm::dmat3& m) { return Matrix3d(glm::value_ptr(m)); }
 
 constexpr std::size_t kMaxSamples = 20000;
 constexpr int kParameters = 10;  // rotation 3, translation 3, fx, fy, cx, cy
@@ -17,7 +21,10 @@ constexpr int kParameters = 10;  // rotation 3, translation 3, fx, fy, cx, cy
 std::vector<double> distances(const ProjectionModel& model, const Samples& samples) {
   std::vector<double> out;
   out.reserve(samples.items.size());
-  for (const Sample& s : samples.items) out.push_back((model.project(s.p) - s.pixel).norm());
+  for (const Sample& s : samples.items) {
+    const glm::dvec2 miss = model.project(s.p) - s.pixel;
+    out.push_back(std::sqrt(miss.x * miss.x + miss.y * miss.y));
+  }
   return out;
 }
 
@@ -31,8 +38,10 @@ NormalEquations linearise(const ProjectionModel& model, const Samples& samples) 
   NormalEquations eq;
   eq.jtj.setZero();
   eq.jtr.setZero();
+  const Matrix3d rotation = eigen(model.rotation);
+  const Vector3d translation = eigen(model.translation);
   for (const Sample& s : samples.items) {
-    const Vector3d turned = model.rotation * s.p, q = turned + model.translation;
+    const Vector3d turned = rotation * eigen(s.p), q = turned + translation;
     const double iz = 1 / q.z(), x = q.x() * iz, y = q.y() * iz;
     Eigen::Matrix<double, 2, 3> by_point;
     by_point << model.fx * iz, 0, -model.fx * x * iz, 0, model.fy * iz, -model.fy * y * iz;
@@ -45,12 +54,19 @@ NormalEquations linearise(const ProjectionModel& model, const Samples& samples) 
     j.middleCols<3>(3) = by_point;
     j.rightCols<4>() << x, 0, 1, 0, 0, y, 0, 1;
     eq.jtj += j.transpose() * j;
-    eq.jtr += j.transpose() * (s.pixel - model.project(s.p));
+    const glm::dvec2 miss = s.pixel - model.project(s.p);
+    eq.jtr += j.transpose() * Eigen::Vector2d(miss.x, miss.y);
   }
   return eq;
 }
 
 }  // namespace
+
+glm::dvec2 ProjectionModel::project(const glm::dvec3& p) const {
+  const Vector3d q = eigen(rotation) * eigen(p) + eigen(translation);
+  const double w = orthographic ? 1.0 : 1.0 / q.z();
+  return {cx + fx * q.x() * w, cy + fy * q.y() * w};
+}
 
 Samples collect_samples(const Plane<glm::vec3>& positions, const Plane<unsigned char>& valid,
                         const Window& window) {
@@ -75,14 +91,15 @@ Samples collect_samples(const Plane<glm::vec3>& positions, const Plane<unsigned 
   Matrix3d covariance = Matrix3d::Zero();
   for (Sample& s : samples.items) {
     s.p -= samples.centre;
-    covariance += s.p * s.p.transpose();
+    covariance += eigen(s.p) * eigen(s.p).transpose();
   }
   covariance /= double(samples.items.size());
   samples.scale = std::sqrt(std::max(covariance.trace() / 3, 1e-300));
   for (Sample& s : samples.items) s.p /= samples.scale;
   const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
-  samples.spread = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt() / samples.scale;
-  samples.axes = solver.eigenvectors();
+  const Vector3d spread = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt() / samples.scale;
+  samples.spread = glm::make_vec3(spread.data());
+  samples.axes = glm::make_mat3(solver.eigenvectors().data());
   return samples;
 }
 
@@ -119,10 +136,11 @@ void refine(ProjectionModel& model, const Samples& samples, bool pose_only) {
     ProjectionModel next = model;
     const Vector3d w = step.head<3>();
     if (w.norm() > 0) {
-      next.rotation =
-          Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix() * model.rotation;
+      const Matrix3d turned =
+          Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix() * eigen(model.rotation);
+      next.rotation = glm::make_mat3(turned.data());
     }
-    next.translation += step.segment<3>(3);
+    next.translation += glm::dvec3(step(3), step(4), step(5));
     if (!pose_only) {
       next.fx += step(6), next.fy += step(7), next.cx += step(8), next.cy += step(9);
     }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Dense>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -11,20 +12,20 @@ namespace ssdo {
 
 /// A position and the pixel that shows it.
 struct Sample {
-  Eigen::Vector3d p;      ///< recentred and scaled
-  Eigen::Vector2d pixel;  ///< centre, in display-window pixels
+  glm::dvec3 p;      ///< recentred and scaled
+  glm::dvec2 pixel;  ///< centre, in display-window pixels
 };
 
 /// What a camera is fitted to, and how to undo the normalisation: P = centre + scale * p.
 struct Samples {
   std::vector<Sample> items;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  glm::dvec3 centre{0};
   double scale = 1;
-  Eigen::Vector3d spread = Eigen::Vector3d::Zero();    ///< standard deviations along the axes
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< principal axes in columns, ascending
+  glm::dvec3 spread{0};  ///< standard deviations along the axes
+  glm::dmat3 axes{1};    ///< principal axes in columns, ascending
 };
 
-/// At most 20,000 of the valid pixels, spread over the frame.
+/// All valid pixels, or 13,000 to 40,000 of them, spread over the frame.
 Samples collect_samples(const Plane<glm::vec3>& positions, const Plane<unsigned char>& valid,
                         const Window& window);
 
@@ -32,15 +33,12 @@ Samples collect_samples(const Plane<glm::vec3>& positions, const Plane<unsigned 
 /// and in the normalised space of the samples.
 struct ProjectionModel {
   bool orthographic = false;
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+  glm::dmat3 rotation{1};
+  glm::dvec3 translation{0};
   double fx = 1, fy = 1, cx = 0, cy = 0;
 
-  Eigen::Vector2d project(const Eigen::Vector3d& p) const {
-    const Eigen::Vector3d q = rotation * p + translation;
-    const double w = orthographic ? 1.0 : 1.0 / q.z();
-    return {cx + fx * q.x() * w, cy + fy * q.y() * w};
-  }
+  /// The pixel that shows a point of the normalised space.
+  glm::dvec2 project(const glm::dvec3& p) const;
 };
 
 /// Root mean square of the reprojection error, in pixels.

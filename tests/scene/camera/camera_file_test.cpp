@@ -11,6 +11,7 @@
 #include "scene/camera/camera.h"
 #include "support/error_matchers.h"
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -88,7 +89,7 @@ TEST_F(CameraFile, WhatInfoWritesComesBack) {
     write_frame(path("in.exr"), frame_of(picture));
     const Finished told = run_tool({"info", path("in.exr"), "--json"});
     ASSERT_EQ(told.code, 0) << told.err;
-    const json camera = json::parse(told.out)["camera"];
+    const json camera = parse_json(told.out)["camera"];
     EXPECT_EQ(camera["world_handedness"], left ? "left" : "right");
     const Camera back = read(camera.dump());
     EXPECT_NEAR(back.fx, camera["fx"].get<double>(), 1e-9);

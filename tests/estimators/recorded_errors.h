@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// How far every method is from the path tracer on the frames of data/, as recorded: truth_test
+// measures it anew, and readme_test holds the tables of README.md to it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ssdo::test {
+
+/// RMSE over the surfaces: of ao at the two radii of the truth; of light relative to its mean.
+struct TruthErrors {
+  double ao_small, ao_large, direct;
+  double bounce = 0;  ///< 0: the method has none
+};
+
+struct RecordedErrors {
+  std::string method;
+  TruthErrors still_life, room_corner;
+};
+
+inline const std::vector<RecordedErrors> kRecordedErrors = {
+    {"bitmask", {0.0444, 0.0485, 0.1362, 0.3609}, {0.0319, 0.0295, 0.1800, 0.2764}},
+    {"trace", {0.0619, 0.0848, 0.1628, 0.5890}, {0.0380, 0.0573, 0.1135, 0.2303}},
+    {"ssdo", {0.1198, 0.2273, 0.2521, 1.1047}, {0.0665, 0.1286, 0.1742, 0.7202}},
+    {"ssao", {0.1547, 0.2154, 0.2521}, {0.1028, 0.2074, 0.2027}},
+    {"ssao-range", {0.1401, 0.2250, 0.2569}, {0.1111, 0.1599, 0.1758}},
+    {"ssao-fade", {0.1116, 0.2009, 0.2649}, {0.0624, 0.1081, 0.1933}},
+    {"hbao", {0.1558, 0.2040, 0.2707}, {0.0996, 0.1871, 0.2024}},
+    {"gtao", {0.1562, 0.2127, 0.3400}, {0.1126, 0.2379, 0.4346}},
+    {"sao", {0.1445, 0.1703, 0.3210}, {0.0897, 0.1647, 0.2605}},
+    {"msvo", {0.1885, 0.2130, 0.2584}, {0.4106, 0.2461, 0.3154}},
+};
+
+}  // namespace ssdo::test

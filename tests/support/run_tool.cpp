@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "support/run_tool.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace ssdo::test {
+
+namespace {
+
+/// One direction of a child's output. A pipe's buffer is enough for what the tool says.
+struct Pipe {
+  int ends[2];
+  Pipe() {
+    if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+  }
+  ~Pipe() { close(ends[0]); }
+  std::string drain() {
+    close(ends[1]);
+    std::string text;
+    char buffer[4096];
+    for (ssize_t n; (n = read(ends[0], buffer, sizeof buffer)) > 0;)
+      text.append(buffer, std::size_t(n));
+    return text;
+  }
+};
+
+}  // namespace
+
+std::string Finished::error_line() const {
+  const auto end = err.find('\n');
+  return end + 1 == err.size() ? err.substr(0, end) : "not one line: " + err;
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+Finished run_tool(const std::vector<std::string>& arguments, const Surroundings& around) {
+  std::vector<std::string> words = {SSDO_BINARY};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  Pipe out, err;
+
+  const pid_t child = fork();
+  if (child == 0) {
+    for (const auto& [name, value] : around.variables) setenv(name.c_str(), value.c_str(), 1);
+    if (!around.folder.empty() && chdir(around.folder.c_str()) != 0) _exit(126);
+    dup2(out.ends[1], STDOUT_FILENO);
+    dup2(err.ends[1], STDERR_FILENO);
+    const rlimit limit{around.file_size, around.file_size};
+    if (around.file_size != RLIM_INFINITY) setrlimit(RLIMIT_FSIZE, &limit);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  int status = 0;
+  if (around.kill_with != 0) {
+    while (waitpid(child, &status, WNOHANG) == 0) {
+      if (around.kill_when()) {
+        kill(child, around.kill_with);
+        waitpid(child, &status, 0);
+        break;
+      }
+      usleep(1000);
+    }
+  } else {
+    waitpid(child, &status, 0);
+  }
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return {code, out.drain(), err.drain()};
+}
+
+std::vector<std::string> listing(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.push_back(entry.path().filename());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string data(const std::string& name) { return std::string(SSDO_SOURCE_DIR) + "/data/" + name; }
+
+}  // namespace ssdo::test
