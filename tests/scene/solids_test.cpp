@@ -107,7 +107,7 @@ TEST(Solids, BehindACardAreTheTangentPlaneThatReachesIt) {
   }
 }
 
-TEST(Solids, EndAtThePictureInNothingBehindThem) {
+TEST(Solids, AreOfOneLayerBeforeTheBackground) {
   // Nothing is farther than the card: where it ends is background.
   const Geometry g = geometry_of(card(0, 0.4, 0.9), view(false), kWindow);
   const Solids solids = guess_solids(g);

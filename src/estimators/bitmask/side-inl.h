@@ -56,9 +56,8 @@ HWY_INLINE VU march_raster(const March& march, const Receiver& p, const SideFram
     // streams for the processor to see.
     const auto prefetch = [&](const InterleavedPlane& plane)
                               HWY_ATTR { hwy::Prefetch(plane.data() + i + 2 * lanes - 1); };
-    for (const InterleavedPlane* plane :
-         {&seen.depth, &seen.thickness, &scene.nx, &scene.ny, &scene.nz})
-      prefetch(*plane);
+    prefetch(seen.depth), prefetch(seen.thickness);
+    prefetch(scene.nx), prefetch(scene.ny), prefetch(scene.nz);
     const auto load = [&](const InterleavedPlane& plane)
                           HWY_ATTR { return hn::LoadU(d, plane.data() + i); };
     const V dx = hn::Set(d, step.dx), dy = hn::Set(d, step.dy);
