@@ -24,8 +24,8 @@ std::vector<const Method*> all_methods() {
   for (const Method& method : methods()) all.push_back(&method);
   return all;
 }
-INSTANTIATE_TEST_SUITE_P(All, EveryMethod, testing::ValuesIn(all_methods()), [](const auto& info) {
-  std::string name(info.param->name);
+INSTANTIATE_TEST_SUITE_P(All, EveryMethod, testing::ValuesIn(all_methods()), [](const auto& which) {
+  std::string name(which.param->name);
   std::erase(name, '-');
   return name;
 });
