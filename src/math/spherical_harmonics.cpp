@@ -3,7 +3,17 @@
 
 #include <cmath>
 
+#include "math/spherical_harmonics-inl.h"
+
 namespace ssdo {
+
+std::array<float, kShCount> sh_basis(const glm::vec3& d) {
+  std::array<float, kShCount> basis;
+  HWY_NAMESPACE::for_each_sh_polynomial<0, kShOrder>(
+      d.x, d.y, d.z, [](float value) { return value; },
+      [&](int i, float value) { basis[std::size_t(i)] = kShConstants[std::size_t(i)] * value; });
+  return basis;
+}
 
 /// Funk and Hecke: a lobe k(cos) multiplies band l by 2 pi times the integral of k P_l. Three
 /// points of Gauss and Legendre are exact for a degree of 5, which (x - edge) P_4 has.

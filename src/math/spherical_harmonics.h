@@ -25,7 +25,7 @@ constexpr std::array<float, kShOrder + 1> kCosineFactors = {1, 2.0f / 3, 0.25f, 
 /// [-1, 1). Edge 0 gives kCosineFactors.
 std::array<double, kShOrder + 1> sh_lobe_factors(double edge);
 
-/// What makes the polynomials in sh_basis orthonormal over the sphere.
+/// What makes the polynomials of spherical_harmonics-inl.h orthonormal over the sphere.
 constexpr std::array<float, kShCount> kShConstants = {
     0.2820947918f, 0.4886025119f, 0.4886025119f, 0.4886025119f, 1.0925484306f,
     1.0925484306f, 0.3153915653f, 1.0925484306f, 0.5462742153f, 0.5900435899f,
@@ -34,40 +34,6 @@ constexpr std::array<float, kShCount> kShConstants = {
     0.1057855469f, 0.6690465436f, 0.4730873479f, 1.7701307698f, 0.6258357354f};
 
 /// All functions in the unit direction `d`.
-inline std::array<float, kShCount> sh_basis(const glm::vec3& d) {
-  const float x = d.x, y = d.y, z = d.z;
-  const float xx = x * x, yy = y * y, zz = z * z;
-  // Cosine and sine of m times the azimuth, times sin(polar)^m; sin2 is half of it.
-  const float cos2 = xx - yy, sin2 = x * y;
-  const float cos3 = x * (xx - 3 * yy), sin3 = y * (3 * xx - yy);
-  const std::array<float, kShCount> polynomials = {1,
-                                                   y,
-                                                   z,
-                                                   x,
-                                                   sin2,
-                                                   y * z,
-                                                   3 * zz - 1,
-                                                   x * z,
-                                                   cos2,
-                                                   sin3,
-                                                   sin2 * z,
-                                                   y * (5 * zz - 1),
-                                                   z * (5 * zz - 3),
-                                                   x * (5 * zz - 1),
-                                                   cos2 * z,
-                                                   cos3,
-                                                   sin2 * cos2,
-                                                   sin3 * z,
-                                                   sin2 * (7 * zz - 1),
-                                                   y * z * (7 * zz - 3),
-                                                   zz * (35 * zz - 30) + 3,
-                                                   x * z * (7 * zz - 3),
-                                                   cos2 * (7 * zz - 1),
-                                                   cos3 * z,
-                                                   x * cos3 - y * sin3};
-  std::array<float, kShCount> basis;
-  for (int i = 0; i < kShCount; ++i) basis[i] = kShConstants[i] * polynomials[i];
-  return basis;
-}
+std::array<float, kShCount> sh_basis(const glm::vec3& d);
 
 }  // namespace ssdo

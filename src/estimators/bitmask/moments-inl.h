@@ -18,6 +18,7 @@
 
 #include "estimators/bitmask/lanes-inl.h"
 #include "estimators/bitmask/light-inl.h"
+#include "math/spherical_harmonics-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -148,35 +149,6 @@ struct CircleDirections {
   }
 };
 
-/// Calls `add(i, value)` for each basis polynomial of the bands from 2 to kOrder in the unit
-/// direction (x, y, z): the real spherical harmonics without their constants, l*l + l + m.
-template <int kOrder, class Add>
-HWY_INLINE void for_each_high_basis(V x, V y, V z, const Add& add) {
-  const D d;
-  const auto number = [&](float value) HWY_ATTR { return hn::Set(d, value); };
-  if constexpr (kOrder >= 2) {
-    const V xx = x * x, yy = y * y, zz = z * z, xy = x * y;
-    const V x2y2 = xx - yy;
-    add(4, xy), add(5, y * z), add(6, hn::MulSub(number(3), zz, number(1))), add(7, x * z);
-    add(8, x2y2);
-    if constexpr (kOrder >= 3) {
-      const V y3 = y * hn::MulSub(number(3), xx, yy), x3 = x * hn::NegMulAdd(number(3), yy, xx);
-      const V z5 = hn::MulSub(number(5), zz, number(1));
-      add(9, y3), add(10, xy * z), add(11, y * z5);
-      add(12, z * hn::MulSub(number(5), zz, number(3))), add(13, x * z5), add(14, z * x2y2);
-      add(15, x3);
-      if constexpr (kOrder >= 4) {
-        const V z71 = hn::MulSub(number(7), zz, number(1)),
-                z73 = z * hn::MulSub(number(7), zz, number(3));
-        add(16, xy * x2y2), add(17, y3 * z), add(18, xy * z71), add(19, y * z73);
-        add(20, hn::MulAdd(hn::MulSub(number(35), zz, number(30)), zz, number(3)));
-        add(21, x * z73), add(22, x2y2 * z71), add(23, x3 * z);
-        add(24, xx * hn::NegMulAdd(number(3), yy, xx) - yy * hn::MulSub(number(3), xx, yy));
-      }
-    }
-  }
-}
-
 /// Sums over slices, of what is hidden and of all that is above the tangent plane.
 template <int kOrder>
 struct Moments {
@@ -205,12 +177,14 @@ struct Moments {
         hidden_of_slice.at(cosines, sines, h[0], h[1]);
         whole_of_slice.at(cosines, sines, w[0], w[1]);
         for (int k = 0; k < 2; ++k) h[k] = h[k] * f.weight, w[k] = w[k] * f.weight;
-        for_each_high_basis<kOrder>(dot2(c, s, p.vx, f.tx), dot2(c, s, p.vy, f.ty),
-                                    dot2(c, s, p.vz, f.tz), [&](int i, V value) HWY_ATTR {
-                                      const int odd = i >= 9 && i < 16;  // band 3
-                                      hidden[i] = hn::MulAdd(h[odd], value, hidden[i]);
-                                      whole[i] = hn::MulAdd(w[odd], value, whole[i]);
-                                    });
+        for_each_sh_polynomial<2, kOrder>(
+            dot2(c, s, p.vx, f.tx), dot2(c, s, p.vy, f.ty), dot2(c, s, p.vz, f.tz),
+            [](float value) HWY_ATTR { return hn::Set(D(), value); },
+            [&](int i, V value) HWY_ATTR {
+              const int odd = i >= 9 && i < 16;  // band 3
+              hidden[i] = hn::MulAdd(h[odd], value, hidden[i]);
+              whole[i] = hn::MulAdd(w[odd], value, whole[i]);
+            });
       }
     }
   }
