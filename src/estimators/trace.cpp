@@ -240,11 +240,8 @@ class Trace {
   /// What the unseen side of a pixel's surface sends.
   glm::vec3 sent_by_back(std::size_t pixel) const {
     const glm::vec3 normal = -glm::vec3(scene_.geometry.surfel[pixel].normal);
-    glm::vec3 light = scene_.light.irradiance(normal);
-    for (const Sun& sun : scene_.light.suns)
-      light += std::max(0.0f, glm::dot(normal, sun.direction)) * sun.irradiance;
-    return within_range(scene_.senders.albedo[pixel] *
-                        (out_.ao[pixel] * light + out_.bounce[pixel]));
+    const glm::vec3 light = out_.ao[pixel] * scene_.light.unoccluded(normal);
+    return within_range(scene_.senders.albedo[pixel] * (light + out_.bounce[pixel]));
   }
 
   void gather_bounce(bool last) {

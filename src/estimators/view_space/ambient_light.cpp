@@ -1,24 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "estimators/view_space/ambient_light.h"
 
-#include <algorithm>
-#include <glm/geometric.hpp>
-
 #include "estimators/view_space/view_planes.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {
-namespace {
-
-/// Over pi, on a surface with nothing around it.
-glm::vec3 unoccluded_irradiance(const Light& light, const glm::vec3& normal) {
-  glm::vec3 sum = light.irradiance(normal);
-  for (const Sun& sun : light.suns)
-    sum += std::max(0.0f, glm::dot(normal, sun.direction)) * sun.irradiance;
-  return sum;
-}
-
-}  // namespace
 
 Plane<glm::vec3> ambient_light(const Scene& scene, const Plane<float>& ao,
                                const Plane<glm::vec3>* facing) {
@@ -30,7 +16,7 @@ Plane<glm::vec3> ambient_light(const Scene& scene, const Plane<float>& ao,
       if (!is_usable(s)) continue;
       const bool bent = facing && (*facing)[i] != glm::vec3(0);
       const glm::vec3 normal = bent ? (*facing)[i] : glm::vec3(s.normal);
-      direct[i] = ao[i] * unoccluded_irradiance(scene.light, normal);
+      direct[i] = ao[i] * scene.light.unoccluded(normal);
     }
   });
   return direct;

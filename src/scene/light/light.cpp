@@ -174,6 +174,13 @@ OctahedralMap irradiance(const Sky& sky, const Light& model) {
 
 }  // namespace
 
+glm::vec3 Light::unoccluded(const glm::vec3& normal) const {
+  glm::vec3 sum = irradiance(normal);
+  for (const Sun& sun : suns)
+    sum += std::max(0.0f, glm::dot(normal, sun.direction)) * sun.irradiance;
+  return sum;
+}
+
 Light model_light(const Environment& environment, const glm::mat3& world_to_camera) {
   Light model;
   model.environment = model.sky = environment;

@@ -42,6 +42,9 @@ struct Light {
   /// Unoccluded irradiance over pi without the suns, by normal. From the map, not from the bands.
   OctahedralMap irradiance{2};
 
+  /// The same with the suns: all light that a surface gets that has nothing around it.
+  glm::vec3 unoccluded(const glm::vec3& normal) const;
+
   /// Whether it comes from everywhere alike: one colour, no directions.
   bool is_constant() const { return environment.is_constant(); }
 };
