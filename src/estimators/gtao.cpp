@@ -45,6 +45,7 @@
 
 #include "estimators/view_space/ambient_light.h"
 #include "estimators/view_space/multi_bounce.h"
+#include "estimators/view_space/openness.h"
 #include "estimators/view_space/reflection_occlusion.h"
 #include "estimators/view_space/tiled_noise.h"
 
@@ -74,10 +75,9 @@ struct GtaoJob {
   std::vector<SliceTurns> slices;
   TiledNoise first_step;  ///< 0 to 1
   int steps;
-  float reach_px;  ///< of the last step at depth 1, or at any where orthographic
-  float falloff;   ///< 2 / R^2
-  float thinness;  ///< 1 - thickness
-  Plane<float>& ao;
+  float reach_px;          ///< of the last step at depth 1, or at any where orthographic
+  float falloff;           ///< 2 / R^2
+  float thinness;          ///< 1 - thickness
   Plane<glm::vec3>& bent;  ///< mean over slices, not normalised; empty where nobody asks
 };
 
@@ -88,17 +88,17 @@ HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
 /// The cosine of the horizon after the surface that is seen some whole pixels away.
-HWY_INLINE V next_horizon(const GtaoJob& job, const Viewed& from, const V3& to_viewer, V right,
+HWY_INLINE V next_horizon(const GtaoJob& job, const Receiver& p, const V3& to_viewer, V right,
                           V down, V h) {
   const ViewPlanes& planes = job.planes;
-  const V z = gather_depth(planes, pixels_at(planes, from.column + right, from.row + down));
-  const V3 to = way_to(planes, from, right, down, z);
+  const V z = gather_depth(planes, pixels_at(planes, p.column + right, p.row + down));
+  const V3 to = way_to(planes, p, right, down, z);
   const V distance2 = dot(to, to);
   const M seen = hn::And(distance2 > set(0), distance2 < set(std::numeric_limits<float>::max()));
   const V distance = hn::Sqrt(distance2);
   const V cosine = hn::IfThenElse(seen, dot(to, to_viewer) / distance, set(-1));
-  const V flat = hn::MulAdd(set(kFlat), distance, from.p.rounding);
-  const M rises = hn::And(cosine > h, dot(to, from.p.normal) > flat);
+  const V flat = hn::MulAdd(set(kFlat), distance, p.rounding);
+  const M rises = hn::And(cosine > h, dot(to, p.normal) > flat);
   const V falloff = hn::Min(distance2 * set(job.falloff), set(1));
   return hn::IfThenElse(rises, hn::MulAdd(h - cosine, falloff, cosine),
                         hn::MulAdd(hn::Min(cosine - h, set(0)), set(job.thinness), h));
@@ -106,31 +106,29 @@ HWY_INLINE V next_horizon(const GtaoJob& job, const Viewed& from, const V3& to_v
 
 HWY_INLINE V acos_of(V cosine) { return hn::Acos(D(), hn::Min(hn::Max(cosine, set(-1)), set(1))); }
 
-void gtao_of_tile(const GtaoJob& job, const Tile& tile) {
+void gtao_of_tile(const GtaoJob& job, const Tile& tile, Plane<float>& ao) {
   const D d;
   const ViewPlanes& planes = job.planes;
   const V steps = set(float(job.steps)), share = set(1 / float(job.slices.size()));
   const V stretch = set(planes.fx / planes.fy), right_angle = set(float(std::numbers::pi / 2));
-  for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
-    const Viewed from = view_from(planes, x, y);
-    const V3 to_viewer = direction_to_viewer(planes, x, y);
-    const Receivers& p = from.p;
-    const V reach = planes.orthographic ? set(job.reach_px) : set(-job.reach_px) / p.position.z;
+  set_openness(planes, tile, ao, [&](const Receiver& p, int x, int y) HWY_ATTR {
+    const V3 to_viewer = direction_to_viewer(planes, p);
+    const V reach = length_px(planes, p, job.reach_px);
     const V step = hn::Max(hn::Min(reach, set(512)), steps) / (steps + set(1));
-    const V first = hn::LoadU(d, job.first_step.at(planes, x, y));
+    const V first = load(job.first_step.at(planes, x, y));
     const V upright = dot(p.normal, to_viewer);
     V sum = set(0);
-    V3 bent{set(0), set(0), set(0)};
+    V3 bent = set(glm::vec3(0));
     for (const SliceTurns& turn : job.slices) {
-      const V turn_x = hn::LoadU(d, turn.cosine.at(planes, x, y)),
-              turn_y = hn::LoadU(d, turn.sine.at(planes, x, y));
+      const V turn_x = load(turn.cosine.at(planes, x, y)),
+              turn_y = load(turn.sine.at(planes, x, y));
       V h_ahead = set(-1), h_behind = set(-1);
       for (int j = 0; j < job.steps; ++j) {
         const V distance = hn::Max(step * (set(float(j)) + first), set(float(1 + j)));
         const V right = hn::Round(turn_x * distance * stretch),
                 down = hn::Neg(hn::Round(turn_y * distance));
-        h_ahead = next_horizon(job, from, to_viewer, right, down, h_ahead);
-        h_behind = next_horizon(job, from, to_viewer, hn::Neg(right), hn::Neg(down), h_behind);
+        h_ahead = next_horizon(job, p, to_viewer, right, down, h_ahead);
+        h_behind = next_horizon(job, p, to_viewer, hn::Neg(right), hn::Neg(down), h_behind);
       }
       const V3 tangent = unit_across({turn_x, turn_y, set(0)}, to_viewer);
       const V aside = hn::Neg(dot(p.normal, tangent));  // angles grow away from the tangent
@@ -148,9 +146,9 @@ void gtao_of_tile(const GtaoJob& job, const Tile& tile) {
       bent = mul_add(to_viewer, hn::Cos(d, middle),
                      mul_add(tangent, hn::Neg(hn::Sin(d, middle)), bent));
     }
-    store_pixels(hn::IfThenElse(p.valid, saturate(sum * share), set(1)), x, tile, &job.ao(0, y));
     if (!job.bent.empty())
-      store_vectors(bent * hn::IfThenElseZero(p.valid, share), x, tile, &job.bent(0, y));
+      store_first(tile.x1 - x, bent * hn::IfThenElseZero(p.valid, share), &job.bent(x, y));
+    return sum * share;
   });
 }
 
@@ -211,7 +209,6 @@ Products estimate_gtao(const Scene& scene, const Request& request, const Progres
   const bool bounces = parameter("multi-bounce") != 0;
   const ViewPlanes planes = make_view_planes(scene.geometry);
   Products out;
-  out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
   if (request.products.bent || request.products.direct || request.products.reflection)
     out.bent = Plane<glm::vec3>(planes.width(), planes.height(), glm::vec3(0));
   std::vector<SliceTurns> turns;
@@ -223,10 +220,10 @@ Products estimate_gtao(const Scene& scene, const Request& request, const Progres
                     planes.fy * request.radius / 2,
                     float(2 / (double(request.radius) * double(request.radius))),
                     float(1 - parameter("thickness")),
-                    out.ao,
                     out.bent};
-  const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(gtao_of_tile)(job, tile); };
-  for_each_tile(planes.width(), planes.height(), work, progress);
+  out.ao = find_openness(planes, progress, [&](const Tile& tile, Plane<float>& ao) {
+    HWY_DYNAMIC_DISPATCH(gtao_of_tile)(job, tile, ao);
+  });
   if (request.products.reflection)
     out.reflection = reflection_occlusion(scene, request, planes, out.bent);
   normalise_all(out.bent);

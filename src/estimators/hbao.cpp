@@ -41,7 +41,7 @@
 #include <numbers>
 #include <utility>
 
-#include "estimators/view_space/ambient_light.h"
+#include "estimators/view_space/openness.h"
 #include "estimators/view_space/point_kernel.h"
 #include "estimators/view_space/tiled_noise.h"
 
@@ -66,7 +66,6 @@ struct HbaoJob {
   float least2;      ///< radii^2
   float scale;       ///< m / (4 S)
   float farthest_z;  ///< what is behind is left open
-  Plane<float>& ao;
 };
 
 /// Directions of the listing, in the picture.
@@ -90,17 +89,13 @@ HWY_INLINE V hbao_occlusion(const HbaoJob& job, const V3& v, const V3& normal, V
   return hn::IfThenElseZero(distance2 < set(1), term);
 }
 
-void hbao_of_tile(const HbaoJob& job, const Tile& tile) {
-  const D d;
+void hbao_of_tile(const HbaoJob& job, const Tile& tile, Plane<float>& ao) {
   const ViewPlanes& planes = job.planes;
-  for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
-    const Viewed from = view_from(planes, x, y);
-    const Receivers& p = from.p;
-    const V disc = planes.orthographic ? set(job.disc_px) : set(-job.disc_px) / p.position.z;
+  set_openness(planes, tile, ao, [&](const Receiver& p, int x, int y) HWY_ATTR {
+    const V disc = length_px(planes, p, job.disc_px);
     const V step = hn::Min(disc, set(job.largest_px)) * set(1 / float(job.steps + 1));
-    const V cosine = hn::LoadU(d, job.cosine.at(planes, x, y)),
-            sine = hn::LoadU(d, job.sine.at(planes, x, y));
-    const V first = hn::MulAdd(hn::LoadU(d, job.jitter.at(planes, x, y)), step, set(1));
+    const V cosine = load(job.cosine.at(planes, x, y)), sine = load(job.sine.at(planes, x, y));
+    const V first = hn::MulAdd(load(job.jitter.at(planes, x, y)), step, set(1));
     const V stretch = set(planes.fx / planes.fy);
     const V rounding = p.rounding * set(job.inverse_radius);
     V sum = set(0);
@@ -110,14 +105,13 @@ void hbao_of_tile(const HbaoJob& job, const Tile& tile) {
       for (int s = 0; s < job.steps; ++s) {
         const V distance = hn::MulAdd(set(float(s)), step, first);
         const V dx = hn::Round(across * distance), dy = hn::Round(down * distance);
-        const V z = gather_depth(planes, pixels_at(planes, from.column + dx, from.row + dy));
-        const V3 v = way_to(planes, from, dx, dy, z);
+        const V z = gather_depth(planes, pixels_at(planes, p.column + dx, p.row + dy));
+        const V3 v = way_to(planes, p, dx, dy, z);
         sum = sum + hbao_occlusion(job, v * set(job.inverse_radius), p.normal, rounding);
       }
     }
-    const V ao = saturate(hn::NegMulAdd(sum, set(job.scale), set(1)));
-    const M shown = hn::And(p.valid, p.position.z >= set(job.farthest_z));
-    store_pixels(hn::IfThenElse(shown, ao, set(1)), x, tile, &job.ao(0, y));
+    const V open = hn::NegMulAdd(sum, set(job.scale), set(1));
+    return hn::IfThenElse(p.position.z >= set(job.farthest_z), open, set(1));
   });
 }
 
@@ -155,8 +149,6 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
                farthest = parameter("max-distance");
   const ViewPlanes planes = make_view_planes(scene.geometry);
   const HbaoPattern pattern = hbao_pattern(request.seed);
-  Products out;
-  out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
   const HbaoJob job{planes,
                     noise_of(pattern.turn, [](double a) { return std::cos(a); }),
                     noise_of(pattern.turn, [](double a) { return std::sin(a); }),
@@ -168,12 +160,11 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
                     float(bias),
                     float(least * least),
                     float(2 * parameter("strength") / ((1 - bias) * 4 * steps)),
-                    farthest > 0 ? float(-farthest) : std::numeric_limits<float>::lowest(),
-                    out.ao};
-  const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(hbao_of_tile)(job, tile); };
-  for_each_tile(planes.width(), planes.height(), work, progress);
-  if (request.products.direct) out.direct = ambient_light(scene, out.ao);
-  return out;
+                    farthest > 0 ? float(-farthest) : std::numeric_limits<float>::lowest()};
+  const auto find = [&](const Tile& tile, Plane<float>& ao) {
+    HWY_DYNAMIC_DISPATCH(hbao_of_tile)(job, tile, ao);
+  };
+  return products_of_ao(scene, request, find_openness(planes, progress, find));
 }
 
 }  // namespace

@@ -40,13 +40,13 @@
 #include <limits>
 
 #include "estimators/msvo/scales.h"
-#include "estimators/view_space/ambient_light.h"
+#include "estimators/view_space/openness.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/msvo.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/view_space/lanes-inl.h"
+#include "simd/lanes-inl.h"
 
 #ifndef SSDO_MSVO_CHORDS_
 #define SSDO_MSVO_CHORDS_
@@ -84,24 +84,23 @@ HWY_INLINE V free_share(V free1, V free2, V rejection) {
 }
 
 void obscure_row(const MsvoJob& job, int y, float* open) {
-  const D d;
   const DepthScale& scale = job.scale;
   const V background = set(std::numeric_limits<float>::infinity());
-  for (int x = 0; x < scale.width; x += int(hn::Lanes(d))) {
-    const V depth = hn::LoadU(d, scale.depth.row(y) + x);
+  for (int x = 0; x < scale.width; x += kLanes) {
+    const V depth = load(scale.depth.row(y) + x);
     const V per_chord =
         job.orthographic ? set(job.inverse_diameter) : set(job.inverse_diameter) / depth;
     V sum = set(0);
     for (const ChordPair& pair : job.pairs) {
       const V scaled = per_chord * set(pair.inverse_half);
-      const V z1 = hn::LoadU(d, scale.row(scale.depth, y + pair.y) + x + pair.x),
-              z2 = hn::LoadU(d, scale.row(scale.depth, y - pair.y) + x - pair.x);
+      const V z1 = load(scale.row(scale.depth, y + pair.y) + x + pair.x),
+              z2 = load(scale.row(scale.depth, y - pair.y) + x - pair.x);
       const V free1 = hn::MulAdd(z1 - depth, scaled, set(0.5f)),
               free2 = hn::MulAdd(z2 - depth, scaled, set(0.5f));
       sum = hn::MulAdd(set(pair.weight), free_share(free1, free2, set(job.rejection)), sum);
     }
     const V ao = saturate(hn::MulAdd(sum - set(1), set(job.intensity), set(1)));
-    hn::StoreU(hn::IfThenElse(depth < background, ao, set(1)), d, open + x);
+    store(hn::IfThenElse(depth < background, ao, set(1)), open + x);
   }
 }
 
@@ -168,12 +167,10 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
     upsample(scales[std::size_t(k)], how, k > 1, scales[std::size_t(k - 1)]);
     if (progress) progress(std::size_t(kCoarsest - k + 1), std::size_t(kCoarsest));
   }
-  Products out;
-  out.ao = Plane<float>(planes.width(), planes.height());
+  Plane<float> ao(planes.width(), planes.height());
   for (int y = 0; y < planes.height(); ++y)
-    std::copy_n(scales[0].open.row(y), planes.width(), &out.ao(0, y));
-  if (request.products.direct) out.direct = ambient_light(scene, out.ao);
-  return out;
+    std::copy_n(scales[0].open.row(y), planes.width(), &ao(0, y));
+  return products_of_ao(scene, request, std::move(ao));
 }
 
 }  // namespace

@@ -40,8 +40,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "estimators/view_space/ambient_light.h"
 #include "estimators/view_space/depth_mips.h"
+#include "estimators/view_space/openness.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/sao.cpp"
@@ -69,7 +69,6 @@ struct SaoJob {
   float disc_px;  ///< radius of the disc at depth 1, or at any where orthographic
   float scale;    ///< 5 s / N
   float bias, epsilon;
-  Plane<float>& ao;
 };
 
 }  // namespace ssdo
@@ -78,34 +77,29 @@ struct SaoJob {
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-using DU = hn::RebindToUnsigned<D>;
-
 /// The angle by which the spiral of pixels (x, y), (x + 1, y), ... of the display window is turned.
 HWY_INLINE V spin_angle(unsigned x, unsigned y) {
-  const DU du;
-  const auto column = hn::Iota(du, x), row = hn::Set(du, y);
-  const auto hash = hn::Xor(column * hn::Set(du, 3u), row + column * row);
+  const VU column = hn::Iota(DU(), x), row = set_bits(y);
+  const VU hash = hn::Xor(column * set_bits(3), row + column * row);
   // 10 radians and 4096 times as many, in 2^-32 of a turn: a float of 10 h has no fraction left.
   constexpr double kTurn = 4294967296.0 / (2 * std::numbers::pi);
   constexpr auto kStep = std::uint32_t(std::uint64_t(10 * kTurn + 0.5)),
                  kStep4096 = std::uint32_t(std::uint64_t(40960 * kTurn + 0.5));
-  const auto turns = hn::And(hash, hn::Set(du, 4095u)) * hn::Set(du, kStep) +
-                     hn::ShiftRight<12>(hash) * hn::Set(du, kStep4096);
+  const VU turns = hn::And(hash, set_bits(4095)) * set_bits(kStep) +
+                   hn::ShiftRight<12>(hash) * set_bits(kStep4096);
   return hn::ConvertTo(D(), hn::BitCast(DI(), turns)) * set(float(1 / kTurn));
 }
 
 /// The depth that taps `distance` pixels away see at `at`.
 HWY_INLINE V mip_depth(const DepthMips& mips, const Pixels& at, V distance) {
-  const D d;
-  const DI di;
   // The exponent of a float is floor(log2).
-  const VI level = hn::Min(
-      hn::Max(hn::ShiftRight<23>(hn::BitCast(di, distance)) - hn::Set(di, 127 + 3), hn::Zero(di)),
-      hn::Set(di, DepthMips::kCoarsest));
-  const VI twice_rows = hn::Set(di, mips.twice_rows());
-  const VI column = (at.column + hn::Set(di, mips.left())) >> level,
-           row = twice_rows - (twice_rows >> level) + ((at.row + hn::Set(di, mips.top())) >> level);
-  const V z = hn::GatherIndex(d, mips.data(), row * hn::Set(di, mips.stride()) + column);
+  const VI exponent = hn::ShiftRight<23>(hn::BitCast(DI(), distance)) - set_int(127);
+  const VI level =
+      hn::Min(hn::Max(exponent - set_int(3), set_int(0)), set_int(DepthMips::kCoarsest));
+  const VI twice_rows = set_int(mips.twice_rows());
+  const VI column = (at.column + set_int(mips.left())) >> level,
+           row = twice_rows - (twice_rows >> level) + ((at.row + set_int(mips.top())) >> level);
+  const V z = gather(mips.data(), row * set_int(mips.stride()) + column);
   return hn::IfThenElse(at.inside, z, set(kBackgroundDepth));
 }
 
@@ -118,13 +112,11 @@ HWY_INLINE V obscurance(const SaoJob& job, const V3& v, const V3& normal, V bias
   return hn::IfThenElseZero(distance2 < set(1), term);
 }
 
-void sao_of_tile(const SaoJob& job, const Tile& tile) {
+void sao_of_tile(const SaoJob& job, const Tile& tile, Plane<float>& ao) {
   const D d;
   const ViewPlanes& planes = job.planes;
-  for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
-    const Viewed from = view_from(planes, x, y);
-    const Receivers& p = from.p;
-    const V disc = planes.orthographic ? set(job.disc_px) : set(-job.disc_px) / p.position.z;
+  set_openness(planes, tile, ao, [&](const Receiver& p, int x, int y) HWY_ATTR {
+    const V disc = length_px(planes, p, job.disc_px);
     const V angle = spin_angle(unsigned(x + planes.first_column), unsigned(y + planes.first_row));
     const V cosine = hn::Cos(d, angle) * disc, sine = hn::Sin(d, angle) * disc;
     const V stretch = set(planes.fx / planes.fy);
@@ -133,13 +125,12 @@ void sao_of_tile(const SaoJob& job, const Tile& tile) {
     for (const SpiralTap& tap : job.taps) {
       const V right = hn::Trunc((set(tap.x) * cosine - set(tap.y) * sine) * stretch),
               down = hn::Trunc(set(tap.x) * sine + set(tap.y) * cosine);
-      const Pixels at = pixels_at(planes, from.column + right, from.row + down);
+      const Pixels at = pixels_at(planes, p.column + right, p.row + down);
       const V z = mip_depth(job.mips, at, set(tap.distance) * disc);
-      const V3 v = way_to(planes, from, right, down, z);
+      const V3 v = way_to(planes, p, right, down, z);
       sum = sum + obscurance(job, v * set(job.inverse_radius), p.normal, bias);
     }
-    const V ao = saturate(hn::NegMulAdd(sum, set(job.scale), set(1)));
-    store_pixels(hn::IfThenElse(p.valid, ao, set(1)), x, tile, &job.ao(0, y));
+    return hn::NegMulAdd(sum, set(job.scale), set(1));
   });
 }
 
@@ -168,8 +159,6 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
   const int samples = int(parameter("samples"));
   const ViewPlanes planes = make_view_planes(scene.geometry);
   const DepthMips mips(planes);
-  Products out;
-  out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
   const SaoJob job{planes,
                    mips,
                    spiral(samples, int(parameter("turns"))),
@@ -177,12 +166,11 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
                    planes.fy * request.radius,
                    float(5 * parameter("intensity") / samples),
                    float(parameter("bias")),
-                   float(parameter("epsilon")),
-                   out.ao};
-  const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(sao_of_tile)(job, tile); };
-  for_each_tile(planes.width(), planes.height(), work, progress);
-  if (request.products.direct) out.direct = ambient_light(scene, out.ao);
-  return out;
+                   float(parameter("epsilon"))};
+  const auto find = [&](const Tile& tile, Plane<float>& ao) {
+    HWY_DYNAMIC_DISPATCH(sao_of_tile)(job, tile, ao);
+  };
+  return products_of_ao(scene, request, find_openness(planes, progress, find));
 }
 
 /// Taps cover the disc evenly where the turns of the spiral are near their number times the golden

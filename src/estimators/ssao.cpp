@@ -22,7 +22,7 @@
 // centre stands for all of the pixel: a plane seen at a grazing angle hides itself in part.
 #include "estimators/ssao.h"
 
-#include "estimators/view_space/ambient_light.h"
+#include "estimators/view_space/openness.h"
 #include "estimators/view_space/point_kernel.h"
 #include "estimators/view_space/tiled_noise.h"
 
@@ -42,7 +42,6 @@ struct SsaoJob {
   std::vector<glm::vec3> points;  ///< R s_i
   TiledNoise noise_x, noise_y;
   float radius, bias;  ///< scene units
-  Plane<float>& ao;
 };
 
 }  // namespace
@@ -55,29 +54,25 @@ namespace ssdo::HWY_NAMESPACE {
 /// What occludes as the range check weighs it, for surfaces at the distance `range` from p along
 /// the axis.
 HWY_INLINE V range_check(V range, V radius) {
-  const D d;
-  if (hn::AllTrue(d, range <= radius)) return set(1);
-  const V t = radius / hn::Max(range, radius);
-  return t * t * hn::NegMulAdd(set(2), t, set(3));
+  if (all(range <= radius)) return set(1);
+  return smooth(radius / hn::Max(range, radius));
 }
 
-void ssao_of_tile(const SsaoJob& job, const Tile& tile) {
+void ssao_of_tile(const SsaoJob& job, const Tile& tile, Plane<float>& ao) {
   const ViewPlanes& planes = job.planes;
   const V radius = set(job.radius), share = set(1 / float(job.points.size()));
-  for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
-    const Receivers p = load_receivers(planes, x, y);
+  set_openness(planes, tile, ao, [&](const Receiver& p, int x, int y) HWY_ATTR {
     const TangentFrame frame = tangent_frame(planes, job.noise_x, job.noise_y, x, y, p.normal);
     const V bias = p.rounding + set(job.bias);
     V occlusion = set(0);
     for (const glm::vec3& s : job.points) {
-      const V3 point = frame.place(s, p.position);
+      const V3 point = frame.place(set(s), p.position);
       const V z = gather_depth(planes, project(planes, point));
       const M hidden = z >= point.z + bias;
       const V range = hn::IfThenElseZero(hidden, hn::Abs(p.position.z - z));
       occlusion = occlusion + hn::IfThenElseZero(hidden, range_check(range, radius));
     }
-    const V ao = saturate(hn::NegMulAdd(occlusion, share, set(1)));
-    store_pixels(hn::IfThenElse(p.valid, ao, set(1)), x, tile, &job.ao(0, y));
+    return hn::NegMulAdd(occlusion, share, set(1));
   });
 }
 
@@ -96,24 +91,16 @@ Products estimate_ssao(const Scene& scene, const Request& request, const Progres
       point_kernel(int(request.parameters.at("samples")), 0.1f, true, request.seed);
   for (glm::vec3& s : points) s *= request.radius;
   const auto noise = frame_noise(request.seed);
-  Products out;
-  out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
   const SsaoJob job{planes,
                     std::move(points),
                     TiledNoise(coordinate(noise, 0)),
                     TiledNoise(coordinate(noise, 1)),
                     request.radius,
-                    float(request.parameters.at("bias")) * request.radius,
-                    out.ao};
-  for_each_tile(
-      planes.width(), planes.height(),
-      [&](const Tile& tile) {
-        HWY_DYNAMIC_DISPATCH(ssao_of_tile)
-        (job, tile);
-      },
-      progress);
-  if (request.products.direct) out.direct = ambient_light(scene, out.ao);
-  return out;
+                    float(request.parameters.at("bias")) * request.radius};
+  const auto find = [&](const Tile& tile, Plane<float>& ao) {
+    HWY_DYNAMIC_DISPATCH(ssao_of_tile)(job, tile, ao);
+  };
+  return products_of_ao(scene, request, find_openness(planes, progress, find));
 }
 
 }  // namespace

@@ -32,8 +32,8 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "estimators/view_space/ambient_light.h"
 #include "estimators/view_space/half_resolution.h"
+#include "estimators/view_space/openness.h"
 #include "estimators/view_space/point_kernel.h"
 #include "estimators/view_space/tiled_noise.h"
 
@@ -53,7 +53,6 @@ struct FadeJob {
   std::array<glm::vec3, 14> offsets;
   TiledNoise noise_x, noise_y, noise_z;
   float radius, epsilon, fade_start, fade_end;  ///< scene units
-  Plane<float>& access;
 };
 
 }  // namespace
@@ -69,20 +68,18 @@ HWY_INLINE V3 at_depth(const ViewPlanes& planes, const V3& q, V z) {
   return q * (set(-1) / q.z * hn::Neg(z));
 }
 
-void access_of_tile(const FadeJob& job, const Tile& tile) {
-  const D d;
+void access_of_tile(const FadeJob& job, const Tile& tile, Plane<float>& access) {
   const ViewPlanes& planes = job.planes;
   const V radius = set(job.radius), end = set(job.fade_end);
   const V per_length = set(1 / std::max(job.fade_end - job.fade_start, 1e-20f));
-  for_each_vector(job.receivers, tile, [&](int x, int y) HWY_ATTR {
-    const Receivers p = load_receivers(job.receivers, x, y);
-    const V3 m = {hn::LoadU(d, job.noise_x.at(job.receivers, x, y)),
-                  hn::LoadU(d, job.noise_y.at(job.receivers, x, y)),
-                  hn::LoadU(d, job.noise_z.at(job.receivers, x, y))};
+  set_openness(job.receivers, tile, access, [&](const Receiver& p, int x, int y) HWY_ATTR {
+    const V3 m = {load(job.noise_x.at(job.receivers, x, y)),
+                  load(job.noise_y.at(job.receivers, x, y)),
+                  load(job.noise_z.at(job.receivers, x, y))};
     const V epsilon = p.rounding + set(job.epsilon);
     V occlusion = set(0);
     for (const glm::vec3& v : job.offsets) {
-      const V3 offset = {set(v.x), set(v.y), set(v.z)};
+      const V3 offset = set(v);
       const V3 o = mul_add(m, set(-2) * dot(offset, m), offset);
       const V3 q = mul_add(o, hn::CopySign(radius, dot(o, p.normal)), p.position);
       const V z = gather_depth(planes, project(planes, q));
@@ -93,8 +90,7 @@ void access_of_tile(const FadeJob& job, const Tile& tile) {
       const V fade = saturate((end - nearer) * per_length);
       occlusion = occlusion + hn::IfThenElseZero(counts, facing * fade);
     }
-    const V access = saturate(hn::NegMulAdd(occlusion, set(1.0f / 14), set(1)));
-    store_pixels(hn::IfThenElse(p.valid, access, set(1)), x, tile, &job.access(0, y));
+    return hn::NegMulAdd(occlusion, set(1.0f / 14), set(1));
   });
 }
 
@@ -159,7 +155,6 @@ Products estimate_ssao_fade(const Scene& scene, const Request& request, const Pr
   if (upsampling != kNone) half.emplace(scene.geometry, planes);
   const ViewPlanes& receivers = half ? half->receivers() : planes;
   const auto noise = fade_noise(request.seed);
-  Plane<float> access(receivers.width(), receivers.height(), 1.0f);
   const FadeJob job{receivers,
                     planes,
                     fade_offsets(request.seed),
@@ -169,22 +164,16 @@ Products estimate_ssao_fade(const Scene& scene, const Request& request, const Pr
                     request.radius,
                     value("epsilon") * request.radius,
                     value("fade-start") * request.radius,
-                    value("fade-end") * request.radius,
-                    access};
-  for_each_tile(
-      receivers.width(), receivers.height(),
-      [&](const Tile& tile) {
-        HWY_DYNAMIC_DISPATCH(access_of_tile)
-        (job, tile);
-      },
-      progress);
+                    value("fade-end") * request.radius};
+  const auto find = [&](const Tile& tile, Plane<float>& access) {
+    HWY_DYNAMIC_DISPATCH(access_of_tile)(job, tile, access);
+  };
+  Plane<float> access = find_openness(receivers, progress, find);
   shape(request.parameters, receivers, access);
-  Products out;
-  out.ao = !half                     ? std::move(access)
-           : upsampling == kBilinear ? half->upsample_bilinear(access)
-                                     : half->upsample_along_surfaces(access);
-  if (request.products.direct) out.direct = ambient_light(scene, out.ao);
-  return out;
+  return products_of_ao(scene, request,
+                        !half                     ? std::move(access)
+                        : upsampling == kBilinear ? half->upsample_bilinear(access)
+                                                  : half->upsample_along_surfaces(access));
 }
 
 }  // namespace

@@ -24,7 +24,7 @@
 // viewer hides itself in part.
 #include "estimators/ssao_range.h"
 
-#include "estimators/view_space/ambient_light.h"
+#include "estimators/view_space/openness.h"
 #include "estimators/view_space/point_kernel.h"
 #include "estimators/view_space/tiled_noise.h"
 
@@ -45,7 +45,6 @@ struct RangeJob {
   TiledNoise noise_x, noise_y;
   float radius, range, bias;  ///< scene units
   float strength;
-  Plane<float>& ao;
 };
 
 }  // namespace
@@ -55,28 +54,25 @@ struct RangeJob {
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-void ssao_range_of_tile(const RangeJob& job, const Tile& tile) {
-  const D d;
+void ssao_range_of_tile(const RangeJob& job, const Tile& tile, Plane<float>& ao) {
   const ViewPlanes& planes = job.planes;
   const V radius = set(job.radius), farthest = set(job.range);
   const V share = set(job.strength / float(job.points.size()));
-  for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
-    const Receivers p = load_receivers(planes, x, y);
+  set_openness(planes, tile, ao, [&](const Receiver& p, int x, int y) HWY_ATTR {
     const TangentFrame frame = tangent_frame(planes, job.noise_x, job.noise_y, x, y, p.normal);
     const V bias = p.rounding + set(job.bias);
     V occlusion = set(0);
     for (const glm::vec3& s : job.points) {
-      const V3 v = frame.place(s, {set(0), set(0), set(0)});
+      const V3 v = frame.place(set(s), set(glm::vec3(0)));
       const V z = gather_depth(planes, project(planes, mul_add(v, radius, p.position)));
       const V nearer = z - p.position.z;
       const M hidden = hn::And(nearer > bias, nearer <= farthest);
-      if (hn::AllFalse(d, hidden)) continue;
-      const V across = hn::Sqrt(hn::MulAdd(v.x, v.x, v.y * v.y));
+      if (!any(hidden)) continue;
+      const V across = hn::Sqrt(dot(V2{v.x, v.y}, V2{v.x, v.y}));
       const V weight = smoothstep(set(0), set(0.2f), across);
       occlusion = occlusion + hn::IfThenElseZero(hidden, weight);
     }
-    const V ao = saturate(hn::NegMulAdd(occlusion, share, set(1)));
-    store_pixels(hn::IfThenElse(p.valid, ao, set(1)), x, tile, &job.ao(0, y));
+    return hn::NegMulAdd(occlusion, share, set(1));
   });
 }
 
@@ -92,8 +88,6 @@ HWY_EXPORT(ssao_range_of_tile);
 Products estimate_ssao_range(const Scene& scene, const Request& request, const Progress& progress) {
   const ViewPlanes planes = make_view_planes(scene.geometry);
   const auto noise = frame_noise(request.seed);
-  Products out;
-  out.ao = Plane<float>(planes.width(), planes.height(), 1.0f);
   const RangeJob job{
       planes,
       point_kernel(int(request.parameters.at("samples")), 0.01f, false, request.seed),
@@ -102,17 +96,11 @@ Products estimate_ssao_range(const Scene& scene, const Request& request, const P
       request.radius,
       float(request.parameters.at("range")) * request.radius,
       float(request.parameters.at("bias")) * request.radius,
-      float(request.parameters.at("strength")),
-      out.ao};
-  for_each_tile(
-      planes.width(), planes.height(),
-      [&](const Tile& tile) {
-        HWY_DYNAMIC_DISPATCH(ssao_range_of_tile)
-        (job, tile);
-      },
-      progress);
-  if (request.products.direct) out.direct = ambient_light(scene, out.ao);
-  return out;
+      float(request.parameters.at("strength"))};
+  const auto find = [&](const Tile& tile, Plane<float>& ao) {
+    HWY_DYNAMIC_DISPATCH(ssao_range_of_tile)(job, tile, ao);
+  };
+  return products_of_ao(scene, request, find_openness(planes, progress, find));
 }
 
 }  // namespace

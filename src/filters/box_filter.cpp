@@ -21,10 +21,9 @@ HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
 struct BothSurfaces {
-  HWY_INLINE V operator()(const SurfaceLanes& p, const SurfaceLanes& q) const {
-    const D d;
-    const auto exist = cosine(p, p) * cosine(q, q) > hn::Zero(d);
-    return hn::IfThenElseZero(exist, hn::Set(d, 1.0f));
+  HWY_INLINE V operator()(const Shown& p, const Shown& q) const {
+    const M exist = dot(p.normal, p.normal) * dot(q.normal, q.normal) > set(0);
+    return hn::IfThenElseZero(exist, set(1));
   }
 };
 

@@ -29,11 +29,10 @@ constexpr float kLeastCosine = 0.8f;
 constexpr float kMostDepth = 2;  ///< scene units
 
 struct SameSurface {
-  HWY_INLINE V operator()(const SurfaceLanes& p, const SurfaceLanes& q) const {
-    const D d;
-    const auto same = hn::And(cosine(p, q) >= hn::Set(d, kLeastCosine),
-                              hn::Abs(p.z - q.z) <= hn::Set(d, kMostDepth));
-    return hn::IfThenElseZero(same, hn::Set(d, 1.0f));
+  HWY_INLINE V operator()(const Shown& p, const Shown& q) const {
+    const M same = hn::And(dot(p.normal, q.normal) >= set(kLeastCosine),
+                           hn::Abs(p.position.z - q.position.z) <= set(kMostDepth));
+    return hn::IfThenElseZero(same, set(1));
   }
 };
 

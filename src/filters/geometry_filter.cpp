@@ -5,15 +5,11 @@
 // tangent plane and by how far their normals differ.
 //
 //   out(p) = sum_q b(q) w(p, q) in(q) / sum_q b(q) w(p, q)
-//   w = ramp(h / (t |q - p|)) * ramp((1 - n_p . n_q) / (1 - c))
 //   h = min(|n_p . (q - p)|, |n_p . (q - p) + n_p . (o - p)|),   o on the other side of p
-//   ramp(x) = 1 up to 1/2, falling to 0 at 1
 //
-// The first argument is the sine of the angle by which q leaves the tangent plane, so that the
-// weight knows no unit and no resolution. Smooth normals of a coarse mesh may lean away from its
-// faces: there the plane cuts the surface, but what q rises above it, o falls below. The flat part
-// matters: where a surface bends gently, all members of the pattern have to weigh the same, or the
-// pattern shows through.
+// w is the weight of scene/same_surface.h with h / |q - p| for the sine. Smooth normals of a coarse
+// mesh may lean away from its faces: there the plane cuts the surface, but what q rises above it, o
+// falls below.
 //
 // The window is T + 1 wide, with b = 1/2 at its ends: each of the T x T members of the pattern
 // then has a total weight of exactly 1, which removes the pattern on a plane, and the window has a
@@ -45,65 +41,37 @@
 #include <hwy/foreach_target.h>
 
 #include "filters/tile_rows-inl.h"
+#include "scene/same_surface-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-constexpr float kPlaneTolerance = 0.3f;  ///< t: the sine of 17 degrees
-constexpr float kNormalCosine = 0.8f;    ///< c: normals 37 degrees apart share nothing
 constexpr float kStepTolerance = 0.15f;  ///< r; measured, with the 1/4 before A
 
-/// Position, normal and rounding.
-struct Pixels {
-  V x, y, z, nx, ny, nz, rounding;
-};
-
-HWY_INLINE Pixels load_pixels(const float* from, int stride) {
-  const D d;
-  const auto channel = [&](int c) HWY_ATTR { return hn::LoadU(d, from + c * stride); };
-  return {channel(0), channel(1), channel(2), channel(3), channel(4), channel(5), channel(6)};
-}
-
-HWY_INLINE V dot3(V ax, V ay, V az, V bx, V by, V bz) {
-  return hn::MulAdd(ax, bx, hn::MulAdd(ay, by, az * bz));
-}
-
-HWY_INLINE V clamp01(V x) {
-  const D d;
-  return hn::Min(hn::Max(x, hn::Zero(d)), hn::Set(d, 1.0f));
-}
-
 /// How far q lies from p's tangent plane, signed.
-HWY_INLINE V above_plane(const Pixels& p, const Pixels& q) {
-  return dot3(q.x - p.x, q.y - p.y, q.z - p.z, p.nx, p.ny, p.nz);
+HWY_INLINE V above_plane(const Shown& p, const Shown& q) {
+  return dot(q.position - p.position, p.normal);
 }
 
-/// ramp(h / (t |q - p|)); `above` is n_p . (q - p), which rounding may have moved so much. Few ask
-/// for it: most neighbours lie in the flat part, which squares can tell.
-HWY_NOINLINE V plane_ramp(V above, V rounding, V distance2, const Pixels& p, const Pixels& o) {
-  const D d;
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const V off_plane = hn::Max(zero, hn::Abs(above) - rounding),
-          bend = hn::Max(zero, hn::Abs(above + above_plane(p, o)) - rounding - rounding);
-  const auto exists = dot3(o.nx, o.ny, o.nz, o.nx, o.ny, o.nz) > zero;
-  const V sine = hn::IfThenElse(exists, hn::Min(off_plane, bend), off_plane) / hn::Sqrt(distance2);
-  const V ramp = clamp01(hn::NegMulAdd(sine, hn::Set(d, 2 / kPlaneTolerance), hn::Set(d, 2.0f)));
-  return hn::IfThenElse(distance2 > zero, ramp, one);
+/// The part of w that the plane has in it; `above` is n_p . (q - p), which rounding may have moved
+/// so much. Few ask for it: most neighbours lie in the flat part, which squares can tell.
+HWY_NOINLINE V plane_ramp(V above, V rounding, V distance2, const Shown& p, const Shown& o) {
+  const V off_plane = hn::Max(set(0), hn::Abs(above) - rounding),
+          bend = hn::Max(set(0), hn::Abs(above + above_plane(p, o)) - rounding - rounding);
+  const M exists = dot(o.normal, o.normal) > set(0);
+  const V h = hn::IfThenElse(exists, hn::Min(off_plane, bend), off_plane);
+  return hn::IfThenElse(distance2 > set(0), plane_weight(h / hn::Sqrt(distance2)), set(1));
 }
 
 /// w(p, q), 0 where one of them has no normal. `opposite()` is the pixel on p's other side.
 template <class Opposite>
-HWY_INLINE V similarity(const Pixels& p, const Pixels& q, const Opposite& opposite) {
-  const D d;
-  // 2 - 2 (1 - cosine) / (1 - c)
-  constexpr float kSlope = 2 / (1 - kNormalCosine);
-  const V cosine = dot3(p.nx, p.ny, p.nz, q.nx, q.ny, q.nz);
-  const V turn = clamp01(hn::MulAdd(cosine, hn::Set(d, kSlope), hn::Set(d, 2 - kSlope)));
-  const V x = q.x - p.x, y = q.y - p.y, z = q.z - p.z, distance2 = dot3(x, y, z, x, y, z);
-  const V above = above_plane(p, q), rounding = p.rounding + q.rounding;
-  const V off_plane = hn::Max(hn::Zero(d), hn::Abs(above) - rounding);
-  constexpr float kFlat = kPlaneTolerance / 2;
-  if (hn::AllTrue(d, off_plane * off_plane <= distance2 * hn::Set(d, kFlat * kFlat))) return turn;
+HWY_INLINE V similarity(const Shown& p, const Shown& q, const Opposite& opposite) {
+  const V turn = normal_weight(dot(p.normal, q.normal));
+  const V3 to_q = q.position - p.position;
+  const V distance2 = dot(to_q, to_q), above = above_plane(p, q);
+  const V rounding = p.rounding + q.rounding;
+  const V off_plane = hn::Max(set(0), hn::Abs(above) - rounding);
+  if (all(within_sine(off_plane, distance2, kPlaneSine / 2))) return turn;
   return turn * plane_ramp(above, rounding, distance2, p, opposite());
 }
 
@@ -163,61 +131,55 @@ class TileFilter {
 
   /// b w of each neighbour of both rows, and the sums.
   HWY_INLINE void weigh(int x, int y) {
-    const D d;
-    const int stride = rows_.stride();
-    const Pixels p0 = load_pixels(rows_.row(y, 0) + x + half_, stride),
-                 p1 = load_pixels(rows_.row(y + 1, 0) + x + half_, stride);
-    V sum0 = hn::Zero(d), sum1 = sum0;
+    const Shown p0 = rows_.shown(y, x + half_), p1 = rows_.shown(y + 1, x + half_);
+    V sum0 = set(0), sum1 = sum0;
     float* weight = weights_.get();
     for (int dy = -half_; dy <= half_ + 1; ++dy) {
-      const auto pixels_at = [&](int row, int dx) HWY_ATTR {
-        return load_pixels(rows_.row(row, 0) + x + half_ + dx, stride);
-      };
+      const auto shown_at = [&](int row, int dx)
+                                HWY_ATTR { return rows_.shown(row, x + half_ + dx); };
       const float border0 = border(dy), border1 = border(dy - 1);
       for (int dx = -half_; dx <= half_; ++dx, weight += 2 * kLanes) {
-        const Pixels q = pixels_at(y + dy, dx);
+        const Shown q = shown_at(y + dy, dx);
         if (border0 != 0) {
-          const auto opposite = [&]() HWY_ATTR { return pixels_at(y - dy, -dx); };
-          const V w = hn::Set(d, border(dx) * border0) * similarity(p0, q, opposite);
-          hn::Store(w, d, weight);
+          const auto opposite = [&]() HWY_ATTR { return shown_at(y - dy, -dx); };
+          const V w = set(border(dx) * border0) * similarity(p0, q, opposite);
+          store(w, weight);
           sum0 = sum0 + w;
         }
         if (border1 != 0) {
-          const auto opposite = [&]() HWY_ATTR { return pixels_at(y + 2 - dy, -dx); };
-          const V w = hn::Set(d, border(dx) * border1) * similarity(p1, q, opposite);
-          hn::Store(w, d, weight + kLanes);
+          const auto opposite = [&]() HWY_ATTR { return shown_at(y + 2 - dy, -dx); };
+          const V w = set(border(dx) * border1) * similarity(p1, q, opposite);
+          store(w, weight + kLanes);
           sum1 = sum1 + w;
         }
       }
     }
-    hn::Store(sum0, d, weight_sum(0) + x);
-    hn::Store(sum1, d, weight_sum(1) + x);
+    store(sum0, weight_sum(0) + x);
+    store(sum1, weight_sum(1) + x);
   }
 
   /// kCount components of both rows, from `c` on.
   template <int kCount>
   HWY_INLINE void average_rows(int x, int y, int c) {
-    const D d;
     const int stride = rows_.stride();
     V sum0[kCount], sum1[kCount];
-    for (int k = 0; k < kCount; ++k) sum0[k] = sum1[k] = hn::Zero(d);
+    for (int k = 0; k < kCount; ++k) sum0[k] = sum1[k] = set(0);
     const float* weight = weights_.get();
     for (int dy = -half_; dy <= half_ + 1; ++dy) {
       const float* from = rows_.row(y + dy, TileRows::kSurfelChannels + c) + x;
       const bool in0 = dy <= half_, in1 = dy > -half_;
       for (int dx = 0; dx < window(); ++dx, weight += 2 * kLanes) {
         for (int k = 0; k < kCount; ++k) {
-          const V value = hn::LoadU(d, from + k * stride + dx);
-          if (in0) sum0[k] = hn::MulAdd(hn::Load(d, weight), value, sum0[k]);
-          if (in1) sum1[k] = hn::MulAdd(hn::Load(d, weight + kLanes), value, sum1[k]);
+          const V value = load(from + k * stride + dx);
+          if (in0) sum0[k] = hn::MulAdd(load(weight), value, sum0[k]);
+          if (in1) sum1[k] = hn::MulAdd(load(weight + kLanes), value, sum1[k]);
         }
       }
     }
-    const V one = hn::Set(d, 1.0f), scale0 = one / hn::Load(d, weight_sum(0) + x),
-            scale1 = one / hn::Load(d, weight_sum(1) + x);
+    const V scale0 = set(1) / load(weight_sum(0) + x), scale1 = set(1) / load(weight_sum(1) + x);
     for (int k = 0; k < kCount; ++k) {
-      hn::Store(sum0[k] * scale0, d, average(0, c + k) + x);
-      hn::Store(sum1[k] * scale1, d, average(1, c + k) + x);
+      store(sum0[k] * scale0, average(0, c + k) + x);
+      store(sum1[k] * scale1, average(1, c + k) + x);
     }
   }
 
@@ -235,10 +197,9 @@ struct Brightness {
 
 /// l(p, q).
 HWY_INLINE V likeness(const Brightness& p, const Brightness& q) {
-  const D d;
-  const V scale = hn::MulAdd(hn::Set(d, 0.25f), p.open + q.open, p.value + q.value);
-  const V step = hn::Abs(q.value - p.value) / hn::Max(scale, hn::Set(d, 1e-30f));
-  return clamp01(hn::NegMulAdd(step, hn::Set(d, 2 / kStepTolerance), hn::Set(d, 2.0f)));
+  const V scale = hn::MulAdd(set(0.25f), p.open + q.open, p.value + q.value);
+  const V step = hn::Abs(q.value - p.value) / hn::Max(scale, set(1e-30f));
+  return saturate(hn::NegMulAdd(step, set(2 / kStepTolerance), set(2)));
 }
 
 /// The second pass.
@@ -273,25 +234,20 @@ class CornerFilter {
 
   /// A vector of pixels from column `x` of the tile on.
   HWY_INLINE void filter(int x, int y) {
-    const D d;
     const int stride = rows_.stride();
     const int above = y - offset_, below = y + offset_, left = x, right = x + 2 * offset_;
-    const auto surface_at = [&](int row, int column) HWY_ATTR {
-      return load_pixels(rows_.row(row, 0) + column, stride);
-    };
-    const Pixels p = surface_at(y, x + offset_);
-    const Pixels q0 = surface_at(above, left), q1 = surface_at(above, right),
-                 q2 = surface_at(below, left), q3 = surface_at(below, right);
-    const V quarter = hn::Set(d, 0.25f);
-    const auto weight = [&](const Pixels& q, const Pixels& opposite) HWY_ATTR {
-      return quarter * similarity(p, q, [&]() HWY_ATTR { return opposite; });
+    const Shown p = rows_.shown(y, x + offset_);
+    const Shown q0 = rows_.shown(above, left), q1 = rows_.shown(above, right),
+                q2 = rows_.shown(below, left), q3 = rows_.shown(below, right);
+    const auto weight = [&](const Shown& q, const Shown& opposite) HWY_ATTR {
+      return set(0.25f) * similarity(p, q, [&]() HWY_ATTR { return opposite; });
     };
     const V w0 = weight(q0, q3), w1 = weight(q1, q2), w2 = weight(q2, q1), w3 = weight(q3, q0);
-    hn::Store(dot3(p.nx, p.ny, p.nz, p.nx, p.ny, p.nz), d, is_surface() + x);
+    store(dot(p.normal, p.normal), is_surface() + x);
     int c = 0;
     for (const Part& part : rows_.parts()) {
       const auto mean_at = [&](int k, int row, int column) HWY_ATTR {
-        return hn::LoadU(d, rows_.row(row, TileRows::kSurfelChannels + c + k) + column);
+        return load(rows_.row(row, TileRows::kSurfelChannels + c + k) + column);
       };
       V v0 = w0, v1 = w1, v2 = w2, v3 = w3;
       if (part.shadowed) {
@@ -300,8 +256,8 @@ class CornerFilter {
           if (part.components == 3)
             value = value + mean_at(1, row, column) + mean_at(2, row, column);
           if (!ao_) return Brightness{value, value};
-          const V ao = hn::LoadU(d, rows_.row(row, *ao_) + column);
-          return Brightness{value, value / hn::Max(ao, hn::Set(d, kLeastOpen))};
+          const V ao = load(rows_.row(row, *ao_) + column);
+          return Brightness{value, value / hn::Max(ao, set(kLeastOpen))};
         };
         const Brightness own = brightness_at(y, x + offset_);
         v0 = v0 * likeness(own, brightness_at(above, left));
@@ -315,7 +271,7 @@ class CornerFilter {
         sum = hn::MulAdd(v1, mean_at(k, above, right) - own, sum);
         sum = hn::MulAdd(v2, mean_at(k, below, left) - own, sum);
         sum = hn::MulAdd(v3, mean_at(k, below, right) - own, sum);
-        hn::Store(sum, d, results_.get() + (c + k) * stride + x);
+        store(sum, results_.get() + (c + k) * stride + x);
       }
       c += part.components;
     }

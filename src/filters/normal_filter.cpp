@@ -28,12 +28,10 @@ namespace ssdo::HWY_NAMESPACE {
 constexpr float kLeastCosine = 0.8f;
 
 struct NormalsAlike {
-  HWY_INLINE V operator()(const SurfaceLanes& p, const SurfaceLanes& q) const {
-    const D d;
+  HWY_INLINE V operator()(const Shown& p, const Shown& q) const {
     constexpr float kSlope = 1 / (1 - kLeastCosine);
-    const V t = hn::MulAdd(cosine(p, q), hn::Set(d, kSlope), hn::Set(d, -kLeastCosine * kSlope));
-    const V x = hn::Min(hn::Max(t, hn::Zero(d)), hn::Set(d, 1.0f));
-    return x * x * hn::NegMulAdd(hn::Set(d, 2.0f), x, hn::Set(d, 3.0f));
+    const V cosine = dot(p.normal, q.normal);
+    return smooth(saturate(hn::MulAdd(cosine, set(kSlope), set(-kLeastCosine * kSlope))));
   }
 };
 

@@ -11,7 +11,6 @@
 
 #include <hwy/aligned_allocator.h>
 #include <hwy/cache_control.h>
-#include <hwy/highway.h>
 
 #include <algorithm>
 #include <vector>
@@ -19,18 +18,14 @@
 #include "estimators/estimator.h"
 #include "parallel/tiles.h"
 #include "scene/geometry.h"
+#include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::CappedTag<float, 16>;
-using V = hn::Vec<D>;
 using AlignedFloats = hwy::AlignedFreeUniquePtr<float[]>;
 
-constexpr int kLanes = int(hn::MaxLanes(D()));
-constexpr int kLine = 16;  ///< floats in a cache line
+constexpr int kLine = kMostLanes;  ///< floats in a cache line
 
 constexpr int round_up(int count, int unit) { return (count + unit - 1) / unit * unit; }
 
@@ -81,6 +76,12 @@ inline std::vector<Part> parts_of(const Products& noisy, Products& out) {
   return parts;
 }
 
+/// What pixels side by side show. What is not a surface has no normal.
+struct Shown {
+  V3 position, normal;
+  V rounding;
+};
+
 /// The latest rows of a tile and its halo. Channels 0 to 6 are the position, the normal and the
 /// rounding of Surfel, the others are the components of the products; all are 0 for what is not a
 /// surface, be it outside the picture.
@@ -108,6 +109,13 @@ class TileRows {
 
   /// Channel `c` of picture row `y`; its entry 0 lies half a window left of the tile.
   const float* row(int y, int c) const { return rows_.get() + offset(y, c); }
+
+  /// What row `y` shows from entry `x` on.
+  HWY_INLINE Shown shown(int y, int x) const {
+    const float* from = row(y, 0) + x;
+    return {load_apart(from, stride_), load_apart(from + 3 * stride_, stride_),
+            load(from + 6 * stride_)};
+  }
 
   /// Takes row `y` in, in place of the row that was taken in `height` rows ago.
   void gather(int y) {
@@ -179,18 +187,18 @@ class TileRows {
       V x0, y0, z0, w0, x1, y1, z1, w1;
       hn::LoadInterleaved4(d, &from[i].position.x, x0, y0, z0, w0);
       hn::LoadInterleaved4(d, &from[i + kLanes / 2].position.x, x1, y1, z1, w1);
-      const auto surface = hn::ConcatEven(d, w1, w0) != hn::Zero(d);
-      hn::StoreU(hn::IfThenElseZero(surface, hn::Set(d, 1.0f)), d, surface_.get() + i);
-      const auto store = [&](V values, int c) HWY_ATTR {
-        hn::StoreU(hn::IfThenElseZero(surface, values), d, to + c * stride_ + i);
+      const M surface = hn::ConcatEven(d, w1, w0) != set(0);
+      store(hn::IfThenElseZero(surface, set(1)), surface_.get() + i);
+      const auto store_channel = [&](V values, int c) HWY_ATTR {
+        store(hn::IfThenElseZero(surface, values), to + c * stride_ + i);
       };
-      store(hn::ConcatEven(d, x1, x0), 0);
-      store(hn::ConcatEven(d, y1, y0), 1);
-      store(hn::ConcatEven(d, z1, z0), 2);
-      store(hn::ConcatOdd(d, x1, x0), 3);
-      store(hn::ConcatOdd(d, y1, y0), 4);
-      store(hn::ConcatOdd(d, z1, z0), 5);
-      store(hn::ConcatOdd(d, w1, w0), 6);
+      store_channel(hn::ConcatEven(d, x1, x0), 0);
+      store_channel(hn::ConcatEven(d, y1, y0), 1);
+      store_channel(hn::ConcatEven(d, z1, z0), 2);
+      store_channel(hn::ConcatOdd(d, x1, x0), 3);
+      store_channel(hn::ConcatOdd(d, y1, y0), 4);
+      store_channel(hn::ConcatOdd(d, z1, z0), 5);
+      store_channel(hn::ConcatOdd(d, w1, w0), 6);
     };
     cover(count, whole, single);
 #endif
@@ -199,15 +207,10 @@ class TileRows {
   void gather_part(const Part& part, std::size_t first, int count, float* to) const {
     const float* from = part.noisy + first * std::size_t(part.components);
     const auto whole = [&](int i) HWY_ATTR {
-      const D d;
-      const auto surface = hn::LoadU(d, surface_.get() + i) != hn::Zero(d);
-      const auto store = [&](V values, int c) HWY_ATTR {
-        hn::StoreU(hn::IfThenElseZero(surface, values), d, to + c * stride_ + i);
-      };
-      if (part.components == 1) return store(hn::LoadU(d, from + i), 0);
-      V x, y, z;
-      hn::LoadInterleaved3(d, from + 3 * i, x, y, z);
-      store(x, 0), store(y, 1), store(z, 2);
+      const M surface = load(surface_.get() + i) != set(0);
+      float* at = to + i;
+      if (part.components == 1) return store(hn::IfThenElseZero(surface, load(from + i)), at);
+      store_apart(if_then_else_zero(surface, load3(from + 3 * i)), stride_, at);
     };
     cover(count, whole, [&](int i) {
       const bool surface = surface_[std::size_t(i)] != 0;
@@ -217,22 +220,14 @@ class TileRows {
   }
 
   void finish(Finish how, float* averages, int count) const {
-    const D d;
-    const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
     if (how == Finish::none) return;
     for (int i = 0; i < count; i += kLanes) {
-      float *xs = averages + i, *ys = xs + stride_, *zs = ys + stride_;
-      const V x = hn::Load(d, xs);
+      float* at = averages + i;
       if (how == Finish::clamp) {
-        hn::Store(hn::Min(hn::Max(x, zero), one), d, xs);
-        continue;
+        store(saturate(load(at)), at);
+      } else {
+        store_apart(normalise(load_apart(at, stride_)), stride_, at);
       }
-      const V y = hn::Load(d, ys), z = hn::Load(d, zs);
-      const V length2 = hn::MulAdd(x, x, hn::MulAdd(y, y, z * z));
-      const V scale = hn::IfThenElse(length2 > zero, one / hn::Sqrt(length2), zero);
-      hn::Store(x * scale, d, xs);
-      hn::Store(y * scale, d, ys);
-      hn::Store(z * scale, d, zs);
     }
   }
 
@@ -247,14 +242,12 @@ class TileRows {
       }
     };
     const auto whole = [&](int i) HWY_ATTR {
-      const D d;
-      if (!hn::AllTrue(d, hn::LoadU(d, weight + i) > hn::Zero(d))) {
+      if (!all(load(weight + i) > set(0))) {
         for (int k = i; k < i + kLanes; ++k) single(k);
       } else if (part.components == 1) {
-        hn::StoreU(hn::LoadU(d, from + i), d, to + i);
+        store(load(from + i), to + i);
       } else {
-        hn::StoreInterleaved3(hn::LoadU(d, from + i), hn::LoadU(d, from + stride_ + i),
-                              hn::LoadU(d, from + 2 * stride_ + i), d, to + 3 * i);
+        store3(load_apart(from + i, stride_), to + 3 * i);
       }
     };
     cover(count, whole, single);

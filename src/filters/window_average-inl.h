@@ -24,22 +24,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// Camera-space depth and normal of pixels side by side. What is no surface has no normal.
-struct SurfaceLanes {
-  V z, nx, ny, nz;
-};
-
-HWY_INLINE SurfaceLanes load_surface(const float* from, int stride) {
-  const D d;
-  const auto channel = [&](int c) HWY_ATTR { return hn::LoadU(d, from + c * stride); };
-  return {channel(2), channel(3), channel(4), channel(5)};
-}
-
-/// N_p . N_q: about 1 for p = q on a surface, 0 where one of them is none.
-HWY_INLINE V cosine(const SurfaceLanes& p, const SurfaceLanes& q) {
-  return hn::MulAdd(p.nx, q.nx, hn::MulAdd(p.ny, q.ny, p.nz * q.nz));
-}
-
 /// Averages one tile. `similarity(p, q)` is w: 0 where one of both is no surface.
 template <class Similarity>
 class WindowAverage {
@@ -77,31 +61,29 @@ class WindowAverage {
 
   /// A vector of pixels from column `x` of the tile on.
   HWY_INLINE void average(int x, int y) {
-    const D d;
     const int stride = rows_.stride();
-    const SurfaceLanes p = load_surface(rows_.row(y, 0) + x + half_, stride);
-    V sum = hn::Zero(d);
+    const Shown p = rows_.shown(y, x + half_);
+    V sum = set(0);
     float* weight = weights_.get();
     for (const Tap& tap : taps_) {
-      const float* q = rows_.row(y + tap.dy, 0) + x + half_ + tap.dx;
-      const V w = hn::Set(d, tap.weight) * similarity_(p, load_surface(q, stride));
-      hn::Store(w, d, weight);
+      const V w = set(tap.weight) * similarity_(p, rows_.shown(y + tap.dy, x + half_ + tap.dx));
+      store(w, weight);
       weight += kLanes;
       sum = sum + w;
     }
-    hn::Store(sum, d, weight_sum() + x);
-    const V scale = hn::Set(d, 1.0f) / sum;
+    store(sum, weight_sum() + x);
+    const V scale = set(1) / sum;
     for (int c = 0; c < rows_.components(); ++c) {
       const int channel = TileRows::kSurfelChannels + c;
-      const V centre = hn::LoadU(d, rows_.row(y, channel) + x + half_);
-      V difference = hn::Zero(d);
+      const V centre = load(rows_.row(y, channel) + x + half_);
+      V difference = set(0);
       weight = weights_.get();
       for (const Tap& tap : taps_) {
-        const V value = hn::LoadU(d, rows_.row(y + tap.dy, channel) + x + half_ + tap.dx);
-        difference = hn::MulAdd(hn::Load(d, weight), value - centre, difference);
+        const V value = load(rows_.row(y + tap.dy, channel) + x + half_ + tap.dx);
+        difference = hn::MulAdd(load(weight), value - centre, difference);
         weight += kLanes;
       }
-      hn::Store(hn::MulAdd(difference, scale, centre), d, averages_.get() + c * stride + x);
+      store(hn::MulAdd(difference, scale, centre), averages_.get() + c * stride + x);
     }
   }
 

@@ -32,7 +32,7 @@
 #define HWY_TARGET_INCLUDE "estimators/msvo/scales.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/view_space/lanes-inl.h"
+#include "simd/lanes-inl.h"
 
 #ifndef SSDO_COARSE_ROWS_
 #define SSDO_COARSE_ROWS_
@@ -72,43 +72,40 @@ HWY_INLINE V blur(const Upsampling& how, const V (&open)[5], const V (&depth)[5]
 
 /// Row y from the column before the first to the one after the last.
 void blur_along_row(const DepthScale& scale, const Upsampling& how, int y, float* to) {
-  const D d;
   const float *open = scale.open.row(y), *depth = scale.depth.row(y);
-  for (int x = -1; x <= scale.width; x += int(hn::Lanes(d))) {
+  for (int x = -1; x <= scale.width; x += kLanes) {
     V values[5], depths[5];
     for (int i = 0; i < 5; ++i) {
-      values[i] = hn::LoadU(d, open + x + i - 2);
-      depths[i] = hn::LoadU(d, depth + x + i - 2);
+      values[i] = load(open + x + i - 2);
+      depths[i] = load(depth + x + i - 2);
     }
-    hn::StoreU(blur(how, values, depths), d, to + x);
+    store(blur(how, values, depths), to + x);
   }
 }
 
 /// Row y, which may be the one before the first or after the last, of what is blurred along rows.
 void blur_along_columns(const DepthScale& scale, const PaddedPlane& rows, const Upsampling& how,
                         int y, float* to) {
-  const D d;
-  for (int x = -1; x <= scale.width; x += int(hn::Lanes(d))) {
+  for (int x = -1; x <= scale.width; x += kLanes) {
     V values[5], depths[5];
     for (int i = 0; i < 5; ++i) {
-      values[i] = hn::LoadU(d, scale.row(rows, y + i - 2) + x);
-      depths[i] = hn::LoadU(d, scale.row(scale.depth, y + i - 2) + x);
+      values[i] = load(scale.row(rows, y + i - 2) + x);
+      depths[i] = load(scale.row(scale.depth, y + i - 2) + x);
     }
-    hn::StoreU(blur(how, values, depths), d, to + x);
+    store(blur(how, values, depths), to + x);
   }
 }
 
 /// The share of light that the four coarse pixels around fine ones at `depth` leave: those in
 /// column x and, beside it, in column x + side.
 HWY_INLINE V bilateral(const CoarseRows& rows, const Upsampling& how, V depth, int x, int side) {
-  const D d;
   V weight_sum = set(how.noise), sum = weight_sum;
   const auto add = [&](const float* open, const float* coarse, float bilinear) HWY_ATTR {
-    const V difference = hn::Abs(depth - hn::LoadU(d, coarse));
+    const V difference = hn::Abs(depth - load(coarse));
     const V weight =
         set(bilinear) / hn::MulAdd(difference, set(how.inverse_far), set(how.depth_tolerance));
     weight_sum = weight_sum + weight;
-    sum = hn::MulAdd(weight, hn::LoadU(d, open), sum);
+    sum = hn::MulAdd(weight, load(open), sum);
   };
   add(rows.near_open + x, rows.near_depth + x, 9);
   add(rows.near_open + x + side, rows.near_depth + x + side, 3);
@@ -126,7 +123,7 @@ void upsample_row(const CoarseRows& rows, const Upsampling& how, bool multiply, 
     const V value = fine * bilateral(rows, how, fine_depth, x, side);
     return hn::IfThenElse(fine_depth < background, saturate(value), set(1));
   };
-  for (int x = 0; x < coarse_width; x += int(hn::Lanes(d))) {
+  for (int x = 0; x < coarse_width; x += kLanes) {
     // Of the fine pixels in a coarse one, the left one looks to the left and the right one to the
     // right.
     const int fine = 2 * x - odd;

@@ -4,10 +4,9 @@
 // Kopf, Cohen, Lischinski, Uyttendaele (2007), guided by positions:
 //
 //   out(p) = sum_q b(q) w(p, q) in(q) / sum_q b(q) w(p, q)
-//   w = ramp((|n_p . (q - p)| - rounding) / (t |q - p|)),  ramp(x) = 1 up to 1/2, 0 from 1 on
 //
-// b are the bilinear weights of the four q around p. The argument is the sine of the angle by which
-// q leaves the tangent plane of p over t, as in geometry_filter.cpp.
+// b are the bilinear weights of the four q around p, w is how much q lies on the tangent plane of p
+// by scene/same_surface.h, less what rounding may have moved p.
 #include "estimators/view_space/half_resolution.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -15,6 +14,7 @@
 #include <hwy/foreach_target.h>
 
 #include "estimators/view_space/lanes-inl.h"
+#include "scene/same_surface-inl.h"
 
 #ifndef SSDO_HALF_RESOLUTION_JOB
 #define SSDO_HALF_RESOLUTION_JOB
@@ -35,33 +35,27 @@ struct UpsamplingJob {
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-constexpr float kPlaneTolerance = 0.3f;  ///< t: the sine of 17 degrees
-
 void upsample_tile(const UpsamplingJob& job, const Tile& tile) {
   const ViewPlanes& half = job.receivers;
   for_each_vector(job.full, tile, [&](int x, int y) HWY_ATTR {
-    const D d;
-    const DI di;
-    const Receivers p = load_receivers(job.full, x, y);
-    const V share_x = hn::LoadU(d, &job.columns.share[std::size_t(x)]);
+    const Receiver p = load_receiver(job.full, x, y);
+    const V share_x = load(&job.columns.share[std::size_t(x)]);
     const V share_y = set(job.rows.share[std::size_t(y)]);
     V sum = set(0), whole = set(0), nearest = set(1), least = set(INFINITY);
     const auto add = [&](const std::vector<int>& columns, int row, V weight) HWY_ATTR {
-      const VI column = hn::LoadU(di, &columns[std::size_t(x)]);
-      const V value = hn::GatherIndex(d, &job.half(0, row), column);
-      const V z = hn::GatherIndex(d, half.z.row(row), column);
+      const VI column = hn::LoadU(DI(), &columns[std::size_t(x)]);
+      const V value = gather(&job.half(0, row), column);
+      const V z = gather(half.z.row(row), column);
       const V gap = hn::Abs(z - p.position.z);
       const M closer = gap < least;
       least = hn::IfThenElse(closer, gap, least);
       nearest = hn::IfThenElse(closer, value, nearest);
-      const V3 q =
-          along_ray(half, hn::GatherIndex(d, half.ray_x(), column), set(half.ray_y()[row]), z);
+      const V3 q = along_ray(half, gather(half.ray_x(), column), set(half.ray_y()[row]), z);
       const V3 to_q = q - p.position;
       const V off_plane = hn::Abs(dot(to_q, p.normal)) - p.rounding;
-      const V allowed = set(kPlaneTolerance) * hn::Sqrt(dot(to_q, to_q));
-      const V ramp = saturate(hn::NegMulAdd(set(2), off_plane / allowed, set(2)));
+      const V on_plane = plane_weight(off_plane / hn::Sqrt(dot(to_q, to_q)));
       // On its own plane whatever rounding says, p itself among them.
-      const V w = weight * hn::IfThenElse(off_plane <= set(0), set(1), ramp);
+      const V w = weight * hn::IfThenElse(off_plane <= set(0), set(1), on_plane);
       // Background has no place that could be weighed.
       const V counted = hn::IfThenElseZero(z > set(kBackgroundDepth), w);
       sum = hn::MulAdd(counted, value, sum);
@@ -74,7 +68,7 @@ void upsample_tile(const UpsamplingJob& job, const Tile& tile) {
     add(job.columns.before, below, (one - share_x) * share_y);
     add(job.columns.after, below, share_x * share_y);
     const V mean = hn::IfThenElse(whole > set(0), sum / whole, nearest);
-    store_pixels(hn::IfThenElse(p.valid, mean, one), x, tile, &job.out(0, y));
+    store_first(tile.x1 - x, hn::IfThenElse(p.valid, mean, one), &job.out(x, y));
   });
 }
 

@@ -9,71 +9,22 @@
 #define SSDO_VIEW_SPACE_LANES_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
-#include <glm/vec3.hpp>
-
 #include "estimators/view_space/tiled_noise.h"
 #include "estimators/view_space/view_planes.h"
 #include "parallel/tiles.h"
+#include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::CappedTag<float, PaddedLayout::kPad>;
-using DI = hn::RebindToSigned<D>;
-using V = hn::Vec<D>;
-using VI = hn::Vec<DI>;
-using M = hn::Mask<D>;
-
-HWY_INLINE V set(float value) { return hn::Set(D(), value); }
-
-struct V3 {
-  V x, y, z;
-};
-
-HWY_INLINE V3 operator+(const V3& a, const V3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-HWY_INLINE V3 operator-(const V3& a, const V3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-HWY_INLINE V3 operator*(const V3& a, V s) { return {a.x * s, a.y * s, a.z * s}; }
-
-/// a s + b
-HWY_INLINE V3 mul_add(const V3& a, V s, const V3& b) {
-  return {hn::MulAdd(a.x, s, b.x), hn::MulAdd(a.y, s, b.y), hn::MulAdd(a.z, s, b.z)};
-}
-HWY_INLINE V dot(const V3& a, const V3& b) {
-  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, a.z * b.z));
-}
-HWY_INLINE V3 cross(const V3& a, const V3& b) {
-  return {hn::MulSub(a.y, b.z, a.z * b.y), hn::MulSub(a.z, b.x, a.x * b.z),
-          hn::MulSub(a.x, b.y, a.y * b.x)};
-}
-/// Unit vector; 0 of 0.
-HWY_INLINE V3 normalise(const V3& a) {
-  const V length2 = dot(a, a);
-  return a * hn::IfThenElseZero(length2 > set(0), set(1) / hn::Sqrt(length2));
-}
-
-/// What is left of `a` across the unit vector `n`, made unit: Gram-Schmidt.
-HWY_INLINE V3 unit_across(const V3& a, const V3& n) {
-  return normalise(mul_add(n, hn::Neg(dot(a, n)), a));
-}
-
-HWY_INLINE V saturate(V x) { return hn::Min(hn::Max(x, set(0)), set(1)); }
-
-/// t^2 (3 - 2t), t = 0..1 from `from` to `to`, as in GLSL.
-HWY_INLINE V smoothstep(V from, V to, V x) {
-  const V t = saturate((x - from) / (to - from));
-  return t * t * hn::NegMulAdd(set(2), t, set(3));
-}
-
-/// Lanes of pixels that gather. Lanes that are not valid hold a point in front of the viewer and a
-/// normal of 0, so that arithmetic on them stays finite.
-struct Receivers {
+/// Pixels that gather. Lanes that are not valid hold a point in front of the viewer and a normal of
+/// 0, so that arithmetic on them stays finite.
+struct Receiver {
   V3 position, normal;
-  V rounding;
+  V rounding;  ///< distance by which storing P may have moved the position
   M valid;
+  V column, row;  ///< of the pixel
+  V ray_x, ray_y;
 };
 
 HWY_INLINE V3 along_ray(const ViewPlanes& planes, V ray_x, V ray_y, V z) {
@@ -82,23 +33,27 @@ HWY_INLINE V3 along_ray(const ViewPlanes& planes, V ray_x, V ray_y, V z) {
 }
 
 /// The pixel (x, y) and those to its right. May reach beyond the frame by less than a vector.
-HWY_INLINE Receivers load_receivers(const ViewPlanes& planes, int x, int y) {
-  const D d;
-  Receivers p;
-  const V z = hn::LoadU(d, planes.z.row(y) + x);
+HWY_INLINE Receiver load_receiver(const ViewPlanes& planes, int x, int y) {
+  Receiver p;
+  const V z = load(planes.z.row(y) + x);
   p.valid = z > set(kBackgroundDepth);
-  p.position = along_ray(planes, hn::LoadU(d, planes.ray_x() + x), set(planes.ray_y()[y]),
-                         hn::IfThenElse(p.valid, z, set(-1)));
-  p.normal = {hn::LoadU(d, planes.nx.row(y) + x), hn::LoadU(d, planes.ny.row(y) + x),
-              hn::LoadU(d, planes.nz.row(y) + x)};
-  p.rounding = hn::LoadU(d, planes.rounding.row(y) + x);
+  p.ray_x = load(planes.ray_x() + x), p.ray_y = set(planes.ray_y()[y]);
+  p.position = along_ray(planes, p.ray_x, p.ray_y, hn::IfThenElse(p.valid, z, set(-1)));
+  p.normal = {load(planes.nx.row(y) + x), load(planes.ny.row(y) + x), load(planes.nz.row(y) + x)};
+  p.rounding = load(planes.rounding.row(y) + x);
+  p.column = iota(float(x)), p.row = set(float(y));
   return p;
 }
 
+/// A length at depth 1 in pixels, or at any where the camera is orthographic, at each receiver.
+HWY_INLINE V length_px(const ViewPlanes& planes, const Receiver& p, float at_depth_1) {
+  return planes.orthographic ? set(at_depth_1) : set(-at_depth_1) / p.position.z;
+}
+
 /// The unit direction from each surface to the viewer.
-HWY_INLINE V3 direction_to_viewer(const ViewPlanes& planes, int x, int y) {
+HWY_INLINE V3 direction_to_viewer(const ViewPlanes& planes, const Receiver& p) {
   if (planes.orthographic) return {set(0), set(0), set(1)};
-  return normalise({hn::LoadU(D(), planes.ray_x() + x), set(planes.ray_y()[y]), set(1)});
+  return normalise({p.ray_x, p.ray_y, set(1)});
 }
 
 /// A pixel for each lane, and whether the frame has it. Where it has not, it is the pixel (0, 0).
@@ -130,41 +85,28 @@ HWY_INLINE Pixels project(const ViewPlanes& planes, const V3& p) {
   return pixels;
 }
 
-/// Values of a plane of the frame; `outside` where the frame has no such pixel.
-HWY_INLINE V gather(const ViewPlanes& planes, const PaddedPlane& plane, const Pixels& at,
-                    float outside) {
-  const VI index = at.row * hn::Set(DI(), int(planes.layout.stride)) + at.column;
-  return hn::IfThenElse(at.inside, hn::GatherIndex(D(), plane.row(0), index), set(outside));
+/// Where the pixels lie in planes of the frame.
+HWY_INLINE VI index_of(const ViewPlanes& planes, const Pixels& at) {
+  return at.row * set_int(int(planes.layout.stride)) + at.column;
 }
 
-/// Outside the frame is background.
+/// The depths that pixels show. Outside the frame is background.
 HWY_INLINE V gather_depth(const ViewPlanes& planes, const Pixels& at) {
-  return gather(planes, planes.z, at, kBackgroundDepth);
+  const V z = gather(planes.z.row(0), index_of(planes, at));
+  return hn::IfThenElse(at.inside, z, set(kBackgroundDepth));
 }
 
-/// The position at depth `z` in the centre of a pixel. Not finite on background.
-HWY_INLINE V3 position_at(const ViewPlanes& planes, const Pixels& at, V z) {
-  const D d;
-  return along_ray(planes, hn::GatherIndex(d, planes.ray_x(), at.column),
-                   hn::GatherIndex(d, planes.ray_y(), at.row), z);
-}
-
-/// Lanes of pixels that look at surfaces some whole pixels away.
-struct Viewed {
-  Receivers p;
-  V column, row, ray_x, ray_y;
-};
-
-HWY_INLINE Viewed view_from(const ViewPlanes& planes, int x, int y) {
-  const D d;
-  return {load_receivers(planes, x, y), hn::Iota(d, float(x)), set(float(y)),
-          hn::LoadU(d, planes.ray_x() + x), set(planes.ray_y()[y])};
+/// The normals that pixels show; those of the pixel (0, 0) outside the frame.
+HWY_INLINE V3 gather_normal(const ViewPlanes& planes, const Pixels& at) {
+  const VI index = index_of(planes, at);
+  return {gather(planes.nx.row(0), index), gather(planes.ny.row(0), index),
+          gather(planes.nz.row(0), index)};
 }
 
 /// From each receiver to the surface at depth `z` so many pixels away. From differences, which
 /// loses less than to subtract positions. Not finite on background.
-HWY_INLINE V3 way_to(const ViewPlanes& planes, const Viewed& from, V right, V down, V z) {
-  const V deeper = z - from.p.position.z;
+HWY_INLINE V3 way_to(const ViewPlanes& planes, const Receiver& from, V right, V down, V z) {
+  const V deeper = z - from.position.z;
   V3 way{right * set(planes.slope_x), down * set(planes.slope_y), deeper};
   if (!planes.orthographic) {
     way.x = hn::MulAdd(way.x, z, from.ray_x * deeper);
@@ -173,23 +115,28 @@ HWY_INLINE V3 way_to(const ViewPlanes& planes, const Viewed& from, V right, V do
   return way;
 }
 
-/// The frame of a point kernel's half-ball: about the normal, turned to a pattern's vector.
+/// A right-handed orthonormal frame about a normal.
 struct TangentFrame {
   V3 tangent, bitangent, normal;
 
-  /// What is (x, y, z) in the half-ball, from `origin`.
-  HWY_INLINE V3 place(const glm::vec3& s, const V3& origin) const {
-    return mul_add(tangent, set(s.x),
-                   mul_add(bitangent, set(s.y), mul_add(normal, set(s.z), origin)));
+  /// What is (s.x, s.y, s.z) in the frame, from `origin`.
+  HWY_INLINE V3 place(const V3& s, const V3& origin) const {
+    return mul_add(tangent, s.x, mul_add(bitangent, s.y, mul_add(normal, s.z, origin)));
   }
 };
 
-/// The vector is (noise_x, noise_y, 0); Gram-Schmidt.
+/// Any frame about each unit normal: frame_about() of math/frame.h.
+HWY_INLINE TangentFrame frame_about(const V3& n) {
+  const V sign = hn::CopySign(set(1), n.z), a = set(-1) / (sign + n.z), b = n.x * n.y * a;
+  return {{hn::MulAdd(sign * n.x * n.x, a, set(1)), sign * b, hn::Neg(sign * n.x)},
+          {b, hn::MulAdd(n.y * n.y, a, sign), hn::Neg(n.y)},
+          n};
+}
+
+/// The frame of a point kernel, turned to the vector (noise_x, noise_y, 0) by Gram-Schmidt.
 HWY_INLINE TangentFrame tangent_frame(const ViewPlanes& planes, const TiledNoise& noise_x,
                                       const TiledNoise& noise_y, int x, int y, const V3& normal) {
-  const D d;
-  const V3 noise{hn::LoadU(d, noise_x.at(planes, x, y)), hn::LoadU(d, noise_y.at(planes, x, y)),
-                 set(0)};
+  const V3 noise{load(noise_x.at(planes, x, y)), load(noise_y.at(planes, x, y)), set(0)};
   const V3 tangent = unit_across(noise, normal);
   return {tangent, cross(normal, tangent), normal};
 }
@@ -197,60 +144,23 @@ HWY_INLINE TangentFrame tangent_frame(const ViewPlanes& planes, const TiledNoise
 /// Calls work(x, y) for each vector of pixels of a tile in which there is a surface.
 template <class Work>
 HWY_INLINE void for_each_vector(const ViewPlanes& planes, const Tile& tile, const Work& work) {
-  const D d;
   for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; x += int(hn::Lanes(d))) {
-      if (!hn::AllFalse(d, hn::LoadU(d, planes.z.row(y) + x) > set(kBackgroundDepth))) work(x, y);
+    for (int x = tile.x0; x < tile.x1; x += kLanes) {
+      if (any(load(planes.z.row(y) + x) > set(kBackgroundDepth))) work(x, y);
     }
   }
 }
 
-/// Reads the lanes that lie in a tile, from pixel x of a row on; `row` needs no padding.
-HWY_INLINE V load_pixels(const float* row, int x, const Tile& tile) {
-  const D d;
-  if (x + int(hn::Lanes(d)) <= tile.x1) return hn::LoadU(d, row + x);
-  HWY_ALIGN float all[PaddedLayout::kPad] = {};
-  for (int i = 0; x + i < tile.x1; ++i) all[i] = row[x + i];
-  return hn::Load(d, all);
-}
-
-/// The same of vectors.
-HWY_INLINE V3 load_vectors(const glm::vec3* row, int x, const Tile& tile) {
-  const D d;
-  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-  HWY_ALIGN float all[3 * PaddedLayout::kPad] = {};
-  const float* from = all;
-  if (x + int(hn::Lanes(d)) <= tile.x1) {
-    from = &row[x].x;
-  } else {
-    for (int i = 0; x + i < tile.x1; ++i)
-      for (int c = 0; c < 3; ++c) all[3 * i + c] = row[x + i][c];
-  }
-  V3 values;
-  hn::LoadInterleaved3(d, from, values.x, values.y, values.z);
-  return values;
-}
-
-/// Writes the lanes that lie in a tile, from pixel x of a row on; `row` needs no padding.
-HWY_INLINE void store_pixels(V values, int x, const Tile& tile, float* row) {
-  const D d;
-  const int lanes = int(hn::Lanes(d));
-  if (x + lanes <= tile.x1) return hn::StoreU(values, d, row + x);
-  HWY_ALIGN float all[PaddedLayout::kPad];
-  hn::Store(values, d, all);
-  for (int i = 0; x + i < tile.x1; ++i) row[x + i] = all[i];
-}
-
-/// The same of vectors.
-HWY_INLINE void store_vectors(const V3& values, int x, const Tile& tile, glm::vec3* row) {
-  const D d;
-  const int lanes = int(hn::Lanes(d));
-  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-  if (x + lanes <= tile.x1)
-    return hn::StoreInterleaved3(values.x, values.y, values.z, d, &row[x].x);
-  HWY_ALIGN float all[3 * PaddedLayout::kPad];
-  hn::StoreInterleaved3(values.x, values.y, values.z, d, all);
-  for (int i = 0; x + i < tile.x1; ++i) row[x + i] = {all[3 * i], all[3 * i + 1], all[3 * i + 2]};
+/// Sets the surfaces of a tile to what `openness(receiver, x, y)` says of them, within 0..1.
+/// Background stays as it is, but for 1 beside surfaces.
+template <class Openness>
+HWY_INLINE void set_openness(const ViewPlanes& planes, const Tile& tile, Plane<float>& out,
+                             const Openness& openness) {
+  for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
+    const Receiver p = load_receiver(planes, x, y);
+    const V open = saturate(openness(p, x, y));
+    store_first(tile.x1 - x, hn::IfThenElse(p.valid, open, set(1)), &out(x, y));
+  });
 }
 
 }  // namespace ssdo::HWY_NAMESPACE

@@ -20,7 +20,7 @@
 
 #include <numbers>
 
-#include "parallel/tiles.h"
+#include "estimators/view_space/openness.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/view_space/reflection_occlusion.cpp"
@@ -39,7 +39,6 @@ struct ReflectionJob {
   const Plane<glm::vec3>& bent;
   const Plane<float>* layer;  ///< of roughness; null: the number
   float roughness, strength;
-  Plane<float>& open;
 };
 
 // In radians, of the visible cone; the roughness of the narrowest specular cone.
@@ -62,20 +61,19 @@ HWY_INLINE V overlap_of_cones(V specular, const V3& r, V visible, const V3& b, V
   return hn::IfThenElseZero(visible > set(kClosed), overlap);
 }
 
-void reflection_of_tile(const ReflectionJob& job, const Tile& tile) {
+void reflection_of_tile(const ReflectionJob& job, const Tile& tile, Plane<float>& open) {
   const ViewPlanes& planes = job.planes;
   const V pi = set(float(std::numbers::pi)), strength = set(job.strength) * pi;
-  for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
-    const Receivers p = load_receivers(planes, x, y);
-    const V3 viewer = direction_to_viewer(planes, x, y);
+  set_openness(planes, tile, open, [&](const Receiver& p, int x, int y) HWY_ATTR {
+    const V3 viewer = direction_to_viewer(planes, p);
     // What a mirror there shows the viewer.
     const V3 r = p.normal * (set(2) * dot(p.normal, viewer)) - viewer;
-    const V3 b = load_vectors(&job.bent(0, y), x, tile);
-    const V roughness = job.layer ? load_pixels(&(*job.layer)(0, y), x, tile) : set(job.roughness);
+    const int count = tile.x1 - x;
+    const V3 b = load_first(count, &job.bent(x, y));
+    const V roughness = job.layer ? load_first(count, &(*job.layer)(x, y)) : set(job.roughness);
     const V length = hn::Sqrt(dot(b, b));
-    const V open =
-        overlap_of_cones(hn::Max(roughness, set(kSharpest)) * pi, r, length * strength, b, length);
-    store_pixels(hn::IfThenElse(p.valid, open, set(1)), x, tile, &job.open(0, y));
+    return overlap_of_cones(hn::Max(roughness, set(kSharpest)) * pi, r, length * strength, b,
+                            length);
   });
 }
 
@@ -89,17 +87,13 @@ HWY_EXPORT(reflection_of_tile);
 
 Plane<float> reflection_occlusion(const Scene& scene, const Request& request,
                                   const ViewPlanes& planes, const Plane<glm::vec3>& bent) {
-  Plane<float> open(bent.width, bent.height, 1.0f);
   const bool layer = !scene.roughness.empty();
-  const ReflectionJob job{planes,
-                          bent,
-                          layer ? &scene.roughness : nullptr,
+  const ReflectionJob job{planes, bent, layer ? &scene.roughness : nullptr,
                           float(request.parameters.at("roughness")),
-                          float(request.parameters.at("reflection-strength")),
-                          open};
-  const auto work = [&](const Tile& tile) { HWY_DYNAMIC_DISPATCH(reflection_of_tile)(job, tile); };
-  for_each_tile(planes.width(), planes.height(), work, {});
-  return open;
+                          float(request.parameters.at("reflection-strength"))};
+  return find_openness(planes, {}, [&](const Tile& tile, Plane<float>& open) {
+    HWY_DYNAMIC_DISPATCH(reflection_of_tile)(job, tile, open);
+  });
 }
 
 }  // namespace ssdo
