@@ -26,274 +26,234 @@
 // and what hides x_i from the eye alone counts, so that the result is biased even when converged.
 #include "estimators/ssdo.h"
 
-#include <algorithm>
 #include <array>
-#include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
-#include <glm/matrix.hpp>
+#include <optional>
 
 #include "estimators/view_space/half_ball.h"
-#include "math/frame.h"
+#include "estimators/view_space/openness.h"
+#include "estimators/view_space/tiled_noise.h"
 #include "math/light_range.h"
-#include "scene/usable.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "estimators/ssdo.cpp"
+#include <hwy/foreach_target.h>
+
+#include "estimators/view_space/lanes-inl.h"
+#include "simd/octahedral_map-inl.h"
+
+#ifndef SSDO_SSDO_JOB
+#define SSDO_SSDO_JOB
 namespace ssdo {
 namespace {
 
-constexpr int kPatternSize = 4;
-constexpr float kPi = glm::pi<float>();
-
-struct Settings {
-  int samples;
-  float radius;
-  float bias;         ///< scene units
-  float singularity;  ///< scene units
-  float strength;
-  float bounce_strength;
-  float bounce_singularity;  ///< F_max
-
-  explicit Settings(const Request& request)
-      : samples(int(request.parameters.at("samples"))),
-        radius(request.radius),
-        bias(float(request.parameters.at("bias")) * request.radius),
-        singularity(float(request.parameters.at("singularity")) * request.radius),
-        strength(float(request.parameters.at("strength"))),
-        bounce_strength(float(request.parameters.at("bounce-strength"))),
-        bounce_singularity(float(request.parameters.at("bounce-singularity"))) {}
-};
-
-/// The points of one member of the pattern, as arrays.
-struct SampleSet {
-  std::vector<float> x, y, cosine, length;
-
-  explicit SampleSet(const std::vector<HalfBallSample>& samples) {
-    for (const HalfBallSample& s : samples) {
-      x.push_back(s.direction.x);
-      y.push_back(s.direction.y);
-      cosine.push_back(s.direction.z);
-      length.push_back(s.length);
-    }
-  }
-};
-
-/// One pixel that gathers.
-struct Receiver {
-  glm::vec3 position, normal;
-  glm::mat3 frame;
-  const SampleSet& samples;
-  float bias;
-};
-
-constexpr int kBatch = 16;
-
-/// Some samples of a receiver after projection, as arrays that the compiler fills lane by lane.
-struct Batch {
-  int count;
-  std::array<float, kBatch> direction_x, direction_y, direction_z;  ///< unit, camera space
-  std::array<float, kBatch> x, y, z;                                ///< the points
-  std::array<int, kBatch> pixel;  ///< index of the pixel that shows the point; -1 outside the frame
-
-  glm::vec3 direction(int k) const {
-    const auto i = std::size_t(k);
-    return {direction_x[i], direction_y[i], direction_z[i]};
-  }
-  glm::vec3 point(int k) const {
-    const auto i = std::size_t(k);
-    return {x[i], y[i], z[i]};
-  }
-};
-
-/// Places the samples of a pixel: both passes see the same points and the same surfaces.
-class Sampler {
- public:
-  Sampler(const Geometry& geometry, const Settings& settings, unsigned seed)
-      : geometry_(geometry),
-        settings_(settings),
-        fx_(float(geometry.camera.fx)),
-        fy_(float(geometry.camera.fy)),
-        cx_(float(geometry.camera.cx - geometry.window.x0)),
-        cy_(float(geometry.camera.cy - geometry.window.y0)),
-        orthographic_(geometry.camera.orthographic) {
-    for (const auto& samples : half_ball_pattern(kPatternSize, settings.samples, seed)) {
-      pattern_.emplace_back(samples);
-    }
-  }
-
-  Receiver receiver(int x, int y) const {
-    const Surfel& s = geometry_.surfel(x, y);
-    const glm::vec3 n(s.normal);
-    // The pattern is fixed to the display window: a crop sees the same.
-    const int row = (y + geometry_.window.y0 - geometry_.display.y0) & (kPatternSize - 1);
-    const int column = (x + geometry_.window.x0 - geometry_.display.x0) & (kPatternSize - 1);
-    return {glm::vec3(s.position), n, frame_about(n),
-            pattern_[std::size_t(row * kPatternSize + column)], settings_.bias + s.normal.w};
-  }
-
-  /// Samples `first` to `first + kBatch` of the receiver, or as many as there are.
-  void place(const Receiver& p, int first, Batch& out) const {
-    out.count = std::min(kBatch, settings_.samples - first);
-    const auto n = std::size_t(out.count), at = std::size_t(first);
-    const float *sx = &p.samples.x[at], *sy = &p.samples.y[at], *sz = &p.samples.cosine[at];
-    const float* length = &p.samples.length[at];
-    const glm::mat3& f = p.frame;
-    const float width = float(geometry_.surfel.width), height = float(geometry_.surfel.height);
-    for (std::size_t k = 0; k < n; ++k) {
-      out.direction_x[k] = f[0].x * sx[k] + f[1].x * sy[k] + f[2].x * sz[k];
-      out.direction_y[k] = f[0].y * sx[k] + f[1].y * sy[k] + f[2].y * sz[k];
-      out.direction_z[k] = f[0].z * sx[k] + f[1].z * sy[k] + f[2].z * sz[k];
-      const float reach = settings_.radius * length[k];
-      out.x[k] = p.position.x + reach * out.direction_x[k];
-      out.y[k] = p.position.y + reach * out.direction_y[k];
-      out.z[k] = p.position.z + reach * out.direction_z[k];
-    }
-    for (std::size_t k = 0; k < n; ++k) {
-      const float w = orthographic_ ? 1.0f : -1.0f / out.z[k];
-      const float column = cx_ + fx_ * out.x[k] * w, row = cy_ - fy_ * out.y[k] * w;
-      const bool inside =
-          (out.z[k] < 0) & (column >= 0) & (row >= 0) & (column < width) & (row < height);
-      // Not evaluated as an index unless it is inside: a huge value has no int.
-      const int px = int(inside ? column : 0.0f), py = int(inside ? row : 0.0f);
-      out.pixel[k] = inside ? py * geometry_.surfel.width + px : -1;
-    }
-  }
-
-  /// Whether the surface is in front of the point `x` by more than the bias and nearer to it than
-  /// the singularity. The background is in front of nothing.
-  bool is_in_front(const Surfel& s, const glm::vec3& x, float bias) const {
-    const glm::vec3 to_x = x - glm::vec3(s.position);
-    return (s.position.w != 0) & (glm::dot(to_x, glm::vec3(s.normal)) < -bias) &
-           (std::abs(to_x.z) < settings_.singularity);
-  }
-
- private:
-  const Geometry& geometry_;
-  const Settings& settings_;
-  std::vector<SampleSet> pattern_;
-  float fx_, fy_, cx_, cy_;
-  bool orthographic_;
+/// One point of the half-ball about the normal, in each pixel of the pattern.
+struct PatternPoint {
+  TiledNoise x, y, cosine;  ///< of the unit direction to it
+  TiledNoise length;        ///< R l
 };
 
 /// The environment as the samples see it, for directions in camera space.
 struct Sky {
   OctahedralMap radiance;    ///< averaged over the solid angle of a sample
   OctahedralMap irradiance;  ///< over pi, on a surface with the normal that is looked up
-
-  Sky(const Environment& environment, int samples, const glm::mat3& world_to_camera)
-      : radiance(environment.blurred(2 * kPi / float(samples), world_to_camera)),
-        irradiance(environment.blurred(kPi, world_to_camera)) {}
 };
 
-/// part / whole for each colour; nothing of nothing is nothing.
-glm::vec3 share_of(const glm::vec3& part, const glm::vec3& whole) {
-  glm::vec3 share(0);
-  for (int c = 0; c < 3; ++c) share[c] = whole[c] > 0 ? std::max(part[c], 0.0f) / whole[c] : 0.0f;
-  return share;
+/// Both passes see the same points and the same surfaces.
+struct SsdoJob {
+  const ViewPlanes& planes;
+  std::vector<PatternPoint> points;
+
+  // Of direct light. Lengths in scene units.
+  float bias, singularity, strength;
+  std::optional<Sky> sky;  ///< none: the same radiance from everywhere
+  glm::vec3 constant_radiance;
+
+  // Of the bounce.
+  float radius, gain;        ///< what the sum is multiplied by
+  float bounce_singularity;  ///< F_max
+};
+
+}  // namespace
+}  // namespace ssdo
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace ssdo::HWY_NAMESPACE {
+
+/// What receivers find at one of their points.
+struct SsdoSample {
+  V3 direction, to_point;  ///< from the receiver; the direction is unit
+  V cosine;
+  Pixels at;  ///< the pixel that shows the point
+  V3 to_q;    ///< the surface there, from the receiver; not finite where there is none
+};
+
+HWY_INLINE SsdoSample sample_at(const SsdoJob& job, const PatternPoint& point, const Receiver& p,
+                                const TangentFrame& frame, int x, int y) {
+  const ViewPlanes& planes = job.planes;
+  SsdoSample s;
+  s.cosine = load(point.cosine.at(planes, x, y));
+  const V3 in_frame{load(point.x.at(planes, x, y)), load(point.y.at(planes, x, y)), s.cosine};
+  s.direction = frame.place(in_frame, set(glm::vec3(0)));
+  s.to_point = s.direction * load(point.length.at(planes, x, y));
+  s.at = project(planes, p.position + s.to_point);
+  const V right = hn::ConvertTo(D(), s.at.column) - p.column,
+          down = hn::ConvertTo(D(), s.at.row) - p.row;
+  s.to_q = way_to(planes, p, right, down, gather_depth(planes, s.at));
+  return s;
 }
 
-/// Visibility of every sample against the environment.
-void gather_direct(const Scene& scene, const Settings& settings, const Sampler& sampler,
-                   const Sky* sky, const Progress& progress, Products& out) {
-  const auto work = [&](const Tile& tile) {
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) {
-        const std::size_t i = out.ao.index(x, y);
-        if (!is_usable(scene.geometry.surfel[i])) continue;
-        const Receiver p = sampler.receiver(x, y);
-        float visible = 0;
-        glm::vec3 lit(0), light(0);
-        Batch batch;
-        for (int first = 0; first < settings.samples; first += kBatch) {
-          sampler.place(p, first, batch);
-          for (int k = 0; k < batch.count; ++k) {
-            const int q = batch.pixel[std::size_t(k)];
-            const bool hidden = q >= 0 && sampler.is_in_front(scene.geometry.surfel[std::size_t(q)],
-                                                              batch.point(k), p.bias);
-            const float cosine = p.samples.cosine[std::size_t(first + k)];
-            const float share = hidden ? 1 - settings.strength : 1.0f;
-            visible += share * cosine;
-            if (!sky) continue;
-            const glm::vec3 arriving = cosine * sky->radiance(batch.direction(k));
-            light += arriving;
-            lit += share * arriving;
-          }
-        }
-        // 2 pi / N over pi; a strength above 1 takes more than there is.
-        out.ao[i] = std::clamp(visible * 2.0f / float(settings.samples), 0.0f, 1.0f);
-        if (out.direct.empty()) continue;
-        out.direct[i] = sky ? share_of(lit, light) * sky->irradiance(p.normal)
-                            : out.ao[i] * scene.light.environment.constant_radiance();
-      }
+/// Where the surface is in front of the point by more than the bias and nearer to it than the
+/// singularity. The background is in front of nothing.
+HWY_INLINE M is_hidden(const SsdoJob& job, const SsdoSample& s, V bias) {
+  const V3 from_q = s.to_point - s.to_q;
+  const M near = hn::Abs(from_q.z) < set(job.singularity);
+  if (!any(near)) return near;
+  return hn::And(near, dot(from_q, gather_normal(job.planes, s.at)) < hn::Neg(bias));
+}
+
+/// part / whole; nothing of nothing is nothing.
+HWY_INLINE V share_of(V part, V whole) {
+  return hn::IfThenElseZero(whole > set(0), hn::Max(part, set(0)) / whole);
+}
+
+/// Visibility of every sample against the environment. `direct` may be empty.
+void direct_of_tile(const SsdoJob& job, const Tile& tile, Plane<float>& ao,
+                    Plane<glm::vec3>& direct) {
+  const V hidden_share = set(1 - job.strength);
+  set_openness(job.planes, tile, ao, [&](const Receiver& p, int x, int y) HWY_ATTR {
+    const TangentFrame frame = frame_about(p.normal);
+    const V bias = p.rounding + set(job.bias);
+    V visible = set(0);
+    V3 lit = set(glm::vec3(0)), light = lit;
+    for (const PatternPoint& point : job.points) {
+      const SsdoSample s = sample_at(job, point, p, frame, x, y);
+      const V share = hn::IfThenElse(is_hidden(job, s, bias), hidden_share, set(1));
+      visible = hn::MulAdd(share, s.cosine, visible);
+      if (!job.sky || direct.empty()) continue;
+      const V3 arriving = look_up(job.sky->radiance, s.direction) * s.cosine;
+      light = light + arriving;
+      lit = mul_add(arriving, share, lit);
     }
-  };
-  for_each_tile(out.ao.width, out.ao.height, work, progress);
+    // 2 pi / N over pi; a strength above 1 takes more than there is.
+    const V open = saturate(visible * set(2 / float(job.points.size())));
+    if (direct.empty()) return open;
+    const V3 arriving =
+        job.sky ? V3{share_of(lit.x, light.x), share_of(lit.y, light.y), share_of(lit.z, light.z)} *
+                      look_up(job.sky->irradiance, p.normal)
+                : set(job.constant_radiance) * open;
+    store_first(tile.x1 - x, if_then_else_zero(p.valid, arriving), &direct(x, y));
+    return open;
+  });
 }
 
 /// Light that the surfaces around every pixel send on: `sent` is their radiance.
-Plane<glm::vec3> gather_bounce(const Scene& scene, const Settings& settings, const Sampler& sampler,
-                               const Progress& progress, const Plane<glm::vec3>& sent) {
-  Plane<glm::vec3> bounce(sent.width, sent.height, glm::vec3(0));
-  const float per_sample = settings.bounce_strength * 2.0f / float(settings.samples);
-  const float radius2 = settings.radius * settings.radius;
-  const auto work = [&](const Tile& tile) {
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) {
-        const std::size_t i = bounce.index(x, y);
-        if (!is_usable(scene.geometry.surfel[i])) continue;
-        const Receiver p = sampler.receiver(x, y);
-        glm::vec3 sum(0);
-        Batch batch;
-        for (int first = 0; first < settings.samples; first += kBatch) {
-          sampler.place(p, first, batch);
-          for (int k = 0; k < batch.count; ++k) {
-            const int q = batch.pixel[std::size_t(k)];
-            if (q < 0) continue;
-            const Surfel& sender = scene.geometry.surfel[std::size_t(q)];
-            const glm::vec3 to_q = glm::vec3(sender.position) - p.position;
-            const float d2 = std::max(glm::dot(to_q, to_q), 1e-20f);
-            const float cos_p = std::max(0.0f, glm::dot(to_q, p.normal));
-            const float cos_q = std::max(0.0f, -glm::dot(to_q, glm::vec3(sender.normal)));
-            // The cosines still carry the length of to_q.
-            const float form_factor = radius2 * cos_p * cos_q / (d2 * d2);
-            if (form_factor > 0)  // a broken position has none
-              sum += std::min(form_factor, settings.bounce_singularity) * sent[std::size_t(q)];
-          }
-        }
-        bounce[i] = sum * per_sample;
-      }
+void bounce_of_tile(const SsdoJob& job, const Tile& tile, const Plane<glm::vec3>& sent,
+                    Plane<glm::vec3>& bounce) {
+  const ViewPlanes& planes = job.planes;
+  for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
+    const Receiver p = load_receiver(planes, x, y);
+    const TangentFrame frame = frame_about(p.normal);
+    V3 sum = set(glm::vec3(0));
+    for (const PatternPoint& point : job.points) {
+      const SsdoSample s = sample_at(job, point, p, frame, x, y);
+      // The cosines still carry the length of to_q.
+      const V cos_p = dot(s.to_q, p.normal);
+      if (!any(cos_p > set(0))) continue;
+      const V cos_q = hn::Neg(dot(s.to_q, gather_normal(planes, s.at)));
+      const M faces = hn::And(cos_p > set(0), cos_q > set(0));
+      if (!any(faces)) continue;
+      const V d2 = hn::Max(dot(s.to_q, s.to_q), set(1e-20f));
+      const V form_factor = set(job.radius * job.radius) * cos_p * cos_q / (d2 * d2);
+      const M sends = hn::And(faces, form_factor > set(0));  // what is not finite has none
+      const V weight = hn::IfThenElseZero(sends, hn::Min(form_factor, set(job.bounce_singularity)));
+      const VI index = (s.at.row * set_int(sent.width) + s.at.column) * set_int(3);
+      const float* red = &sent[0].x;
+      sum = mul_add({gather(red, index), gather(red + 1, index), gather(red + 2, index)}, weight,
+                    sum);
     }
-  };
-  for_each_tile(bounce.width, bounce.height, work, progress);
-  return bounce;
+    store_first(tile.x1 - x, sum * hn::IfThenElseZero(p.valid, set(job.gain)), &bounce(x, y));
+  });
+}
+
+}  // namespace ssdo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ssdo {
+
+HWY_EXPORT(direct_of_tile);
+HWY_EXPORT(bounce_of_tile);
+
+namespace {
+
+constexpr int kPatternSize = TiledNoise::kSize;
+
+std::vector<PatternPoint> points_of(const Request& request, int count) {
+  const auto sets = half_ball_pattern(kPatternSize, count, request.seed);
+  std::vector<PatternPoint> points;
+  for (std::size_t i = 0; i < std::size_t(count); ++i) {
+    std::array<float, kPatternSize * kPatternSize> x, y, cosine, length;
+    for (std::size_t k = 0; k < sets.size(); ++k) {
+      const HalfBallSample& s = sets[k][i];
+      x[k] = s.direction.x, y[k] = s.direction.y, cosine[k] = s.direction.z;
+      length[k] = request.radius * s.length;
+    }
+    points.push_back({TiledNoise(x), TiledNoise(y), TiledNoise(cosine), TiledNoise(length)});
+  }
+  return points;
+}
+
+std::optional<Sky> sky_of(const Scene& scene, int samples) {
+  const Environment& environment = scene.light.environment;
+  if (environment.is_constant()) return std::nullopt;
+  constexpr float kPi = glm::pi<float>();
+  const glm::mat3& turn = scene.geometry.world_to_camera;
+  return Sky{environment.blurred(2 * kPi / float(samples), turn), environment.blurred(kPi, turn)};
 }
 
 /// What every pixel sends: its albedo times all the light that arrives, or the layer that says so.
 Plane<glm::vec3> sender_radiance(const Scene& scene, const Products& so_far) {
-  Plane<glm::vec3> sent(so_far.ao.width, so_far.ao.height, glm::vec3(0));
-  for (std::size_t i = 0; i < sent.size(); ++i) {
-    sent[i] = within_range(scene.senders.radiance.empty()
-                               ? scene.senders.albedo[i] * (so_far.direct[i] + so_far.bounce[i])
-                               : scene.senders.radiance[i]);
-  }
+  Plane<glm::vec3> sent(so_far.ao.width, so_far.ao.height);
+  for_each_row(sent.height, [&](int y) {
+    for (std::size_t i = sent.index(0, y); i < sent.index(0, y + 1); ++i) {
+      sent[i] = within_range(scene.senders.radiance.empty()
+                                 ? scene.senders.albedo[i] * (so_far.direct[i] + so_far.bounce[i])
+                                 : scene.senders.radiance[i]);
+    }
+  });
   return sent;
 }
 
 Products estimate(const Scene& scene, const Request& request, const Progress& progress) {
-  const Settings settings(request);
-  const Sampler sampler(scene.geometry, settings, request.seed);
-  const int width = scene.geometry.surfel.width, height = scene.geometry.surfel.height;
-
+  const auto parameter = [&](const char* name) { return float(request.parameters.at(name)); };
+  const int samples = int(request.parameters.at("samples"));
+  const ViewPlanes planes = make_view_planes(scene.geometry);
+  const bool wants_light = request.products.direct || request.products.bounce;
+  const SsdoJob job{planes,
+                    points_of(request, samples),
+                    parameter("bias") * request.radius,
+                    parameter("singularity") * request.radius,
+                    parameter("strength"),
+                    wants_light ? sky_of(scene, samples) : std::nullopt,
+                    scene.light.environment.constant_radiance(),
+                    request.radius,
+                    parameter("bounce-strength") * 2 / float(samples),
+                    parameter("bounce-singularity")};
+  const Plane<glm::vec3> black(planes.width(), planes.height(), glm::vec3(0));
   Products out;
-  out.ao = Plane<float>(width, height, 1.0f);
-  if (request.products.direct || request.products.bounce)
-    out.direct = Plane<glm::vec3>(width, height, glm::vec3(0));
-  std::optional<Sky> sky;
-  if (!out.direct.empty() && !scene.light.environment.is_constant()) {
-    sky.emplace(scene.light.environment, settings.samples, scene.geometry.world_to_camera);
-  }
-  gather_direct(scene, settings, sampler, sky ? &*sky : nullptr, progress, out);
-  if (request.products.bounce) out.bounce = Plane<glm::vec3>(width, height, glm::vec3(0));
+  if (wants_light) out.direct = black;
+  out.ao = find_openness(planes, progress, [&](const Tile& tile, Plane<float>& ao) {
+    HWY_DYNAMIC_DISPATCH(direct_of_tile)(job, tile, ao, out.direct);
+  });
+  if (request.products.bounce) out.bounce = black;
   for (int pass = 0; request.products.bounce && pass < request.bounces; ++pass) {
-    out.bounce = gather_bounce(scene, settings, sampler, progress, sender_radiance(scene, out));
+    const Plane<glm::vec3> sent = sender_radiance(scene, out);
+    const auto gather_light = [&](const Tile& tile) {
+      HWY_DYNAMIC_DISPATCH(bounce_of_tile)(job, tile, sent, out.bounce);
+    };
+    for_each_tile(planes.width(), planes.height(), gather_light, progress);
   }
   return out;
 }
@@ -326,3 +286,4 @@ Method ssdo_method() {
 }
 
 }  // namespace ssdo
+#endif
