@@ -69,7 +69,7 @@ constexpr int bounce_spacing(int slices) { return slices < 4 ? 2 : 1; }
 constexpr int bounce_slices(int slices) { return slices < 4 ? (3 * slices + 1) / 2 : slices; }
 
 /// One colour for each pixel, in the order of the march.
-InterleavedColor make_color(const Interleaving& layout) {
+InterleavedVectors make_color(const Interleaving& layout) {
   return {InterleavedPlane(layout), InterleavedPlane(layout), InterleavedPlane(layout)};
 }
 
@@ -172,14 +172,14 @@ class Bitmask {
     return of_receivers(background, [&](std::ptrdiff_t i) { return plane[i]; });
   }
 
-  Plane<glm::vec3> picture(const InterleavedColor& color) const {
+  Plane<glm::vec3> picture(const InterleavedVectors& color) const {
     return of_receivers(glm::vec3(0), [&](std::ptrdiff_t i) {
       return glm::vec3(color[0][i], color[1][i], color[2][i]);
     });
   }
 
-  InterleavedColor black() const {
-    InterleavedColor color = make_color(layout_);
+  InterleavedVectors black() const {
+    InterleavedVectors color = make_color(layout_);
     for_each_row(layout_.height(), [&](int y) {
       for (InterleavedPlane& plane : color) plane.fill_row(layout_, y, 0);
     });
@@ -187,8 +187,8 @@ class Bitmask {
   }
 
   /// A value of every pixel in the order of the march, clamped to the range of light.
-  InterleavedColor interleaved(const Plane<glm::vec3>& picture) const {
-    InterleavedColor color = black();
+  InterleavedVectors interleaved(const Plane<glm::vec3>& picture) const {
+    InterleavedVectors color = black();
     for_each_row(layout_.height(), [&](int y) {
       for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
         const glm::vec3 value = within_range(picture[pixel]);
@@ -201,7 +201,7 @@ class Bitmask {
   void gather_visibility() {
     const Light& light = scene_.light;
     VisibilityJob job{march_, 0, nullptr, &light.irradiance, &ao_, nullptr, nullptr, nullptr};
-    InterleavedColor bent;
+    InterleavedVectors bent;
     if (request_.products.bent) {
       bent = make_color(layout_);
       job.bent = &bent;
@@ -242,7 +242,7 @@ class Bitmask {
                   off = sun.angular_radius * std::sqrt((float(rank) + 0.5f) / float(members));
       const glm::vec3 to =
           glm::normalize(frame * glm::vec3(off * std::cos(angle), off * std::sin(angle), 1));
-      job.directions[std::size_t(m)] = {to.x, to.y, to.z};
+      job.directions[std::size_t(m)] = to;
       const double start = fraction(rank * kR2Second);
       for (int i = 0; i < steps; ++i)
         job.distances_px[std::size_t(m)].push_back(
@@ -253,7 +253,8 @@ class Bitmask {
   }
 
   /// The light that the solids of a layer send: that of the pixels that show them.
-  void find_sent_behind(int layer, const InterleavedColor& sent, InterleavedColor& behind) const {
+  void find_sent_behind(int layer, const InterleavedVectors& sent,
+                        InterleavedVectors& behind) const {
     for_each_row(layout_.height(), [&](int y) {
       for (InterleavedPlane& plane : behind) plane.fill_row(layout_, y, 0);
       for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
@@ -273,11 +274,12 @@ class Bitmask {
   }
 
   /// Each pass is lit by the one before.
-  InterleavedColor gather_bounce() {
+  InterleavedVectors gather_bounce() {
     const bool lit = senders_need_light();  // else a layer says what is sent
-    InterleavedColor given = interleaved(lit ? scene_.senders.albedo : scene_.senders.radiance),
-                     bounce = black(), sent_back, gathered = make_color(layout_), sent_before_last;
-    std::vector<InterleavedColor> sent_behind;
+    InterleavedVectors given = interleaved(lit ? scene_.senders.albedo : scene_.senders.radiance),
+                       bounce = black(), sent_back, gathered = make_color(layout_),
+                       sent_before_last;
+    std::vector<InterleavedVectors> sent_behind;
     for (std::size_t k = 0; k < scene_.solids.behind.size(); ++k)
       sent_behind.push_back(make_color(layout_));
     InterleavedPlane weights(layout_), difference;
@@ -289,15 +291,14 @@ class Bitmask {
     const Window raster = march_scene_.raster();
     for (int pass = 1; pass <= request_.bounces; ++pass) {
       // The last pass asks for the albedo no more.
-      InterleavedColor& sent = lit && pass < request_.bounces ? sent_before_last : given;
+      InterleavedVectors& sent = lit && pass < request_.bounces ? sent_before_last : given;
       if (lit) {
         const SenderJob senders{march_scene_,
                                 &ao_,
                                 &given,
                                 &direct_,
                                 pass > 1 ? &bounce : nullptr,
-                                &scene_.light.irradiance,
-                                scene_.light.suns,
+                                scene_.light,
                                 &sent,
                                 two_sided ? &sent_back : nullptr};
         for_each_band_of(raster, [&](const Window& part) { find_senders(senders, part); }, {});
@@ -339,7 +340,7 @@ class Bitmask {
   SlicePattern pattern_, bounce_pattern_;
   March march_, bounce_march_;
   InterleavedPlane ao_, error_, bounce_error_;
-  InterleavedColor direct_;
+  InterleavedVectors direct_;
   Products out_;
 };
 

@@ -52,6 +52,9 @@ HWY_INLINE V gather(const float* from, VI index) { return hn::GatherIndex(D(), f
 HWY_INLINE bool any(M m) { return !hn::AllFalse(D(), m); }
 HWY_INLINE bool all(M m) { return hn::AllTrue(D(), m); }
 
+/// Whether no bit is set in any lane.
+HWY_INLINE bool none(VU bits) { return hn::AllTrue(DU(), bits == set_bits(0)); }
+
 HWY_INLINE V saturate(V x) { return hn::Min(hn::Max(x, set(0)), set(1)); }
 
 /// t^2 (3 - 2t), t in 0..1.

@@ -8,8 +8,6 @@
 #define SSDO_BITMASK_EXTENSION_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include "estimators/bitmask/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,12 +19,10 @@ struct Border {
   V distance_px;
   bool in_one_row;       ///< all lanes leave through the same row, at neighbours
   std::ptrdiff_t first;  ///< of the values at the border that belong to the lanes, in that case
-  hn::Vec<DI> index;     ///< of the values, in the other
+  VI index;              ///< of the values, in the other
 
   HWY_INLINE V operator()(const BorderValues& values) const {
-    const D d;
-    return in_one_row ? hn::LoadU(d, values.data() + first)
-                      : hn::GatherIndex(d, values.data(), index);
+    return in_one_row ? load(values.data() + first) : gather(values.data(), index);
   }
 };
 
@@ -34,13 +30,11 @@ struct Border {
 /// case it may lead `aside_px` away from there, a whole number, along the border.
 HWY_INLINE Border border_along(const MarchScene& scene, const Receiver& p, V dx, V dy, bool shared,
                                float aside_px = 0) {
-  const D d;
   const DI di;
   const Interleaving& layout = scene.layout;
   constexpr int kPeriod = Interleaving::kPeriod;
   const int w = layout.width(), h = layout.height(), phase = layout.phase();
-  const V zero = hn::Zero(d), right = hn::Set(d, float(w - 1)), bottom = hn::Set(d, float(h - 1)),
-          tiny = hn::Set(d, 1e-5f);
+  const V zero = set(0), right = set(float(w - 1)), bottom = set(float(h - 1)), tiny = set(1e-5f);
   const M rightwards = dx > zero, downwards = dy > zero;
   const V to_side = hn::IfThenElse(rightwards, right - p.x, p.x) / hn::Max(hn::Abs(dx), tiny),
           to_end = hn::IfThenElse(downwards, bottom - p.y, p.y) / hn::Max(hn::Abs(dy), tiny);
@@ -48,7 +42,7 @@ HWY_INLINE Border border_along(const MarchScene& scene, const Receiver& p, V dx,
   const V aside = hn::Round(to_end * dx);
   Border border;
   border.distance_px = hn::Min(to_side, to_end);
-  border.in_one_row = shared && hn::AllFalse(d, hn::And(through_side, p.valid));
+  border.in_one_row = shared && !any(hn::And(through_side, p.valid));
   if (border.in_one_row) {
     const int column_of_lane_0 = p.place.column_phase + int(hn::GetLane(aside));
     border.dx = aside;
@@ -57,23 +51,22 @@ HWY_INLINE Border border_along(const MarchScene& scene, const Receiver& p, V dx,
                                        p.place.column + (column_of_lane_0 >> Interleaving::kShift));
     return border;
   }
-  const V beside = hn::Set(d, aside_px);
+  const V beside = set(aside_px);
   const V edge_x = hn::IfThenElse(through_side, hn::IfThenElse(rightwards, right, zero),
                                   hn::Clamp(p.x + aside + beside, zero, right)),
           edge_y = hn::IfThenElse(through_side,
                                   hn::Clamp(p.y + hn::Round(to_side * dy) + beside, zero, bottom),
                                   hn::IfThenElse(downwards, bottom, zero));
   border.dx = edge_x - p.x, border.dy = edge_y - p.y;
-  const auto shifted = hn::ConvertTo(di, edge_x) + hn::Set(di, phase);
+  const VI shifted = hn::ConvertTo(di, edge_x) + set_int(phase);
   const auto offset = [&](M later, std::ptrdiff_t first, std::ptrdiff_t second) HWY_ATTR {
-    return hn::IfThenElse(hn::RebindMask(di, later), hn::Set(di, int(second)),
-                          hn::Set(di, int(first)));
+    return hn::IfThenElse(hn::RebindMask(di, later), set_int(int(second)), set_int(int(first)));
   };
-  const auto in_row =
-      hn::And(shifted, hn::Set(di, kPeriod - 1)) * hn::Set(di, int(layout.stride())) +
+  const VI in_row =
+      hn::And(shifted, set_int(kPeriod - 1)) * set_int(int(layout.stride())) +
       hn::ShiftRight<Interleaving::kShift>(shifted) +
       offset(downwards, scene.border.in_row(false, 0, 0), scene.border.in_row(true, 0, 0));
-  const auto in_column =
+  const VI in_column =
       hn::ConvertTo(di, edge_y) +
       offset(rightwards, scene.border.in_column(false, 0), scene.border.in_column(true, 0));
   border.index = hn::IfThenElse(hn::RebindMask(di, through_side), in_column, in_row);
@@ -86,9 +79,10 @@ constexpr float kExtension = 3;
 /// The piece of surface in a slice that goes on beyond the frame, from where it leaves it to where
 /// it ends.
 struct Extension {
-  V s, v, above, distance2;  ///< at the border
-  V end_s, end_v, end_above;
-  V depth;  ///< from front to back at the border
+  SlicePoint start, end;  ///< at the border, and beyond it
+  V above, end_above;     ///< of the receiver's tangent plane
+  V distance2;            ///< to the border
+  V depth;                ///< from front to back at the border
   M exists;
 };
 
@@ -97,47 +91,42 @@ struct Extension {
 template <bool kOrthographic>
 HWY_INLINE Extension extend(const March& march, const Receiver& p, const SideFrame& side,
                             const Border& border, float widths) {
-  const D d;
   const MarchScene& scene = march.scene;
-  const V zero = hn::Zero(d);
   const V depth = border(scene.border_depth);
   const V rise = hn::MulAdd(border.dx, p.rise_x, hn::MulAdd(border.dy, p.rise_y, p.rise));
   Extension e;
   e.above = height_above<kOrthographic>(p, rise, depth);
-  e.s = dot2(border.dx, border.dy, side.across_x, side.across_y);
-  if constexpr (!kOrthographic) e.s = e.s * depth;
-  e.v = hn::NegMulAdd(e.s, side.slope, e.above);
-  e.distance2 = dot2(e.s, e.v, e.s, e.v);
-  const V radius2 = hn::Set(d, march.radius * march.radius);
-  e.exists = hn::And(e.distance2 < radius2, border.distance_px <= hn::Set(d, p.reach_px));
-  if (hn::AllFalse(d, e.exists)) return e;
+  V s = dot(V2{border.dx, border.dy}, side.across);
+  if constexpr (!kOrthographic) s = s * depth;
+  e.start = {s, hn::NegMulAdd(s, side.slope, e.above)};
+  e.distance2 = dot(e.start, e.start);
+  const V radius2 = set(march.radius * march.radius);
+  e.exists = hn::And(e.distance2 < radius2, border.distance_px <= set(p.reach_px));
+  if (!any(e.exists)) return e;
 
   // The line in which the tangent plane cuts the slice, away from the frame.
-  const V mx = border(scene.border_normal[0]), my = border(scene.border_normal[1]),
-          mz = border(scene.border_normal[2]);
-  V line_s = dot3(mx, my, mz, p.vx, p.vy, p.vz);
-  V line_v = zero - dot3(mx, my, mz, side.tx, side.ty, side.tz);
-  const V scale = reciprocal_sqrt(dot2(line_s, line_v, line_s, line_v));
-  line_s = line_s * scale, line_v = line_v * scale;
-  const V frame = hn::Set(d, kExtension * float(scene.layout.height()) / scene.fy);
+  const V3 m{border(scene.border_normal[0]), border(scene.border_normal[1]),
+             border(scene.border_normal[2])};
+  SlicePoint line{dot(m, p.to_viewer), set(0) - dot(m, side.t)};
+  const V scale = reciprocal_sqrt(dot(line, line));
+  line = {line.s * scale, line.v * scale};
+  const V frame = set(kExtension * float(scene.layout.height()) / scene.fy);
   V length = kOrthographic ? frame : frame * depth;
   const V thickness = border(scene.border_thickness);
-  length = hn::Min(length, thickness * hn::Set(d, widths));
+  length = hn::Min(length, thickness * set(widths));
   e.depth = thickness;
   if constexpr (!kOrthographic) {
-    const V slope_x = hn::MulAdd(border.dx, hn::Set(d, 1 / scene.fx), p.slope_x),
-            slope_y = hn::NegMulAdd(border.dy, hn::Set(d, 1 / scene.fy), p.slope_y);
-    const V share = thickness / depth *
-                    reciprocal_sqrt(dot3(slope_x, slope_y, hn::Set(d, 1.0f), slope_x, slope_y,
-                                         hn::Set(d, 1.0f)));
-    e.depth = hn::Min(share, hn::Set(d, kEndlessShare));
+    const V3 ray{hn::MulAdd(border.dx, set(1 / scene.fx), p.slope_x),
+                 hn::NegMulAdd(border.dy, set(1 / scene.fy), p.slope_y), set(1)};
+    const V share = thickness / depth * reciprocal_sqrt(dot(ray, ray));
+    e.depth = hn::Min(share, set(kEndlessShare));
   }
   if (march.radius < 1e18f) {
-    const V along = dot2(e.s, e.v, line_s, line_v);
-    length = hn::Min(length, hn::Sqrt(hn::MulAdd(along, along, radius2 - e.distance2)) - along);
+    const V foot = dot(e.start, line);
+    length = hn::Min(length, hn::Sqrt(hn::MulAdd(foot, foot, radius2 - e.distance2)) - foot);
   }
-  e.end_s = hn::MulAdd(length, line_s, e.s), e.end_v = hn::MulAdd(length, line_v, e.v);
-  e.end_above = hn::MulAdd(e.end_s, side.slope, e.end_v);
+  e.end = along(e.start, length, line);
+  e.end_above = hn::MulAdd(e.end.s, side.slope, e.end.v);
   return e;
 }
 
@@ -145,20 +134,18 @@ HWY_INLINE Extension extend(const March& march, const Receiver& p, const SideFra
 template <bool kOrthographic>
 HWY_INLINE VU extend_side(const March& march, const Receiver& p, const SideFrame& side,
                           const Border& border) {
-  const D d;
   const DU du;
   const Extension e = extend<kOrthographic>(march, p, side, border, 1e9f);
-  if (hn::AllFalse(d, e.exists)) return hn::Zero(du);
-  const VU here = sector_of(e.v, e.distance2, side.start);
-  const VU leans_across = hn::VecFromMask(du, hn::RebindMask(du, e.end_s < hn::Zero(d)));
-  const VU there = hn::AndNot(
-      leans_across, sector_of(e.end_v, dot2(e.end_s, e.end_v, e.end_s, e.end_v), side.start));
+  if (!any(e.exists)) return set_bits(0);
+  const VU here = sector_of(e.start.v, e.distance2, side.start);
+  const VU leans_across = hn::VecFromMask(du, hn::RebindMask(du, e.end.s < set(0)));
+  const VU there = hn::AndNot(leans_across, sector_of(e.end, side.start));
   const VU beyond = hn::IfThenElseZero(
       hn::RebindMask(du, e.exists),
       hn::AndNot(bits_from(hn::Max(here, there)), bits_from(hn::Min(here, there))));
   // The border is a sample too: the last step may be far from it.
   return hn::Or(beyond,
-                sectors_behind<kOrthographic>(p, side, e.s, e.above, e.depth, march.radius));
+                sectors_behind<kOrthographic>(p, side, e.start.s, e.above, e.depth, march.radius));
 }
 
 }  // namespace ssdo::HWY_NAMESPACE

@@ -2,17 +2,16 @@
 #pragma once
 
 #include <array>
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "estimators/bitmask/march_scene.h"
 #include "estimators/bitmask/slice_pattern.h"
 #include "math/octahedral_map.h"
-#include "parallel/interleaved.h"
-#include "scene/light/sun.h"
+#include "scene/light/light.h"
+#include "simd/interleaved.h"
 
 namespace ssdo {
-
-using InterleavedColor = std::array<InterleavedPlane, 3>;
 
 /// What all marches share.
 struct March {
@@ -32,8 +31,8 @@ struct VisibilityJob {
   const OctahedralMap* irradiance;  ///< over pi, by normal, where nothing is in the way
 
   InterleavedPlane* ao;
-  InterleavedColor* bent;        ///< unit; null: not wanted
-  InterleavedColor* direct;      ///< null: not wanted
+  InterleavedVectors* bent;      ///< unit; null: not wanted
+  InterleavedVectors* direct;    ///< null: not wanted
   InterleavedPlane* difference;  ///< standard error of its luminance, signed; null: not wanted
 };
 
@@ -41,12 +40,11 @@ struct VisibilityJob {
 struct SenderJob {
   const MarchScene& scene;
   const InterleavedPlane* ao;
-  const InterleavedColor *albedo, *direct;
-  const InterleavedColor* bounce;   ///< that has arrived so far; null: none
-  const OctahedralMap* irradiance;  ///< over pi, by normal, where nothing is in the way
-  const std::vector<Sun>& suns;
-  InterleavedColor* sent;       ///< may be the albedo
-  InterleavedColor* sent_back;  ///< null: the same
+  const InterleavedVectors *albedo, *direct;
+  const InterleavedVectors* bounce;  ///< that has arrived so far; null: none
+  const Light& light;
+  InterleavedVectors* sent;       ///< may be the albedo
+  InterleavedVectors* sent_back;  ///< null: the same
 };
 
 /// What each pixel receives from the first surface in every direction: the mean radiance of what
@@ -54,33 +52,30 @@ struct SenderJob {
 struct BounceJob {
   March march;
   const InterleavedPlane* ao;
-  const InterleavedColor* sent;                      ///< radiance of layer 0
-  const InterleavedColor* sent_back;                 ///< of its other side; null: the same
-  const std::vector<InterleavedColor>* sent_behind;  ///< of layers 1, 2, ...
-  const BorderValues* sent_border;                   ///< of what goes on beyond the frame, three
+  const InterleavedVectors* sent;                      ///< radiance of layer 0
+  const InterleavedVectors* sent_back;                 ///< of its other side; null: the same
+  const std::vector<InterleavedVectors>* sent_behind;  ///< of layers 1, 2, ...
+  const BorderValues* sent_border;                     ///< of what goes on beyond the frame, three
 
   // What the pixels that march have met.
-  InterleavedColor* gathered;  ///< sum of radiance
-  InterleavedPlane* weights;   ///< sum of the weights
+  InterleavedVectors* gathered;  ///< sum of radiance
+  InterleavedPlane* weights;     ///< sum of the weights
   InterleavedPlane*
       difference;  ///< error of the luminance of the mean, times them; null: not wanted
 
-  InterleavedColor* bounce;
+  InterleavedVectors* bounce;
   InterleavedPlane* error;  ///< standard error of its luminance, signed; null: not wanted
 };
 
 /// The direct light of a sun, where it is seen.
 struct SunJob {
-  struct Direction {
-    float x, y, z;
-  };
   March march;
   /// For each member of the pattern a unit direction to a point of the sun, and where on the way
   /// there the march looks, near to far.
-  std::array<Direction, Interleaving::kPeriod * Interleaving::kPeriod> directions;
+  std::array<glm::vec3, Interleaving::kPeriod * Interleaving::kPeriod> directions;
   std::array<std::vector<float>, Interleaving::kPeriod * Interleaving::kPeriod> distances_px;
   const Sun* sun;
-  InterleavedColor* direct;  ///< added to
+  InterleavedVectors* direct;  ///< added to
 };
 
 /// All work on a part of the raster, and may write to pixels beside it in the same rows.

@@ -19,7 +19,8 @@ constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 /// What a pixel shows, in the planes of MarchScene.
 struct Cell {
   float depth = kNothing, ray_length = 1;  ///< the ray's per unit of depth
-  glm::vec4 normal{kNothing};              ///< and the rounding
+  glm::vec3 normal{kNothing};
+  float rounding = kNothing;
 };
 
 /// What a solid holds in the planes of MarchLayer.
@@ -41,7 +42,8 @@ class Cells {
                           (scene_.axis_y - float(y + scene_.first_y)) / scene_.fy);
     if (!scene_.orthographic) cell.ray_length = std::sqrt(1 + glm::dot(slope, slope));
     cell.depth = depth_on_ray(s, slope, cell.ray_length);
-    cell.normal = s.normal;
+    cell.normal = glm::vec3(s.normal);
+    cell.rounding = s.normal.w;
     return cell;
   }
 
@@ -95,9 +97,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                    g.window.x0 - g.display.x0,
                    g.window.y0 - g.display.y0,
                    {},
-                   plane(),
-                   plane(),
-                   plane(),
+                   {plane(), plane(), plane()},
                    plane(),
                    BorderLayout(layout),
                    {},
@@ -114,8 +114,8 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
         const int x = column * kPeriod + column_phase - layout.phase();
         const Cell cell = x >= 0 && x < g.surfel.width ? cells.at(x, y) : Cell();
         const std::ptrdiff_t i = row + column;
-        scene.nx[i] = cell.normal.x, scene.ny[i] = cell.normal.y, scene.nz[i] = cell.normal.z;
-        scene.rounding[i] = cell.normal.w;
+        for (int c = 0; c < 3; ++c) scene.normal[std::size_t(c)][i] = cell.normal[c];
+        scene.rounding[i] = cell.rounding;
         for (int k = 0; k < solids.layers(); ++k) {
           const Span span = std::isnan(cell.depth)
                                 ? Span()

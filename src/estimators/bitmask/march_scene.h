@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "parallel/interleaved.h"
 #include "scene/geometry.h"
 #include "scene/solids.h"
+#include "simd/interleaved.h"
 
 namespace ssdo {
 
@@ -70,7 +70,7 @@ struct MarchScene {
   float axis_x, axis_y;            ///< pixel of the display window that the camera's axis meets
   int first_x, first_y;            ///< pixel (0, 0) in the display window
   std::vector<MarchLayer> layers;  ///< near to far; layer 0 is what pixels show
-  InterleavedPlane nx, ny, nz;     ///< unit normal of layer 0, camera space
+  InterleavedVectors normal;       ///< unit, of layer 0, camera space
   InterleavedPlane rounding;       ///< distance by which storing P may have moved layer 0
   BorderLayout border;
   BorderValues border_depth, border_normal[3];

@@ -14,10 +14,7 @@
 #define SSDO_BITMASK_MOMENTS_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include "estimators/bitmask/lanes-inl.h"
-#include "estimators/bitmask/light-inl.h"
 #include "math/spherical_harmonics-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,30 +23,28 @@ namespace ssdo::HWY_NAMESPACE {
 /// table[index], index in 0..15.
 HWY_INLINE V lookup16(const float* HWY_RESTRICT table, VU index) {
   const D d;
-  const DI di;
-  if constexpr (hn::MaxLanes(d) == 16) {
+  if constexpr (kLanes == 16) {
     return hn::TableLookupLanes(hn::Load(d, table), hn::IndicesFromVec(d, index));
-  } else if constexpr (hn::MaxLanes(d) == 8) {
-    const auto low = hn::IndicesFromVec(d, hn::And(index, hn::Set(DU(), 7u)));
-    const M upper = hn::RebindMask(d, index > hn::Set(DU(), 7u));
+  } else if constexpr (kLanes == 8) {
+    const auto low = hn::IndicesFromVec(d, hn::And(index, set_bits(7)));
+    const M upper = hn::RebindMask(d, index > set_bits(7));
     return hn::IfThenElse(upper, hn::TableLookupLanes(hn::Load(d, table + 8), low),
                           hn::TableLookupLanes(hn::Load(d, table), low));
   } else {
-    return hn::GatherIndex(d, table, hn::BitCast(di, index));
+    return gather(table, hn::BitCast(DI(), index));
   }
 }
 
 /// table[index], index in 0..31.
 HWY_INLINE V lookup32(const float* HWY_RESTRICT table, VU index) {
   const D d;
-  const DU du;
-  if constexpr (hn::MaxLanes(d) == 16) {
-    const auto low = hn::IndicesFromVec(d, hn::And(index, hn::Set(du, 15u)));
-    return hn::IfThenElse(hn::RebindMask(d, index > hn::Set(du, 15u)),
+  if constexpr (kLanes == 16) {
+    const auto low = hn::IndicesFromVec(d, hn::And(index, set_bits(15)));
+    return hn::IfThenElse(hn::RebindMask(d, index > set_bits(15)),
                           hn::TableLookupLanes(hn::Load(d, table + 16), low),
                           hn::TableLookupLanes(hn::Load(d, table), low));
   } else {
-    return hn::GatherIndex(d, table, hn::BitCast(DI(), index));
+    return gather(table, hn::BitCast(DI(), index));
   }
 }
 
@@ -64,8 +59,8 @@ template <int kDegree, class Lookup>
 HWY_INLINE RawMoments<kDegree> raw_moments(const Lookup& lookup) {
   RawMoments<kDegree> m;
   // Moment 0 is not asked for where only the cosine with the normal is: degree 1.
-  m.cosine[0] = kDegree > 1 ? lookup(0) : hn::Zero(D());
-  m.sine[0] = hn::Zero(D());
+  m.cosine[0] = kDegree > 1 ? lookup(0) : set(0);
+  m.sine[0] = set(0);
   for (int k = 1; k <= kDegree; ++k) {
     m.cosine[k] = lookup(k);
     m.sine[k] = lookup(SliceSectors::sine_moment(k));
@@ -84,8 +79,7 @@ template <int kDegree>
 HWY_INLINE RawMoments<kDegree> moments_of_bits(VU bits) {
   const SliceSectors& sectors = slice_sectors();
   VU groups[8];
-  for (int g = 0; g < 8; ++g)
-    groups[g] = hn::And(hn::ShiftRightSame(bits, 4 * g), hn::Set(DU(), 15u));
+  for (int g = 0; g < 8; ++g) groups[g] = hn::And(hn::ShiftRightSame(bits, 4 * g), set_bits(15));
   return raw_moments<kDegree>([&](int m) HWY_ATTR {
     const float* table = sectors.of_group[std::size_t(m)].data();
     V sum = lookup16(table, groups[0]);
@@ -100,19 +94,20 @@ struct CircleMoments {
   V cosine[kOrder + 1], sine[kOrder + 1];
 
   HWY_INLINE CircleMoments() {
-    for (int k = 0; k <= kOrder; ++k) cosine[k] = sine[k] = hn::Zero(D());
+    for (int k = 0; k <= kOrder; ++k) cosine[k] = sine[k] = set(0);
   }
 
   /// Adds sectors of one side: (n_v cos + n_t sin) cos(k theta), and with sin(k theta), whose sign
   /// is the opposite on the other side.
   HWY_INLINE void add(const RawMoments<kOrder + 1>& m, V n_v, V n_t, bool forward) {
-    const D d;
-    const V half = hn::Set(d, 0.5f);
+    const V half = set(0.5f);
     cosine[0] = hn::MulAdd(n_v, m.cosine[1], hn::MulAdd(n_t, m.sine[1], cosine[0]));
     const V v = n_v * half, t = n_t * half;
     for (int k = 1; k <= kOrder; ++k) {
-      const V c = dot2(v, t, m.cosine[k + 1] + m.cosine[k - 1], m.sine[k + 1] - m.sine[k - 1]);
-      const V s = dot2(v, t, m.sine[k + 1] + m.sine[k - 1], m.cosine[k - 1] - m.cosine[k + 1]);
+      const V c =
+          dot(V2{v, t}, V2{m.cosine[k + 1] + m.cosine[k - 1], m.sine[k + 1] - m.sine[k - 1]});
+      const V s =
+          dot(V2{v, t}, V2{m.sine[k + 1] + m.sine[k - 1], m.cosine[k - 1] - m.cosine[k + 1]});
       cosine[k] = cosine[k] + c;
       sine[k] = forward ? sine[k] + s : sine[k] - s;
     }
@@ -121,14 +116,13 @@ struct CircleMoments {
   /// Weights of the direction at this angle, one of 2 kOrder + 2, with that of the opposite one
   /// added and subtracted.
   HWY_INLINE void at(const float* cosines, const float* sines, V& both, V& difference) const {
-    const D d;
-    V sums[2] = {cosine[0] * hn::Set(d, 0.5f), hn::Zero(d)};
+    V sums[2] = {cosine[0] * set(0.5f), set(0)};
     for (int k = 1; k <= kOrder; ++k) {
       V& sum = sums[k % 2];
-      sum = hn::MulAdd(cosine[k], hn::Set(d, cosines[k]), sum);
-      sum = hn::MulAdd(sine[k], hn::Set(d, sines[k]), sum);
+      sum = hn::MulAdd(cosine[k], set(cosines[k]), sum);
+      sum = hn::MulAdd(sine[k], set(sines[k]), sum);
     }
-    const V scale = hn::Set(d, 2.0f / (kOrder + 1));
+    const V scale = set(2.0f / (kOrder + 1));
     both = sums[0] * scale, difference = sums[1] * scale;
   }
 };
@@ -157,7 +151,7 @@ struct Moments {
   V hidden[kCount], whole[kCount];
 
   HWY_INLINE Moments() {
-    for (int i = 0; i < kCount; ++i) hidden[i] = whole[i] = hn::Zero(D());
+    for (int i = 0; i < kCount; ++i) hidden[i] = whole[i] = set(0);
   }
 
   /// Bands 0 and 1 come from the moments as they are: ao and the bent normal are the same to the
@@ -168,18 +162,17 @@ struct Moments {
     add_low_bands(p, f, hidden_of_slice, hidden);
     add_low_bands(p, f, whole_of_slice, whole);
     if constexpr (kOrder > 1) {
-      const D d;
       static const CircleDirections<kOrder> directions;
       for (int j = 0; j < CircleDirections<kOrder>::kCount; ++j) {
         const float *cosines = directions.cosine[j], *sines = directions.sine[j];
-        const V c = hn::Set(d, cosines[1]), s = hn::Set(d, sines[1]);
+        const V c = set(cosines[1]), s = set(sines[1]);
         V h[2], w[2];
         hidden_of_slice.at(cosines, sines, h[0], h[1]);
         whole_of_slice.at(cosines, sines, w[0], w[1]);
         for (int k = 0; k < 2; ++k) h[k] = h[k] * f.weight, w[k] = w[k] * f.weight;
+        const V3 direction = mul_add(p.to_viewer, c, f.t * s);
         for_each_sh_polynomial<2, kOrder>(
-            dot2(c, s, p.vx, f.tx), dot2(c, s, p.vy, f.ty), dot2(c, s, p.vz, f.tz),
-            [](float value) HWY_ATTR { return hn::Set(D(), value); },
+            direction.x, direction.y, direction.z, [](float value) HWY_ATTR { return set(value); },
             [&](int i, V value) HWY_ATTR {
               const int odd = i >= 9 && i < 16;  // band 3
               hidden[i] = hn::MulAdd(h[odd], value, hidden[i]);
@@ -191,42 +184,34 @@ struct Moments {
 
   /// Share of the hemisphere, weighted by the cosine, that is open.
   HWY_INLINE V open_share() const {
-    const D d;
-    const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const V zero = set(0), one = set(1);
     return hn::IfThenElse(whole[0] > zero, hn::Clamp(one - hidden[0] / whole[0], zero, one), one);
   }
 
   /// The part of the light with these weights that is visible. Part and whole are sums over the
   /// same directions, so that their noise cancels: what is open has all of it.
   HWY_INLINE V share_of_light(const float* light, V otherwise) const {
-    const D d;
-    V lost = hn::Zero(d), total = hn::Zero(d);
+    V lost = set(0), total = set(0);
     for (int i = 0; i < kCount; ++i) {
-      const V l = hn::Set(d, light[i]);
+      const V l = set(light[i]);
       lost = hn::MulAdd(l, hidden[i], lost);
       total = hn::MulAdd(l, whole[i], total);
     }
-    const V one = hn::Set(d, 1.0f);
-    const V share = hn::Clamp(one - lost / total, hn::Zero(d), one);
-    return hn::IfThenElse(total > hn::Zero(d), share, otherwise);
+    const V one = set(1);
+    const V share = hn::Clamp(one - lost / total, set(0), one);
+    return hn::IfThenElse(total > set(0), share, otherwise);
   }
 
   /// The mean open direction; `closed` where nothing is open. Of an open surface it is the normal,
   /// whatever the slices: what their sum over all directions lacks of it is added as far as the
   /// surface is open.
-  HWY_INLINE Color bent_normal(const Receiver& p, V ao, const Normals& closed) const {
-    const D d;
-    const V full = hn::Set(d, 2.0f / 3) * whole[0];
+  HWY_INLINE V3 bent_normal(const Receiver& p, V ao, const V3& closed) const {
+    const V full = set(2.0f / 3) * whole[0];
     const auto along = [&](V normal, int band) HWY_ATTR {  // bands of order 1 are y, z, x
       return hn::MulAdd(ao, hn::MulSub(full, normal, whole[band]), whole[band] - hidden[band]);
     };
-    const V x = along(p.nx, 3), y = along(p.ny, 1), z = along(p.nz, 2);
-    const V length2 = dot3(x, y, z, x, y, z);
-    const M has_length = length2 > hn::Zero(d);
-    const V scale = hn::Set(d, 1.0f) / hn::Sqrt(length2);
-    return {hn::IfThenElse(has_length, x * scale, closed.x),
-            hn::IfThenElse(has_length, y * scale, closed.y),
-            hn::IfThenElse(has_length, z * scale, closed.z)};
+    const V3 mean{along(p.normal.x, 3), along(p.normal.y, 1), along(p.normal.z, 2)};
+    return if_then_else(dot(mean, mean) > set(0), normalise(mean), closed);
   }
 
   HWY_INLINE Moments minus(const Moments& other) const {
@@ -244,9 +229,8 @@ struct Moments {
     sum[0] = hn::MulAdd(f.weight, of_slice.cosine[0], sum[0]);
     if constexpr (kOrder > 0) {
       const V along_v = f.weight * of_slice.cosine[1], along_t = f.weight * of_slice.sine[1];
-      sum[1] = sum[1] + dot2(along_v, along_t, p.vy, f.ty);
-      sum[2] = sum[2] + dot2(along_v, along_t, p.vz, f.tz);
-      sum[3] = sum[3] + dot2(along_v, along_t, p.vx, f.tx);
+      const V3 of_band = mul_add(p.to_viewer, along_v, f.t * along_t);
+      sum[1] = sum[1] + of_band.y, sum[2] = sum[2] + of_band.z, sum[3] = sum[3] + of_band.x;
     }
   }
 };

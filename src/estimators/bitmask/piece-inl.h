@@ -14,8 +14,6 @@
 #define SSDO_BITMASK_PIECE_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include "estimators/bitmask/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -23,18 +21,18 @@ namespace ssdo::HWY_NAMESPACE {
 
 /// A straight piece of surface in a slice.
 struct Piece {
-  V inner_s, inner_v, outer_s, outer_v;
+  SlicePoint inner, outer;
 };
 
 /// Where a piece ends: a share of the way to its pixel, at this depth. `rise` and `across` are
 /// those of the pixel.
 template <bool kOrthographic>
-HWY_INLINE void end_at(const Receiver& p, const SideFrame& side, V share, V depth, V rise, V across,
-                       V& s, V& v) {
-  s = across * share;
+HWY_INLINE SlicePoint end_at(const Receiver& p, const SideFrame& side, V share, V depth, V rise,
+                             V across) {
+  V s = across * share;
   if constexpr (!kOrthographic) s = s * depth;
   const V end_rise = hn::MulAdd(share, rise - p.rise, p.rise);
-  v = hn::NegMulAdd(s, side.slope, height_above<kOrthographic>(p, end_rise, depth));
+  return {s, hn::NegMulAdd(s, side.slope, height_above<kOrthographic>(p, end_rise, depth))};
 }
 
 /// Most that depth grows or shrinks, as a factor, from a pixel to the ends of its piece: a piece of
@@ -45,32 +43,29 @@ constexpr float kMostDeepening = 2;
 template <bool kOrthographic>
 HWY_INLINE Piece piece_at(const MarchScene& scene, const Receiver& p, const SideFrame& side,
                           const SliceStep& step, std::ptrdiff_t i, V depth, V rise, V across) {
-  const D d;
-  const auto load = [&](const InterleavedPlane& plane)
-                        HWY_ATTR { return hn::LoadU(d, plane.data() + i); };
-  const V mx = load(scene.nx), my = load(scene.ny), mz = load(scene.nz);
-  const V ex = hn::Set(d, step.dx / scene.fx), ey = hn::Set(d, -step.dy / scene.fy);
+  const V3 m = load(scene.normal, i);
+  const V ex = set(step.dx / scene.fx), ey = set(-step.dy / scene.fy);
   // M.r, r the ray through the pixel, and how much it changes over the way there.
-  const V one = hn::Set(d, 1.0f);
-  V m_ray = hn::Zero(d) - mz;
+  const V one = set(1);
+  V m_ray = set(0) - m.z;
   if constexpr (!kOrthographic)
-    m_ray = hn::MulAdd(mx, p.slope_x + ex, hn::MulAdd(my, p.slope_y + ey, m_ray));
-  m_ray = hn::Min(m_ray, hn::Set(d, -1e-9f));
-  const V m_way = dot2(mx, my, ex, ey);
-  const auto end = [&](float of_way, bool inner, V& s, V& v) HWY_ATTR {
-    V share = hn::Set(d, of_way), end_depth;
+    m_ray = hn::MulAdd(m.x, p.slope_x + ex, hn::MulAdd(m.y, p.slope_y + ey, m_ray));
+  m_ray = hn::Min(m_ray, set(-1e-9f));
+  const V m_way = dot(V2{m.x, m.y}, V2{ex, ey});
+  const auto end = [&](float of_way, bool inner) HWY_ATTR {
+    V share = set(of_way), end_depth;
     if constexpr (kOrthographic) {
       // Depth has no scale here: it changes by no more than the way is long.
       const V limit = hn::Abs(across), change = (one - share) * m_way / m_ray;
-      const V limited = hn::Clamp(change, hn::Zero(d) - limit, limit);
+      const V limited = hn::Clamp(change, set(0) - limit, limit);
       share = hn::IfThenElse(limited != change, one - limited * m_ray / m_way, share);
       end_depth = depth + limited;
     } else {
       V end_ray = hn::MulAdd(share - one, m_way, m_ray);
-      const V limited = hn::Clamp(end_ray, hn::Set(d, kMostDeepening) * m_ray,
-                                  hn::Set(d, 1 / kMostDeepening) * m_ray);
+      const V limited =
+          hn::Clamp(end_ray, set(kMostDeepening) * m_ray, set(1 / kMostDeepening) * m_ray);
       const M beyond = limited != end_ray;
-      if (!hn::AllFalse(d, beyond)) {
+      if (any(beyond)) {
         share = hn::IfThenElse(beyond, one + (limited - m_ray) / m_way, share);
         end_ray = limited;
       }
@@ -78,42 +73,33 @@ HWY_INLINE Piece piece_at(const MarchScene& scene, const Receiver& p, const Side
     }
     // Where a round thing turns away, its tangent plane would come far before it.
     if (inner) end_depth = hn::Max(end_depth, depth);
-    end_at<kOrthographic>(p, side, share, end_depth, rise, across, s, v);
+    return end_at<kOrthographic>(p, side, share, end_depth, rise, across);
   };
-  Piece piece;
-  end(step.inner, true, piece.inner_s, piece.inner_v);
-  end(step.outer, false, piece.outer_s, piece.outer_v);
-  return piece;
+  return {end(step.inner, true), end(step.outer, false)};
 }
 
 /// The piece of a front of unknown slope at this depth: it faces the viewer.
 template <bool kOrthographic>
 HWY_INLINE Piece piece_facing_viewer(const Receiver& p, const SideFrame& side,
                                      const SliceStep& step, V depth, V rise, V across) {
-  const D d;
-  const V inner = hn::Set(d, step.inner), outer = hn::Set(d, step.outer);
-  Piece piece;
-  end_at<kOrthographic>(p, side, inner, depth, rise, across, piece.inner_s, piece.inner_v);
-  end_at<kOrthographic>(p, side, outer, depth, rise, across, piece.outer_s, piece.outer_v);
-  return piece;
+  return {end_at<kOrthographic>(p, side, set(step.inner), depth, rise, across),
+          end_at<kOrthographic>(p, side, set(step.outer), depth, rise, across)};
 }
 
 /// Leaves what lies within the radius. Gives where that is anything.
 HWY_INLINE M clip(Piece& piece, float radius) {
-  const D d;
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const V s = piece.inner_s, v = piece.inner_v, ls = piece.outer_s - s, lv = piece.outer_v - v;
-  const V per_length = one / hn::Sqrt(hn::Max(dot2(ls, lv, ls, lv), hn::Set(d, 1e-30f)));
-  const V us = ls * per_length, uv = lv * per_length;
+  const V zero = set(0), one = set(1);
+  const SlicePoint start = piece.inner, way{piece.outer.s - start.s, piece.outer.v - start.v};
+  const V per_length = one / hn::Sqrt(hn::Max(dot(way, way), set(1e-30f)));
+  const SlicePoint unit{way.s * per_length, way.v * per_length};
   // The line comes as near to the receiver as `nearest`, at its `foot`, and is within the radius
   // for half a chord to both sides.
-  const V nearest = hn::MulSub(s, uv, v * us), foot = zero - dot2(s, v, us, uv),
-          half_chord2 = hn::NegMulAdd(nearest, nearest, hn::Set(d, radius * radius));
+  const V nearest = hn::MulSub(start.s, unit.v, start.v * unit.s), foot = zero - dot(start, unit),
+          half_chord2 = hn::NegMulAdd(nearest, nearest, set(radius * radius));
   const V half_chord = hn::Sqrt(hn::Max(half_chord2, zero));
   const V from = hn::Max(zero, (foot - half_chord) * per_length),
           to = hn::Min(one, (foot + half_chord) * per_length);
-  piece.inner_s = hn::MulAdd(from, ls, s), piece.inner_v = hn::MulAdd(from, lv, v);
-  piece.outer_s = hn::MulAdd(to, ls, s), piece.outer_v = hn::MulAdd(to, lv, v);
+  piece.inner = along(start, from, way), piece.outer = along(start, to, way);
   return hn::And(half_chord2 > zero, from < to);
 }
 
@@ -122,15 +108,12 @@ HWY_INLINE M clip(Piece& piece, float radius) {
 template <bool kOrthographic>
 HWY_INLINE VU sectors_behind_piece(const Receiver& p, const SideFrame& side, Piece piece, V s,
                                    V above, V depth, float radius) {
-  const D d;
-  M meets = above > hn::Zero(d);
+  M meets = above > set(0);
   if (radius < 1e18f) meets = hn::And(meets, clip(piece, radius));
-  const auto sector = [&](V x, V y) HWY_ATTR { return sector_of(y, dot2(x, y, x, y), side.start); };
-  const VU inner = sector(piece.inner_s, piece.inner_v),
-           outer = sector(piece.outer_s, piece.outer_v);
-  const SlicePoint back = back_of<kOrthographic>(p, s, hn::NegMulAdd(s, side.slope, above), depth);
-  const VU from = hn::Min(inner, outer),
-           to = hn::Max(hn::Max(inner, outer), sector(back.s, back.v));
+  const SlicePoint middle{s, hn::NegMulAdd(s, side.slope, above)};
+  const VU inner = sector_of(piece.inner, side.start), outer = sector_of(piece.outer, side.start),
+           back = sector_of(back_of<kOrthographic>(p, middle, depth), side.start);
+  const VU from = hn::Min(inner, outer), to = hn::Max(hn::Max(inner, outer), back);
   return hn::IfThenElseZero(hn::RebindMask(DU(), meets),
                             hn::AndNot(bits_from(to), bits_from(from)));
 }

@@ -10,7 +10,8 @@
 #define HWY_TARGET_INCLUDE "estimators/bitmask/senders.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/bitmask/light-inl.h"
+#include "estimators/bitmask/lanes-inl.h"
+#include "scene/light/light-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -18,24 +19,18 @@ namespace ssdo::HWY_NAMESPACE {
 void sent_by_pixels(const SenderJob& job, const Window& part) {
   const MarchScene& scene = job.scene;
   for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
-    const D d;
     const std::ptrdiff_t i = place.index;
-    const V depth = hn::LoadU(d, scene.depth().data() + i);
-    const Color albedo = load_color(*job.albedo, i);
-    Color bounce = set_color(glm::vec3(0));
-    if (job.bounce) bounce = load_color(*job.bounce, i);
-    const auto send = [&](const Color& light, InterleavedColor& to) HWY_ATTR {
-      const Color all = mul_add(light, hn::Set(d, 1.0f), bounce);
-      store_color(within_range(product(albedo, all)), to, i);
-    };
+    const V depth = load(scene.depth(), i);
+    const V3 albedo = load(*job.albedo, i);
+    V3 bounce = set(glm::vec3(0));
+    if (job.bounce) bounce = load(*job.bounce, i);
+    const auto send = [&](const V3& light, InterleavedVectors& to)
+                          HWY_ATTR { store(within_range(albedo * (light + bounce)), to, i); };
     if (job.sent_back) {
-      const Normals back = load_normals(scene, i, depth == depth).turned();
-      Color light = look_up(*job.irradiance, back);
-      for (const Sun& sun : job.suns)
-        light = mul_add(set_color(sun.irradiance), back.facing(sun.direction), light);
-      send(scaled(light, hn::LoadU(d, job.ao->data() + i)), *job.sent_back);
+      const V3 back = set(glm::vec3(0)) - load_normals(scene, i, depth == depth);
+      send(unoccluded(job.light, back) * load(*job.ao, i), *job.sent_back);
     }
-    send(load_color(*job.direct, i), *job.sent);
+    send(load(*job.direct, i), *job.sent);
   });
 }
 

@@ -9,7 +9,6 @@
 #endif
 
 #include <hwy/cache_control.h>
-#include <hwy/highway.h>
 
 #include "estimators/bitmask/extension-inl.h"
 #include "estimators/bitmask/piece-inl.h"
@@ -38,34 +37,29 @@ HWY_INLINE float error_of_difference(const March& march, const Place& place, int
 template <bool kOrthographic, class Met>
 HWY_INLINE VU march_raster(const March& march, const Receiver& p, const SideFrame& side,
                            const std::vector<SliceStep>& steps, const Met& on_met) {
-  const D d;
   const MarchScene& scene = march.scene;
   const MarchLayer& seen = scene.layers.front();
   const int layers = int(scene.layers.size());
-  const V zero = hn::Zero(d);
   const int height = scene.layout.height(), columns = scene.layout.columns();
-  const int lanes = int(hn::Lanes(d));
   VU open = side.above;
   for (const SliceStep& step : steps) {
     const int row = p.place.y + step.row, first = p.place.column + step.column_shift;
     if (step.inner_px > p.reach_px || row < 0 || row >= height || first >= columns ||
-        first + lanes <= 0)
+        first + kLanes <= 0)
       break;
     const std::ptrdiff_t i = p.place.index + step.offset;
     // The next vector of receivers looks at the pixels beside these. There are too many such
     // streams for the processor to see.
     const auto prefetch = [&](const InterleavedPlane& plane)
-                              HWY_ATTR { hwy::Prefetch(plane.data() + i + 2 * lanes - 1); };
+                              HWY_ATTR { hwy::Prefetch(plane.data() + i + 2 * kLanes - 1); };
     prefetch(seen.depth), prefetch(seen.thickness);
-    prefetch(scene.nx), prefetch(scene.ny), prefetch(scene.nz);
-    const auto load = [&](const InterleavedPlane& plane)
-                          HWY_ATTR { return hn::LoadU(d, plane.data() + i); };
-    const V dx = hn::Set(d, step.dx), dy = hn::Set(d, step.dy);
+    prefetch(scene.normal[0]), prefetch(scene.normal[1]), prefetch(scene.normal[2]);
+    const V dx = set(step.dx), dy = set(step.dy);
     const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise)),
-            across = dot2(dx, dy, side.across_x, side.across_y);
+            across = dot(V2{dx, dy}, side.across);
     const auto meet = [&](int layer, V depth, V above, const auto& piece) HWY_ATTR {
       const V s = kOrthographic ? across : depth * across,
-              thickness = load(scene.layers[std::size_t(layer)].thickness);
+              thickness = load(scene.layers[std::size_t(layer)].thickness, i);
       const VU bits =
           step.inner == step.outer
               ? sectors_behind<kOrthographic>(p, side, s, above, thickness, march.radius)
@@ -74,8 +68,8 @@ HWY_INLINE VU march_raster(const March& march, const Receiver& p, const SideFram
       on_met(layer, i, step, hn::And(open, bits));
       open = hn::AndNot(bits, open);
     };
-    const V depth = load(seen.depth), above = height_above<kOrthographic>(p, rise, depth);
-    if (!hn::AllFalse(d, above > zero)) {
+    const V depth = load(seen.depth, i), above = height_above<kOrthographic>(p, rise, depth);
+    if (any(above > set(0))) {
       meet(0, depth, above, [&]() HWY_ATTR {
         return piece_at<kOrthographic>(scene, p, side, step, i, depth, rise, across);
       });
@@ -83,8 +77,8 @@ HWY_INLINE VU march_raster(const March& march, const Receiver& p, const SideFram
     for (int k = 1; k < layers; ++k) {
       const InterleavedPlane& fronts = scene.layers[std::size_t(k)].depth;
       prefetch(fronts);
-      const V front = load(fronts), front_above = height_above<kOrthographic>(p, rise, front);
-      if (hn::AllFalse(d, front_above > zero)) continue;
+      const V front = load(fronts, i), front_above = height_above<kOrthographic>(p, rise, front);
+      if (!any(front_above > set(0))) continue;
       meet(k, front, front_above, [&]() HWY_ATTR {
         return piece_facing_viewer<kOrthographic>(p, side, step, front, rise, across);
       });
@@ -98,13 +92,12 @@ template <bool kOrthographic, class Met, class Beyond>
 HWY_INLINE VU march_side(const March& march, const Receiver& p, const SideFrame& side,
                          const Slice& slice, bool forward, const Met& on_met,
                          const Beyond& on_beyond) {
-  const D d;
   const VU open =
       march_raster<kOrthographic>(march, p, side, slice.sides[forward ? 0 : 1].steps, on_met);
-  if (!march.extend || hn::AllTrue(DU(), open == hn::Zero(DU()))) return open;
+  if (!march.extend || none(open)) return open;
   const float sign = forward ? 1.0f : -1.0f;
   const Border border =
-      border_along(march.scene, p, hn::Set(d, sign * slice.dx), hn::Set(d, sign * slice.dy), true);
+      border_along(march.scene, p, set(sign * slice.dx), set(sign * slice.dy), true);
   const VU bits = extend_side<kOrthographic>(march, p, side, border);
   on_beyond(border, hn::And(open, bits));
   return hn::AndNot(bits, open);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "math/plane.h"
-#include "parallel/interleaved.h"
+#include "simd/interleaved.h"
 
 namespace ssdo {
 

@@ -8,7 +8,7 @@
 #include <hwy/foreach_target.h>
 
 #include "estimators/bitmask/extension-inl.h"
-#include "estimators/bitmask/light-inl.h"
+#include "scene/light/light-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -26,39 +26,37 @@ constexpr float kWitnessReach = 0.1f;
 
 /// The way to the sun from a receiver.
 struct SunRay {
-  V s, v;            ///< its direction in the slice
+  SlicePoint along;  ///< its direction in the slice
   V step_x, step_y;  ///< unit, pixels: its picture
   V end_px;          ///< where its picture ends: at the horizon
 };
 
-HWY_INLINE SunRay sun_ray(const MarchScene& scene, const Receiver& p, const SunJob::Direction& to,
+HWY_INLINE SunRay sun_ray(const MarchScene& scene, const Receiver& p, const glm::vec3& to,
                           SideFrame& side) {
-  const D d;
-  const V lx = hn::Set(d, to.x), ly = hn::Set(d, to.y), lz = hn::Set(d, to.z);
+  const V3 l = set(to);
   SunRay ray;
-  ray.v = dot3(lx, ly, lz, p.vx, p.vy, p.vz);
-  const V tx = hn::NegMulAdd(ray.v, p.vx, lx), ty = hn::NegMulAdd(ray.v, p.vy, ly),
-          tz = hn::NegMulAdd(ray.v, p.vz, lz);
-  ray.s = hn::Sqrt(dot3(tx, ty, tz, tx, ty, tz));
-  const V scale = hn::Set(d, 1.0f) / hn::Max(ray.s, hn::Set(d, 1e-6f));
-  side.tx = tx * scale, side.ty = ty * scale, side.tz = tz * scale;
-  side.n_t = dot3(p.nx, p.ny, p.nz, side.tx, side.ty, side.tz);
+  ray.along.v = dot(l, p.to_viewer);
+  const V3 t{hn::NegMulAdd(ray.along.v, p.to_viewer.x, l.x),
+             hn::NegMulAdd(ray.along.v, p.to_viewer.y, l.y),
+             hn::NegMulAdd(ray.along.v, p.to_viewer.z, l.z)};
+  ray.along.s = hn::Sqrt(dot(t, t));
+  side.t = t * (set(1) / hn::Max(ray.along.s, set(1e-6f)));
+  side.n_t = dot(p.normal, side.t);
   side.slope = side.n_t / p.facing;
-  side.across_x = side.tx * hn::Set(d, 1 / scene.fx);
-  side.across_y = side.ty * hn::Set(d, -1 / scene.fy);
+  side.across = {side.t.x * set(1 / scene.fx), side.t.y * set(-1 / scene.fy)};
 
-  const V depth = hn::Zero(d) - p.pz;
-  V dx = hn::Set(d, scene.fx) * lx, dy = hn::Set(d, -scene.fy) * ly;
-  ray.end_px = hn::Set(d, 1e9f);
+  const V depth = set(0) - p.position.z;
+  V2 way{set(scene.fx) * l.x, set(-scene.fy) * l.y};
+  ray.end_px = set(1e9f);
   if (!scene.orthographic) {
     // The derivative of the projection, times the square of the depth.
-    dx = hn::Set(d, scene.fx) * hn::MulAdd(lx, depth, lz * p.px);
-    dy = hn::Set(d, -scene.fy) * hn::MulAdd(ly, depth, lz * p.py);
+    way = {set(scene.fx) * hn::MulAdd(l.x, depth, l.z * p.position.x),
+           set(-scene.fy) * hn::MulAdd(l.y, depth, l.z * p.position.y)};
   }
-  const V length = hn::Sqrt(dot2(dx, dy, dx, dy));
-  if (!scene.orthographic && to.z < 0) ray.end_px = length / (depth * hn::Set(d, -to.z));
-  const V unit = hn::Set(d, 1.0f) / hn::Max(length, hn::Set(d, 1e-20f));
-  ray.step_x = dx * unit, ray.step_y = dy * unit;
+  const V length = hn::Sqrt(dot(way, way));
+  if (!scene.orthographic && to.z < 0) ray.end_px = length / (depth * set(-to.z));
+  const V unit = set(1) / hn::Max(length, set(1e-20f));
+  ray.step_x = way.x * unit, ray.step_y = way.y * unit;
   return ray;
 }
 
@@ -67,21 +65,19 @@ HWY_INLINE SunRay sun_ray(const MarchScene& scene, const Receiver& p, const SunJ
 template <bool kOrthographic, class LoadDepth>
 HWY_INLINE M blocks(const Receiver& p, const SideFrame& side, const SunRay& ray, M looks, V s,
                     V above, float radius, const LoadDepth& load_depth) {
-  const D d;
-  const V v = hn::NegMulAdd(s, side.slope, above);
-  const M near = hn::And(above > hn::Zero(d), dot2(s, v, s, v) <= hn::Set(d, radius * radius));
-  const M front_above = hn::And(hn::And(looks, near), s * ray.v <= v * ray.s);
-  if (hn::AllFalse(d, front_above)) return front_above;
-  const V depth = load_depth();
-  const SlicePoint back = back_of<kOrthographic>(p, s, v, depth);
-  return hn::And(front_above, back.s * ray.v >= back.v * ray.s);
+  const SlicePoint front{s, hn::NegMulAdd(s, side.slope, above)}, to = ray.along;
+  const M near = hn::And(above > set(0), dot(front, front) <= set(radius * radius));
+  const M front_above = hn::And(hn::And(looks, near), front.s * to.v <= front.v * to.s);
+  if (!any(front_above)) return front_above;
+  const SlicePoint back = back_of<kOrthographic>(p, front, load_depth());
+  return hn::And(front_above, back.s * to.v >= back.v * to.s);
 }
 
 /// A pixel in the middle of its block of 4 x 4, where samples lie far apart: as in the slices, so
 /// few are asked for that they stay in the cache.
 HWY_INLINE V middle_of_block(V pixel) {
-  const V block = hn::Set(D(), 4.0f), middle = hn::Set(D(), 2.0f);
-  return hn::MulAdd(hn::Round((pixel - middle) * hn::Set(D(), 0.25f)), block, middle);
+  const V block = set(4), middle = set(2);
+  return hn::MulAdd(hn::Round((pixel - middle) * set(0.25f)), block, middle);
 }
 
 /// How many of the surfaces that go on beyond the frame let rays pass, 0..1. `turn` in 0..1 differs
@@ -89,8 +85,7 @@ HWY_INLINE V middle_of_block(V pixel) {
 template <bool kOrthographic>
 HWY_INLINE V open_beyond(const March& march, const Receiver& p, const SideFrame& side,
                          const SunRay& ray, M open, float turn) {
-  const D d;
-  const V zero = hn::Zero(d);
+  const V zero = set(0);
   const float apart_px = 2 * kWitnessReach * float(march.scene.layout.height()) / kWitnesses;
   V passed = zero;
   for (int k = 0; k < kWitnesses; ++k) {
@@ -98,15 +93,16 @@ HWY_INLINE V open_beyond(const March& march, const Receiver& p, const SideFrame&
     const Border border = border_along(march.scene, p, ray.step_x, ray.step_y, false, aside_px);
     const Extension e = extend<kOrthographic>(march, p, side, border, kSunWidths);
     // The ray passes between both ends of the piece.
-    const V here = e.s * ray.v - e.v * ray.s, there = e.end_s * ray.v - e.end_v * ray.s;
+    const SlicePoint to = ray.along;
+    const V here = e.start.s * to.v - e.start.v * to.s, there = e.end.s * to.v - e.end.v * to.s;
     const M leaves = hn::And(e.exists, border.distance_px < ray.end_px);
     const M crosses = hn::And(leaves, here * there <= zero);
     const M rises = hn::Or(e.above > zero, e.end_above > zero);
     // The last step may be far from the border.
-    const M meets = blocks<kOrthographic>(p, side, ray, hn::And(open, leaves), e.s, e.above,
+    const M meets = blocks<kOrthographic>(p, side, ray, hn::And(open, leaves), e.start.s, e.above,
                                           march.radius, [&]() HWY_ATTR { return e.depth; });
     const M hides = hn::Or(meets, hn::And(crosses, rises));
-    passed = passed + hn::IfThenElseZero(hn::AndNot(hides, open), hn::Set(d, 1.0f / kWitnesses));
+    passed = passed + hn::IfThenElseZero(hn::AndNot(hides, open), set(1.0f / kWitnesses));
   }
   return passed;
 }
@@ -115,22 +111,20 @@ template <bool kOrthographic>
 void sun(const SunJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
   for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
-    const D d;
     const DI di;
     constexpr int kPeriod = Interleaving::kPeriod;
     const Interleaving& layout = scene.layout;
-    const V zero = hn::Zero(d);
+    const V zero = set(0);
     const int member = ((place.y + scene.first_y) & (kPeriod - 1)) * kPeriod + place.column_phase;
     Receiver p = load_receiver(scene, place);
     p.reach_px = reach_px(scene, p, job.march.radius);
     SideFrame side;
     const SunRay ray = sun_ray(scene, p, job.directions[std::size_t(member)], side);
-    const V right = hn::Set(d, float(layout.width() - 1)),
-            bottom = hn::Set(d, float(layout.height() - 1));
-    M open = hn::And(p.valid, dot2(side.n_t, p.facing, ray.s, ray.v) > zero);
+    const V right = set(float(layout.width() - 1)), bottom = set(float(layout.height() - 1));
+    M open = hn::And(p.valid, dot(V2{side.n_t, p.facing}, V2{ray.along.s, ray.along.v}) > zero);
     float before = 0;
     for (const float distance : job.distances_px[std::size_t(member)]) {
-      const V t = hn::Set(d, distance);
+      const V t = set(distance);
       V qx_px = hn::Round(hn::MulAdd(t, ray.step_x, p.x)),
         qy_px = hn::Round(hn::MulAdd(t, ray.step_y, p.y));
       if (distance - before > kLongStep)
@@ -139,37 +133,33 @@ void sun(const SunJob& job, const Window& part) {
       const M inside = hn::And(hn::And(qx_px >= zero, qx_px <= right),
                                hn::And(hn::And(qy_px >= zero, qy_px <= bottom), t < ray.end_px));
       const M looks = hn::And(inside, open);
-      if (distance > p.reach_px || hn::AllFalse(d, looks)) break;
-      const auto shifted =
-          hn::ConvertTo(di, hn::IfThenElseZero(looks, qx_px)) + hn::Set(di, layout.phase());
-      const auto line = hn::ConvertTo(di, hn::IfThenElseZero(looks, qy_px)) * hn::Set(di, kPeriod) +
-                        hn::And(shifted, hn::Set(di, kPeriod - 1));
-      const auto index = line * hn::Set(di, int(layout.stride())) +
-                         hn::ShiftRight<Interleaving::kShift>(shifted) +
-                         hn::Set(di, Interleaving::kPad);
-      const auto gather = [&](const InterleavedPlane& plane)
-                              HWY_ATTR { return hn::GatherIndex(d, plane.data(), index); };
+      if (distance > p.reach_px || !any(looks)) break;
+      const VI shifted =
+          hn::ConvertTo(di, hn::IfThenElseZero(looks, qx_px)) + set_int(layout.phase());
+      const VI line = hn::ConvertTo(di, hn::IfThenElseZero(looks, qy_px)) * set_int(kPeriod) +
+                      hn::And(shifted, set_int(kPeriod - 1));
+      const VI index = line * set_int(int(layout.stride())) +
+                       hn::ShiftRight<Interleaving::kShift>(shifted) + set_int(Interleaving::kPad);
       const V dx = qx_px - p.x, dy = qy_px - p.y;
       const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise)),
-              across = dot2(dx, dy, side.across_x, side.across_y);
+              across = dot(V2{dx, dy}, side.across);
       for (const MarchLayer& layer : scene.layers) {
-        const V depth = gather(layer.depth);
+        const V depth = gather(layer.depth.data(), index);
         const M hides =
             blocks<kOrthographic>(p, side, ray, looks, kOrthographic ? across : depth * across,
                                   height_above<kOrthographic>(p, rise, depth), job.march.radius,
-                                  [&]() HWY_ATTR { return gather(layer.thickness); });
+                                  [&]() HWY_ATTR { return gather(layer.thickness.data(), index); });
         open = hn::AndNot(hides, open);
       }
     }
-    V visible = hn::IfThenElseZero(open, hn::Set(d, 1.0f));
-    if (job.march.extend && !hn::AllFalse(d, open)) {
+    V visible = hn::IfThenElseZero(open, set(1));
+    if (job.march.extend && any(open)) {
       const float turn = (float(SlicePattern::rank(member)) + 0.5f) / (kPeriod * kPeriod);
       visible = open_beyond<kOrthographic>(job.march, p, side, ray, open, turn);
     }
-    const V cosine = load_normals(scene, place.index, p.valid).facing(job.sun->direction);
-    store_color(mul_add(set_color(job.sun->irradiance), visible * cosine,
-                        load_color(*job.direct, place.index)),
-                *job.direct, place.index);
+    const V cosine = facing(load_normals(scene, place.index, p.valid), job.sun->direction);
+    const V3 before_it = load(*job.direct, place.index);
+    store(mul_add(set(job.sun->irradiance), visible * cosine, before_it), *job.direct, place.index);
   });
 }
 

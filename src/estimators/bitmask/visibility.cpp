@@ -8,6 +8,7 @@
 
 #include "estimators/bitmask/moments-inl.h"
 #include "estimators/bitmask/side-inl.h"
+#include "simd/octahedral_map-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -16,8 +17,6 @@ template <bool kOrthographic, int kOrder>
 void visibility(const VisibilityJob& job, const Window& part) {
   const March& march = job.march;
   for_each_receiver(march, part, [&](const Receiver& p, const std::vector<Slice>& slices) HWY_ATTR {
-    const D d;
-    const DU du;
     const auto ignore = [](auto&&...) HWY_ATTR {};
     const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
     Moments<kOrder> sum, first_half;
@@ -32,35 +31,34 @@ void visibility(const VisibilityJob& job, const Window& part) {
         const VU open = march_side<kOrthographic>(march, p, side, slice, forward, ignore, ignore);
         const VU bits = hn::AndNot(open, side.above);
         whole.add(moments_of_first<kOrder + 1>(side.above_count), p.facing, side.n_t, forward);
-        if (hn::AllTrue(du, bits == hn::Zero(du))) continue;
+        if (none(bits)) continue;
         hidden.add(moments_of_bits<kOrder + 1>(bits), p.facing, side.n_t, forward);
       }
       sum.add(p, f, hidden, whole);
     }
     const std::ptrdiff_t i = p.place.index;
     const V ao = sum.open_share();
-    hn::StoreU(hn::IfThenElse(p.valid, ao, hn::Set(d, 1.0f)), d, job.ao->data() + i);
+    store(hn::IfThenElse(p.valid, ao, set(1)), *job.ao, i);
     if (!job.bent && !job.direct) return;
-    const Normals normals = load_normals(march.scene, i, p.valid);
+    const V3 normals = load_normals(march.scene, i, p.valid);
     if constexpr (kOrder > 0) {
-      if (job.bent) store_color(sum.bent_normal(p, ao, normals), *job.bent, i);
+      if (job.bent) store(sum.bent_normal(p, ao, normals), *job.bent, i);
     }
     if (!job.direct) return;
-    const Color unoccluded = look_up(*job.irradiance, normals);
+    const V3 unoccluded = look_up(*job.irradiance, normals);
     const auto visible = [&](const Moments<kOrder>& moments) HWY_ATTR {
-      if (!job.light) return scaled(unoccluded, ao);
+      if (!job.light) return unoccluded * ao;
       const auto share = [&](int c) HWY_ATTR {
         return moments.share_of_light(job.light + c * Moments<kOrder>::kCount, ao);
       };
-      return product(unoccluded, Color{share(0), share(1), share(2)});
+      return unoccluded * V3{share(0), share(1), share(2)};
     };
-    store_color(visible(sum), *job.direct, i);
+    store(visible(sum), *job.direct, i);
     if (job.difference) {
       const V difference =
           luminance(visible(first_half)) - luminance(visible(sum.minus(first_half)));
-      hn::StoreU(
-          difference * hn::Set(d, error_of_difference(march, p.place, firsts, count_of_slices)), d,
-          job.difference->data() + i);
+      const V scale = set(error_of_difference(march, p.place, firsts, count_of_slices));
+      store(difference * scale, *job.difference, i);
     }
   });
 }

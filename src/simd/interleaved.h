@@ -2,8 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <memory>
+
+#include "simd/width.h"
 
 namespace ssdo {
 
@@ -18,7 +21,7 @@ class Interleaving {
  public:
   static constexpr int kPeriod = 8;
   static constexpr int kShift = 3;  ///< x / kPeriod is x >> kShift
-  static constexpr int kPad = 16;   ///< the widest vector
+  static constexpr int kPad = kMostLanes;
 
   /// `phase` is the column of the display window that the first pixel has, modulo kPeriod.
   Interleaving(int width, int height, int phase)
@@ -72,5 +75,8 @@ class InterleavedPlane {
  private:
   std::unique_ptr<float[]> values_;
 };
+
+/// Vectors or colours of a picture in that order, coordinate by coordinate.
+using InterleavedVectors = std::array<InterleavedPlane, 3>;
 
 }  // namespace ssdo
