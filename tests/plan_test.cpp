@@ -29,7 +29,7 @@ struct Case {
 Plan plan_of(const Case& c) {
   Geometry geometry;
   geometry.surfel = Plane<Surfel>(1, 1);
-  geometry.surfel[0].position = glm::vec4(0, 0, -2, 1);
+  geometry.surfel[0].position = {0, 0, -2}, geometry.surfel[0].valid = 1;
   geometry.median_depth = 2;
   geometry.camera = camera_from_fov(90, {0, 0, 1, 1}, 1);
   geometry.display = geometry.window = {0, 0, 1, 1};

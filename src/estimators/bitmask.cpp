@@ -73,8 +73,9 @@ InterleavedVectors make_color(const Interleaving& layout) {
   return {InterleavedPlane(layout), InterleavedPlane(layout), InterleavedPlane(layout)};
 }
 
-/// What the light's coefficients weigh the polynomials of add_basis with, channel by channel: these
-/// lack the constants that make spherical harmonics orthonormal. Light of order 0 is band 0 alone.
+/// What the light's coefficients weigh the polynomials of spherical harmonics with, channel by
+/// channel: these lack the constants that make spherical harmonics orthonormal. Light of order 0 is
+/// band 0 alone.
 std::vector<float> basis_weights(const Light& light, int order) {
   const int count = sh_count(order);
   std::vector<float> weights(std::size_t(3 * count), 0.0f);

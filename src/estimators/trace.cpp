@@ -40,7 +40,7 @@
 #include "math/sobol.h"
 #include "scene/light/sun.h"
 #include "scene/one_surface.h"
-#include "scene/usable.h"
+#include "scene/surfel.h"
 
 namespace ssdo {
 namespace {
@@ -136,7 +136,7 @@ class Trace {
     const Geometry& g = scene_.geometry;
     const Surfel& s = g.surfel[pixel];
     const glm::vec3 normal(s.normal), position(s.position);
-    const float above = kRoundings * s.normal.w + kFootprints * footprint_.at(-position.z);
+    const float above = kRoundings * s.rounding + kFootprints * footprint_.at(-position.z);
     return {glm::dvec3(position) + double(above) * glm::dvec3(normal), normal, frame_about(normal),
             hash_of(std::uint32_t(g.window.x0 - g.display.x0 + x),
                     std::uint32_t(g.window.y0 - g.display.y0 + y), request_.seed)};
@@ -151,7 +151,7 @@ class Trace {
           for (int y = tile.y0; y < tile.y1; ++y) {
             for (int x = tile.x0; x < tile.x1; ++x) {
               const std::size_t pixel = scene_.geometry.surfel.index(x, y);
-              if (is_usable(scene_.geometry.surfel[pixel])) work(pixel, receiver(x, y, pixel));
+              if (scene_.geometry.surfel[pixel].is_usable()) work(pixel, receiver(x, y, pixel));
             }
           }
         },
@@ -239,7 +239,7 @@ class Trace {
 
   /// What the unseen side of a pixel's surface sends.
   glm::vec3 sent_by_back(std::size_t pixel) const {
-    const glm::vec3 normal = -glm::vec3(scene_.geometry.surfel[pixel].normal);
+    const glm::vec3 normal = -scene_.geometry.surfel[pixel].normal;
     const glm::vec3 light = out_.ao[pixel] * scene_.light.unoccluded(normal);
     return within_range(scene_.senders.albedo[pixel] * (light + out_.bounce[pixel]));
   }
@@ -251,7 +251,7 @@ class Trace {
     for_each_row(height(), [&](int y) {
       for (int x = 0; x < width(); ++x) {
         const std::size_t pixel = sent.index(x, y);
-        if (!is_usable(scene_.geometry.surfel[pixel])) continue;
+        if (!scene_.geometry.surfel[pixel].is_usable()) continue;
         sent[pixel] = sent_by(pixel);
         if (two_sided) sent_back[pixel] = sent_by_back(pixel);
       }
@@ -265,8 +265,8 @@ class Trace {
         ++number[group_of(s)];
         if (hit.sender < 0) continue;
         const auto q = std::size_t(hit.sender);
-        const bool back = two_sided && hit.layer == 0 &&
-                          glm::dot(glm::vec3(scene_.geometry.surfel[q].normal), to) > 0;
+        const bool back =
+            two_sided && hit.layer == 0 && glm::dot(scene_.geometry.surfel[q].normal, to) > 0;
         sums[group_of(s)] += back ? sent_back[q] : sent[q];
       }
       glm::vec3 sum(0);

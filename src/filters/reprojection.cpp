@@ -17,7 +17,7 @@ constexpr double kBehind = 0.02;      ///< of the depth: a surface farther by th
 
 bool shows_same(const Surfel& q, const glm::dvec3& p, const glm::dvec3& normal, double limit) {
   const glm::dvec3 away = glm::dvec3(q.position) - p, other(q.normal);
-  limit += q.normal.w;
+  limit += q.rounding;
   return glm::dot(normal, other) >= kLeastCosine && std::abs(glm::dot(normal, away)) <= limit &&
          std::abs(glm::dot(other, away)) <= limit;
 }
@@ -30,7 +30,7 @@ Reprojection::Reprojection(const Geometry& before, const Geometry& now)
       step_(before.camera.rotation * (now.camera.origin - before.camera.origin)),
       pixel_size_(1 / before.camera.fx, 1 / before.camera.fy) {}
 
-glm::dvec2 Reprojection::place(const glm::vec4& position) const {
+glm::dvec2 Reprojection::place(const glm::vec3& position) const {
   const glm::dvec3 p = turn_ * glm::dvec3(position) + step_;
   return before_.camera.orthographic || p.z < 0 ? before_.camera.project(p) : glm::dvec2(NAN);
 }
@@ -42,7 +42,7 @@ Footprint Reprojection::find(const Surfel& surfel, const glm::dvec2& told) const
   const bool moves = std::isfinite(told.x) && std::isfinite(told.y);
   const double scale = before_.camera.orthographic ? 1.0 : -p.z,
                way = moves ? kSlant * scale * glm::length((told - still) * pixel_size_) : 0.0,
-               limit = 0.5 * scale * pixel_size_.x + surfel.normal.w + way;
+               limit = 0.5 * scale * pixel_size_.x + surfel.rounding + way;
   const glm::dvec2 at =
       (moves ? told : still) - glm::dvec2(before_.window.x0 + 0.5, before_.window.y0 + 0.5);
   const double left = std::floor(at.x), top = std::floor(at.y);

@@ -37,7 +37,7 @@ class Reprojection {
 
   /// Where the camera before saw a point of the present one's space, had it not moved: pixels of
   /// the display window. Not finite where that camera looked away.
-  glm::dvec2 place(const glm::vec4& position) const;
+  glm::dvec2 place(const glm::vec3& position) const;
 
   /// `told` is where the thing was seen according to its motion, not finite where nothing tells.
   Footprint find(const Surfel& surfel, const glm::dvec2& told) const;

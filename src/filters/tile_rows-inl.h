@@ -171,9 +171,9 @@ class TileRows {
 
   void gather_surfels(const Surfel* from, int count, float* to) {
     const auto single = [&](int i) {
-      const glm::vec4 p = from[i].position, n = from[i].normal;
-      const bool surface = p.w != 0;
-      const float values[kSurfelChannels] = {p.x, p.y, p.z, n.x, n.y, n.z, n.w};
+      const glm::vec3 p = from[i].position, n = from[i].normal;
+      const bool surface = from[i].is_surface();
+      const float values[kSurfelChannels] = {p.x, p.y, p.z, n.x, n.y, n.z, from[i].rounding};
       surface_[std::size_t(i)] = surface;
       for (int c = 0; c < kSurfelChannels; ++c) to[c * stride_ + i] = surface ? values[c] : 0.0f;
     };
@@ -183,7 +183,7 @@ class TileRows {
     static_assert(sizeof(Surfel) == 8 * sizeof(float));
     const auto whole = [&](int i) HWY_ATTR {
       const D d;
-      // Position, normal, position, normal, ... of two halves of the vector.
+      // Position and validity, normal and rounding, position, ... of two halves of the vector.
       V x0, y0, z0, w0, x1, y1, z1, w1;
       hn::LoadInterleaved4(d, &from[i].position.x, x0, y0, z0, w0);
       hn::LoadInterleaved4(d, &from[i + kLanes / 2].position.x, x1, y1, z1, w1);

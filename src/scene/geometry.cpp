@@ -37,8 +37,9 @@ void place_positions(const GBuffer& g, const Camera& camera, Geometry& out) {
         magnitude = std::max(
             {std::abs(g.position[i].x), std::abs(g.position[i].y), std::abs(g.position[i].z)});
       }
-      out.surfel[i].position = glm::vec4(glm::vec3(p), 1.0f);
-      out.surfel[i].normal.w = float(magnitude) * g.position_step;
+      out.surfel[i].position = glm::vec3(p);
+      out.surfel[i].valid = 1;
+      out.surfel[i].rounding = float(magnitude) * g.position_step;
     }
   });
 }
@@ -46,7 +47,7 @@ void place_positions(const GBuffer& g, const Camera& camera, Geometry& out) {
 void drop_pixels_behind_camera(Geometry& out, GeometryReport& report) {
   std::size_t behind = 0;
   for (Surfel& s : out.surfel.pixels) {
-    if (s.position.w == 0 || s.position.z < 0) continue;
+    if (!s.is_surface() || s.position.z < 0) continue;
     s = {};
     ++behind;
   }
@@ -105,7 +106,7 @@ void place_normals(const GBuffer& g, const FoundCamera& found, Geometry& out,
     for (int x = 0; x < out.surfel.width; ++x) {
       const std::size_t i = out.surfel.index(x, y);
       if (!out.is_surface(i)) continue;
-      const glm::vec3 view = direction_to_viewer(glm::vec3(out.surfel[i].position), orthographic);
+      const glm::vec3 view = direction_to_viewer(out.surfel[i].position, orthographic);
       glm::vec3 n = space ? space->to_camera * g.normal[i] : glm::vec3(0);
       const float length = glm::length(n);
       if (length > 1e-4f && length < 1e4f) {
@@ -121,7 +122,7 @@ void place_normals(const GBuffer& g, const FoundCamera& found, Geometry& out,
         if (n == glm::vec3(0)) n = view;
         fate[i] = 1;
       }
-      out.surfel[i].normal = glm::vec4(n, out.surfel[i].normal.w);
+      out.surfel[i].normal = n;
     }
   });
   for (unsigned char f : fate.pixels) {
@@ -133,7 +134,7 @@ void place_normals(const GBuffer& g, const FoundCamera& found, Geometry& out,
 float median_depth(const Geometry& geometry) {
   std::vector<float> depths;
   for (const Surfel& s : geometry.surfel.pixels) {
-    if (s.position.w != 0) depths.push_back(-s.position.z);
+    if (s.is_surface()) depths.push_back(-s.position.z);
   }
   if (depths.empty()) return 0;
   const auto middle = depths.begin() + std::ptrdiff_t(depths.size() / 2);

@@ -3,7 +3,6 @@
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,7 +32,7 @@ struct Geometry {
   glm::mat3 world_to_camera{1.0f};    ///< of directions; identity where the world is not known
   glm::mat3 normals_to_camera{1.0f};  ///< from the space of the input's normals; orthogonal
 
-  bool is_surface(std::size_t i) const { return surfel[i].position.w != 0; }
+  bool is_surface(std::size_t i) const { return surfel[i].is_surface(); }
 
   /// Height of the display window at depth `depth`, in scene units.
   float frame_height_at(float depth) const;

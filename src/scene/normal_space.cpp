@@ -65,7 +65,7 @@ std::optional<glm::vec3> smooth_step(const Plane<Surfel>& surfels, int x, int y,
     if (!a || !b) continue;
     const glm::vec3 before(a->position), after(b->position), step = after - before;
     const float length = glm::length(step);
-    if (!(length > kOverRounding * s.normal.w)) continue;
+    if (!(length > kOverRounding * s.rounding)) continue;
     if (glm::length(before + after - 2.0f * p) > kStraight * length) return std::nullopt;
     return step;
   }
@@ -97,9 +97,9 @@ std::vector<Witness> collect_witnesses(const Plane<glm::vec3>& stored, const Pla
   std::vector<Witness> witnesses;
   const std::size_t stride = (surfels.size() / kMostSamples) | 1;
   for (std::size_t i = 0; i < surfels.size(); i += stride) {
-    if (surfels[i].position.w == 0 || !is_usable(stored[i])) continue;
+    if (!surfels[i].is_surface() || !is_usable(stored[i])) continue;
     const int x = int(i % std::size_t(surfels.width)), y = int(i / std::size_t(surfels.width));
-    const glm::vec3 view = direction_to_viewer(glm::vec3(surfels[i].position), orthographic);
+    const glm::vec3 view = direction_to_viewer(surfels[i].position, orthographic);
     if (const auto gradient = smooth_gradient(surfels, x, y, view))
       witnesses.push_back({*gradient, glm::normalize(stored[i])});
   }

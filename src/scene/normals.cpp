@@ -15,7 +15,7 @@ glm::vec3 shorter_step(const Plane<Surfel>& surfels, int x, int y, int dx, int d
     for (const int way : {-pixels, pixels}) {
       const Surfel* q = surface_at(surfels, x + way * dx, y + way * dy);
       if (!q) continue;
-      const glm::vec3 step = (glm::vec3(q->position) - p) / float(way);
+      const glm::vec3 step = (q->position - p) / float(way);
       const float length = glm::dot(step, step);
       if (best_length == 0 || length < best_length) best = step, best_length = length;
     }
@@ -28,7 +28,7 @@ glm::vec3 shorter_step(const Plane<Surfel>& surfels, int x, int y, int dx, int d
 const Surfel* surface_at(const Plane<Surfel>& surfels, int x, int y) {
   if (x < 0 || y < 0 || x >= surfels.width || y >= surfels.height) return nullptr;
   const Surfel& s = surfels(x, y);
-  return s.position.w != 0 ? &s : nullptr;
+  return s.is_surface() ? &s : nullptr;
 }
 
 glm::vec3 direction_to_viewer(const glm::vec3& p, bool orthographic) {

@@ -63,7 +63,7 @@ class Silhouettes {
   /// What the pixel is to hold instead of an average; nothing where it holds none.
   std::optional<Surfel> mended(int x, int y) const {
     const Surfel& s = g_.surfel(x, y);
-    if (s.position.w == 0) return std::nullopt;
+    if (!s.is_surface()) return std::nullopt;
     const double off = off_ray(x, y);
     if (off > kOutsidePixel) {
       const Surfel* beside = any_surface_beside(x, y);
@@ -95,8 +95,8 @@ class Silhouettes {
   /// Pixels between P and the middle of its pixel, less what precision and the camera leave.
   double off_ray(int x, int y) const {
     const Surfel& s = g_.surfel(x, y);
-    const glm::dvec2 offset = g_.camera.project(glm::dvec3(glm::vec3(s.position))) - middle(x, y);
-    return glm::length(offset) - stray_ - 2 * double(s.normal.w) / footprint(s);
+    const glm::dvec2 offset = g_.camera.project(glm::dvec3(s.position)) - middle(x, y);
+    return glm::length(offset) - stray_ - 2 * double(s.rounding) / footprint(s);
   }
 
   glm::dvec2 middle(int x, int y) const { return {g_.window.x0 + x + 0.5, g_.window.y0 + y + 0.5}; }
@@ -107,7 +107,7 @@ class Silhouettes {
   const Surfel* surface(int x, int y) const {
     if (x < 0 || y < 0 || x >= g_.surfel.width || y >= g_.surfel.height) return nullptr;
     const Surfel& s = g_.surfel(x, y);
-    return s.position.w != 0 && off_ray(x, y) < kOutsidePixel ? &s : nullptr;
+    return s.is_surface() && off_ray(x, y) < kOutsidePixel ? &s : nullptr;
   }
 
   /// The surface of the neighbours that is nearest to the viewer.
@@ -132,8 +132,8 @@ class Silhouettes {
   }
 
   bool is_on(const Surfel& s, const Surfel& q) const {
-    const double gap = std::abs(glm::dot(glm::vec3(s.position - q.position), glm::vec3(q.normal)));
-    return gap <= kOffPlane * footprint(q) + double(s.normal.w + q.normal.w);
+    const double gap = std::abs(glm::dot(s.position - q.position, q.normal));
+    return gap <= kOffPlane * footprint(q) + double(s.rounding + q.rounding);
   }
 
   Surfel on_plane_of(const Surfel& q, int x, int y) const {
@@ -144,7 +144,7 @@ class Silhouettes {
     const double facing = glm::dot(normal, ray);
     glm::dvec3 moved = at_depth_of_q;
     if (-facing > kLeastFacing) moved += ray * glm::dot(normal, position - moved) / facing;
-    return {glm::vec4(glm::vec3(moved), 1), q.normal};
+    return {glm::vec3(moved), 1, q.normal, q.rounding};
   }
 
   const Geometry& g_;
@@ -157,7 +157,7 @@ std::size_t count_edges(const Silhouettes& silhouettes, const Geometry& geometry
   std::vector<std::size_t> in_row(std::size_t(geometry.surfel.height));
   for_each_row(geometry.surfel.height, [&](int y) {
     for (int x = 0; x < geometry.surfel.width; ++x) {
-      const bool surface = geometry.surfel(x, y).position.w != 0;
+      const bool surface = geometry.surfel(x, y).is_surface();
       in_row[std::size_t(y)] += surface && silhouettes.is_at_edge(x, y);
     }
   });

@@ -90,7 +90,7 @@ class Runs {
   void walk(int x, int y, const Direction& d, const Work& work) const {
     Meets before = Meets::border;
     while (contains(x, y)) {
-      if (geometry_.surfel(x, y).position.w == 0) {
+      if (!geometry_.surfel(x, y).is_surface()) {
         before = Meets::ends;
         x += d.dx, y += d.dy;
         continue;
@@ -110,10 +110,8 @@ class Runs {
   }
 
   Meets meet(const Surfel& a, const Surfel& b) const {
-    if (b.position.w == 0) return Meets::ends;
-    const auto point = [](const Surfel& s) {
-      return SurfacePoint{glm::vec3(s.position), glm::vec3(s.normal)};
-    };
+    if (!b.is_surface()) return Meets::ends;
+    const auto point = [](const Surfel& s) { return SurfacePoint{s.position, s.normal}; };
     if (on_one_surface(point(a), point(b), footprint_)) return Meets::same_surface;
     return a.position.z > b.position.z ? Meets::ends : Meets::goes_behind;
   }
@@ -127,7 +125,7 @@ float width_of(const Run& run, const Geometry& geometry, const Runs& runs) {
   if (unknown_ends == 2) return kInfinity;
   const Surfel& first = geometry.surfel(run.x, run.y);
   const Surfel& last = geometry.surfel(run.x_at(run.length - 1), run.y_at(run.length - 1));
-  const float between = glm::distance(glm::vec3(first.position), glm::vec3(last.position));
+  const float between = glm::distance(first.position, last.position);
   const float ends = 0.5f * run.step_px() * (runs.footprint(first) + runs.footprint(last));
   return (between + ends) * (unknown_ends == 1 ? kPartlySeen : 1.0f);
 }

@@ -99,7 +99,7 @@ TEST(Bitmask, AnOpenPlaneReadsOneWhereverInItsPixelsPIs) {
         const auto hit = ground(ray);
         if (!hit || !g.is_surface(g.surfel.index(x, y))) continue;
         const glm::dvec3 p = camera.to_camera(ray.origin + hit->distance * ray.direction);
-        g.surfel(x, y).position = glm::vec4(glm::vec3(p), 1);
+        g.surfel(x, y).position = glm::vec3(p);
       }
     }
     EXPECT_LT(worst(run(g, {.slices = 2, .steps = 16})), 1e-4) << projection.orthographic;

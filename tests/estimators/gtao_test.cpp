@@ -35,13 +35,13 @@ struct SlowGtao {
     bool above = false;
     double falloff = 1;
     if (x >= 0 && y >= 0 && x < g.window.width() && y < g.window.height() &&
-        g.surfel(x, y).position.w != 0) {
+        g.surfel(x, y).is_surface()) {
       const glm::dvec3 to = g.camera.unproject({x + g.window.x0 + 0.5, y + g.window.y0 + 0.5},
                                                -double(g.surfel(x, y).position.z)) -
                             p;
       const double d = glm::length(to), up = glm::dot(to, glm::dvec3(s.normal));
       cosine = glm::dot(to, v) / d;
-      const double flat = double(s.normal.w) + 0.001 * d;
+      const double flat = double(s.rounding) + 0.001 * d;
       above = up > flat;
       doubtful |= std::abs(up - flat) < 1e-5 * (1 + d);
       falloff = std::min(2 * d * d / (radius * radius), 1.0);
@@ -179,7 +179,7 @@ TEST(Gtao, TheFootOfAWallSeesTheSkyThatTheWallLeaves) {
     const Surfel& s = g.surfel(120, y);
     const glm::dvec3 p =
         g.camera.origin + glm::transpose(g.camera.rotation) * glm::dvec3(s.position);
-    if (s.position.w == 0 || p.z > 1e-3 || p.y < -1 || p.y > 0.8) continue;
+    if (!s.is_surface() || p.z > 1e-3 || p.y < -1 || p.y > 0.8) continue;
     const double to_wall = 1 - p.y, expected = 0.5 + 0.5 * to_wall / std::hypot(to_wall, 1.0);
     EXPECT_NEAR(out.ao(120, y), expected, 0.03) << "at " << p.y;
     // Away from the wall.

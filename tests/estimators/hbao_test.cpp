@@ -45,10 +45,10 @@ struct SlowHbao {
         const int qx = x + int(std::lround(dx)), qy = y + int(std::lround(dy));
         if (qx < 0 || qy < 0 || qx >= g.window.width() || qy >= g.window.height()) continue;
         const Surfel& q = g.surfel(qx, qy);
-        if (q.position.w == 0) continue;
+        if (!q.is_surface()) continue;
         const glm::dvec3 v = glm::dvec3(q.position) - p;
         const double vv = std::max(glm::dot(v, v), least * least * radius * radius);
-        const double sine = (glm::dot(v, n) - double(s.normal.w)) / std::sqrt(vv);
+        const double sine = (glm::dot(v, n) - double(s.rounding)) / std::sqrt(vv);
         sum += std::clamp(sine - bias, 0.0, 1.0) * std::clamp(1 - vv / (radius * radius), 0.0, 1.0);
       }
     }
@@ -103,7 +103,7 @@ TEST(Hbao, ItsParametersAreThoseOfTheSum) {
 TEST(Hbao, TheUnitOfTheSceneDoesNotMatter) {
   Geometry g = still(camera_from_fov(50, kWindow, 1));
   const Products metres = obscure(hbao_method(), g, 0.5f);
-  for (Surfel& s : g.surfel.pixels) s.position *= glm::vec4(128, 128, 128, 1), s.normal.w *= 128;
+  for (Surfel& s : g.surfel.pixels) s.position *= 128, s.rounding *= 128;
   const Products other = obscure(hbao_method(), g, 64);
   EXPECT_LT(*std::min_element(other.ao.pixels.begin(), other.ao.pixels.end()), 0.6f);
   for (std::size_t i = 0; i < other.ao.size(); ++i) EXPECT_NEAR(other.ao[i], metres.ao[i], 1e-5);

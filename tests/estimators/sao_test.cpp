@@ -30,7 +30,7 @@ struct SlowSao {
     const int column = x + g.window.x0 - g.display.x0, row = y + g.window.y0 - g.display.y0;
     const double spin = 10.0 * unsigned((3 * column) ^ (row + column * row));
     const double disc = g.camera.fy * radius / (g.camera.orthographic ? 1 : -p.z);
-    const double r2 = radius * radius, b = bias * radius + double(s.normal.w);
+    const double r2 = radius * radius, b = bias * radius + double(s.rounding);
     double sum = 0;
     for (int i = 0; i < samples; ++i) {
       const double alpha = (i + 0.5) / samples,
@@ -104,7 +104,7 @@ TEST(Sao, TheUnitOfTheSceneDoesNotMatter) {
       still_life(), look_at(camera_from_fov(50, kWindow, 1), {1, -4, 3}, {0, 0.2, 0.4}, {0, 0, 1}),
       kWindow);
   const Products metres = obscure(sao_method(), g, 0.5f);
-  for (Surfel& s : g.surfel.pixels) s.position *= glm::vec4(128, 128, 128, 1), s.normal.w *= 128;
+  for (Surfel& s : g.surfel.pixels) s.position *= 128, s.rounding *= 128;
   const Products other = obscure(sao_method(), g, 64);
   EXPECT_LT(*std::min_element(other.ao.pixels.begin(), other.ao.pixels.end()), 0.5f);
   for (std::size_t i = 0; i < other.ao.size(); ++i) EXPECT_NEAR(other.ao[i], metres.ao[i], 1e-5);
@@ -118,7 +118,7 @@ TEST(Sao, AnOpenPlaneReadsOneWhileItsTapsReadFullResolution) {
       const Geometry g = geometry_of(plane({}, {0, 0, 1}), tilted(projection, tilt), kWindow);
       float nearest = 1e9f;
       for (const Surfel& s : g.surfel.pixels)
-        if (s.position.w != 0) nearest = std::min(nearest, -s.position.z);
+        if (s.is_surface()) nearest = std::min(nearest, -s.position.z);
       const float radius = 15 / float(g.camera.fy) * (g.camera.orthographic ? 1 : nearest);
       for (const float ao : obscure(sao_method(), g, radius).ao.pixels) EXPECT_EQ(ao, 1) << tilt;
     }
@@ -131,9 +131,9 @@ TEST(Sao, WhatRoundingMovedDoesNotHide) {
   std::mt19937 random(1);
   const float step = 1.0f / 256;  // half floats from 4 to 8 units
   for (Surfel& s : g.surfel.pixels)
-    s.position.z += (float(random() % 1024) / 1024 - 0.5f) * step, s.normal.w = step;
+    s.position.z += (float(random() % 1024) / 1024 - 0.5f) * step, s.rounding = step;
   for (const float ao : obscure(sao_method(), g, 0.2f).ao.pixels) EXPECT_EQ(ao, 1);
-  for (Surfel& s : g.surfel.pixels) s.normal.w = 0;
+  for (Surfel& s : g.surfel.pixels) s.rounding = 0;
   EXPECT_LT(obscure(sao_method(), g, 0.2f).ao(48, 36), 1) << "not even without knowing of it";
 }
 

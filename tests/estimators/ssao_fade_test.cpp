@@ -16,7 +16,7 @@ const std::vector<std::string> kEveryPixel = {"upsampling=0"};
 /// The formula with the defaults, sample by sample, in double. Noise (column, row).
 double slow_ssao_fade(const Geometry& g, int x, int y, int column, int row, double radius) {
   const Surfel& s = g.surfel(x, y);
-  if (s.position.w == 0) return 1;
+  if (!s.is_surface()) return 1;
   const glm::dvec3 p(s.position), n(s.normal);
   const glm::dvec3 m(fade_noise(0)[std::size_t((row & 3) * 4 + (column & 3))]);
   double sum = 0;
@@ -28,7 +28,7 @@ double slow_ssao_fade(const Geometry& g, int x, int y, int column, int row, doub
     if (!depth_at(g, q, z)) continue;
     const glm::dvec3 r = g.camera.orthographic ? glm::dvec3(q.x, q.y, z) : q * (z / q.z);
     const double distance = r.z - p.z;
-    if (!(distance > 0.1 * radius + s.normal.w)) continue;
+    if (!(distance > 0.1 * radius + s.rounding)) continue;
     const double fade = std::min(std::max((2 * radius - distance) / (1.6 * radius), 0.0), 1.0);
     sum += std::max(glm::dot(n, glm::normalize(r - p)), 0.0) * fade;
   }

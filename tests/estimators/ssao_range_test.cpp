@@ -22,7 +22,7 @@ struct Settings {
 /// The formula, sample by sample, in double.
 double slow_ssao_range(const Geometry& g, int x, int y, double radius, const Settings& settings) {
   const Surfel& s = g.surfel(x, y);
-  if (s.position.w == 0) return 1;
+  if (!s.is_surface()) return 1;
   const glm::dvec3 p(s.position), n(s.normal);
   const glm::dvec3 random(frame_noise(0)[std::size_t((y & 3) * 4 + (x & 3))]);
   const glm::dvec3 tangent = glm::normalize(random - n * glm::dot(random, n));
@@ -34,7 +34,7 @@ double slow_ssao_range(const Geometry& g, int x, int y, double radius, const Set
     if (!depth_at(g, p + radius * turned, z)) continue;
     const double depth = -z, own = -p.z;
     const double in_range = std::abs(depth - own) > settings.range * radius ? 0 : 1;
-    const double in_front = depth + settings.bias * radius + s.normal.w < own ? 1 : 0;
+    const double in_front = depth + settings.bias * radius + s.rounding < own ? 1 : 0;
     sum += slow_smoothstep(0, 0.2, std::hypot(turned.x, turned.y)) * in_range * in_front;
   }
   return std::max(0.0, 1 - settings.strength * sum / 64);

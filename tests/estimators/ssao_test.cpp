@@ -15,7 +15,7 @@ const Window kWindow{0, 0, 96, 72};
 double slow_ssao(const Geometry& g, int x, int y, double radius, double bias, int samples,
                  unsigned seed) {
   const Surfel& s = g.surfel(x, y);
-  if (s.position.w == 0) return 1;
+  if (!s.is_surface()) return 1;
   const glm::dvec3 p(s.position), n(s.normal);
   const int column = (x + g.window.x0 - g.display.x0) & 3,
             row = (y + g.window.y0 - g.display.y0) & 3;
@@ -26,7 +26,7 @@ double slow_ssao(const Geometry& g, int x, int y, double radius, double bias, in
   for (const glm::vec3& v : point_kernel(samples, 0.1f, true, seed)) {
     const glm::dvec3 point = p + radius * (frame * glm::dvec3(v));
     double z;
-    if (!depth_at(g, point, z) || !(z >= point.z + bias * radius + s.normal.w)) continue;
+    if (!depth_at(g, point, z) || !(z >= point.z + bias * radius + s.rounding)) continue;
     occlusion += slow_smoothstep(0, 1, radius / std::abs(p.z - z));
   }
   return 1 - occlusion / samples;

@@ -247,10 +247,9 @@ TEST(Ssdo, NothingThatComesInMakesANaN) {
   Geometry g =
       geometry_of(sphere({0, 0, 0}, 2), tilted(camera_from_fov(40, kWindow, 1), 30), kWindow);
   for (std::size_t i = 0; i < g.surfel.size(); ++i) {
-    if (random() % 10 == 0) g.surfel[i].position = glm::vec4(0);
-    if (g.is_surface(i) && random() % 10 == 0)
-      g.surfel[i].position *= glm::vec4(1e6f, 1e6f, 1e6f, 1);
-    if (g.is_surface(i) && random() % 10 == 0) g.surfel[i].position = glm::vec4(0, 0, -1e-30f, 1);
+    if (random() % 10 == 0) g.surfel[i].position = glm::vec3(0), g.surfel[i].valid = 0;
+    if (g.is_surface(i) && random() % 10 == 0) g.surfel[i].position *= 1e6f;
+    if (g.is_surface(i) && random() % 10 == 0) g.surfel[i].position = glm::vec3(0, 0, -1e-30f);
   }
   for (const float radius : {1e-6f, 1.0f, 1e6f}) {
     const Products out = run(g, {.radius = radius, .bounces = 3});

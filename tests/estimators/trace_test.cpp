@@ -32,7 +32,7 @@ TEST(Trace, AnOpenPlaneReadsOneAtEveryTilt) {
         for (std::size_t i = 0; i < g.surfel.size(); ++i) {
           if (!g.is_surface(i)) continue;
           worst = std::min(worst, double(out.ao[i]));
-          off = std::max(off, double(glm::distance(out.bent[i], glm::vec3(g.surfel[i].normal))));
+          off = std::max(off, double(glm::distance(out.bent[i], g.surfel[i].normal)));
         }
         EXPECT_GE(worst, 1 - 1e-4) << "tilt " << tilt << ", orthographic " << orthographic;
         EXPECT_LE(off, 1e-5) << "tilt " << tilt;
@@ -51,7 +51,7 @@ TEST(Trace, AnOpenPlaneOfHalfFloatsReadsOne) {
       const float step = std::ldexp(1.0f, exponent - 11);
       s.position[c] = std::round(s.position[c] / step) * step;
     }
-    s.normal.w = glm::length(glm::vec3(s.position)) / 2048;
+    s.rounding = glm::length(s.position) / 2048;
   }
   const Products out = run_trace(g, {});
   double sum = 0;

@@ -93,8 +93,7 @@ TEST_P(EveryFilter, TakesNothingFromTheBackgroundBeItBroken) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     broken.ao[i] = nan;
     broken.direct[i] = glm::vec3(nan);
-    holes.surfel[i].position = glm::vec4(glm::vec3(nan), 0);
-    holes.surfel[i].normal = glm::vec4(nan);
+    holes.surfel[i] = {glm::vec3(nan), 0, glm::vec3(nan), nan};
   }
   const Products expected = filtered(GetParam(), clean, g),
                  out = filtered(GetParam(), broken, holes);

@@ -29,7 +29,7 @@ double reference_weight(const Geometry& g, int x, int y, int dx, int dy) {
     return glm::dot(glm::dvec3(s.position) - glm::dvec3(p.position), n);
   };
   const double distance = glm::length(glm::dvec3(q->position) - glm::dvec3(p.position)),
-               rounding = p.normal.w + q->normal.w, turn = 1 - glm::dot(n, glm::dvec3(q->normal));
+               rounding = p.rounding + q->rounding, turn = 1 - glm::dot(n, glm::dvec3(q->normal));
   double height = std::max(0.0, std::abs(above(*q)) - rounding);
   if (o) height = std::min(height, std::max(0.0, std::abs(above(*q) + above(*o)) - 2 * rounding));
   return ramp(distance > 0 ? height / (0.3 * distance) : 0) * ramp(turn / 0.2);

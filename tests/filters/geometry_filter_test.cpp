@@ -82,7 +82,7 @@ TEST(GeometryFilter, FollowsACoarseMeshUnderSmoothNormals) {
                   look_at(camera_from_fov(40, kWindow, 1), {0, 0, 5}, {}, {0, 1, 0}), kWindow);
   for (Surfel& s : g.surfel.pixels) {
     const double lean = glm::radians(40.0);
-    s.normal = glm::vec4(0, std::sin(lean), std::cos(lean), s.normal.w);
+    s.normal = glm::vec3(0, std::sin(lean), std::cos(lean));
   }
   const Products out = filter_geometry(noise_of_a_pattern(g), g, 4);
   for (int y = 4; y < kWindow.height() - 4; ++y) {

@@ -96,10 +96,10 @@ struct Expected {
 Expected slow(const History& before, const Geometry& g, const Products& now, std::size_t i,
               const Plane<glm::vec2>& motion) {
   const Geometry& b = before.geometry;
-  const auto world = [](const Camera& c, const glm::vec4& p) {
+  const auto world = [](const Camera& c, const glm::vec3& p) {
     return c.origin + glm::transpose(c.rotation) * glm::dvec3(p);
   };
-  const auto turned = [](const Camera& c, const glm::vec4& n) {
+  const auto turned = [](const Camera& c, const glm::vec3& n) {
     return glm::transpose(c.rotation) * glm::dvec3(n);
   };
   const Surfel& s = g.surfel[i];
@@ -123,7 +123,7 @@ Expected slow(const History& before, const Geometry& g, const Products& now, std
       if (weight == 0 || !b.is_surface(k)) continue;
       const Surfel& q = b.surfel[k];
       const glm::dvec3 away = world(b.camera, q.position) - p, m = turned(b.camera, q.normal);
-      const double limit = pixel / 2 + s.normal.w + q.normal.w + 2 * way;
+      const double limit = pixel / 2 + s.rounding + q.rounding + 2 * way;
       if (glm::dot(n, m) < 0.9 || std::abs(glm::dot(n, away)) > limit ||
           std::abs(glm::dot(m, away)) > limit)
         continue;

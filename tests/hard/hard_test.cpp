@@ -135,13 +135,13 @@ TEST_P(HardFiles, ShowWhatTheSceneShows) {
   double farthest = 0;
   for (std::size_t i = 0; i < g.surfel.size(); ++i) {
     const Surfel &found = g.surfel[i], &shown = frame_.shown[i];
-    missing += found.position.w != shown.position.w;
-    if (found.position.w == 0 || shown.position.w == 0) continue;
+    missing += found.is_surface() != shown.is_surface();
+    if (!found.is_surface() || !shown.is_surface()) continue;
     const double distance = glm::distance(glm::dvec3(found.position), glm::dvec3(shown.position));
     farthest = std::max(farthest, distance);
     moved += distance > frame_.position_error;
     // A half has normals to within 1e-3; what is rebuilt from P is worse where the scene bends.
-    turned += glm::dot(glm::vec3(found.normal), glm::vec3(shown.normal)) < 0.99f;
+    turned += glm::dot(found.normal, shown.normal) < 0.99f;
   }
   EXPECT_EQ(missing, 0u);
   EXPECT_EQ(moved, 0u) << "by " << farthest << " at most";

@@ -57,8 +57,8 @@ HardFrame wires() {
     for (int x = 0; x < kWindow.width(); ++x) {
       if (x % 5 != 0 && x != y) continue;
       Surfel& s = frame.geometry.surfel(x, y);
-      s.position *= glm::vec4(0.95f, 0.95f, 0.95f, 1);
-      s.normal = glm::vec4(0, 0, 1, s.normal.w);
+      s.position *= 0.95f;
+      s.normal = glm::vec3(0, 0, 1);
     }
   }
   return frame;
@@ -84,9 +84,10 @@ HardFrame broken_values() {
     const float value = odd[n % odd.size()];
     const std::size_t channel = n++ / odd.size() % 9;
     if (channel < 3) s.position[int(channel)] = value;
-    if (channel >= 3 && channel < 7) s.normal[int(channel) - 3] = value;
-    if (channel == 7) s.position = glm::vec4(glm::vec3(value), 1);
-    if (channel == 8) s.normal = glm::vec4(glm::vec3(value), 1e-7f);
+    if (channel >= 3 && channel < 6) s.normal[int(channel) - 3] = value;
+    if (channel == 6) s.rounding = value;
+    if (channel == 7) s.position = glm::vec3(value), s.valid = 1;
+    if (channel == 8) s.normal = glm::vec3(value), s.rounding = 1e-7f;
   }
   return frame;
 }
@@ -95,7 +96,7 @@ HardFrame broken_values() {
 HardFrame all_positions(const glm::vec3& position) {
   HardFrame frame = still_life(camera_from_fov(30, kWindow, 1));
   for (std::size_t i = 0; i < frame.geometry.surfel.size(); i += 3)
-    frame.geometry.surfel[i].position = glm::vec4(position, 1);
+    frame.geometry.surfel[i].position = position, frame.geometry.surfel[i].valid = 1;
   return frame;
 }
 
@@ -103,8 +104,8 @@ HardFrame all_positions(const glm::vec3& position) {
 HardFrame normals_away() {
   HardFrame frame = still_life(camera_from_fov(30, kWindow, 1));
   for (const std::size_t i : some_pixels(frame.geometry, 3)) {
-    glm::vec4& n = frame.geometry.surfel[i].normal;
-    n = glm::vec4(-glm::vec3(n), n.w);
+    glm::vec3& n = frame.geometry.surfel[i].normal;
+    n = -n;
   }
   return frame;
 }

@@ -36,9 +36,7 @@ Difference difference(const Geometry& a, const Geometry& b) {
   Difference most;
   for (std::size_t i = 0; i < a.surfel.size(); ++i) {
     EXPECT_EQ(a.is_surface(i), b.is_surface(i));
-    const auto apart = [](const glm::vec4& p, const glm::vec4& q) {
-      return glm::distance(glm::vec3(p), glm::vec3(q));
-    };
+    const auto apart = [](const glm::vec3& p, const glm::vec3& q) { return glm::distance(p, q); };
     most.position = std::max(most.position, apart(a.surfel[i].position, b.surfel[i].position));
     most.normal = std::max(most.normal, apart(a.surfel[i].normal, b.surfel[i].normal));
   }

@@ -42,8 +42,7 @@ double mean_angle(const GBuffer& g, const GBuffer& right, GeometryReport& report
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < found.surfel.size(); ++i) {
     if (!found.is_surface(i)) continue;
-    const float cosine =
-        glm::dot(glm::vec3(found.surfel[i].normal), glm::vec3(expected.surfel[i].normal));
+    const float cosine = glm::dot(found.surfel[i].normal, expected.surfel[i].normal);
     sum += glm::degrees(std::acos(std::clamp(double(cosine), -1.0, 1.0)));
     count += 1;
   }
@@ -173,7 +172,7 @@ TEST(NormalSpace, OfAFrameOfDepthAloneIsFoundInTheWorldToo) {
   for (std::size_t i = 0; i < found.surfel.size(); ++i) {
     if (!found.is_surface(i)) continue;
     const glm::vec3 expected = glm::mat3(picture.camera.rotation) * picture.normal[i];
-    worst = std::max(worst, double(glm::length(glm::vec3(found.surfel[i].normal) - expected)));
+    worst = std::max(worst, double(glm::length(found.surfel[i].normal - expected)));
   }
   EXPECT_LT(worst, 5e-3);
   EXPECT_FALSE(found.world_known);

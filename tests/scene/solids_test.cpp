@@ -102,7 +102,7 @@ TEST(Solids, BehindACardAreTheTangentPlaneThatReachesIt) {
       EXPECT_FALSE(shows_card(g, std::size_t(second.sender)));
       EXPECT_TRUE(std::isinf(second.thickness)) << "as thick as where it is seen";
       const glm::vec3 found = point_behind(g, i, second.distance);
-      EXPECT_LT(glm::distance(found, glm::vec3(wall.surfel[i].position)), 1e-4);
+      EXPECT_LT(glm::distance(found, wall.surfel[i].position), 1e-4);
     }
   }
 }

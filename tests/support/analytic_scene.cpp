@@ -92,9 +92,8 @@ Geometry geometry_of(const Surface& scene, const Camera& camera, const Window& w
       const std::size_t i = g.surfel.index(x - window.x0, y - window.y0);
       const glm::dvec3 p = camera.to_camera(ray.origin + hit->distance * ray.direction);
       const glm::dvec3 n = glm::dot(hit->normal, ray.direction) > 0 ? -hit->normal : hit->normal;
-      g.surfel[i].position = glm::vec4(glm::vec3(p), 1);
-      g.surfel[i].normal =
-          glm::vec4(glm::vec3(camera.rotation * n), float(glm::length(p)) / 16777216);
+      g.surfel[i] = {glm::vec3(p), 1, glm::vec3(camera.rotation * n),
+                     float(glm::length(p)) / 16777216};
     }
   }
   return g;

@@ -38,8 +38,7 @@ Geometry random_geometry(int width, int height, unsigned seed) {
       const glm::vec3 p = glm::vec3(0.1f * float(x), -0.1f * float(y), -5 - float(step)) +
                           vector_of(random, 0.01f),
                       n = glm::vec3(0.3f * float(step), 0, 1) + vector_of(random, 0.25f);
-      g.surfel(x, y).position = glm::vec4(p, 1);
-      g.surfel(x, y).normal = glm::vec4(glm::normalize(n), 1e-3f * between(random, 0, 1));
+      g.surfel(x, y) = {p, 1, glm::normalize(n), 1e-3f * between(random, 0, 1)};
     }
   }
   return g;

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "parallel/tiles.h"
-#include "scene/usable.h"
+#include "scene/surfel.h"
 
 namespace ssdo {
 namespace {
@@ -37,13 +37,13 @@ class Cells {
   Cell at(int x, int y) const {
     Cell cell;
     const Surfel& s = g_.surfel(x, y);
-    if (!is_usable(s)) return cell;
+    if (!s.is_usable()) return cell;
     const glm::vec2 slope((float(x + scene_.first_x) - scene_.axis_x) / scene_.fx,
                           (scene_.axis_y - float(y + scene_.first_y)) / scene_.fy);
     if (!scene_.orthographic) cell.ray_length = std::sqrt(1 + glm::dot(slope, slope));
     cell.depth = depth_on_ray(s, slope, cell.ray_length);
-    cell.normal = glm::vec3(s.normal);
-    cell.rounding = s.normal.w;
+    cell.normal = s.normal;
+    cell.rounding = s.rounding;
     return cell;
   }
 

@@ -18,7 +18,7 @@
 
 #include "parallel/tiles.h"
 #include "scene/one_surface.h"
-#include "scene/usable.h"
+#include "scene/surfel.h"
 
 namespace ssdo {
 namespace {
@@ -84,7 +84,7 @@ class Builder {
     TriangleMesh cuts;
   };
 
-  bool is_solid(std::size_t pixel) const { return is_usable(geometry_.surfel[pixel]); }
+  bool is_solid(std::size_t pixel) const { return geometry_.surfel[pixel].is_usable(); }
 
   bool has_solid(int layer, std::size_t pixel) const {
     const int sender = solids_.at(layer, pixel).sender;
@@ -109,8 +109,7 @@ class Builder {
       finite_.push_back(!std::isinf(thickness));
     };
     for (std::size_t i = 0; i < count; ++i) {
-      add(is_solid(i) ? glm::vec3(geometry_.surfel[i].position) : glm::vec3(0, 0, -1), 0,
-          solids_.at(0, i));
+      add(is_solid(i) ? geometry_.surfel[i].position : glm::vec3(0, 0, -1), 0, solids_.at(0, i));
     }
     for (int layer = 1; layer < solids_.layers(); ++layer) {
       behind_.emplace_back(count, 0);
@@ -146,9 +145,9 @@ class Builder {
   SurfacePoint surface_point(const Node& n) const {
     const auto pixel = std::size_t(n.pixel),
                sender = std::size_t(out_.sheets.owners[n.corner].sender);
-    return {n.layer == 0 ? glm::vec3(geometry_.surfel[pixel].position)
+    return {n.layer == 0 ? geometry_.surfel[pixel].position
                          : point_behind(geometry_, pixel, solids_.at(n.layer, pixel).distance),
-            glm::vec3(geometry_.surfel[sender].normal)};
+            geometry_.surfel[sender].normal};
   }
   const glm::vec3& corner(const Node& n) const { return out_.sheets.corners[n.corner]; }
 

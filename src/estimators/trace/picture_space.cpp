@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "scene/usable.h"
+#include "scene/surfel.h"
 
 namespace ssdo {
 namespace {
@@ -20,7 +20,7 @@ PictureSpace::PictureSpace(const Geometry& g)
     : orthographic_(g.camera.orthographic), fx_(g.camera.fx), fy_(g.camera.fy) {
   double logarithms = 0, count = 0, farthest = 0;
   for (std::size_t i = 0; i < g.surfel.size(); ++i) {
-    if (!is_usable(g.surfel[i])) continue;
+    if (!g.surfel[i].is_usable()) continue;
     const glm::vec3 p(g.surfel[i].position);
     logarithms += std::log(double(-p.z));
     count += 1;

@@ -13,9 +13,9 @@ Plane<glm::vec3> ambient_light(const Scene& scene, const Plane<float>& ao,
     for (int x = 0; x < ao.width; ++x) {
       const std::size_t i = ao.index(x, y);
       const Surfel& s = scene.geometry.surfel[i];
-      if (!is_usable(s)) continue;
+      if (!s.is_usable()) continue;
       const bool bent = facing && (*facing)[i] != glm::vec3(0);
-      const glm::vec3 normal = bent ? (*facing)[i] : glm::vec3(s.normal);
+      const glm::vec3 normal = bent ? (*facing)[i] : s.normal;
       direct[i] = ao[i] * scene.light.unoccluded(normal);
     }
   });

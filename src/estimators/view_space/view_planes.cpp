@@ -60,10 +60,10 @@ void ViewPlanes::clear_row(int y) {
 }
 
 void ViewPlanes::set(int x, int y, const Surfel& s) {
-  if (!is_usable(s)) return;
+  if (!s.is_usable()) return;
   z.row(y)[x] = s.position.z;
   nx.row(y)[x] = s.normal.x, ny.row(y)[x] = s.normal.y, nz.row(y)[x] = s.normal.z;
-  rounding.row(y)[x] = s.normal.w;
+  rounding.row(y)[x] = s.rounding;
 }
 
 ViewPlanes make_view_planes(const Geometry& g) {
@@ -82,7 +82,7 @@ ViewPlanes make_depth_planes(const Geometry& g) {
     float* z = planes.z.row(y);
     for (int x = 0; x < planes.width(); ++x) {
       const Surfel& s = g.surfel(x, y);
-      if (is_usable(s)) z[x] = s.position.z;
+      if (s.is_usable()) z[x] = s.position.z;
     }
   });
   return planes;

@@ -6,7 +6,6 @@
 
 #include "math/plane.h"
 #include "scene/geometry.h"
-#include "scene/usable.h"
 #include "simd/padded_plane.h"
 
 namespace ssdo {

@@ -82,7 +82,7 @@ TEST(BitmaskBounce, ALayerOfRadianceHoldsForBothSides) {
   for (Surfel& s : g.surfel.pixels) {
     const glm::vec3 n(s.normal);
     if (glm::dot(n, out_of_wall) > 0.9f)
-      s.normal = glm::vec4(leaning, s.normal.w);
+      s.normal = leaning;
     else
       EXPECT_GT(glm::dot(n, up), 0.9f);
   }

@@ -119,8 +119,8 @@ TEST(BitmaskProperties, ACropChangesNothingFartherThanTheRadiusFromItsEdge) {
 /// `g` in units 1 / `scale` as long.
 Geometry scaled(Geometry g, float scale) {
   for (Surfel& s : g.surfel.pixels) {
-    s.position = glm::vec4(glm::vec3(s.position) * scale, s.position.w);
-    s.normal.w *= scale;
+    s.position *= scale;
+    s.rounding *= scale;
   }
   if (g.camera.orthographic) g.camera.fx /= scale, g.camera.fy /= scale;
   return g;
@@ -203,7 +203,7 @@ TEST(BitmaskProperties, NothingThatComesInMakesANaN) {
       for (const glm::vec3& position : positions) {
         Geometry broken = g;
         for (const int x : {0, 40, 41, 90, 130})
-          broken.surfel(x, x % 77).position = glm::vec4(position, 1);
+          broken.surfel(x, x % 77).position = position, broken.surfel(x, x % 77).valid = 1;
         SCOPED_TRACE(fmt::format("position {} {} {}, radius {}", position.x, position.y, position.z,
                                  radius));
         expect_sane(run(broken, request));
@@ -211,7 +211,7 @@ TEST(BitmaskProperties, NothingThatComesInMakesANaN) {
       for (const glm::vec3& normal : normals) {
         Geometry broken = g;
         for (const int x : {0, 40, 41, 90, 130})
-          broken.surfel(x, x % 77).normal = glm::vec4(normal, 1e-7f);
+          broken.surfel(x, x % 77).normal = normal, broken.surfel(x, x % 77).rounding = 1e-7f;
         SCOPED_TRACE(
             fmt::format("normal {} {} {}, radius {}", normal.x, normal.y, normal.z, radius));
         expect_sane(run(broken, request));

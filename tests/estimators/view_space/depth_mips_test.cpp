@@ -19,8 +19,9 @@ Geometry noise(const Window& window, const Window& display) {
   g.surfel = Plane<Surfel>(window.width(), window.height());
   for (Surfel& s : g.surfel.pixels) {
     if (random() % 8 == 0) continue;
-    s.position = glm::vec4(0, 0, -1 - 1e-6f * float(random() % 1000000), 1);
-    s.normal = glm::vec4(0, 0, 1, 0);
+    s.position = glm::vec3(0, 0, -1 - 1e-6f * float(random() % 1000000));
+    s.valid = 1;
+    s.normal = glm::vec3(0, 0, 1);
   }
   return g;
 }

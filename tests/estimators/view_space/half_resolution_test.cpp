@@ -20,9 +20,8 @@ Geometry step(const Window& window, double near_depth) {
   for (int y = 0; y < window.height(); ++y) {
     for (int x = 0; x < window.width(); ++x) {
       const double depth = x < window.width() / 2 ? 100 : near_depth;
-      g.surfel(x, y).position =
-          glm::vec4(glm::vec3(camera.unproject({x + 0.5, y + 0.5}, depth)), 1);
-      g.surfel(x, y).normal = {0, 0, 1, 0};
+      const glm::vec3 position(camera.unproject({x + 0.5, y + 0.5}, depth));
+      g.surfel(x, y) = {position, 1, {0, 0, 1}, 0};
     }
   }
   return g;
@@ -30,7 +29,7 @@ Geometry step(const Window& window, double near_depth) {
 
 TEST(HalfResolution, TakesTheLowerRightOfEveryFourPixelsOfTheDisplayWindow) {
   Geometry g = step({0, 0, 21, 13}, 50);
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) g.surfel[i].normal.w = float(i);
+  for (std::size_t i = 0; i < g.surfel.size(); ++i) g.surfel[i].rounding = float(i);
   for (const int first : {0, 1, -3}) {
     g.display = {-first, -first, 30, 30};
     const ViewPlanes planes = make_view_planes(g);

@@ -59,7 +59,7 @@ inline bool depth_at(const Geometry& g, const glm::dvec3& point, double& z) {
   if (!(x >= 0 && y >= 0 && x < g.surfel.width && y < g.surfel.height)) return false;
   const Surfel& s = g.surfel(int(x), int(y));
   z = s.position.z;
-  return s.position.w != 0;
+  return s.is_surface();
 }
 
 inline double slow_smoothstep(double from, double to, double x) {

@@ -91,19 +91,19 @@ TEST_P(PointMethods, BrokenPixelsNeitherComeOutNorSpread) {
         s.normal.y = value;
         break;
       case 3:
-        s.normal = glm::vec4(0);
+        s.normal = glm::vec3(0), s.rounding = 0;
         break;
       case 4:
-        s.position = glm::vec4(glm::vec3(value), 1);
+        s.position = glm::vec3(value), s.valid = 1;
         break;
       case 5:
-        s.normal.w = value;
+        s.rounding = value;
         break;
       case 6:
-        s.position.w = 0;
+        s.valid = 0;
         break;
       default:
-        s.normal = glm::vec4(0, 0, -1, 0);
+        s.normal = glm::vec3(0, 0, -1), s.rounding = 0;
         break;
     }
   }
@@ -111,7 +111,7 @@ TEST_P(PointMethods, BrokenPixelsNeitherComeOutNorSpread) {
   for (std::size_t i = 0; i < out.ao.size(); ++i) {
     EXPECT_TRUE(out.ao[i] >= 0 && out.ao[i] <= 1) << i << ": " << out.ao[i];
     EXPECT_TRUE(std::isfinite(out.direct[i].x));
-    if (g.surfel[i].position.w == 0) {
+    if (!g.surfel[i].is_surface()) {
       EXPECT_EQ(out.ao[i], 1);
       EXPECT_EQ(out.direct[i], glm::vec3(0));
     }

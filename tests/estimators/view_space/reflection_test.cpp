@@ -55,7 +55,7 @@ Plane<float> reflect_cones(const std::vector<Cones>& pixels, double strength) {
   Plane<float> roughness(width, 1);
   for (int x = 0; x < width; ++x) {
     const Cones& of = pixels[std::size_t(x)];
-    g.surfel(x, 0) = {glm::vec4(float(x), 0, -1, 1), glm::vec4(at_angle(of.between / 2), 0)};
+    g.surfel(x, 0) = {{float(x), 0, -1}, 1, at_angle(of.between / 2), 0};
     bent(x, 0) = glm::vec3(0, 0, float(of.length));
     roughness(x, 0) = float(of.roughness);
   }
@@ -113,7 +113,7 @@ TEST(Reflection, VectorsGiveWhatOneLaneGives) {
   Plane<glm::vec3> bent(48, 36);
   Plane<float> layer(48, 36);
   for (std::size_t i = 0; i < bent.size(); ++i) {
-    bent[i] = share(random) * glm::vec3(g.surfel[i].normal);
+    bent[i] = share(random) * g.surfel[i].normal;
     layer[i] = share(random);
   }
   expect_the_same_from_every_isa([&] { return reflect(g, bent, 0, &layer); });

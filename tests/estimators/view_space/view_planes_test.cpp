@@ -30,7 +30,7 @@ TEST(ViewPlanes, DepthTimesRayIsThePosition) {
       for (int x = 0; x < 37; ++x) {
         const Surfel& s = g.surfel(x, y);
         const float z = planes.z.row(y)[x];
-        if (s.position.w == 0) {
+        if (!s.is_surface()) {
           EXPECT_EQ(z, kBackgroundDepth);
           EXPECT_EQ(planes.nz.row(y)[x], 0);
           continue;
@@ -41,7 +41,7 @@ TEST(ViewPlanes, DepthTimesRayIsThePosition) {
         EXPECT_NEAR(planes.ray_y()[y] * w, s.position.y, 2e-6);
         EXPECT_EQ(z, s.position.z);
         EXPECT_EQ(planes.nx.row(y)[x], s.normal.x);
-        EXPECT_EQ(planes.rounding.row(y)[x], s.normal.w);
+        EXPECT_EQ(planes.rounding.row(y)[x], s.rounding);
       }
     }
     EXPECT_GT(surfaces, 50);
