@@ -39,7 +39,7 @@ struct Request {
   bool extend_offscreen = true;  ///< surfaces go on beyond the frame
   /// Pixels that gather, within the geometry's window: products have its size, and all of the
   /// geometry blocks and sends. Area 0: the whole window.
-  Window receivers;
+  Window receivers = {};
 };
 
 /// The options of the model that a method takes.

@@ -58,7 +58,7 @@ TEST(LayeredPicture, FindsLayersOfAPartByItsName) {
 }
 
 TEST(LayeredPicture, SaysWhichLayersThereAre) {
-  const LayerFile file({"View.AO.Y", "View.N.X"});
+  const LayerFile file(Channels{"View.AO.Y", "View.N.X"});
   EXPECT_THAT(refusal(file, "depth"),
               IsError(ExitCode::layer, "no layer 'depth'; there is View.AO, View.N"));
 }

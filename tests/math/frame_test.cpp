@@ -10,7 +10,7 @@ namespace ssdo::test {
 namespace {
 
 TEST(Frame, IsOrthonormalAndRightHandedAtThePolesToo) {
-  for (const glm::vec3 axis :
+  for (const glm::vec3& axis :
        {glm::vec3(0, 0, 1), glm::vec3(0, 0, -1), glm::vec3(1, 0, 0.0f), glm::vec3(1, 0, -0.0f),
         glm::vec3(1e-4f, -1e-4f, -1), glm::vec3(-0.6f, 0.3f, 0.2f), glm::vec3(0.6f, 0.3f, -0.7f)}) {
     const glm::vec3 n = glm::normalize(axis);

@@ -41,7 +41,7 @@ TEST(OctahedralMap, InterpolatesEverywhereWithoutASeam) {
     const glm::vec3 d = random_direction(random);
     EXPECT_LT(glm::distance(map(d), d), 0.02f) << d.x << " " << d.y << " " << d.z;
   }
-  for (const glm::vec3 pole : {glm::vec3(0, 0, -1), glm::vec3(0, 0, 1), glm::vec3(-1, 0, 0)})
+  for (const glm::vec3& pole : {glm::vec3(0, 0, -1), glm::vec3(0, 0, 1), glm::vec3(-1, 0, 0)})
     EXPECT_LT(glm::distance(map(pole), pole), 1e-6f);
 }
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/bench_frame.h"
 
-#include "support/frame_file.h"
-#include "support/run_tool.h"
-
 namespace ssdo::test {
 
 BenchFrame::BenchFrame() : frame(folder / "it's <!--<script>.exr"), truth(folder / "truth.exr") {

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "support/temp_dir.h"
+#include "support/frame_file.h"
+#include "support/run_tool.h"
 
 namespace ssdo::test {
 

@@ -3,10 +3,6 @@
 
 #include <ImfDeepFrameBuffer.h>
 #include <ImfDeepScanLineOutputPart.h>
-#include <ImfOutputPart.h>
-#include <ImfPartType.h>
-#include <ImfTiledOutputPart.h>
-#include <half.h>
 
 #include <cstdint>
 #include <cstring>

@@ -1,15 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/frame_file.h"
 
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfMultiPartOutputFile.h>
-#include <ImfOutputPart.h>
-#include <ImfPartType.h>
-#include <half.h>
-
-#include "io/exr_reader.h"
-
 namespace ssdo::test {
 
 void FramePart::add(const std::string& layer, const Plane<glm::vec3>& values,

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfPixelType.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <half.h>
 
 #include <filesystem>
 #include <glm/vec3.hpp>
@@ -10,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "io/exr_reader.h"
 #include "support/analytic_scene.h"
 
 namespace ssdo::test {

@@ -4,7 +4,6 @@
 #include <ImfStandardAttributes.h>
 
 #include "io/exr_reader.h"
-#include "support/exr_fixture.h"
 
 namespace ssdo::test {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/layers/layers.h"
+#include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
 namespace ssdo::test {
