@@ -1,29 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Standard output whose reader has gone, and one that cannot be written.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "support/run_tool.h"
+#include "support/temp_dir.h"
 
 namespace ssdo::test {
 namespace {
 
 /// Runs the tool with standard output on `out`.
 Finished run_into(int out, const char* argument) {
-  Pipe err;
+  const TempDir dir;
+  const std::string err = dir / "err";
   const pid_t child = fork();
   if (child == 0) {
     dup2(out, STDOUT_FILENO);
-    dup2(err.ends[1], STDERR_FILENO);
+    dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
     execl(SSDO_BINARY, SSDO_BINARY, argument, nullptr);
     _exit(127);
   }
-  Finished done;
-  done.err = err.drain();
   int status = 0;
   waitpid(child, &status, 0);
-  done.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return done;
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), "", read_file(err)};
 }
 
 TEST(StandardOutput, MayLoseItsReader) {

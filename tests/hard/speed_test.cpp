@@ -3,6 +3,7 @@
 // What ao of the default method costs, as a ratio to the bare loads that it cannot do without, in
 // one run and on one thread. A machine that others share says nothing exact: the figure is left in
 // the build folder and held to nothing but its being there.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <ctime>

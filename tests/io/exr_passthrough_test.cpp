@@ -4,6 +4,7 @@
 #include <ImfHeader.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfMultiView.h>
+#include <ImfPartType.h>
 #include <ImfPreviewImageAttribute.h>
 #include <ImfStandardAttributes.h>
 #include <gtest/gtest.h>
