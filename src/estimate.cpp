@@ -89,8 +89,8 @@ Plane<float> change_by_steps(const Scene& scene, const Method& method, Request f
 class Round {
  public:
   Round(const Scene& scene, const Plan& plan, const Request& request,
-        const std::function<void(double)>& told)
-      : scene_(scene), plan_(plan), request_(request), told_(told) {
+        const std::function<void(double)>& on_progress)
+      : scene_(scene), plan_(plan), request_(request), on_progress_(on_progress) {
     compares_steps_ = request.products.error && plan.method->takes.march;
     passes_ = (compares_steps_ ? 2.0 : 1.0) * (1.0 + request.bounces);
   }
@@ -121,7 +121,7 @@ class Round {
 
  private:
   void tell(std::size_t done, std::size_t count) {
-    told_(std::min((finished_ + double(done) / double(count)) / passes_, 1.0));
+    on_progress_(std::min((finished_ + double(done) / double(count)) / passes_, 1.0));
     if (done == count) finished_ += 1;
   }
 
@@ -147,7 +147,7 @@ class Round {
   const Scene& scene_;
   const Plan& plan_;
   const Request& request_;
-  const std::function<void(double)>& told_;
+  const std::function<void(double)>& on_progress_;
   bool compares_steps_;
   double passes_, finished_ = 0;
 };
@@ -177,12 +177,12 @@ std::string describe(const ErrorFound& found, const Method& method, const Reques
 
 }  // namespace
 
-Estimate estimate(const Scene& scene, const Plan& plan, const std::function<void(double)>& told,
-                  const Past& past) {
+Estimate estimate(const Scene& scene, const Plan& plan,
+                  const std::function<void(double)>& on_progress, const Past& past) {
   Request request = plan.request;
   double estimate_ms = 0, filter_ms = 0;
   for (;;) {
-    Estimate out = Round(scene, plan, request, told).run(past);
+    Estimate out = Round(scene, plan, request, on_progress).run(past);
     out.estimate_ms = estimate_ms += out.estimate_ms;
     out.filter_ms = filter_ms += out.filter_ms;
     if (plan.error && out.error->all > *plan.error) {

@@ -38,8 +38,8 @@ struct Past {
 };
 
 /// Estimates and filters, with more and more slices and steps until the error is what the plan asks
-/// for, if it does. `told` hears how far it is, 0..1.
-Estimate estimate(const Scene& scene, const Plan& plan, const std::function<void(double)>& told,
-                  const Past& past);
+/// for, if it does. `on_progress` is called with the share that is done, 0..1.
+Estimate estimate(const Scene& scene, const Plan& plan,
+                  const std::function<void(double)>& on_progress, const Past& past);
 
 }  // namespace ssdo

@@ -32,7 +32,8 @@ ssdo::ExitCode run(int argc, char** argv) {
     return ssdo::ExitCode::done;
   }
   for (const std::string& warning : parsed.options.warnings) {
-    if (!parsed.options.say.quiet) std::fprintf(stderr, "ssdo: warning: %s\n", warning.c_str());
+    if (!parsed.options.verbosity.quiet)
+      std::fprintf(stderr, "ssdo: warning: %s\n", warning.c_str());
   }
   if (parsed.options.command == ssdo::Command::compare) {
     const ssdo::CompareReport report = ssdo::compare(parsed.options.compare);

@@ -56,7 +56,8 @@ std::optional<DisplayTransform> make_display(const RelightJob& job) {
 }
 
 Written write_targets(const RelightJob& job, const Plan& plan, const Products& products,
-                      const DisplayTransform* display, const std::function<void(double)>& told) {
+                      const DisplayTransform* display,
+                      const std::function<void(double)>& on_progress) {
   Stopwatch watch;
   Written out;
   for (const Target& target : job.targets) {
@@ -72,12 +73,13 @@ Written write_targets(const RelightJob& job, const Plan& plan, const Products& p
       write_image(file, image.spec(job.options.output.bits), image.values);
     }
     out.write_ms += watch.lap();
-    told(double(out.files.size()) / double(job.targets.size()));
+    on_progress(double(out.files.size()) / double(job.targets.size()));
   }
   return out;
 }
 
-Relit relight(const RelightJob& job, const std::function<void(double)>& told, const Past& past) {
+Relit relight(const RelightJob& job, const std::function<void(double)>& on_progress,
+              const Past& past) {
   Relit relit;
   // Made first: a view that does not exist costs no estimate.
   const std::optional<DisplayTransform> display = make_display(job);
@@ -87,7 +89,8 @@ Relit relight(const RelightJob& job, const std::function<void(double)>& told, co
   }
 
   Estimate found = estimate(
-      job.frame.scene, job.frame.plan, [&](double done) { told(kEstimateShare * done); }, past);
+      job.frame.scene, job.frame.plan, [&](double done) { on_progress(kEstimateShare * done); },
+      past);
   relit.plan = job.frame.plan;
   relit.plan.request = std::move(found.request);
   relit.history = std::move(found.history);
@@ -95,9 +98,9 @@ Relit relight(const RelightJob& job, const std::function<void(double)>& told, co
   append(relit.notes, found.notes);
   append(relit.warnings, found.warnings);
 
-  const Written written =
-      write_targets(job, relit.plan, found.products, display ? &*display : nullptr,
-                    [&](double done) { told(kEstimateShare + (1 - kEstimateShare) * done); });
+  const Written written = write_targets(
+      job, relit.plan, found.products, display ? &*display : nullptr,
+      [&](double done) { on_progress(kEstimateShare + (1 - kEstimateShare) * done); });
   relit.clamped_values = written.clamped_values;
   Stopwatch watch;
   for (const auto& file : written.files) file->commit();

@@ -34,9 +34,10 @@ struct Relit {
   std::vector<std::string> warnings;
 };
 
-/// The main job: estimate, filter, compose, colour, write. All targets appear, or none. `told`
-/// hears how far it is, 0..1. Errors: those of the stages.
-Relit relight(const RelightJob& job, const std::function<void(double)>& told, const Past& past);
+/// The main job: estimate, filter, compose, colour, write. All targets appear, or none.
+/// `on_progress` is called with the share that is done, 0..1. Errors: those of the stages.
+Relit relight(const RelightJob& job, const std::function<void(double)>& on_progress,
+              const Past& past);
 
 /// How colours become those of a display, where a target is a picture that shows colours.
 /// Errors: those of DisplayTransform.
@@ -52,6 +53,7 @@ struct Written {
 /// Writes what the targets of a job show of `products`. `display` may be null where no target is a
 /// picture of a colour.
 Written write_targets(const RelightJob& job, const Plan& plan, const Products& products,
-                      const DisplayTransform* display, const std::function<void(double)>& told);
+                      const DisplayTransform* display,
+                      const std::function<void(double)>& on_progress);
 
 }  // namespace ssdo

@@ -106,15 +106,15 @@ void explain_light(Plan& plan, const Light& light) {
     return;
   }
   for (const Sun& sun : light.suns) {
-    plan.reasons.push_back(fmt::format("a sun {:.2g} degrees wide, {:.3g} of light, by itself",
-                                       2 * glm::degrees(sun.angular_radius),
-                                       luminance(sun.irradiance)));
+    plan.reasons.push_back(fmt::format(
+        "a sun {:.2g} degrees wide with {:.3g} of irradiance over pi, treated separately",
+        2 * glm::degrees(sun.angular_radius), luminance(sun.irradiance)));
   }
   std::string energy;
   for (const double share : light.band_energy) energy += fmt::format(" {:.1f}", 100 * share);
   plan.reasons.push_back(
       fmt::format("light in spherical harmonics to order {}: bands hold{} % of its energy, and "
-                  "those left out {:.1f} % of what a lobe sees",
+                  "the bands left out {:.1f} % of the light in a lobe",
                   light.order, energy, 100 * light.residual()));
 }
 
@@ -130,7 +130,7 @@ void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geomet
     plan.reasons.push_back(fmt::format("radius {:.4g}: as given", plan.request.radius));
   } else if (takes.endless_radius) {
     plan.request.radius = INFINITY;
-    plan.reasons.push_back("radius inf: light is stopped by whatever the frame shows or suggests");
+    plan.reasons.push_back("radius inf: occluders at any distance count");
   } else {
     plan.request.radius = kAutoRadius * geometry.frame_height_at(geometry.median_depth);
     plan.reasons.push_back(
@@ -141,10 +141,10 @@ void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geomet
 
 void explain_thickness(Plan& plan, const ModelOptions& model) {
   if (!plan.method->takes.thickness) return;
-  plan.reasons.push_back(model.thickness
-                             ? fmt::format("thickness {:.4g}: as given", *model.thickness)
-                             : std::string("thickness: as wide as it looks, and what is covered "
-                                           "goes on behind"));
+  plan.reasons.push_back(
+      model.thickness ? fmt::format("thickness {:.4g}: as given", *model.thickness)
+                      : std::string("thickness: solids are as thick as they appear wide, and "
+                                    "surfaces continue behind them"));
 }
 
 void choose_march(Plan& plan, const ModelOptions& model) {
@@ -157,9 +157,10 @@ void choose_march(Plan& plan, const ModelOptions& model) {
     plan.reasons.push_back("2 slices: the noise is the difference of two halves");
   }
   if (plan.request.products.error)
-    plan.reasons.push_back("error: a second run with half of the steps shows what few steps miss");
+    plan.reasons.push_back(
+        "error: a second run with half of the steps measures the bias of few steps");
   if (!plan.request.extend_offscreen)
-    plan.reasons.push_back("surfaces end with the frame: as asked");
+    plan.reasons.push_back("surfaces end at the border of the frame: as asked");
 }
 
 }  // namespace

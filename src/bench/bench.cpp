@@ -105,9 +105,9 @@ class Bench {
 
   Converged converge_to(const Setting& setting, int seeds) {
     const double work = work_of(setting), before = done_;
-    const auto told = [&](int done) { tell(before + done * work, setting); };
+    const auto on_progress = [&](int done) { tell(before + done * work, setting); };
     tell(before, setting);
-    return converge(frame_, plan_of(setting), seeds, told);
+    return converge(frame_, plan_of(setting), seeds, on_progress);
   }
 
   void tell(double done, const Setting& setting) {
@@ -187,10 +187,10 @@ class Bench {
   void measure_setting(const Setting& setting, const Converged& limit) {
     const Plan plan = plan_of(setting);
     const double work = work_of(setting), before = done_;
-    const auto told = [&](std::size_t done, std::size_t count) {
+    const auto on_progress = [&](std::size_t done, std::size_t count) {
       tell(before + work * double(done) / double(count) / (1.0 + plan.request.bounces), setting);
     };
-    const Measured measured = measure(frame_, plan, told);
+    const Measured measured = measure(frame_, plan, on_progress);
     tell(before + work, setting);
     const ProductChannels products = channels_of(frame_, plan, measured.products);
     BenchRow row{setting,

@@ -96,7 +96,7 @@ Measured measure(const Frame& frame, const Plan& plan, const Progress& progress)
 }
 
 Converged converge(const Frame& frame, const Plan& plan, int seeds,
-                   const std::function<void(int)>& told) {
+                   const std::function<void(int)>& on_progress) {
   Converged out;
   Request request = plan.request;
   ProductChannels& mean = out.products;
@@ -112,7 +112,7 @@ Converged converge(const Frame& frame, const Plan& plan, int seeds,
       const float n = float(i % half);
       blend(sum, one, n / (n + 1), 1 / (n + 1));
     }
-    told(i + 1);
+    on_progress(i + 1);
   }
   if (seeds == 1) return out;
   out.half_difference = mean;

@@ -41,7 +41,7 @@ struct Converged {
 /// `seeds` is 1 or even; those that follow the plan's own are taken, so that its noise is not that
 /// of what is held to it.
 Converged converge(const Frame& frame, const Plan& plan, int seeds,
-                   const std::function<void(int)>& told);
+                   const std::function<void(int)>& on_progress);
 
 /// How far A is from B on the surfaces of the frame.
 ChannelsDifference compare_surfaces(const Frame& frame, const Channels& a, const Channels& b);

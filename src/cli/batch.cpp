@@ -61,7 +61,7 @@ class Batch {
       : options_(options),
         resources_(resources),
         jobs_(plan_jobs(options)),
-        progress_(options.batch.progress, options.say.quiet) {}
+        progress_(options.batch.progress, options.verbosity.quiet) {}
 
   ExitCode run() {
     ExitCode code = ExitCode::done;
@@ -73,8 +73,8 @@ class Batch {
       throw;
     }
     print_infos();
-    if (has_statistics() && !options_.say.dry_run)
-      write_statistics(options_.say.stats, policy_of_statistics(options_.output.policy),
+    if (has_statistics() && !options_.verbosity.dry_run)
+      write_statistics(options_.verbosity.stats, policy_of_statistics(options_.output.policy),
                        statistics_);
     return code;
   }
@@ -82,7 +82,7 @@ class Batch {
  private:
   ExitCode run_jobs() {
     if (has_statistics())
-      check_output(options_.say.stats, policy_of_statistics(options_.output.policy));
+      check_output(options_.verbosity.stats, policy_of_statistics(options_.output.policy));
     ExitCode code = ExitCode::done;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
       if (options_.command == Command::info) list(jobs_[i]);
@@ -130,24 +130,24 @@ class Batch {
     Frame frame = take_frame(i);
     if (options_.model.temporal) place_in_sequence(frame, i, past);
     if (options_.command == Command::info) return show(frame);
-    if (options_.say.dry_run || options_.say.verbose) {
+    if (options_.verbosity.dry_run || options_.verbosity.verbose) {
       print(describe(frame));
-    } else if (!options_.say.quiet) {
+    } else if (!options_.verbosity.quiet) {
       for (const std::string& warning : frame.warnings()) {
         say(fmt::format("{}: warning: {}", job.input, warning));
       }
     }
     const RelightJob work{options_, frame, job.targets, policy};
-    if (options_.say.dry_run) return say_colors(work);
-    const auto told = [&](double done) {
+    if (options_.verbosity.dry_run) return say_colors(work);
+    const auto on_progress = [&](double done) {
       progress_.tell((double(i) + done) / double(jobs_.size()), job.input);
     };
-    Relit relit = relight(work, told, past);
+    Relit relit = relight(work, on_progress, past);
     for (const std::string& note : relit.notes) say_verbose(note);
     for (const std::string& warning : relit.warnings) {
-      if (!options_.say.quiet) say(fmt::format("{}: warning: {}", job.input, warning));
+      if (!options_.verbosity.quiet) say(fmt::format("{}: warning: {}", job.input, warning));
     }
-    if (relit.clamped_values > 0 && !options_.say.quiet) {
+    if (relit.clamped_values > 0 && !options_.verbosity.quiet) {
       say(
           fmt::format("{}: warning: {} values were beyond the range of half and clamped to 65504; "
                       "keep them with --pixel-type float",
@@ -247,13 +247,13 @@ class Batch {
   }
 
   void print_info(const std::string& text) {
-    if (options_.say.json) return;
+    if (options_.verbosity.json) return;
     progress_.clear();
     print_out(text);
   }
 
   void print_infos() const {
-    if (!options_.say.json || infos_.empty()) return;
+    if (!options_.verbosity.json || infos_.empty()) return;
     const nlohmann::json& shown = infos_.size() == 1 ? infos_[0] : infos_;
     print_out(json_text(shown, 2) + "\n");
   }
@@ -265,10 +265,10 @@ class Batch {
     std::fputs(text.c_str(), stderr);
   }
   void say_verbose(const std::string& text) {
-    if (options_.say.verbose) say(text);
+    if (options_.verbosity.verbose) say(text);
   }
   void say_skipped(const Job& job) {
-    if (options_.say.verbose || options_.say.dry_run)
+    if (options_.verbosity.verbose || options_.verbosity.dry_run)
       say(fmt::format("{}: skipped, its outputs exist", job.input));
   }
   /// The end of a dry run: the last that a real one could refuse before its work.
@@ -278,7 +278,7 @@ class Batch {
 
   /// `info` makes nothing that could be counted.
   bool has_statistics() const {
-    return options_.command == Command::relight && !options_.say.stats.empty();
+    return options_.command == Command::relight && !options_.verbosity.stats.empty();
   }
 
   const Options& options_;

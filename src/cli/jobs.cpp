@@ -86,7 +86,8 @@ RunFiles files_of(const Options& options, const std::vector<Job>& jobs) {
     for (const Target& target : job.targets)
       files.outputs.push_back({target.product ? "--save" : "-o", target.path});
   }
-  if (!options.say.stats.empty()) files.outputs.push_back({"--stats", options.say.stats});
+  if (!options.verbosity.stats.empty())
+    files.outputs.push_back({"--stats", options.verbosity.stats});
   return files;
 }
 

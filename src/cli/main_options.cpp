@@ -146,7 +146,7 @@ void add_light(CLI::App& app, LightOptions& o) {
       ->check(between(-100, 100));
 }
 
-/// The options that say how finely a method looks.
+/// The options of the number of samples.
 void add_quality(Group& group, ModelOptions& o) {
   Choices<Quality> names;
   Text sizes;
@@ -271,11 +271,11 @@ void add_batch(CLI::App& app, BatchOptions& o) {
                "auto is a bar on a terminal; others are lines for a scheduler");
 }
 
-void add_say(CLI::App& app, SayOptions& o) {
-  Group group(app, "Say");
-  CLI::Option* verbose = group.flag("-v,--verbose", o.verbose, "say what was found and decided");
-  group.flag("-q,--quiet", o.quiet, "say nothing but errors")->excludes(verbose);
-  group.flag("--dry-run", o.dry_run, "say what would be done, and stop");
+void add_messages(CLI::App& app, Verbosity& o) {
+  Group group(app, "Messages");
+  CLI::Option* verbose = group.flag("-v,--verbose", o.verbose, "print what was found and decided");
+  group.flag("-q,--quiet", o.quiet, "print errors only")->excludes(verbose);
+  group.flag("--dry-run", o.dry_run, "print what would be done, and stop");
   group.value("--stats", "FILE.json", o.stats,
               "write times, memory and the plan of every frame; replaced if it exists");
 }
@@ -294,7 +294,7 @@ void add_main_options(CLI::App& app, Options& o) {
       .value("--threads", "N", o.threads,
              "over $SSDO_THREADS, $CUE_THREADS, $SLURM_CPUS_PER_TASK; default: all processors")
       ->check(CLI::Range(1, kMostThreads));
-  add_say(app, o.say);
+  add_messages(app, o.verbosity);
   Group(app, "Say")
       .value("--config", "FILE.toml", o.config_file,
              "options from a TOML file; the command line wins")

@@ -44,7 +44,7 @@ CLI::App* add_info(CLI::App& app, Options& o) {
   CLI::App* info =
       app.add_subcommand("info", "say what was found, what would be done and why; write nothing")
           ->fallthrough();
-  info->add_flag("--json", o.say.json, "as JSON");
+  info->add_flag("--json", o.verbosity.json, "as JSON");
   return info;
 }
 
@@ -83,7 +83,7 @@ void refuse_options_of_the_main_job(const CLI::App& app) {
 void check(const Options& o) {
   if (o.input_file.empty()) throw Error(ExitCode::usage, "no INPUT given; see ssdo --help");
   if (o.command == Command::relight && o.output.files.empty() && o.output.saves.empty() &&
-      !o.say.dry_run) {
+      !o.verbosity.dry_run) {
     throw Error(ExitCode::usage,
                 fmt::format("{}: no output given; name one with -o OUTPUT", o.input_file));
   }

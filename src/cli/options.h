@@ -23,8 +23,8 @@ struct BatchOptions {
   ProgressStyle progress = ProgressStyle::automatic;
 };
 
-/// How much the tool says.
-struct SayOptions {
+/// How much the tool prints, and where.
+struct Verbosity {
   bool verbose = false, quiet = false;
   bool dry_run = false;
   bool json = false;  ///< of `info`
@@ -35,7 +35,7 @@ struct Options : FrameOptions {
   Command command = Command::relight;
   std::string input_file;
   BatchOptions batch;
-  SayOptions say;
+  Verbosity verbosity;
   CompareOptions compare;
   BenchOptions bench;
   std::optional<int> threads;         ///< chosen where not given

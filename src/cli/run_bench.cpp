@@ -18,10 +18,10 @@
 namespace ssdo {
 namespace {
 
-void say_what_was_found(const Frame& frame, const SayOptions& say) {
-  if (say.verbose) {
+void print_findings(const Frame& frame, const Verbosity& verbosity) {
+  if (verbosity.verbose) {
     fmt::print(stderr, "{}", describe(frame));
-  } else if (!say.quiet) {
+  } else if (!verbosity.quiet) {
     for (const std::string& warning : frame.warnings())
       fmt::print(stderr, "ssdo: {}\n", printable(frame.input + ": warning: " + warning));
   }
@@ -38,9 +38,9 @@ ExitCode run_bench(const Options& options, const Resources& resources) {
   }
   const BenchJob job{input, options, options.bench};
   const Subject subject = read_subject(job, inputs_of(options, input, options.input.aovs));
-  say_what_was_found(subject.frame, options.say);
+  print_findings(subject.frame, options.verbosity);
 
-  ProgressLine progress(options.batch.progress, options.say.quiet);
+  ProgressLine progress(options.batch.progress, options.verbosity.quiet);
   BenchReport report = bench(
       job, subject, [&](double done, const std::string& setting) { progress.tell(done, setting); });
   progress.clear();

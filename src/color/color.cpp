@@ -182,7 +182,7 @@ struct DisplayTransform::Processor {
 };
 
 DisplayTransform::DisplayTransform(const ColorOptions& options, const ColorTags& tags) {
-  OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);  // what goes wrong is thrown, and told once
+  OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);  // errors are thrown, and printed once
   const LabelledConfig from = select_config(options.ocio);
   const InputSpace input = choose_input_space(*from.config, from.label, options.colorspace, tags);
   const View view = choose_view(from, options);

@@ -88,10 +88,10 @@ HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
 /// The cosine of the horizon after the surface that is seen some whole pixels away.
-HWY_INLINE V next_horizon(const GtaoJob& job, const Receiver& p, const V3& to_viewer, V right,
+HWY_INLINE V next_horizon(const GtaoJob& job, const ViewReceiver& p, const V3& to_viewer, V right,
                           V down, V h) {
   const ViewPlanes& planes = job.planes;
-  const V z = gather_depth(planes, pixels_at(planes, p.column + right, p.row + down));
+  const V z = gather_depth(planes, pixels_at(planes, p.x + right, p.y + down));
   const V3 to = way_to(planes, p, right, down, z);
   const V distance2 = dot(to, to);
   const M seen = hn::And(distance2 > set(0), distance2 < set(std::numeric_limits<float>::max()));
@@ -111,7 +111,7 @@ void gtao_of_tile(const GtaoJob& job, const Tile& tile, Plane<float>& ao) {
   const ViewPlanes& planes = job.planes;
   const V steps = set(float(job.steps)), share = set(1 / float(job.slices.size()));
   const V stretch = set(planes.fx / planes.fy), right_angle = set(float(std::numbers::pi / 2));
-  set_openness(planes, tile, ao, [&](const Receiver& p, int x, int y) HWY_ATTR {
+  set_openness(planes, tile, ao, [&](const ViewReceiver& p, int x, int y) HWY_ATTR {
     const V3 to_viewer = direction_to_viewer(planes, p);
     const V reach = length_px(planes, p, job.reach_px);
     const V step = hn::Max(hn::Min(reach, set(512)), steps) / (steps + set(1));

@@ -91,7 +91,7 @@ HWY_INLINE V hbao_occlusion(const HbaoJob& job, const V3& v, const V3& normal, V
 
 void hbao_of_tile(const HbaoJob& job, const Tile& tile, Plane<float>& ao) {
   const ViewPlanes& planes = job.planes;
-  set_openness(planes, tile, ao, [&](const Receiver& p, int x, int y) HWY_ATTR {
+  set_openness(planes, tile, ao, [&](const ViewReceiver& p, int x, int y) HWY_ATTR {
     const V disc = length_px(planes, p, job.disc_px);
     const V step = hn::Min(disc, set(job.largest_px)) * set(1 / float(job.steps + 1));
     const V cosine = load(job.cosine.at(planes, x, y)), sine = load(job.sine.at(planes, x, y));
@@ -105,7 +105,7 @@ void hbao_of_tile(const HbaoJob& job, const Tile& tile, Plane<float>& ao) {
       for (int s = 0; s < job.steps; ++s) {
         const V distance = hn::MulAdd(set(float(s)), step, first);
         const V dx = hn::Round(across * distance), dy = hn::Round(down * distance);
-        const V z = gather_depth(planes, pixels_at(planes, p.column + dx, p.row + dy));
+        const V z = gather_depth(planes, pixels_at(planes, p.x + dx, p.y + dy));
         const V3 v = way_to(planes, p, dx, dy, z);
         sum = sum + hbao_occlusion(job, v * set(job.inverse_radius), p.normal, rounding);
       }

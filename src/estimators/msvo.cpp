@@ -18,7 +18,7 @@
 // - 36 samples on the points of a checkerboard with distances below 5 steps. The sphere's radius
 //   is 5 steps of 4 pixels at a half, a quarter, an eighth and a sixteenth of the resolution: 40,
 //   80, 160 and 320 pixels wherever it is, so that --radius has no say.
-// - ao is the product of the scales, each of them upsampled to the next; see msvo_scales.cpp.
+// - ao is the product of the scales, each of them upsampled to the next; see msvo/scales.cpp.
 //
 // What differs, and why:
 // - Spheres have their true size under an orthographic camera, where the source scales by depth.

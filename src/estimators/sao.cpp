@@ -115,7 +115,7 @@ HWY_INLINE V obscurance(const SaoJob& job, const V3& v, const V3& normal, V bias
 void sao_of_tile(const SaoJob& job, const Tile& tile, Plane<float>& ao) {
   const D d;
   const ViewPlanes& planes = job.planes;
-  set_openness(planes, tile, ao, [&](const Receiver& p, int x, int y) HWY_ATTR {
+  set_openness(planes, tile, ao, [&](const ViewReceiver& p, int x, int y) HWY_ATTR {
     const V disc = length_px(planes, p, job.disc_px);
     const V angle = spin_angle(unsigned(x + planes.first_column), unsigned(y + planes.first_row));
     const V cosine = hn::Cos(d, angle) * disc, sine = hn::Sin(d, angle) * disc;
@@ -125,7 +125,7 @@ void sao_of_tile(const SaoJob& job, const Tile& tile, Plane<float>& ao) {
     for (const SpiralTap& tap : job.taps) {
       const V right = hn::Trunc((set(tap.x) * cosine - set(tap.y) * sine) * stretch),
               down = hn::Trunc(set(tap.x) * sine + set(tap.y) * cosine);
-      const Pixels at = pixels_at(planes, p.column + right, p.row + down);
+      const Pixels at = pixels_at(planes, p.x + right, p.y + down);
       const V z = mip_depth(job.mips, at, set(tap.distance) * disc);
       const V3 v = way_to(planes, p, right, down, z);
       sum = sum + obscurance(job, v * set(job.inverse_radius), p.normal, bias);

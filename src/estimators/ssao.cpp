@@ -61,7 +61,7 @@ HWY_INLINE V range_check(V range, V radius) {
 void ssao_of_tile(const SsaoJob& job, const Tile& tile, Plane<float>& ao) {
   const ViewPlanes& planes = job.planes;
   const V radius = set(job.radius), share = set(1 / float(job.points.size()));
-  set_openness(planes, tile, ao, [&](const Receiver& p, int x, int y) HWY_ATTR {
+  set_openness(planes, tile, ao, [&](const ViewReceiver& p, int x, int y) HWY_ATTR {
     const TangentFrame frame = tangent_frame(planes, job.noise_x, job.noise_y, x, y, p.normal);
     const V bias = p.rounding + set(job.bias);
     V occlusion = set(0);

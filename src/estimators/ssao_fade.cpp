@@ -72,7 +72,7 @@ void access_of_tile(const FadeJob& job, const Tile& tile, Plane<float>& access) 
   const ViewPlanes& planes = job.planes;
   const V radius = set(job.radius), end = set(job.fade_end);
   const V per_length = set(1 / std::max(job.fade_end - job.fade_start, 1e-20f));
-  set_openness(job.receivers, tile, access, [&](const Receiver& p, int x, int y) HWY_ATTR {
+  set_openness(job.receivers, tile, access, [&](const ViewReceiver& p, int x, int y) HWY_ATTR {
     const V3 m = {load(job.noise_x.at(job.receivers, x, y)),
                   load(job.noise_y.at(job.receivers, x, y)),
                   load(job.noise_z.at(job.receivers, x, y))};

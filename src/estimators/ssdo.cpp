@@ -89,8 +89,8 @@ struct SsdoSample {
   V3 to_q;    ///< the surface there, from the receiver; not finite where there is none
 };
 
-HWY_INLINE SsdoSample sample_at(const SsdoJob& job, const PatternPoint& point, const Receiver& p,
-                                const TangentFrame& frame, int x, int y) {
+HWY_INLINE SsdoSample sample_at(const SsdoJob& job, const PatternPoint& point,
+                                const ViewReceiver& p, const TangentFrame& frame, int x, int y) {
   const ViewPlanes& planes = job.planes;
   SsdoSample s;
   s.cosine = load(point.cosine.at(planes, x, y));
@@ -98,8 +98,7 @@ HWY_INLINE SsdoSample sample_at(const SsdoJob& job, const PatternPoint& point, c
   s.direction = frame.place(in_frame, set(glm::vec3(0)));
   s.to_point = s.direction * load(point.length.at(planes, x, y));
   s.at = project(planes, p.position + s.to_point);
-  const V right = hn::ConvertTo(D(), s.at.column) - p.column,
-          down = hn::ConvertTo(D(), s.at.row) - p.row;
+  const V right = hn::ConvertTo(D(), s.at.column) - p.x, down = hn::ConvertTo(D(), s.at.row) - p.y;
   s.to_q = way_to(planes, p, right, down, gather_depth(planes, s.at));
   return s;
 }
@@ -122,7 +121,7 @@ HWY_INLINE V share_of(V part, V whole) {
 void direct_of_tile(const SsdoJob& job, const Tile& tile, Plane<float>& ao,
                     Plane<glm::vec3>& direct) {
   const V hidden_share = set(1 - job.strength);
-  set_openness(job.planes, tile, ao, [&](const Receiver& p, int x, int y) HWY_ATTR {
+  set_openness(job.planes, tile, ao, [&](const ViewReceiver& p, int x, int y) HWY_ATTR {
     const TangentFrame frame = frame_about(p.normal);
     const V bias = p.rounding + set(job.bias);
     V visible = set(0);
@@ -153,7 +152,7 @@ void bounce_of_tile(const SsdoJob& job, const Tile& tile, const Plane<glm::vec3>
                     Plane<glm::vec3>& bounce) {
   const ViewPlanes& planes = job.planes;
   for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
-    const Receiver p = load_receiver(planes, x, y);
+    const ViewReceiver p = load_receiver(planes, x, y);
     const TangentFrame frame = frame_about(p.normal);
     V3 sum = set(glm::vec3(0));
     for (const PatternPoint& point : job.points) {

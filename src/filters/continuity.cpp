@@ -53,9 +53,9 @@ void add_pixels(Continuity& sum, const FrameSurfaces& before, const FrameSurface
     for (int x = 0; x < surfel.width; x += kEvery) {
       const std::size_t i = surfel.index(x, y);
       if (!now.geometry.is_surface(i)) continue;
-      const glm::dvec2 told =
+      const glm::dvec2 from_motion =
           motion.empty() ? glm::dvec2(NAN) : centre_of(now.geometry, x, y) + glm::dvec2(motion[i]);
-      const Footprint at = reprojection.find(surfel[i], told);
+      const Footprint at = reprojection.find(surfel[i], from_motion);
       if (at.sight == Sight::nothing) continue;
       sum.met += 1;
       if (at.sight == Sight::same && (!colored || is_like(now.albedo[i], before.albedo, at)))

@@ -35,16 +35,17 @@ glm::dvec2 Reprojection::place(const glm::vec3& position) const {
   return before_.camera.orthographic || p.z < 0 ? before_.camera.project(p) : glm::dvec2(NAN);
 }
 
-Footprint Reprojection::find(const Surfel& surfel, const glm::dvec2& told) const {
+Footprint Reprojection::find(const Surfel& surfel, const glm::dvec2& from_motion) const {
   Footprint found;
   const glm::dvec3 p = turn_ * glm::dvec3(surfel.position) + step_;
   const glm::dvec2 still = place(surfel.position);
-  const bool moves = std::isfinite(told.x) && std::isfinite(told.y);
+  const bool moves = std::isfinite(from_motion.x) && std::isfinite(from_motion.y);
   const double scale = before_.camera.orthographic ? 1.0 : -p.z,
-               way = moves ? kSlant * scale * glm::length((told - still) * pixel_size_) : 0.0,
+               way =
+                   moves ? kSlant * scale * glm::length((from_motion - still) * pixel_size_) : 0.0,
                limit = 0.5 * scale * pixel_size_.x + surfel.rounding + way;
   const glm::dvec2 at =
-      (moves ? told : still) - glm::dvec2(before_.window.x0 + 0.5, before_.window.y0 + 0.5);
+      (moves ? from_motion : still) - glm::dvec2(before_.window.x0 + 0.5, before_.window.y0 + 0.5);
   const double left = std::floor(at.x), top = std::floor(at.y);
   const int width = before_.surfel.width, height = before_.surfel.height;
   if (!(left >= -1 && left < width && top >= -1 && top < height)) return found;

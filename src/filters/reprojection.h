@@ -39,8 +39,8 @@ class Reprojection {
   /// the display window. Not finite where that camera looked away.
   glm::dvec2 place(const glm::vec3& position) const;
 
-  /// `told` is where the thing was seen according to its motion, not finite where nothing tells.
-  Footprint find(const Surfel& surfel, const glm::dvec2& told) const;
+  /// `from_motion` is the pixel in that frame according to a motion layer; not finite without one.
+  Footprint find(const Surfel& surfel, const glm::dvec2& from_motion) const;
 
  private:
   const Geometry& before_;

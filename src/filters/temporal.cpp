@@ -113,9 +113,9 @@ History accumulate(const History* before, const Geometry& geometry, const Produc
     for (int x = 0; x < geometry.surfel.width; ++x) {
       const std::size_t i = geometry.surfel.index(x, y);
       if (!geometry.is_surface(i)) continue;
-      const glm::dvec2 told =
+      const glm::dvec2 from_motion =
           motion.empty() ? glm::dvec2(NAN) : centre_of(geometry, x, y) + glm::dvec2(motion[i]);
-      const Footprint at = reprojection.find(geometry.surfel[i], told);
+      const Footprint at = reprojection.find(geometry.surfel[i], from_motion);
       if (at.count == 0) continue;
       const float frames = std::min(average(before->frames, at), kMostFrames);
       mix_products(after.mean, i, before->mean, at, turn, frames);

@@ -12,7 +12,7 @@ namespace ssdo {
 void limit_io_threads(int count) {
   // OpenEXR counts helpers beside the calling thread: 0 makes it work alone.
   OPENEXR_IMF_NAMESPACE::setGlobalThreadCount(count == 1 ? 0 : count);
-  // OpenImageIO starts $CUE_THREADS threads, be they 99999, before it can be told another number.
+  // OpenImageIO starts $CUE_THREADS threads, be they 99999, before another number can be set.
   setenv("OPENIMAGEIO_THREADS", std::to_string(count).c_str(), 1);
   OIIO::attribute("threads", count);
   OIIO::attribute("exr_threads", count == 1 ? -1 : count);

@@ -224,8 +224,8 @@ TEST(Options, LandInTheirFields) {
   EXPECT_THAT(o.batch.frames.value(), ElementsAre(1, 3, 5));
   EXPECT_TRUE(o.batch.skip_existing);
   EXPECT_EQ(o.threads, 3);
-  EXPECT_TRUE(o.say.verbose && o.say.dry_run && !o.say.quiet);
-  EXPECT_EQ(o.say.stats, "s.json");
+  EXPECT_TRUE(o.verbosity.verbose && o.verbosity.dry_run && !o.verbosity.quiet);
+  EXPECT_EQ(o.verbosity.stats, "s.json");
 }
 
 TEST(Options, NotGivenKeepTheirDefaults) {

@@ -8,6 +8,7 @@
 #include <ImfStringAttribute.h>
 #include <gmock/gmock.h>
 
+#include "support/exr_fixture.h"
 #include "support/run_tool.h"
 #include "support/typed_frame.h"
 

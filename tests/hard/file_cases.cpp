@@ -126,11 +126,11 @@ Writing rough(Imf::PixelType type, const glm::dvec3& moved, float position_error
 Geometry read_through_file(const FramePart& part, double fov, Plane<glm::vec3>* albedo) {
   const TempDir dir;
   write_frame(dir / "frame.exr", part);
-  Options options;
+  FrameOptions options;
   if (fov > 0) options.camera.fov = fov;
-  Frame frame = prepare_frame(options, Light(options.light), (dir / "frame.exr").string(), {});
-  if (albedo) *albedo = std::move(frame.gbuffer.albedo);
-  return std::move(frame.geometry);
+  Frame frame = prepare_frame(options, Lighting(options.light), (dir / "frame.exr").string(), {});
+  if (albedo) *albedo = std::move(frame.scene.senders.albedo);
+  return std::move(frame.scene.geometry);
 }
 
 Picture average_picture(const Surface& scene, const Camera& camera, const Window& window, int n,

@@ -43,6 +43,9 @@ Difference difference(const Geometry& a, const Geometry& b) {
   return most;
 }
 
+CameraOptions with_fov(double degrees) { return {{}, degrees, {}}; }
+CameraOptions with_width(double width) { return {{}, {}, width}; }
+
 TEST(Geometry, IsPInTheSpaceOfTheCameraThatItShows) {
   for (const bool orthographic : {false, true}) {
     const Camera camera = view(orthographic);
@@ -51,7 +54,9 @@ TEST(Geometry, IsPInTheSpaceOfTheCameraThatItShows) {
                                       {}, "f", report);
     const Difference off = difference(g, geometry_of(ball_on_ground(), camera, kWindow));
     // An orthographic camera's place along its axis shows nowhere.
-    if (!orthographic) EXPECT_LT(off.position, 1e-3f);
+    if (!orthographic) {
+      EXPECT_LT(off.position, 1e-3f);
+    }
     EXPECT_LT(off.normal, 1e-4f);
     EXPECT_TRUE(g.world_known);
     EXPECT_EQ(report.normal_space, "the space of P");
@@ -78,7 +83,7 @@ TEST(Geometry, FromDepthIsThatFromP) {
   const Geometry expected = geometry_of(ball_on_ground(), camera, kWindow);
   for (const DepthKind kind : {DepthKind::planar, DepthKind::ray}) {
     GeometryReport report;
-    const Geometry g = build_geometry(depth_of(picture, kind), {.fov = 45}, "f", report);
+    const Geometry g = build_geometry(depth_of(picture, kind), with_fov(45), "f", report);
     EXPECT_LT(difference(g, expected).position, 3e-5f);
     EXPECT_FALSE(g.world_known);
     EXPECT_EQ(report.normals_rebuilt, picture.valid.size());
@@ -125,9 +130,9 @@ TEST(Geometry, KnowsTheMedianDepthAndTheHeightOfTheFrameThere) {
   for (const bool orthographic : {false, true}) {
     const Camera camera = look_at(projection(orthographic), {0, 0, 0}, {0, 0, -1}, {0, 1, 0});
     GeometryReport report;
-    const Geometry g = build_geometry(
-        depth_of(take_picture(wall, camera, kWindow), DepthKind::planar),
-        orthographic ? CameraOptions{.ortho = 4} : CameraOptions{.fov = 45}, "f", report);
+    const Geometry g =
+        build_geometry(depth_of(take_picture(wall, camera, kWindow), DepthKind::planar),
+                       orthographic ? with_width(4) : with_fov(45), "f", report);
     EXPECT_FLOAT_EQ(g.median_depth, 7);
     const double width = orthographic ? 4 : 2 * 7 * std::tan(0.5 * 45 * 3.14159265 / 180);
     EXPECT_NEAR(g.frame_height_at(g.median_depth), width * 72 / 96, 1e-4);

@@ -62,7 +62,9 @@ TEST(Solids, AreAsThickAsTheirLeastWidth) {
       }
       // Diagonal runs cut corners off.
       const bool corner = std::abs(g.surfel[i].position.y) > 0.9 - 0.8;
-      if (!corner) EXPECT_NEAR(solids.thickness[i], 0.8, 1.01 * pixel);
+      if (!corner) {
+        EXPECT_NEAR(solids.thickness[i], 0.8, 1.01 * pixel);
+      }
       EXPECT_LE(solids.thickness[i], 0.8 + 1.01 * pixel);
       ++pixels;
     }

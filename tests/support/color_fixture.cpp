@@ -14,16 +14,16 @@ std::string times(int gain) {
          ",0, 0,0,0,1]}";
 }
 
+}  // namespace
+
 std::string space(const std::string& name, int gain) {
   return "  - !<ColorSpace>\n    name: " + name + "\n    to_reference: " + times(gain) + "\n";
 }
 
-std::string look(const std::string& name, int gain) {
+static std::string look(const std::string& name, int gain) {
   return "  - !<Look>\n    name: " + name +
          "\n    process_space: Reference\n    transform: " + times(gain) + "\n";
 }
-
-}  // namespace
 
 std::string config_of_gains(const std::string& scene_linear_role) {
   return "ocio_profile_version: 2\n"

@@ -13,6 +13,9 @@
 
 namespace ssdo::test {
 
+/// A colour space of a config that is the reference times a gain.
+std::string space(const std::string& name, int gain);
+
 /// A config whose spaces differ by a gain, so that what becomes of 1 tells the space it was taken
 /// in. View Plain shows the reference; Tripled has a look of its own.
 std::string config_of_gains(const std::string& scene_linear_role = "  scene_linear: Linear\n");

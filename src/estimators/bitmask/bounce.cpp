@@ -36,7 +36,7 @@ HWY_INLINE Gathered no_light() { return {set(glm::vec3(0)), set(0)}; }
 /// Whether the surface at `q`, `step` away from the receiver, shows its seen side to it.
 template <bool kOrthographic>
 HWY_INLINE M faces(const MarchScene& scene, std::ptrdiff_t q, const SliceStep& step,
-                   const Receiver& p) {
+                   const MarchReceiver& p) {
   const V depth = load(scene.depth(), q);
   V x = hn::MulAdd(set(step.dx), set(1 / scene.fx), p.slope_x),
     y = hn::MulAdd(set(step.dy), set(-1 / scene.fy), p.slope_y);
@@ -46,7 +46,7 @@ HWY_INLINE M faces(const MarchScene& scene, std::ptrdiff_t q, const SliceStep& s
 }
 
 /// Measure of a set of sectors: the integral of the cosine to the normal.
-HWY_INLINE V measure_of(const Receiver& p, const SideFrame& side, VU bits) {
+HWY_INLINE V measure_of(const MarchReceiver& p, const SideFrame& side, VU bits) {
   const VU one = set_bits(1), last = set_bits(31);
   const VU first = hn::PopulationCount(hn::AndNot(bits, bits - one));
   const VU begin = hn::And(first, last), end = hn::And(first + hn::PopulationCount(bits), last);
@@ -65,58 +65,59 @@ HWY_INLINE V measure_of(const Receiver& p, const SideFrame& side, VU bits) {
 template <bool kOrthographic>
 void gather_light(const BounceJob& job, const Window& part) {
   const March& march = job.march;
-  for_each_receiver(march, part, [&](const Receiver& p, const std::vector<Slice>& slices) HWY_ATTR {
-    const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
-    Gathered light = no_light(), first_half = light;
-    for (int k = 0; k < count_of_slices; ++k) {
-      if (k == firsts) first_half = light;
-      const Slice& slice = slices[std::size_t(slice_at(k, count_of_slices))];
-      const SliceFrame f = slice_frame(march.scene, p, slice);
-      for (const bool forward : {true, false}) {
-        const SideFrame side =
-            side_frame(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
-        const auto receive = [&](VU bits, const auto& sent) HWY_ATTR {
-          if (none(bits)) return;
-          light.add(f.weight * measure_of(p, side, bits), sent());
-        };
-        march_side<kOrthographic>(
-            march, p, side, slice, forward,
-            [&](int layer, std::ptrdiff_t q, const SliceStep& step, VU bits) HWY_ATTR {
-              receive(bits, [&]() HWY_ATTR {
-                if (layer > 0) return load((*job.sent_behind)[std::size_t(layer - 1)], q);
-                const V3 front = load(*job.sent, q);
-                if (!job.sent_back) return front;
-                const V3 back = load(*job.sent_back, q);
-                const M seen = faces<kOrthographic>(march.scene, q, step, p);
-                return if_then_else(seen, front, back);
-              });
-            },
-            [&](const Border& border, VU bits) HWY_ATTR {
-              receive(bits, [&]() HWY_ATTR {
-                return V3{border(job.sent_border[0]), border(job.sent_border[1]),
-                          border(job.sent_border[2])};
-              });
-            });
-      }
-    }
-    store(light.sum, *job.gathered, p.place.index);
-    store(light.weights, *job.weights, p.place.index);
-    if (!job.difference) return;
-    // Where one half has met nothing, the other is all that is known.
-    const Gathered second_half = light.minus(first_half);
-    const V zero = set(0);
-    const V difference = luminance(first_half.mean()) - luminance(second_half.mean());
-    const M both = hn::And(first_half.weights > zero, second_half.weights > zero);
-    const V scale =
-        light.weights * set(error_of_difference(march, p.place, firsts, count_of_slices));
-    store(hn::IfThenElseZero(both, difference) * scale, *job.difference, p.place.index);
-  });
+  for_each_receiver(
+      march, part, [&](const MarchReceiver& p, const std::vector<Slice>& slices) HWY_ATTR {
+        const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
+        Gathered light = no_light(), first_half = light;
+        for (int k = 0; k < count_of_slices; ++k) {
+          if (k == firsts) first_half = light;
+          const Slice& slice = slices[std::size_t(slice_at(k, count_of_slices))];
+          const SliceFrame f = slice_frame(march.scene, p, slice);
+          for (const bool forward : {true, false}) {
+            const SideFrame side =
+                side_frame(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
+            const auto receive = [&](VU bits, const auto& sent) HWY_ATTR {
+              if (none(bits)) return;
+              light.add(f.weight * measure_of(p, side, bits), sent());
+            };
+            march_side<kOrthographic>(
+                march, p, side, slice, forward,
+                [&](int layer, std::ptrdiff_t q, const SliceStep& step, VU bits) HWY_ATTR {
+                  receive(bits, [&]() HWY_ATTR {
+                    if (layer > 0) return load((*job.sent_behind)[std::size_t(layer - 1)], q);
+                    const V3 front = load(*job.sent, q);
+                    if (!job.sent_back) return front;
+                    const V3 back = load(*job.sent_back, q);
+                    const M seen = faces<kOrthographic>(march.scene, q, step, p);
+                    return if_then_else(seen, front, back);
+                  });
+                },
+                [&](const Border& border, VU bits) HWY_ATTR {
+                  receive(bits, [&]() HWY_ATTR {
+                    return V3{border(job.sent_border[0]), border(job.sent_border[1]),
+                              border(job.sent_border[2])};
+                  });
+                });
+          }
+        }
+        store(light.sum, *job.gathered, p.place.index);
+        store(light.weights, *job.weights, p.place.index);
+        if (!job.difference) return;
+        // Where one half has met nothing, the other is all that is known.
+        const Gathered second_half = light.minus(first_half);
+        const V zero = set(0);
+        const V difference = luminance(first_half.mean()) - luminance(second_half.mean());
+        const M both = hn::And(first_half.weights > zero, second_half.weights > zero);
+        const V scale =
+            light.weights * set(error_of_difference(march, p.place, firsts, count_of_slices));
+        store(hn::IfThenElseZero(both, difference) * scale, *job.difference, p.place.index);
+      });
 }
 
 /// How much a neighbour, (dx, dy) pixels away, is on the receiver's surface: the weight of
 /// scene/same_surface.h, but for the plane all or nothing.
 template <bool kOrthographic>
-HWY_INLINE V likeness(const MarchScene& scene, const Receiver& p, std::ptrdiff_t q, int dx,
+HWY_INLINE V likeness(const MarchScene& scene, const MarchReceiver& p, std::ptrdiff_t q, int dx,
                       int dy) {
   const V depth = load(scene.depth(), q);
   const M valid = hn::And(p.valid, depth == depth);
@@ -154,7 +155,7 @@ void spread(const BounceJob& job, const Window& part) {
   for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
     const std::ptrdiff_t i = place.index;
     const V zero = set(0);
-    const Receiver p = load_receiver(scene, place);
+    const MarchReceiver p = load_receiver(scene, place);
     Gathered of_surface = no_light(), of_all = no_light();
     V difference = zero;
     for_each_gatherer(

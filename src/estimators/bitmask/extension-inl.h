@@ -28,8 +28,8 @@ struct Border {
 
 /// The way out along (dx, dy), a unit vector in pixels; `shared` by all lanes or not. In the latter
 /// case it may lead `aside_px` away from there, a whole number, along the border.
-HWY_INLINE Border border_along(const MarchScene& scene, const Receiver& p, V dx, V dy, bool shared,
-                               float aside_px = 0) {
+HWY_INLINE Border border_along(const MarchScene& scene, const MarchReceiver& p, V dx, V dy,
+                               bool shared, float aside_px = 0) {
   const DI di;
   const Interleaving& layout = scene.layout;
   constexpr int kPeriod = Interleaving::kPeriod;
@@ -89,7 +89,7 @@ struct Extension {
 /// The surface at the frame's border goes on beyond it as its tangent plane does, within the
 /// radius and for as many of its own widths.
 template <bool kOrthographic>
-HWY_INLINE Extension extend(const March& march, const Receiver& p, const SideFrame& side,
+HWY_INLINE Extension extend(const March& march, const MarchReceiver& p, const SideFrame& side,
                             const Border& border, float widths) {
   const MarchScene& scene = march.scene;
   const V depth = border(scene.border_depth);
@@ -132,7 +132,7 @@ HWY_INLINE Extension extend(const March& march, const Receiver& p, const SideFra
 
 /// The sectors that it hides, and those that the last pixel before it hides.
 template <bool kOrthographic>
-HWY_INLINE VU extend_side(const March& march, const Receiver& p, const SideFrame& side,
+HWY_INLINE VU extend_side(const March& march, const MarchReceiver& p, const SideFrame& side,
                           const Border& border) {
   const DU du;
   const Extension e = extend<kOrthographic>(march, p, side, border, 1e9f);

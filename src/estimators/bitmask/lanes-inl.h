@@ -16,6 +16,7 @@
 
 #include "estimators/bitmask/march.h"
 #include "estimators/bitmask/slice_sectors.h"
+#include "estimators/receiver-inl.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -65,26 +66,22 @@ struct Place {
   int y, column_phase, column;
 };
 
-/// One lane's pixel that gathers.
-struct Receiver {
+/// Receivers among the pixels of MarchScene. Their normals are bent to face the viewer.
+struct MarchReceiver : Receiver {
   Place place;         ///< of all lanes
   float reach_px = 0;  ///< of all lanes: no pixel farther away can be within the radius
-  V x, y;              ///< pixel
   V slope_x, slope_y;  ///< of the ray through it, or its place where the camera is orthographic
-  V3 position;
-  V3 normal;     ///< bent to face the viewer
-  V3 to_viewer;  ///< unit: V
-  V distance;    ///< to the viewer
-  V facing;      ///< N.V
+  V3 to_viewer;        ///< unit: V
+  V distance;          ///< to the viewer
+  V facing;            ///< N.V
   /// Height of what a pixel shows above the tangent plane, along V and less what rounding may have
   /// added: depth (rise + rise_x dx + rise_y dy) + plane, for a pixel that lies (dx, dy) from this.
   V rise, rise_x, rise_y, plane;
-  M valid;
 };
 
-HWY_INLINE Receiver load_receiver(const MarchScene& scene, const Place& place) {
+HWY_INLINE MarchReceiver load_receiver(const MarchScene& scene, const Place& place) {
   const auto [i, y, column_phase, column] = place;
-  Receiver p;
+  MarchReceiver p;
   p.place = place;
   hwy::Prefetch(scene.rounding.data() + i + 4 * kLanes);  // nothing else comes by here
   const V depth = load(scene.depth(), i);
@@ -131,7 +128,7 @@ HWY_INLINE V3 load_normals(const MarchScene& scene, std::ptrdiff_t i, M valid) {
 
 /// Height of the surface at `depth`, (dx, dy) pixels from the receiver.
 template <bool kOrthographic>
-HWY_INLINE V height_above(const Receiver& p, V rise, V depth) {
+HWY_INLINE V height_above(const MarchReceiver& p, V rise, V depth) {
   if constexpr (kOrthographic) return rise + (p.plane - depth);
   return hn::MulAdd(depth, rise, p.plane);
 }
@@ -139,7 +136,7 @@ HWY_INLINE V height_above(const Receiver& p, V rise, V depth) {
 /// Distance in the picture beyond which nothing can be within `radius` of a receiver: seen from
 /// the viewer, a ray at slope e from the receiver's passes it at d e / (l + e), l the length of
 /// the receiver's ray per unit of depth.
-HWY_INLINE float reach_px(const MarchScene& scene, const Receiver& p, float radius) {
+HWY_INLINE float reach_px(const MarchScene& scene, const MarchReceiver& p, float radius) {
   const float f = scene.fx > scene.fy ? scene.fx : scene.fy;
   if (scene.orthographic || radius > 1e18f) return radius * f;
   const V depth = set(0) - p.position.z, r = set(radius);
@@ -181,7 +178,7 @@ HWY_INLINE VU sector_of(const SlicePoint& p, V start) { return sector_of(p.v, do
 
 /// Where the back is of what has its front there: behind it on its own view ray.
 template <bool kOrthographic>
-HWY_INLINE SlicePoint back_of(const Receiver& p, const SlicePoint& front, V depth) {
+HWY_INLINE SlicePoint back_of(const MarchReceiver& p, const SlicePoint& front, V depth) {
   const auto [s, v] = front;
   if constexpr (kOrthographic) return {s, v - depth};
   return {hn::MulAdd(depth, s, s), hn::MulAdd(depth, v - p.distance, v)};
@@ -201,7 +198,7 @@ struct SideFrame {
 /// The sectors that a surface hides which lies at s, `above` the receiver's tangent plane, and
 /// reaches back by `depth`.
 template <bool kOrthographic>
-HWY_INLINE VU sectors_behind(const Receiver& p, const SideFrame& side, V s, V above, V depth,
+HWY_INLINE VU sectors_behind(const MarchReceiver& p, const SideFrame& side, V s, V above, V depth,
                              float radius) {
   // The pixel's centre lies beside the slice. Moved into it along the receiver's tangent plane, a
   // sample keeps its height above that plane: a plane stays open whatever its tilt.
@@ -221,7 +218,8 @@ struct SliceFrame {
   V n_t, weight;
 };
 
-HWY_INLINE SliceFrame slice_frame(const MarchScene& scene, const Receiver& p, const Slice& slice) {
+HWY_INLINE SliceFrame slice_frame(const MarchScene& scene, const MarchReceiver& p,
+                                  const Slice& slice) {
   const V ex = set(slice.dx / scene.fx), ey = set(-slice.dy / scene.fy);
   const V along = dot(V2{ex, ey}, V2{p.to_viewer.x, p.to_viewer.y});
   const V3 t{hn::NegMulAdd(along, p.to_viewer.x, ex), hn::NegMulAdd(along, p.to_viewer.y, ey),
@@ -235,8 +233,8 @@ HWY_INLINE SliceFrame slice_frame(const MarchScene& scene, const Receiver& p, co
 }
 
 /// The side along the slice's direction, where `forward`, or against it.
-HWY_INLINE SideFrame side_frame(const MarchScene& scene, const Receiver& p, const SliceFrame& f,
-                                bool forward, float phase) {
+HWY_INLINE SideFrame side_frame(const MarchScene& scene, const MarchReceiver& p,
+                                const SliceFrame& f, bool forward, float phase) {
   SideFrame side;
   side.t = forward ? f.t : set(glm::vec3(0)) - f.t;
   side.n_t = forward ? f.n_t : set(0) - f.n_t;

@@ -156,7 +156,7 @@ struct Moments {
 
   /// Bands 0 and 1 come from the moments as they are: ao and the bent normal are the same to the
   /// bit whatever the order.
-  HWY_INLINE void add(const Receiver& p, const SliceFrame& f,
+  HWY_INLINE void add(const MarchReceiver& p, const SliceFrame& f,
                       const CircleMoments<kOrder>& hidden_of_slice,
                       const CircleMoments<kOrder>& whole_of_slice) {
     add_low_bands(p, f, hidden_of_slice, hidden);
@@ -205,7 +205,7 @@ struct Moments {
   /// The mean open direction; `closed` where nothing is open. Of an open surface it is the normal,
   /// whatever the slices: what their sum over all directions lacks of it is added as far as the
   /// surface is open.
-  HWY_INLINE V3 bent_normal(const Receiver& p, V ao, const V3& closed) const {
+  HWY_INLINE V3 bent_normal(const MarchReceiver& p, V ao, const V3& closed) const {
     const V full = set(2.0f / 3) * whole[0];
     const auto along = [&](V normal, int band) HWY_ATTR {  // bands of order 1 are y, z, x
       return hn::MulAdd(ao, hn::MulSub(full, normal, whole[band]), whole[band] - hidden[band]);
@@ -224,7 +224,7 @@ struct Moments {
   }
 
  private:
-  HWY_INLINE static void add_low_bands(const Receiver& p, const SliceFrame& f,
+  HWY_INLINE static void add_low_bands(const MarchReceiver& p, const SliceFrame& f,
                                        const CircleMoments<kOrder>& of_slice, V* sum) {
     sum[0] = hn::MulAdd(f.weight, of_slice.cosine[0], sum[0]);
     if constexpr (kOrder > 0) {

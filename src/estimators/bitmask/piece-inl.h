@@ -27,8 +27,8 @@ struct Piece {
 /// Where a piece ends: a share of the way to its pixel, at this depth. `rise` and `across` are
 /// those of the pixel.
 template <bool kOrthographic>
-HWY_INLINE SlicePoint end_at(const Receiver& p, const SideFrame& side, V share, V depth, V rise,
-                             V across) {
+HWY_INLINE SlicePoint end_at(const MarchReceiver& p, const SideFrame& side, V share, V depth,
+                             V rise, V across) {
   V s = across * share;
   if constexpr (!kOrthographic) s = s * depth;
   const V end_rise = hn::MulAdd(share, rise - p.rise, p.rise);
@@ -41,7 +41,7 @@ constexpr float kMostDeepening = 2;
 
 /// The piece that the pixel at `i` stands for. `rise` and `across` are those of its middle.
 template <bool kOrthographic>
-HWY_INLINE Piece piece_at(const MarchScene& scene, const Receiver& p, const SideFrame& side,
+HWY_INLINE Piece piece_at(const MarchScene& scene, const MarchReceiver& p, const SideFrame& side,
                           const SliceStep& step, std::ptrdiff_t i, V depth, V rise, V across) {
   const V3 m = load(scene.normal, i);
   const V ex = set(step.dx / scene.fx), ey = set(-step.dy / scene.fy);
@@ -80,7 +80,7 @@ HWY_INLINE Piece piece_at(const MarchScene& scene, const Receiver& p, const Side
 
 /// The piece of a front of unknown slope at this depth: it faces the viewer.
 template <bool kOrthographic>
-HWY_INLINE Piece piece_facing_viewer(const Receiver& p, const SideFrame& side,
+HWY_INLINE Piece piece_facing_viewer(const MarchReceiver& p, const SideFrame& side,
                                      const SliceStep& step, V depth, V rise, V across) {
   return {end_at<kOrthographic>(p, side, set(step.inner), depth, rise, across),
           end_at<kOrthographic>(p, side, set(step.outer), depth, rise, across)};
@@ -106,7 +106,7 @@ HWY_INLINE M clip(Piece& piece, float radius) {
 /// The sectors that a piece hides whose middle lies at s, `above` the receiver's tangent plane, and
 /// reaches back by `depth`.
 template <bool kOrthographic>
-HWY_INLINE VU sectors_behind_piece(const Receiver& p, const SideFrame& side, Piece piece, V s,
+HWY_INLINE VU sectors_behind_piece(const MarchReceiver& p, const SideFrame& side, Piece piece, V s,
                                    V above, V depth, float radius) {
   M meets = above > set(0);
   if (radius < 1e18f) meets = hn::And(meets, clip(piece, radius));

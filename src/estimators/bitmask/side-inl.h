@@ -35,7 +35,7 @@ HWY_INLINE float error_of_difference(const March& march, const Place& place, int
 /// hears of every solid that is met: its layer, its index, the step, and the sectors in which it is
 /// the first.
 template <bool kOrthographic, class Met>
-HWY_INLINE VU march_raster(const March& march, const Receiver& p, const SideFrame& side,
+HWY_INLINE VU march_raster(const March& march, const MarchReceiver& p, const SideFrame& side,
                            const std::vector<SliceStep>& steps, const Met& on_met) {
   const MarchScene& scene = march.scene;
   const MarchLayer& seen = scene.layers.front();
@@ -89,7 +89,7 @@ HWY_INLINE VU march_raster(const March& march, const Receiver& p, const SideFram
 
 /// The same over the raster and beyond it. `on_beyond` hears of the sectors that are hidden beyond.
 template <bool kOrthographic, class Met, class Beyond>
-HWY_INLINE VU march_side(const March& march, const Receiver& p, const SideFrame& side,
+HWY_INLINE VU march_side(const March& march, const MarchReceiver& p, const SideFrame& side,
                          const Slice& slice, bool forward, const Met& on_met,
                          const Beyond& on_beyond) {
   const VU open =
@@ -111,7 +111,7 @@ HWY_INLINE void for_each_receiver(const March& march, const Window& part, const 
     const int row = (place.y + march.scene.first_y) & (Interleaving::kPeriod - 1);
     const std::vector<Slice>& slices = march.pattern.member(place.column_phase, row);
     if (slices.empty()) return;
-    Receiver p = load_receiver(march.scene, place);
+    MarchReceiver p = load_receiver(march.scene, place);
     p.reach_px = reach_px(march.scene, p, march.radius);
     work(p, slices);
   });

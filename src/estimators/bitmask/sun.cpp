@@ -31,7 +31,7 @@ struct SunRay {
   V end_px;          ///< where its picture ends: at the horizon
 };
 
-HWY_INLINE SunRay sun_ray(const MarchScene& scene, const Receiver& p, const glm::vec3& to,
+HWY_INLINE SunRay sun_ray(const MarchScene& scene, const MarchReceiver& p, const glm::vec3& to,
                           SideFrame& side) {
   const V3 l = set(to);
   SunRay ray;
@@ -63,7 +63,7 @@ HWY_INLINE SunRay sun_ray(const MarchScene& scene, const Receiver& p, const glm:
 /// Which lanes that look see a surface in the ray, which lies at s, `above` the receiver's tangent
 /// plane, and reaches back by what `load_depth` gives: few rays ask.
 template <bool kOrthographic, class LoadDepth>
-HWY_INLINE M blocks(const Receiver& p, const SideFrame& side, const SunRay& ray, M looks, V s,
+HWY_INLINE M blocks(const MarchReceiver& p, const SideFrame& side, const SunRay& ray, M looks, V s,
                     V above, float radius, const LoadDepth& load_depth) {
   const SlicePoint front{s, hn::NegMulAdd(s, side.slope, above)}, to = ray.along;
   const M near = hn::And(above > set(0), dot(front, front) <= set(radius * radius));
@@ -83,7 +83,7 @@ HWY_INLINE V middle_of_block(V pixel) {
 /// How many of the surfaces that go on beyond the frame let rays pass, 0..1. `turn` in 0..1 differs
 /// from member to member of the pattern.
 template <bool kOrthographic>
-HWY_INLINE V open_beyond(const March& march, const Receiver& p, const SideFrame& side,
+HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const SideFrame& side,
                          const SunRay& ray, M open, float turn) {
   const V zero = set(0);
   const float apart_px = 2 * kWitnessReach * float(march.scene.layout.height()) / kWitnesses;
@@ -116,7 +116,7 @@ void sun(const SunJob& job, const Window& part) {
     const Interleaving& layout = scene.layout;
     const V zero = set(0);
     const int member = ((place.y + scene.first_y) & (kPeriod - 1)) * kPeriod + place.column_phase;
-    Receiver p = load_receiver(scene, place);
+    MarchReceiver p = load_receiver(scene, place);
     p.reach_px = reach_px(scene, p, job.march.radius);
     SideFrame side;
     const SunRay ray = sun_ray(scene, p, job.directions[std::size_t(member)], side);

@@ -16,51 +16,53 @@ namespace ssdo::HWY_NAMESPACE {
 template <bool kOrthographic, int kOrder>
 void visibility(const VisibilityJob& job, const Window& part) {
   const March& march = job.march;
-  for_each_receiver(march, part, [&](const Receiver& p, const std::vector<Slice>& slices) HWY_ATTR {
-    const auto ignore = [](auto&&...) HWY_ATTR {};
-    const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
-    Moments<kOrder> sum, first_half;
-    for (int k = 0; k < count_of_slices; ++k) {
-      if (k == firsts) first_half = sum;
-      const Slice& slice = slices[std::size_t(slice_at(k, count_of_slices))];
-      const SliceFrame f = slice_frame(march.scene, p, slice);
-      CircleMoments<kOrder> hidden, whole;
-      for (const bool forward : {true, false}) {
-        const SideFrame side =
-            side_frame(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
-        const VU open = march_side<kOrthographic>(march, p, side, slice, forward, ignore, ignore);
-        const VU bits = hn::AndNot(open, side.above);
-        whole.add(moments_of_first<kOrder + 1>(side.above_count), p.facing, side.n_t, forward);
-        if (none(bits)) continue;
-        hidden.add(moments_of_bits<kOrder + 1>(bits), p.facing, side.n_t, forward);
-      }
-      sum.add(p, f, hidden, whole);
-    }
-    const std::ptrdiff_t i = p.place.index;
-    const V ao = sum.open_share();
-    store(hn::IfThenElse(p.valid, ao, set(1)), *job.ao, i);
-    if (!job.bent && !job.direct) return;
-    const V3 normals = load_normals(march.scene, i, p.valid);
-    if constexpr (kOrder > 0) {
-      if (job.bent) store(sum.bent_normal(p, ao, normals), *job.bent, i);
-    }
-    if (!job.direct) return;
-    const V3 unoccluded = look_up(*job.irradiance, normals);
-    const auto visible = [&](const Moments<kOrder>& moments) HWY_ATTR {
-      if (!job.light) return unoccluded * ao;
-      const auto share = [&](int c) HWY_ATTR {
-        return moments.share_of_light(job.light + c * Moments<kOrder>::kCount, ao);
-      };
-      return unoccluded * V3{share(0), share(1), share(2)};
-    };
-    store(visible(sum), *job.direct, i);
-    if (job.difference) {
-      const V difference =
-          luminance(visible(first_half)) - luminance(visible(sum.minus(first_half)));
-      const V scale = set(error_of_difference(march, p.place, firsts, count_of_slices));
-      store(difference * scale, *job.difference, i);
-    }
-  });
+  for_each_receiver(
+      march, part, [&](const MarchReceiver& p, const std::vector<Slice>& slices) HWY_ATTR {
+        const auto ignore = [](auto&&...) HWY_ATTR {};
+        const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
+        Moments<kOrder> sum, first_half;
+        for (int k = 0; k < count_of_slices; ++k) {
+          if (k == firsts) first_half = sum;
+          const Slice& slice = slices[std::size_t(slice_at(k, count_of_slices))];
+          const SliceFrame f = slice_frame(march.scene, p, slice);
+          CircleMoments<kOrder> hidden, whole;
+          for (const bool forward : {true, false}) {
+            const SideFrame side =
+                side_frame(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
+            const VU open =
+                march_side<kOrthographic>(march, p, side, slice, forward, ignore, ignore);
+            const VU bits = hn::AndNot(open, side.above);
+            whole.add(moments_of_first<kOrder + 1>(side.above_count), p.facing, side.n_t, forward);
+            if (none(bits)) continue;
+            hidden.add(moments_of_bits<kOrder + 1>(bits), p.facing, side.n_t, forward);
+          }
+          sum.add(p, f, hidden, whole);
+        }
+        const std::ptrdiff_t i = p.place.index;
+        const V ao = sum.open_share();
+        store(hn::IfThenElse(p.valid, ao, set(1)), *job.ao, i);
+        if (!job.bent && !job.direct) return;
+        const V3 normals = load_normals(march.scene, i, p.valid);
+        if constexpr (kOrder > 0) {
+          if (job.bent) store(sum.bent_normal(p, ao, normals), *job.bent, i);
+        }
+        if (!job.direct) return;
+        const V3 unoccluded = look_up(*job.irradiance, normals);
+        const auto visible = [&](const Moments<kOrder>& moments) HWY_ATTR {
+          if (!job.light) return unoccluded * ao;
+          const auto share = [&](int c) HWY_ATTR {
+            return moments.share_of_light(job.light + c * Moments<kOrder>::kCount, ao);
+          };
+          return unoccluded * V3{share(0), share(1), share(2)};
+        };
+        store(visible(sum), *job.direct, i);
+        if (job.difference) {
+          const V difference =
+              luminance(visible(first_half)) - luminance(visible(sum.minus(first_half)));
+          const V scale = set(error_of_difference(march, p.place, firsts, count_of_slices));
+          store(difference * scale, *job.difference, i);
+        }
+      });
 }
 
 template <bool kOrthographic>

@@ -38,7 +38,7 @@ namespace ssdo::HWY_NAMESPACE {
 void upsample_tile(const UpsamplingJob& job, const Tile& tile) {
   const ViewPlanes& half = job.receivers;
   for_each_vector(job.full, tile, [&](int x, int y) HWY_ATTR {
-    const Receiver p = load_receiver(job.full, x, y);
+    const ViewReceiver p = load_receiver(job.full, x, y);
     const V share_x = load(&job.columns.share[std::size_t(x)]);
     const V share_y = set(job.rows.share[std::size_t(y)]);
     V sum = set(0), whole = set(0), nearest = set(1), least = set(INFINITY);

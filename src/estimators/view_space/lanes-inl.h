@@ -9,6 +9,7 @@
 #define SSDO_VIEW_SPACE_LANES_INL_H_
 #endif
 
+#include "estimators/receiver-inl.h"
 #include "estimators/view_space/tiled_noise.h"
 #include "estimators/view_space/view_planes.h"
 #include "parallel/tiles.h"
@@ -17,14 +18,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// Pixels that gather. Lanes that are not valid hold a point in front of the viewer and a normal of
-/// 0, so that arithmetic on them stays finite.
-struct Receiver {
-  V3 position, normal;
-  V rounding;  ///< distance by which storing P may have moved the position
-  M valid;
-  V column, row;  ///< of the pixel
-  V ray_x, ray_y;
+/// Receivers among ViewPlanes. Lanes that are not valid hold a point in front of the viewer and a
+/// normal of 0, so that arithmetic on them stays finite.
+struct ViewReceiver : Receiver {
+  V rounding;      ///< distance by which storing P may have moved the position
+  V ray_x, ray_y;  ///< of the ray through the pixel, as ViewPlanes has them
 };
 
 HWY_INLINE V3 along_ray(const ViewPlanes& planes, V ray_x, V ray_y, V z) {
@@ -33,25 +31,25 @@ HWY_INLINE V3 along_ray(const ViewPlanes& planes, V ray_x, V ray_y, V z) {
 }
 
 /// The pixel (x, y) and those to its right. May reach beyond the frame by less than a vector.
-HWY_INLINE Receiver load_receiver(const ViewPlanes& planes, int x, int y) {
-  Receiver p;
+HWY_INLINE ViewReceiver load_receiver(const ViewPlanes& planes, int x, int y) {
+  ViewReceiver p;
   const V z = load(planes.z.row(y) + x);
   p.valid = z > set(kBackgroundDepth);
   p.ray_x = load(planes.ray_x() + x), p.ray_y = set(planes.ray_y()[y]);
   p.position = along_ray(planes, p.ray_x, p.ray_y, hn::IfThenElse(p.valid, z, set(-1)));
   p.normal = {load(planes.nx.row(y) + x), load(planes.ny.row(y) + x), load(planes.nz.row(y) + x)};
   p.rounding = load(planes.rounding.row(y) + x);
-  p.column = iota(float(x)), p.row = set(float(y));
+  p.x = iota(float(x)), p.y = set(float(y));
   return p;
 }
 
 /// A length at depth 1 in pixels, or at any where the camera is orthographic, at each receiver.
-HWY_INLINE V length_px(const ViewPlanes& planes, const Receiver& p, float at_depth_1) {
+HWY_INLINE V length_px(const ViewPlanes& planes, const ViewReceiver& p, float at_depth_1) {
   return planes.orthographic ? set(at_depth_1) : set(-at_depth_1) / p.position.z;
 }
 
 /// The unit direction from each surface to the viewer.
-HWY_INLINE V3 direction_to_viewer(const ViewPlanes& planes, const Receiver& p) {
+HWY_INLINE V3 direction_to_viewer(const ViewPlanes& planes, const ViewReceiver& p) {
   if (planes.orthographic) return {set(0), set(0), set(1)};
   return normalise({p.ray_x, p.ray_y, set(1)});
 }
@@ -105,7 +103,7 @@ HWY_INLINE V3 gather_normal(const ViewPlanes& planes, const Pixels& at) {
 
 /// From each receiver to the surface at depth `z` so many pixels away. From differences, which
 /// loses less than to subtract positions. Not finite on background.
-HWY_INLINE V3 way_to(const ViewPlanes& planes, const Receiver& from, V right, V down, V z) {
+HWY_INLINE V3 way_to(const ViewPlanes& planes, const ViewReceiver& from, V right, V down, V z) {
   const V deeper = z - from.position.z;
   V3 way{right * set(planes.slope_x), down * set(planes.slope_y), deeper};
   if (!planes.orthographic) {
@@ -157,7 +155,7 @@ template <class Openness>
 HWY_INLINE void set_openness(const ViewPlanes& planes, const Tile& tile, Plane<float>& out,
                              const Openness& openness) {
   for_each_vector(planes, tile, [&](int x, int y) HWY_ATTR {
-    const Receiver p = load_receiver(planes, x, y);
+    const ViewReceiver p = load_receiver(planes, x, y);
     const V open = saturate(openness(p, x, y));
     store_first(tile.x1 - x, hn::IfThenElse(p.valid, open, set(1)), &out(x, y));
   });

@@ -64,7 +64,7 @@ HWY_INLINE V overlap_of_cones(V specular, const V3& r, V visible, const V3& b, V
 void reflection_of_tile(const ReflectionJob& job, const Tile& tile, Plane<float>& open) {
   const ViewPlanes& planes = job.planes;
   const V pi = set(float(std::numbers::pi)), strength = set(job.strength) * pi;
-  set_openness(planes, tile, open, [&](const Receiver& p, int x, int y) HWY_ATTR {
+  set_openness(planes, tile, open, [&](const ViewReceiver& p, int x, int y) HWY_ATTR {
     const V3 viewer = direction_to_viewer(planes, p);
     // What a mirror there shows the viewer.
     const V3 r = p.normal * (set(2) * dot(p.normal, viewer)) - viewer;
