@@ -16,8 +16,9 @@
 namespace ssdo {
 namespace {
 
-/// Share of the frame's height at the median depth, of methods that need a limit. Of 0.1 to 2, the
-/// one with the least error of direct light against a path tracer on five of seven frames.
+/// The radius of methods that need a limit, as a share of the frame's height at the median depth.
+/// Of the shares 0.1 to 2, this one has the least error of direct light against a path tracer on
+/// five of seven frames.
 constexpr float kAutoRadius = 0.3f;
 
 /// A bounce from surfaces that are darker than this everywhere is below 1 % of the light.

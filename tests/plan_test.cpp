@@ -232,7 +232,7 @@ TEST(Plan, SaysWhyItDecidedSo) {
       {"beauty", {.ambient = true, .beauty = true}, "all other light stays as rendered"},
       {"dark", {.brightest_albedo = 0.005f}, "no bounce: the albedo is 0.005 at most"},
       {"constant light", {}, "direct is ao times the environment's one colour"},
-      {"endless", {}, "radius inf: light is stopped by"},
+      {"endless", {}, "radius inf: occluders at any distance"},
       {"chosen radius", {of_method("ssao")}, "radius 1.2: 0.3 of the frame's height"},
       {"given radius", {radius}, "radius 3: as given"},
       {"given thickness", {thickness}, "thickness 2: as given"},

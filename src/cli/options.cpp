@@ -132,7 +132,10 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
     refuse_options_of_the_main_job(app);
     return parsed;
   }
-  if (info->parsed()) o.command = Command::info;
+  if (info->parsed()) {
+    o.command = Command::info;
+    o.input.listed = true;
+  }
   if (bench->parsed()) o.command = Command::bench;
   const std::set<std::string> given = names_given(app);
   if (!o.config_file.empty()) read_config_file(o.config_file, app);

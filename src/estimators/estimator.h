@@ -45,8 +45,8 @@ struct Request {
 /// The options of the model that a method takes.
 struct Takes {
   bool radius = false;          ///< --radius; without it, the method's sizes are its own
-  bool endless_radius = false;  ///< --radius inf, which then is what `auto` chooses
-  bool thickness = false;       ///< --thickness: the method looks behind what is seen
+  bool endless_radius = false;  ///< --radius inf; `auto` then means inf
+  bool thickness = false;       ///< --thickness: the method uses Scene::solids
   bool march = false;           ///< --quality, --slices, --steps, --offscreen and --error
 };
 

@@ -48,11 +48,12 @@ enum class ProductKind {
 struct Product {
   std::string_view name;
   ProductKind kind;
-  std::string_view channels;  ///< a letter for each, in an EXR behind "NAME." if it is estimated
+  std::string_view
+      channels;  ///< a letter for each; in an EXR "NAME.LETTER", or the letter alone if composed
   bool ProductSet::*in = nullptr;  ///< its place in a set; null: composed of others
   std::variant<std::monostate, Plane<float> Products::*, Plane<glm::vec3> Products::*> plane = {};
   ProductSet made_of = {};  ///< what a method has to make for it
-  ProductSet with = {};     ///< added to that where the method makes it and the layers exist
+  ProductSet with = {};  ///< optional parts: used if the method makes them and their layers exist
   ProductSet made_of_ambient = {};  ///< in place of both, where the frame has its ambient light
   std::string_view needs = "";      ///< role of a layer that it is not made without
   std::string_view all_needs = "";  ///< role of a layer without which --products all leaves it out

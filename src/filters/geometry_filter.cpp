@@ -8,8 +8,8 @@
 //   h = min(|n_p . (q - p)|, |n_p . (q - p) + n_p . (o - p)|),   o on the other side of p
 //
 // w is the weight of scene/same_surface.h with h / |q - p| for the sine. Smooth normals of a coarse
-// mesh may lean away from its faces: there the plane cuts the surface, but what q rises above it, o
-// falls below.
+// mesh may lean away from its faces: there the plane cuts through the surface, and q
+// lies above it by as much as the opposite pixel o lies below it.
 //
 // The window is T + 1 wide, with b = 1/2 at its ends: each of the T x T members of the pattern
 // then has a total weight of exactly 1, which removes the pattern on a plane, and the window has a
@@ -21,10 +21,10 @@
 //   out(p) = m(p) + 1/4 sum_q w(p, q) l(p, q) (m(q) - m(p)),   m the result for T = 4
 //   l = ramp(|b_q - b_p| / (r (b_p + b_q + (A_p + A_q) / 4))),   b the brightness of m, A = b / ao
 //
-// What leads over an edge counts as the pixel's own mean. So does, by l, what leads over a step of
-// ao or direct light that is more than noise: the edge of a shadow. The noise of what is dark is
-// small beside the light that it would have in the open, which is about A, not beside its own. A
-// bounce has more noise and no such steps: l = 1.
+// If q is across an edge, m(p) is used in place of m(q); so it is, by l, if ao or direct light
+// differs by more than noise: across the edge of a shadow. In a dark pixel, noise is large relative
+// to its own light b, but small relative to its unoccluded light A, so that the tolerance scales
+// with A. A bounce has more noise and no such steps: l = 1.
 //
 // Lanes are pixels that lie side by side; two rows at a time share their loads. What is not a
 // surface has no normal here, so that it weighs 0. This file is compiled once for every

@@ -1,7 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include "scene/pixel_footprint.h"
+
+// Two questions about two pixels. Do neighbours continue one surface, so that a mesh or a run of
+// pixels joins them? on_one_surface() answers yes or no. How much may a mean over a window take
+// from a pixel that lies some pixels away? The weight below, in [0, 1].
+
 namespace ssdo {
+
+/// A point of a surface in camera space, and the unit normal there.
+struct SurfacePoint {
+  glm::vec3 position, normal;
+};
+
+/// Neighbours are on one surface when neither lies farther than this from the other's tangent
+/// plane, in pixel footprints.
+constexpr float kSurfaceGap = 4;
+
+/// Whether what two neighbouring pixels show belongs to one surface.
+inline bool on_one_surface(const SurfacePoint& a, const SurfacePoint& b,
+                           const PixelFootprint& footprint) {
+  const glm::vec3 step = b.position - a.position;
+  const float gap =
+      std::max(std::abs(glm::dot(step, a.normal)), std::abs(glm::dot(step, b.normal)));
+  return gap <= kSurfaceGap * footprint.at(std::min(-a.position.z, -b.position.z));
+}
 
 // How much a point q with a normal n_q is on the surface of p, after Ritschel, Grosch and Seidel
 // (2009), section 5:

@@ -6,8 +6,8 @@
 //
 // - lies off the ray through the middle of its pixel, since the mean leans to what is far away,
 //   while the others keep to theirs; and
-// - lies, for two neighbours on opposite sides, between them in depth and beside the planes of
-//   both. A step that is seen as a line of pixels does too, but is on its rays.
+// - lies, for some pair of opposite neighbours, between them in depth and on neither's tangent
+//   plane. A step that is seen as a line of pixels does too, but is on its rays.
 //
 // It goes to the one of the two that is nearer in depth, which has the larger share of the mean:
 // to where its ray meets that neighbour's plane. Where an object ends before nothing, whose P is
@@ -24,7 +24,7 @@
 #include <vector>
 
 #include "parallel/tiles.h"
-#include "scene/one_surface.h"
+#include "scene/pixel_footprint.h"
 
 namespace ssdo {
 namespace {
@@ -80,8 +80,8 @@ class Silhouettes {
     return nearest ? std::optional(on_plane_of(*nearest, x, y)) : std::nullopt;
   }
 
-  /// Whether two neighbours on opposite sides of a pixel belong to two surfaces, or only one to
-  /// any.
+  /// Whether two opposite neighbours of a pixel are on different surfaces, or exactly one of them
+  /// shows a surface.
   bool is_at_edge(int x, int y) const {
     if (x == 0 || y == 0 || x + 1 == g_.surfel.width || y + 1 == g_.surfel.height) return false;
     for (const Step& axis : kAxes) {

@@ -26,14 +26,14 @@
 
 #include "parallel/tiles.h"
 #include "scene/normals.h"
-#include "scene/one_surface.h"
+#include "scene/same_surface.h"
 
 namespace ssdo {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// What a run counts for that goes on behind something at one end.
+/// Factor on the width of a run that is occluded at one end.
 constexpr float kPartlySeen = 3;
 
 /// The lines of pixels in one of four directions.

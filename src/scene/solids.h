@@ -26,7 +26,8 @@ constexpr int kMostLayers = 4;
 struct Solid {
   float distance = 0;   ///< from the surface that the pixel shows to this solid's front
   float thickness = 0;  ///< from its front to its back
-  int sender = -1;      ///< the pixel that shows its surface; -1: there is no solid
+  int sender = -1;      ///< the pixel of the raster that shows its surface, whose light it sends;
+                        ///< -1: there is no solid
 };
 
 /// At most one solid behind the surface that each pixel shows; planes as large as the geometry's.

@@ -83,7 +83,7 @@ TEST(Info, SaysWhatItFoundAndWouldDo) {
   const Finished done = run_tool({"info", data("still_life.exr")});
   EXPECT_EQ(done.code, 0);
   for (const char* word : {"ViewLayer.Position.X", "fitted from P", "45.000 degrees", "background",
-                           "radius inf", "bitmask", "goes on behind"}) {
+                           "radius inf", "bitmask", "surfaces continue behind them"}) {
     EXPECT_THAT(done.out, HasSubstr(word));
   }
   const json j = info(data("still_life.exr"));

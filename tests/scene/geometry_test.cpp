@@ -3,11 +3,16 @@
 // From the layers of a file to surfaces in camera space.
 #include "scene/geometry.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "support/analytic_scene.h"
 #include "support/gbuffer_of.h"
+#include "support/temp_dir.h"
 
 namespace ssdo::test {
 namespace {
@@ -41,6 +46,18 @@ Difference difference(const Geometry& a, const Geometry& b) {
     most.normal = std::max(most.normal, apart(a.surfel[i].normal, b.surfel[i].normal));
   }
   return most;
+}
+
+/// A file for --camera.
+void write_camera(const Camera& camera, const std::filesystem::path& path) {
+  const glm::dmat3& r = camera.rotation;
+  const glm::dvec3 t = -(r * camera.origin);
+  std::ofstream out(path);
+  out << fmt::format(R"({{"fx": {}, "fy": {}, "cx": {}, "cy": {}, "world_to_camera": [)", camera.fx,
+                     camera.fy, camera.cx, camera.cy);
+  for (int i = 0; i < 3; ++i)
+    out << fmt::format("[{}, {}, {}, {}], ", r[0][i], r[1][i], r[2][i], t[i]);
+  out << "[0, 0, 0, 1]]}";
 }
 
 CameraOptions with_fov(double degrees) { return {{}, degrees, {}}; }
@@ -109,8 +126,11 @@ TEST(Geometry, LeavesOutWhatLiesBehindTheCamera) {
   GBuffer g = gbuffer_of(take_picture(ball_on_ground(), camera, kWindow));
   const std::size_t behind = g.position.index(5, 70);
   g.position[behind] = glm::vec3(0, -20, 8);
+  const TempDir dir;
+  write_camera(camera, dir / "camera.json");
   GeometryReport report;
-  const Geometry geometry = build_geometry(g, {}, "f", report);
+  const Geometry geometry =
+      build_geometry(g, {(dir / "camera.json").string(), {}, {}}, "f", report);
   EXPECT_FALSE(geometry.is_surface(behind));
   EXPECT_TRUE(geometry.is_surface(behind + 1));
   EXPECT_THAT(report.warnings, ElementsAre(HasSubstr("1 positions lie behind the camera")));

@@ -200,8 +200,9 @@ struct SideFrame {
 template <bool kOrthographic>
 HWY_INLINE VU sectors_behind(const MarchReceiver& p, const SideFrame& side, V s, V above, V depth,
                              float radius) {
-  // The pixel's centre lies beside the slice. Moved into it along the receiver's tangent plane, a
-  // sample keeps its height above that plane: a plane stays open whatever its tilt.
+  // Centres of sampled pixels are not exactly in the plane of the slice. They are projected into it
+  // parallel to the receiver's tangent plane, which keeps their heights: a plane never occludes
+  // itself, whatever its tilt.
   const SlicePoint front{s, hn::NegMulAdd(s, side.slope, above)};
   const V distance2 = dot(front, front);
   const M meets = hn::And(above > set(0), distance2 <= set(radius * radius));

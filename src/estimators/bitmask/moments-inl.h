@@ -202,9 +202,9 @@ struct Moments {
     return hn::IfThenElse(total > set(0), share, otherwise);
   }
 
-  /// The mean open direction; `closed` where nothing is open. Of an open surface it is the normal,
-  /// whatever the slices: what their sum over all directions lacks of it is added as far as the
-  /// surface is open.
+  /// The mean open direction; `closed` where nothing is open. The error of the slices, the normal
+  /// less their sum over all directions, is added times the openness, so that an open surface gives
+  /// exactly its normal.
   HWY_INLINE V3 bent_normal(const MarchReceiver& p, V ao, const V3& closed) const {
     const V full = set(2.0f / 3) * whole[0];
     const auto along = [&](V normal, int band) HWY_ATTR {  // bands of order 1 are y, z, x

@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "parallel/tiles.h"
-#include "scene/one_surface.h"
+#include "scene/same_surface.h"
 #include "scene/surfel.h"
 
 namespace ssdo {
