@@ -35,7 +35,8 @@ std::size_t write_exr_target(const SafeFile& file, const Target& target, const R
   output.part = frame.lead().part;
   output.keep_channels = job.options.output.keep_channels;
   output.compression = job.options.output.compression;
-  output.attributes = {{"ssdo/version", SSDO_VERSION}, {"ssdo/plan", json_text(to_json(plan))}};
+  output.attributes = {{"ssdo/version", SSDO_VERSION},
+                       {"ssdo/plan", json_text(to_json(plan, frame.history))}};
   for (const NamedPlane& plane : channels)
     output.planes.push_back({plane.channel, job.options.output.pixel_type, &plane.pixels});
   return write_exr(file, output);

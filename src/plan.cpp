@@ -192,7 +192,9 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
   return plan;
 }
 
-nlohmann::json to_json(const Plan& plan) {
+nlohmann::json to_json(const Plan& plan, const std::vector<std::string>& history) {
+  std::vector<std::string> reasons = plan.reasons;
+  reasons.insert(reasons.end(), history.begin(), history.end());
   nlohmann::json j = {{"method", plan.method->name},
                       {"parameters", plan.request.parameters},
                       {"products", plan.make},
@@ -200,7 +202,7 @@ nlohmann::json to_json(const Plan& plan) {
                       {"samples_per_pixel", plan.samples_per_pixel()},
                       {"filter", plan.filter->name},
                       {"temporal", plan.temporal},
-                      {"reasons", plan.reasons}};
+                      {"reasons", reasons}};
   // JSON knows no infinity.
   if (plan.method->takes.radius)
     j["radius"] = std::isinf(plan.request.radius) ? nlohmann::json("inf")

@@ -70,6 +70,7 @@ struct Plan {
 Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Scene& scene,
                const GBuffer& gbuffer, const std::string& file);
 
-nlohmann::json to_json(const Plan& plan);
+/// `history` is what a temporal plan takes from the frame before, and why: it ends the reasons.
+nlohmann::json to_json(const Plan& plan, const std::vector<std::string>& history = {});
 
 }  // namespace ssdo

@@ -130,7 +130,7 @@ std::string describe(const Frame& frame) {
                            frame.plan.samples_per_pixel(), frame.plan.request.bounces,
                            frame.plan.filter->name, frame.plan.temporal ? " and temporal" : ""));
   for (const std::string& reason : frame.plan.reasons) line("", reason);
-  for (const std::string& line_of_history : frame.history) line("history", line_of_history);
+  for (const std::string& line_of_history : frame.history) line("", line_of_history);
   for (const std::string& warning : frame.warnings()) line("warning", warning);
   return text;
 }
@@ -156,8 +156,7 @@ nlohmann::json to_json(const Frame& frame) {
           {"bad_pixels", frame.gbuffer.bad_pixels},
           {"median_depth", g.median_depth},
           {"light", frame.light},
-          {"plan", to_json(frame.plan)},
-          {"history", frame.history},
+          {"plan", to_json(frame.plan, frame.history)},
           {"warnings", frame.warnings()}};
 }
 

@@ -51,8 +51,7 @@ nlohmann::json statistics_of(const Frame& frame, const Job& job, const Resources
       {"pixels", frame.scene.geometry.surfel.size()},
       {"background_pixels", frame.gbuffer.background_pixels},
       {"bad_pixels", frame.gbuffer.bad_pixels},
-      {"plan", to_json(plan)},
-      {"history", frame.history},
+      {"plan", to_json(plan, frame.history)},
   };
   if (const auto& error = relit.error)
     out["error"] = {{"rms", error->all}, {"noise", error->noise}, {"steps", error->steps}};

@@ -196,8 +196,9 @@ class Trace {
   }
 
   void add_direct(std::size_t pixel, const Receiver& p, const LightSums& light, float ao) {
-    const glm::vec3 unoccluded = scene_.light.irradiance(p.normal);
     const bool even = scene_.light.is_constant();
+    const glm::vec3 unoccluded =
+        even ? scene_.light.environment.constant_radiance() : scene_.light.irradiance(p.normal);
     out_.direct[pixel] = unoccluded * (even ? glm::vec3(ao) : light.share_of_all(ao));
     Groups groups{};
     for (int g = 0; g < kGroups; ++g) groups[g] = luminance(unoccluded * light.share_of_group(g));

@@ -23,7 +23,7 @@ TEST(ParseNumber, TakesFiniteNumbersAndNothingElse) {
     EXPECT_EQ(parse_number(text), std::nullopt) << "'" << text << "'";
 }
 
-TEST(LightRange, KeepsLightAndBoundsWhatLeavesTheRange) {
+TEST(RangeOfLight, KeepsLightAndBoundsWhatLeavesTheRange) {
   const float inf = std::numeric_limits<float>::infinity();
   EXPECT_EQ(within_range({0.5f, -2, 3e14f}), glm::vec3(0.5f, -2, 3e14f));
   EXPECT_EQ(within_range({inf, -inf, std::numeric_limits<float>::quiet_NaN()}),

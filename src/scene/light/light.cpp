@@ -175,6 +175,7 @@ OctahedralMap irradiance(const Sky& sky, const Light& model) {
 }  // namespace
 
 glm::vec3 Light::unoccluded(const glm::vec3& normal) const {
+  if (is_constant()) return environment.constant_radiance();  // looking it up would round
   glm::vec3 sum = irradiance(normal);
   for (const Sun& sun : suns)
     sum += std::max(0.0f, glm::dot(normal, sun.direction)) * sun.irradiance;
