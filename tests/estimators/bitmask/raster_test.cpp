@@ -71,7 +71,6 @@ TEST(BitmaskRaster, ReceiversInAWindowGetTheBitsOfTheWholeRaster) {
         request.radiance = Plane<glm::vec3>(kWindow.width(), kWindow.height(), glm::vec3(0.3f));
       request.receivers = {};
       const Products whole = run(g, request);
-      EXPECT_EQ(count_differences(whole, whole, kWindow), 0);
       for (const Window& receivers : {Window{20, 20, 100, 60},
                                       {-3, 5, 40, 30},
                                       {61, 47, 62, 48},
