@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "estimators/registry.h"
+#include "scene/further/carve.h"
+#include "scene/further/merge.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -99,6 +101,21 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const st
   if (frame.plan.method->takes.thickness) {
     scene.solids = model.thickness ? constant_thickness(scene.geometry, float(*model.thickness))
                                    : guess_solids(scene.geometry);
+  }
+  if (const char* also = std::getenv("SSDO_ALSO")) {
+    std::vector<FurtherView> views;
+    std::string list = also;
+    for (std::size_t at = 0; at < list.size();) {
+      const std::size_t end = std::min(list.find(',', at), list.size());
+      views.push_back(read_further_view(list.substr(at, end - at), {}, scene.geometry));
+      at = end + 1;
+    }
+    std::vector<MergeCounts> counts;
+    scene.further = merge_views(views, scene.geometry, scene.senders.albedo, counts);
+    for (const auto& c : counts)
+      fmt::print(stderr, "{} added {} seen {} contra {}\n", c.file, c.added, c.seen,
+                 c.contradictory);
+    if (!std::getenv("SSDO_NOCARVE")) carve(scene.solids, scene.geometry, views);
   }
   frame.times.prepare = watch.lap() - frame.times.read;
   return frame;

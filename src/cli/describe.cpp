@@ -21,7 +21,8 @@ std::string describe_camera(const Frame& frame) {
   const int width = frame.scene.geometry.display.width();
   std::string text = frame.report.camera_source;
   if (frame.scene.geometry.median_depth <= 0) return text;
-  text += c.orthographic
+  text += c.panorama ? ": lat-long panorama"
+          : c.orthographic
               ? fmt::format(": orthographic, {:.4g} wide", width / c.fx)
               : fmt::format(": {:.3f} degrees, f {:.2f} px", c.hfov_degrees(width), c.fx);
   if (std::abs(c.fy - c.fx) > 1e-3 * c.fx) text += fmt::format(" x {:.2f} px", c.fy);

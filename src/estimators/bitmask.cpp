@@ -44,6 +44,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
+#include <memory>
 
 #include "estimators/bitmask/march.h"
 #include "math/frame.h"
@@ -100,8 +101,12 @@ class Bitmask {
         pattern_(layout_, scene.geometry.display, request.slices, request.steps, request.seed),
         bounce_pattern_(layout_, scene.geometry.display, bounce_slices(request.slices),
                         bounce_steps(request.steps), request.seed, bounce_spacing(request.slices)),
-        march_{march_scene_, pattern_, request.radius, request.extend_offscreen},
-        bounce_march_{march_scene_, bounce_pattern_, request.radius, request.extend_offscreen},
+        further_(scene.further.empty()
+                     ? nullptr
+                     : std::make_unique<FurtherRays>(scene.further.vertices, scene.further.added)),
+        march_{march_scene_, pattern_, request.radius, request.extend_offscreen, further_.get()},
+        bounce_march_{march_scene_, bounce_pattern_, request.radius, request.extend_offscreen,
+                      further_.get()},
         ao_(layout_) {}
 
   Products run() {
@@ -290,6 +295,9 @@ class Bitmask {
       difference = InterleavedPlane(layout_), bounce_error_ = InterleavedPlane(layout_);
     if (lit && request_.bounces > 1) sent_before_last = black();
     const Window raster = march_scene_.raster();
+    std::vector<FurtherLight> sent_further;
+    if (further_ && request_.bounces > 0)
+      sent_further = light_further_surfaces(scene_, request_.bounces - 1, request_.radius);
     for (int pass = 1; pass <= request_.bounces; ++pass) {
       // The last pass asks for the albedo no more.
       InterleavedVectors& sent = lit && pass < request_.bounces ? sent_before_last : given;
@@ -318,6 +326,7 @@ class Bitmask {
                           two_sided ? &sent_back : nullptr,
                           &sent_behind,
                           sent_border,
+                          further_ ? &sent_further[std::size_t(pass - 1)] : nullptr,
                           &gathered,
                           &weights,
                           wants_error ? &difference : nullptr,
@@ -339,6 +348,7 @@ class Bitmask {
   MarchScene march_scene_;
   const Interleaving& layout_;
   SlicePattern pattern_, bounce_pattern_;
+  std::unique_ptr<FurtherRays> further_;  ///< null: there are no further views
   March march_, bounce_march_;
   InterleavedPlane ao_, error_, bounce_error_;
   InterleavedVectors direct_;

@@ -134,7 +134,7 @@ void place_normals(const GBuffer& g, const FoundCamera& found, Geometry& out,
 float median_depth(const Geometry& geometry) {
   std::vector<float> depths;
   for (const Surfel& s : geometry.surfel.pixels) {
-    if (s.is_surface()) depths.push_back(-s.position.z);
+    if (s.is_surface()) depths.push_back(float(geometry.camera.depth_of(s.position)));
   }
   if (depths.empty()) return 0;
   const auto middle = depths.begin() + std::ptrdiff_t(depths.size() / 2);
@@ -163,9 +163,9 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
   const FoundCamera found = find_camera(g, options, file, report);
   out.camera = found.camera;
   place_positions(g, found.of_positions, out);
-  drop_pixels_behind_camera(out, report);
+  if (!out.camera.panorama) drop_pixels_behind_camera(out, report);
   place_normals(g, found, out, report);
-  if (report.residual) {
+  if (report.residual && !out.camera.panorama) {
     const std::size_t averages = mend_silhouettes(out, *report.residual);
     if (averages > 0) {
       report.warnings.push_back(fmt::format(

@@ -23,13 +23,17 @@ struct SurfacePoint {
 /// plane, in pixel footprints.
 constexpr float kSurfaceGap = 4;
 
-/// Whether what two neighbouring pixels show belongs to one surface.
-inline bool on_one_surface(const SurfacePoint& a, const SurfacePoint& b,
-                           const PixelFootprint& footprint) {
+/// Whether what two neighbouring pixels show belongs to one surface; `footprint` is that of the
+/// nearer one.
+inline bool on_one_surface(const SurfacePoint& a, const SurfacePoint& b, float footprint) {
   const glm::vec3 step = b.position - a.position;
   const float gap =
       std::max(std::abs(glm::dot(step, a.normal)), std::abs(glm::dot(step, b.normal)));
-  return gap <= kSurfaceGap * footprint.at(std::min(-a.position.z, -b.position.z));
+  return gap <= kSurfaceGap * footprint;
+}
+inline bool on_one_surface(const SurfacePoint& a, const SurfacePoint& b,
+                           const PixelFootprint& footprint) {
+  return on_one_surface(a, b, footprint.at(std::min(-a.position.z, -b.position.z)));
 }
 
 // How much a point q with a normal n_q is on the surface of p, after Ritschel, Grosch and Seidel

@@ -4,6 +4,7 @@
 #include <glm/vec3.hpp>
 
 #include "math/plane.h"
+#include "scene/further/further_surfaces.h"
 #include "scene/geometry.h"
 #include "scene/light/light.h"
 #include "scene/solids.h"
@@ -21,6 +22,7 @@ struct Senders {
 struct Scene {
   Geometry geometry;
   Solids solids;
+  FurtherSurfaces further;  ///< what other views show that the frame does not
   Senders senders;
   Light light;
   Plane<float> roughness;  ///< 0..1; empty: the same everywhere, a parameter of the method

@@ -164,7 +164,7 @@ glm::vec3 point_behind(const Geometry& geometry, std::size_t pixel, float distan
 }
 
 Solids constant_thickness(const Geometry& geometry, float thickness) {
-  return {Plane<float>(geometry.surfel.width, geometry.surfel.height, thickness), {}};
+  return {Plane<float>(geometry.surfel.width, geometry.surfel.height, thickness), {}, {}};
 }
 
 Solids guess_solids(const Geometry& geometry) {
@@ -191,7 +191,7 @@ Solids guess_solids(const Geometry& geometry) {
       if (sender >= 0) second.thickness(x, y) = thickness[std::size_t(sender)];
     }
   });
-  Solids solids{std::move(thickness), {}};
+  Solids solids{std::move(thickness), {}, {}};
   solids.behind.push_back(std::move(second));
   return solids;
 }

@@ -37,11 +37,35 @@ struct SolidLayer {
   Plane<int> sender;
 };
 
+/// A value for each pixel at the border of a picture; those in the corners have one.
+template <class T>
+class BorderOf {
+ public:
+  BorderOf() = default;
+  BorderOf(int width, int height, T value)
+      : width_(width), height_(height), values_(std::size_t(2 * (width + height)), value) {}
+
+  bool empty() const { return values_.empty(); }
+  T& at(int x, int y) { return values_[index(x, y)]; }
+  const T& at(int x, int y) const { return values_[index(x, y)]; }
+
+ private:
+  std::size_t index(int x, int y) const {
+    if (y == 0 || y == height_ - 1) return std::size_t(y == 0 ? x : width_ + x);
+    return std::size_t(2 * width_ + (x == 0 ? y : height_ + y));
+  }
+
+  int width_ = 0, height_ = 0;
+  std::vector<T> values_;
+};
+
 /// The solids on the view ray of every pixel of a geometry, near to far: layer 0 is what the pixel
 /// shows, the others are behind it. Without planes everything that is seen is endless.
 struct Solids {
   Plane<float> thickness;          ///< of layer 0, from front to back; empty: infinite
   std::vector<SolidLayer> behind;  ///< layers 1, 2, ..., kMostLayers - 1 at most
+  BorderOf<float> beyond;  ///< how far what the border shows may go on beyond it, in scene units;
+                           ///< empty: without limit
 
   int layers() const { return 1 + int(behind.size()); }
 

@@ -62,6 +62,27 @@ HWY_INLINE V measure_of(const MarchReceiver& p, const SideFrame& side, VU bits) 
   return dot(V2{p.facing, side.n_t}, V2{moments.cosine[1], moments.sine[1]});
 }
 
+/// Light from what only further views show.
+template <class Receive>
+struct FromFurther {
+  static constexpr bool kWantsHits = true;
+  const FurtherLight* sent;
+  const Receive& receive;
+
+  HWY_INLINE void operator()(VU bits, const FurtherRays::Hit* hits) const {
+    receive(bits, [&]() HWY_ATTR {
+      alignas(64) float radiance[3][kLanes] = {};
+      for (int lane = 0; lane < kLanes; ++lane) {
+        if (hits[lane].vertex < 0) continue;
+        const auto vertex = std::size_t(hits[lane].vertex);
+        const glm::vec3& light = hits[lane].unseen ? sent->unseen[vertex] : sent->seen[vertex];
+        for (int c = 0; c < 3; ++c) radiance[c][lane] = light[c];
+      }
+      return V3{load(radiance[0]), load(radiance[1]), load(radiance[2])};
+    });
+  }
+};
+
 template <bool kOrthographic>
 void gather_light(const BounceJob& job, const Window& part) {
   const March& march = job.march;
@@ -92,6 +113,7 @@ void gather_light(const BounceJob& job, const Window& part) {
                     return if_then_else(seen, front, back);
                   });
                 },
+                FromFurther<decltype(receive)>{job.sent_further, receive},
                 [&](const Border& border, VU bits) HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {
                     return V3{border(job.sent_border[0]), border(job.sent_border[1]),

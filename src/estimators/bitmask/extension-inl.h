@@ -114,6 +114,7 @@ HWY_INLINE Extension extend(const March& march, const MarchReceiver& p, const Si
   V length = kOrthographic ? frame : frame * depth;
   const V thickness = border(scene.border_thickness);
   length = hn::Min(length, thickness * set(widths));
+  if (!scene.border_beyond.empty()) length = hn::Min(length, border(scene.border_beyond));
   e.depth = thickness;
   if constexpr (!kOrthographic) {
     const V3 ray{hn::MulAdd(border.dx, set(1 / scene.fx), p.slope_x),

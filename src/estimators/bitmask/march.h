@@ -7,6 +7,8 @@
 
 #include "estimators/bitmask/march_scene.h"
 #include "estimators/bitmask/slice_pattern.h"
+#include "estimators/further/further_light.h"
+#include "estimators/further/further_rays.h"
 #include "math/octahedral_map.h"
 #include "scene/light/light.h"
 #include "simd/interleaved.h"
@@ -19,6 +21,7 @@ struct March {
   const SlicePattern& pattern;
   float radius;  ///< scene units, or infinity
   bool extend;   ///< surfaces go on beyond the frame
+  const FurtherRays* further = nullptr;  ///< what only further views show; null: nothing
 };
 
 /// How open each pixel is, and to which light.
@@ -56,6 +59,7 @@ struct BounceJob {
   const InterleavedVectors* sent_back;                 ///< of its other side; null: the same
   const std::vector<InterleavedVectors>* sent_behind;  ///< of layers 1, 2, ...
   const BorderValues* sent_border;                     ///< of what goes on beyond the frame, three
+  const FurtherLight* sent_further;                    ///< of what only further views show
 
   // What the pixels that march have met.
   InterleavedVectors* gathered;  ///< sum of radiance

@@ -102,6 +102,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                    BorderLayout(layout),
                    {},
                    {},
+                   {},
                    {}};
   if (receivers.area() == 0) scene.receivers = scene.raster();
   for (int k = 0; k < solids.layers(); ++k) scene.layers.push_back({plane(), plane()});
@@ -135,6 +136,10 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
   scene.border_thickness = scene.border.gather([&](int x, int y) {
     return std::min(solids.at(0, g.surfel.index(x, y)).thickness, kEndlessLength);
   });
+  if (!solids.beyond.empty()) {
+    scene.border_beyond = scene.border.gather(
+        [&](int x, int y) { return std::min(solids.beyond.at(x, y), kEndlessLength); });
+  }
   return scene;
 }
 

@@ -75,6 +75,7 @@ struct MarchScene {
   BorderLayout border;
   BorderValues border_depth, border_normal[3];
   BorderValues border_thickness;  ///< in scene units
+  BorderValues border_beyond;     ///< how far it may go on beyond the frame; empty: without limit
 
   const InterleavedPlane& depth() const { return layers.front().depth; }  ///< of what pixels show
   Window raster() const { return {0, 0, layout.width(), layout.height()}; }

@@ -11,6 +11,7 @@
 #include <hwy/cache_control.h>
 
 #include "estimators/bitmask/extension-inl.h"
+#include "estimators/bitmask/further-inl.h"
 #include "estimators/bitmask/piece-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -87,13 +88,16 @@ HWY_INLINE VU march_raster(const March& march, const MarchReceiver& p, const Sid
   return open;
 }
 
-/// The same over the raster and beyond it. `on_beyond` hears of the sectors that are hidden beyond.
-template <bool kOrthographic, class Met, class Beyond>
+/// The same over the raster, what further views show, and beyond the frame. `on_further` hears of
+/// the former (further-inl.h), `on_beyond` of the sectors that are hidden beyond.
+template <bool kOrthographic, class Met, class Further, class Beyond>
 HWY_INLINE VU march_side(const March& march, const MarchReceiver& p, const SideFrame& side,
                          const Slice& slice, bool forward, const Met& on_met,
-                         const Beyond& on_beyond) {
-  const VU open =
+                         const Further& on_further, const Beyond& on_beyond) {
+  VU open =
       march_raster<kOrthographic>(march, p, side, slice.sides[forward ? 0 : 1].steps, on_met);
+  if (march.further && !none(open))
+    open = hn::AndNot(sectors_of_further(march, p, side, open, on_further), open);
   if (!march.extend || none(open)) return open;
   const float sign = forward ? 1.0f : -1.0f;
   const Border border =

@@ -8,6 +8,7 @@
 #include <hwy/foreach_target.h>
 
 #include "estimators/bitmask/extension-inl.h"
+#include "estimators/bitmask/further-inl.h"
 #include "scene/light/light-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -107,6 +108,18 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const SideF
   return passed;
 }
 
+/// Which open lanes see the sun past what further views show.
+HWY_INLINE M open_past_further(const March& march, const MarchReceiver& p, const glm::vec3& to,
+                               M open) {
+  const Lanes3 start(start_of_rays(march.scene, p));
+  const Lanes looks(hn::IfThenElseZero(open, set(1)));
+  alignas(64) float passes[kLanes];
+  for (int lane = 0; lane < kLanes; ++lane)
+    passes[lane] =
+        looks[lane] > 0 && !march.further->is_blocked(start[lane], to, march.radius) ? 1.0f : 0.0f;
+  return load(passes) > set(0);
+}
+
 template <bool kOrthographic>
 void sun(const SunJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
@@ -152,6 +165,8 @@ void sun(const SunJob& job, const Window& part) {
         open = hn::AndNot(hides, open);
       }
     }
+    if (job.march.further && any(open))
+      open = open_past_further(job.march, p, job.directions[std::size_t(member)], open);
     V visible = hn::IfThenElseZero(open, set(1));
     if (job.march.extend && any(open)) {
       const float turn = (float(SlicePattern::rank(member)) + 0.5f) / (kPeriod * kPeriod);

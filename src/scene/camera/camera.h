@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <filesystem>
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -18,8 +20,12 @@ namespace ssdo {
 ///
 ///   perspective   px = cx + fx x / -z    py = cy - fy y / -z
 ///   orthographic  px = cx + fx x         py = cy - fy y
+///   panorama      px = cx + fx atan2(x, -z)   py = cy - fy asin(y / |p|)
+///
+/// The depth of a panorama's pixel is its distance from the camera; of others, it is -z.
 struct Camera {
   bool orthographic = false;
+  bool panorama = false;  ///< lat-long: all directions; never both
   double fx = 1, fy = 1, cx = 0, cy = 0;
 
   /// camera = rotation * (p - origin), for p in the space of the input's P. Orthogonal; its
@@ -31,11 +37,31 @@ struct Camera {
 
   /// Camera space to pixels.
   glm::dvec2 project(const glm::dvec3& p) const {
+    if (panorama) {
+      return {cx + fx * std::atan2(p.x, -p.z),
+              cy - fy * std::atan2(p.y, std::hypot(p.x, p.z))};
+    }
     const double w = orthographic ? 1.0 : 1.0 / -p.z;
     return {cx + fx * p.x * w, cy - fy * p.y * w};
   }
 
-  /// The camera-space point at planar depth `depth` (along -z) behind a place in the picture.
+  /// Where in camera space the view ray of a place in the picture begins, and where it leads.
+  struct Ray {
+    glm::dvec3 origin, direction;
+  };
+  Ray ray(const glm::dvec2& pixel) const {
+    const double x = (pixel.x - cx) / fx, y = (cy - pixel.y) / fy;
+    if (orthographic) return {{x, y, 0}, {0, 0, -1}};
+    if (!panorama) return {glm::dvec3(0), {x, y, -1}};
+    return {glm::dvec3(0),
+            {std::sin(x) * std::cos(y), std::sin(y), -std::cos(x) * std::cos(y)}};
+  }
+
+  /// Depth of a camera-space point: negative behind the camera, never for a panorama.
+  double depth_of(const glm::dvec3& p) const { return panorama ? glm::length(p) : -p.z; }
+
+  /// The camera-space point at planar depth `depth` (along -z) behind a place in the picture; not
+  /// for panoramas.
   glm::dvec3 unproject(const glm::dvec2& pixel, double depth) const {
     const double w = orthographic ? 1.0 : depth;
     return {(pixel.x - cx) / fx * w, (cy - pixel.y) / fy * w, -depth};

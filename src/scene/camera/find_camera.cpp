@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "scene/camera/fit.h"
+#include "scene/camera/panorama.h"
 
 namespace ssdo {
 namespace {
@@ -57,10 +58,15 @@ Plane<unsigned char> inner_pixels(const Plane<unsigned char>& valid) {
   return inner;
 }
 
-/// The camera from pixels that cannot be averages with the background, or else from all.
-std::optional<Camera> fit_camera(const GBuffer& g) {
-  const auto fitted = ssdo::fit_camera(g.position, inner_pixels(g.valid), g.window);
-  return fitted ? fitted : ssdo::fit_camera(g.position, g.valid, g.window);
+/// The camera from pixels that cannot be averages with the background, or else from all. Where no
+/// pinhole explains P and none is `given`, it may be a panorama.
+std::optional<Camera> fit_camera(const GBuffer& g, bool given) {
+  const Plane<unsigned char> inner = inner_pixels(g.valid);
+  auto fitted = ssdo::fit_camera(g.position, inner, g.window);
+  if (!fitted) fitted = ssdo::fit_camera(g.position, g.valid, g.window);
+  if (given || (fitted && explains(*fitted, g.position, g.valid, g.window))) return fitted;
+  const auto panorama = fit_panorama(g.position, inner, g.window, g.display);
+  return panorama ? panorama : fitted;
 }
 
 /// The most by which storing P may have moved it along one axis, in scene units.
@@ -105,7 +111,7 @@ FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const st
   std::optional<FoundCamera> found;
   if (given) found = by_file ? pose_by_file(g, *given, report) : pose_by_positions(g, *given);
   if (!found) {
-    if (const auto fitted = fit_camera(g)) {
+    if (const auto fitted = fit_camera(g, given.has_value())) {
       found = {*fitted, *fitted, false};
       if (given) {
         report.warnings.push_back(

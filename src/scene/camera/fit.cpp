@@ -7,6 +7,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <vector>
 
+#include "scene/camera/null_vector.h"
 #include "scene/camera/projection_model.h"
 
 namespace ssdo {
@@ -19,9 +20,9 @@ using Eigen::Vector3d;
 Vector3d eigen(const glm::dvec3& v) { return Vector3d(glm::value_ptr(v)); }
 Matrix3d eigen(const glm::dmat3& m) { return Matrix3d(glm::value_ptr(m)); }
 
-/// The eigenvector of the smallest eigenvalue: the unit x that makes |A x| least, from A^T A.
 Eigen::VectorXd null_vector(const Eigen::MatrixXd& normal_matrix) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal_matrix).eigenvectors().col(0);
+  const std::vector<double> x = ssdo::null_vector(normal_matrix.data(), int(normal_matrix.rows()));
+  return Eigen::Map<const Eigen::VectorXd>(x.data(), Eigen::Index(x.size()));
 }
 
 /// Direct linear transform: M (3 x 4) with pixel ~ M (p, 1), split by an RQ decomposition into

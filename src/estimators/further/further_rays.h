@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "scene/further/further_surfaces.h"
+
+namespace ssdo {
+
+/// Triangles of further views that answer rays in the camera space of the frame, through Embree.
+/// May be asked from many threads at once.
+class FurtherRays {
+ public:
+  /// `vertices` must outlive this. Errors: ExitCode::failed where memory does not suffice.
+  FurtherRays(const std::vector<Vertex>& vertices,
+              const std::vector<FurtherSurfaces::Triangle>& triangles);
+  ~FurtherRays();
+
+  /// The surface that a ray meets first.
+  struct Hit {
+    int vertex = -1;  ///< the nearest corner of the triangle; -1: nothing is met
+    bool unseen = false;  ///< the ray comes from the side that no view has seen
+    float distance = std::numeric_limits<float>::infinity();
+  };
+
+  // Directions are unit vectors; a reach may be infinite.
+
+  bool is_blocked(const glm::vec3& origin, const glm::vec3& direction, float reach) const;
+  Hit first_hit(const glm::vec3& origin, const glm::vec3& direction, float reach) const;
+
+ private:
+  struct Embree;
+  std::unique_ptr<Embree> embree_;
+};
+
+}  // namespace ssdo

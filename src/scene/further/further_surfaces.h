@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+namespace ssdo {
+
+/// A place on a surface that a pixel of a further view shows, in the camera space of the frame.
+struct Vertex {
+  glm::vec3 position{0}, normal{0};  ///< the normal is unit, on the side that is seen
+  glm::vec3 albedo{0};
+  float footprint = 0;  ///< width of what its pixel shows, in scene units
+};
+
+/// What further views show of a scene: surfaces as triangles.
+struct FurtherSurfaces {
+  using Triangle = std::array<std::uint32_t, 3>;
+
+  std::vector<Vertex> vertices;
+  std::vector<Triangle> added;  ///< of what the frame does not show
+  std::vector<Triangle> all;    ///< those, what the frame shows as well, and what it shows, coarsely
+
+  bool empty() const { return added.empty(); }
+};
+
+}  // namespace ssdo

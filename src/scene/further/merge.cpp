@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A pixel of a further view adds what it shows only where the frame does not show it:
+//
+// - What lies within kSurfaceTolerance footprints of a surface that the frame shows there is that
+//   surface. The frame knows it better: coarse triangles would cut through the finer surface.
+// - What lies before what the frame shows there would be seen by it. It has moved, and is dropped.
+// - All else is new: behind what the frame shows, outside of it, or a surface's other side.
+//
+// Neighbours of one view are joined as those of the frame are, if they share their fate. Where they
+// are not, each reaches half-way to the next on its own tangent plane: leaves and wires are single
+// pixels of a small view, and would be lost between triangles.
+#include "scene/further/merge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <numeric>
+
+#include "error.h"
+#include "parallel/tiles.h"
+#include "scene/normals.h"
+#include "scene/pixel_footprint.h"
+#include "scene/same_surface.h"
+
+namespace ssdo {
+namespace {
+
+/// Distance from the plane of what the frame shows, in footprints of its pixels.
+constexpr float kSurfaceTolerance = 3;
+
+/// The frame among the surfaces that light further views: with so many columns at most.
+constexpr int kFrameColumns = 320;
+
+/// A view whose pixels nearly all contradict the frame, and so many of them, is of another scene.
+constexpr std::size_t kFewestInCommon = 50;
+constexpr double kLeastInCommon = 0.02;
+
+enum class Fate : unsigned char { none, added, seen, contradictory };
+
+class Merger {
+ public:
+  explicit Merger(const Geometry& frame) : frame_(frame), footprint_(frame.camera) {}
+
+  /// What the frame knows of a place that a further view shows.
+  Fate judge(const Surfel& s) const {
+    const glm::vec3 p = s.position;
+    const bool ortho = frame_.camera.orthographic;
+    if (!ortho && !(p.z < 0)) return Fate::added;
+    if (glm::dot(s.normal, direction_to_viewer(p, ortho)) <= 0) return Fate::added;
+    const glm::dvec2 at = frame_.camera.project(glm::dvec3(p));
+    const double px = std::floor(at.x - frame_.window.x0), py = std::floor(at.y - frame_.window.y0);
+    if (!(px >= 0 && py >= 0 && px < frame_.surfel.width && py < frame_.surfel.height))
+      return Fate::added;
+    bool behind = false;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Surfel* shown = surface_at(frame_.surfel, int(px) + dx, int(py) + dy);
+        if (!shown) continue;
+        const float tolerance = kSurfaceTolerance * footprint_.at(-shown->position.z) +
+                                s.rounding + shown->rounding;
+        const bool faces = glm::dot(s.normal, shown->normal) > 0;
+        if (faces && std::abs(glm::dot(p - shown->position, shown->normal)) <= tolerance)
+          return Fate::seen;
+        behind |= dx == 0 && dy == 0 && -p.z > -shown->position.z;
+      }
+    }
+    return behind ? Fate::added : Fate::contradictory;
+  }
+
+ private:
+  const Geometry& frame_;
+  PixelFootprint footprint_;
+};
+
+/// The pixels of a view, or every so many of them.
+struct Grid {
+  const Plane<Surfel>& surfel;
+  const Plane<glm::vec3>& albedo;
+  Camera camera;  ///< from the frame's camera space
+  Window window;
+  bool closed;  ///< the last column lies beside the first
+  int step;
+};
+
+/// Makes vertices and triangles of a grid.
+class Mesher {
+ public:
+  Mesher(const Grid& grid, const Plane<Fate>& fates, FurtherSurfaces& out)
+      : grid_(grid),
+        fates_(fates),
+        out_(out),
+        to_frame_(glm::transpose(grid.camera.rotation)),
+        width_((grid.surfel.width + grid.step - 1) / grid.step),
+        height_((grid.surfel.height + grid.step - 1) / grid.step),
+        index_(width_, height_, kNone) {}
+
+  void run() {
+    for (int y = 0; y < height_; ++y)
+      for (int x = 0; x < width_; ++x) add_vertex(x, y);
+    for (int y = 0; y + 1 < height_; ++y)
+      for (int x = 0; x + (grid_.closed ? 0 : 1) < width_; ++x) add_cell(x, y);
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = ~0u;
+
+  Fate fate(int x, int y) const { return fates_(x * grid_.step, y * grid_.step); }
+
+  void add_vertex(int x, int y) {
+    if (fate(x, y) == Fate::none || fate(x, y) == Fate::contradictory) return;
+    const std::size_t from = grid_.surfel.index(x * grid_.step, y * grid_.step);
+    const Surfel& s = grid_.surfel[from];
+    const double depth = grid_.camera.depth_of(grid_.camera.to_camera(glm::dvec3(s.position)));
+    const double width = (grid_.camera.orthographic ? 1.0 : depth) /
+                         std::min(grid_.camera.fx, grid_.camera.fy) * grid_.step;
+    index_(x, y) = std::uint32_t(out_.vertices.size());
+    out_.vertices.push_back({s.position, s.normal,
+                             grid_.albedo.empty() ? glm::vec3(0) : grid_.albedo[from],
+                             float(width)});
+  }
+
+  bool joined(std::uint32_t i, std::uint32_t j) const {
+    const Vertex &a = out_.vertices[i], &b = out_.vertices[j];
+    return on_one_surface(SurfacePoint{a.position, a.normal}, SurfacePoint{b.position, b.normal},
+                          std::min(a.footprint, b.footprint));
+  }
+
+  void add_triangle(std::uint32_t i, std::uint32_t j, std::uint32_t k, bool is_new) {
+    out_.all.push_back({i, j, k});
+    if (is_new) out_.added.push_back({i, j, k});
+  }
+
+  /// What is between four neighbours: one surface, or what each of them shows up to the middle.
+  void add_cell(int x, int y) {
+    struct Corner {
+      int x, y;
+      std::uint32_t index;
+      Fate fate;
+    };
+    Corner corners[4];
+    bool whole = true;
+    for (int k = 0; k < 4; ++k) {
+      // In the order of a circle.
+      const int cx = x + (k == 1 || k == 2), cy = y + (k >= 2), column = cx % width_;
+      corners[k] = {cx, cy, index_(column, cy), fate(column, cy)};
+      whole = whole && corners[k].index != kNone && corners[k].fate == corners[0].fate;
+    }
+    for (int k = 0; k < 4 && whole; ++k)
+      whole = joined(corners[k].index, corners[(k + 1) % 4].index);
+    if (whole) {
+      const bool is_new = corners[0].fate == Fate::added;
+      add_triangle(corners[0].index, corners[3].index, corners[1].index, is_new);
+      add_triangle(corners[1].index, corners[3].index, corners[2].index, is_new);
+      return;
+    }
+    for (const Corner& corner : corners) {
+      if (corner.index == kNone) continue;
+      const double middle_x = x + 0.5, middle_y = y + 0.5;
+      const std::uint32_t beside = add_place(corner.index, middle_x, corner.y),
+                          centre = add_place(corner.index, middle_x, middle_y),
+                          below = add_place(corner.index, corner.x, middle_y);
+      const bool is_new = corner.fate == Fate::added;
+      add_triangle(corner.index, beside, centre, is_new);
+      add_triangle(corner.index, centre, below, is_new);
+    }
+  }
+
+  /// A place on the tangent plane of a vertex, as it shows at this place of the grid.
+  std::uint32_t add_place(std::uint32_t of, double x, double y) {
+    Vertex place = out_.vertices[of];
+    const glm::dvec2 pixel(grid_.window.x0 + x * grid_.step + 0.5,
+                           grid_.window.y0 + y * grid_.step + 0.5);
+    const Camera::Ray ray = grid_.camera.ray(pixel);
+    const glm::dvec3 origin = to_frame_ * ray.origin + grid_.camera.origin,
+                     direction = to_frame_ * ray.direction, normal(place.normal);
+    const double along = glm::dot(normal, direction),
+                 t = glm::dot(normal, glm::dvec3(place.position) - origin) / along;
+    const glm::dvec3 at = origin + t * direction;
+    // A plane that is seen nearly edge-on would lead far away from its pixel.
+    if (t > 0 && glm::distance(at, glm::dvec3(place.position)) < kWidest * place.footprint)
+      place.position = glm::vec3(at);
+    out_.vertices.push_back(place);
+    return std::uint32_t(out_.vertices.size() - 1);
+  }
+
+  /// Most of the distance from the middle of a pixel to its corner, in footprints.
+  static constexpr double kWidest = 4;
+
+  const Grid& grid_;
+  const Plane<Fate>& fates_;
+  FurtherSurfaces& out_;
+  glm::dmat3 to_frame_;
+  int width_, height_;
+  Plane<std::uint32_t> index_;
+};
+
+Plane<Fate> judge_view(const FurtherView& view, const Merger& merger, MergeCounts& counts) {
+  Plane<Fate> fates(view.surfel.width, view.surfel.height, Fate::none);
+  for_each_row(view.surfel.height, [&](int y) {
+    for (int x = 0; x < view.surfel.width; ++x) {
+      const Surfel& s = view.surfel(x, y);
+      if (s.is_surface()) fates(x, y) = merger.judge(s);
+    }
+  });
+  counts.file = view.file;
+  for (const Fate fate : fates.pixels) {
+    counts.added += fate == Fate::added;
+    counts.seen += fate == Fate::seen;
+    counts.contradictory += fate == Fate::contradictory;
+  }
+  return fates;
+}
+
+void check(const MergeCounts& counts) {
+  const std::size_t in_common = counts.seen + counts.contradictory;
+  if (in_common < kFewestInCommon || double(counts.seen) >= kLeastInCommon * double(in_common))
+    return;
+  throw Error(ExitCode::layer,
+              fmt::format("{}: of {} pixels that show what the frame should see too, {} lie where "
+                          "the frame shows a surface; give a view of the same scene, with P in the "
+                          "same world space and unit",
+                          counts.file, in_common, counts.seen));
+}
+
+}  // namespace
+
+FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometry& frame,
+                            const Plane<glm::vec3>& albedo, std::vector<MergeCounts>& counts) {
+  FurtherSurfaces out;
+  const Merger merger(frame);
+  counts.assign(views.size(), {});
+  std::vector<std::size_t> order(views.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return views[a].file < views[b].file; });
+  for (const std::size_t k : order) {
+    const FurtherView& view = views[k];
+    const Plane<Fate> fates = judge_view(view, merger, counts[k]);
+    check(counts[k]);
+    Mesher({view.surfel, view.albedo, view.camera, view.window, view.closed, 1}, fates, out).run();
+  }
+  Camera own = frame.camera;  // what it shows is in its own camera space
+  own.rotation = glm::dmat3(1), own.origin = glm::dvec3(0);
+  Plane<Fate> fates(frame.surfel.width, frame.surfel.height, Fate::none);
+  for (std::size_t i = 0; i < fates.size(); ++i)
+    if (frame.surfel[i].is_usable()) fates[i] = Fate::seen;
+  const int step = (frame.surfel.width + kFrameColumns - 1) / kFrameColumns;
+
+  Mesher({frame.surfel, albedo, own, frame.window, false, step}, fates, out).run();
+  return out;
+}
+
+}  // namespace ssdo

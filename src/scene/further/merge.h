@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "scene/further/further_surfaces.h"
+#include "scene/further/further_view.h"
+#include "scene/geometry.h"
+
+namespace ssdo {
+
+/// What became of the pixels of a further view that show a surface.
+struct MergeCounts {
+  std::string file;
+  std::size_t added = 0;          ///< the frame does not show what they show
+  std::size_t seen = 0;           ///< the frame shows it as well
+  std::size_t contradictory = 0;  ///< it would lie before what the frame shows: something moved
+
+  std::size_t all() const { return added + seen + contradictory; }
+};
+
+/// Joins what further views show. The views' order does not matter. `albedo` is the frame's.
+/// `counts` has a row for each view, in their order.
+/// Errors: ExitCode::layer for a view of which nothing lies where the frame shows it.
+FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometry& frame,
+                            const Plane<glm::vec3>& albedo, std::vector<MergeCounts>& counts);
+
+}  // namespace ssdo
