@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "error.h"
 #include "estimators/registry.h"
 #include "scene/further/carve.h"
 #include "scene/further/merge.h"
@@ -43,6 +44,14 @@ void warn_of_idle_light_options(Frame& frame, const LightOptions& options) {
   if (options.up) warn("--env-up");
 }
 
+void read_further_views(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) {
+    const ExrReader file(path);
+    throw Error(ExitCode::usage,
+                fmt::format("--also {}: further views are not supported yet", path));
+  }
+}
+
 }  // namespace
 
 const Layer& Frame::lead() const {
@@ -59,21 +68,22 @@ std::vector<std::string> Frame::warnings() const {
   return all;
 }
 
-Frame prepare_frame(const FrameOptions& options, const Lighting& light, const std::string& input,
-                    const std::vector<LayerRequest>& aovs, int number) {
+Frame prepare_frame(const FrameOptions& options, const Lighting& light, const FrameFiles& files,
+                    int number) {
   Frame frame;
-  frame.input = input;
+  frame.input = files.input;
   Stopwatch watch;
   // Names that nothing asks for are no reason to refuse a frame.
   std::vector<Role> unused;
   if (!find_method(options.model.method).products.reflection) unused.push_back(Role::roughness);
   if (!options.model.temporal) unused.push_back(Role::motion);
-  View view = read_view(input, aovs, options.input, options.camera, unused);
+  View view = read_view(files.input, files.aovs, options.input, options.camera, unused);
   frame.files = std::move(view.files);
   frame.layers = std::move(view.layers);
   frame.gbuffer = std::move(view.gbuffer);
   frame.report = std::move(view.report);
   frame.times.read = view.read_ms;
+  read_further_views(files.also);
 
   Scene& scene = frame.scene;
   scene.geometry = std::move(view.geometry);
@@ -97,7 +107,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const st
   warn_of_idle_light_options(frame, options.light);
   ModelOptions model = options.model;
   if (model.temporal) model.seed += unsigned(number);
-  frame.plan = make_plan(model, options.output, scene, frame.gbuffer, input);
+  frame.plan = make_plan(model, options.output, scene, frame.gbuffer, frame.input);
   if (frame.plan.method->takes.thickness) {
     scene.solids = model.thickness ? constant_thickness(scene.geometry, float(*model.thickness))
                                    : guess_solids(scene.geometry);

@@ -51,12 +51,12 @@ struct Frame {
   std::vector<std::string> warnings() const;
 };
 
-/// Reads the layers of `input` and decides what to do with them: read, layers, gbuffer, camera,
-/// geometry, plan. `aovs` are the requests for layers, with files of this very frame. `number` is
-/// the frame's in its sequence: a temporal plan has another sampling pattern in every frame.
-/// Errors: those of the stages.
-Frame prepare_frame(const FrameOptions& options, const Lighting& light, const std::string& input,
-                    const std::vector<LayerRequest>& aovs, int number = 0);
+/// Reads the files of a frame and decides what to do with them: read, layers, gbuffer, camera,
+/// geometry, plan. `files` has the place of those that `options` names. `number` is the frame's in
+/// its sequence: a temporal plan has another sampling pattern in every frame.
+/// Errors: those of the stages; ExitCode::input for a file of --also that is missing or no EXR.
+Frame prepare_frame(const FrameOptions& options, const Lighting& light, const FrameFiles& files,
+                    int number = 0);
 
 /// What the header of the frame's part says about colour.
 ColorTags color_tags(const Frame& frame);

@@ -96,7 +96,7 @@ class Batch {
         if (code == ExitCode::done) code = error->code;
         if (options_.batch.on_error == OnError::stop) break;
       }
-      progress_.tell(double(i + 1) / double(jobs_.size()), jobs_[i].input);
+      progress_.tell(double(i + 1) / double(jobs_.size()), jobs_[i].files.input);
     }
     return code;
   }
@@ -109,9 +109,9 @@ class Batch {
       return e;
     } catch (const std::bad_alloc&) {
       return Error(ExitCode::failed,
-                   fmt::format("{}: not enough memory for this frame", jobs_[i].input));
+                   fmt::format("{}: not enough memory for this frame", jobs_[i].files.input));
     } catch (const std::exception& e) {
-      return Error(ExitCode::failed, fmt::format("{}: {}", jobs_[i].input, e.what()));
+      return Error(ExitCode::failed, fmt::format("{}: {}", jobs_[i].files.input, e.what()));
     }
   }
 
@@ -134,24 +134,24 @@ class Batch {
       print(describe(frame));
     } else if (!options_.verbosity.quiet) {
       for (const std::string& warning : frame.warnings()) {
-        say(fmt::format("{}: warning: {}", job.input, warning));
+        say(fmt::format("{}: warning: {}", job.files.input, warning));
       }
     }
     const RelightJob work{options_, frame, job.targets, policy};
     if (options_.verbosity.dry_run) return say_colors(work);
     const auto on_progress = [&](double done) {
-      progress_.tell((double(i) + done) / double(jobs_.size()), job.input);
+      progress_.tell((double(i) + done) / double(jobs_.size()), job.files.input);
     };
     Relit relit = relight(work, on_progress, past);
     for (const std::string& note : relit.notes) say_verbose(note);
     for (const std::string& warning : relit.warnings) {
-      if (!options_.verbosity.quiet) say(fmt::format("{}: warning: {}", job.input, warning));
+      if (!options_.verbosity.quiet) say(fmt::format("{}: warning: {}", job.files.input, warning));
     }
     if (relit.clamped_values > 0 && !options_.verbosity.quiet) {
       say(
           fmt::format("{}: warning: {} values were beyond the range of half and clamped to 65504; "
                       "keep them with --pixel-type float",
-                      job.input, relit.clamped_values));
+                      job.files.input, relit.clamped_values));
     }
     statistics_.push_back(statistics_of(frame, job, resources_, relit));
     if (!options_.model.temporal) return;
@@ -207,11 +207,11 @@ class Batch {
 
   Frame prepare(std::size_t i) const {
     const Job& job = jobs_[i];
-    if (job.frame && !fs::exists(job.input)) {
+    if (job.frame && !fs::exists(job.files.input)) {
       throw Error(ExitCode::input,
-                  fmt::format("{}: frame {} of the range is missing", job.input, *job.frame));
+                  fmt::format("{}: frame {} of the range is missing", job.files.input, *job.frame));
     }
-    return prepare_frame(options_, *light_, job.input, job.aovs, job.frame.value_or(0));
+    return prepare_frame(options_, *light_, job.files, job.frame.value_or(0));
   }
 
   /// The frame of job `i`, which may be on its way already; sends for the next one.
@@ -232,8 +232,8 @@ class Batch {
 
   /// Comes before all that can fail, so that `info` says what a file holds in any case.
   void list(const Job& job) {
-    const std::deque<ExrReader> files = open_files(job.input, job.aovs);
-    infos_.push_back(listing_json(job.input, files));
+    const std::deque<ExrReader> files = open_files(job.files);
+    infos_.push_back(listing_json(job.files.input, files));
     print_info(list_layers(files));
   }
 
@@ -269,7 +269,7 @@ class Batch {
   }
   void say_skipped(const Job& job) {
     if (options_.verbosity.verbose || options_.verbosity.dry_run)
-      say(fmt::format("{}: skipped, its outputs exist", job.input));
+      say(fmt::format("{}: skipped, its outputs exist", job.files.input));
   }
   /// The end of a dry run: the last that a real one could refuse before its work.
   void say_colors(const RelightJob& job) {

@@ -48,12 +48,14 @@ Job single_job(const Options& options, std::vector<Target> targets) {
                                                target.path, options.input_file));
     }
   }
-  return {std::nullopt, options.input_file, options.input.aovs, std::move(targets)};
+  return {std::nullopt, files_named(options), std::move(targets)};
 }
 
 Job job_of_frame(const Options& options, const std::vector<Target>& targets, int frame) {
-  Job job{frame, expand_pattern(options.input_file, frame), options.input.aovs, targets};
-  for (LayerRequest& request : job.aovs) request.file = expand_pattern(request.file, frame);
+  Job job{frame, files_named(options), targets};
+  job.files.input = expand_pattern(job.files.input, frame);
+  for (LayerRequest& request : job.files.aovs) request.file = expand_pattern(request.file, frame);
+  for (std::string& path : job.files.also) path = expand_pattern(path, frame);
   for (Target& target : job.targets) target.path = expand_pattern(target.path, frame);
   return job;
 }
@@ -81,7 +83,7 @@ std::vector<Job> jobs_of_sequence(const Options& options, const std::vector<Targ
 RunFiles files_of(const Options& options, const std::vector<Job>& jobs) {
   RunFiles files;
   for (const Job& job : jobs) {
-    const auto inputs = inputs_of(options, job.input, job.aovs);
+    const auto inputs = inputs_of(options, job.files);
     files.inputs.insert(files.inputs.end(), inputs.begin(), inputs.end());
     for (const Target& target : job.targets)
       files.outputs.push_back({target.product ? "--save" : "-o", target.path});
@@ -103,16 +105,20 @@ std::vector<Job> plan_jobs(const Options& options) {
   return jobs;
 }
 
-std::vector<RunFile> inputs_of(const Options& options, const std::string& frame,
-                               const std::vector<LayerRequest>& aovs) {
+FrameFiles files_named(const Options& options) {
+  return {options.input_file, options.input.aovs, options.input.also};
+}
+
+std::vector<RunFile> inputs_of(const Options& options, const FrameFiles& files) {
   const char* const ocio = std::getenv("OCIO");
-  std::vector<RunFile> inputs = {{"INPUT", frame},
+  std::vector<RunFile> inputs = {{"INPUT", files.input},
                                  {"--env", parse_picture_name(options.light.env).file},
                                  {"--camera", options.camera.file},
                                  {"--ocio", options.color.ocio},
                                  {"$OCIO", ocio ? ocio : ""},
                                  {"--config", options.config_file}};
-  for (const LayerRequest& request : aovs) inputs.push_back({"--aov", request.file});
+  for (const LayerRequest& request : files.aovs) inputs.push_back({"--aov", request.file});
+  for (const std::string& path : files.also) inputs.push_back({"--also", path});
   return inputs;
 }
 

@@ -14,8 +14,7 @@ namespace ssdo {
 /// One frame of a run, with its own files in the place of patterns.
 struct Job {
   std::optional<int> frame;
-  std::string input;
-  std::vector<LayerRequest> aovs;
+  FrameFiles files;
   std::vector<Target> targets;
 };
 
@@ -24,9 +23,11 @@ struct Job {
 /// ExitCode::input for a sequence without frames; those of check_run_files, over all frames.
 std::vector<Job> plan_jobs(const Options& options);
 
-/// Every file that a frame is made from: the frame, those of --aov, --env, --camera, --config and
-/// the OpenColorIO config.
-std::vector<RunFile> inputs_of(const Options& options, const std::string& frame,
-                               const std::vector<LayerRequest>& aovs);
+/// The files of a frame whose names hold no patterns.
+FrameFiles files_named(const Options& options);
+
+/// Every file that a frame is made from: `files`, those of --env, --camera, --config and the
+/// OpenColorIO config.
+std::vector<RunFile> inputs_of(const Options& options, const FrameFiles& files);
 
 }  // namespace ssdo

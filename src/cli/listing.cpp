@@ -113,16 +113,18 @@ json parts_json(const ExrReader& file) {
 
 json window_json(const Window& w) { return {w.x0, w.y0, w.x1 - 1, w.y1 - 1}; }
 
-std::deque<ExrReader> open_files(const std::string& input, const std::vector<LayerRequest>& aovs) {
-  std::deque<ExrReader> files;
-  for (const std::string& path : files_of_frame(input, aovs)) {
+std::deque<ExrReader> open_files(const FrameFiles& files) {
+  std::vector<std::string> paths = files_of_frame(files.input, files.aovs);
+  paths.insert(paths.end(), files.also.begin(), files.also.end());
+  std::deque<ExrReader> opened;
+  for (const std::string& path : paths) {
     try {
-      files.emplace_back(path);
+      opened.emplace_back(path);
     } catch (const Error&) {
       // The run that follows opens the file again and says what is wrong with it.
     }
   }
-  return files;
+  return opened;
 }
 
 std::string list_layers(const std::deque<ExrReader>& files) {

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "scene/layers/layers.h"
+#include "scene/view.h"
 
 namespace ssdo {
 
 // What the headers of a frame's files hold, whether or not it makes a frame.
 
 /// Opens the files of a frame. One that cannot be opened is left out.
-std::deque<ExrReader> open_files(const std::string& input, const std::vector<LayerRequest>& aovs);
+std::deque<ExrReader> open_files(const FrameFiles& files);
 
 /// A line per part with its windows, and one per layer with its channels.
 std::string list_layers(const std::deque<ExrReader>& files);

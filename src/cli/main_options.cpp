@@ -102,6 +102,9 @@ void add_input(CLI::App& app, InputOptions& o) {
   group.each(
       "--aov", "ROLE=LAYER", [&](const Text& text) { o.aovs.push_back(parse_layer_request(text)); },
       "ROLE=LAYER or ROLE=FILE:LAYER, roles" + role_names());
+  group.repeatable("--also", "FILE", o.also,
+                   "a further G-buffer of the same scene with P in world space: another camera, a "
+                   "panorama, or a deep image of this frame");
   group.value("--part", "NAME|N", o.part,
               "look for layers in this part or view, and what completes it");
   group.text(

@@ -37,7 +37,7 @@ ExitCode run_bench(const Options& options, const Resources& resources) {
                             input));
   }
   const BenchJob job{input, options, options.bench};
-  const Subject subject = read_subject(job, inputs_of(options, input, options.input.aovs));
+  const Subject subject = read_subject(job, inputs_of(options, files_named(options)));
   print_findings(subject.frame, options.verbosity);
 
   ProgressLine progress(options.batch.progress, options.verbosity.quiet);

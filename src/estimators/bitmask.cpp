@@ -258,7 +258,7 @@ class Bitmask {
         lit_part(), [&](const Window& part) { march_sun(job, part); }, progress_);
   }
 
-  /// The light that the solids of a layer send: that of the pixels that show them.
+  /// The light that the solids of a layer send: that of the pixels that show them, if any.
   void find_sent_behind(int layer, const InterleavedVectors& sent,
                         InterleavedVectors& behind) const {
     for_each_row(layout_.height(), [&](int y) {

@@ -158,9 +158,24 @@ void continue_behind(const Run& run, bool at_start, const Geometry& geometry, co
 
 }  // namespace
 
+SolidLayer::SolidLayer(int width, int height, Origin of_all)
+    : origin(width, height, of_all),
+      distance(width, height, kInfinity),
+      thickness(width, height, kInfinity),
+      sender(width, height, -1) {}
+
 glm::vec3 point_behind(const Geometry& geometry, std::size_t pixel, float distance) {
   const glm::vec3 p(geometry.surfel[pixel].position);
   return p - distance * direction_to_viewer(p, geometry.camera.orthographic);
+}
+
+glm::vec3 normal_of_solid(const Geometry& geometry, const Solids& solids, int layer,
+                          std::size_t pixel) {
+  const int sender = solids.at(layer, pixel).sender;
+  if (sender >= 0) return geometry.surfel[std::size_t(sender)].normal;
+  const Plane<glm::vec3>& normal = solids.behind[std::size_t(layer - 1)].normal;
+  if (!normal.empty()) return normal[pixel];
+  return direction_to_viewer(geometry.surfel[pixel].position, geometry.camera.orthographic);
 }
 
 Solids constant_thickness(const Geometry& geometry, float thickness) {
@@ -170,8 +185,7 @@ Solids constant_thickness(const Geometry& geometry, float thickness) {
 Solids guess_solids(const Geometry& geometry) {
   const int w = geometry.surfel.width, h = geometry.surfel.height;
   Plane<float> thickness(w, h, kInfinity), distance_px(w, h, kInfinity);
-  SolidLayer second{Origin::guessed, Plane<float>(w, h, kInfinity), Plane<float>(w, h, kInfinity),
-                    Plane<int>(w, h, -1)};
+  SolidLayer second(w, h, Origin::guessed);
   const Runs runs(geometry);
   for (const Direction& direction : kDirections) {
     runs.for_each(direction, [&](const Run& run) {

@@ -24,17 +24,25 @@ constexpr int kMostLayers = 4;
 /// A solid on the view ray of a pixel. Lengths are in scene units along that ray, infinite where
 /// there is no end.
 struct Solid {
-  float distance = 0;   ///< from the surface that the pixel shows to this solid's front
+  /// From the surface that the pixel shows to this solid's front; infinite: there is no solid.
+  float distance = std::numeric_limits<float>::infinity();
   float thickness = 0;  ///< from its front to its back
   int sender = -1;      ///< the pixel of the raster that shows its surface, whose light it sends;
-                        ///< -1: there is no solid
+                        ///< -1: it sends nothing
+
+  bool exists() const { return distance < std::numeric_limits<float>::infinity(); }
 };
 
 /// At most one solid behind the surface that each pixel shows; planes as large as the geometry's.
 struct SolidLayer {
-  Origin origin;
+  /// No solid anywhere.
+  SolidLayer(int width, int height, Origin of_all);
+
+  Plane<Origin> origin;
   Plane<float> distance, thickness;
   Plane<int> sender;
+  Plane<glm::vec3> normal;  ///< unit, camera space, of solids without a sender, on the viewer's
+                            ///< side; empty: they face the viewer
 };
 
 /// A value for each pixel at the border of a picture; those in the corners have one.
@@ -69,8 +77,8 @@ struct Solids {
 
   int layers() const { return 1 + int(behind.size()); }
 
-  Origin origin(int layer) const {
-    return layer == 0 ? Origin::seen : behind[std::size_t(layer - 1)].origin;
+  Origin origin(int layer, std::size_t pixel) const {
+    return layer == 0 ? Origin::seen : behind[std::size_t(layer - 1)].origin[pixel];
   }
 
   /// The solid of a layer at a pixel that shows a surface.
@@ -86,6 +94,10 @@ struct Solids {
 
 /// The point at this distance behind the surface that a pixel shows, on its view ray.
 glm::vec3 point_behind(const Geometry& geometry, std::size_t pixel, float distance);
+
+/// The normal of the solid of a layer at a pixel: that of its sender where it has one.
+glm::vec3 normal_of_solid(const Geometry& geometry, const Solids& solids, int layer,
+                          std::size_t pixel);
 
 /// What a frame alone suggests: how thick things are, and a second layer; see solids.cpp.
 Solids guess_solids(const Geometry& geometry);

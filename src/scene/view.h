@@ -13,12 +13,20 @@
 
 namespace ssdo {
 
-/// Which layers are read, and how.
+/// Which files and layers are read, and how.
 struct InputOptions {
   std::vector<LayerRequest> aovs;
-  std::string part;  ///< name or number; empty: all
+  std::vector<std::string> also;  ///< further pictures of the same scene, or their patterns
+  std::string part;               ///< name or number; empty: all
   GBufferOptions gbuffer;
   bool listed = false;  ///< the user has seen the list of layers: errors need not say where it is
+};
+
+/// The files that a frame is made from. Patterns are replaced by the number of the frame.
+struct FrameFiles {
+  std::string input;
+  std::vector<LayerRequest> aovs;
+  std::vector<std::string> also;  ///< further pictures of the same scene, in the order of --also
 };
 
 /// What one camera shows: a G-buffer, from its files to its surfaces in camera space.

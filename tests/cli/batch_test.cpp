@@ -177,6 +177,17 @@ TEST_F(Shot, LayersOfAnotherSequenceFollowTheFrame) {
   EXPECT_THAT(missing.error_line(), HasSubstr("extra.0004.exr"));
 }
 
+TEST_F(Shot, FurtherPicturesFollowTheFrame) {
+  write_frame(file("more", 1), frame_of(small_picture()));
+  const Finished missing =
+      run({"--frames", "1-2", "--also", dir_ / "more.####.exr", "--on-error", "continue"});
+  EXPECT_THAT(missing.err, HasSubstr("more.0001.exr"));
+  EXPECT_THAT(missing.err, HasSubstr("more.0002.exr: does not exist"));
+  const Finished literal = run({"--frames", "2", "--also", dir_ / "all.exr"});
+  EXPECT_EQ(literal.code, 3);
+  EXPECT_THAT(literal.error_line(), HasSubstr("all.exr: does not exist"));
+}
+
 TEST_F(Shot, ADryRunAndAVerboseRunSayWhatTheyDo) {
   const Finished dry = run({"--frames", "1", "--dry-run"});
   EXPECT_EQ(dry.code, 0);

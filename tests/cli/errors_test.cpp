@@ -255,6 +255,21 @@ TEST(Refusals, OfAMissingFileOfALayer) {
   }
 }
 
+TEST(Refusals, OfAMissingFurtherPicture) {
+  const TempDir dir;
+  const std::string in = dir / "in.exr", gone = dir / "gone.exr";
+  write_frame(in, frame_of(small_picture()));
+  std::ofstream(dir / "text.exr") << "no picture";
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{in, "-o", dir / "out.exr"}, {"bench", in}}) {
+    std::vector<std::string> words = command;
+    words.insert(words.end(), {"--also", gone});
+    expect_refused(words, 3, "gone.exr: does not exist");
+    words.back() = dir / "text.exr";
+    expect_refused(words, 3, "text.exr: is not an EXR file");
+  }
+}
+
 TEST(Help, GoesToStandardOutput) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
                                                     {"info", "--help"},

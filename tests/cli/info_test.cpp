@@ -58,6 +58,7 @@ class InfoListing : public testing::Test {
             {{path("in.exr"), "--part", "7"}, 4, "ViewLayer.Position", "no flat part"},
             {{path("in.exr"), "--aov", "normal=Up"}, 4, "ViewLayer.Normal", "no layer 'Up'"},
             {{path("in.exr"), "--env", path("no.hdr")}, 3, "ViewLayer.Position", "no.hdr"},
+            {{path("in.exr"), "--also", path("no.exr")}, 3, "ViewLayer.Position", "no.exr"},
             {{path("in.exr"), "--camera", path("no.json")}, 3, "ViewLayer.Position", "no.json"}};
   }
   TempDir dir_;

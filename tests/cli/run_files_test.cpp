@@ -75,6 +75,7 @@ TEST_F(RunFiles, NoOutputIsAnInput) {
       {{"--camera", "c.json", "--stats", "./c.json"}, "--camera"},
       {{"--ocio", "c.ocio", "--stats", path("c.ocio")}, "--ocio"},
       {{"--aov", "normal=lends.exr:ViewLayer.Normal", "-o", "lends.exr"}, "--aov"},
+      {{"--also", "lends.exr", "-o", "lends.exr"}, "--also"},
       {{"--env", "sky.exr", "--stats", "sky.exr"}, "--env"},
   };
   for (const auto& [more, option] : inputs) {

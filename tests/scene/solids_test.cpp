@@ -43,7 +43,7 @@ TEST(Solids, OfAPlaneAreEndlessAndOfOneLayer) {
     const Solids solids = guess_solids(g);
     for (std::size_t i = 0; i < g.surfel.size(); ++i) {
       ASSERT_TRUE(std::isinf(solids.thickness[i]));
-      for (int k = 1; k < solids.layers(); ++k) ASSERT_EQ(solids.at(k, i).sender, -1);
+      for (int k = 1; k < solids.layers(); ++k) ASSERT_FALSE(solids.at(k, i).exists());
     }
   }
 }
@@ -95,12 +95,13 @@ TEST(Solids, BehindACardAreTheTangentPlaneThatReachesIt) {
     const Geometry wall = geometry_of(leaning_wall(), view(orthographic), kWindow);
     const Solids solids = guess_solids(g);
     ASSERT_EQ(solids.layers(), 2);
-    EXPECT_EQ(solids.origin(0), Origin::seen);
-    EXPECT_EQ(solids.origin(1), Origin::guessed);
+    EXPECT_EQ(solids.origin(0, 0), Origin::seen);
+    EXPECT_EQ(solids.origin(1, 0), Origin::guessed);
     for (std::size_t i = 0; i < g.surfel.size(); ++i) {
       const Solid second = solids.at(1, i);
-      ASSERT_EQ(second.sender >= 0, shows_card(g, i));
-      if (second.sender < 0) continue;
+      ASSERT_EQ(second.exists(), shows_card(g, i));
+      if (!second.exists()) continue;
+      ASSERT_GE(second.sender, 0);
       EXPECT_FALSE(shows_card(g, std::size_t(second.sender)));
       EXPECT_TRUE(std::isinf(second.thickness)) << "as thick as where it is seen";
       const glm::vec3 found = point_behind(g, i, second.distance);
@@ -115,7 +116,7 @@ TEST(Solids, AreOfOneLayerBeforeTheBackground) {
   const Solids solids = guess_solids(g);
   const std::size_t middle = g.surfel.index(60, 45);
   EXPECT_NEAR(solids.thickness[middle], 0.8, 1.01 * 5 / g.camera.fx);
-  EXPECT_EQ(solids.at(1, middle).sender, -1);
+  EXPECT_FALSE(solids.at(1, middle).exists());
 }
 
 TEST(Solids, OfConstantThicknessHaveOneLayer) {

@@ -48,7 +48,7 @@ class Cells {
   }
 
   Span span(const Cell& cell, const Solid& solid) const {
-    if (solid.sender < 0) return {};
+    if (!solid.exists()) return {};
     if (scene_.orthographic) {
       return {cell.depth + std::min(solid.distance, endless_), std::min(solid.thickness, endless_)};
     }

@@ -87,8 +87,9 @@ class Builder {
   bool is_solid(std::size_t pixel) const { return geometry_.surfel[pixel].is_usable(); }
 
   bool has_solid(int layer, std::size_t pixel) const {
-    const int sender = solids_.at(layer, pixel).sender;
-    return sender >= 0 && is_solid(pixel) && is_solid(std::size_t(sender));
+    const Solid solid = solids_.at(layer, pixel);
+    return solid.exists() && is_solid(pixel) &&
+           (solid.sender < 0 || is_solid(std::size_t(solid.sender)));
   }
 
   /// Corners: fronts layer by layer and pixel by pixel, then the backs in the same order. In layer
@@ -143,11 +144,11 @@ class Builder {
   }
 
   SurfacePoint surface_point(const Node& n) const {
-    const auto pixel = std::size_t(n.pixel),
-               sender = std::size_t(out_.sheets.owners[n.corner].sender);
-    return {n.layer == 0 ? geometry_.surfel[pixel].position
-                         : point_behind(geometry_, pixel, solids_.at(n.layer, pixel).distance),
-            geometry_.surfel[sender].normal};
+    const auto pixel = std::size_t(n.pixel);
+    const Surfel& seen = geometry_.surfel[pixel];
+    if (n.layer == 0) return {seen.position, seen.normal};
+    return {point_behind(geometry_, pixel, solids_.at(n.layer, pixel).distance),
+            normal_of_solid(geometry_, solids_, n.layer, pixel)};
   }
   const glm::vec3& corner(const Node& n) const { return out_.sheets.corners[n.corner]; }
 

@@ -15,7 +15,7 @@ namespace ssdo {
 /// What a corner of a triangle belongs to.
 struct Owner {
   float front = 0;  ///< height of the front that is before this corner, or the corner's own
-  int sender = -1;  ///< the pixel that shows this surface
+  int sender = -1;  ///< the pixel that shows this surface; -1: it sends nothing
   int layer = 0;    ///< of the solid
 };
 

@@ -22,7 +22,7 @@ class RayScene {
   /// Whether a ray meets anything.
   bool is_blocked(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
 
-  /// Whose surface a ray meets first; sender -1 for nothing.
+  /// Whose surface a ray meets first; sender -1 for nothing, and for what sends nothing.
   Owner first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
 
  private:

@@ -88,7 +88,7 @@ TEST(BitmaskRaster, ReceiversInAWindowGetTheBitsOfTheWholeRaster) {
 Solids with_empty_layer(const Solids& solids) {
   Solids out = solids;
   SolidLayer nothing = solids.behind.front();
-  for (int& sender : nothing.sender.pixels) sender = -1;
+  for (float& distance : nothing.distance.pixels) distance = kNoLimit;
   out.behind.insert(out.behind.begin(), std::move(nothing));
   return out;
 }

@@ -85,7 +85,8 @@ TEST(HeightField, HoldsALayerWhateverItsNumber) {
   Solids third = guess;
   SolidLayer& nothing = third.behind.emplace_back(guess.behind.front());
   std::swap(nothing, third.behind.front());
-  for (int& sender : third.behind.front().sender.pixels) sender = -1;
+  for (float& distance : third.behind.front().distance.pixels)
+    distance = std::numeric_limits<float>::infinity();
   const HeightField two = build_height_field(g, guess), three = build_height_field(g, third);
   EXPECT_EQ(two.sheets.corners, three.sheets.corners);
   EXPECT_EQ(two.sheets.triangles, three.sheets.triangles);
@@ -97,10 +98,11 @@ TEST(HeightField, HoldsAsManyLayersAsAPixelHas) {
   const Geometry g = card_before_wall(false);
   Solids solids = constant_thickness(g, 0.1f);
   for (const float distance : {0.3f, 0.6f}) {
-    SolidLayer layer{Origin::measured, Plane<float>(64, 48, distance), Plane<float>(64, 48, 0.1f),
-                     Plane<int>(64, 48, -1)};
-    for (std::size_t i = 0; i < kPixels; ++i)
-      if (g.surfel[i].position.z > -5.5) layer.sender[i] = int(i);
+    SolidLayer layer(64, 48, Origin::measured);
+    for (std::size_t i = 0; i < kPixels; ++i) {
+      if (g.surfel[i].position.z <= -5.5) continue;
+      layer.distance[i] = distance, layer.thickness[i] = 0.1f, layer.sender[i] = int(i);
+    }
     solids.behind.push_back(std::move(layer));
   }
   const RayScene rays(build_height_field(g, solids));
