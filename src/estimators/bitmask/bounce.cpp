@@ -73,8 +73,8 @@ struct FromFurther {
     receive(bits, [&]() HWY_ATTR {
       alignas(64) float radiance[3][kLanes] = {};
       for (int lane = 0; lane < kLanes; ++lane) {
-        if (hits[lane].vertex < 0) continue;
-        const auto vertex = std::size_t(hits[lane].vertex);
+        if (hits[lane].sender < 0) continue;
+        const auto vertex = std::size_t(hits[lane].sender);
         const glm::vec3& light = hits[lane].unseen ? sent->unseen[vertex] : sent->seen[vertex];
         for (int c = 0; c < 3; ++c) radiance[c][lane] = light[c];
       }

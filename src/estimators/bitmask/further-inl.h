@@ -73,7 +73,7 @@ HWY_INLINE VU sectors_of_further(const March& march, const MarchReceiver& p, con
       const glm::vec3 to = cosine * v[lane] + std::sqrt(1 - cosine * cosine) * t[lane];
       if constexpr (Met::kWantsHits) {
         hits[lane] = march.further->first_hit(start[lane], to, march.radius);
-        if (hits[lane].vertex >= 0) hidden[lane] = bits[lane];
+        if (hits[lane].sender >= 0) hidden[lane] = bits[lane];
       } else if (march.further->is_blocked(start[lane], to, march.radius)) {
         hidden[lane] = bits[lane];
       }

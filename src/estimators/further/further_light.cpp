@@ -18,7 +18,7 @@
 namespace ssdo {
 namespace {
 
-constexpr int kRays = 32, kSunRays = 8;
+constexpr int kRays = 16, kSunRays = 4;
 
 /// Vertices that one task works on.
 constexpr int kBand = 1024;
@@ -42,6 +42,7 @@ class Lamps {
     const std::size_t count = surfaces_.vertices.size();
     std::vector<glm::vec3> direct(count), bounce(count, glm::vec3(0)), next;
     std::vector<float> open(count);
+    find_senders(bounces > 0);
     for_each([&](std::size_t i) { direct[i] = direct_light(i, open[i]); });
     std::vector<FurtherLight> passes;
     for (int pass = 0;; ++pass) {
@@ -62,11 +63,21 @@ class Lamps {
   }
 
  private:
+  /// The vertices that send light to the frame; to each other as well, where light goes on.
+  void find_senders(bool all) {
+    std::vector<bool> sends(surfaces_.vertices.size(), false);
+    for (const auto& triangle : all ? surfaces_.all : surfaces_.added)
+      for (const std::uint32_t corner : triangle) sends[surfaces_.vertices[corner].sender] = true;
+    for (std::size_t i = 0; i < sends.size(); ++i)
+      if (sends[i]) senders_.push_back(std::uint32_t(i));
+  }
+
   template <class Work>
   void for_each(const Work& work) const {
-    const int count = int(surfaces_.vertices.size());
+    const int count = int(senders_.size());
     for_each_row((count + kBand - 1) / kBand, [&](int band) {
-      for (int i = band * kBand; i < std::min(count, (band + 1) * kBand); ++i) work(std::size_t(i));
+      for (int k = band * kBand; k < std::min(count, (band + 1) * kBand); ++k)
+        work(std::size_t(senders_[std::size_t(k)]));
     });
   }
 
@@ -128,8 +139,8 @@ class Lamps {
     glm::vec3 sum(0);
     for (int s = 0; s < kRays; ++s) {
       const auto hit = rays_.first_hit(start(v), direction(frame, s, vertex), radius_);
-      if (hit.vertex < 0) continue;
-      sum += (hit.unseen ? sent.unseen : sent.seen)[std::size_t(hit.vertex)];
+      if (hit.sender < 0) continue;
+      sum += (hit.unseen ? sent.unseen : sent.seen)[std::size_t(hit.sender)];
     }
     return sum / float(kRays);
   }
@@ -139,6 +150,7 @@ class Lamps {
   glm::mat3 to_world_;
   float radius_;
   FurtherRays rays_;
+  std::vector<std::uint32_t> senders_;
 };
 
 }  // namespace

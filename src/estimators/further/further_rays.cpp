@@ -124,9 +124,9 @@ FurtherRays::Hit FurtherRays::first_hit(const glm::vec3& origin, const glm::vec3
   Query context = embree_->query();
   rtcIntersect1(embree_->scene, &context, &ray);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  const int corner = context.corner(ray.hit.primID, ray.hit.u, ray.hit.v);
-  return {corner, Query::is_unseen(embree_->vertices[std::size_t(corner)], &direction.x),
-          ray.ray.tfar};
+  const Vertex& corner =
+      embree_->vertices[std::size_t(context.corner(ray.hit.primID, ray.hit.u, ray.hit.v))];
+  return {int(corner.sender), Query::is_unseen(corner, &direction.x), ray.ray.tfar};
 }
 
 }  // namespace ssdo

@@ -23,7 +23,7 @@ class FurtherRays {
 
   /// The surface that a ray meets first.
   struct Hit {
-    int vertex = -1;  ///< the nearest corner of the triangle; -1: nothing is met
+    int sender = -1;      ///< the vertex whose light it sends; -1: nothing is met
     bool unseen = false;  ///< the ray comes from the side that no view has seen
     float distance = std::numeric_limits<float>::infinity();
   };

@@ -24,9 +24,14 @@ constexpr float kGrowth = 1.4f, kFirst = 2;
 /// No guess is asked for beyond so many times the distance to the farthest surface.
 constexpr float kFarthest = 4;
 
-bool is_empty(const std::vector<FurtherView>& views, const glm::vec3& p) {
-  return std::any_of(views.begin(), views.end(),
-                     [&](const FurtherView& view) { return view.look(p) == Sight::empty; });
+/// A view does not show what is narrower than so many of its pixels, but looks past it.
+constexpr float kResolved = 3;
+
+/// Whether a view looks through a place that would be inside of something so wide.
+bool is_empty(const std::vector<FurtherView>& views, const glm::vec3& p, float width) {
+  return std::any_of(views.begin(), views.end(), [&](const FurtherView& view) {
+    return width > kResolved * view.footprint_at(p) && view.look(p) == Sight::empty;
+  });
 }
 
 bool is_known(const std::vector<FurtherView>& views, const glm::vec3& p) {
@@ -76,16 +81,19 @@ class Carver {
     const Surfel& s = frame_.surfel[pixel];
     const glm::vec3 along = away_from_viewer(s);
     const float most = std::min(thickness, farthest_);
-    const float end = first_on_way(s.position + distance * along, along, first_step(s), most,
-                                   [&](const glm::vec3& p) { return is_empty(views_, p); });
+    const glm::vec3 front = s.position + distance * along;
+    const float end = first_on_way(front, along, first_step(s), most, [&](const glm::vec3& p) {
+      return is_empty(views_, p, glm::distance(p, front));
+    });
     if (end < most) thickness = end;
   }
 
   void carve_behind(SolidLayer& layer, std::size_t pixel) const {
-    if (layer.sender[pixel] < 0 || layer.origin != Origin::guessed) return;
+    if (layer.origin[pixel] != Origin::guessed) return;
     const float distance = layer.distance[pixel];
-    if (distance < farthest_ && is_known(views_, point_behind(frame_, pixel, distance)))
-      layer.sender[pixel] = -1;
+    if (!(distance < farthest_)) return;
+    if (is_known(views_, point_behind(frame_, pixel, distance)))
+      layer.distance[pixel] = std::numeric_limits<float>::infinity();
     else
       shorten(layer.thickness[pixel], pixel, distance);
   }

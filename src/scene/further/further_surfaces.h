@@ -13,6 +13,7 @@ struct Vertex {
   glm::vec3 position{0}, normal{0};  ///< the normal is unit, on the side that is seen
   glm::vec3 albedo{0};
   float footprint = 0;  ///< width of what its pixel shows, in scene units
+  std::uint32_t sender = 0;  ///< the vertex whose light it sends: the middle of its pixel
 };
 
 /// What further views show of a scene: surfaces as triangles.

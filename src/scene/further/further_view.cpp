@@ -101,8 +101,8 @@ Sight FurtherView::look(const glm::vec3& point) const {
     beyond += shown > float(depth_here) + gap;
     before += shown < float(depth_here) - gap;
   }
-  if (beyond == 4) return Sight::empty;
-  return before == 4 ? Sight::unknown : Sight::surface;
+  if (before > 0) return Sight::unknown;
+  return beyond == 4 ? Sight::empty : Sight::surface;
 }
 
 }  // namespace ssdo

@@ -36,6 +36,10 @@ struct FurtherView {
     return (camera.orthographic ? 1.0f : at_depth) / float(std::min(camera.fx, camera.fy));
   }
 
+  float footprint_at(const glm::vec3& point) const {
+    return footprint(float(camera.depth_of(camera.to_camera(glm::dvec3(point)))));
+  }
+
   /// What the four pixels around the picture of a point agree on.
   Sight look(const glm::vec3& point) const;
 };

@@ -120,7 +120,7 @@ class Mesher {
     index_(x, y) = std::uint32_t(out_.vertices.size());
     out_.vertices.push_back({s.position, s.normal,
                              grid_.albedo.empty() ? glm::vec3(0) : grid_.albedo[from],
-                             float(width)});
+                             float(width), index_(x, y)});
   }
 
   bool joined(std::uint32_t i, std::uint32_t j) const {
