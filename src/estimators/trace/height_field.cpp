@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A node is the front of a solid in one pixel: in layer 0 what the pixel shows (scene/solids.h).
-// Nodes of neighbouring pixels are joined where they are on one surface (scene/one_surface.h). Four
+// Nodes of neighbouring pixels are joined where they are on one surface (scene/same_surface.h). Four
 // pixels around a corner make a cell:
 //
 //   a---b   All four joined: two triangles from centre to centre, and two between their backs.

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "estimators/trace/ray_scene.h"
 #include "support/analytic_scene.h"
 
@@ -76,6 +78,21 @@ TEST(HeightField, GoesOnBehindWhatIsSeenWithoutACut) {
       ++behind;
     }
     EXPECT_GT(behind, 100);
+  }
+}
+
+TEST(HeightField, JoinsTheSecondLayerToWhatIsSeenBeside) {
+  for (const bool orthographic : {false, true}) {
+    const Geometry g = card_before_wall(orthographic);
+    const HeightField field = build_height_field(g, guess_solids(g));
+    std::size_t of_wall = 0;
+    for (const auto& triangle : field.sheets.triangles) {
+      of_wall += std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t corner) {
+        const auto sender = std::size_t(field.sheets.owners[corner].sender);
+        return g.surfel[sender].position.z < -5.5f;
+      });
+    }
+    EXPECT_EQ(of_wall, 2 * kCells) << "one sheet without a cut, behind the card's edges too";
   }
 }
 
