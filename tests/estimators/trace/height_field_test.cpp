@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "estimators/trace/ray_scene.h"
 #include "support/analytic_scene.h"
@@ -129,6 +130,13 @@ TEST(HeightField, HoldsAsManyLayersAsAPixelHas) {
     EXPECT_EQ(rays.first_hit(origin, along, 0.15).sender, int(middle)) << from;
     EXPECT_FALSE(rays.is_blocked(origin, along, 0.04)) << from;
   }
+}
+
+TEST(HeightField, RefusesMoreLayersThanItHasRoomFor) {
+  const Geometry g = card_before_wall(false);
+  Solids solids = guess_solids(g);
+  while (solids.layers() <= kMostLayers) solids.behind.push_back(solids.behind.front());
+  EXPECT_THROW(build_height_field(g, solids), std::logic_error);
 }
 
 }  // namespace
