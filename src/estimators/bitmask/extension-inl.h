@@ -75,7 +75,9 @@ HWY_INLINE Border border_along(const MarchScene& scene, const MarchReceiver& p, 
   return border;
 }
 
-/// How far a surface continues beyond the frame, in heights of the frame at its depth.
+/// How far a surface continues beyond the frame, in heights of the frame at its depth. Mean over
+/// four scenes of Cycles with 1.5, 3 and 6: RMSE of ao without a radius 0.149, 0.136 and 0.135,
+/// relative error of direct light 0.460, 0.418 and 0.423, of bounce light 0.447, 0.427 and 0.434.
 constexpr float kExtension = 3;
 
 /// The piece of a surface in a slice that lies beyond the frame, from the border to its end.
