@@ -69,7 +69,7 @@ Written write_targets(const RelightJob& job, const Plan& plan, const Products& p
     } else {
       const DisplayImage image =
           make_display_image(product_of_picture(target, plan), job.frame.scene, job.frame.gbuffer,
-                             products, display, keeps_alpha(target.path));
+                             products, {display, keeps_alpha(target.path)});
       out.compose_ms += watch.lap();
       write_image(file, image.spec(job.options.output.bits), image.values);
     }

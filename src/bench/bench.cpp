@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the ends of a map of errors of a share stand for. Maps of light end at its mean.
+/// Error of a share (ao) that a map shows as black or white. For light it is the mean light.
 constexpr double kShareScale = 0.25;
 
 /// Measures one frame.
@@ -89,7 +89,7 @@ class Bench {
     }
   }
 
-  /// In samples of a usual method, per pixel.
+  /// Cost of a setting, in samples per pixel of a method whose sample_cost is 1.
   double work_of(const Setting& setting) const {
     return plan_of(setting).samples_per_pixel() * setting.method->sample_cost;
   }
@@ -137,7 +137,7 @@ class Bench {
     report_.references.push_back(std::move(trace));
   }
 
-  /// What errors are ranked by, and shown against.
+  /// The reference for the ranking of settings and for maps: truth where given, else trace.
   const Channels& reference_of(const std::string& product) const {
     const auto truth = subject_.truths.find(product);
     return truth != subject_.truths.end() ? truth->second.channels : trace_.products.at(product);
@@ -147,7 +147,7 @@ class Bench {
     return error_of(product, compare_surfaces(frame_, a, b).figures);
   }
 
-  /// All but the noise, which is another figure for a row than for a limit.
+  /// The errors except noise, which is computed differently for rows and limits.
   Errors errors_of(const ProductChannels& products) const {
     Errors errors;
     for (const auto& [product, channels] : products) {
@@ -160,8 +160,8 @@ class Bench {
     return errors;
   }
 
-  /// The noise of a limit is the standard error of the mean of its two halves: the size of half
-  /// their difference.
+  /// The noise of a limit is the standard error of the mean of its two halves, half of their
+  /// difference.
   void add_limit(const Settings& settings, const Converged& limit) {
     BenchLimit out{settings.limit, settings.seeds, errors_of(limit.products)};
     for (const auto& [product, half] : limit.half_difference) {
@@ -215,7 +215,7 @@ class Bench {
             pictures_->map_of(difference, report_.error_scale.at(product))};
   }
 
-  /// An EXR of the products that never gets its name.
+  /// Writes an EXR of the products into a temporary file that is then removed.
   void measure_writing(const Plan& plan, const Products& products) {
     const std::vector<Target> targets = {
         {fs::temp_directory_path() / fmt::format("ssdo_bench_{}.exr", getpid()), std::nullopt}};
@@ -223,7 +223,7 @@ class Bench {
     report_.stages.write = write_targets(job, plan, products, nullptr, [](double) {}).write_ms;
   }
 
-  /// Those on a front, the methods' own defaults and what is recommended.
+  /// Drops pictures except of rows on a front, defaults of methods and the recommended row.
   void keep_pictures_of_note() {
     std::vector<bool> keep(report_.rows.size());
     for (const std::string& product : report_.products) {
@@ -242,7 +242,7 @@ class Bench {
   const BenchProgress& progress_;
   std::vector<const Method*> methods_;
   int rays_ = 0;
-  Converged trace_;  ///< the reference of all
+  Converged trace_;  ///< the reference for all rows
   std::optional<BenchPictures> pictures_;
   BenchReport report_;
   double work_ = 0, done_ = 0;  ///< for the progress bar

@@ -10,13 +10,13 @@
 
 namespace ssdo {
 
-/// Hears how far the bench is, 0..1, and which setting it measures.
+/// Called with the share of the bench that is done, 0..1, and the setting that is measured now.
 using BenchProgress = std::function<void(double done, const std::string& setting)>;
 
 /// Measures the settings of the methods on one frame and recommends one where an error is wanted.
-/// `subject` is that of the job. The caller adds what the report says of the frame, the threads and
-/// the instruction set. Errors: those of make_plan; ExitCode::usage for a method of the job that
-/// does not exist or makes none of the products.
+/// `subject` is that of the job. The caller fills in the report's description of the frame, its
+/// threads and its instruction set. Errors: those of make_plan; ExitCode::usage for a method of the
+/// job that does not exist or makes none of the products.
 BenchReport bench(const BenchJob& job, const Subject& subject, const BenchProgress& progress);
 
 }  // namespace ssdo

@@ -9,12 +9,12 @@
 
 namespace ssdo {
 
-/// A word as a shell reads it: in quotes where it holds more than letters, digits and _./:=,+@%-,
-/// and in the $'...' of bash where a terminal should not get it raw.
+/// A word quoted for a shell: in quotes where it holds more than letters, digits and _./:=,+@%-,
+/// and as $'...' of bash where it holds control characters.
 std::string shell_word(const std::string& word);
 
-/// The command line of the main job that does what was measured: the setting, the options of the
-/// bench that reach it, the products, and an output in the current folder.
+/// The command line of the main job for a measured setting: its arguments, the options that were
+/// given to the bench and apply, the products, and an output in the current folder.
 std::string command_of(const BenchJob& job, const Setting& setting, const Plan& plan);
 
 }  // namespace ssdo

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Each method has the settings that its users would choose among: its own default, a few below and
-// a few above. The limit is far beyond the last of them. Where the pattern follows --seed, it is
-// the mean over several seeds, for a pattern that repeats is the same for all surfaces alike;
-// the difference of two halves of the seeds is also what tells its noise. Methods without a seed
-// (gtao, sao, msvo) have one run and no such figure.
+// Each method has the settings that its users would choose among: its default, a few below and a
+// few above. Its limit is far beyond the last of them. Where the pattern depends on --seed, the
+// limit is the mean over several seeds, since a single pattern leaves an error that more samples do
+// not remove; half the difference between the means of two halves of the seeds measures its noise.
+// Methods without a seed (gtao, sao, msvo) have one run and no such figure.
 #include "bench/ladder.h"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 namespace ssdo {
 namespace {
 
-/// Of a parameter, or of the slices and steps of a method that marches.
+/// The default of a parameter, or of the slices or steps of a method that marches.
 double default_of(const Method& method, std::string_view name) {
   if (!method.takes.march) return find_parameter(method, name)->value;
   return name == "slices" ? slices_of(Quality::standard) : steps_of(Quality::standard);

@@ -9,38 +9,39 @@
 
 namespace ssdo {
 
-/// One quality of one method.
+/// A method with values for its parameters.
 struct Setting {
   const Method* method = nullptr;
   Rung rung;              ///< labelled "2 x 24", "16 samples"
-  bool standard = false;  ///< what the main job does when it is asked for nothing
+  bool standard = false;  ///< whether these are the method's defaults
 
   /// The method and its label.
   std::string name() const;
 
-  /// The model with this method and quality in place of its own; its other parameters stay, but
-  /// for a thickness and an endless radius where the method knows none.
+  /// The model with this method and its values. Its other parameters stay, except a thickness or an
+  /// endless radius that the method does not take.
   ModelOptions applied_to(const ModelOptions& model) const;
 
-  /// The arguments of the main job that choose it.
+  /// The arguments of the main job that choose this setting.
   std::vector<std::string> arguments() const;
 };
 
-/// The ladder of a method.
+/// The settings of a method: those to choose among, cheapest first, and one far beyond them.
 struct Settings {
   std::vector<Setting> ladder;
   Setting limit;
   int seeds = 1;
 };
 
-/// `rays` is how many samples per seed the limit of the reference has; others have their own.
+/// `rays` is the number of samples per seed in the limit of the reference method; other methods
+/// have limits of their own.
 Settings settings_of(const Method& method, int rays);
 
-/// The one that the main job takes.
+/// The setting with the method's defaults.
 Setting standard_setting(const Method& method);
 
-/// How many rays per pixel and seed the reference of a frame takes: a power of 2 that keeps their
-/// number bounded in large frames.
+/// Rays per pixel and seed for the reference of a frame: a power of 2, smaller in large frames to
+/// bound their total.
 int reference_rays(std::size_t surface_pixels);
 
 }  // namespace ssdo

@@ -11,7 +11,7 @@
 namespace ssdo {
 namespace {
 
-/// A median needs three runs; more are made while all together stay below this.
+/// Runs per median: at least three, and up to kMostRuns while their total time is below this.
 constexpr int kMostRuns = 5;
 constexpr double kRepeatBelowMs = 600;
 
@@ -21,7 +21,7 @@ double process_cpu_ms() {
   return double(t.tv_sec) * 1e3 + double(t.tv_nsec) * 1e-6;
 }
 
-/// Both clocks, lap by lap.
+/// Measures laps by both clocks.
 class CostWatch {
  public:
   Cost lap() {

@@ -11,7 +11,7 @@
 
 namespace ssdo {
 
-/// What a stage takes: the time of all threads together, and the time that passes.
+/// Cost of a stage: the time of all threads together, and the time by the clock.
 struct Cost {
   double cpu_ms = 0, wall_ms = 0;
 };
@@ -19,7 +19,7 @@ struct Cost {
 /// Each product by its name, as an EXR would hold it.
 using ProductChannels = std::map<std::string, Channels>;
 
-/// What a plan makes of a frame, and what that costs: medians of `runs` runs.
+/// The products of a plan, and their cost: medians of `runs` runs.
 struct Measured {
   Products products;
   Cost estimate, filter;
@@ -29,28 +29,28 @@ struct Measured {
 /// The products that `plan` makes.
 ProductChannels channels_of(const Frame& frame, const Plan& plan, const Products& products);
 
-/// Estimates and filters as the main job does. What is quick runs several times.
+/// Estimates and filters as the main job does; several times where that is quick.
 Measured measure(const Frame& frame, const Plan& plan, const Progress& progress);
 
-/// What samples without end would give: the mean over several seeds, without a filter.
+/// An estimate of the limit for infinitely many samples: the mean over several seeds, unfiltered.
 struct Converged {
   ProductChannels products;
   ProductChannels half_difference;  ///< of the means of both halves of the seeds; empty for 1 seed
 };
 
-/// `seeds` is 1 or even; those that follow the plan's own are taken, so that its noise is not that
-/// of what is held to it.
+/// `seeds` is 1 or even. They follow the plan's own seed without including it, so that the noise of
+/// the limit is independent of that of the settings compared with it.
 Converged converge(const Frame& frame, const Plan& plan, int seeds,
                    const std::function<void(int)>& on_progress);
 
 /// How far A is from B on the surfaces of the frame.
 ChannelsDifference compare_surfaces(const Frame& frame, const Channels& a, const Channels& b);
 
-/// Whether the error of a product is judged as it is: that of a share; of others, it is relative to
-/// the mean.
+/// Whether the error of a product is absolute, as for shares in 0..1; else it is relative to the
+/// mean.
 bool has_absolute_error(const std::string& product);
 
-/// The figure that a product is judged by: RMSE or relative RMSE.
+/// The RMSE of a product, or its relative RMSE; see has_absolute_error().
 double error_of(const std::string& product, const Difference& difference);
 
 }  // namespace ssdo

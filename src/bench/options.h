@@ -14,7 +14,7 @@ struct WantedError {
   double error = 0;
 };
 
-/// What `ssdo bench` is asked for beside the options of the main job.
+/// Options of `ssdo bench`, in addition to those of the main job.
 struct BenchOptions {
   std::vector<std::string> methods;  ///< empty: all
   std::vector<std::string> truths;   ///< [PRODUCT=]FILE:LAYER

@@ -12,10 +12,10 @@
 namespace ssdo {
 namespace {
 
-/// Pixels of the wider side of a picture in a page.
+/// Largest width and height of a picture in a page.
 constexpr int kMostPixels = 720;
 
-/// Levels of a map of errors. Noise does not compress: fewer levels are half of the page.
+/// Grey levels of a map of errors. Noise does not compress: with 256 the page is twice as large.
 constexpr float kLevels = 64;
 
 DisplayImage thinned(const DisplayImage& image) {
@@ -35,8 +35,8 @@ DisplayImage thinned(const DisplayImage& image) {
   return out;
 }
 
-/// The channels over the window of a frame, one of them standing for three; outside of their own
-/// window 0.
+/// The channels as colours over a frame's window, a single channel as grey; 0 outside their own
+/// window.
 Plane<glm::vec3> colors_over(const Window& window, const Channels& from) {
   Plane<glm::vec3> out(window.width(), window.height(), glm::vec3(0));
   for (int y = window.y0; y < window.y1; ++y) {
@@ -87,7 +87,7 @@ std::string BenchPictures::map_of(const ChannelsDifference& difference, double s
 
 std::string BenchPictures::encode(const std::string& product, const Products& products) const {
   const DisplayImage image =
-      thinned(make_display_image(product, frame_.scene, frame_.gbuffer, products, &display_, true));
+      thinned(make_display_image(product, frame_.scene, frame_.gbuffer, products, {&display_}));
   const auto bytes = encode_image("picture.png", image.spec(8), image.values);
   return {bytes.begin(), bytes.end()};
 }

@@ -10,8 +10,8 @@
 
 namespace ssdo {
 
-/// Makes the PNG files of a page: products as a display shows them, and maps of their error. Of
-/// large frames every second, third ... pixel is taken: a mean of neighbours would hide the noise.
+/// Makes the PNG files of a page: products as a display shows them, and maps of their error. Large
+/// frames are reduced by taking every n-th pixel, since averaging neighbours would hide the noise.
 class BenchPictures {
  public:
   BenchPictures(const Frame& frame, const ColorOptions& color);

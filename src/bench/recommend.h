@@ -8,8 +8,8 @@
 
 namespace ssdo {
 
-/// Finds the cheapest row that has all errors that are wanted, or else the one that comes nearest:
-/// whose largest error, in parts of what is wanted of its product, is least.
+/// Finds the cheapest row that meets all wanted errors, or else the row that comes nearest: the one
+/// with the smallest maximum over the products of error divided by wanted error.
 void recommend(BenchReport& report, const std::vector<WantedError>& wants);
 
 }  // namespace ssdo

@@ -15,12 +15,12 @@ namespace ssdo {
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// How far a product is from three things: what its own method converges to, what rays against the
-/// same geometry see, and given truth.
+/// The error of a product against three references: the limit of its own method, ray tracing of the
+/// same geometry, and given truth.
 struct ErrorSplit {
   double noise = kNotMeasured, approximation = kNotMeasured, model = kNotMeasured;
 
-  /// The error that counts: from truth where there is one, else from the rays.
+  /// The error by which settings are ranked: against truth where given, else against ray tracing.
   double total() const { return model == model ? model : approximation; }
 };
 
@@ -45,14 +45,14 @@ struct BenchRow {
   Cost cost() const { return {estimate.cpu_ms + filter.cpu_ms, estimate.wall_ms + filter.wall_ms}; }
 };
 
-/// What a method converges to. Its noise is that which is left.
+/// The limit of a method. Its noise is what several seeds leave.
 struct BenchLimit {
   Setting setting;
   int seeds = 1;
   Errors errors;
 };
 
-/// What a page shows a picture of beside the rows.
+/// What a page shows pictures of in addition to the rows.
 struct BenchReference {
   std::string name;                             ///< "truth", "trace"
   std::map<std::string, std::string> pictures;  ///< PNG by product

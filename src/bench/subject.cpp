@@ -27,7 +27,7 @@ std::map<std::string, Truth> read_truths(const std::vector<std::string>& texts) 
   return truths;
 }
 
-/// Those that are asked for or have a truth; else all that tell something about the frame.
+/// The products that are asked for or have a truth; by default all that are meaningful here.
 std::vector<std::string> choose_products(const BenchJob& job, const Subject& subject) {
   const std::vector<std::string>& asked = job.frame.output.products;
   for (const std::string& name : asked) {
@@ -38,7 +38,7 @@ std::vector<std::string> choose_products(const BenchJob& job, const Subject& sub
   }
   std::vector<std::string> products;
   for (const std::string& name : measured_products()) {
-    // In light that is the same from everywhere, direct is ao times a colour.
+    // In constant light, direct is just ao times a colour.
     const bool telling = name == "direct" ? !subject.frame.scene.light.is_constant()
                                           : contains(subject.frame.plan.make, name);
     if (contains(asked, name) || subject.truths.contains(name) || (asked.empty() && telling))
@@ -63,7 +63,7 @@ std::size_t count_surfaces(const Frame& frame) {
               fmt::format("{}: shows no surface: there is nothing to measure", frame.input));
 }
 
-/// A truth of another size would silently be held to a corner of the frame.
+/// Refuses a truth of another size, which would be compared with a part of the frame only.
 void check_truth(const Truth& truth, const Subject& subject) {
   const Window &own = subject.frame.scene.geometry.display, &other = truth.display;
   if (!(own == other)) {
@@ -80,7 +80,7 @@ void check_truth(const Truth& truth, const Subject& subject) {
                           truth.file, truth.layer, valid, subject.surface_pixels));
 }
 
-/// One that needs all that any method needs: it looks behind what is seen too.
+/// A method that needs everything a frame can provide, solids included.
 const Method& thorough_method() {
   const auto all = methods();
   return *std::find_if(all.begin(), all.end(), [](const Method& m) { return m.takes.thickness; });

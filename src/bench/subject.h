@@ -12,7 +12,7 @@
 
 namespace ssdo {
 
-/// What a bench measures on: a frame, what is known of it, and the products whose error counts.
+/// What a bench measures: a frame with its truths, and the products whose error is measured.
 struct Subject {
   Frame frame;                          ///< prepared with all that any method needs
   std::map<std::string, Truth> truths;  ///< by product

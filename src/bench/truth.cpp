@@ -12,7 +12,7 @@
 namespace ssdo {
 namespace {
 
-/// The last word of a layer's name in lower case, without what layer names do not care about.
+/// The last word of a layer's name in lower case, letters and digits only.
 std::string plain_word(const std::string& name) {
   std::string word;
   for (const char c : name.substr(name.rfind('.') + 1)) {
@@ -22,7 +22,8 @@ std::string plain_word(const std::string& name) {
   return word;
 }
 
-/// The product that renderers, and this tool, give a layer of that name; empty if none.
+/// The product that a layer of that name holds in files of renderers and of this tool; empty if
+/// none.
 std::string product_of(const PictureLayer& layer) {
   const std::string word = plain_word(layer.name);
   for (const Product& product : kProducts) {

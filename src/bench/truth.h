@@ -8,10 +8,10 @@
 
 namespace ssdo {
 
-/// The products whose error is measured, in the order of tables.
+/// The products whose error can be measured, in the order of tables.
 std::vector<std::string> measured_products();
 
-/// What --truth names: FILE:LAYER, and the product that it is the truth of.
+/// A value of --truth: FILE:LAYER, and its product.
 struct TruthRequest {
   std::string product;  ///< empty: the layer's name tells
   std::string picture;
@@ -20,7 +20,7 @@ struct TruthRequest {
 /// [PRODUCT=]FILE[:LAYER], where bench measures the product.
 TruthRequest parse_truth(const std::string& text);
 
-/// A layer, and what it is the truth of.
+/// A layer that is the truth of a product.
 struct Truth {
   std::string product;
   std::string file, layer;

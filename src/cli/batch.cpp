@@ -34,7 +34,7 @@ bool is_readable(const std::string& path) {
     if (is_display_image(path)) {
       read_image(path);
     } else {
-      // Every channel shares its chunks with the others: one that decodes speaks for all.
+      // All channels of a part share their chunks: if one can be decoded, all can.
       const ExrReader file(path);
       for (const ExrPart& part : file.parts()) {
         if (!part.deep && !part.channels.empty())
@@ -89,7 +89,7 @@ class Batch {
       if (!light_) light_.emplace(options_.light);
       const std::optional<Error> error = error_of_job(i);
       if (error) {
-        // A single frame that fails is the job that fails.
+        // A job of one frame fails if that frame fails.
         if (jobs_.size() == 1) throw *error;
         note_in_info(*error);
         say(error->what());
@@ -122,7 +122,7 @@ class Batch {
     const bool relights = options_.command == Command::relight;
     if (relights && options_.batch.skip_existing) {
       if (all_done(job)) return say_skipped(job);
-      policy.overwrite = true;  // what is there is incomplete: the frame is made anew
+      policy.overwrite = true;  // some of its files are missing or incomplete
     }
     for (const Target& target : job.targets) {
       if (relights) check_output(target.path, policy);
@@ -160,7 +160,7 @@ class Batch {
     history_->albedo = std::move(frame.scene.senders.albedo);
   }
 
-  /// Says whose history the frame takes. Leaves none in `past` after a cut.
+  /// Reports from which frame the history is taken. Clears that of `past` after a cut.
   void place_in_sequence(Frame& frame, std::size_t i, Past& past) const {
     std::optional<History>& before = past.history;
     const Geometry& geometry = frame.scene.geometry;
@@ -184,7 +184,7 @@ class Batch {
     if (before && !past.motion.empty()) place_motion(frame, past, i);
   }
 
-  /// Motion leads to the frame before in time, which need not be the one before in the list.
+  /// Motion vectors refer to the frame before in time, which may not be the one before in the list.
   void place_motion(Frame& frame, Past& past, std::size_t i) const {
     if (std::int64_t(*jobs_[i - 1].frame) + 1 != *jobs_[i].frame) {
       past.motion = {};
@@ -214,7 +214,7 @@ class Batch {
     return prepare_frame(options_, *light_, job.files, job.frame.value_or(0));
   }
 
-  /// The frame of job `i`, which may be on its way already; sends for the next one.
+  /// The frame of job `i`, waiting for it if it is being read already; starts to read the next one.
   Frame take_frame(std::size_t i) {
     auto current = std::move(next_);
     const bool ahead = current.valid() && next_index_ == i;
@@ -230,7 +230,7 @@ class Batch {
     return frame;
   }
 
-  /// Comes before all that can fail, so that `info` says what a file holds in any case.
+  /// Called before anything that can fail, so that `info` lists the layers of every file.
   void list(const Job& job) {
     const std::deque<ExrReader> files = open_files(job.files);
     infos_.push_back(listing_json(job.files.input, files));
@@ -258,7 +258,7 @@ class Batch {
     print_out(json_text(shown, 2) + "\n");
   }
 
-  /// One line on standard error. A terminal that is gone does not stop the work.
+  /// Prints one line on standard error; if that is closed, the work goes on.
   void say(const std::string& line) { print("ssdo: " + printable(line) + "\n"); }
   void print(const std::string& text) {
     progress_.clear();
@@ -271,12 +271,12 @@ class Batch {
     if (options_.verbosity.verbose || options_.verbosity.dry_run)
       say(fmt::format("{}: skipped, its outputs exist", job.files.input));
   }
-  /// The end of a dry run: the last that a real one could refuse before its work.
+  /// The end of a dry run: makes the last checks that come before the work of a real run.
   void say_colors(const RelightJob& job) {
     if (const auto display = make_display(job)) say(display->description());
   }
 
-  /// `info` makes nothing that could be counted.
+  /// Statistics are about products, which `info` does not make.
   bool has_statistics() const {
     return options_.command == Command::relight && !options_.verbosity.stats.empty();
   }

@@ -14,7 +14,7 @@
 namespace ssdo {
 namespace {
 
-/// What a ladder chooses itself, and what only a job with outputs has.
+/// Options that bench sets itself, and those that need an output.
 const std::set<std::string> kRefused = {
     "--method",   "--quality", "--slices",        "--steps",         "--error",
     "--temporal", "--output",  "--save",          "--pixel-type",    "--compression",

@@ -9,12 +9,12 @@ class App;
 
 namespace ssdo {
 
-/// Declares `ssdo bench` on the command line. What it does not define itself it takes from `app`.
+/// Declares `ssdo bench` on the command line. It also takes the options of `app`.
 CLI::App* add_bench(CLI::App& app, BenchOptions& options);
 
-/// Reads what was given for `bench`, once the line has been read: refuses options of the main job
-/// that a ladder of methods and settings cannot follow, and keeps the others for the commands that
-/// are recommended. Errors: ExitCode::usage.
+/// Completes the options of `bench` after the command line has been parsed: refuses options of the
+/// main job that make no sense for several methods and settings, and keeps the others for the
+/// commands that the report recommends. Errors: ExitCode::usage.
 void finish_bench(const CLI::App& app, BenchOptions& options);
 
 }  // namespace ssdo

@@ -57,7 +57,7 @@ class ConfigFile {
 
   toml::table parse() const {
     std::ifstream in(path_, std::ios::binary);
-    in.peek();  // a folder opens, and cannot be read
+    in.peek();  // a folder can be opened, but not read
     if (in.bad() || !in.is_open()) {
       throw Error(ExitCode::usage,
                   fmt::format("{}: config file cannot be read; check --config", path_));
@@ -109,7 +109,7 @@ class ConfigFile {
                            key));
   }
 
-  /// The value as the command line would have it; nothing for a flag that is false.
+  /// The value as text of the command line; nothing for a flag that is false.
   std::vector<std::string> texts_of(const CLI::Option& option, const std::string& key,
                                     const toml::node& value, std::uint32_t line) const {
     if (option.get_items_expected_max() == 0) {

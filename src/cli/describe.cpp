@@ -34,7 +34,7 @@ std::string describe_camera(const Frame& frame) {
   return text;
 }
 
-/// Its channels; where they do not tell, which part or file they stand in.
+/// The channels of a layer, with their part or file where the names do not tell it.
 std::string describe_layer(const Frame& frame, const Layer& layer) {
   const ExrReader& file = frame.files[std::size_t(layer.file)];
   std::string text =

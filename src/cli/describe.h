@@ -8,7 +8,7 @@
 
 namespace ssdo {
 
-/// What was found in a frame and decided for it, for people and for programs.
+/// What was found in a frame and decided for it: as text for people, and as JSON for programs.
 std::string describe(const Frame& frame);
 nlohmann::json to_json(const Frame& frame);
 

@@ -9,9 +9,9 @@
 
 namespace ssdo {
 
-/// One line for each option of `given` that changes nothing beside the others, whatever the frame
-/// holds. It is a warning, not an error: one script serves frames and outputs of many kinds.
-/// `given` are the names of what stands on the command line; a config file speaks for many jobs.
+/// A warning for each option of `given` that has no effect in combination with the others, whatever
+/// the frame holds. It is no error, since one script may serve frames and outputs of many kinds.
+/// `given` holds the names of options on the command line only: a config file is for many jobs.
 std::vector<std::string> idle_options(const std::set<std::string>& given, const Options& options);
 
 }  // namespace ssdo

@@ -11,7 +11,7 @@
 
 namespace ssdo {
 
-/// One frame of a run, with its own files in the place of patterns.
+/// One frame of a run, with the patterns of its files replaced.
 struct Job {
   std::optional<int> frame;
   FrameFiles files;

@@ -23,7 +23,7 @@ std::string_view type_name(Imf::PixelType type) {
 
 std::string component_of(const ExrChannel& channel) { return split_channel(channel.name).second; }
 
-/// Red before green, though a header sorts by name.
+/// Channels in the order R, G, B, while a header sorts them by name.
 std::size_t place_of(const ExrChannel& channel) {
   constexpr std::string_view kOrder = "rgbaxyz";
   const std::string component = component_of(channel);
@@ -121,7 +121,7 @@ std::deque<ExrReader> open_files(const FrameFiles& files) {
     try {
       opened.emplace_back(path);
     } catch (const Error&) {
-      // The run that follows opens the file again and says what is wrong with it.
+      // The run that follows opens the file again and reports the error.
     }
   }
   return opened;

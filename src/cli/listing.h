@@ -10,9 +10,9 @@
 
 namespace ssdo {
 
-// What the headers of a frame's files hold, whether or not it makes a frame.
+// Lists what the headers of a frame's files hold, whether or not `ssdo` can use it.
 
-/// Opens the files of a frame. One that cannot be opened is left out.
+/// Opens the files of a frame, without those that cannot be opened.
 std::deque<ExrReader> open_files(const FrameFiles& files);
 
 /// A line per part with its windows, and one per layer with its channels.

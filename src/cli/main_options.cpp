@@ -21,7 +21,7 @@ namespace {
 using Text = std::string;
 using Texts = std::vector<std::string>;
 
-/// The names that an option takes, and the value that each stands for.
+/// The names that an option takes, with their values.
 template <class T>
 using Choices = std::vector<std::pair<Text, T>>;
 
@@ -30,7 +30,7 @@ class Group {
  public:
   Group(CLI::App& app, const Text& name) : app_(app), name_(name) {}
 
-  /// Sets `field`, and shows what it holds already where that is a number or a text.
+  /// Sets `field`; the help shows its default where that is a number or a text.
   template <class T>
   CLI::Option* value(const Text& flag, const Text& type, T& field, const Text& help) {
     CLI::Option* option = app_.add_option(flag, field, help)->type_name(type)->group(name_);
@@ -44,12 +44,12 @@ class Group {
     return app_.add_option_function<Text>(flag, read, help)->type_name(type)->group(name_);
   }
 
-  /// Takes one value each time it is given.
+  /// May be given several times, with one value each.
   CLI::Option* repeatable(const Text& flag, const Text& type, Texts& field, const Text& help) {
     return value(flag, type, field, help)->allow_extra_args(false);
   }
 
-  /// Calls `read` with the text of each time it is given.
+  /// May be given several times; calls `read` with each text.
   CLI::Option* each(const Text& flag, const Text& type, std::function<void(const Text&)> read,
                     const Text& help) {
     const auto read_all = [read](const Texts& texts) {
@@ -61,7 +61,7 @@ class Group {
         ->group(name_);
   }
 
-  /// Sets `field` to what one of the names stands for. Help and errors list the names.
+  /// Sets `field` to the value of one of the names, which help and errors list.
   template <class T>
   void choice(const Text& flag, T& field, const std::type_identity_t<Choices<T>>& choices,
               const Text& help) {
@@ -91,17 +91,11 @@ class Group {
   Text name_;
 };
 
-Text role_names() {
-  Text names;
-  for (std::size_t i = 0; i < kRoleCount; ++i) names += fmt::format(" {}", role_name(Role(i)));
-  return names;
-}
-
 void add_input(CLI::App& app, InputOptions& o) {
   Group group(app, "Input");
   group.each(
       "--aov", "ROLE=LAYER", [&](const Text& text) { o.aovs.push_back(parse_layer_request(text)); },
-      "ROLE=LAYER or ROLE=FILE:LAYER, roles" + role_names());
+      fmt::format("ROLE=LAYER or ROLE=FILE:LAYER, roles {}", fmt::join(role_names(), " ")));
   group.repeatable("--also", "FILE", o.also,
                    "a further G-buffer of the same scene with P in world space: another camera, a "
                    "panorama, or a deep image of this frame");
@@ -149,7 +143,7 @@ void add_light(CLI::App& app, LightOptions& o) {
       ->check(between(-100, 100));
 }
 
-/// The options of the number of samples.
+/// The options that decide the number of samples.
 void add_quality(Group& group, ModelOptions& o) {
   Choices<Quality> names;
   Text sizes;

@@ -9,8 +9,8 @@ class App;
 
 namespace ssdo {
 
-/// Declares the options of the main job, group by group as the help shows them. What a value means
-/// is read as the option is set, so that an error can name the line of a config file.
+/// Declares the options of the main job, group by group as the help shows them. Values are parsed
+/// when the option is set, so that an error can name the line of a config file.
 void add_main_options(CLI::App& app, Options& options);
 
 }  // namespace ssdo

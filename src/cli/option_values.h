@@ -13,7 +13,7 @@ class Validator;
 
 namespace ssdo {
 
-// What the texts of the command line mean. Errors of all: ExitCode::usage, naming the option.
+// Parses the texts of options. Errors of all: ExitCode::usage, naming the option.
 
 /// A length in scene units: a positive number or inf; nothing for auto.
 std::optional<double> read_length(const std::string& option, std::string_view text);
@@ -30,10 +30,10 @@ glm::vec2 read_motion_scale(const std::string& text);
 /// PRODUCT=FILE.
 SaveRequest read_save(const std::string& text);
 
-/// Accepts finite numbers in a range; CLI11's own checks let pass what is not a number.
+/// Accepts finite numbers in a range; CLI11's own checks accept NaN.
 CLI::Validator between(double low, double high);
 
-/// Accepts lengths and the like.
+/// Accepts numbers from 1e-30 to 1e30.
 CLI::Validator positive();
 
 }  // namespace ssdo

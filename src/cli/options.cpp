@@ -48,7 +48,7 @@ CLI::App* add_info(CLI::App& app, Options& o) {
   return info;
 }
 
-/// An empty value is what an unset variable of a script leaves; it stands for nothing.
+/// Refuses empty values, which unset variables of scripts leave.
 void refuse_empty_values(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_items_expected_max() == 0) continue;
@@ -69,7 +69,7 @@ std::set<std::string> names_given(const CLI::App& app) {
   return names;
 }
 
-/// `compare` reads no frame: nothing of the main job means anything beside it.
+/// `compare` reads no frame, so no option of the main job applies to it.
 void refuse_options_of_the_main_job(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() > 0) {
@@ -79,7 +79,7 @@ void refuse_options_of_the_main_job(const CLI::App& app) {
   }
 }
 
-/// Refuses what does not fit together.
+/// Refuses options that exclude each other.
 void check(const Options& o) {
   if (o.input_file.empty()) throw Error(ExitCode::usage, "no INPUT given; see ssdo --help");
   if (o.command == Command::relight && o.output.files.empty() && o.output.saves.empty() &&

@@ -38,7 +38,7 @@ struct Options : FrameOptions {
   Verbosity verbosity;
   CompareOptions compare;
   BenchOptions bench;
-  std::optional<int> threads;         ///< chosen where not given
+  std::optional<int> threads;         ///< not given: see choose_thread_count()
   std::string config_file;            ///< that was read; empty: none
   std::vector<std::string> warnings;  ///< options that have no effect beside the others
 };

@@ -7,17 +7,17 @@
 
 namespace ssdo {
 
-/// Tells a person or a scheduler how far the job is. A bar on standard error if that is a terminal;
-/// whole, flushed lines on standard output for the schedulers, which read there.
+/// Shows how far the job is: as a bar on standard error if that is a terminal, and as flushed lines
+/// on standard output, where schedulers read them.
 class ProgressLine {
  public:
   ProgressLine(ProgressStyle style, bool quiet);
   ~ProgressLine();
 
-  /// `done` of the whole job, 0..1; `what` is being worked on.
+  /// `done` is the share of the whole job, 0..1, and `what` the current work.
   void tell(double done, const std::string& what);
 
-  /// Takes the bar off the line, so that other text can be written.
+  /// Clears the bar, so that other text can be written.
   void clear();
 
  private:

@@ -8,7 +8,8 @@
 
 namespace ssdo {
 
-/// What a run takes of the machine: chosen once, before any work, and held while this lives.
+/// The threads and the instruction set of a run, chosen once before any work. The limit on threads
+/// lasts as long as this object.
 class Resources {
  public:
   /// Limits the whole process to the threads of choose_thread_count() and to the instruction set

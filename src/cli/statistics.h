@@ -11,14 +11,15 @@
 
 namespace ssdo {
 
-/// What --stats says about one frame that was done; see man ssdo, STATISTICS.
+/// The entry of the --stats file for one finished frame; see man ssdo, STATISTICS.
 nlohmann::json statistics_of(const Frame& frame, const Job& job, const Resources& resources,
                              const Relit& relit);
 
-/// The policy for the file of --stats: a log is replaced where an image would not be.
+/// The policy for the file of --stats: as a log it replaces an existing file, which an image does
+/// not.
 OutputPolicy policy_of_statistics(OutputPolicy of_images);
 
-/// Writes an array with what statistics_of() says of each frame. Errors: ExitCode::output.
+/// Writes the array of the entries of all frames. Errors: ExitCode::output.
 void write_statistics(const std::string& path, const OutputPolicy& policy,
                       const nlohmann::json& frames);
 

@@ -10,13 +10,13 @@ inline constexpr int kMostThreads = 4096;
 
 /// How many threads to use: `requested` if given, else $SSDO_THREADS, else $CUE_THREADS, else
 /// $SLURM_CPUS_PER_TASK, else the CPU quota of the control group, else the processors that this
-/// thread may run on; never more than those beside a quota. A scheduler's variable that is not 1 to
-/// kMostThreads is passed over: who submits a job does not set it.
-/// Errors: ExitCode::usage for an $SSDO_THREADS that is not 1 to kMostThreads.
+/// thread may run on; a quota never gives more threads than that. A scheduler's variable that is
+/// not 1 to kMostThreads is ignored, since the user does not set it. Errors: ExitCode::usage for an
+/// $SSDO_THREADS that is not 1 to kMostThreads.
 int choose_thread_count(std::optional<int> requested);
 
-/// The processors of a quota of control groups v2, rounded up: "200000 100000", microseconds of
-/// each period of so many, are 2. Nothing for "max" and for what is no quota.
+/// The processors of a quota of control groups v2, rounded up: "200000 100000" is the time and the
+/// period in microseconds, and gives 2. Nothing for "max" and for any other text.
 std::optional<int> processors_of_quota(const std::string& cpu_max);
 
 }  // namespace ssdo

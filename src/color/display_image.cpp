@@ -40,8 +40,7 @@ bool needs_display(const std::string& product) {
 }
 
 DisplayImage make_display_image(const std::string& name, const Scene& scene, const GBuffer& gbuffer,
-                                const Products& products, const DisplayTransform* display,
-                                bool with_alpha) {
+                                const Products& products, const DisplayFormat& format) {
   const Geometry& geometry = scene.geometry;
   const Product& product = find_product(name);
   const bool has_alpha = product.channels == "RGBA";
@@ -50,7 +49,7 @@ DisplayImage make_display_image(const std::string& name, const Scene& scene, con
   image.height = geometry.display.height();
   image.pixel_aspect = gbuffer.pixel_aspect;
   const bool grey = product.channels.size() == 1;
-  image.channels = has_alpha && !with_alpha ? 3 : int(product.channels.size());
+  image.channels = has_alpha && !format.alpha ? 3 : int(product.channels.size());
   const auto channels = std::size_t(image.channels);
   image.values.assign(geometry.display.area() * channels, 0.0f);
   if (product.kind != ProductKind::light) {
@@ -65,13 +64,13 @@ DisplayImage make_display_image(const std::string& name, const Scene& scene, con
   }
   Plane<glm::vec3> colors = colors_of(product, scene, gbuffer, products);
   const Plane<float> alpha = coverage(scene, gbuffer);
-  if (has_alpha && !with_alpha) {
+  if (has_alpha && !format.alpha) {
     for (std::size_t i = 0; i < colors.size(); ++i) colors[i] *= alpha[i];
     glm::vec3 black(0);  // which some views lift
-    display->apply({&black, 1});
+    format.transform->apply({&black, 1});
     for (std::size_t i = 0; i < image.values.size(); ++i) image.values[i] = black[int(i % 3)];
   }
-  apply_display(colors, *display);
+  apply_display(colors, *format.transform);
   for_each_shown_pixel(geometry, [&](std::size_t to, std::size_t from) {
     if (alpha[from] <= 0) return;
     for (int c = 0; c < 3; ++c) image.values[to * channels + std::size_t(c)] = colors[from][c];

@@ -21,16 +21,20 @@ struct DisplayImage {
   ImageSpec spec(int bits) const { return {width, height, channels, bits, pixel_aspect}; }
 };
 
+/// How a display shows products.
+struct DisplayFormat {
+  const DisplayTransform* transform = nullptr;  ///< of light; may be null for all other products
+  bool alpha = true;  ///< whether the image may have an alpha channel; else it lies over black
+};
+
 /// Whether a product is light, which goes through the display transform; visibility does not.
 bool needs_display(const std::string& product);
 
-/// Products that are light come as colours of the display. The composite comes with its alpha, not
-/// premultiplied, or, where `with_alpha` is false, over black: premultiplied before the display
-/// transform, as light adds up, which is how compositors show and convert a premultiplied EXR.
-/// Directions come as RGB with 1/2 for 0, all else as grey. What the data window does not cover is
-/// empty. `display` may be null where needs_display is false.
+/// Light becomes colours of the display. The composite keeps its alpha and is not premultiplied; or
+/// it lies over black, premultiplied before the display transform, as compositors show and convert
+/// a premultiplied EXR. Directions become RGB with 1/2 for 0, other data grey. Pixels outside the
+/// data window are empty.
 DisplayImage make_display_image(const std::string& name, const Scene& scene, const GBuffer& gbuffer,
-                                const Products& products, const DisplayTransform* display,
-                                bool with_alpha);
+                                const Products& products, const DisplayFormat& format);
 
 }  // namespace ssdo

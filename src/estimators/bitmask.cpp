@@ -33,9 +33,9 @@
 //   direction of its own, tested along the slice that holds it (bitmask/sun.cpp).
 // - bounce takes the radiance of the first surface in each sector; no 1/d^2, so no singularity
 //   (bitmask/bounce.cpp, and bitmask/senders.cpp for what is sent).
-// - What a pixel shows counts for the stretch of the way up to those that are seen before and after
-//   it (bitmask/side-inl.h). Taken for points, few steps see too little: 16 that count for their
-//   stretches are nearer to the limit than 24 points.
+// - A sampled pixel represents the stretch of the march up to halfway to the samples before and
+//   after it (bitmask/piece-inl.h). Treated as points, few samples miss too much: 16 steps that
+//   represent their stretches are nearer to the limit than 24 points.
 // - Backs, layers of solids behind what is seen (scene/solids.cpp) and surfaces beyond the frame
 //   (bitmask/extension-inl.h) are guesses that GTAO does not make.
 #include "estimators/bitmask.h"
@@ -57,15 +57,15 @@ namespace {
 
 constexpr int kPeriod = Interleaving::kPeriod;
 
-/// Light that bounces is a small part of all light on most surfaces: with two thirds of the steps
-/// it adds less noise than direct light has. Measured on seven frames.
+/// Bounce light is a small part of all light on most surfaces: with two thirds of the steps it adds
+/// less noise than direct light has. Measured on seven frames.
 constexpr int bounce_steps(int steps) { return (2 * steps + 2) / 3; }
 
-/// A shadow's edge shows single steps, where slices average them.
+/// The edge of a sun's shadow shows single steps, because no other slices average them away.
 constexpr int kSunSteps = 2;
 
-/// With few slices, one pixel of 2 x 2 gathers the light that bounces, and looks in half as many
-/// directions again: error and noise are those of all pixels, on seven frames.
+/// With few slices, one pixel of 2 x 2 gathers bounce light, in 1.5 times as many slices: on seven
+/// frames error and noise are the same as with all pixels.
 constexpr int bounce_spacing(int slices) { return slices < 4 ? 2 : 1; }
 constexpr int bounce_slices(int slices) { return slices < 4 ? (3 * slices + 1) / 2 : slices; }
 
@@ -74,9 +74,8 @@ InterleavedVectors make_color(const Interleaving& layout) {
   return {InterleavedPlane(layout), InterleavedPlane(layout), InterleavedPlane(layout)};
 }
 
-/// What the light's coefficients weigh the polynomials of spherical harmonics with, channel by
-/// channel: these lack the constants that make spherical harmonics orthonormal. Light of order 0 is
-/// band 0 alone.
+/// The light's coefficients, channel by channel, times the constants that make spherical harmonics
+/// orthonormal, which the polynomials of the march lack. Light of order 0 has band 0 alone.
 std::vector<float> basis_weights(const Light& light, int order) {
   const int count = sh_count(order);
   std::vector<float> weights(std::size_t(3 * count), 0.0f);
@@ -168,7 +167,7 @@ class Bitmask {
       for (int first = 0; first < std::min(kPeriod, to.width()); ++first) {
         std::ptrdiff_t i = layout_.index(to.x0 + first, to.y0 + y);
         for (int x = first; x < to.width(); x += kPeriod, ++i)
-          out(x, y) = std::isnan(march_scene_.depth()[i]) ? background : value(i);
+          out(x, y) = march_scene_.shows_surface(i) ? value(i) : background;
       }
     });
     return out;
@@ -299,7 +298,7 @@ class Bitmask {
     if (further_ && request_.bounces > 0)
       sent_further = light_further_surfaces(scene_, request_.bounces - 1, request_.radius);
     for (int pass = 1; pass <= request_.bounces; ++pass) {
-      // The last pass asks for the albedo no more.
+      // The last pass no longer needs the albedo, and overwrites it.
       InterleavedVectors& sent = lit && pass < request_.bounces ? sent_before_last : given;
       if (lit) {
         const SenderJob senders{march_scene_,
@@ -332,7 +331,7 @@ class Bitmask {
                           wants_error ? &difference : nullptr,
                           &bounce,
                           wants_error ? &bounce_error_ : nullptr};
-      // What the last pass brings is sent no further.
+      // Light gathered in the last pass is not sent on: only receivers need it.
       const Window to = pass < request_.bounces && lit ? raster : march_scene_.receivers;
       for_each_band_of(
           grown(to, bounce_pattern_.spacing() - 1),

@@ -3,13 +3,13 @@
 // Ground-truth ambient occlusion: Jimenez, Wu, Pesce, Jarabo, "Practical Realtime Strategies for
 // Accurate Indirect Occlusion", 2016, in the form that engines run. A slice is the plane of the
 // view direction v (to the viewer) and a direction s on the screen; t is what of s lies across v.
-// On both sides the steps of a slice, at max(k (j + u), 1 + j) pixels, look for the cosine h of
-// the horizon's angle to v, from -1 on. For a surface at a distance d whose cosine is H:
+// On both sides the steps of a slice, at max(k (j + u), 1 + j) pixels, look for the cosine c of
+// the horizon's angle to v, from -1 on. For a surface at a distance d with the cosine C:
 //
-//   H > h:  h = lerp(H, h, min(2 d^2 / R^2, 1))       else  h = lerp(H, h, thickness)
+//   C > c:  c = lerp(C, c, min(2 d^2 / R^2, 1))       else  c = lerp(C, c, thickness)
 //
-// With n_p the part of the normal in the slice, n its angle to v and h1 < 0 < h2 the angles of the
-// horizons, held to within a right angle of n, what is open of the slice is
+// With n_p the part of the normal in the slice, n its angle to v and h1 = -acos(c1), h2 = acos(c2)
+// the angles of both horizons, clamped to within a right angle of n, the open part of the slice is
 //
 //   |n_p| / 4 sum_h (-cos(2h - n) + cos n + 2 h sin n)
 //
@@ -22,7 +22,7 @@
 // - A step sees the surface in the centre of its pixel, where engines take the depth of that pixel
 //   for another place. Surfaces that are not above the tangent plane by more than the precision of
 //   P and N do not raise the horizon: they hide nothing, and a tilted plane does not hide itself.
-// - What is outside the frame or background has H = -1.
+// - What is outside the frame or background has C = -1.
 // - Pixels that are not square are seen as they are.
 // - Left out are the engines' exponent of 2.5 and intensity on ao, its fade with distance, and
 //   that the bent normal is turned away from the viewer: they have no meaning in light.
@@ -87,9 +87,10 @@ struct GtaoJob {
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// The cosine of the horizon after the surface that is seen some whole pixels away.
+/// The cosine of the horizon after the surface `right` and `down` away, in whole pixels; `horizon`
+/// is its cosine before.
 HWY_INLINE V next_horizon(const GtaoJob& job, const ViewReceiver& p, const V3& to_viewer, V right,
-                          V down, V h) {
+                          V down, V horizon) {
   const ViewPlanes& planes = job.planes;
   const V z = gather_depth(planes, pixels_at(planes, p.x + right, p.y + down));
   const V3 to = way_to(planes, p, right, down, z);
@@ -98,10 +99,10 @@ HWY_INLINE V next_horizon(const GtaoJob& job, const ViewReceiver& p, const V3& t
   const V distance = hn::Sqrt(distance2);
   const V cosine = hn::IfThenElse(seen, dot(to, to_viewer) / distance, set(-1));
   const V flat = hn::MulAdd(set(kFlat), distance, p.rounding);
-  const M rises = hn::And(cosine > h, dot(to, p.normal) > flat);
+  const M rises = hn::And(cosine > horizon, dot(to, p.normal) > flat);
   const V falloff = hn::Min(distance2 * set(job.falloff), set(1));
-  return hn::IfThenElse(rises, hn::MulAdd(h - cosine, falloff, cosine),
-                        hn::MulAdd(hn::Min(cosine - h, set(0)), set(job.thinness), h));
+  return hn::IfThenElse(rises, hn::MulAdd(horizon - cosine, falloff, cosine),
+                        hn::MulAdd(hn::Min(cosine - horizon, set(0)), set(job.thinness), horizon));
 }
 
 HWY_INLINE V acos_of(V cosine) { return hn::Acos(D(), hn::Min(hn::Max(cosine, set(-1)), set(1))); }
@@ -122,13 +123,13 @@ void gtao_of_tile(const GtaoJob& job, const Tile& tile, Plane<float>& ao) {
     for (const SliceTurns& turn : job.slices) {
       const V turn_x = load(turn.cosine.at(planes, x, y)),
               turn_y = load(turn.sine.at(planes, x, y));
-      V h_ahead = set(-1), h_behind = set(-1);
+      V cos_ahead = set(-1), cos_behind = set(-1);
       for (int j = 0; j < job.steps; ++j) {
         const V distance = hn::Max(step * (set(float(j)) + first), set(float(1 + j)));
         const V right = hn::Round(turn_x * distance * stretch),
                 down = hn::Neg(hn::Round(turn_y * distance));
-        h_ahead = next_horizon(job, p, to_viewer, right, down, h_ahead);
-        h_behind = next_horizon(job, p, to_viewer, hn::Neg(right), hn::Neg(down), h_behind);
+        cos_ahead = next_horizon(job, p, to_viewer, right, down, cos_ahead);
+        cos_behind = next_horizon(job, p, to_viewer, hn::Neg(right), hn::Neg(down), cos_behind);
       }
       const V3 tangent = unit_across({turn_x, turn_y, set(0)}, to_viewer);
       const V aside = hn::Neg(dot(p.normal, tangent));  // angles grow away from the tangent
@@ -136,8 +137,8 @@ void gtao_of_tile(const GtaoJob& job, const Tile& tile, Plane<float>& ao) {
       const V unit = set(1) / hn::Max(length, set(1e-20f));
       const V cos_n = upright * unit, sin_n = aside * unit;
       const V n = hn::CopySign(acos_of(cos_n), aside);
-      const V h1 = hn::Max(hn::Neg(acos_of(h_ahead)), n - right_angle),
-              h2 = hn::Min(acos_of(h_behind), n + right_angle), both = h1 + h2;
+      const V h1 = hn::Max(hn::Neg(acos_of(cos_ahead)), n - right_angle),
+              h2 = hn::Min(acos_of(cos_behind), n + right_angle), both = h1 + h2;
       const V arc = set(2) * hn::MulAdd(both, sin_n, cos_n) - hn::Cos(d, h1 + h1 - n) -
                     hn::Cos(d, h2 + h2 - n);
       sum = hn::MulAdd(length * set(0.25f), arc, sum);

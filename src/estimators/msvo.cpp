@@ -37,7 +37,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "estimators/msvo/scales.h"
 #include "estimators/view_space/openness.h"
@@ -46,7 +45,7 @@
 #define HWY_TARGET_INCLUDE "estimators/msvo.cpp"
 #include <hwy/foreach_target.h>
 
-#include "simd/lanes-inl.h"
+#include "estimators/view_space/lanes-inl.h"
 
 #ifndef SSDO_MSVO_CHORDS_
 #define SSDO_MSVO_CHORDS_
@@ -85,7 +84,6 @@ HWY_INLINE V free_share(V free1, V free2, V rejection) {
 
 void obscure_row(const MsvoJob& job, int y, float* open) {
   const DepthScale& scale = job.scale;
-  const V background = set(std::numeric_limits<float>::infinity());
   for (int x = 0; x < scale.width; x += kLanes) {
     const V depth = load(scale.depth.row(y) + x);
     const V per_chord =
@@ -100,7 +98,7 @@ void obscure_row(const MsvoJob& job, int y, float* open) {
       sum = hn::MulAdd(set(pair.weight), free_share(free1, free2, set(job.rejection)), sum);
     }
     const V ao = saturate(hn::MulAdd(sum - set(1), set(job.intensity), set(1)));
-    store(hn::IfThenElse(depth < background, ao, set(1)), open + x);
+    store(hn::IfThenElse(shows_surface(hn::Neg(depth)), ao, set(1)), open + x);
   }
 }
 

@@ -139,7 +139,7 @@ void shape(const ParameterValues& parameters, const ViewPlanes& planes, Plane<fl
     for (int x = 0; x < access.width; ++x) {
       float& ao = access(x, y);
       ao = power == 2 ? ao * ao : std::pow(ao, power);
-      if (end <= 0 || z[x] == kBackgroundDepth) continue;
+      if (end <= 0 || !shows_surface(z[x])) continue;
       const float left = (end + z[x]) / std::max(end - start, 1e-20f);
       ao = 1 - std::clamp(left, 0.0f, 1.0f) * (1 - ao);
     }

@@ -30,7 +30,7 @@ constexpr double kLeastKept = 0.5, kLeastPixels = 16;
 // Motion against cameras: ignore camera motion below 0.1 px; flag a median ratio off by 30 %.
 constexpr double kLeastMove = 0.1, kMostDifference = 0.3;
 
-bool is_like(const glm::vec3& now, const Plane<glm::vec3>& before, const Footprint& at) {
+bool is_like(const glm::vec3& now, const Plane<glm::vec3>& before, const PixelsBefore& at) {
   glm::vec3 low(INFINITY), high(-INFINITY);
   for (int k = 0; k < at.count; ++k) {
     low = glm::min(low, before[at.pixel[k]]);
@@ -55,7 +55,7 @@ void add_pixels(Continuity& sum, const FrameSurfaces& before, const FrameSurface
       if (!now.geometry.is_surface(i)) continue;
       const glm::dvec2 from_motion =
           motion.empty() ? glm::dvec2(NAN) : centre_of(now.geometry, x, y) + glm::dvec2(motion[i]);
-      const Footprint at = reprojection.find(surfel[i], from_motion);
+      const PixelsBefore at = reprojection.find(surfel[i], from_motion);
       if (at.sight == Sight::nothing) continue;
       sum.met += 1;
       if (at.sight == Sight::same && (!colored || is_like(now.albedo[i], before.albedo, at)))

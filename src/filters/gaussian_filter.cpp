@@ -25,7 +25,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-constexpr float kLeastCosine = 0.8f;
 constexpr float kMostDepth = 2;  ///< scene units
 
 struct SameSurface {

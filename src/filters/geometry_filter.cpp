@@ -7,28 +7,28 @@
 //   out(p) = sum_q b(q) w(p, q) in(q) / sum_q b(q) w(p, q)
 //   h = min(|n_p . (q - p)|, |n_p . (q - p) + n_p . (o - p)|),   o on the other side of p
 //
-// w is the weight of scene/same_surface.h with h / |q - p| for the sine. Smooth normals of a coarse
-// mesh may lean away from its faces: there the plane cuts through the surface, and q
-// lies above it by as much as the opposite pixel o lies below it.
+// w is the weight of scene/same_surface.h with h / |q - p| for the sine. The second term of h is
+// for smooth normals of a coarse mesh, which lean away from its faces: there the tangent plane cuts
+// through the surface, and q lies above it by as much as o lies below it.
 //
-// The window is T + 1 wide, with b = 1/2 at its ends: each of the T x T members of the pattern
-// then has a total weight of exactly 1, which removes the pattern on a plane, and the window has a
-// centre, which T alone has not.
+// The window is T + 1 wide, with b = 1/2 at its ends. Then each of the T x T members of the pattern
+// has a total weight of exactly 1, which removes the pattern on a plane; and the window has a
+// centre, which one of an even width T has not.
 //
-// For T = 8 this would be 81 neighbours. But it is also the mean of four windows of T = 4 about the
-// pixels (+-2, +-2) away, so that a second pass makes it of what the first has left:
+// For T = 8 this would be 81 neighbours. But that window is the mean of four windows of T = 4 whose
+// centres are (+-2, +-2) pixels away, so a second pass computes it from the result of the first:
 //
 //   out(p) = m(p) + 1/4 sum_q w(p, q) l(p, q) (m(q) - m(p)),   m the result for T = 4
 //   l = ramp(|b_q - b_p| / (r (b_p + b_q + (A_p + A_q) / 4))),   b the brightness of m, A = b / ao
 //
-// If q is across an edge, m(p) is used in place of m(q); so it is, by l, if ao or direct light
-// differs by more than noise: across the edge of a shadow. In a dark pixel, noise is large relative
-// to its own light b, but small relative to its unoccluded light A, so that the tolerance scales
-// with A. A bounce has more noise and no such steps: l = 1.
+// w reduces the share of a q across a geometric edge, and l that of a q whose ao or direct light
+// differs by more than noise, which lies across the edge of a shadow. In a dark pixel, noise is
+// large relative to its own light b but small relative to its unoccluded light A, so the tolerance
+// of l grows with A. Bounce light has more noise and no sharp shadows: l = 1.
 //
-// Lanes are pixels that lie side by side; two rows at a time share their loads. What is not a
-// surface has no normal here, so that it weighs 0. This file is compiled once for every
-// instruction set.
+// Lanes are neighbouring pixels of a row; two rows at a time share their loads. Pixels without a
+// surface have a normal of 0 here, so that w is 0. This file is compiled once for every instruction
+// set.
 #include "filters/geometry_filter.h"
 
 #include <cstdlib>
@@ -48,13 +48,14 @@ namespace ssdo::HWY_NAMESPACE {
 
 constexpr float kStepTolerance = 0.15f;  ///< r; measured, with the 1/4 before A
 
-/// How far q lies from p's tangent plane, signed.
+/// Signed distance of q from p's tangent plane.
 HWY_INLINE V above_plane(const Shown& p, const Shown& q) {
   return dot(q.position - p.position, p.normal);
 }
 
-/// The part of w that the plane has in it; `above` is n_p . (q - p), which rounding may have moved
-/// so much. Few ask for it: most neighbours lie in the flat part, which squares can tell.
+/// The factor of w that depends on the plane, with `above` = n_p . (q - p) and the distance by
+/// which rounding may have moved it. Not inlined, since it is rarely needed: for most neighbours a
+/// comparison of squares shows that the factor is 1.
 HWY_NOINLINE V plane_ramp(V above, V rounding, V distance2, const Shown& p, const Shown& o) {
   const V off_plane = hn::Max(set(0), hn::Abs(above) - rounding),
           bend = hn::Max(set(0), hn::Abs(above + above_plane(p, o)) - rounding - rounding);
@@ -63,7 +64,7 @@ HWY_NOINLINE V plane_ramp(V above, V rounding, V distance2, const Shown& p, cons
   return hn::IfThenElse(distance2 > set(0), plane_weight(h / hn::Sqrt(distance2)), set(1));
 }
 
-/// w(p, q), 0 where one of them has no normal. `opposite()` is the pixel on p's other side.
+/// w(p, q); 0 where one of them shows no surface. `opposite()` gives the pixel on p's other side.
 template <class Opposite>
 HWY_INLINE V similarity(const Shown& p, const Shown& q, const Opposite& opposite) {
   const V turn = normal_weight(dot(p.normal, q.normal));
@@ -96,7 +97,7 @@ class TileFilter {
   }
 
  private:
-  /// Components that are averaged in one go: two rows of them leave registers free in AVX2.
+  /// Components that are averaged at once: the sums of two rows of them fit AVX2's 16 registers.
   static constexpr int kAtOnce = 5;
 
   int window() const { return 2 * half_ + 1; }
@@ -105,7 +106,7 @@ class TileFilter {
   }
   float* weight_sum(int k) const { return average(k, rows_.components()); }
 
-  /// b, of an offset in one dimension.
+  /// b for an offset in one dimension.
   float border(int offset) const {
     const int distance = std::abs(offset);
     return distance < half_ ? 1.0f : distance == half_ ? 0.5f : 0.0f;
@@ -187,10 +188,10 @@ class TileFilter {
   const Tile tile_;
   TileRows rows_;
   AlignedFloats weights_;   ///< by neighbour and row, a vector each
-  AlignedFloats averages_;  ///< by row, component and column; after the components the weights' sum
+  AlignedFloats averages_;  ///< by row, component and column; last component: sum of the weights
 };
 
-/// How bright a pixel is, and would about be in the open.
+/// b and A of a pixel: its brightness, and about what it would be without occlusion.
 struct Brightness {
   V value, open;
 };
@@ -281,7 +282,7 @@ class CornerFilter {
   const Tile tile_;
   TileRows rows_;
   std::optional<int> ao_;  ///< its channel
-  AlignedFloats results_;  ///< by component and column; after the components 0 where no surface is
+  AlignedFloats results_;  ///< by component and column; last component: 0 without a surface
 };
 
 void filter_tile(const Products& noisy, const Geometry& geometry, int pattern_size,

@@ -25,8 +25,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-constexpr float kLeastCosine = 0.8f;
-
 struct NormalsAlike {
   HWY_INLINE V operator()(const Shown& p, const Shown& q) const {
     constexpr float kSlope = 1 / (1 - kLeastCosine);

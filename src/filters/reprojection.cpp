@@ -10,15 +10,15 @@
 namespace ssdo {
 namespace {
 
-constexpr double kLeastCosine = 0.9;  ///< normals 26 degrees apart are of two surfaces
-constexpr double kLeastShare = 0.1;   ///< of the bilinear weight
-constexpr double kSlant = 2;          ///< length of a motion over the part of it across the view
-constexpr double kBehind = 0.02;      ///< of the depth: a surface farther by this share is occluded
+constexpr double kSameNormal = 0.9;  ///< normals 26 degrees apart belong to two surfaces
+constexpr double kLeastShare = 0.1;  ///< of the bilinear weight
+constexpr double kSlant = 2;         ///< length of a motion over the part of it across the view
+constexpr double kBehind = 0.02;     ///< of the depth: a surface farther by this share is occluded
 
 bool shows_same(const Surfel& q, const glm::dvec3& p, const glm::dvec3& normal, double limit) {
   const glm::dvec3 away = glm::dvec3(q.position) - p, other(q.normal);
   limit += q.rounding;
-  return glm::dot(normal, other) >= kLeastCosine && std::abs(glm::dot(normal, away)) <= limit &&
+  return glm::dot(normal, other) >= kSameNormal && std::abs(glm::dot(normal, away)) <= limit &&
          std::abs(glm::dot(other, away)) <= limit;
 }
 
@@ -35,8 +35,8 @@ glm::dvec2 Reprojection::place(const glm::vec3& position) const {
   return before_.camera.orthographic || p.z < 0 ? before_.camera.project(p) : glm::dvec2(NAN);
 }
 
-Footprint Reprojection::find(const Surfel& surfel, const glm::dvec2& from_motion) const {
-  Footprint found;
+PixelsBefore Reprojection::find(const Surfel& surfel, const glm::dvec2& from_motion) const {
+  PixelsBefore found;
   const glm::dvec3 p = turn_ * glm::dvec3(surfel.position) + step_;
   const glm::dvec2 still = place(surfel.position);
   const bool moves = std::isfinite(from_motion.x) && std::isfinite(from_motion.y);

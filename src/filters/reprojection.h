@@ -10,15 +10,15 @@
 
 namespace ssdo {
 
-/// What the frame before shows where a point of the present one was.
+/// What the frame before shows at the place of a point of the present frame.
 enum class Sight {
   nothing,  ///< it is outside that picture, or something else may hide it
   same,     ///< its surface
   through,  ///< what lies behind it: it was not there
 };
 
-/// Pixels of the frame before with weights whose sum is 1, or none.
-struct Footprint {
+/// Pixels of the frame before that show a point of the present frame, with weights whose sum is 1.
+struct PixelsBefore {
   std::size_t pixel[4];
   float weight[4];
   int count = 0;
@@ -40,7 +40,7 @@ class Reprojection {
   glm::dvec2 place(const glm::vec3& position) const;
 
   /// `from_motion` is the pixel in that frame according to a motion layer; not finite without one.
-  Footprint find(const Surfel& surfel, const glm::dvec2& from_motion) const;
+  PixelsBefore find(const Surfel& surfel, const glm::dvec2& from_motion) const;
 
  private:
   const Geometry& before_;

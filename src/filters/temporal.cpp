@@ -55,7 +55,7 @@ bool same_products(const Products& a, const Products& b) {
 }
 
 template <class T>
-T average(const Plane<T>& plane, const Footprint& at) {
+T average(const Plane<T>& plane, const PixelsBefore& at) {
   const T first = plane[at.pixel[0]];
   T step(0);  // differences, so that what is constant stays as it is
   for (int k = 1; k < at.count; ++k) step += at.weight[k] * (plane[at.pixel[k]] - first);
@@ -70,7 +70,7 @@ void mix(T& value, const T& history, float frames) {
 
 /// Adds to pixel `i` of each product what `old` has at `at`; `turn` leads from the camera space of
 /// `old` to the present one.
-void mix_products(Products& mean, std::size_t i, const Products& old, const Footprint& at,
+void mix_products(Products& mean, std::size_t i, const Products& old, const PixelsBefore& at,
                   const glm::mat3& turn, float frames) {
   for_each_plane(
       [&](const Product& product, auto& values, const auto& before) {
@@ -115,7 +115,7 @@ History accumulate(const History* before, const Geometry& geometry, const Produc
       if (!geometry.is_surface(i)) continue;
       const glm::dvec2 from_motion =
           motion.empty() ? glm::dvec2(NAN) : centre_of(geometry, x, y) + glm::dvec2(motion[i]);
-      const Footprint at = reprojection.find(geometry.surfel[i], from_motion);
+      const PixelsBefore at = reprojection.find(geometry.surfel[i], from_motion);
       if (at.count == 0) continue;
       const float frames = std::min(average(before->frames, at), kMostFrames);
       mix_products(after.mean, i, before->mean, at, turn, frames);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The average of a pixel's neighbours, weighted by where they stand in the window and by how alike
-// the surfaces are; compiled once for every instruction set.
+// The average of a pixel's neighbours, weighted by their place in the window and by how similar the
+// surfaces are; compiled once for every instruction set.
 //
 //   out(p) = in(p) + sum_q a(q - p) w(p, q) (in(q) - in(p)) / sum_q a(q - p) w(p, q)
 //
-// Differences are averaged, not values: a field that is the same everywhere stays as it is, to the
-// last bit.
+// Differences to the pixel are averaged instead of values, so that a constant plane keeps its bits.
 #if defined(SSDO_FILTERS_WINDOW_AVERAGE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_FILTERS_WINDOW_AVERAGE_INL_H_
 #undef SSDO_FILTERS_WINDOW_AVERAGE_INL_H_
@@ -23,6 +22,9 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
+
+/// Least cosine between the normals of pixels that are averaged (Luna 2016, chapter 21).
+constexpr float kLeastCosine = 0.8f;
 
 /// Averages one tile. `similarity(p, q)` is w: 0 where one of both is no surface.
 template <class Similarity>

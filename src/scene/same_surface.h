@@ -20,7 +20,10 @@ struct SurfacePoint {
 };
 
 /// Neighbours are on one surface when neither lies farther than this from the other's tangent
-/// plane, in pixel footprints.
+/// plane, in pixel footprints. Mean over four scenes of Cycles with 2, 4 and 8: RMSE of ao 0.072,
+/// 0.071 and 0.072 at a small radius and 0.142, 0.136 and 0.135 without one, relative error of
+/// direct light 0.443, 0.418 and 0.415. So 2 takes one surface for several; above 4 it matters
+/// little.
 constexpr float kSurfaceGap = 4;
 
 /// Whether what two neighbouring pixels show belongs to one surface; `footprint` is that of the

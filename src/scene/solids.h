@@ -92,6 +92,10 @@ struct Solids {
   }
 };
 
+/// Throws std::logic_error where there are more than kMostLayers: whoever reads solids has room for
+/// so many.
+void check_layers(const Solids& solids);
+
 /// The point at this distance behind the surface that a pixel shows, on its view ray.
 glm::vec3 point_behind(const Geometry& geometry, std::size_t pixel, float distance);
 

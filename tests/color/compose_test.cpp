@@ -92,7 +92,7 @@ TEST_F(Compose, CoverageIsAlphaOnSurfaces) {
 
 TEST_F(Compose, PicturesShowEachKindInItsWay) {
   const auto image = [&](const std::string& product) {
-    return make_display_image(product, scene_, gbuffer_, products_, nullptr, true);
+    return make_display_image(product, scene_, gbuffer_, products_, {});
   };
   EXPECT_EQ(image("ao").channels, 1);
   EXPECT_THAT(image("ao").values, ElementsAre(0.75f, 1));

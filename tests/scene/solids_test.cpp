@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
 
 #include "support/analytic_scene.h"
 
@@ -35,6 +36,14 @@ Surface leaning_wall() {
 
 bool shows_card(const Geometry& g, std::size_t i) {
   return std::abs(g.surfel[i].position.z + 5) < 1e-4;
+}
+
+TEST(Solids, AreRefusedWithMoreLayersThanThereIsRoomFor) {
+  Solids solids;
+  solids.behind.resize(kMostLayers - 1);
+  EXPECT_NO_THROW(check_layers(solids));
+  solids.behind.emplace_back();
+  EXPECT_THROW(check_layers(solids), std::logic_error);
 }
 
 TEST(Solids, OfAPlaneAreEndlessAndOfOneLayer) {

@@ -2,9 +2,9 @@
 //
 // Light that bounces, by method bitmask; see bitmask.cpp. Compiled once for every instruction set.
 //
-// What surrounds a pixel changes slowly from one to the next on a surface; how much of it a pixel
-// sees is known from ao. So where slices are few, one pixel of 2 x 2 marches, and the others take
-// the mean of what their neighbours on the same surface receive.
+// The radiance around a pixel changes slowly along a surface; how much of it reaches the pixel is
+// known from ao. So where slices are few, one pixel of 2 x 2 marches, and the others take the mean
+// of their neighbours on the same surface.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/bounce.cpp"
 #include <hwy/foreach_target.h>
@@ -33,7 +33,8 @@ struct Gathered {
 
 HWY_INLINE Gathered no_light() { return {set(glm::vec3(0)), set(0)}; }
 
-/// Whether the surface at `q`, `step` away from the receiver, shows its seen side to it.
+/// Whether the surface at `q`, `step` away from the receiver, turns to it the side that the camera
+/// sees.
 template <bool kOrthographic>
 HWY_INLINE M faces(const MarchScene& scene, std::ptrdiff_t q, const SliceStep& step,
                    const MarchReceiver& p) {
@@ -125,7 +126,7 @@ void gather_light(const BounceJob& job, const Window& part) {
         store(light.sum, *job.gathered, p.place.index);
         store(light.weights, *job.weights, p.place.index);
         if (!job.difference) return;
-        // Where one half has met nothing, the other is all that is known.
+        // Where one half met nothing, there is no difference to tell the error from.
         const Gathered second_half = light.minus(first_half);
         const V zero = set(0);
         const V difference = luminance(first_half.mean()) - luminance(second_half.mean());
@@ -142,7 +143,7 @@ template <bool kOrthographic>
 HWY_INLINE V likeness(const MarchScene& scene, const MarchReceiver& p, std::ptrdiff_t q, int dx,
                       int dy) {
   const V depth = load(scene.depth(), q);
-  const M valid = hn::And(p.valid, depth == depth);
+  const M valid = hn::And(p.valid, holds_solid(depth));
   V x = p.slope_x + set(float(dx) / scene.fx), y = p.slope_y - set(float(dy) / scene.fy);
   if constexpr (!kOrthographic) x = x * depth, y = y * depth;
   const V3 to_q = V3{x, y, set(0) - depth} - p.position;
@@ -183,8 +184,7 @@ void spread(const BounceJob& job, const Window& part) {
     for_each_gatherer(
         scene, job.march.pattern.spacing(), place, [&](std::ptrdiff_t q, int dx, int dy) HWY_ATTR {
           const V weights = load(*job.weights, q);
-          const V depth = load(scene.depth(), q);
-          const M found = hn::And(depth == depth, weights > zero);
+          const M found = hn::And(holds_solid(load(scene.depth(), q)), weights > zero);
           if (!any(found)) return;
           const Gathered light{if_then_else_zero(found, load(*job.gathered, q)),
                                hn::IfThenElseZero(found, weights)};

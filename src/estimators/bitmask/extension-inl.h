@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Surfaces that go on beyond the frame, for a vector of pixels; see bitmask.cpp.
+// Surfaces that are assumed to continue beyond the border of the frame, for a vector of pixels; see
+// bitmask.cpp.
 #if defined(SSDO_BITMASK_EXTENSION_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_EXTENSION_INL_H_
 #undef SSDO_BITMASK_EXTENSION_INL_H_
@@ -13,21 +14,22 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// Where lanes leave the frame.
+/// Where the marches of the lanes leave the frame.
 struct Border {
-  V dx, dy;  ///< pixels from the receiver to the last pixel before
+  V dx, dy;  ///< pixels from the receiver to the last pixel inside
   V distance_px;
-  bool in_one_row;       ///< all lanes leave through the same row, at neighbours
-  std::ptrdiff_t first;  ///< of the values at the border that belong to the lanes, in that case
-  VI index;              ///< of the values, in the other
+  bool in_one_row;       ///< all lanes leave through the first row, or all through the last
+  std::ptrdiff_t first;  ///< in one row: index of lane 0 in BorderValues; the others follow
+  VI index;              ///< otherwise: index of each lane in BorderValues
 
   HWY_INLINE V operator()(const BorderValues& values) const {
     return in_one_row ? load(values.data() + first) : gather(values.data(), index);
   }
 };
 
-/// The way out along (dx, dy), a unit vector in pixels; `shared` by all lanes or not. In the latter
-/// case it may lead `aside_px` away from there, a whole number, along the border.
+/// Where marches along (dx, dy), a unit vector in pixels, leave the frame. `shared`: all lanes have
+/// the same direction. Else the result may be moved by `aside_px`, a whole number, along the
+/// border.
 HWY_INLINE Border border_along(const MarchScene& scene, const MarchReceiver& p, V dx, V dy,
                                bool shared, float aside_px = 0) {
   const DI di;
@@ -73,21 +75,22 @@ HWY_INLINE Border border_along(const MarchScene& scene, const MarchReceiver& p, 
   return border;
 }
 
-/// How far a surface goes on beyond the frame, in heights of the frame at its depth.
+/// How far a surface continues beyond the frame, in heights of the frame at its depth. Mean over
+/// four scenes of Cycles with 1.5, 3 and 6: RMSE of ao without a radius 0.149, 0.136 and 0.135,
+/// relative error of direct light 0.460, 0.418 and 0.423, of bounce light 0.447, 0.427 and 0.434.
 constexpr float kExtension = 3;
 
-/// The piece of surface in a slice that goes on beyond the frame, from where it leaves it to where
-/// it ends.
+/// The piece of a surface in a slice that lies beyond the frame, from the border to its end.
 struct Extension {
   SlicePoint start, end;  ///< at the border, and beyond it
-  V above, end_above;     ///< of the receiver's tangent plane
+  V above, end_above;     ///< heights of both over the receiver's tangent plane
   V distance2;            ///< to the border
   V depth;                ///< from front to back at the border
   M exists;
 };
 
-/// The surface at the frame's border goes on beyond it as its tangent plane does, within the
-/// radius and for as many of its own widths.
+/// Extends the surface at the border along its tangent plane, within the radius and by at most
+/// `widths` times its own thickness (things are taken to be as thick as wide, scene/solids.cpp).
 template <bool kOrthographic>
 HWY_INLINE Extension extend(const March& march, const MarchReceiver& p, const SideFrame& side,
                             const Border& border, float widths) {
@@ -104,7 +107,7 @@ HWY_INLINE Extension extend(const March& march, const MarchReceiver& p, const Si
   e.exists = hn::And(e.distance2 < radius2, border.distance_px <= set(p.reach_px));
   if (!any(e.exists)) return e;
 
-  // The line in which the tangent plane cuts the slice, away from the frame.
+  // The line where the tangent plane intersects the slice, pointing away from the frame.
   const V3 m{border(scene.border_normal[0]), border(scene.border_normal[1]),
              border(scene.border_normal[2])};
   SlicePoint line{dot(m, p.to_viewer), set(0) - dot(m, side.t)};
@@ -131,7 +134,7 @@ HWY_INLINE Extension extend(const March& march, const MarchReceiver& p, const Si
   return e;
 }
 
-/// The sectors that it hides, and those that the last pixel before it hides.
+/// The sectors hidden by the extension, and by the solid of the last pixel inside the frame.
 template <bool kOrthographic>
 HWY_INLINE VU extend_side(const March& march, const MarchReceiver& p, const SideFrame& side,
                           const Border& border) {
@@ -144,7 +147,7 @@ HWY_INLINE VU extend_side(const March& march, const MarchReceiver& p, const Side
   const VU beyond = hn::IfThenElseZero(
       hn::RebindMask(du, e.exists),
       hn::AndNot(bits_from(hn::Max(here, there)), bits_from(hn::Min(here, there))));
-  // The border is a sample too: the last step may be far from it.
+  // The pixel at the border is sampled as well: the last step of the march may be far from it.
   return hn::Or(beyond,
                 sectors_behind<kOrthographic>(p, side, e.start.s, e.above, e.depth, march.radius));
 }

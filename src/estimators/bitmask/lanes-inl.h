@@ -45,7 +45,7 @@ HWY_INLINE V lane_columns(const Interleaving& layout, int column_phase, int colu
                                 set_int(column * kPeriod + column_phase - layout.phase()));
 }
 
-/// Values side by side in the order of the march, from index `i` on.
+/// Consecutive values in the order of the march, from index `i` on.
 HWY_INLINE V load(const InterleavedPlane& plane, std::ptrdiff_t i) {
   return load(plane.data() + i);
 }
@@ -59,8 +59,11 @@ HWY_INLINE void store(const V3& value, InterleavedVectors& color, std::ptrdiff_t
   store(value.x, color[0], i), store(value.y, color[1], i), store(value.z, color[2], i);
 }
 
-/// Where in the raster a vector of pixels is: every eighth one of row `y` from `column_phase` on,
-/// of which it holds those from `column` on.
+/// The same of a vector of depths of MarchLayer.
+HWY_INLINE M holds_solid(V depth) { return depth == depth; }
+
+/// The place of a vector of pixels in the raster. Of row `y` it holds every eighth pixel from
+/// `column_phase` on, skipping the first `column` of those.
 struct Place {
   std::ptrdiff_t index;
   int y, column_phase, column;
@@ -69,13 +72,13 @@ struct Place {
 /// Receivers among the pixels of MarchScene. Their normals are bent to face the viewer.
 struct MarchReceiver : Receiver {
   Place place;         ///< of all lanes
-  float reach_px = 0;  ///< of all lanes: no pixel farther away can be within the radius
+  float reach_px = 0;  ///< of all lanes: no pixel farther away in the picture is within the radius
   V slope_x, slope_y;  ///< of the ray through it, or its place where the camera is orthographic
   V3 to_viewer;        ///< unit: V
   V distance;          ///< to the viewer
   V facing;            ///< N.V
-  /// Height of what a pixel shows above the tangent plane, along V and less what rounding may have
-  /// added: depth (rise + rise_x dx + rise_y dy) + plane, for a pixel that lies (dx, dy) from this.
+  /// The surface in the pixel (dx, dy) away lies above the tangent plane, measured along V, by
+  /// depth (rise + rise_x dx + rise_y dy) + plane. What rounding may have added is subtracted.
   V rise, rise_x, rise_y, plane;
 };
 
@@ -83,11 +86,11 @@ HWY_INLINE MarchReceiver load_receiver(const MarchScene& scene, const Place& pla
   const auto [i, y, column_phase, column] = place;
   MarchReceiver p;
   p.place = place;
-  hwy::Prefetch(scene.rounding.data() + i + 4 * kLanes);  // nothing else comes by here
+  hwy::Prefetch(scene.rounding.data() + i + 4 * kLanes);  // marches read all planes but this one
   const V depth = load(scene.depth(), i);
   p.x = lane_columns(scene.layout, column_phase, column), p.y = set(float(y));
   p.normal = load(scene.normal, i);
-  p.valid = depth == depth;
+  p.valid = holds_solid(depth);
   const V one = set(1), zero = set(0);
   p.slope_x = (p.x + set(float(scene.first_x)) - set(scene.axis_x)) * set(1 / scene.fx);
   p.slope_y = (set(scene.axis_y) - set(float(y + scene.first_y))) * set(1 / scene.fy);
@@ -121,7 +124,7 @@ HWY_INLINE MarchReceiver load_receiver(const MarchScene& scene, const Place& pla
   return p;
 }
 
-/// Normals as the frame has them; lanes without a surface look at the viewer.
+/// The normals of the frame; (0, 0, 1) in lanes without a surface.
 HWY_INLINE V3 load_normals(const MarchScene& scene, std::ptrdiff_t i, M valid) {
   return if_then_else(valid, load(scene.normal, i), set(glm::vec3(0, 0, 1)));
 }
@@ -133,9 +136,9 @@ HWY_INLINE V height_above(const MarchReceiver& p, V rise, V depth) {
   return hn::MulAdd(depth, rise, p.plane);
 }
 
-/// Distance in the picture beyond which nothing can be within `radius` of a receiver: seen from
-/// the viewer, a ray at slope e from the receiver's passes it at d e / (l + e), l the length of
-/// the receiver's ray per unit of depth.
+/// Distance in the picture beyond which no point can be within `radius` of a receiver. A view ray
+/// whose slope differs by e from that of the receiver's passes it at a distance of d e / (l + e), d
+/// being the receiver's distance and l the length of its ray per unit of depth.
 HWY_INLINE float reach_px(const MarchScene& scene, const MarchReceiver& p, float radius) {
   const float f = scene.fx > scene.fy ? scene.fx : scene.fy;
   if (scene.orthographic || radius > 1e18f) return radius * f;
@@ -145,10 +148,11 @@ HWY_INLINE float reach_px(const MarchScene& scene, const MarchReceiver& p, float
   return f * hn::GetLane(hn::MaxOfLanes(D(), hn::IfThenElseZero(p.valid, reach)));
 }
 
-/// The number of the first sector whose point lies behind a direction with the cosine c to V. The
-/// point of sector i is at i + phase; `start` is start_of_sectors(phase).
+/// The first sector whose sample point is at a larger angle from V than the direction with cosine
+/// c. The sample point of sector i is at i + phase; `start` is start_of_sectors(phase).
 HWY_INLINE VU sector_at(V c, V start) {
-  // Around 1.5 * 2^23 a float's unit is one, and its low bits are the whole number nearest to it.
+  // Floats near 1.5 * 2^23 are spaced by one: adding it rounds to the nearest whole number, which
+  // is then in the low bits.
   const V x = hn::NegMulAdd(c, set(SliceSectors::kPerCosine), start);
   return hn::And(hn::BitCast(DU(), x + set(12582912)), set_bits(63));
 }
@@ -168,15 +172,15 @@ HWY_INLINE V dot(const SlicePoint& a, const SlicePoint& b) {
   return hn::MulAdd(a.s, b.s, a.v * b.v);
 }
 
-/// The point a share of a way from another one.
+/// The point at `share` of `way` from `from`.
 HWY_INLINE SlicePoint along(const SlicePoint& from, V share, const SlicePoint& way) {
   return {hn::MulAdd(share, way.s, from.s), hn::MulAdd(share, way.v, from.v)};
 }
 
-/// The sector in which a point lies, as sector_at() has it.
+/// sector_at() for the direction to a point.
 HWY_INLINE VU sector_of(const SlicePoint& p, V start) { return sector_of(p.v, dot(p, p), start); }
 
-/// Where the back is of what has its front there: behind it on its own view ray.
+/// The back of a solid with this front: `depth` behind it on its own view ray.
 template <bool kOrthographic>
 HWY_INLINE SlicePoint back_of(const MarchReceiver& p, const SlicePoint& front, V depth) {
   const auto [s, v] = front;
@@ -191,18 +195,18 @@ struct SideFrame {
   V slope;    ///< n_t / n_v
   V n_t;
   V start;         ///< start_of_sectors() of the side's phase
-  VU above;        ///< the sectors above the tangent plane, whose number is
-  VU above_count;  ///< 0..31: the last sector leads away from the viewer
+  VU above;        ///< the sectors above the tangent plane
+  VU above_count;  ///< their number, 0..31; the last sector points away from the viewer
 };
 
-/// The sectors that a surface hides which lies at s, `above` the receiver's tangent plane, and
-/// reaches back by `depth`.
+/// The sectors hidden by a solid whose front is at s and at the height `above` over the receiver's
+/// tangent plane, and whose back is `depth` behind that.
 template <bool kOrthographic>
 HWY_INLINE VU sectors_behind(const MarchReceiver& p, const SideFrame& side, V s, V above, V depth,
                              float radius) {
-  // Centres of sampled pixels are not exactly in the plane of the slice. They are projected into it
-  // parallel to the receiver's tangent plane, which keeps their heights: a plane never occludes
-  // itself, whatever its tilt.
+  // Centres of sampled pixels do not lie exactly in the slice. They are projected into it parallel
+  // to the receiver's tangent plane, which keeps their heights, so that no plane occludes itself at
+  // any tilt.
   const SlicePoint front{s, hn::NegMulAdd(s, side.slope, above)};
   const V distance2 = dot(front, front);
   const M meets = hn::And(above > set(0), distance2 <= set(radius * radius));
@@ -212,8 +216,8 @@ HWY_INLINE VU sectors_behind(const MarchReceiver& p, const SideFrame& side, V s,
                             hn::AndNot(bits_from(to), bits_from(from)));
 }
 
-/// The frame of a slice at a receiver: T, the normal's share in it, and the weight that makes
-/// slices which are uniform in the picture uniform around V.
+/// The frame of a slice at a receiver: T, the component of the normal along it, and the weight w of
+/// bitmask.cpp, which makes slices that are uniform in the picture uniform around V.
 struct SliceFrame {
   V3 t;
   V n_t, weight;
@@ -228,7 +232,7 @@ HWY_INLINE SliceFrame slice_frame(const MarchScene& scene, const MarchReceiver& 
   SliceFrame f;
   f.weight = set(1) / dot(t, t);
   f.t = t * hn::Sqrt(f.weight);
-  // The weight has the unit of f^2; only ratios matter.
+  // The weight has the unit of f^2, which cancels in the ratios that are taken.
   f.n_t = dot(p.normal, f.t);
   return f;
 }
@@ -241,9 +245,9 @@ HWY_INLINE SideFrame side_frame(const MarchScene& scene, const MarchReceiver& p,
   side.n_t = forward ? f.n_t : set(0) - f.n_t;
   side.across = {side.t.x * set(1 / scene.fx), side.t.y * set(-1 / scene.fy)};
   side.slope = side.n_t / p.facing;
-  // In the slice the tangent plane leads away from V by pi/2 more than the normal does. Points
-  // that rounding could lift above it do not count, nor does a sector that lies more below it than
-  // above: its integral is negative.
+  // In the slice, the angle from V to the tangent plane is that to the normal plus pi/2. Directions
+  // that rounding could lift above the plane are left out, and so is a sector of which more than
+  // half lies below the plane: its integral is negative.
   const V cosine =
       hn::NegMulAdd(side.n_t, reciprocal_sqrt(dot(V2{side.n_t, p.facing}, V2{side.n_t, p.facing})),
                     set(kCosineError));
@@ -265,8 +269,7 @@ HWY_INLINE void for_each_vector(const MarchScene& scene, const Window& part, con
     for (int column_phase = 0; column_phase < Interleaving::kPeriod; ++column_phase) {
       for (int column = begin; column < end; column += kLanes) {
         const std::ptrdiff_t i = layout.index(y, column_phase, column);
-        const V depth = load(scene.depth(), i);
-        if (any(depth == depth)) work(Place{i, y, column_phase, column});
+        if (any(holds_solid(load(scene.depth(), i)))) work(Place{i, y, column_phase, column});
       }
     }
   }

@@ -24,14 +24,14 @@ struct March {
   const FurtherRays* further = nullptr;  ///< what only further views show; null: nothing
 };
 
-/// How open each pixel is, and to which light.
+/// The visibility of each pixel, and the direct light that reaches it.
 struct VisibilityJob {
   March march;
-  /// Bands of spherical harmonics that light is gathered in, up to 4; 0: no direction matters.
+  /// Order of the spherical harmonics in which light is gathered, up to 4; 0: visibility only.
   int order;
   /// Weights of the basis polynomials, (order + 1)^2 for red, then green, then blue.
-  const float* light;               ///< null: it comes from everywhere alike
-  const OctahedralMap* irradiance;  ///< over pi, by normal, where nothing is in the way
+  const float* light;               ///< null: the same from all directions
+  const OctahedralMap* irradiance;  ///< over pi, by normal, without occlusion
 
   InterleavedPlane* ao;
   InterleavedVectors* bent;      ///< unit; null: not wanted
@@ -39,7 +39,7 @@ struct VisibilityJob {
   InterleavedPlane* difference;  ///< standard error of its luminance, signed; null: not wanted
 };
 
-/// What each pixel sends to others, and its unseen side.
+/// The radiance that each pixel sends to others, and that of its back side.
 struct SenderJob {
   const MarchScene& scene;
   const InterleavedPlane* ao;
@@ -50,39 +50,39 @@ struct SenderJob {
   InterleavedVectors* sent_back;  ///< null: the same
 };
 
-/// What each pixel receives from the first surface in every direction: the mean radiance of what
-/// hides the environment, times how much of it is hidden.
+/// The light that each pixel receives from the first surface in every direction: the mean radiance
+/// of what hides the environment, times 1 - ao.
 struct BounceJob {
   March march;
   const InterleavedPlane* ao;
   const InterleavedVectors* sent;                      ///< radiance of layer 0
   const InterleavedVectors* sent_back;                 ///< of its other side; null: the same
   const std::vector<InterleavedVectors>* sent_behind;  ///< of layers 1, 2, ...
-  const BorderValues* sent_border;                     ///< of what goes on beyond the frame, three
-  const FurtherLight* sent_further;                    ///< of what only further views show
+  const BorderValues* sent_border;   ///< three: of surfaces that continue beyond the frame
+  const FurtherLight* sent_further;  ///< of what only further views show
 
-  // What the pixels that march have met.
+  // What the marches have gathered, by pixel.
   InterleavedVectors* gathered;  ///< sum of radiance
   InterleavedPlane* weights;     ///< sum of the weights
   InterleavedPlane*
-      difference;  ///< error of the luminance of the mean, times them; null: not wanted
+      difference;  ///< error of the mean's luminance, times the weights; null: not wanted
 
   InterleavedVectors* bounce;
   InterleavedPlane* error;  ///< standard error of its luminance, signed; null: not wanted
 };
 
-/// The direct light of a sun, where it is seen.
+/// The direct light of a sun where it is visible.
 struct SunJob {
   March march;
-  /// For each member of the pattern a unit direction to a point of the sun, and where on the way
-  /// there the march looks, near to far.
+  /// For each member of the pattern a unit direction to a point of the sun, and at which distances
+  /// in the picture the march samples, near to far.
   std::array<glm::vec3, Interleaving::kPeriod * Interleaving::kPeriod> directions;
   std::array<std::vector<float>, Interleaving::kPeriod * Interleaving::kPeriod> distances_px;
   const Sun* sun;
   InterleavedVectors* direct;  ///< added to
 };
 
-/// All work on a part of the raster, and may write to pixels beside it in the same rows.
+/// All of these work on a part of the raster, and may write to pixels beside it in the same rows.
 void march_visibility(const VisibilityJob& job, const Window& part);
 void march_bounce(const BounceJob& job, const Window& part);
 /// After march_bounce of the part and, where the pattern has a spacing, of the pixels around it.

@@ -21,6 +21,8 @@ struct Cell {
   float depth = kNothing, ray_length = 1;  ///< the ray's per unit of depth
   glm::vec3 normal{kNothing};
   float rounding = kNothing;
+
+  bool is_surface() const { return holds_solid(depth); }
 };
 
 /// What a solid holds in the planes of MarchLayer.
@@ -83,6 +85,7 @@ class Cells {
 }  // namespace
 
 MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Window& receivers) {
+  check_layers(solids);
   const Interleaving layout(g.surfel.width, g.surfel.height,
                             (g.window.x0 - g.display.x0) & (kPeriod - 1));
   const auto plane = [&] { return InterleavedPlane(layout); };
@@ -118,9 +121,8 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
         for (int c = 0; c < 3; ++c) scene.normal[std::size_t(c)][i] = cell.normal[c];
         scene.rounding[i] = cell.rounding;
         for (int k = 0; k < solids.layers(); ++k) {
-          const Span span = std::isnan(cell.depth)
-                                ? Span()
-                                : cells.span(cell, solids.at(k, g.surfel.index(x, y)));
+          const Span span =
+              cell.is_surface() ? cells.span(cell, solids.at(k, g.surfel.index(x, y))) : Span();
           MarchLayer& layer = scene.layers[std::size_t(k)];
           layer.depth[i] = span.depth, layer.thickness[i] = span.thickness;
         }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "scene/geometry.h"
@@ -9,15 +10,16 @@
 
 namespace ssdo {
 
-/// What is endless, in the units of MarchLayer: within 1e-4 of the direction of the view ray.
+/// What stands for an infinite thickness in the units of MarchLayer: seen from the receiver, its
+/// back is within 1e-4 of the direction of the view ray.
 constexpr float kEndlessShare = 1e4f, kEndlessLength = 1e15f;
 
-/// Least cosine between a normal and the view ray that divisions by it allow: a plane tilted by
-/// 89.9 degrees has 0.0017. A smooth normal that leans farther away is bent back to here.
+/// Least cosine between a normal and the direction to the viewer, so that it can be divided by; a
+/// plane tilted by 89.9 degrees has 0.0017. Smooth normals that lean away farther are bent to this.
 constexpr float kLeastFacing = 1e-3f;
 
-/// Values of the pixels at the frame's border. The first and the last row are stored as the rows of
-/// an InterleavedPlane are, the first and the last column as they come.
+/// Where values of the pixels at the frame's border are stored: the first and the last row in the
+/// order of an InterleavedPlane, then the first and the last column from top to bottom.
 class BorderLayout {
  public:
   explicit BorderLayout(const Interleaving& layout)
@@ -51,17 +53,21 @@ class BorderLayout {
 
 using BorderValues = std::vector<float>;
 
-/// One layer of solids; not-a-number where there is none. Thicknesses are a share of the depth in
-/// front, or a length in scene units where the camera is orthographic.
+/// Whether a depth of MarchLayer is that of a solid. Where there is none, it is not-a-number: no
+/// comparison with that holds, so that a march passes by without a mask.
+inline bool holds_solid(float depth) { return !std::isnan(depth); }
+
+/// One layer of solids. Both planes are not-a-number where there is none. Thicknesses are a share
+/// of the depth in front, or a length in scene units where the camera is orthographic.
 struct MarchLayer {
   InterleavedPlane depth;      ///< of the front, along the axis, positive
   InterleavedPlane thickness;  ///< from the front to the back
 };
 
-/// A raster of pixels as a march reads it: all of them can block and send, those of `receivers`
-/// gather. Positions are known from depths: where the camera's ray through the middle of a pixel
-/// meets the tangent plane of what the pixel shows. Normals belong to layer 0; the fronts of the
-/// layers behind it face the viewer. Planes are not-a-number where there is nothing.
+/// A raster of pixels as a march reads it: all of them occlude and send light, those of `receivers`
+/// gather it. A position is given by its depth: the point where the camera's ray through the middle
+/// of a pixel meets the tangent plane of the surface in that pixel. Normals belong to layer 0; the
+/// fronts of the layers behind it face the viewer. Planes are not-a-number where there is nothing.
 struct MarchScene {
   Interleaving layout;
   Window receivers;  ///< pixels of the raster, whose first is (0, 0)
@@ -78,6 +84,7 @@ struct MarchScene {
   BorderValues border_beyond;     ///< how far it may go on beyond the frame; empty: without limit
 
   const InterleavedPlane& depth() const { return layers.front().depth; }  ///< of what pixels show
+  bool shows_surface(std::ptrdiff_t i) const { return holds_solid(depth()[i]); }
   Window raster() const { return {0, 0, layout.width(), layout.height()}; }
 };
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which directions are open, in spherical harmonics: the visible set of a pixel against the light
-// of the environment, for a vector of pixels.
+// The visible directions of a pixel in spherical harmonics, and the light of the environment that
+// reaches it through them, for a vector of pixels.
 //
-// On the circle of a slice, harmonics of order L are sums of cos(k theta) and sin(k theta) up to
-// k = L. So the moments of a set of sectors up to L say all that they will ever be asked, and
-// 2 L + 2 equally spaced directions, weighted to have the same moments, stand for the set. They are
-// L + 1 lines: harmonics of an even order are the same at both ends, those of an odd one opposite.
+// On the circle of a slice, harmonics up to order L are sums of cos(k theta) and sin(k theta) with
+// k <= L. So their integrals over a set of sectors depend on the moments of the set up to L only,
+// and 2 L + 2 equally spaced directions, weighted to have the same moments, replace the set
+// exactly. They form L + 1 lines through the centre: harmonics of even order have the same value at
+// both ends of a line, those of odd order opposite values.
 #if defined(SSDO_BITMASK_MOMENTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_MOMENTS_INL_H_
 #undef SSDO_BITMASK_MOMENTS_INL_H_
@@ -58,7 +59,7 @@ struct RawMoments {
 template <int kDegree, class Lookup>
 HWY_INLINE RawMoments<kDegree> raw_moments(const Lookup& lookup) {
   RawMoments<kDegree> m;
-  // Moment 0 is not asked for where only the cosine with the normal is: degree 1.
+  // The cosine with the normal alone, degree 1, does not need moment 0.
   m.cosine[0] = kDegree > 1 ? lookup(0) : set(0);
   m.sine[0] = set(0);
   for (int k = 1; k <= kDegree; ++k) {
@@ -143,7 +144,7 @@ struct CircleDirections {
   }
 };
 
-/// Sums over slices, of what is hidden and of all that is above the tangent plane.
+/// Sums over slices: of the hidden sectors, and of all sectors above the tangent plane.
 template <int kOrder>
 struct Moments {
   static constexpr int kCount = (kOrder + 1) * (kOrder + 1);
@@ -154,8 +155,8 @@ struct Moments {
     for (int i = 0; i < kCount; ++i) hidden[i] = whole[i] = set(0);
   }
 
-  /// Bands 0 and 1 come from the moments as they are: ao and the bent normal are the same to the
-  /// bit whatever the order.
+  /// Bands 0 and 1 are taken from the moments directly, so that ao and the bent normal have the
+  /// same bits at every order.
   HWY_INLINE void add(const MarchReceiver& p, const SliceFrame& f,
                       const CircleMoments<kOrder>& hidden_of_slice,
                       const CircleMoments<kOrder>& whole_of_slice) {
@@ -188,8 +189,8 @@ struct Moments {
     return hn::IfThenElse(whole[0] > zero, hn::Clamp(one - hidden[0] / whole[0], zero, one), one);
   }
 
-  /// The part of the light with these weights that is visible. Part and whole are sums over the
-  /// same directions, so that their noise cancels: what is open has all of it.
+  /// Visible part of the light with these weights. Both sums are over the same directions, so that
+  /// noise cancels and an open surface receives exactly all of it. `otherwise` where there is none.
   HWY_INLINE V share_of_light(const float* light, V otherwise) const {
     V lost = set(0), total = set(0);
     for (int i = 0; i < kCount; ++i) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The pieces of surface that the pixels of a march stand for; see bitmask.cpp.
+// The piece of surface that each sampled pixel of a march represents; see bitmask.cpp.
 //
-// Steps grow with the distance, so that a march sees few pixels of what is far. Taken for points
-// they lose half a step at the upper edge of all that rises, and what is thinner than a step: over
-// seven frames ao came out 0.023 too open at 24 steps. So each pixel stands for its stretch of the
-// way, over which its surface goes on as its tangent plane. On a plane this is exact, and over an
-// edge, or something thin, right on average, as where steps fall differs from pixel to pixel.
+// Steps grow with distance, so a march samples few pixels of distant geometry. Treated as points,
+// samples miss up to half a step at the upper edge of an occluder, and any occluder thinner than a
+// step: over seven frames ao was 0.023 too open at 24 steps. So each sampled pixel represents the
+// stretch of the march from halfway to the sample before to halfway to the one after, and its
+// surface is extended over that stretch along its tangent plane. This is exact on a plane. At edges
+// and on thin occluders it is right on average, because steps fall elsewhere in every pixel of the
+// pattern.
 #if defined(SSDO_BITMASK_PIECE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_PIECE_INL_H_
 #undef SSDO_BITMASK_PIECE_INL_H_
@@ -24,8 +26,8 @@ struct Piece {
   SlicePoint inner, outer;
 };
 
-/// Where a piece ends: a share of the way to its pixel, at this depth. `rise` and `across` are
-/// those of the pixel.
+/// The end of a piece, at `share` of the way from the receiver to the sampled pixel and at this
+/// depth. `rise` and `across` are those of the pixel.
 template <bool kOrthographic>
 HWY_INLINE SlicePoint end_at(const MarchReceiver& p, const SideFrame& side, V share, V depth,
                              V rise, V across) {
@@ -35,17 +37,19 @@ HWY_INLINE SlicePoint end_at(const MarchReceiver& p, const SideFrame& side, V sh
   return {s, hn::NegMulAdd(s, side.slope, height_above<kOrthographic>(p, end_rise, depth))};
 }
 
-/// Most that depth grows or shrinks, as a factor, from a pixel to the ends of its piece: a piece of
-/// a plane that is seen edge-on, or meets the horizon within the step, ends before.
+/// Largest factor by which depth may grow or shrink from a pixel to the ends of its piece: where a
+/// plane is seen edge-on, or reaches its horizon within the step, the piece is cut there. Some
+/// limit is needed, but its value does not matter: on four scenes of Cycles 1.4 and 4 change the
+/// mean errors of ao and direct light by less than 0.001.
 constexpr float kMostDeepening = 2;
 
-/// The piece that the pixel at `i` stands for. `rise` and `across` are those of its middle.
+/// The piece that the pixel at `i` represents. `rise` and `across` are those of its middle.
 template <bool kOrthographic>
 HWY_INLINE Piece piece_at(const MarchScene& scene, const MarchReceiver& p, const SideFrame& side,
                           const SliceStep& step, std::ptrdiff_t i, V depth, V rise, V across) {
   const V3 m = load(scene.normal, i);
   const V ex = set(step.dx / scene.fx), ey = set(-step.dy / scene.fy);
-  // M.r, r the ray through the pixel, and how much it changes over the way there.
+  // M . r, with r the ray through the pixel, and its change from the receiver to the pixel.
   const V one = set(1);
   V m_ray = set(0) - m.z;
   if constexpr (!kOrthographic)
@@ -55,7 +59,8 @@ HWY_INLINE Piece piece_at(const MarchScene& scene, const MarchReceiver& p, const
   const auto end = [&](float of_way, bool inner) HWY_ATTR {
     V share = set(of_way), end_depth;
     if constexpr (kOrthographic) {
-      // Depth has no scale here: it changes by no more than the way is long.
+      // Depth may be 0 or negative here, so no factor can limit it: it changes by at most the
+      // distance across.
       const V limit = hn::Abs(across), change = (one - share) * m_way / m_ray;
       const V limited = hn::Clamp(change, set(0) - limit, limit);
       share = hn::IfThenElse(limited != change, one - limited * m_ray / m_way, share);
@@ -71,14 +76,14 @@ HWY_INLINE Piece piece_at(const MarchScene& scene, const MarchReceiver& p, const
       }
       end_depth = depth * m_ray / end_ray;
     }
-    // Where a round thing turns away, its tangent plane would come far before it.
+    // On a round silhouette the tangent plane would extend far in front of the surface.
     if (inner) end_depth = hn::Max(end_depth, depth);
     return end_at<kOrthographic>(p, side, share, end_depth, rise, across);
   };
   return {end(step.inner, true), end(step.outer, false)};
 }
 
-/// The piece of a front of unknown slope at this depth: it faces the viewer.
+/// The piece of a front at this depth whose slope is unknown: taken to face the viewer.
 template <bool kOrthographic>
 HWY_INLINE Piece piece_facing_viewer(const MarchReceiver& p, const SideFrame& side,
                                      const SliceStep& step, V depth, V rise, V across) {
@@ -86,14 +91,14 @@ HWY_INLINE Piece piece_facing_viewer(const MarchReceiver& p, const SideFrame& si
           end_at<kOrthographic>(p, side, set(step.outer), depth, rise, across)};
 }
 
-/// Leaves what lies within the radius. Gives where that is anything.
+/// Cuts the piece to the part within the radius, and returns the lanes where there is such a part.
 HWY_INLINE M clip(Piece& piece, float radius) {
   const V zero = set(0), one = set(1);
   const SlicePoint start = piece.inner, way{piece.outer.s - start.s, piece.outer.v - start.v};
   const V per_length = one / hn::Sqrt(hn::Max(dot(way, way), set(1e-30f)));
   const SlicePoint unit{way.s * per_length, way.v * per_length};
-  // The line comes as near to the receiver as `nearest`, at its `foot`, and is within the radius
-  // for half a chord to both sides.
+  // The line through the piece is `nearest` away from the receiver at its `foot`, and within the
+  // radius for half a chord on both sides of it.
   const V nearest = hn::MulSub(start.s, unit.v, start.v * unit.s), foot = zero - dot(start, unit),
           half_chord2 = hn::NegMulAdd(nearest, nearest, set(radius * radius));
   const V half_chord = hn::Sqrt(hn::Max(half_chord2, zero));
@@ -103,8 +108,8 @@ HWY_INLINE M clip(Piece& piece, float radius) {
   return hn::And(half_chord2 > zero, from < to);
 }
 
-/// The sectors that a piece hides whose middle lies at s, `above` the receiver's tangent plane, and
-/// reaches back by `depth`.
+/// The sectors hidden by a solid whose front is the piece. Its middle is at s and at the height
+/// `above` over the receiver's tangent plane; its back is `depth` behind that.
 template <bool kOrthographic>
 HWY_INLINE VU sectors_behind_piece(const MarchReceiver& p, const SideFrame& side, Piece piece, V s,
                                    V above, V depth, float radius) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// One side of a slice, marched over the frame and beyond it by a vector of pixels; see bitmask.cpp.
+// The march of a vector of pixels along one side of a slice, in the frame and beyond its border;
+// see bitmask.cpp.
 #if defined(SSDO_BITMASK_SIDE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_SIDE_INL_H_
 #undef SSDO_BITMASK_SIDE_INL_H_
@@ -17,24 +18,24 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// The order in which slices are taken: every other one first, so that each half of them covers
-/// all directions.
+/// The slice to march as the k-th of `count`: even ones first, then odd ones, so that each half of
+/// them covers all directions evenly.
 HWY_INLINE int slice_at(int k, int count) {
   const int firsts = (count + 1) / 2;
   return k < firsts ? 2 * k : 2 * (k - firsts) + 1;
 }
 
-/// The difference of two halves, with `first` of `count` slices in one of them, is the standard
-/// error of the whole times this, with the sign of the pattern's member.
+/// The standard error of the mean over `count` slices, divided by the difference between the means
+/// of its two halves, of which one has `first` slices. Signed as SlicePattern::half_sign() is.
 HWY_INLINE float error_of_difference(const March& march, const Place& place, int first, int count) {
   const int row = (place.y + march.scene.first_y) & (Interleaving::kPeriod - 1);
   return march.pattern.half_sign(place.column_phase, row) *
          std::sqrt(float(first) * float(count - first)) / float(count);
 }
 
-/// Marches one side over the raster, near to far, and gives the sectors that stay open. `on_met`
-/// hears of every solid that is met: its layer, its index, the step, and the sectors in which it is
-/// the first.
+/// Marches one side over the raster, near to far, and returns the sectors that stay open. Calls
+/// `on_met(layer, index, step, sectors)` for every solid that is met, with the sectors in which it
+/// is the first.
 template <bool kOrthographic, class Met>
 HWY_INLINE VU march_raster(const March& march, const MarchReceiver& p, const SideFrame& side,
                            const std::vector<SliceStep>& steps, const Met& on_met) {
@@ -49,8 +50,8 @@ HWY_INLINE VU march_raster(const March& march, const MarchReceiver& p, const Sid
         first + kLanes <= 0)
       break;
     const std::ptrdiff_t i = p.place.index + step.offset;
-    // The next vector of receivers looks at the pixels beside these. There are too many such
-    // streams for the processor to see.
+    // The next vector of receivers samples the pixels beside these. The processor's own prefetcher
+    // cannot follow as many streams.
     const auto prefetch = [&](const InterleavedPlane& plane)
                               HWY_ATTR { hwy::Prefetch(plane.data() + i + 2 * kLanes - 1); };
     prefetch(seen.depth), prefetch(seen.thickness);
@@ -88,8 +89,9 @@ HWY_INLINE VU march_raster(const March& march, const MarchReceiver& p, const Sid
   return open;
 }
 
-/// The same over the raster, what further views show, and beyond the frame. `on_further` hears of
-/// the former (further-inl.h), `on_beyond` of the sectors that are hidden beyond.
+/// The same over the raster, what further views show, and beyond the raster's border. `on_further`
+/// is told of what rays meet there (further-inl.h); `on_beyond(border, sectors)` is called with the
+/// sectors that are first hidden beyond the border.
 template <bool kOrthographic, class Met, class Further, class Beyond>
 HWY_INLINE VU march_side(const March& march, const MarchReceiver& p, const SideFrame& side,
                          const Slice& slice, bool forward, const Met& on_met,
@@ -107,8 +109,8 @@ HWY_INLINE VU march_side(const March& march, const MarchReceiver& p, const SideF
   return hn::AndNot(bits, open);
 }
 
-/// Calls `work(receiver, slices)` for each vector of pixels of a part of the raster that marches
-/// and shows a surface.
+/// Calls `work(receiver, slices)` for each vector of pixels in a part of the raster that shows a
+/// surface and whose member of the pattern has slices.
 template <class Work>
 HWY_INLINE void for_each_receiver(const March& march, const Window& part, const Work& work) {
   for_each_vector(march.scene, part, [&](const Place& place) HWY_ATTR {

@@ -25,10 +25,10 @@ int order_of(int column, int row, int size) {
   return rank;
 }
 
-/// What a seed does to the ranks of a pattern: bits of it, reversed, that ranks are combined with
-/// by exclusive or. All that holds for the order holds for the new one. Seeds that follow each
-/// other give a member ranks that are far apart and in the end all, so that frames of a sequence,
-/// or runs for an average, share no direction. Seed 0 changes nothing.
+/// The number that a seed combines ranks with, by exclusive or: the seed's low bits in reverse
+/// order. The new order spreads neighbours as well as the old one. Consecutive seeds give a member
+/// ranks that are far apart, and in the end every rank, so that frames of a sequence, or runs that
+/// are averaged, share no direction. Seed 0 changes nothing.
 int turn_of(unsigned seed, int size) {
   int bits = 0;
   for (int most = size * size; most > 1; most /= 2, seed /= 2) bits = 2 * bits + int(seed & 1);
@@ -43,25 +43,26 @@ float half_sign_of(int rank) {
   return std::popcount(unsigned(rank) & kRowsColumnsRows) % 2 == 0 ? 1.0f : -1.0f;
 }
 
-/// Steps that grow in proportion to the distance are longest where the frame's largest things are
-/// met. This much less than 1, and they grow less; the error against many steps fell by a third.
+/// Exponent of the spacing of steps. With 1, steps grow in proportion to the distance and are
+/// longest where the largest occluders are. A smaller exponent lets them grow less: with 0.7 the
+/// error against many steps fell by a third.
 constexpr double kFarther = 0.7;
 
-/// Phases stay away from the edges of sectors: on a plane, rounding moves the horizon by a little,
-/// and no sector may notice.
+/// Phases keep a distance from the edges of sectors, so that the horizon of a plane, which rounding
+/// moves a little, never passes the sample point of a sector.
 float phase_in(double t) { return float(0.02 + 0.96 * t); }
 
-/// Pixels that are no farther apart than this, along the march, are neighbours.
+/// Samples that are no farther apart than this, in pixels along the march, are neighbours.
 constexpr float kNeighbours = 1.5f;
 
-/// The whole number nearest to `x` that leads from `place` to the middle of a block of 4.
+/// The whole number nearest to `x` for which place + x is the middle of a block of 4.
 int to_block(double x, int place) {
   constexpr int kBlock = 4, kMiddle = kBlock / 2;
   return int(std::lround((x + place - kMiddle) / kBlock)) * kBlock + kMiddle - place;
 }
 
-/// Gives every step its stretch of the way, which begins outside of the pixel where the march
-/// does. Neighbouring pixels leave none to be shared.
+/// Gives every step the stretch of the march that it represents; the first begins outside of the
+/// pixel where the march starts. Between neighbouring pixels there is nothing to share.
 void share_the_way(std::vector<SliceStep>& steps) {
   const auto distance = [](const SliceStep& step) { return std::hypot(step.dx, step.dy); };
   float before = 0;

@@ -11,13 +11,13 @@ namespace ssdo {
 /// Pixels from 1 to `diagonal` for t from 0 to 1, dense at the start.
 double march_distance(double t, double diagonal);
 
-/// Where steps are longer than this, in pixels, one pixel in each block of 4 x 4 serves all members
-/// of the pattern. Of the whole frame these are few enough to stay in the cache, where the pixels
-/// that each member would choose for itself come from memory every time.
+/// Where steps are longer than this, in pixels, all members of the pattern sample the same pixel of
+/// each block of 4 x 4. These are few enough in the whole frame to stay in the cache; if each
+/// member sampled a pixel of its own, most would come from memory.
 constexpr double kLongStep = 32;
 
-/// A pixel that a march looks at, seen from the pixel where it starts, and the stretch of the way
-/// that it stands for: half way to the pixels before and after.
+/// A pixel that a march samples, relative to the pixel where it starts, and the stretch of the
+/// march that it represents: halfway to the samples before and after.
 struct SliceStep {
   float dx, dy;           ///< pixels, y down
   int row;                ///< dy as a whole number
@@ -30,7 +30,7 @@ struct SliceStep {
 /// One side of a slice.
 struct SliceSide {
   std::vector<SliceStep> steps;  ///< near to far
-  float phase;  ///< in 0..1: where in every sector the point lies that stands for it
+  float phase;                   ///< in 0..1: place of the sample point within every sector
 };
 
 /// A plane through the view ray, given by its line in the picture.
@@ -50,16 +50,15 @@ class SlicePattern {
 
   int spacing() const { return spacing_; }
 
-  /// 1 or -1: which half of a member's slices belongs to the first half of all slices. With these
-  /// signs each half covers all directions about evenly, in one pixel and in all that a filter
-  /// averages, so that the difference of the two is noise. With the same sign everywhere, one
-  /// half would have the slices of some directions, and the difference would show what stands
-  /// there.
+  /// 1 or -1: which half of a member's slices counts as the first half. With these signs each half
+  /// covers all directions about evenly, both within a pixel and over the pixels that a filter
+  /// averages, so that the difference of the halves is noise. With the same sign everywhere, one
+  /// half would hold certain directions only, and the difference would depend on the scene.
   float half_sign(int column, int row) const {
     return half_signs_[std::size_t(row * Interleaving::kPeriod + column)];
   }
 
-  /// The rank of each member in an order in which neighbours are far apart, 0..T^2 - 1.
+  /// The rank of each member, 0..T^2 - 1, in an order that puts neighbours far apart.
   static int rank(int member);
 
   const std::vector<Slice>& member(int column, int row) const {

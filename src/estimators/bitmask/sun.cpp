@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The light of a sun where a pixel sees it: a march along the one slice that holds it, compiled
-// once for every instruction set. Here lanes look at different offsets, so that samples are
-// gathered.
+// The light of a sun: a march along the one slice that contains its direction, compiled once for
+// every instruction set. That slice differs from pixel to pixel, so samples are gathered.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/sun.cpp"
 #include <hwy/foreach_target.h>
@@ -14,22 +13,24 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// How far a thing goes on beyond the frame before a sun, in widths of its own. What hides a sun is
-/// all or nothing, where slices average many guesses, so that the guess has to be a safer one.
+/// How far a surface may continue beyond the frame and hide a sun, in multiples of its thickness. A
+/// sun is hidden or not by a single assumed surface, while slices average many of them; so the
+/// assumption here is a more cautious one.
 constexpr float kSunWidths = 8;
 
-/// How many pixels of the border are asked what goes on there, and how far they lie to both sides
-/// of where the ray leaves the frame, in heights of the frame. One alone may show a ledge, or the
-/// gap beside it, and draw its shadow across the frame. Relative error of direct light, one to
-/// five: a street 0.994, 0.946; things on a table 0.121, 0.113; more or farther ones change little.
+/// How many pixels of the border are extended, and how far they lie on both sides of the place
+/// where the ray leaves the frame, in heights of the frame. A single one may show a ledge, or the
+/// gap beside it, and cast a wrong shadow across the frame. Relative error of direct light with one
+/// and with five: a street 0.994 and 0.946, things on a table 0.121 and 0.113; more pixels, or
+/// pixels farther away, change little.
 constexpr int kWitnesses = 5;
 constexpr float kWitnessReach = 0.1f;
 
 /// The way to the sun from a receiver.
 struct SunRay {
   SlicePoint along;  ///< its direction in the slice
-  V step_x, step_y;  ///< unit, pixels: its picture
-  V end_px;          ///< where its picture ends: at the horizon
+  V step_x, step_y;  ///< its direction in the picture, unit, pixels
+  V end_px;          ///< how far away in the picture it reaches the horizon
 };
 
 HWY_INLINE SunRay sun_ray(const MarchScene& scene, const MarchReceiver& p, const glm::vec3& to,
@@ -61,8 +62,9 @@ HWY_INLINE SunRay sun_ray(const MarchScene& scene, const MarchReceiver& p, const
   return ray;
 }
 
-/// Which lanes that look see a surface in the ray, which lies at s, `above` the receiver's tangent
-/// plane, and reaches back by what `load_depth` gives: few rays ask.
+/// In which of the lanes `looks` the ray hits a solid whose front is at s and at the height `above`
+/// over the receiver's tangent plane, and whose back is `load_depth()` behind that. Few rays need
+/// the back.
 template <bool kOrthographic, class LoadDepth>
 HWY_INLINE M blocks(const MarchReceiver& p, const SideFrame& side, const SunRay& ray, M looks, V s,
                     V above, float radius, const LoadDepth& load_depth) {
@@ -74,15 +76,15 @@ HWY_INLINE M blocks(const MarchReceiver& p, const SideFrame& side, const SunRay&
   return hn::And(front_above, back.s * to.v >= back.v * to.s);
 }
 
-/// A pixel in the middle of its block of 4 x 4, where samples lie far apart: as in the slices, so
-/// few are asked for that they stay in the cache.
+/// The middle of a pixel's block of 4 x 4, sampled in its place where samples are far apart: so few
+/// pixels stay in the cache, as in slices (kLongStep).
 HWY_INLINE V middle_of_block(V pixel) {
   const V block = set(4), middle = set(2);
   return hn::MulAdd(hn::Round((pixel - middle) * set(0.25f)), block, middle);
 }
 
-/// How many of the surfaces that go on beyond the frame let rays pass, 0..1. `turn` in 0..1 differs
-/// from member to member of the pattern.
+/// Share of the surfaces assumed beyond the frame that do not hide the sun, 0..1. `turn` in 0..1
+/// differs between the members of the pattern.
 template <bool kOrthographic>
 HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const SideFrame& side,
                          const SunRay& ray, M open, float turn) {
@@ -93,13 +95,13 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const SideF
     const float aside_px = std::round((float(k) + turn - 0.5f * kWitnesses) * apart_px);
     const Border border = border_along(march.scene, p, ray.step_x, ray.step_y, false, aside_px);
     const Extension e = extend<kOrthographic>(march, p, side, border, kSunWidths);
-    // The ray passes between both ends of the piece.
+    // The ray crosses the piece where its ends lie on different sides of it.
     const SlicePoint to = ray.along;
     const V here = e.start.s * to.v - e.start.v * to.s, there = e.end.s * to.v - e.end.v * to.s;
     const M leaves = hn::And(e.exists, border.distance_px < ray.end_px);
     const M crosses = hn::And(leaves, here * there <= zero);
     const M rises = hn::Or(e.above > zero, e.end_above > zero);
-    // The last step may be far from the border.
+    // The pixel at the border is sampled as well: the last step may be far from it.
     const M meets = blocks<kOrthographic>(p, side, ray, hn::And(open, leaves), e.start.s, e.above,
                                           march.radius, [&]() HWY_ATTR { return e.depth; });
     const M hides = hn::Or(meets, hn::And(crosses, rises));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// How open each pixel is, and to which light, by method bitmask; see bitmask.cpp. Compiled once for
-// every instruction set.
+// The visibility of each pixel and its direct light by method bitmask; see bitmask.cpp. Compiled
+// once for every instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/visibility.cpp"
 #include <hwy/foreach_target.h>

@@ -24,7 +24,6 @@
 #include "estimators/msvo/scales.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "parallel/tiles.h"
 
@@ -32,7 +31,7 @@
 #define HWY_TARGET_INCLUDE "estimators/msvo/scales.cpp"
 #include <hwy/foreach_target.h>
 
-#include "simd/lanes-inl.h"
+#include "estimators/view_space/lanes-inl.h"
 
 #ifndef SSDO_COARSE_ROWS_
 #define SSDO_COARSE_ROWS_
@@ -118,10 +117,9 @@ HWY_INLINE V bilateral(const CoarseRows& rows, const Upsampling& how, V depth, i
 void upsample_row(const CoarseRows& rows, const Upsampling& how, bool multiply, int coarse_width,
                   int odd, const float* depth, float* open) {
   const D d;
-  const V background = set(std::numeric_limits<float>::infinity());
   const auto opened = [&](V fine_depth, V fine, int x, int side) HWY_ATTR {
     const V value = fine * bilateral(rows, how, fine_depth, x, side);
-    return hn::IfThenElse(fine_depth < background, saturate(value), set(1));
+    return hn::IfThenElse(shows_surface(hn::Neg(fine_depth)), saturate(value), set(1));
   };
   for (int x = 0; x < coarse_width; x += kLanes) {
     // Of the fine pixels in a coarse one, the left one looks to the left and the right one to the

@@ -57,7 +57,7 @@ void upsample_tile(const UpsamplingJob& job, const Tile& tile) {
       // On its own plane whatever rounding says, p itself among them.
       const V w = weight * hn::IfThenElse(off_plane <= set(0), set(1), on_plane);
       // Background has no place that could be weighed.
-      const V counted = hn::IfThenElseZero(z > set(kBackgroundDepth), w);
+      const V counted = hn::IfThenElseZero(shows_surface(z), w);
       sum = hn::MulAdd(counted, value, sum);
       whole = whole + counted;
     };
@@ -147,7 +147,7 @@ Plane<float> HalfResolution::upsample_bilinear(const Plane<float>& half) const {
       const float before = between[std::size_t(columns_.before[x])];
       const float value =
           before + columns_.share[x] * (between[std::size_t(columns_.after[x])] - before);
-      to[x] = z[x] == kBackgroundDepth ? 1.0f : value;
+      to[x] = shows_surface(z[x]) ? value : 1.0f;
     }
   });
   return out;

@@ -25,6 +25,9 @@ struct ViewReceiver : Receiver {
   V ray_x, ray_y;  ///< of the ray through the pixel, as ViewPlanes has them
 };
 
+/// The same of a vector of depths of ViewPlanes.
+HWY_INLINE M shows_surface(V z) { return z > set(kBackgroundDepth); }
+
 HWY_INLINE V3 along_ray(const ViewPlanes& planes, V ray_x, V ray_y, V z) {
   if (planes.orthographic) return {ray_x, ray_y, z};
   return {ray_x * z, ray_y * z, z};
@@ -34,7 +37,7 @@ HWY_INLINE V3 along_ray(const ViewPlanes& planes, V ray_x, V ray_y, V z) {
 HWY_INLINE ViewReceiver load_receiver(const ViewPlanes& planes, int x, int y) {
   ViewReceiver p;
   const V z = load(planes.z.row(y) + x);
-  p.valid = z > set(kBackgroundDepth);
+  p.valid = shows_surface(z);
   p.ray_x = load(planes.ray_x() + x), p.ray_y = set(planes.ray_y()[y]);
   p.position = along_ray(planes, p.ray_x, p.ray_y, hn::IfThenElse(p.valid, z, set(-1)));
   p.normal = {load(planes.nx.row(y) + x), load(planes.ny.row(y) + x), load(planes.nz.row(y) + x)};
@@ -144,7 +147,7 @@ template <class Work>
 HWY_INLINE void for_each_vector(const ViewPlanes& planes, const Tile& tile, const Work& work) {
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0; x < tile.x1; x += kLanes) {
-      if (any(load(planes.z.row(y) + x) > set(kBackgroundDepth))) work(x, y);
+      if (any(shows_surface(load(planes.z.row(y) + x)))) work(x, y);
     }
   }
 }

@@ -15,6 +15,9 @@ namespace ssdo {
 /// several depths is background where one of them is. Not-a-number would have the first alone.
 constexpr float kBackgroundDepth = -std::numeric_limits<float>::infinity();
 
+/// Whether a depth of ViewPlanes, which DepthMips repeats, is that of a surface.
+inline bool shows_surface(float z) { return z > kBackgroundDepth; }
+
 /// The frame as methods read it that look at places which differ from pixel to pixel. Pixels are
 /// those of the data window, (0, 0) its upper left one, their centres at halves.
 ///

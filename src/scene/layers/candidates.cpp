@@ -45,7 +45,7 @@ std::vector<std::string> keys_of(const LayerGroup& group, const Layer& layer) {
   return keys;
 }
 
-bool is_scalar(Role role) { return component_sets(role)[0].size() == 1; }
+bool is_scalar(Role role) { return row_of(role).components[0].size() == 1; }
 
 /// Candidates from single channels of a group, such as a bare "Z".
 void add_scalars(Role role, const LayerGroup& group, std::vector<Candidate>& found) {
@@ -59,7 +59,7 @@ void add_scalars(Role role, const LayerGroup& group, std::vector<Candidate>& fou
 /// The group's channels by every set of components that they hold: R G B and Px Py Pz side by side.
 std::vector<Layer> fitting_layers(const LayerGroup& group, Role role) {
   std::vector<Layer> layers;
-  for (const Components& set : component_sets(role)) {
+  for (const Components& set : row_of(role).components) {
     if (role == Role::depth && is_coordinate(group, set[0])) continue;
     Layer layer{group.file, group.part, group.name, {}, false, false};
     for (const std::string& component : set) {

@@ -17,10 +17,6 @@
 namespace ssdo {
 namespace {
 
-constexpr std::array<std::string_view, kRoleCount> kRoleNames = {
-    "position", "normal",   "albedo",  "depth",     "alpha",
-    "beauty",   "radiance", "ambient", "roughness", "motion"};
-
 /// Where layers are looked for, best first: a role is taken from the first set that has it.
 using Tiers = std::vector<std::vector<LayerGroup>>;
 
@@ -184,22 +180,13 @@ class LayerFinder {
 
 }  // namespace
 
-std::string_view role_name(Role role) { return kRoleNames[std::size_t(role)]; }
-
-std::optional<Role> role_from_name(std::string_view name) {
-  for (std::size_t i = 0; i < kRoleCount; ++i) {
-    if (kRoleNames[i] == name) return Role(i);
-  }
-  return std::nullopt;
-}
-
 LayerRequest parse_layer_request(const std::string& text) {
   const auto equals = text.find('=');
   const auto role = role_from_name(text.substr(0, equals));
   if (equals == std::string::npos || !role || equals + 1 == text.size()) {
     throw Error(ExitCode::usage,
                 fmt::format("--aov {}: expected ROLE=LAYER or ROLE=FILE:LAYER with ROLE one of {}",
-                            text, fmt::join(kRoleNames, ", ")));
+                            text, fmt::join(role_names(), ", ")));
   }
   LayerRequest request{*role, "", text.substr(equals + 1)};
   // A layer name may contain a colon: it separates a file only where that file or sequence exists.

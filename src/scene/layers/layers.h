@@ -4,30 +4,12 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "io/exr_reader.h"
+#include "scene/layers/roles.h"
 
 namespace ssdo {
-
-/// What a layer is used as.
-enum class Role {
-  position,
-  normal,
-  albedo,
-  depth,
-  alpha,
-  beauty,
-  radiance,
-  ambient,
-  roughness,
-  motion
-};
-inline constexpr std::size_t kRoleCount = 10;
-
-std::string_view role_name(Role role);
-std::optional<Role> role_from_name(std::string_view name);
 
 /// A layer that was chosen for a role: three channels for vectors and colours, two for motion in
 /// the picture, one for scalars.
@@ -58,7 +40,7 @@ struct LayerTable {
 /// Parses the value of --aov. Errors: ExitCode::usage.
 LayerRequest parse_layer_request(const std::string& text);
 
-/// Finds the layer of every role by the names that renderers give them (DCC table, layers.cpp).
+/// Finds the layer of every role by the names that renderers give them (roles.cpp).
 /// A request wins over names. `files[0]` is the frame; a request with a file refers to the file of
 /// the same path in `files`. All layers are of the view of the position, or else of the depth.
 /// `only_part` is empty, or a part by name or number, which the other parts of its view complete,

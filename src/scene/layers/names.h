@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/layers/layers.h"
+#include "scene/layers/roles.h"
 
 namespace ssdo {
 
@@ -18,10 +18,5 @@ std::string normalise(std::string_view text);
 
 /// The place of the first name known for the role that one of the keys matches; smaller is better.
 std::optional<std::size_t> rank_of(Role role, const std::vector<std::string>& keys);
-
-using Components = std::vector<std::string>;
-
-/// The component names, in lower case, under which a role's channels may stand.
-const std::vector<Components>& component_sets(Role role);
 
 }  // namespace ssdo

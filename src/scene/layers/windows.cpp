@@ -36,27 +36,9 @@ std::string text_of(const Files& files, Role role, const Layer& layer) {
                      text_of(*files[std::size_t(layer.file)], part_of(files, layer)));
 }
 
-/// What a surface gets that lies outside the layer's data window.
-std::string_view consequence(Role role) {
-  switch (role) {
-    case Role::normal:
-      return "have their normal rebuilt from P";
-    case Role::alpha:
-    case Role::depth:
-      return "count as background";
-    case Role::motion:
-      return "have no history";
-    case Role::roughness:
-      return "have a roughness of 0";
-    default:
-      return "are black in it";
-  }
-}
-
 /// Whether the frame shows a surface there, whatever the layers say that end before it.
 bool shows_surface(const GBuffer& g, std::size_t i, Role role) {
-  const bool decides = role == Role::alpha || role == Role::depth;
-  if (!decides || g.position.empty()) return g.valid[i] != 0;
+  if (!row_of(role).background_outside || g.position.empty()) return g.valid[i] != 0;
   const glm::vec3 p = g.position[i];
   return std::isfinite(p.x + p.y + p.z) && p != glm::vec3(0);
 }
@@ -75,7 +57,7 @@ void note_data_window(const Files& files, Role role, const Layer& layer, GBuffer
   if (left_out == 0) return;
   g.warnings.push_back(fmt::format("{} ends at its data window {}: {} of {} surfaces {}",
                                    text_of(files, role, layer), text_of(own), left_out, surfaces,
-                                   consequence(role)));
+                                   row_of(role).outside));
 }
 
 }  // namespace

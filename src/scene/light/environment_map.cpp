@@ -34,7 +34,7 @@ std::optional<PictureLayer> restrict_to(const PictureLayer& layer, const Compone
 
 /// Red, green and blue of a layer, or its one channel of grey. A Y beside an X is a coordinate.
 std::optional<PictureLayer> as_light(const PictureLayer& layer) {
-  for (const Components& colors : component_sets(Role::beauty)) {
+  for (const Components& colors : row_of(Role::beauty).components) {
     if (auto found = restrict_to(layer, colors)) return found;
   }
   for (const char* other : {"x", "u", "g"}) {

@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "estimators/trace/ray_scene.h"
 #include "support/analytic_scene.h"
 
@@ -79,6 +82,21 @@ TEST(HeightField, GoesOnBehindWhatIsSeenWithoutACut) {
   }
 }
 
+TEST(HeightField, JoinsTheSecondLayerToWhatIsSeenBeside) {
+  for (const bool orthographic : {false, true}) {
+    const Geometry g = card_before_wall(orthographic);
+    const HeightField field = build_height_field(g, guess_solids(g));
+    std::size_t of_wall = 0;
+    for (const auto& triangle : field.sheets.triangles) {
+      of_wall += std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t corner) {
+        const auto sender = std::size_t(field.sheets.owners[corner].sender);
+        return g.surfel[sender].position.z < -5.5f;
+      });
+    }
+    EXPECT_EQ(of_wall, 2 * kCells) << "one sheet without a cut, behind the card's edges too";
+  }
+}
+
 TEST(HeightField, HoldsALayerWhateverItsNumber) {
   const Geometry g = card_before_wall(false);
   const Solids guess = guess_solids(g);
@@ -114,6 +132,13 @@ TEST(HeightField, HoldsAsManyLayersAsAPixelHas) {
     EXPECT_EQ(rays.first_hit(origin, along, 0.15).sender, int(middle)) << from;
     EXPECT_FALSE(rays.is_blocked(origin, along, 0.04)) << from;
   }
+}
+
+TEST(HeightField, RefusesMoreLayersThanItHasRoomFor) {
+  const Geometry g = card_before_wall(false);
+  Solids solids = guess_solids(g);
+  while (solids.layers() <= kMostLayers) solids.behind.push_back(solids.behind.front());
+  EXPECT_THROW(build_height_field(g, solids), std::logic_error);
 }
 
 }  // namespace

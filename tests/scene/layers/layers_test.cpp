@@ -196,6 +196,19 @@ TEST(Layers, FindsRoughnessWhereItIsUsed) {
       << "nothing to choose where nobody asks";
 }
 
+TEST(Layers, EveryRoleHasARow) {
+  ASSERT_EQ(role_names().size(), kRoleCount);
+  for (std::size_t i = 0; i < kRoleCount; ++i) {
+    const RoleRow& row = row_of(Role(i));
+    EXPECT_EQ(role_from_name(row.name), Role(i)) << "no name, or that of another role";
+    EXPECT_FALSE(row.outside.empty()) << row.name;
+    ASSERT_FALSE(row.components.empty()) << row.name;
+    for (const Components& set : row.components)
+      EXPECT_EQ(set.size(), row.components[0].size()) << row.name;
+  }
+  EXPECT_EQ(role_from_name(""), std::nullopt);
+}
+
 TEST(Layers, RequestsAreParsed) {
   EXPECT_EQ(parse_layer_request("normal=my:layer").layer, "my:layer")
       << "no such file: the colon is the layer's";
