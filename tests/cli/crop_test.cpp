@@ -83,7 +83,7 @@ TEST_F(Crop, OfADataWindowThatCoversPartOfTheDisplayWindow) {
 
 TEST_F(Crop, ThatWouldLeaveNothingIsRefused) {
   write("in.exr", {64, 0, 120, 48});
-  const Finished done = run("in.exr", "out.exr", {"--crop"});
+  const Finished done = run("in.exr", "out.exr", {"--crop", "--fov", "40"});
   EXPECT_EQ(done.code, 2);
   EXPECT_THAT(done.error_line(), AllOf(HasSubstr("in.exr"), HasSubstr("leave out --crop")));
   EXPECT_FALSE(std::filesystem::exists(path("out.exr")));
