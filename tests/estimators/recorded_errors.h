@@ -33,4 +33,20 @@ inline const std::vector<RecordedErrors> kRecordedErrors = {
     {"msvo", {0.1885, 0.2130, 0.2584}, {0.4106, 0.2461, 0.3154}},
 };
 
+/// Of the default method on the room corner with 25 % of overscan on each side.
+inline constexpr TruthErrors kRecordedRoomCornerOverscan = {0.0319, 0.0269, 0.0374, 0.1360};
+
+/// Means over five further scenes of what the default method is wrong by when it knows this much,
+/// in the units of TruthErrors; `white` is ao without a radius.
+struct RecordedKnownGeometry {
+  std::string known;  ///< as the README says it
+  std::string file;   ///< of a scene
+  double ao_small, ao_large, white, direct, bounce;
+};
+
+inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometry = {
+    {"the frame alone", "gbuffer.exr", 0.0644, 0.0830, 0.1207, 0.3437, 0.4996},
+    {"with overscan", "overscan.exr", 0.0616, 0.0564, 0.0818, 0.3379, 0.3310},
+};
+
 }  // namespace ssdo::test
