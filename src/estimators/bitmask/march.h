@@ -25,15 +25,17 @@ struct March {
 struct VisibilityJob {
   March march;
   /// Bands of spherical harmonics that light is gathered in, up to 4; 0: no direction matters.
-  int order;
+  int order = 0;
   /// Weights of the basis polynomials, (order + 1)^2 for red, then green, then blue.
-  const float* light;               ///< null: it comes from everywhere alike
-  const OctahedralMap* irradiance;  ///< over pi, by normal, where nothing is in the way
+  const float* light = nullptr;               ///< null: it comes from everywhere alike
+  const OctahedralMap* irradiance = nullptr;  ///< over pi, by normal, where nothing is in the way
+  float through_beyond = 0;  ///< share of it that comes through what may go on beyond the frame
 
-  InterleavedPlane* ao;
-  InterleavedVectors* bent;      ///< unit; null: not wanted
-  InterleavedVectors* direct;    ///< null: not wanted
-  InterleavedPlane* difference;  ///< standard error of its luminance, signed; null: not wanted
+  InterleavedPlane* ao = nullptr;
+  InterleavedVectors* bent = nullptr;    ///< unit; null: not wanted
+  InterleavedVectors* direct = nullptr;  ///< null: not wanted
+  InterleavedPlane* difference =
+      nullptr;  ///< standard error of its luminance, signed; null: not wanted
 };
 
 /// What each pixel sends to others, and its unseen side.
@@ -75,6 +77,7 @@ struct SunJob {
   std::array<glm::vec3, Interleaving::kPeriod * Interleaving::kPeriod> directions;
   std::array<std::vector<float>, Interleaving::kPeriod * Interleaving::kPeriod> distances_px;
   const Sun* sun;
+  float past_beyond;           ///< share of it that passes what may stand beyond the frame
   InterleavedVectors* direct;  ///< added to
 };
 
