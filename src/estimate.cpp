@@ -48,6 +48,25 @@ Products as_error(Plane<float> plane) {
   return products;
 }
 
+/// Products of the receivers as planes of the whole geometry, as filters and outputs take them; the
+/// pixels around them are as those without a surface.
+Products over_geometry(Products found, const Geometry& geometry, const Window& receivers) {
+  if (receivers.area() == 0 || receivers == geometry.window) return found;
+  const int left = receivers.x0 - geometry.window.x0, top = receivers.y0 - geometry.window.y0;
+  for_each_plane(
+      [&](const Product& product, auto& plane) {
+        if (plane.empty()) return;
+        using Value = std::decay_t<decltype(plane[0])>;
+        Plane<Value> whole(geometry.surfel.width, geometry.surfel.height,
+                           Value(product.background));
+        for (int y = 0; y < plane.height; ++y)
+          std::copy_n(&plane(0, y), plane.width, &whole(left, top + y));
+        plane = std::move(whole);
+      },
+      found);
+  return found;
+}
+
 /// The size of an error from a draw of it: its root mean square among neighbours on a surface.
 Plane<float> size_of(Plane<float> draw, const Geometry& geometry) {
   constexpr int kNeighbours = 8;
@@ -99,7 +118,8 @@ class Round {
     const auto progress = [this](std::size_t done, std::size_t count) { tell(done, count); };
     Stopwatch watch;
     Estimate out;
-    Products products = plan_.method->estimate(scene_, request_, progress);
+    Products products = over_geometry(plan_.method->estimate(scene_, request_, progress),
+                                      scene_.geometry, request_.receivers);
     Plane<float> change;
     if (compares_steps_)
       change = change_by_steps(scene_, *plan_.method, request_, products, progress);

@@ -23,6 +23,7 @@ struct OutputOptions {
   std::optional<Imf::Compression> compression;  ///< the input's where not given
   int bits = 8;                                 ///< per channel of PNG and TIFF: 8 or 16
   bool keep_channels = false;
+  bool crop = false;  ///< EXR outputs hold the display window only
   OutputPolicy policy;
 };
 

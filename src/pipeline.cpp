@@ -34,6 +34,7 @@ std::size_t write_exr_target(const SafeFile& file, const Target& target, const R
   output.input = &frame.files[std::size_t(frame.lead().file)];
   output.part = frame.lead().part;
   output.keep_channels = job.options.output.keep_channels;
+  output.crop = job.options.output.crop;
   output.compression = job.options.output.compression;
   output.attributes = {{"ssdo/version", SSDO_VERSION},
                        {"ssdo/plan", json_text(to_json(plan, frame.history))}};

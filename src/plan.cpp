@@ -164,6 +164,29 @@ void choose_march(Plan& plan, const ModelOptions& model) {
     plan.reasons.push_back("surfaces end at the border of the frame: as asked");
 }
 
+/// With --crop, pixels that no output holds gather nothing, where that changes no other pixel: not
+/// where their error counts, or where a later frame may show what they show.
+void choose_receivers(Plan& plan, const OutputOptions& output, const Geometry& geometry,
+                      const std::string& file) {
+  if (!output.crop) return;
+  const Window &data = geometry.window, shown = intersection(data, geometry.display);
+  if (shown.area() == 0) {
+    throw Error(ExitCode::usage,
+                fmt::format("{}: --crop would leave nothing: the data window lies outside of the "
+                            "display window; leave out --crop",
+                            file));
+  }
+  if (shown == data) return;
+  plan.reasons.push_back(
+      fmt::format("writes {}x{} pixels of {}x{}: what lies beyond the display window blocks and "
+                  "sends light, but is not written",
+                  shown.width(), shown.height(), data.width(), data.height()));
+  if (!plan.method->takes.receivers || plan.temporal || plan.request.products.error) return;
+  const int reach = plan.filter->reach;
+  plan.request.receivers =
+      intersection(data, {shown.x0 - reach, shown.y0 - reach, shown.x1 + reach, shown.y1 + reach});
+}
+
 }  // namespace
 
 int Plan::samples_per_pixel() const { return method->samples_per_pixel(request); }
@@ -189,6 +212,7 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
   choose_radius(plan, model, scene.geometry);
   explain_thickness(plan, model);
   choose_march(plan, model);
+  choose_receivers(plan, output, scene.geometry, file);
   return plan;
 }
 

@@ -65,8 +65,8 @@ struct Plan {
 
 /// Decides from what was asked for and what the frame shows: work that cannot change a product
 /// that is written is left out.
-/// Errors: ExitCode::usage for a product that the method does not make, or several for one
-/// picture; ExitCode::layer for one whose layer is missing.
+/// Errors: ExitCode::usage for a product that the method does not make, several for one picture, or
+/// a crop that leaves nothing; ExitCode::layer for one whose layer is missing.
 Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Scene& scene,
                const GBuffer& gbuffer, const std::string& file);
 

@@ -56,6 +56,30 @@ const RecordedErrors& errors_of(const std::string& method) {
   return *found;
 }
 
+void expect_states(const Row& row, std::size_t first, const std::vector<double>& recorded) {
+  ASSERT_EQ(row.size(), first + recorded.size());
+  for (std::size_t i = 0; i < recorded.size(); ++i)
+    expect_states(row[first + i], recorded[i], row[0] + ", column " + std::to_string(first + i));
+}
+
+TEST(Readme, StatesWhatKnownGeometryBrings) {
+  const std::vector<Row> rows = table_of("| what is known | ao, small radius |");
+  ASSERT_EQ(rows.size(), kRecordedKnownGeometry.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const RecordedKnownGeometry& r = kRecordedKnownGeometry[i];
+    EXPECT_EQ(rows[i][0], r.known);
+    expect_states(rows[i], 1, {r.ao_small, r.ao_large, r.white, r.direct, r.bounce});
+  }
+}
+
+TEST(Readme, StatesTheRecordedErrorsOfTheMainExample) {
+  const std::vector<Row> rows = table_of("| room corner in a studio | ao at 0.25 |");
+  ASSERT_EQ(rows.size(), 2u);
+  const TruthErrors &alone = errors_of("bitmask").room_corner, &with = kRecordedRoomCornerOverscan;
+  expect_states(rows[0], 1, {alone.ao_small, alone.ao_large, alone.direct, alone.bounce});
+  expect_states(rows[1], 1, {with.ao_small, with.ao_large, with.direct, with.bounce});
+}
+
 TEST(Readme, StatesTheRecordedErrorsOfTheDefaultMethod) {
   const std::vector<Row> rows = table_of("| frame | method | ao, small radius |");
   ASSERT_EQ(rows.size(), 4u);

@@ -3,20 +3,29 @@
 
     blender -b -P export.py -- still_life -o still_life.exr --camera still_life.camera.json
 
-Without further options that is a G-buffer. `--samples`, `--world`, `--bounces`, `--ao-radius` and
-`--seed` make it a path-traced render with light passes instead: truth.py uses those.
+Without further options that is a G-buffer. `--overscan`, `--pano` and `--also` render more of the
+scene beside it, for ssdo to know in place of guessing:
+
+    blender -b -P export.py -- still_life -o still_life.exr --overscan 25 --pano around.exr \
+        --also left.exr:-40 --also right.exr:40 --also top.exr:top --camera still_life.camera.json
+
+`--samples`, `--world`, `--bounces`, `--ao-radius` and `--seed` make it a path-traced render with
+light passes instead: truth.py uses those.
 """
 import argparse
 import json
 import sys
-from math import radians, tan
+from math import radians
 from pathlib import Path
 
 import bpy
 from mathutils import Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from scenes import SCENES  # noqa: E402  (Blender does not put a script's own folder on the path)
+# Blender does not put a script's own folder on the path.
+from scenes import SCENES  # noqa: E402
+from views import (View, from_above, new_camera, panorama, set_windows, turned,  # noqa: E402
+                   view_json, widened)
 
 ENVIRONMENTS = Path(__file__).resolve().parent.parent / "environments"
 
@@ -33,14 +42,11 @@ CONVENTIONS = {
 
 
 def add_camera(scene, picture):
-    data = bpy.data.cameras.new("cam")
-    data.sensor_fit, data.angle = "HORIZONTAL", radians(picture.hfov_deg)
-    data.clip_start, data.clip_end = 0.05, 1000.0
-    camera = bpy.data.objects.new("cam", data)
+    camera = new_camera(scene, "cam")
+    camera.data.angle = radians(picture.hfov_deg)
     camera.location = picture.camera
     view = Vector(picture.target) - Vector(picture.camera)
     camera.rotation_euler = view.to_track_quat("-Z", "Y").to_euler()
-    scene.collection.objects.link(camera)
     scene.camera = camera
 
 
@@ -75,45 +81,66 @@ def set_up_cycles(scene, samples, bounces, seed):
     cycles.filter_width = 0.01
 
 
-def set_up_output(scene, picture, path, passes):
+def set_up_output(scene, size, path, passes, margin=(0, 0)):
     render = scene.render
-    render.resolution_x, render.resolution_y = picture.width, picture.height
+    render.resolution_x, render.resolution_y = size[0] + 2 * margin[0], size[1] + 2 * margin[1]
     render.resolution_percentage = 100
     render.filepath = str(path.resolve())
     image = render.image_settings
     image.file_format = "OPEN_EXR_MULTILAYER"
     image.color_depth = "32"  # half would round P to millimetres, and far worse away from 0
     image.exr_codec = "ZIP"
+    scene.view_layers[0].use_pass_combined = "combined" in passes
     for name in passes:
         setattr(scene.view_layers[0], f"use_pass_{name}", True)
 
 
-def camera_json(name, scene, picture):
-    camera = scene.camera
-    focal_px = picture.width / 2 / tan(camera.data.angle / 2)
-    rows = lambda matrix: [list(row) for row in matrix]
+def camera_json(name, picture, views):
+    main, *further = views
+    camera = main.camera.data
     return {
         "scene": name,
         "env": f"environments/{picture.environment}",
-        "width": picture.width,
-        "height": picture.height,
-        "type": "persp",
-        "camera_to_world": rows(camera.matrix_world),
-        "world_to_camera": rows(camera.matrix_world.inverted()),
-        "location": list(camera.matrix_world.translation),
-        "clip_start": camera.data.clip_start,
-        "clip_end": camera.data.clip_end,
-        "sensor_width_mm": camera.data.sensor_width,
-        "sensor_fit": camera.data.sensor_fit,
-        "focal_length_mm": camera.data.lens,
+        **view_json(main),
+        "clip_start": camera.clip_start,
+        "clip_end": camera.clip_end,
+        "sensor_width_mm": camera.sensor_width * main.size[0] / (main.size[0] + 2 * main.margin[0]),
+        "sensor_fit": camera.sensor_fit,
+        "focal_length_mm": camera.lens,
         "hfov_deg": picture.hfov_deg,
-        "fx": focal_px,
-        "fy": focal_px,
-        "cx": picture.width / 2,
-        "cy": picture.height / 2,
         "ao_radius": {"truth_ao_files": list(picture.ao_radii), "unit": "m"},
+        "also": {view.path.name: view_json(view) for view in further},
         "conventions": CONVENTIONS,
     }
+
+
+def read_also(text):
+    """FILE:DEGREES or FILE:top."""
+    file, _, kind = text.rpartition(":")
+    if not file:
+        raise argparse.ArgumentTypeError(f"{text}: expected FILE:DEGREES or FILE:top")
+    return Path(file), kind if kind == "top" else float(kind)
+
+
+def views_of(args, scene, picture):
+    """The picture and all that is rendered beside it."""
+    bpy.context.view_layer.update()  # or the camera's matrix would not know its place yet
+    main, size, target = scene.camera, (picture.width, picture.height), Vector(picture.target)
+    further = []
+    if args.pano:
+        further.append(panorama(scene, args.pano, main))
+    for path, kind in args.also:
+        further.append(from_above(scene, path, main, size, target) if kind == "top" else
+                       turned(scene, path, main, size, target, kind))
+    view = View(args.output, main, size)
+    return [widened(view, args.overscan) if args.overscan else view, *further]
+
+
+def render(scene, view, passes):
+    scene.camera = view.camera
+    set_up_output(scene, view.size, view.path, passes, view.margin)
+    bpy.ops.render.render(write_still=True)
+    set_windows(view)
 
 
 def parse_arguments():
@@ -121,6 +148,13 @@ def parse_arguments():
     parser.add_argument("scene", choices=SCENES)
     parser.add_argument("-o", "--output", type=Path, required=True)
     parser.add_argument("--camera", type=Path, help="write the camera there, as JSON")
+    more = parser.add_argument_group("more of the scene")
+    more.add_argument("--overscan", type=float, default=0, metavar="PERCENT",
+                      help="so much more picture on each side, beyond the display window")
+    more.add_argument("--pano", type=Path, metavar="FILE", help="a panorama at the camera")
+    more.add_argument("--also", type=read_also, action="append", default=[],
+                      metavar="FILE:DEGREES|top",
+                      help="the camera turned about its target, or a view from above; repeatable")
     light = parser.add_argument_group("path-traced light passes")
     light.add_argument("--samples", type=int, help="write light passes, so many samples per pixel")
     light.add_argument("--world", choices=["white", "environment"], default="white")
@@ -145,11 +179,12 @@ def main():
         passes = ["z", "diffuse_direct", "diffuse_indirect", "ambient_occlusion"]
     else:
         passes = ["z", "position", "normal", "diffuse_color"]
-    set_up_output(scene, picture, args.output, ["combined", *passes])
-    bpy.ops.render.render(write_still=True)
+    views = views_of(args, scene, picture)
+    render(scene, views[0], ["combined", *passes])
+    for view in views[1:]:
+        render(scene, view, passes)
     if args.camera:
-        bpy.context.view_layer.update()
-        args.camera.write_text(json.dumps(camera_json(args.scene, scene, picture), indent=1) + "\n")
+        args.camera.write_text(json.dumps(camera_json(args.scene, picture, views), indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -69,7 +69,8 @@ def main():
     for frame in range(1, args.frames + 1):
         scene.frame_set(frame)
         path = Path(args.output.replace("####", f"{frame:04d}"))
-        set_up_output(scene, picture, path, ["z", "position", "normal", "diffuse_color", "vector"])
+        set_up_output(scene, (picture.width, picture.height), path,
+                      ["z", "position", "normal", "diffuse_color", "vector"])
         bpy.ops.render.render(write_still=True)
 
 

@@ -237,6 +237,7 @@ void add_output(CLI::App& app, OutputOptions& o) {
   group.choice("--bits", o.bits, {{"8", 8}, {"16", 16}}, "per channel of PNG and TIFF outputs");
   group.flag("--keep-channels", o.keep_channels,
              "pass the input's other channels and parts through");
+  group.flag("--crop", o.crop, "write the display window only; overscan still blocks and sends");
   group.flag("--overwrite", o.policy.overwrite, "replace outputs that exist");
   group.flag("--create-dirs", o.policy.create_dirs, "make missing folders of outputs");
 }

@@ -11,8 +11,9 @@ namespace {
 template <class Visit>
 void for_each_shown_pixel(const Geometry& geometry, const Visit& visit) {
   const Window &display = geometry.display, &data = geometry.window;
-  for (int y = std::max(display.y0, data.y0); y < std::min(display.y1, data.y1); ++y) {
-    for (int x = std::max(display.x0, data.x0); x < std::min(display.x1, data.x1); ++x) {
+  const Window shown = intersection(display, data);
+  for (int y = shown.y0; y < shown.y1; ++y) {
+    for (int x = shown.x0; x < shown.x1; ++x) {
       visit(
           std::size_t(y - display.y0) * std::size_t(display.width()) + std::size_t(x - display.x0),
           geometry.surfel.index(x - data.x0, y - data.y0));

@@ -37,7 +37,9 @@
 //   after it (bitmask/piece-inl.h). Treated as points, few samples miss too much: 16 steps that
 //   represent their stretches are nearer to the limit than 24 points.
 // - Backs, layers of solids behind what is seen (scene/solids.cpp) and surfaces beyond the frame
-//   (bitmask/extension-inl.h) are guesses that GTAO does not make.
+//   (bitmask/extension-inl.h) are guesses that GTAO does not make. Half of a map's light
+//   comes through those beyond, and the more of a sun's, the more open the frame is
+//   (bitmask/beyond.h).
 #include "estimators/bitmask.h"
 
 #include <algorithm>
@@ -46,6 +48,7 @@
 #include <glm/gtc/constants.hpp>
 #include <memory>
 
+#include "estimators/bitmask/beyond.h"
 #include "estimators/bitmask/march.h"
 #include "math/frame.h"
 #include "math/light_range.h"
@@ -205,7 +208,7 @@ class Bitmask {
 
   void gather_visibility() {
     const Light& light = scene_.light;
-    VisibilityJob job{march_, 0, nullptr, &light.irradiance, &ao_, nullptr, nullptr, nullptr};
+    VisibilityJob job{.march = march_, .irradiance = &light.irradiance, .ao = &ao_};
     InterleavedVectors bent;
     if (request_.products.bent) {
       bent = make_color(layout_);
@@ -220,6 +223,8 @@ class Bitmask {
         job.order = std::max(light.order, 1);
         weights = basis_weights(light, job.order);
         job.light = weights.data();
+        // Light from everywhere alike is ao: it takes what goes on beyond the frame as ao does.
+        if (light.order > 0) job.through_beyond = kLightThroughBeyond;
       }
     }
     if (request_.products.error) {
@@ -230,13 +235,18 @@ class Bitmask {
         lit_part(), [&](const Window& part) { march_visibility(job, part); }, progress_);
     if (request_.products.bent) out_.bent = picture(bent);
     if (!wants_light()) return;
-    for (const Sun& sun : light.suns) add_sun(sun);
+    if (light.suns.empty()) return;
+    const float past =
+        request_.extend_offscreen
+            ? sun_past_beyond(mean_ao(march_scene_, scene_.geometry.display, request_.radius))
+            : 1;
+    for (const Sun& sun : light.suns) add_sun(sun, past);
   }
 
   /// Adds the light of a sun where it is seen. Members of the pattern look at different points of
   /// its disc.
-  void add_sun(const Sun& sun) {
-    SunJob job{march_, {}, {}, &sun, &direct_};
+  void add_sun(const Sun& sun, float past_beyond) {
+    SunJob job{march_, {}, {}, &sun, past_beyond, &direct_};
     const glm::mat3 frame = frame_about(sun.direction);
     const double diagonal =
         std::hypot(scene_.geometry.display.width(), scene_.geometry.display.height());
@@ -365,7 +375,11 @@ Method bitmask_method() {
       .name = "bitmask",
       .summary = "slices with a visibility bitmask; light and bounce from the same march",
       .products = {.ao = true, .direct = true, .bounce = true, .bent = true, .error = true},
-      .takes = {.radius = true, .endless_radius = true, .thickness = true, .march = true},
+      .takes = {.radius = true,
+                .endless_radius = true,
+                .thickness = true,
+                .march = true,
+                .receivers = true},
       .pattern_size = kPeriod,
       .samples_per_pixel = [](const Request& r) { return 2 * r.slices * r.steps; },
       .estimate = estimate,

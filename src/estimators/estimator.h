@@ -48,6 +48,7 @@ struct Takes {
   bool endless_radius = false;  ///< --radius inf; `auto` then means inf
   bool thickness = false;       ///< --thickness: the method uses Scene::solids
   bool march = false;           ///< --quality, --slices, --steps, --offscreen and --error
+  bool receivers = false;       ///< Request::receivers; without it, all pixels gather
 };
 
 /// A row in the table of methods.

@@ -16,10 +16,10 @@ namespace ssdo {
 std::span<const Filter> filters() {
   static const std::array<Filter, 5> all = {{
       {"none", "leaves the sampling pattern", nullptr},
-      {"box", "mean over the pattern, across edges", filter_box},
-      {"gaussian", "Gaussian within a depth and a cone of normals", filter_gaussian},
-      {"normal", "seven taps, by normals", filter_normal},
-      {"geometry", "mean over the pattern on one surface", filter_geometry},
+      {"box", "mean over the pattern, across edges", filter_box, 4},
+      {"gaussian", "Gaussian within a depth and a cone of normals", filter_gaussian, 15},
+      {"normal", "seven taps, by normals", filter_normal, 3},
+      {"geometry", "mean over the pattern on one surface", filter_geometry, 4},
   }};
   return all;
 }

@@ -15,6 +15,7 @@ struct Filter {
   std::string_view name, summary;
   /// Takes away the noise of a T x T sampling pattern; null: leaves the products as they are.
   Products (*apply)(Products noisy, const Geometry& geometry, int pattern_size);
+  int reach = 0;  ///< pixels on each side that a pixel depends on, for patterns of up to 8 x 8
 };
 
 /// Every filter, in the order of --help.

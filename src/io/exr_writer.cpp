@@ -15,6 +15,7 @@
 #include "error.h"
 #include "io/checked_file.h"
 #include "io/exr_copy.h"
+#include "io/exr_parts.h"
 #include "io/exr_stream.h"
 #include "io/one_line.h"
 
@@ -75,13 +76,80 @@ std::vector<KeptChannel> kept_channels(const ExrOutput& output) {
   return kept;
 }
 
-Imf::Header header_for(const ExrOutput& output, const std::vector<KeptChannel>& kept) {
-  Imf::Header header = part_of(output).header;
+/// The pixels of a part that are written.
+Window written_window(const ExrOutput& output, const ExrPart& part) {
+  if (!output.crop || part.deep) return part.data_window;
+  return intersection(part.data_window, part.display_window);
+}
+
+bool is_cropped(const ExrOutput& output, const ExrPart& part) {
+  return written_window(output, part) != part.data_window;
+}
+
+[[noreturn]] void fail_to_crop(const ExrOutput& output, const ExrPart& part,
+                               const std::string& reason) {
+  throw Error(ExitCode::input,
+              fmt::format("{}: {} cannot be cropped: {}; leave out --crop or --keep-channels",
+                          output.input->path().string(), label(part), reason));
+}
+
+/// All of a part of the input that is kept, to be written again.
+std::vector<KeptChannel> all_channels(const ExrOutput& output, const ExrPart& part) {
+  std::vector<std::string> names;
+  for (const ExrChannel& channel : part.channels) names.push_back(channel.name);
+  std::vector<KeptChannel> kept;
+  for (StoredChannel& channel : output.input->read_stored(part.index, names))
+    kept.push_back({channel.channel.name, std::move(channel)});
+  return kept;
+}
+
+/// OpenEXR wants windows that the subsampling of every channel divides.
+void check_crop(const ExrOutput& output, const ExrPart& part,
+                const std::vector<ExrChannel>& channels) {
+  if (!is_cropped(output, part)) return;
+  const Window window = written_window(output, part);
+  if (window.area() == 0) {
+    fail_to_crop(output, part,
+                 fmt::format("its data window, {}, lies outside of the display window, {}",
+                             text_of(part.data_window), text_of(part.display_window)));
+  }
+  for (const ExrChannel& channel : channels) {
+    const int x = channel.x_sampling, y = channel.y_sampling;
+    if (window.x0 % x || window.width() % x || window.y0 % y || window.height() % y) {
+      fail_to_crop(output, part,
+                   fmt::format("channel '{}' is subsampled {}x{}, which does not divide {}",
+                               channel.name, x, y, text_of(window)));
+    }
+  }
+}
+
+/// The header of a part whose pixels are written anew, in scanlines.
+Imf::Header scanline_header(const ExrOutput& output, const ExrPart& part) {
+  Imf::Header header = part.header;
   for (const char* storage : {"tiles", "chunkCount", "version", "maxSamplesPerPixel"}) {
     header.erase(storage);
   }
   header.setType(Imf::SCANLINEIMAGE);
   header.lineOrder() = Imf::INCREASING_Y;
+  const Window window = written_window(output, part);
+  header.dataWindow() = {{window.x0, window.y0}, {window.x1 - 1, window.y1 - 1}};
+  return header;
+}
+
+/// That of another part than the one with the planes.
+Imf::Header other_header(const ExrOutput& output, const ExrPart& part) {
+  if (!is_cropped(output, part)) return part.header;
+  check_crop(output, part, part.channels);
+  Imf::Header header = scanline_header(output, part);
+  if (is_lossy(header.compression())) header.compression() = Imf::ZIP_COMPRESSION;
+  return header;
+}
+
+Imf::Header header_for(const ExrOutput& output, const std::vector<KeptChannel>& kept) {
+  std::vector<ExrChannel> stored_channels;
+  for (const KeptChannel& channel : kept) stored_channels.push_back(channel.stored.channel);
+  check_crop(output, part_of(output), stored_channels);
+  Imf::Header header = scanline_header(output, part_of(output));
   header.compression() = compression_for(output);
   header.channels() = Imf::ChannelList();
   for (const auto& [name, stored] : kept) {
@@ -104,28 +172,29 @@ std::vector<Imf::Header> headers_for(const ExrOutput& output,
     if (part.index == output.part)
       headers.push_back(header_for(output, kept));
     else if (output.keep_channels)
-      headers.push_back(part.header);
+      headers.push_back(other_header(output, part));
   }
   return headers;
 }
 
-/// Clamps and rounds one strip of a plane. Returns how many values were clamped.
-std::size_t round_to_half(std::span<const float> values, std::vector<half>& strip) {
-  strip.resize(values.size());
+/// Clamps and rounds values of a row. Returns how many were clamped.
+std::size_t round_to_half(std::span<const float> values, half* rounded) {
   std::size_t clamped = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const float value = values[i];
     clamped += std::abs(value) > kLargestHalf;  // false for NaN, which stays
-    strip[i] = half(value > kLargestHalf ? kLargestHalf : std::max(value, -kLargestHalf));
+    rounded[i] = half(value > kLargestHalf ? kLargestHalf : std::max(value, -kLargestHalf));
   }
   return clamped;
 }
 
-std::size_t write_strips(Imf::OutputPart& part, const ExrOutput& output,
+/// Writes the window of `out` of planes and channels, which are all over the data window of `part`.
+std::size_t write_strips(Imf::OutputPart& out, const ExrPart& part,
+                         const std::vector<ExrPlane>& planes,
                          const std::vector<KeptChannel>& kept) {
-  const Imath::Box2i window = part.header().dataWindow();
-  const int width = part_of(output).data_window.width();
-  std::vector<std::vector<half>> strips(output.planes.size());
+  const Imath::Box2i window = out.header().dataWindow(), full = part.header.dataWindow();
+  const auto columns = std::size_t(window.max.x - window.min.x + 1);
+  std::vector<std::vector<half>> strips(planes.size());
   std::size_t clamped = 0;
   for (int y = window.min.y; y <= window.max.y; y += kStripRows) {
     const int rows = std::min(kStripRows, window.max.y + 1 - y);
@@ -133,22 +202,26 @@ std::size_t write_strips(Imf::OutputPart& part, const ExrOutput& output,
     Imf::FrameBuffer frame_buffer;
     for (const auto& [name, stored] : kept) {
       frame_buffer.insert(name,
-                          Imf::Slice::Make(stored.channel.type, stored.pixels.data(), window, 0, 0,
+                          Imf::Slice::Make(stored.channel.type, stored.pixels.data(), full, 0, 0,
                                            stored.channel.x_sampling, stored.channel.y_sampling));
     }
-    for (std::size_t i = 0; i < output.planes.size(); ++i) {
-      const ExrPlane& plane = output.planes[i];
-      const float* values = &(*plane.pixels)(0, y - window.min.y);
-      if (plane.type == Imf::HALF) {
-        clamped += round_to_half({values, std::size_t(rows) * std::size_t(width)}, strips[i]);
-        frame_buffer.insert(plane.name,
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      const Plane<float>& pixels = *planes[i].pixels;
+      if (planes[i].type == Imf::HALF) {
+        strips[i].resize(std::size_t(rows) * columns);
+        for (int row = 0; row < rows; ++row) {
+          const float* values = &pixels(window.min.x - full.min.x, y + row - full.min.y);
+          clamped += round_to_half({values, columns}, &strips[i][std::size_t(row) * columns]);
+        }
+        frame_buffer.insert(planes[i].name,
                             Imf::Slice::Make(Imf::HALF, strips[i].data(), strip_window));
       } else {
-        frame_buffer.insert(plane.name, Imf::Slice::Make(Imf::FLOAT, values, strip_window));
+        frame_buffer.insert(planes[i].name,
+                            Imf::Slice::Make(Imf::FLOAT, pixels.pixels.data(), full));
       }
     }
-    part.setFrameBuffer(frame_buffer);
-    part.writePixels(rows);
+    out.setFrameBuffer(frame_buffer);
+    out.writePixels(rows);
   }
   return clamped;
 }
@@ -172,13 +245,16 @@ std::size_t write_parts(CheckedFile& checked, const SafeFile& file, const ExrOut
   Imf::MultiPartOutputFile exr(stream, headers.data(), int(headers.size()));
   if (!output.keep_channels) {
     Imf::OutputPart part(exr, 0);
-    return write_strips(part, output, kept);
+    return write_strips(part, part_of(output), output.planes, kept);
   }
   std::size_t clamped = 0;
   for (const ExrPart& part : output.input->parts()) {
     if (part.index == output.part) {
       Imf::OutputPart written(exr, part.index);
-      clamped = write_strips(written, output, kept);
+      clamped = write_strips(written, part, output.planes, kept);
+    } else if (is_cropped(output, part)) {
+      Imf::OutputPart written(exr, part.index);
+      write_strips(written, part, {}, all_channels(output, part));
     } else {
       copy_part(*output.input, part, exr);
     }

@@ -29,6 +29,7 @@ struct ExrOutput {
   int part = 0;                      ///< the part of the input that the planes were made from
   std::vector<ExrPlane> planes;      ///< all over the data window of that part
   bool keep_channels = false;        ///< pass the other channels and parts through unchanged
+  bool crop = false;                 ///< of every flat part, write the display window only
   std::optional<Imf::Compression> compression;                  ///< the input's where not given
   std::vector<std::pair<std::string, std::string>> attributes;  ///< string attributes to add
 };
@@ -46,13 +47,18 @@ Imf::Compression compression_for(const ExrOutput& output);
 /// that one part, in scanlines. With it, the part's other channels keep type and bits (of a tiled
 /// part, its full-resolution level), and the other parts are copied without being decoded.
 ///
+/// With `crop` the data window of a part is what the display window shows of it. Other flat parts
+/// that reach beyond are decoded and come in scanlines, with the same bits in the pixels that stay.
+/// Deep parts are copied whole.
+///
 /// A kept channel whose name a plane takes moves to "input.NAME". If the input has an "input.NAME"
 /// already, it is an earlier output of this tool: its "input.NAME" stays, and its NAME, an earlier
 /// product, is dropped.
 ///
 /// Half values beyond ±65504 are clamped. Returns how many were.
-/// Errors: ExitCode::output if the disk is full or the file cannot be written, ExitCode::input if
-/// what is kept of the input cannot be read.
+/// Errors: ExitCode::output if the disk is full or the file cannot be written; ExitCode::input if
+/// what is kept of the input cannot be read, or cannot be cropped: a part that lies outside of the
+/// display window, a channel whose subsampling does not divide it.
 std::size_t write_exr(const SafeFile& file, const ExrOutput& output);
 
 }  // namespace ssdo

@@ -21,6 +21,13 @@ struct Window {
   bool operator==(const Window&) const = default;
 };
 
+/// The pixels that are in both windows. Area 0 at the origin: there are none.
+inline Window intersection(const Window& a, const Window& b) {
+  const Window both{std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1),
+                    std::min(a.y1, b.y1)};
+  return both.x0 < both.x1 && both.y0 < both.y1 ? both : Window{};
+}
+
 /// A row-major rectangle of values. (0, 0) is the upper left pixel of the window that the plane
 /// was read from or is written to; the window itself is kept by whoever owns the plane.
 template <class T>

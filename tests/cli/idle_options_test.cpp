@@ -60,6 +60,7 @@ TEST_F(IdleOptions, AreWarnedOf) {
   for (const std::vector<std::string>& flags : {std::vector<std::string>{"--bits", "16"},
                                                 {"--pixel-type", "float"},
                                                 {"--keep-channels"},
+                                                {"--crop"},
                                                 {"--compression", "zip"},
                                                 {"--quality", "draft", "--method", "ssao"},
                                                 {"--offscreen", "open", "--method", "ssdo"}}) {

@@ -2,7 +2,8 @@
 //
 // The real frames of data/ against the path tracer, with every method: nothing that is added may
 // cost what was reached. The errors are the methods' bias, not noise: the scalar build,
-// AVX2 and AVX-512 stay within the margin.
+// AVX2 and AVX-512 stay within the margin. Also what overscan brings, there and, where they lie
+// beside the repository, on further scenes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,19 +17,48 @@
 #include "filters/geometry_filter.h"
 #include "frame.h"
 #include "io/exr_reader.h"
+#include "support/crop.h"
 
 namespace ssdo::test {
 namespace {
 
 const std::string kData = std::string(SSDO_SOURCE_DIR) + "/data/";
 
-/// A frame, the radii of its truth, and the environment that lights it.
+/// A frame, the environment that lights it, where its truth begins, and the radii of that.
 struct Subject {
-  std::string name, environment;
+  std::string name, frame, environment, truth;
   double radius_small, radius_large;
 };
-const Subject kStillLife{"still_life", "sky.exr", 0.5, 2},
-    kRoomCorner{"room_corner", "studio.exr", 0.25, 1};
+
+/// Of data/. `with` is what its file has beside the picture.
+Subject of_data(const std::string& name, const std::string& environment, double radius_small,
+                double radius_large, const std::string& with = "") {
+  return {name + with,
+          kData + name + with + ".exr",
+          kData + "environments/" + environment,
+          kData + "truth/" + name + "/",
+          radius_small,
+          radius_large};
+}
+const Subject kStillLife = of_data("still_life", "sky.exr", 0.5, 2),
+              kRoomCorner = of_data("room_corner", "studio.exr", 0.25, 1),
+              kRoomCornerOverscan = of_data("room_corner", "studio.exr", 0.25, 1, "_overscan");
+
+/// Further scenes, which are too large for the repository: empty where they are not there.
+std::vector<Subject> further_scenes(const std::string& file) {
+  const std::string folder = std::string(SSDO_SOURCE_DIR) + "/../shared/truth/";
+  if (!std::filesystem::exists(folder)) return {};
+  const auto scene = [&](const std::string& name, const std::string& environment,
+                         double radius_small, double radius_large) {
+    const std::string of_scene = folder + "public/" + name + "/";
+    return Subject{
+        name,         of_scene + file, folder + "env/" + environment, of_scene + "truth_",
+        radius_small, radius_large};
+  };
+  return {scene("corner", "venice.exr", 0.5, 2), scene("foliage", "venice.exr", 0.1, 0.5),
+          scene("props", "sky.exr", 0.5, 2), scene("spheres", "venice.exr", 0.5, 2),
+          scene("street", "sky.exr", 2, 10)};
+}
 
 struct Case {
   std::string method;
@@ -42,12 +72,13 @@ std::vector<Case> cases() {
     all.push_back({errors.method, kStillLife, errors.still_life});
     all.push_back({errors.method, kRoomCorner, errors.room_corner});
   }
+  all.push_back({"bitmask", kRoomCornerOverscan, kRecordedRoomCornerOverscan});
   return all;
 }
 
 std::array<Plane<float>, 3> read_truth(const Subject& scene, const std::string& name,
                                        const std::string& layer) {
-  const ExrReader file(kData + "truth/" + scene.name + "/" + name + ".exr");
+  const ExrReader file(scene.truth + name + ".exr");
   const std::string prefix = "ViewLayer." + layer + ".";
   const std::vector<std::string> channels = {prefix + "R", prefix + "G", prefix + "B"};
   auto planes = file.read(0, channels);
@@ -85,11 +116,23 @@ Error2 compare(const Geometry& g, const std::array<Plane<float>, 3>& truth, int 
   return {std::sqrt(sum2 / count), sum / count, mean / count};
 }
 
-/// The pipeline up to the filter.
+/// The pipeline up to the filter, and what of its result the display window shows.
 struct Result {
   Geometry geometry;
   Products products;
 };
+
+Result shown(const Geometry& geometry, const Products& products) {
+  const Window &all = geometry.window, window = intersection(all, geometry.display);
+  const Window part{window.x0 - all.x0, window.y0 - all.y0, window.x1 - all.x0, window.y1 - all.y0};
+  Result result{crop(geometry, window), {}};
+  for_each_plane(
+      [&](const Product&, auto& to, const auto& from) {
+        if (!from.empty()) to = crop(from, part);
+      },
+      result.products, products);
+  return result;
+}
 
 Result run(const std::string& method, const Subject& scene, const std::string& environment,
            std::optional<double> radius) {
@@ -98,12 +141,28 @@ Result run(const std::string& method, const Subject& scene, const std::string& e
   if (method == "trace") options.model.set = {"samples=16"};
   if (find_method(method).takes.radius) options.model.radius = radius;
   options.light.env = environment;
-  Frame frame = prepare_frame(options, Lighting(options.light), {kData + scene.name + ".exr", {}, {}});
+  Frame frame = prepare_frame(options, Lighting(options.light), {scene.frame, {}, {}});
   const Plan& plan = frame.plan;
   Geometry& geometry = frame.scene.geometry;
   Products filtered = filter_geometry(plan.method->estimate(frame.scene, plan.request, {}),
                                       geometry, plan.method->pattern_size);
-  return {std::move(geometry), std::move(filtered)};
+  return shown(geometry, filtered);
+}
+
+Error2 error_of_ao(const Result& r, const Subject& scene, const std::string& truth,
+                   const std::string& layer) {
+  return compare(r.geometry, read_truth(scene, truth, layer), 1,
+                 [&](std::size_t i, int) { return r.products.ao[i]; });
+}
+
+Error2 error_of_direct(const Result& r, const Subject& scene) {
+  return compare(r.geometry, read_truth(scene, "env_direct", "DiffDir"), 1,
+                 [&](std::size_t i, int c) { return r.products.direct[i][c]; });
+}
+
+Error2 error_of_bounce(const Result& r, const Subject& scene) {
+  return compare(r.geometry, read_truth(scene, "env_bounce1", "DiffInd"), 4,
+                 [&](std::size_t i, int c) { return r.products.bounce[i][c]; });
 }
 
 /// Notices a loss, and a gain that a later loss would hide.
@@ -121,21 +180,58 @@ class Truth : public testing::TestWithParam<Case> {};
 TEST_P(Truth, ErrorsAreThoseRecorded) {
   const auto& [method, scene, recorded] = GetParam();
   for (const double radius : {scene.radius_small, scene.radius_large}) {
-    const Result r = run(method, scene, "1", radius);
-    const Error2 e = compare(r.geometry, read_truth(scene, fmt::format("ao_{:g}", radius), "AO"), 1,
-                             [&](std::size_t i, int) { return r.products.ao[i]; });
+    const Error2 e =
+        error_of_ao(run(method, scene, "1", radius), scene, fmt::format("ao_{:g}", radius), "AO");
     expect_recorded(fmt::format("ao at {:g}", radius), e, 1,
                     radius == scene.radius_small ? recorded.ao_small : recorded.ao_large);
   }
-  const Result r = run(method, scene, kData + "environments/" + scene.environment, std::nullopt);
-  const Error2 direct = compare(r.geometry, read_truth(scene, "env_direct", "DiffDir"), 1,
-                                [&](std::size_t i, int c) { return r.products.direct[i][c]; });
+  const Result r = run(method, scene, scene.environment, std::nullopt);
+  const Error2 direct = error_of_direct(r, scene);
   expect_recorded("direct", direct, direct.mean, recorded.direct);
   if (r.products.bounce.empty()) return;
-  const Error2 bounce = compare(r.geometry, read_truth(scene, "env_bounce1", "DiffInd"), 4,
-                                [&](std::size_t i, int c) { return r.products.bounce[i][c]; });
+  const Error2 bounce = error_of_bounce(r, scene);
   expect_recorded("bounce", bounce, bounce.mean, recorded.bounce);
 }
+
+/// The means over the further scenes of what the default method is wrong by.
+class KnownGeometry : public testing::TestWithParam<RecordedKnownGeometry> {};
+
+TEST_P(KnownGeometry, ErrorsAreThoseRecorded) {
+  const RecordedKnownGeometry& recorded = GetParam();
+  const std::vector<Subject> scenes = further_scenes(recorded.file);
+  if (scenes.empty()) GTEST_SKIP() << "the scenes are not there";
+  Error2 small, large, white, direct, bounce;
+  for (const Subject& scene : scenes) {
+    const auto add = [&](Error2& sum, const std::string& what, const Error2& e, double relative) {
+      fmt::print("{} {} {:.4f}\n", scene.name, what, e.rmse / relative);
+      sum.rmse += e.rmse / relative / double(scenes.size());
+      sum.bias += e.bias / relative / double(scenes.size());
+    };
+    for (Error2* sum : {&small, &large}) {
+      const double radius = sum == &small ? scene.radius_small : scene.radius_large;
+      add(*sum, fmt::format("ao at {:g}", radius),
+          error_of_ao(run("bitmask", scene, "1", radius), scene, fmt::format("ao_{:g}", radius),
+                      "AO"),
+          1);
+    }
+    add(white, "white",
+        error_of_ao(run("bitmask", scene, "1", std::nullopt), scene, "white", "DiffDir"), 1);
+    const Result r = run("bitmask", scene, scene.environment, std::nullopt);
+    const Error2 d = error_of_direct(r, scene), b = error_of_bounce(r, scene);
+    add(direct, "direct", d, d.mean);
+    add(bounce, "bounce", b, b.mean);
+  }
+  expect_recorded("ao, small radius", small, 1, recorded.ao_small);
+  expect_recorded("ao, large radius", large, 1, recorded.ao_large);
+  expect_recorded("ao, white world", white, 1, recorded.white);
+  expect_recorded("direct", direct, 1, recorded.direct);
+  expect_recorded("bounce", bounce, 1, recorded.bounce);
+}
+
+INSTANTIATE_TEST_SUITE_P(FurtherScenes, KnownGeometry, testing::ValuesIn(kRecordedKnownGeometry),
+                         [](const auto& one) {
+                           return std::filesystem::path(one.param.file).stem().string();
+                         });
 
 INSTANTIATE_TEST_SUITE_P(Frames, Truth, testing::ValuesIn(cases()), [](const auto& one) {
   std::string name = one.param.method + "_" + one.param.scene.name;

@@ -28,15 +28,17 @@ struct March {
 struct VisibilityJob {
   March march;
   /// Order of the spherical harmonics in which light is gathered, up to 4; 0: visibility only.
-  int order;
+  int order = 0;
   /// Weights of the basis polynomials, (order + 1)^2 for red, then green, then blue.
-  const float* light;               ///< null: the same from all directions
-  const OctahedralMap* irradiance;  ///< over pi, by normal, without occlusion
+  const float* light = nullptr;               ///< null: the same from all directions
+  const OctahedralMap* irradiance = nullptr;  ///< over pi, by normal, without occlusion
+  float through_beyond = 0;  ///< share of it that comes through what may go on beyond the frame
 
-  InterleavedPlane* ao;
-  InterleavedVectors* bent;      ///< unit; null: not wanted
-  InterleavedVectors* direct;    ///< null: not wanted
-  InterleavedPlane* difference;  ///< standard error of its luminance, signed; null: not wanted
+  InterleavedPlane* ao = nullptr;
+  InterleavedVectors* bent = nullptr;    ///< unit; null: not wanted
+  InterleavedVectors* direct = nullptr;  ///< null: not wanted
+  InterleavedPlane* difference =
+      nullptr;  ///< standard error of its luminance, signed; null: not wanted
 };
 
 /// The radiance that each pixel sends to others, and that of its back side.
@@ -79,6 +81,7 @@ struct SunJob {
   std::array<glm::vec3, Interleaving::kPeriod * Interleaving::kPeriod> directions;
   std::array<std::vector<float>, Interleaving::kPeriod * Interleaving::kPeriod> distances_px;
   const Sun* sun;
+  float past_beyond;           ///< share of it that passes what may stand beyond the frame
   InterleavedVectors* direct;  ///< added to
 };
 

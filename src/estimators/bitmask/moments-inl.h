@@ -114,6 +114,14 @@ struct CircleMoments {
     }
   }
 
+  /// Takes a share of others away.
+  HWY_INLINE void subtract(const CircleMoments& other, V share) {
+    for (int k = 0; k <= kOrder; ++k) {
+      cosine[k] = hn::NegMulAdd(share, other.cosine[k], cosine[k]);
+      sine[k] = hn::NegMulAdd(share, other.sine[k], sine[k]);
+    }
+  }
+
   /// Weights of the direction at this angle, one of 2 kOrder + 2, with that of the opposite one
   /// added and subtracted.
   HWY_INLINE void at(const float* cosines, const float* sines, V& both, V& difference) const {
@@ -144,22 +152,27 @@ struct CircleDirections {
   }
 };
 
-/// Sums over slices: of the hidden sectors, and of all sectors above the tangent plane.
+/// Sums over slices: of the sectors that are closed, in bands 0 and 1, of what is hidden from the
+/// light, and of all sectors above the tangent plane.
 template <int kOrder>
 struct Moments {
   static constexpr int kCount = (kOrder + 1) * (kOrder + 1);
+  static constexpr int kLowCount = kOrder > 0 ? 4 : 1;
 
-  V hidden[kCount], whole[kCount];
+  V closed[kLowCount], hidden[kCount], whole[kCount];
 
   HWY_INLINE Moments() {
+    for (int i = 0; i < kLowCount; ++i) closed[i] = set(0);
     for (int i = 0; i < kCount; ++i) hidden[i] = whole[i] = set(0);
   }
 
   /// Bands 0 and 1 are taken from the moments directly, so that ao and the bent normal have the
   /// same bits at every order.
   HWY_INLINE void add(const MarchReceiver& p, const SliceFrame& f,
+                      const CircleMoments<kOrder>& closed_of_slice,
                       const CircleMoments<kOrder>& hidden_of_slice,
                       const CircleMoments<kOrder>& whole_of_slice) {
+    add_low_bands(p, f, closed_of_slice, closed);
     add_low_bands(p, f, hidden_of_slice, hidden);
     add_low_bands(p, f, whole_of_slice, whole);
     if constexpr (kOrder > 1) {
@@ -186,7 +199,7 @@ struct Moments {
   /// Share of the hemisphere, weighted by the cosine, that is open.
   HWY_INLINE V open_share() const {
     const V zero = set(0), one = set(1);
-    return hn::IfThenElse(whole[0] > zero, hn::Clamp(one - hidden[0] / whole[0], zero, one), one);
+    return hn::IfThenElse(whole[0] > zero, hn::Clamp(one - closed[0] / whole[0], zero, one), one);
   }
 
   /// Visible part of the light with these weights. Both sums are over the same directions, so that
@@ -203,20 +216,21 @@ struct Moments {
     return hn::IfThenElse(total > set(0), share, otherwise);
   }
 
-  /// The mean open direction; `closed` where nothing is open. The error of the slices, the normal
-  /// less their sum over all directions, is added times the openness, so that an open surface gives
-  /// exactly its normal.
-  HWY_INLINE V3 bent_normal(const MarchReceiver& p, V ao, const V3& closed) const {
+  /// The mean open direction; `otherwise` where nothing is open. The error of the slices, the
+  /// normal less their sum over all directions, is added times the openness, so that an open
+  /// surface gives exactly its normal.
+  HWY_INLINE V3 bent_normal(const MarchReceiver& p, V ao, const V3& otherwise) const {
     const V full = set(2.0f / 3) * whole[0];
     const auto along = [&](V normal, int band) HWY_ATTR {  // bands of order 1 are y, z, x
-      return hn::MulAdd(ao, hn::MulSub(full, normal, whole[band]), whole[band] - hidden[band]);
+      return hn::MulAdd(ao, hn::MulSub(full, normal, whole[band]), whole[band] - closed[band]);
     };
     const V3 mean{along(p.normal.x, 3), along(p.normal.y, 1), along(p.normal.z, 2)};
-    return if_then_else(dot(mean, mean) > set(0), normalise(mean), closed);
+    return if_then_else(dot(mean, mean) > set(0), normalise(mean), otherwise);
   }
 
   HWY_INLINE Moments minus(const Moments& other) const {
     Moments rest = *this;
+    for (int i = 0; i < kLowCount; ++i) rest.closed[i] = closed[i] - other.closed[i];
     for (int i = 0; i < kCount; ++i) {
       rest.hidden[i] = hidden[i] - other.hidden[i];
       rest.whole[i] = whole[i] - other.whole[i];

@@ -83,11 +83,12 @@ HWY_INLINE V middle_of_block(V pixel) {
   return hn::MulAdd(hn::Round((pixel - middle) * set(0.25f)), block, middle);
 }
 
-/// Share of the surfaces assumed beyond the frame that do not hide the sun, 0..1. `turn` in 0..1
-/// differs between the members of the pattern.
+/// The share of the rays that pass what is beyond the frame, 0..1: none of those that a surface
+/// that goes on hides, `past` of the others that leave the frame within the radius, and all that
+/// end in it. `turn` in 0..1 differs from member to member of the pattern.
 template <bool kOrthographic>
 HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const SideFrame& side,
-                         const SunRay& ray, M open, float turn) {
+                         const SunRay& ray, M open, float turn, float past) {
   const V zero = set(0);
   const float apart_px = 2 * kWitnessReach * float(march.scene.layout.height()) / kWitnesses;
   V passed = zero;
@@ -98,14 +99,17 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const SideF
     // The ray crosses the piece where its ends lie on different sides of it.
     const SlicePoint to = ray.along;
     const V here = e.start.s * to.v - e.start.v * to.s, there = e.end.s * to.v - e.end.v * to.s;
-    const M leaves = hn::And(e.exists, border.distance_px < ray.end_px);
+    const M leaves_frame = border.distance_px < ray.end_px,
+            leaves = hn::And(e.exists, leaves_frame);
     const M crosses = hn::And(leaves, here * there <= zero);
     const M rises = hn::Or(e.above > zero, e.end_above > zero);
     // The pixel at the border is sampled as well: the last step may be far from it.
     const M meets = blocks<kOrthographic>(p, side, ray, hn::And(open, leaves), e.start.s, e.above,
                                           march.radius, [&]() HWY_ATTR { return e.depth; });
     const M hides = hn::Or(meets, hn::And(crosses, rises));
-    passed = passed + hn::IfThenElseZero(hn::AndNot(hides, open), set(1.0f / kWitnesses));
+    const M may_meet = hn::And(leaves_frame, border.distance_px <= set(p.reach_px));
+    const V passes = hn::IfThenElse(may_meet, set(past / kWitnesses), set(1.0f / kWitnesses));
+    passed = passed + hn::IfThenElseZero(hn::AndNot(hides, open), passes);
   }
   return passed;
 }
@@ -172,7 +176,7 @@ void sun(const SunJob& job, const Window& part) {
     V visible = hn::IfThenElseZero(open, set(1));
     if (job.march.extend && any(open)) {
       const float turn = (float(SlicePattern::rank(member)) + 0.5f) / (kPeriod * kPeriod);
-      visible = open_beyond<kOrthographic>(job.march, p, side, ray, open, turn);
+      visible = open_beyond<kOrthographic>(job.march, p, side, ray, open, turn, job.past_beyond);
     }
     const V cosine = facing(load_normals(scene, place.index, p.valid), job.sun->direction);
     const V3 before_it = load(*job.direct, place.index);

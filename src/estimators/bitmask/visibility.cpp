@@ -25,19 +25,25 @@ void visibility(const VisibilityJob& job, const Window& part) {
           if (k == firsts) first_half = sum;
           const Slice& slice = slices[std::size_t(slice_at(k, count_of_slices))];
           const SliceFrame f = slice_frame(march.scene, p, slice);
-          CircleMoments<kOrder> hidden, whole;
+          CircleMoments<kOrder> hidden, beyond, whole;
           for (const bool forward : {true, false}) {
             const SideFrame side =
                 side_frame(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
+            VU hidden_beyond = set_bits(0);
             const VU open =
                 march_side<kOrthographic>(march, p, side, slice, forward, ignore, IgnoreHits(),
-                                          ignore);
+                                          [&](const Border&, VU bits)
+                                              HWY_ATTR { hidden_beyond = bits; });
             const VU bits = hn::AndNot(open, side.above);
             whole.add(moments_of_first<kOrder + 1>(side.above_count), p.facing, side.n_t, forward);
             if (none(bits)) continue;
             hidden.add(moments_of_bits<kOrder + 1>(bits), p.facing, side.n_t, forward);
+            if (job.through_beyond == 0 || none(hidden_beyond)) continue;
+            beyond.add(moments_of_bits<kOrder + 1>(hidden_beyond), p.facing, side.n_t, forward);
           }
-          sum.add(p, f, hidden, whole);
+          CircleMoments<kOrder> hidden_from_light = hidden;
+          if (job.through_beyond > 0) hidden_from_light.subtract(beyond, set(job.through_beyond));
+          sum.add(p, f, hidden, hidden_from_light, whole);
         }
         const std::ptrdiff_t i = p.place.index;
         const V ao = sum.open_share();
