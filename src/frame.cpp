@@ -8,6 +8,9 @@
 
 #include "error.h"
 #include "estimators/registry.h"
+#include "scene/deep/channels.h"
+#include "scene/deep/deep_frame.h"
+#include "scene/deep/join_measured.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -42,12 +45,36 @@ void warn_of_idle_light_options(Frame& frame, const LightOptions& options) {
   if (options.up) warn("--env-up");
 }
 
-void read_further_views(const std::vector<std::string>& paths) {
+/// The deep images that --also names. Those of several views show the frame's.
+std::vector<DeepImage> read_deep_images(const std::vector<std::string>& paths, Frame& frame,
+                                        const GBufferOptions& options) {
+  std::vector<DeepImage> images;
   for (const std::string& path : paths) {
     const ExrReader file(path);
-    throw Error(ExitCode::usage,
-                fmt::format("--also {}: further views are not supported yet", path));
+    if (!has_deep_part(file)) {
+      throw Error(ExitCode::usage,
+                  fmt::format("--also {}: further views are not supported yet", path));
+    }
+    const std::string& view = frame.part().view;
+    auto channels = view.empty() ? std::nullopt : find_deep_channels(file, view);
+    if (!channels) channels = find_deep_channels(file, "");
+    images.push_back(read_deep_frame(file, *channels, options, frame.report.warnings));
   }
+  return images;
+}
+
+/// The solids of a frame, measured where deep images show them and guessed elsewhere.
+Solids find_solids(const Geometry& geometry, const std::vector<DeepImage>& images,
+                   const FrameOptions& options, std::vector<std::string>& warnings) {
+  std::optional<float> thickness;
+  if (options.model.thickness) thickness = float(*options.model.thickness);
+  if (images.empty())
+    return thickness ? constant_thickness(geometry, *thickness) : guess_solids(geometry);
+  const GBufferOptions& reading = options.input.gbuffer;
+  DeepDepths depths{std::nullopt, farthest_sample(reading)};
+  if (reading.depth_kind)
+    depths.kind = *reading.depth_kind == DepthKind::ray ? DepthKind::ray : DepthKind::planar;
+  return join_measured(geometry, measure_solids(geometry, images, depths, warnings), thickness);
 }
 
 }  // namespace
@@ -81,14 +108,17 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const Fr
   frame.gbuffer = std::move(view.gbuffer);
   frame.report = std::move(view.report);
   frame.times.read = view.read_ms;
-  read_further_views(files.also);
+  Stopwatch reading;
+  std::vector<DeepImage> deep = read_deep_images(files.also, frame, options.input.gbuffer);
+  if (view.deep) deep.push_back(std::move(*view.deep));
+  frame.times.read += reading.lap();
 
   Scene& scene = frame.scene;
   scene.geometry = std::move(view.geometry);
   scene.senders = {std::move(frame.gbuffer.albedo), std::move(frame.gbuffer.radiance)};
   scene.roughness = std::move(frame.gbuffer.roughness);
 
-  warn_of_idle_depth_options(frame, options.input.gbuffer);
+  if (deep.empty()) warn_of_idle_depth_options(frame, options.input.gbuffer);
   const bool world = scene.geometry.world_known;
   const Imf::Header& header = frame.part().header;
   const FrameEnvironment around =
@@ -105,11 +135,12 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const Fr
   warn_of_idle_light_options(frame, options.light);
   ModelOptions model = options.model;
   if (model.temporal) model.seed += unsigned(number);
+  if (find_method(model.method).takes.thickness)
+    scene.solids = find_solids(scene.geometry, deep, options, frame.report.warnings);
+  else if (!files.also.empty())
+    frame.report.warnings.push_back(fmt::format(
+        "--also has no effect: method {} does not look behind what is seen", model.method));
   frame.plan = make_plan(model, options.output, scene, frame.gbuffer, frame.input);
-  if (frame.plan.method->takes.thickness) {
-    scene.solids = model.thickness ? constant_thickness(scene.geometry, float(*model.thickness))
-                                   : guess_solids(scene.geometry);
-  }
   frame.times.prepare = watch.lap() - frame.times.read;
   return frame;
 }
