@@ -8,8 +8,7 @@
 
 #include "error.h"
 #include "estimators/registry.h"
-#include "scene/further/carve.h"
-#include "scene/further/merge.h"
+#include "known_geometry.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -44,14 +43,6 @@ void warn_of_idle_light_options(Frame& frame, const LightOptions& options) {
   if (options.up) warn("--env-up");
 }
 
-void read_further_views(const std::vector<std::string>& paths) {
-  for (const std::string& path : paths) {
-    const ExrReader file(path);
-    throw Error(ExitCode::usage,
-                fmt::format("--also {}: further views are not supported yet", path));
-  }
-}
-
 }  // namespace
 
 const Layer& Frame::lead() const {
@@ -83,14 +74,22 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const Fr
   frame.gbuffer = std::move(view.gbuffer);
   frame.report = std::move(view.report);
   frame.times.read = view.read_ms;
-  read_further_views(files.also);
 
   Scene& scene = frame.scene;
   scene.geometry = std::move(view.geometry);
   scene.senders = {std::move(frame.gbuffer.albedo), std::move(frame.gbuffer.radiance)};
   scene.roughness = std::move(frame.gbuffer.roughness);
-
-  warn_of_idle_depth_options(frame, options.input.gbuffer);
+  if (scene.geometry.camera.panorama) {
+    throw Error(ExitCode::layer,
+                fmt::format("{}: is a lat-long panorama, which shows no frame; give it with --also "
+                            "to a frame of the same scene",
+                            frame.input));
+  }
+  Stopwatch of_known;
+  KnownGeometry known = read_known_geometry(files.also, view.deep, scene.geometry, frame.input,
+                                            frame.part().view, options.input);
+  frame.times.known = of_known.lap();
+  if (known.deep.empty()) warn_of_idle_depth_options(frame, options.input.gbuffer);
   const bool world = scene.geometry.world_known;
   const Imf::Header& header = frame.part().header;
   const FrameEnvironment around =
@@ -107,27 +106,21 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const Fr
   warn_of_idle_light_options(frame, options.light);
   ModelOptions model = options.model;
   if (model.temporal) model.seed += unsigned(number);
+  of_known.lap();
+  if (find_method(model.method).takes.thickness) {
+    std::optional<float> thickness;
+    if (model.thickness) thickness = float(*model.thickness);
+    frame.views = use_known_geometry(known, scene, thickness, options.input.gbuffer);
+  } else if (!files.also.empty()) {
+    known.warnings.push_back(fmt::format(
+        "--also has no effect: method {} does not look behind what is seen", model.method));
+  }
+  if (!files.also.empty()) frame.times.known += of_known.lap();
+  frame.report.warnings.insert(frame.report.warnings.end(), known.warnings.begin(),
+                               known.warnings.end());
   frame.plan = make_plan(model, options.output, scene, frame.gbuffer, frame.input);
-  if (frame.plan.method->takes.thickness) {
-    scene.solids = model.thickness ? constant_thickness(scene.geometry, float(*model.thickness))
-                                   : guess_solids(scene.geometry);
-  }
-  if (const char* also = std::getenv("SSDO_ALSO")) {
-    std::vector<FurtherView> views;
-    std::string list = also;
-    for (std::size_t at = 0; at < list.size();) {
-      const std::size_t end = std::min(list.find(',', at), list.size());
-      views.push_back(read_further_view(list.substr(at, end - at), {}, scene.geometry));
-      at = end + 1;
-    }
-    std::vector<MergeCounts> counts;
-    scene.further = merge_views(views, scene.geometry, scene.senders.albedo, counts);
-    for (const auto& c : counts)
-      fmt::print(stderr, "{} added {} seen {} contra {}\n", c.file, c.added, c.seen,
-                 c.contradictory);
-    if (!std::getenv("SSDO_NOCARVE")) carve(scene.solids, scene.geometry, views);
-  }
-  frame.times.prepare = watch.lap() - frame.times.read;
+  explain_views(frame.plan, frame.views);
+  frame.times.prepare = watch.lap() - frame.times.read - frame.times.known;
   return frame;
 }
 

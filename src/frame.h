@@ -10,6 +10,7 @@
 #include "lighting.h"
 #include "outputs.h"
 #include "plan.h"
+#include "scene/further/merge.h"
 #include "scene/gbuffer.h"
 #include "scene/layers/layers.h"
 #include "scene/scene.h"
@@ -27,9 +28,10 @@ struct FrameOptions {
   ColorOptions color;
 };
 
-/// Milliseconds of wall time per stage.
+/// Milliseconds of wall time per stage; `known` is what --also takes, with the solids that it
+/// changes.
 struct StageTimes {
-  double read = 0, prepare = 0, estimate = 0, filter = 0, compose = 0, write = 0;
+  double read = 0, known = 0, prepare = 0, estimate = 0, filter = 0, compose = 0, write = 0;
 };
 
 /// A frame that has been read and understood: all that stands before the first estimate.
@@ -40,7 +42,8 @@ struct Frame {
   Scene scene;
   GBuffer gbuffer;  ///< what the scene has not taken: layers as rendered, alpha, motion
   GeometryReport report;
-  std::string light;  ///< one line
+  std::vector<MergeCounts> views;  ///< what further views add, in the order of --also
+  std::string light;               ///< one line
   Plan plan;
   std::vector<std::string> history;  ///< what a temporal plan takes from the frame before, and why
   StageTimes times;                  ///< of the stages up to here

@@ -140,6 +140,25 @@ void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geomet
   }
 }
 
+/// What is known of what lies behind surfaces.
+void explain_measured(Plan& plan, const Scene& scene) {
+  const Solids& solids = scene.solids;
+  if (solids.behind.empty()) return;
+  std::size_t surfaces = 0, pixels = 0;
+  int most = 0;
+  for (std::size_t i = 0; i < scene.geometry.surfel.size(); ++i) {
+    int measured = 0;
+    for (int k = 1; k < solids.layers(); ++k)
+      measured += solids.at(k, i).exists() && solids.origin(k, i) == Origin::measured;
+    surfaces += scene.geometry.is_surface(i);
+    pixels += measured > 0;
+    most = std::max(most, measured);
+  }
+  if (pixels == 0) return;
+  plan.reasons.push_back(fmt::format(
+      "measured solids behind {} of {} surfaces, up to {} in a pixel", pixels, surfaces, most));
+}
+
 void explain_thickness(Plan& plan, const ModelOptions& model) {
   if (!plan.method->takes.thickness) return;
   plan.reasons.push_back(
@@ -211,9 +230,20 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
   explain_light(plan, scene.light);
   choose_radius(plan, model, scene.geometry);
   explain_thickness(plan, model);
+  explain_measured(plan, scene);
   choose_march(plan, model);
   choose_receivers(plan, output, scene.geometry, file);
   return plan;
+}
+
+void explain_views(Plan& plan, const std::vector<MergeCounts>& views) {
+  for (const MergeCounts& view : views) {
+    plan.reasons.push_back(fmt::format(
+        "{}: {} pixels show what the frame does not, {} what it shows as well, {} contradict it "
+        "and are left out{}",
+        view.file, view.added, view.seen, view.contradictory,
+        view.has_albedo ? "" : "; it has no albedo, so that it sends no light"));
+  }
 }
 
 nlohmann::json to_json(const Plan& plan, const std::vector<std::string>& history) {

@@ -11,6 +11,7 @@
 #include "estimators/registry.h"
 #include "filters/registry.h"
 #include "outputs.h"
+#include "scene/further/merge.h"
 #include "scene/gbuffer.h"
 #include "scene/light/light.h"
 #include "scene/scene.h"
@@ -69,6 +70,9 @@ struct Plan {
 /// a crop that leaves nothing; ExitCode::layer for one whose layer is missing.
 Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Scene& scene,
                const GBuffer& gbuffer, const std::string& file);
+
+/// Adds what further views contribute to the reasons.
+void explain_views(Plan& plan, const std::vector<MergeCounts>& views);
 
 /// `history` is what a temporal plan takes from the frame before, and why: it ends the reasons.
 nlohmann::json to_json(const Plan& plan, const std::vector<std::string>& history = {});

@@ -79,6 +79,7 @@ json to_json(const BenchReport& report) {
           {"seconds", report.seconds},
           {"stages_ms",
            {{"read", report.stages.read},
+            {"known", report.stages.known},
             {"prepare", report.stages.prepare},
             {"write", report.stages.write}}},
           {"products", report.products},

@@ -14,6 +14,7 @@
 #include <fstream>
 
 #include "error.h"
+#include "io/one_line.h"
 #include "io/size_guard.h"
 
 namespace fs = std::filesystem;
@@ -84,6 +85,14 @@ void check_is_exr(const fs::path& file) {
 bool begins_as_exr(const fs::path& file) {
   std::error_code ignored;
   return fs::is_regular_file(file, ignored) && Imf::isOpenExrFile(file.c_str());
+}
+
+void throw_damaged(const ExrReader& file, const ExrPart& part, const std::exception& error) {
+  const char* state = file.file().partComplete(part.index)
+                          ? "is damaged or cut short"
+                          : "is incomplete: its writing was interrupted";
+  fail(file.path(), fmt::format("{} ({}: {}); render or copy it again", state, label(part),
+                                one_line(error.what())));
 }
 
 ExrPart describe_part(const Imf::MultiPartInputFile& file, int index) {

@@ -15,6 +15,10 @@ void check_is_exr(const std::filesystem::path& file);
 /// Whether `file` is a plain file that begins as an EXR does, whatever its name.
 bool begins_as_exr(const std::filesystem::path& file);
 
+/// Throws ExitCode::input for a part whose pixels could not be read.
+[[noreturn]] void throw_damaged(const ExrReader& file, const ExrPart& part,
+                                const std::exception& error);
+
 /// Unpacks the header of a part.
 ExrPart describe_part(const Imf::MultiPartInputFile& file, int index);
 

@@ -80,11 +80,7 @@ void read_or_fail(const ExrReader& reader, const ExrPart& part,
   try {
     read_pixels(reader.file(), part, frame_buffer);
   } catch (const std::exception& error) {
-    const char* state = reader.file().partComplete(part.index)
-                            ? "is damaged or cut short"
-                            : "is incomplete: its writing was interrupted";
-    fail(reader, fmt::format("{} ({}: {}); render or copy it again", state, label(part),
-                             one_line(error.what())));
+    throw_damaged(reader, part, error);
   }
 }
 

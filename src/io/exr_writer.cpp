@@ -61,8 +61,9 @@ bool has_channel(const ExrPart& part, const std::string& name) {
 }
 
 std::vector<KeptChannel> kept_channels(const ExrOutput& output) {
-  if (!output.keep_channels) return {};
   const ExrPart& part = part_of(output);
+  // Deep samples do not fit into a flat part.
+  if (!output.keep_channels || part.deep) return {};
   std::vector<std::string> from, to;
   for (const ExrChannel& channel : part.channels) {
     const bool taken = has_plane(output, channel.name);

@@ -44,8 +44,9 @@ Imf::Compression compression_for(const ExrOutput& output);
 ///
 /// The header of the input's part is kept: windows, pixel aspect, view, chromaticities and every
 /// attribute that does not describe the old file's storage. Without `keep_channels` the file has
-/// that one part, in scanlines. With it, the part's other channels keep type and bits (of a tiled
-/// part, its full-resolution level), and the other parts are copied without being decoded.
+/// that one part, in scanlines and flat. With it, the part's other channels keep type and bits (of
+/// a tiled part, its full-resolution level; those of a deep one are dropped), and the other parts
+/// are copied without being decoded.
 ///
 /// With `crop` the data window of a part is what the display window shows of it. Other flat parts
 /// that reach beyond are decoded and come in scanlines, with the same bits in the pixels that stay.

@@ -18,18 +18,6 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Rounding of the farther end, relative to it.
 constexpr float kRounding = 1e-6f;
 
-void decode(Plane<float>& depth, DepthKind kind, const GBufferOptions& options) {
-  const float near = options.depth_near, far = options.depth_far;
-  const float farther = std::max(near, far) * (1 - kRounding);
-  for (float& z : depth.pixels) {
-    if (kind == DepthKind::inverse) z = 1 / z;
-    if (kind == DepthKind::normalized) {
-      z = near + z * (far - near);
-      if (z >= farther) z = kInfinity;
-    }
-  }
-}
-
 /// Whether the depth is the z of a camera that looks along -z: negative wherever there is a
 /// surface.
 void turn_negative(GBuffer& g) {
@@ -49,7 +37,7 @@ void check_has_unit(const GBuffer& g, const std::string& file) {
   for (const float z : g.depth.pixels) {
     if (z < kEmptyDepth) largest = std::max(largest, z);
   }
-  if (largest > 1) return;
+  if (largest > 1 || largest == 0) return;  // 0: nothing is shown
   throw Error(ExitCode::layer,
               fmt::format("{}: depth ends at {:.4g} and seems to be normalised to 0..1; give its "
                           "meaning with --depth-kind normalized:NEAR,FAR, or say --depth-kind "
@@ -59,11 +47,25 @@ void check_has_unit(const GBuffer& g, const std::string& file) {
 
 }  // namespace
 
+float decoded_depth(float stored, const GBufferOptions& options) {
+  const float near = options.depth_near, far = options.depth_far;
+  switch (options.depth_kind.value_or(DepthKind::planar)) {
+    case DepthKind::inverse:
+      return 1 / stored;
+    case DepthKind::normalized: {
+      const float depth = near + stored * (far - near);
+      return depth >= std::max(near, far) * (1 - kRounding) ? kInfinity : depth;
+    }
+    default:
+      return stored;
+  }
+}
+
 void undo_depth_encoding(GBuffer& g, const GBufferOptions& options, const std::string& file) {
   if (g.depth.empty()) return;
   const DepthKind kind = options.depth_kind.value_or(DepthKind::planar);
   g.depth_kind = kind == DepthKind::ray ? DepthKind::ray : DepthKind::planar;
-  decode(g.depth, kind, options);
+  for (float& z : g.depth.pixels) z = decoded_depth(z, options);
   turn_negative(g);
   if (!options.depth_kind && g.position.empty()) check_has_unit(g, file);
 }

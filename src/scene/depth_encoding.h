@@ -8,6 +8,10 @@
 
 namespace ssdo {
 
+/// A depth as stored as a distance along the axis or the ray, in scene units; infinite where it
+/// shows nothing by the rule below.
+float decoded_depth(float stored, const GBufferOptions& options);
+
 /// Turns the depth as stored into a distance along the axis or the ray, in scene units, and sets
 /// its kind. In a normalized depth what is stored as the farther end, or beyond it, shows nothing:
 /// it becomes infinite. A depth that is negative throughout is a coordinate along the axis: its

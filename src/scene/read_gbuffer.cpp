@@ -45,7 +45,7 @@ Plane<float> lay_onto(const Window& to, const Window& from, const Plane<float>& 
 class LayerReader {
  public:
   LayerReader(const std::vector<const ExrReader*>& files, const LayerTable& table,
-              const std::vector<Role>& roles, const Window& window)
+              const std::vector<Role>& roles, const Window& window, const Plane<float>* deep)
       : files_(files), window_(window) {
     std::map<Part, std::vector<std::string>> channels;
     for (const Role role : roles) {
@@ -56,6 +56,10 @@ class LayerReader {
       }
     }
     for (const auto& [part, names] : channels) {
+      if (files[std::size_t(part.first)]->parts()[std::size_t(part.second)].deep) {
+        planes_[part][names[0]] = *deep;
+        continue;
+      }
       auto planes = files[std::size_t(part.first)]->read(part.second, names);
       for (std::size_t i = 0; i < names.size(); ++i) planes_[part][names[i]] = std::move(planes[i]);
     }
@@ -155,7 +159,7 @@ void clear_negative(Plane<glm::vec3>& colors) {
 }  // namespace
 
 GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTable& table,
-                     const GBufferOptions& options) {
+                     const GBufferOptions& options, const Plane<float>* deep) {
   const std::string file = files[0]->path().string();
   const auto& lead = table[Role::position] ? table[Role::position] : table[Role::depth];
   const ExrPart& part = files[std::size_t(lead->file)]->parts()[std::size_t(lead->part)];
@@ -170,7 +174,7 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
                              Role::radiance, Role::alpha, Role::roughness, Role::motion};
   if (table[Role::ambient]) roles.insert(roles.end(), {Role::ambient, Role::beauty});
   check_display_windows(files, table, roles);
-  const LayerReader read(files, table, roles, g.window);
+  const LayerReader read(files, table, roles, g.window, deep);
   g.position = read.vector(table[Role::position], NAN);
   g.depth = read.scalar(table[Role::depth], NAN);
   g.normal = read.vector(table[Role::normal], NAN);

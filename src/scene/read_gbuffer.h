@@ -23,9 +23,10 @@ struct GBufferOptions {
 /// Reads the layers of `table` and finds background and broken pixels: background where alpha is
 /// 0, or else by depth (>= 1e9, infinite, NaN, <= 0) where there is one, or else by P (0, >= 1e9,
 /// not finite) or a normal of 0.
-/// The table has a position or a depth, whose data window the planes have.
-/// Errors: ExitCode::layer when a layer is of another display window, or the depth has no unit.
+/// The table has a position or a depth, whose data window the planes have. Of a deep part, `deep`
+/// is the depth, its encoding undone but for its kind. Errors: ExitCode::layer when a layer is of
+/// another display window, or the depth has no unit.
 GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTable& table,
-                     const GBufferOptions& options);
+                     const GBufferOptions& options, const Plane<float>* deep = nullptr);
 
 }  // namespace ssdo

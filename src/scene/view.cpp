@@ -1,9 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/view.h"
 
+#include "scene/deep/channels.h"
+#include "scene/deep/deep_frame.h"
 #include "stopwatch.h"
 
 namespace ssdo {
+namespace {
+
+/// Where no layer tells where surfaces are, deep samples do: the first solid of a pixel is what it
+/// shows. Returns its depth, and sets how the depth is to be read on.
+Plane<float> take_depth_from_samples(View& view, const std::string& part, GBufferOptions& options,
+                                     std::vector<std::string>& warnings) {
+  const ExrReader& file = view.files.front();
+  if (view.layers[Role::position] || view.layers[Role::depth]) return {};
+  const auto channels = find_deep_channels(file, part);
+  if (!channels) return {};
+  view.deep = read_deep_frame(file, *channels, options, warnings);
+  const std::string& name = channels->front.name;
+  view.layers[Role::depth] = Layer{0, channels->front.part, name, {name}, view.deep->half, false};
+  const float far = farthest_sample(options);
+  if (options.depth_kind && *options.depth_kind != DepthKind::ray)
+    options.depth_kind = DepthKind::planar;
+  return nearest_surfaces(*view.deep, far);
+}
+
+}  // namespace
 
 View read_view(const std::string& input, const std::vector<LayerRequest>& aovs,
                const InputOptions& options, const CameraOptions& camera,
@@ -14,9 +36,13 @@ View read_view(const std::string& input, const std::vector<LayerRequest>& aovs,
   std::vector<const ExrReader*> files;
   for (const ExrReader& file : view.files) files.push_back(&file);
   view.layers = find_layers(files, aovs, options.part, unused);
+  GBufferOptions reading = options.gbuffer;
+  std::vector<std::string> warnings;
+  const Plane<float> deep = take_depth_from_samples(view, options.part, reading, warnings);
   require_position(view.layers, view.files.front(),
                    options.listed ? "" : " ('ssdo info' lists the layers)");
-  view.gbuffer = read_gbuffer(files, view.layers, options.gbuffer);
+  view.gbuffer = read_gbuffer(files, view.layers, reading, &deep);
+  view.gbuffer.warnings.insert(view.gbuffer.warnings.begin(), warnings.begin(), warnings.end());
   view.read_ms = watch.lap();
 
   view.geometry = build_geometry(view.gbuffer, camera, input, view.report);

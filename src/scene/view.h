@@ -2,9 +2,11 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "io/deep_reader.h"
 #include "io/exr_reader.h"
 #include "scene/gbuffer.h"
 #include "scene/geometry.h"
@@ -33,7 +35,8 @@ struct FrameFiles {
 struct View {
   std::deque<ExrReader> files;  ///< the frame, then the files that --aov names
   LayerTable layers;
-  GBuffer gbuffer;  ///< without position, normal and depth: the geometry has them
+  std::optional<DeepImage> deep;  ///< what the depth was taken from, where there is no other
+  GBuffer gbuffer;                ///< without position, normal and depth: the geometry has them
   Geometry geometry;
   GeometryReport report;
   double read_ms = 0;  ///< wall time of what was read, without the geometry

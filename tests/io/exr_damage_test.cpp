@@ -6,7 +6,7 @@
 #include <iterator>
 #include <random>
 
-#include "io/exr_reader.h"
+#include "io/deep_reader.h"
 #include "support/error_matchers.h"
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
@@ -50,7 +50,10 @@ bool reads(const std::filesystem::path& path) {
   try {
     const ExrReader reader(path);
     for (const ExrPart& part : reader.parts()) {
-      if (part.deep) continue;
+      if (part.deep) {
+        read_deep(reader, {{part.index, "Z"}, {}, {part.index, "A"}});
+        continue;
+      }
       std::vector<std::string> names;
       for (const ExrChannel& channel : part.channels) names.push_back(channel.name);
       reader.read(part.index, names);

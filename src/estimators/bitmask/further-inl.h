@@ -56,9 +56,8 @@ HWY_INLINE VU sectors_of_further(const March& march, const MarchReceiver& p, con
   alignas(64) std::uint32_t bits[kLanes], hidden[kLanes];
   VU all = set_bits(0);
   for (int from = 0; from < SliceSectors::kCount; from += kSectorsPerRay) {
-    const VU group =
-        hn::And(hn::IfThenElseZero(hn::RebindMask(du, p.valid), open),
-                set_bits(((1u << kSectorsPerRay) - 1) << from));
+    const VU group = hn::And(hn::IfThenElseZero(hn::RebindMask(du, p.valid), open),
+                             set_bits(((1u << kSectorsPerRay) - 1) << from));
     if (none(group)) continue;
     hn::Store(group, du, bits);
     FurtherRays::Hit hits[kLanes];
@@ -68,8 +67,8 @@ HWY_INLINE VU sectors_of_further(const March& march, const MarchReceiver& p, con
       // The one in the middle of those that are open stands for them.
       std::uint32_t rest = bits[lane];
       for (int k = (std::popcount(rest) - 1) / 2; k > 0; --k) rest &= rest - 1;
-      const float cosine =
-          std::clamp((first - float(std::countr_zero(rest))) / SliceSectors::kPerCosine, -1.0f, 1.0f);
+      const float cosine = std::clamp(
+          (first - float(std::countr_zero(rest))) / SliceSectors::kPerCosine, -1.0f, 1.0f);
       const glm::vec3 to = cosine * v[lane] + std::sqrt(1 - cosine * cosine) * t[lane];
       if constexpr (Met::kWantsHits) {
         hits[lane] = march.further->first_hit(start[lane], to, march.radius);

@@ -19,8 +19,8 @@ namespace ssdo {
 struct March {
   const MarchScene& scene;
   const SlicePattern& pattern;
-  float radius;  ///< scene units, or infinity
-  bool extend;   ///< surfaces go on beyond the frame
+  float radius;                          ///< scene units, or infinity
+  bool extend;                           ///< surfaces go on beyond the frame
   const FurtherRays* further = nullptr;  ///< what only further views show; null: nothing
 };
 

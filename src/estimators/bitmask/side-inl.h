@@ -96,8 +96,7 @@ template <bool kOrthographic, class Met, class Further, class Beyond>
 HWY_INLINE VU march_side(const March& march, const MarchReceiver& p, const SideFrame& side,
                          const Slice& slice, bool forward, const Met& on_met,
                          const Further& on_further, const Beyond& on_beyond) {
-  VU open =
-      march_raster<kOrthographic>(march, p, side, slice.sides[forward ? 0 : 1].steps, on_met);
+  VU open = march_raster<kOrthographic>(march, p, side, slice.sides[forward ? 0 : 1].steps, on_met);
   if (march.further && !none(open))
     open = hn::AndNot(sectors_of_further(march, p, side, open, on_further), open);
   if (!march.extend || none(open)) return open;

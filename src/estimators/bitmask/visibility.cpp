@@ -30,10 +30,9 @@ void visibility(const VisibilityJob& job, const Window& part) {
             const SideFrame side =
                 side_frame(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
             VU hidden_beyond = set_bits(0);
-            const VU open =
-                march_side<kOrthographic>(march, p, side, slice, forward, ignore, IgnoreHits(),
-                                          [&](const Border&, VU bits)
-                                              HWY_ATTR { hidden_beyond = bits; });
+            const VU open = march_side<kOrthographic>(
+                march, p, side, slice, forward, ignore, IgnoreHits(),
+                [&](const Border&, VU bits) HWY_ATTR { hidden_beyond = bits; });
             const VU bits = hn::AndNot(open, side.above);
             whole.add(moments_of_first<kOrder + 1>(side.above_count), p.facing, side.n_t, forward);
             if (none(bits)) continue;

@@ -34,9 +34,9 @@ struct Query : RTCIntersectContext {
     const auto& query = *static_cast<const Query*>(hits->context);
     for (unsigned i = 0; i < hits->N; ++i) {
       if (hits->valid[i] == 0) continue;
-      const int corner = query.corner(RTCHitN_primID(hits->hit, hits->N, i),
-                                      RTCHitN_u(hits->hit, hits->N, i),
-                                      RTCHitN_v(hits->hit, hits->N, i));
+      const int corner =
+          query.corner(RTCHitN_primID(hits->hit, hits->N, i), RTCHitN_u(hits->hit, hits->N, i),
+                       RTCHitN_v(hits->hit, hits->N, i));
       const Vertex& vertex = (*query.vertices)[std::size_t(corner)];
       const float direction[3] = {RTCRayN_dir_x(hits->ray, hits->N, i),
                                   RTCRayN_dir_y(hits->ray, hits->N, i),
@@ -76,8 +76,8 @@ struct FurtherRays::Embree {
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
-    rtcSetSceneFlags(scene, RTCSceneFlags(RTC_SCENE_FLAG_ROBUST |
-                                          RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+    rtcSetSceneFlags(scene,
+                     RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
     rtcCommitScene(scene);
   }
   Embree(const Embree&) = delete;

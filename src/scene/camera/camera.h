@@ -38,8 +38,7 @@ struct Camera {
   /// Camera space to pixels.
   glm::dvec2 project(const glm::dvec3& p) const {
     if (panorama) {
-      return {cx + fx * std::atan2(p.x, -p.z),
-              cy - fy * std::atan2(p.y, std::hypot(p.x, p.z))};
+      return {cx + fx * std::atan2(p.x, -p.z), cy - fy * std::atan2(p.y, std::hypot(p.x, p.z))};
     }
     const double w = orthographic ? 1.0 : 1.0 / -p.z;
     return {cx + fx * p.x * w, cy - fy * p.y * w};
@@ -53,8 +52,7 @@ struct Camera {
     const double x = (pixel.x - cx) / fx, y = (cy - pixel.y) / fy;
     if (orthographic) return {{x, y, 0}, {0, 0, -1}};
     if (!panorama) return {glm::dvec3(0), {x, y, -1}};
-    return {glm::dvec3(0),
-            {std::sin(x) * std::cos(y), std::sin(y), -std::cos(x) * std::cos(y)}};
+    return {glm::dvec3(0), {std::sin(x) * std::cos(y), std::sin(y), -std::cos(x) * std::cos(y)}};
   }
 
   /// Depth of a camera-space point: negative behind the camera, never for a panorama.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <optional>
 
@@ -58,15 +59,23 @@ Plane<unsigned char> inner_pixels(const Plane<unsigned char>& valid) {
   return inner;
 }
 
-/// The camera from pixels that cannot be averages with the background, or else from all. Where no
-/// pinhole explains P and none is `given`, it may be a panorama.
+/// P of a pinhole lands nearer to its pixels than this, but for rounding and filters.
+constexpr double kPinholeMissPx = 0.05;
+
+/// The camera from pixels that cannot be averages with the background, or else from all. Where a
+/// pinhole explains P badly and none is `given`, it may be a panorama.
 std::optional<Camera> fit_camera(const GBuffer& g, bool given) {
   const Plane<unsigned char> inner = inner_pixels(g.valid);
   auto fitted = ssdo::fit_camera(g.position, inner, g.window);
   if (!fitted) fitted = ssdo::fit_camera(g.position, g.valid, g.window);
-  if (given || (fitted && explains(*fitted, g.position, g.valid, g.window))) return fitted;
+  if (given) return fitted;
+  const auto miss = [&](const Camera& camera) {
+    return measure_residual(camera, g.position, inner, g.window).median_px;
+  };
+  const double by_pinhole = fitted ? miss(*fitted) : INFINITY;
+  if (by_pinhole < kPinholeMissPx) return fitted;
   const auto panorama = fit_panorama(g.position, inner, g.window, g.display);
-  return panorama ? panorama : fitted;
+  return panorama && miss(*panorama) < by_pinhole ? panorama : fitted;
 }
 
 /// The most by which storing P may have moved it along one axis, in scene units.

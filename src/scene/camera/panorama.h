@@ -10,8 +10,8 @@
 namespace ssdo {
 
 /// Finds the lat-long panorama of all directions under which every position projects to the centre
-/// of its own pixel: `display` is 2 pi wide and pi high. Its longitude may grow to the left, and its
-/// poles may point anywhere.
+/// of its own pixel: `display` is 2 pi wide and pi high. Its longitude may grow to the left, and
+/// its poles may point anywhere.
 ///
 /// Returns nothing where no panorama brings half of the positions within half a pixel of their own.
 /// `positions` are over `window`; a pixel takes part where `valid` is not 0.

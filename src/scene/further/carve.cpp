@@ -110,13 +110,12 @@ class Carver {
       const glm::vec3 to_viewer = direction_to_viewer(s.position, frame_.camera.orthographic);
       const glm::vec3 aside(outward.x, -outward.y, 0);
       const glm::vec3 across = aside - glm::dot(aside, to_viewer) * to_viewer;
-      const glm::vec3 along = across * glm::dot(s.normal, to_viewer) -
-                              to_viewer * glm::dot(s.normal, across);
+      const glm::vec3 along =
+          across * glm::dot(s.normal, to_viewer) - to_viewer * glm::dot(s.normal, across);
       const float length = glm::length(along);
       if (!(length > 0)) return;
-      const float known =
-          first_on_way(s.position, along / length, first_step(s), farthest_,
-                       [&](const glm::vec3& p) { return is_known(views_, p); });
+      const float known = first_on_way(s.position, along / length, first_step(s), farthest_,
+                                       [&](const glm::vec3& p) { return is_known(views_, p); });
       if (known < farthest_) solids_.beyond.at(x, y) = known;
     };
     for (int x = 0; x < w; ++x) end(x, 0, {0, -1}), end(x, h - 1, {0, 1});

@@ -12,7 +12,7 @@ namespace ssdo {
 struct Vertex {
   glm::vec3 position{0}, normal{0};  ///< the normal is unit, on the side that is seen
   glm::vec3 albedo{0};
-  float footprint = 0;  ///< width of what its pixel shows, in scene units
+  float footprint = 0;       ///< width of what its pixel shows, in scene units
   std::uint32_t sender = 0;  ///< the vertex whose light it sends: the middle of its pixel
 };
 
@@ -22,7 +22,7 @@ struct FurtherSurfaces {
 
   std::vector<Vertex> vertices;
   std::vector<Triangle> added;  ///< of what the frame does not show
-  std::vector<Triangle> all;    ///< those, what the frame shows as well, and what it shows, coarsely
+  std::vector<Triangle> all;  ///< those, what the frame shows as well, and what it shows, coarsely
 
   bool empty() const { return added.empty(); }
 };

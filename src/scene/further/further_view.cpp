@@ -53,16 +53,14 @@ Camera seen_from(const Camera& view, const Camera& frame) {
 
 }  // namespace
 
-FurtherView read_further_view(const std::string& file, const InputOptions& options,
-                              const Geometry& frame) {
-  View view = read_view(file, {}, options, {}, {Role::motion, Role::roughness, Role::radiance});
+FurtherView read_further_view(const std::string& file, const Geometry& frame) {
+  View view = read_view(file, {}, {}, {}, {Role::motion, Role::roughness, Role::radiance});
   check(view, file);
   FurtherView out;
   out.file = file;
   out.camera = seen_from(view.geometry.camera, frame.camera);
   out.window = view.geometry.window;
-  out.closed =
-      out.camera.panorama && view.geometry.window.width() == view.geometry.display.width();
+  out.closed = out.camera.panorama && view.geometry.window.width() == view.geometry.display.width();
   out.surfel = std::move(view.geometry.surfel);
   out.depth = Plane<float>(out.surfel.width, out.surfel.height, kNothing);
   const glm::dmat3 to_frame = glm::transpose(out.camera.rotation);

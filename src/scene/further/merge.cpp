@@ -60,8 +60,8 @@ class Merger {
       for (int dx = -1; dx <= 1; ++dx) {
         const Surfel* shown = surface_at(frame_.surfel, int(px) + dx, int(py) + dy);
         if (!shown) continue;
-        const float tolerance = kSurfaceTolerance * footprint_.at(-shown->position.z) +
-                                s.rounding + shown->rounding;
+        const float tolerance =
+            kSurfaceTolerance * footprint_.at(-shown->position.z) + s.rounding + shown->rounding;
         const bool faces = glm::dot(s.normal, shown->normal) > 0;
         if (faces && std::abs(glm::dot(p - shown->position, shown->normal)) <= tolerance)
           return Fate::seen;
@@ -119,8 +119,8 @@ class Mesher {
                          std::min(grid_.camera.fx, grid_.camera.fy) * grid_.step;
     index_(x, y) = std::uint32_t(out_.vertices.size());
     out_.vertices.push_back({s.position, s.normal,
-                             grid_.albedo.empty() ? glm::vec3(0) : grid_.albedo[from],
-                             float(width), index_(x, y)});
+                             grid_.albedo.empty() ? glm::vec3(0) : grid_.albedo[from], float(width),
+                             index_(x, y)});
   }
 
   bool joined(std::uint32_t i, std::uint32_t j) const {
@@ -207,6 +207,7 @@ Plane<Fate> judge_view(const FurtherView& view, const Merger& merger, MergeCount
     }
   });
   counts.file = view.file;
+  counts.has_albedo = !view.albedo.empty();
   for (const Fate fate : fates.pixels) {
     counts.added += fate == Fate::added;
     counts.seen += fate == Fate::seen;

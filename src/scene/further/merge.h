@@ -14,6 +14,7 @@ namespace ssdo {
 /// What became of the pixels of a further view that show a surface.
 struct MergeCounts {
   std::string file;
+  bool has_albedo = false;
   std::size_t added = 0;          ///< the frame does not show what they show
   std::size_t seen = 0;           ///< the frame shows it as well
   std::size_t contradictory = 0;  ///< it would lie before what the frame shows: something moved

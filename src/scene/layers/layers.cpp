@@ -62,7 +62,7 @@ void refuse_missing_file(const LayerRequest& request) {
   std::vector<std::string> names;
   for (const ExrPart& part : frame.parts())
     names.push_back(fmt::format("{} '{}'{}", part.index, part.name, part.deep ? " (deep)" : ""));
-  throw Error(ExitCode::layer, fmt::format("{}: no flat part or view '{}'; the file has {}",
+  throw Error(ExitCode::layer, fmt::format("{}: no part or view '{}'; the file has {}",
                                            frame.path().string(), wanted, fmt::join(names, ", ")));
 }
 
@@ -78,7 +78,15 @@ Tiers select_part(const ExrReader& frame, const std::vector<LayerGroup>& groups,
   if (!part.empty()) return {part, parts_beside(part, groups)};
   const auto view =
       those_of(groups, [&](const LayerGroup& group) { return lower(group.view) == lower(wanted); });
-  if (view.empty()) throw_no_part(frame, wanted);
+  if (view.empty()) {
+    const auto& parts = frame.parts();
+    const bool deep = std::any_of(parts.begin(), parts.end(), [&](const ExrPart& p) {
+      return p.deep && (p.name == wanted || std::to_string(p.index) == wanted ||
+                        lower(p.view) == lower(wanted));
+    });
+    if (!deep) throw_no_part(frame, wanted);
+    return {groups};  // they complete the deep part
+  }
   return {view};
 }
 
@@ -90,11 +98,6 @@ class LayerFinder {
       : files_(files), requests_(requests) {
     for (std::size_t f = 0; f < files.size(); ++f)
       groups_.push_back(group_channels(*files[f], int(f)));
-    if (groups_[0].empty() && only_part.empty()) {
-      throw Error(ExitCode::input,
-                  fmt::format("{}: holds deep images only; ssdo reads flat ones: flatten it first",
-                              frame()));
-    }
     tiers_ = select_part(*files[0], groups_[0], only_part);
   }
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/deep/deep_frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "parallel/tiles.h"
+#include "scene/background.h"
+#include "scene/deep/ray_solids.h"
+#include "scene/depth_encoding.h"
+
+namespace ssdo {
+
+DeepImage read_deep_frame(const ExrReader& file, const DeepChannels& channels,
+                          const GBufferOptions& options, std::vector<std::string>& warnings) {
+  DeepImage image = read_deep(file, channels);
+  if (image.samples.empty()) {
+    warnings.push_back(fmt::format("{}: holds no deep sample in any pixel", image.file));
+    return image;
+  }
+  for (DeepSample& s : image.samples) {
+    s.front = decoded_depth(s.front, options);
+    s.back = decoded_depth(s.back, options);
+  }
+  const auto is_positive = [](const DeepSample& s) { return !(s.front < 0); };
+  if (std::any_of(image.samples.begin(), image.samples.end(), is_positive)) return image;
+  for (DeepSample& s : image.samples) s.front = -s.front, s.back = -s.back;
+  warnings.push_back(
+      fmt::format("{}: its deep samples have a negative Z, as that of a camera that looks along "
+                  "-z; their sign is turned",
+                  image.file));
+  return image;
+}
+
+float farthest_sample(const GBufferOptions& options) {
+  return options.background_depth ? std::min(*options.background_depth, kEmptyDepth) : kEmptyDepth;
+}
+
+Plane<float> nearest_surfaces(const DeepImage& image, float far) {
+  Plane<float> depth(image.window.width(), image.window.height(),
+                     std::numeric_limits<float>::infinity());
+  for_each_row(depth.height, [&](int y) {
+    RaySolids ray(far);
+    for (int x = 0; x < depth.width; ++x) {
+      ray.add(image.at(image.window.x0 + x, image.window.y0 + y));
+      const std::vector<RaySolid>& solids = ray.find(1);
+      if (!solids.empty()) depth(x, y) = solids[0].front;
+    }
+  });
+  return depth;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/deep_reader.h"
+#include "scene/read_gbuffer.h"
+
+namespace ssdo {
+
+/// Reads a deep image and undoes the encoding of its depths: they are planar or ray depths in scene
+/// units from here on. Depths that are negative throughout are coordinates along the axis: their
+/// sign is turned. Warnings go to `warnings`.
+/// Errors: those of read_deep.
+DeepImage read_deep_frame(const ExrReader& file, const DeepChannels& channels,
+                          const GBufferOptions& options, std::vector<std::string>& warnings);
+
+/// Depth from which on the samples of a deep image show nothing.
+float farthest_sample(const GBufferOptions& options);
+
+/// The depth of the first solid of every pixel, over the image's window; infinite where there is
+/// none.
+Plane<float> nearest_surfaces(const DeepImage& image, float far);
+
+}  // namespace ssdo

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/deep_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+
+#include "support/deep_file.h"
+#include "support/error_matchers.h"
+#include "support/run_tool.h"
+#include "support/temp_dir.h"
+
+namespace ssdo::test {
+namespace {
+
+/// Zero to four samples in a pixel, of values that half stores exactly.
+DeepPixels pattern(const Window& window) {
+  DeepPixels pixels(window);
+  for (int y = window.y0; y < window.y1; ++y) {
+    for (int x = window.x0; x < window.x1; ++x) {
+      for (int i = 0; i < test_value(0, x, y) % 5; ++i) {
+        const float front = float(test_value(1, x, y) + 8 * i);
+        pixels.at(x, y).push_back({front, front + 2, 0.25f * float(i + 1)});
+      }
+    }
+  }
+  return pixels;
+}
+
+void expect_same(const DeepImage& image, DeepPixels pixels, bool backs = true, bool alphas = true) {
+  ASSERT_EQ(image.window, pixels.window);
+  for (int y = pixels.window.y0; y < pixels.window.y1; ++y) {
+    for (int x = pixels.window.x0; x < pixels.window.x1; ++x) {
+      const auto& expected = pixels.at(x, y);
+      const auto found = image.at(x, y);
+      ASSERT_EQ(found.size(), expected.size()) << x << ", " << y;
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        ASSERT_EQ(found[i].front, expected[i].front) << x << ", " << y;
+        ASSERT_EQ(found[i].back, backs ? expected[i].back : expected[i].front);
+        ASSERT_EQ(found[i].alpha, alphas ? expected[i].alpha : 1);
+      }
+    }
+  }
+}
+
+const DeepChannels kUsual = {{0, "Z"}, {0, "ZBack"}, {0, "A"}};
+
+TEST(DeepReader, ReadsScanlinesAndTilesOfAnyWindow) {
+  const TempDir dir;
+  for (const Window& window : {Window{-3, 7, 30, 47}, {0, 0, 1, 1}, {-40, -50, -2, -10}}) {
+    for (const bool tiles : {false, true}) {
+      for (const Imf::PixelType type : {Imf::FLOAT, Imf::HALF}) {
+        const DeepPixels pixels = pattern(window);
+        write_deep(dir / "a.exr",
+                   {{.pixels = pixels, .tiles = tiles, .type = type, .display = {0, 0, 64, 64}}});
+        const DeepImage image = read_deep(ExrReader(dir / "a.exr"), kUsual);
+        expect_same(image, pixels);
+        EXPECT_EQ(image.display, (Window{0, 0, 64, 64}));
+        EXPECT_EQ(image.half, type == Imf::HALF);
+        EXPECT_TRUE(image.at(window.x1, window.y0).empty()) << "nothing outside of the window";
+      }
+    }
+  }
+}
+
+TEST(DeepReader, TakesSurfacesAndOpaqueSamplesWhereNothingElseIsWritten) {
+  const TempDir dir;
+  const DeepPixels pixels = pattern({0, 0, 20, 20});
+  write_deep(dir / "a.exr", {{.pixels = pixels, .back = "", .alpha = ""}});
+  expect_same(read_deep(ExrReader(dir / "a.exr"), {{0, "Z"}, {}, {}}), pixels, false, false);
+}
+
+TEST(DeepReader, TakesChannelsOfSeveralPartsWithTheSameSamples) {
+  const TempDir dir;
+  const DeepPixels pixels = pattern({0, 0, 20, 20});
+  DeepPart depth{.pixels = pixels, .name = "depth", .alpha = ""},
+      color{.pixels = pixels, .name = "color", .front = "", .back = ""};
+  write_deep(dir / "a.exr", {depth, color});
+  const DeepChannels channels = {{0, "Z"}, {0, "ZBack"}, {1, "A"}};
+  expect_same(read_deep(ExrReader(dir / "a.exr"), channels), pixels);
+  color.pixels.at(3, 4).push_back({1, 1, 1});
+  write_deep(dir / "b.exr", {depth, color});
+  EXPECT_THAT(error_of([&] { read_deep(ExrReader(dir / "b.exr"), channels); }),
+              IsError(ExitCode::input, "do not hold the same samples"));
+}
+
+TEST(DeepReader, RefusesFilesThatAreCutShort) {
+  const TempDir dir;
+  for (const bool tiles : {false, true}) {
+    write_deep(dir / "a.exr", {{.pixels = pattern({0, 0, 64, 64}), .tiles = tiles}});
+    std::filesystem::resize_file(dir / "a.exr", std::filesystem::file_size(dir / "a.exr") * 2 / 3);
+    EXPECT_THAT(error_of([&] { read_deep(ExrReader(dir / "a.exr"), kUsual); }),
+                IsError(ExitCode::input, "a.exr: is "));
+  }
+}
+
+/// Whatever the bytes are, reading ends in samples or in an ssdo::Error.
+TEST(DeepReader, FlippedBytesDoNoHarm) {
+  const TempDir dir;
+  std::mt19937 random(2026);
+  for (const bool tiles : {false, true}) {
+    write_deep(dir / "a.exr", {{.pixels = pattern({-2, 3, 30, 41}), .tiles = tiles}});
+    const std::string whole = read_file(dir / "a.exr");
+    int refused = 0;
+    for (int i = 0; i < 400; ++i) {
+      std::string bytes = whole;
+      const std::size_t range = i % 2 ? whole.size() : std::min<std::size_t>(whole.size(), 600),
+                        place = 4 + random() % (range - 4);
+      bytes[place] = char(bytes[place] ^ (1 + random() % 255));
+      SCOPED_TRACE(testing::Message() << "flip " << i << " at byte " << place);
+      std::ofstream(dir / "b.exr", std::ios::binary) << bytes;
+      try {
+        read_deep(ExrReader(dir / "b.exr"), kUsual);
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code, ExitCode::input) << error.what();
+        ++refused;
+      }
+    }
+    EXPECT_GT(refused, 20);
+  }
+}
+
+}  // namespace
+}  // namespace ssdo::test
