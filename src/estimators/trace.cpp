@@ -31,8 +31,11 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
+#include <memory>
 #include <utility>
 
+#include "estimators/further/further_light.h"
+#include "estimators/further/further_rays.h"
 #include "estimators/trace/ray_scene.h"
 #include "math/frame.h"
 #include "math/light_range.h"
@@ -106,7 +109,11 @@ class Trace {
         progress_(progress),
         samples_(int(request.parameters.at("samples"))),
         footprint_(scene.geometry.camera),
-        rays_(build_height_field(scene.geometry, scene.solids)) {}
+        rays_(build_height_field(scene.geometry, scene.solids)),
+        further_(scene.further.empty()
+                     ? nullptr
+                     : std::make_unique<FurtherRays>(scene.further.vertices, scene.further.added)) {
+  }
 
   Products run() {
     wants_light_ = request_.products.direct || request_.products.bounce || request_.products.error;
@@ -117,7 +124,9 @@ class Trace {
     for_each_surface([&](std::size_t pixel, const Receiver& p) { gather_visibility(pixel, p); });
     if (request_.products.bounce) {
       out_.bounce = Plane<glm::vec3>(width(), height(), glm::vec3(0));
-      for (int pass = 1; pass <= request_.bounces; ++pass) gather_bounce(pass == request_.bounces);
+      if (further_ && request_.bounces > 0)
+        sent_further_ = light_further_surfaces(scene_, request_.bounces - 1, request_.radius);
+      for (int pass = 1; pass <= request_.bounces; ++pass) gather_bounce(pass);
     }
     if (request_.products.error) {
       out_.error = Plane<float>(width(), height(), 0.0f);
@@ -130,6 +139,12 @@ class Trace {
  private:
   int width() const { return scene_.geometry.surfel.width; }
   int height() const { return scene_.geometry.surfel.height; }
+  /// Whether the frame or a further view shows something in the way.
+  bool is_blocked(const Receiver& p, const glm::vec3& to) const {
+    return rays_.is_blocked(p.origin, to, request_.radius) ||
+           (further_ && further_->is_blocked(glm::vec3(p.origin), to, request_.radius));
+  }
+
   int group_of(int sample) const { return sample * kGroups / samples_; }
 
   Receiver receiver(int x, int y, std::size_t pixel) const {
@@ -172,7 +187,7 @@ class Trace {
     int open = 0;
     for (int s = 0; s < samples_; ++s) {
       const glm::vec3 to = direction(p, s);
-      const bool is_open = !rays_.is_blocked(p.origin, to, request_.radius);
+      const bool is_open = !is_blocked(p, to);
       const int g = group_of(s);
       ++light.number[g];
       open += is_open, light.seen[g] += is_open;
@@ -221,7 +236,7 @@ class Trace {
           glm::normalize(frame * glm::vec3(off * std::cos(azimuth), off * std::sin(azimuth), 1));
       if (glm::dot(to, p.normal) <= 0) continue;
       above[group_of(s)] += 1;
-      seen[group_of(s)] += !rays_.is_blocked(p.origin, to, request_.radius);
+      seen[group_of(s)] += !is_blocked(p, to);
     }
     const glm::vec3 unoccluded = cosine * sun.irradiance;
     float all_seen = 0, all_above = 0;
@@ -245,7 +260,8 @@ class Trace {
     return within_range(scene_.senders.albedo[pixel] * (light + out_.bounce[pixel]));
   }
 
-  void gather_bounce(bool last) {
+  void gather_bounce(int pass) {
+    const bool last = pass == request_.bounces;
     const bool two_sided = !scene_.light.is_constant() && scene_.senders.radiance.empty();
     Plane<glm::vec3> sent(width(), height(), glm::vec3(0)), sent_back;
     if (two_sided) sent_back = sent;
@@ -262,8 +278,17 @@ class Trace {
       std::array<int, kGroups> number{};
       for (int s = 0; s < samples_; ++s) {
         const glm::vec3 to = direction(p, s);
-        const Owner hit = rays_.first_hit(p.origin, to, request_.radius);
+        const auto [hit, distance] = rays_.first_hit(p.origin, to, request_.radius);
         ++number[group_of(s)];
+        if (further_) {
+          const auto other = further_->first_hit(glm::vec3(p.origin), to, request_.radius);
+          if (other.sender >= 0 && other.distance < distance) {
+            const FurtherLight& light = sent_further_[std::size_t(pass - 1)];
+            sums[group_of(s)] +=
+                (other.unseen ? light.unseen : light.seen)[std::size_t(other.sender)];
+            continue;
+          }
+        }
         if (hit.sender < 0) continue;
         const auto q = std::size_t(hit.sender);
         const bool back =
@@ -286,6 +311,8 @@ class Trace {
   int samples_;
   PixelFootprint footprint_;
   RayScene rays_;
+  std::unique_ptr<FurtherRays> further_;    ///< null: there are no further views
+  std::vector<FurtherLight> sent_further_;  ///< by pass
   bool wants_light_ = false;
   Plane<Groups> luminances_;  ///< of direct + bounce
   Products out_;

@@ -40,9 +40,9 @@ bool shows_card(const Geometry& g, std::size_t i) {
 
 TEST(Solids, AreRefusedWithMoreLayersThanThereIsRoomFor) {
   Solids solids;
-  solids.behind.resize(kMostLayers - 1);
+  solids.behind.assign(kMostLayers - 1, SolidLayer(1, 1, Origin::guessed));
   EXPECT_NO_THROW(check_layers(solids));
-  solids.behind.emplace_back();
+  solids.behind.emplace_back(1, 1, Origin::guessed);
   EXPECT_THROW(check_layers(solids), std::logic_error);
 }
 

@@ -13,11 +13,12 @@
 #include <bit>
 
 #include "estimators/bitmask/lanes-inl.h"
+#include "math/sequence_numbers.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-constexpr int kSectorsPerRay = 4;
+constexpr int kSectorsPerRay = 8;
 
 /// Rays begin above their surface, by so many times what storing P may have moved it, and by a part
 /// of what a pixel shows.
@@ -45,31 +46,70 @@ HWY_INLINE V3 start_of_rays(const MarchScene& scene, const MarchReceiver& p) {
   return mul_add(p.normal, hn::MulAdd(rounding, set(kAboveRoundings), footprint), p.position);
 }
 
+/// A number in [0, 1) that differs between the members of the pattern and their sides, so that rays
+/// of neighbours go to different sectors and a filter averages them.
+HWY_INLINE float turn_of(const MarchScene& scene, const Place& place, float phase) {
+  constexpr int kPeriod = Interleaving::kPeriod;
+  const int member = ((place.y + scene.first_y) & (kPeriod - 1)) * kPeriod + place.column_phase;
+  const double turn = SlicePattern::rank(member) * kR2First + kPeriod * double(phase);
+  return std::min(float(fraction(turn)), 0x1.fffffep-1f);
+}
+
+/// A sector of one lane, as a direction and the cosine to the normal that its light has.
+struct SectorDirections {
+  float first;  ///< 16 less the phase of the side
+  Lanes3 v, t;
+  Lanes facing, n_t;
+
+  HWY_INLINE float cosine(int sector) const {
+    return std::clamp((first - float(sector)) / SliceSectors::kPerCosine, -1.0f, 1.0f);
+  }
+  HWY_INLINE glm::vec3 direction(int lane, int sector) const {
+    const float c = cosine(sector);
+    return c * v[lane] + std::sqrt(1 - c * c) * t[lane];
+  }
+  HWY_INLINE float weight(int lane, int sector) const {
+    const float c = cosine(sector);
+    return std::max(facing[lane] * c + n_t[lane] * std::sqrt(1 - c * c), 1e-6f);
+  }
+
+  /// The sector that stands for a set of them: each as often as its weight says.
+  HWY_INLINE int choose(int lane, std::uint32_t bits, float turn) const {
+    float all = 0;
+    for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1)
+      all += weight(lane, std::countr_zero(rest));
+    float left = turn * all;
+    for (;; bits &= bits - 1) {
+      const int sector = std::countr_zero(bits);
+      left -= weight(lane, sector);
+      if (left < 0 || (bits & (bits - 1)) == 0) return sector;
+    }
+  }
+};
+
 /// Of the open sectors those that further views hide. `on_met` hears of the sectors that one ray
 /// stands for in each lane, and of what the rays have met.
 template <class Met>
 HWY_INLINE VU sectors_of_further(const March& march, const MarchReceiver& p, const SideFrame& side,
                                  VU open, const Met& on_met) {
   const DU du;
-  const Lanes3 start(start_of_rays(march.scene, p)), v(p.to_viewer), t(side.t);
+  const Lanes3 start(start_of_rays(march.scene, p));
   const float first = hn::GetLane(side.start) - 0.5f;  // the same for all lanes
+  const SectorDirections sectors{first, Lanes3(p.to_viewer), Lanes3(side.t), Lanes(p.facing),
+                                 Lanes(side.n_t)};
+  const float turn = turn_of(march.scene, p.place, first);
+  const VU asked = hn::IfThenElseZero(hn::RebindMask(du, p.valid), open);
   alignas(64) std::uint32_t bits[kLanes], hidden[kLanes];
   VU all = set_bits(0);
   for (int from = 0; from < SliceSectors::kCount; from += kSectorsPerRay) {
-    const VU group = hn::And(hn::IfThenElseZero(hn::RebindMask(du, p.valid), open),
-                             set_bits(((1u << kSectorsPerRay) - 1) << from));
+    const VU group = hn::And(asked, set_bits(((1u << kSectorsPerRay) - 1) << from));
     if (none(group)) continue;
     hn::Store(group, du, bits);
     FurtherRays::Hit hits[kLanes];
     for (int lane = 0; lane < kLanes; ++lane) {
       hidden[lane] = 0;
       if (bits[lane] == 0) continue;
-      // The one in the middle of those that are open stands for them.
-      std::uint32_t rest = bits[lane];
-      for (int k = (std::popcount(rest) - 1) / 2; k > 0; --k) rest &= rest - 1;
-      const float cosine = std::clamp(
-          (first - float(std::countr_zero(rest))) / SliceSectors::kPerCosine, -1.0f, 1.0f);
-      const glm::vec3 to = cosine * v[lane] + std::sqrt(1 - cosine * cosine) * t[lane];
+      const glm::vec3 to = sectors.direction(lane, sectors.choose(lane, bits[lane], turn));
       if constexpr (Met::kWantsHits) {
         hits[lane] = march.further->first_hit(start[lane], to, march.radius);
         if (hits[lane].sender >= 0) hidden[lane] = bits[lane];

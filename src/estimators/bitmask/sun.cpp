@@ -123,9 +123,11 @@ HWY_INLINE M open_past_further(const March& march, const MarchReceiver& p, const
   const Lanes3 start(start_of_rays(march.scene, p));
   const Lanes looks(hn::IfThenElseZero(open, set(1)));
   alignas(64) float passes[kLanes];
-  for (int lane = 0; lane < kLanes; ++lane)
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const bool open_lane = looks[lane] > 0;
     passes[lane] =
-        looks[lane] > 0 && !march.further->is_blocked(start[lane], to, march.radius) ? 1.0f : 0.0f;
+        open_lane && !march.further->is_blocked(start[lane], to, march.radius) ? 1.0f : 0.0f;
+  }
   return load(passes) > set(0);
 }
 

@@ -4,10 +4,12 @@
 // bounce averages over many of them.
 #include "estimators/further/further_light.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
+#include <utility>
 
 #include "estimators/further/further_rays.h"
 #include "math/frame.h"
@@ -40,29 +42,43 @@ class Lamps {
 
   std::vector<FurtherLight> run(int bounces) {
     const std::size_t count = surfaces_.vertices.size();
-    std::vector<glm::vec3> direct(count), bounce(count, glm::vec3(0)), next;
-    std::vector<float> open(count);
     find_senders(bounces > 0);
-    for_each([&](std::size_t i) { direct[i] = direct_light(i, open[i]); });
+    FurtherLight direct = dark(count), bounce = direct;
+    for_each_side([&](std::size_t i, const Side& side, bool seen) {
+      of(direct, seen)[i] = direct_light(side);
+    });
     std::vector<FurtherLight> passes;
     for (int pass = 0;; ++pass) {
-      FurtherLight& out = passes.emplace_back();
-      out.seen.resize(count), out.unseen.resize(count);
-      for_each([&](std::size_t i) {
-        const Vertex& v = surfaces_.vertices[i];
-        out.seen[i] = within_range(v.albedo * (direct[i] + bounce[i]));
-        // As in method trace: the other side has its own light, as far as this one is open.
-        out.unseen[i] =
-            within_range(v.albedo * (open[i] * light_.unoccluded(-v.normal) + bounce[i]));
+      FurtherLight out = dark(count);
+      for_each_side([&](std::size_t i, const Side&, bool seen) {
+        const glm::vec3 light = of(direct, seen)[i] + of(bounce, seen)[i];
+        of(out, seen)[i] = within_range(surfaces_.vertices[i].albedo * light);
       });
+      passes.push_back(std::move(out));
       if (pass >= bounces) return passes;
-      next = bounce;
-      for_each([&](std::size_t i) { next[i] = bounced_light(i, out); });
-      bounce = next;
+      FurtherLight next = dark(count);
+      for_each_side([&](std::size_t i, const Side& side, bool seen) {
+        of(next, seen)[i] = bounced_light(side, passes.back());
+      });
+      bounce = std::move(next);
     }
   }
 
  private:
+  /// One side of a surface, and where its rays begin.
+  struct Side {
+    glm::vec3 start, normal;
+    std::uint32_t seed;
+  };
+
+  static FurtherLight dark(std::size_t count) {
+    return {std::vector<glm::vec3>(count, glm::vec3(0)),
+            std::vector<glm::vec3>(count, glm::vec3(0))};
+  }
+  static std::vector<glm::vec3>& of(FurtherLight& light, bool seen) {
+    return seen ? light.seen : light.unseen;
+  }
+
   /// The vertices that send light to the frame; to each other as well, where light goes on.
   void find_senders(bool all) {
     std::vector<bool> sends(surfaces_.vertices.size(), false);
@@ -72,73 +88,73 @@ class Lamps {
       if (sends[i]) senders_.push_back(std::uint32_t(i));
   }
 
+  /// Calls `work(vertex, side, whether it is the one that is seen)`. A surface is taken for thin:
+  /// its other side is lit by what is there.
   template <class Work>
-  void for_each(const Work& work) const {
+  void for_each_side(const Work& work) const {
     const int count = int(senders_.size());
     for_each_row((count + kBand - 1) / kBand, [&](int band) {
-      for (int k = band * kBand; k < std::min(count, (band + 1) * kBand); ++k)
-        work(std::size_t(senders_[std::size_t(k)]));
+      for (int k = band * kBand; k < std::min(count, (band + 1) * kBand); ++k) {
+        const std::uint32_t i = senders_[std::size_t(k)];
+        const Vertex& v = surfaces_.vertices[i];
+        for (const bool seen : {true, false}) {
+          const glm::vec3 normal = seen ? v.normal : -v.normal;
+          work(i, Side{v.position + kAbove * v.footprint * normal, normal, 2 * i + seen}, seen);
+        }
+      }
     });
   }
 
-  static glm::vec3 start(const Vertex& v) { return v.position + kAbove * v.footprint * v.normal; }
-
-  static glm::vec3 direction(const glm::mat3& frame, int sample, std::size_t vertex) {
-    const glm::vec2 u =
-        sobol_point(std::uint32_t(sample), hash_of(std::uint32_t(vertex), 0, kSurfaceSeed));
+  static glm::vec3 direction(const glm::mat3& frame, int sample, std::uint32_t seed) {
+    const glm::vec2 u = sobol_point(std::uint32_t(sample), hash_of(seed, 0, kSurfaceSeed));
     const float r = std::sqrt(u.x), azimuth = 2 * glm::pi<float>() * u.y;
     return frame * glm::vec3(r * std::cos(azimuth), r * std::sin(azimuth), std::sqrt(1 - u.x));
   }
 
-  glm::vec3 direct_light(std::size_t vertex, float& open) const {
-    const Vertex& v = surfaces_.vertices[vertex];
-    const glm::mat3 frame = frame_about(v.normal);
+  glm::vec3 direct_light(const Side& side) const {
+    const glm::mat3 frame = frame_about(side.normal);
     const bool even = light_.is_constant();
     glm::vec3 part(0), whole(0);
-    int seen = 0;
+    int open = 0;
     for (int s = 0; s < kRays; ++s) {
-      const glm::vec3 to = direction(frame, s, vertex);
-      const bool is_open = !rays_.is_blocked(start(v), to, radius_);
-      seen += is_open;
+      const glm::vec3 to = direction(frame, s, side.seed);
+      const bool is_open = !rays_.is_blocked(side.start, to, radius_);
+      open += is_open;
       if (even) continue;
       const glm::vec3 radiance = light_.sky.radiance(to_world_ * to);
       whole += radiance;
       if (is_open) part += radiance;
     }
-    open = float(seen) / kRays;
-    if (even) return open * light_.environment.constant_radiance();
-    glm::vec3 share(open);
+    glm::vec3 share(float(open) / kRays);
+    if (even) return share * light_.environment.constant_radiance();
     for (int c = 0; c < 3; ++c)
       if (whole[c] > 0) share[c] = part[c] / whole[c];
-    glm::vec3 direct = light_.irradiance(v.normal) * share;
+    glm::vec3 direct = light_.irradiance(side.normal) * share;
     for (std::size_t i = 0; i < light_.suns.size(); ++i)
-      direct += sunlight(light_.suns[i], std::uint32_t(i), v, vertex);
+      direct += sunlight(light_.suns[i], std::uint32_t(i), side);
     return direct;
   }
 
-  glm::vec3 sunlight(const Sun& sun, std::uint32_t number, const Vertex& v,
-                     std::size_t vertex) const {
-    const float cosine = glm::dot(v.normal, sun.direction);
+  glm::vec3 sunlight(const Sun& sun, std::uint32_t number, const Side& side) const {
+    const float cosine = glm::dot(side.normal, sun.direction);
     if (cosine <= 0) return glm::vec3(0);
     const glm::mat3 frame = frame_about(sun.direction);
     int seen = 0;
     for (int s = 0; s < kSunRays; ++s) {
-      const glm::vec2 u =
-          sobol_point(std::uint32_t(s), hash_of(std::uint32_t(vertex), number, kSunSeed));
+      const glm::vec2 u = sobol_point(std::uint32_t(s), hash_of(side.seed, number, kSunSeed));
       const float off = sun.angular_radius * std::sqrt(u.x), azimuth = 2 * glm::pi<float>() * u.y;
       const glm::vec3 to =
           glm::normalize(frame * glm::vec3(off * std::cos(azimuth), off * std::sin(azimuth), 1));
-      seen += !rays_.is_blocked(start(v), to, radius_);
+      seen += !rays_.is_blocked(side.start, to, radius_);
     }
     return cosine * sun.irradiance * (float(seen) / kSunRays);
   }
 
-  glm::vec3 bounced_light(std::size_t vertex, const FurtherLight& sent) const {
-    const Vertex& v = surfaces_.vertices[vertex];
-    const glm::mat3 frame = frame_about(v.normal);
+  glm::vec3 bounced_light(const Side& side, const FurtherLight& sent) const {
+    const glm::mat3 frame = frame_about(side.normal);
     glm::vec3 sum(0);
     for (int s = 0; s < kRays; ++s) {
-      const auto hit = rays_.first_hit(start(v), direction(frame, s, vertex), radius_);
+      const auto hit = rays_.first_hit(side.start, direction(frame, s, side.seed), radius_);
       if (hit.sender < 0) continue;
       sum += (hit.unseen ? sent.unseen : sent.seen)[std::size_t(hit.sender)];
     }

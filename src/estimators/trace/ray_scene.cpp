@@ -136,16 +136,19 @@ bool RayScene::is_blocked(const glm::dvec3& origin, const glm::dvec3& direction,
   return ray.tfar < 0;
 }
 
-Owner RayScene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
-                          double reach) const {
-  RTCRayHit query{ray_of(field_.space.ray(origin, direction, reach)), {}};
+RayScene::Hit RayScene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
+                                  double reach) const {
+  const PictureSpace::Ray ray = field_.space.ray(origin, direction, reach);
+  RTCRayHit query{ray_of(ray), {}};
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   if (!is_traceable(query.ray)) return {};
   Query context(field_, origin, reach);
   rtcIntersect1(embree_->scene, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   const RTCHit& hit = query.hit;
-  return context.mesh(hit.geomID).owners[context.corner(hit.geomID, hit.primID, hit.u, hit.v)];
+  const glm::vec3 at = ray.origin + query.ray.tfar * ray.direction;
+  return {context.mesh(hit.geomID).owners[context.corner(hit.geomID, hit.primID, hit.u, hit.v)],
+          glm::distance(glm::dvec3(field_.space.position(at)), origin)};
 }
 
 }  // namespace ssdo

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <limits>
 #include <memory>
 
 #include "estimators/trace/height_field.h"
@@ -22,8 +23,12 @@ class RayScene {
   /// Whether a ray meets anything.
   bool is_blocked(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
 
-  /// Whose surface a ray meets first; sender -1 for nothing, and for what sends nothing.
-  Owner first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
+  /// The surface that a ray meets first.
+  struct Hit {
+    Owner owner;  ///< sender -1 for nothing, and for what sends nothing
+    double distance = std::numeric_limits<double>::infinity();
+  };
+  Hit first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
 
  private:
   struct Embree;

@@ -117,10 +117,16 @@ class Mesher {
     const double depth = grid_.camera.depth_of(grid_.camera.to_camera(glm::dvec3(s.position)));
     const double width = (grid_.camera.orthographic ? 1.0 : depth) /
                          std::min(grid_.camera.fx, grid_.camera.fy) * grid_.step;
-    index_(x, y) = std::uint32_t(out_.vertices.size());
+    const auto own = std::uint32_t(out_.vertices.size());
+    index_(x, y) = own;
     out_.vertices.push_back({s.position, s.normal,
                              grid_.albedo.empty() ? glm::vec3(0) : grid_.albedo[from], float(width),
-                             index_(x, y)});
+                             own});
+    // One pixel of 2 x 2 is lit for all that are on its surface: a bounce averages over many.
+    const int lit_x = x & ~1, lit_y = y & ~1;
+    const std::uint32_t lit = index_(lit_x, lit_y);
+    if (lit != kNone && fate(x, y) == fate(lit_x, lit_y) && joined(own, lit))
+      out_.vertices.back().sender = lit;
   }
 
   bool joined(std::uint32_t i, std::uint32_t j) const {

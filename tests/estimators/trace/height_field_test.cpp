@@ -72,7 +72,7 @@ TEST(HeightField, GoesOnBehindWhatIsSeenWithoutACut) {
       // From halfway between card and wall, straight to the wall.
       const glm::dvec3 p(g.surfel[i].position);
       if (p.z < -5.5) continue;
-      const Owner hit = rays.first_hit(p - glm::dvec3(0, 0, 0.9), {0, 0, -1}, 0.2);
+      const Owner hit = rays.first_hit(p - glm::dvec3(0, 0, 0.9), {0, 0, -1}, 0.2).owner;
       ASSERT_GE(hit.sender, 0) << "the second layer has no holes";
       EXPECT_EQ(hit.layer, 1);
       EXPECT_LT(g.surfel[std::size_t(hit.sender)].position.z, -5.5f) << "the wall sends";
@@ -128,8 +128,8 @@ TEST(HeightField, HoldsAsManyLayersAsAPixelHas) {
   const glm::dvec3 along = glm::normalize(glm::dvec3(g.surfel[middle].position));
   for (const auto& [from, layer] : {std::pair{-0.05, 0}, {0.2, 1}, {0.5, 2}}) {
     const glm::dvec3 origin = glm::dvec3(g.surfel[middle].position) + from * along;
-    EXPECT_EQ(rays.first_hit(origin, along, 0.15).layer, layer) << from;
-    EXPECT_EQ(rays.first_hit(origin, along, 0.15).sender, int(middle)) << from;
+    EXPECT_EQ(rays.first_hit(origin, along, 0.15).owner.layer, layer) << from;
+    EXPECT_EQ(rays.first_hit(origin, along, 0.15).owner.sender, int(middle)) << from;
     EXPECT_FALSE(rays.is_blocked(origin, along, 0.04)) << from;
   }
 }
