@@ -180,8 +180,8 @@ TEST_F(Shot, LayersOfAnotherSequenceFollowTheFrame) {
 TEST_F(Shot, FurtherPicturesFollowTheFrame) {
   write_frame(file("more", 1), frame_of(small_picture()));
   const Finished missing =
-      run({"--frames", "1-2", "--also", dir_ / "more.####.exr", "--on-error", "continue"});
-  EXPECT_THAT(missing.err, HasSubstr("more.0001.exr"));
+      run({"--frames", "1-2", "--also", dir_ / "more.####.exr", "--on-error", "continue", "-v"});
+  EXPECT_THAT(missing.err, HasSubstr("more.0001.exr: 0 pixels show what the frame does not"));
   EXPECT_THAT(missing.err, HasSubstr("more.0002.exr: does not exist"));
   const Finished literal = run({"--frames", "2", "--also", dir_ / "all.exr"});
   EXPECT_EQ(literal.code, 3);

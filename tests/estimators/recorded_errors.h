@@ -39,14 +39,24 @@ inline constexpr TruthErrors kRecordedRoomCornerOverscan = {0.0319, 0.0269, 0.03
 /// Means over five further scenes of what the default method is wrong by when it knows this much,
 /// in the units of TruthErrors; `white` is ao without a radius.
 struct RecordedKnownGeometry {
-  std::string known;  ///< as the README says it
-  std::string file;   ///< of a scene
+  std::string known;              ///< as the README says it
+  std::string file;               ///< of a scene
+  std::vector<std::string> also;  ///< further files of it
   double ao_small, ao_large, white, direct, bounce;
 };
 
 inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometry = {
-    {"the frame alone", "gbuffer.exr", 0.0644, 0.0830, 0.1207, 0.2858, 0.4894},
-    {"with overscan", "overscan.exr", 0.0616, 0.0564, 0.0818, 0.3165, 0.3280},
+    {"the frame alone", "gbuffer.exr", {}, 0.0644, 0.0830, 0.1207, 0.2858, 0.4894},
+    {"with overscan", "overscan.exr", {}, 0.0616, 0.0564, 0.0818, 0.3165, 0.3280},
+    {"with a panorama", "gbuffer.exr", {"also_pano.exr"}, 0.0630, 0.0623, 0.0606, 0.1713, 0.2750},
+    {"with overscan and four views",
+     "overscan.exr",
+     {"also_left.exr", "also_pano.exr", "also_right.exr", "also_top.exr"},
+     0.0550,
+     0.0495,
+     0.0402,
+     0.1319,
+     0.2730},
 };
 
 }  // namespace ssdo::test

@@ -28,6 +28,7 @@ const std::string kData = std::string(SSDO_SOURCE_DIR) + "/data/";
 struct Subject {
   std::string name, frame, environment, truth;
   double radius_small, radius_large;
+  std::vector<std::string> also = {};  ///< further views
 };
 
 /// Of data/. `with` is what its file has beside the picture.
@@ -45,15 +46,17 @@ const Subject kStillLife = of_data("still_life", "sky.exr", 0.5, 2),
               kRoomCornerOverscan = of_data("room_corner", "studio.exr", 0.25, 1, "_overscan");
 
 /// Further scenes, which are too large for the repository: empty where they are not there.
-std::vector<Subject> further_scenes(const std::string& file) {
+std::vector<Subject> further_scenes(const std::string& file, const std::vector<std::string>& also) {
   const std::string folder = std::string(SSDO_SOURCE_DIR) + "/../shared/truth/";
   if (!std::filesystem::exists(folder)) return {};
   const auto scene = [&](const std::string& name, const std::string& environment,
                          double radius_small, double radius_large) {
     const std::string of_scene = folder + "public/" + name + "/";
-    return Subject{
+    Subject subject{
         name,         of_scene + file, folder + "env/" + environment, of_scene + "truth_",
         radius_small, radius_large};
+    for (const std::string& view : also) subject.also.push_back(of_scene + view);
+    return subject;
   };
   return {scene("corner", "venice.exr", 0.5, 2), scene("foliage", "venice.exr", 0.1, 0.5),
           scene("props", "sky.exr", 0.5, 2), scene("spheres", "venice.exr", 0.5, 2),
@@ -141,7 +144,7 @@ Result run(const std::string& method, const Subject& scene, const std::string& e
   if (method == "trace") options.model.set = {"samples=16"};
   if (find_method(method).takes.radius) options.model.radius = radius;
   options.light.env = environment;
-  Frame frame = prepare_frame(options, Lighting(options.light), {scene.frame, {}, {}});
+  Frame frame = prepare_frame(options, Lighting(options.light), {scene.frame, {}, scene.also});
   const Plan& plan = frame.plan;
   Geometry& geometry = frame.scene.geometry;
   Products filtered = filter_geometry(plan.method->estimate(frame.scene, plan.request, {}),
@@ -198,7 +201,7 @@ class KnownGeometry : public testing::TestWithParam<RecordedKnownGeometry> {};
 
 TEST_P(KnownGeometry, ErrorsAreThoseRecorded) {
   const RecordedKnownGeometry& recorded = GetParam();
-  const std::vector<Subject> scenes = further_scenes(recorded.file);
+  const std::vector<Subject> scenes = further_scenes(recorded.file, recorded.also);
   if (scenes.empty()) GTEST_SKIP() << "the scenes are not there";
   Error2 small, large, white, direct, bounce;
   for (const Subject& scene : scenes) {
@@ -230,7 +233,8 @@ TEST_P(KnownGeometry, ErrorsAreThoseRecorded) {
 
 INSTANTIATE_TEST_SUITE_P(FurtherScenes, KnownGeometry, testing::ValuesIn(kRecordedKnownGeometry),
                          [](const auto& one) {
-                           return std::filesystem::path(one.param.file).stem().string();
+                           return std::filesystem::path(one.param.file).stem().string() +
+                                  std::to_string(one.param.also.size());
                          });
 
 INSTANTIATE_TEST_SUITE_P(Frames, Truth, testing::ValuesIn(cases()), [](const auto& one) {

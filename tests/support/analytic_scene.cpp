@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/analytic_scene.h"
 
+#include <glm/gtc/constants.hpp>
+
 namespace ssdo::test {
 
 Surface plane(const glm::dvec3& point, const glm::dvec3& normal) {
@@ -50,12 +52,19 @@ Camera look_at(Camera projection, const glm::dvec3& eye, const glm::dvec3& targe
   return projection;
 }
 
+Camera lat_long(const Window& display) {
+  Camera camera;
+  camera.panorama = true;
+  camera.fx = display.width() / (2 * glm::pi<double>());
+  camera.fy = display.height() / glm::pi<double>();
+  camera.cx = 0.5 * (display.x0 + display.x1), camera.cy = 0.5 * (display.y0 + display.y1);
+  return camera;
+}
+
 Ray ray_through(const Camera& camera, double px, double py) {
   const glm::dmat3 to_world = glm::transpose(camera.rotation);
-  const glm::dvec3 on_plane = camera.unproject({px, py}, camera.orthographic ? 0.0 : 1.0);
-  if (camera.orthographic)
-    return {camera.origin + to_world * on_plane, to_world * glm::dvec3(0, 0, -1)};
-  return {camera.origin, glm::normalize(to_world * on_plane)};
+  const Camera::Ray ray = camera.ray({px, py});
+  return {camera.origin + to_world * ray.origin, glm::normalize(to_world * ray.direction)};
 }
 
 Picture take_picture(const Surface& scene, const Camera& camera, const Window& window) {

@@ -39,6 +39,9 @@ Surface cut(Surface surface, std::function<bool(const glm::dvec3&)> keep);
 /// The nearest of several surfaces.
 Surface all_of(std::vector<Surface> surfaces);
 
+/// The projection of a lat-long panorama of all directions.
+Camera lat_long(const Window& display);
+
 /// A camera at `eye` that looks at `target`, in a world with `up` up.
 Camera look_at(Camera projection, const glm::dvec3& eye, const glm::dvec3& target,
                const glm::dvec3& up);

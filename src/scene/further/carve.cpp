@@ -19,19 +19,15 @@ namespace ssdo {
 namespace {
 
 /// Points lie farther apart by this factor each, the first one this many footprints away.
-constexpr float kGrowth = 1.4f, kFirst = 2;
+constexpr float kGrowth = 2, kFirst = 2;
 
 /// No guess is asked for beyond so many times the distance to the farthest surface.
 constexpr float kFarthest = 4;
 
-/// A view does not show what is narrower than so many of its pixels, but looks past it.
-constexpr float kResolved = 3;
-
 /// Whether a view looks through a place that would be inside of something so wide.
 bool is_empty(const std::vector<FurtherView>& views, const glm::vec3& p, float width) {
-  return std::any_of(views.begin(), views.end(), [&](const FurtherView& view) {
-    return width > kResolved * view.footprint_at(p) && view.look(p) == Sight::empty;
-  });
+  return std::any_of(views.begin(), views.end(),
+                     [&](const FurtherView& view) { return view.look(p, width) == Sight::empty; });
 }
 
 bool is_known(const std::vector<FurtherView>& views, const glm::vec3& p) {
@@ -39,12 +35,22 @@ bool is_known(const std::vector<FurtherView>& views, const glm::vec3& p) {
                      [&](const FurtherView& view) { return view.look(p) != Sight::unknown; });
 }
 
-/// The distance of the first point on the way from `start` that `ends`; `most` if none does.
+/// The distance of the first point on the way from `start` that `ends`, to within a tenth of it;
+/// `most` if none does.
 template <class Ends>
 float first_on_way(const glm::vec3& start, const glm::vec3& direction, float first, float most,
                    const Ends& ends) {
-  for (float t = first; t < most; t *= kGrowth)
-    if (ends(start + t * direction)) return t;
+  const auto ends_at = [&](float t) { return ends(start + t * direction, t); };
+  for (float t = first; t < most; t *= kGrowth) {
+    if (!ends_at(t)) continue;
+    if (t == first) return t;
+    float before = t / kGrowth, after = t;
+    for (int i = 0; i < 3; ++i) {
+      const float between = std::sqrt(before * after);
+      (ends_at(between) ? after : before) = between;
+    }
+    return after;
+  }
   return most;
 }
 
@@ -82,9 +88,9 @@ class Carver {
     const glm::vec3 along = away_from_viewer(s);
     const float most = std::min(thickness, farthest_);
     const glm::vec3 front = s.position + distance * along;
-    const float end = first_on_way(front, along, first_step(s), most, [&](const glm::vec3& p) {
-      return is_empty(views_, p, glm::distance(p, front));
-    });
+    const float end =
+        first_on_way(front, along, first_step(s), most,
+                     [&](const glm::vec3& p, float t) { return is_empty(views_, p, t); });
     if (end < most) thickness = end;
   }
 
@@ -114,8 +120,9 @@ class Carver {
           across * glm::dot(s.normal, to_viewer) - to_viewer * glm::dot(s.normal, across);
       const float length = glm::length(along);
       if (!(length > 0)) return;
-      const float known = first_on_way(s.position, along / length, first_step(s), farthest_,
-                                       [&](const glm::vec3& p) { return is_known(views_, p); });
+      const float known =
+          first_on_way(s.position, along / length, first_step(s), farthest_,
+                       [&](const glm::vec3& p, float) { return is_known(views_, p); });
       if (known < farthest_) solids_.beyond.at(x, y) = known;
     };
     for (int x = 0; x < w; ++x) end(x, 0, {0, -1}), end(x, h - 1, {0, 1});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -36,12 +37,10 @@ struct FurtherView {
     return (camera.orthographic ? 1.0f : at_depth) / float(std::min(camera.fx, camera.fy));
   }
 
-  float footprint_at(const glm::vec3& point) const {
-    return footprint(float(camera.depth_of(camera.to_camera(glm::dvec3(point)))));
-  }
-
-  /// What the four pixels around the picture of a point agree on.
-  Sight look(const glm::vec3& point) const;
+  /// What the four pixels around the picture of a point agree on. A view does not show what is
+  /// narrower than a few of its pixels but looks past it: `width` is that of what the point would
+  /// be in, in scene units.
+  Sight look(const glm::vec3& point, float width = std::numeric_limits<float>::infinity()) const;
 };
 
 /// Reads a G-buffer of the same scene by the stages of any view. Its layers are found by their
