@@ -35,6 +35,23 @@ Solids find_solids(const Geometry& geometry, const std::vector<DeepImage>& image
   return join_measured(geometry, measure_solids(geometry, images, depths, warnings), thickness);
 }
 
+/// Of what a view and the frame should both see: what differs by more has moved, or the view is of
+/// another scene on the same ground. Views of one still scene reach 4 % where leaves are finer than
+/// their pixels.
+constexpr double kMostContradiction = 0.1;
+
+void warn_of_contradictions(const std::vector<MergeCounts>& views,
+                            std::vector<std::string>& warnings) {
+  for (const MergeCounts& view : views) {
+    const std::size_t common = view.seen + view.contradictory;
+    if (double(view.contradictory) <= kMostContradiction * double(common)) continue;
+    warnings.push_back(
+        fmt::format("{}: {:.0f} % of what the frame should see too lies before what it shows, and "
+                    "is left out; is this the same scene, at the same time?",
+                    view.file, 100.0 * double(view.contradictory) / double(common)));
+  }
+}
+
 }  // namespace
 
 KnownGeometry read_known_geometry(const std::vector<std::string>& also,
@@ -69,6 +86,7 @@ std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
   std::vector<MergeCounts> counts;
   if (known.views.empty()) return counts;
   scene.further = merge_views(known.views, scene.geometry, scene.senders.albedo, counts);
+  warn_of_contradictions(counts, known.warnings);
   if (!thickness) carve(scene.solids, scene.geometry, known.views);
   return counts;
 }

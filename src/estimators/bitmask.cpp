@@ -40,6 +40,8 @@
 //   (bitmask/extension-inl.h) are guesses that GTAO does not make. Half of a map's light
 //   comes through those beyond, and the more of a sun's, the more open the frame is
 //   (bitmask/beyond.h).
+// - What only further views show may be anywhere, behind the camera too: rays ask it for the sectors
+//   that the march leaves open (bitmask/further-inl.h).
 #include "estimators/bitmask.h"
 
 #include <algorithm>

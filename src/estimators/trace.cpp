@@ -20,6 +20,9 @@
 // Otherwise the endless side walls of far objects raise the RMSE of ao on the ground of a closed
 // room, against a path tracer, from 0.04 to 0.10.
 //
+// What only further views show is a second set of triangles, in camera space, for it may lie behind
+// the camera; it sends what rays among all views find (further/further_light.h).
+//
 // Directions are points of Sobol's sequence, scrambled anew for every pixel (math/sobol.h). Their
 // error falls about as n^-3/4, and is not shared by neighbours, so that no filter is needed and
 // means over a frame are exact. Surfaces end with the frame.

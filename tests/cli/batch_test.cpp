@@ -127,7 +127,8 @@ TEST_F(Shot, StatisticsHoldWhatTheContractSays) {
                           "background_pixels", "bad_pixels", "plan"}) {
     EXPECT_TRUE(frame.contains(key)) << key;
   }
-  for (const char* stage : {"read", "prepare", "estimate", "filter", "compose", "write", "total"}) {
+  for (const char* stage :
+       {"read", "known", "prepare", "estimate", "filter", "compose", "write", "total"}) {
     EXPECT_GE(frame["stages_ms"].at(stage).get<double>(), 0) << stage;
   }
   EXPECT_EQ(frame["frame"], 4);

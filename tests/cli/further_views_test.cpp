@@ -15,6 +15,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 const Window kFrame{0, 0, 160, 120}, kView{0, 0, 96, 72}, kPanorama{0, 0, 192, 96};
 
@@ -156,6 +157,11 @@ TEST_F(FurtherViews, WhatHasMovedIsLeftOut) {
   EXPECT_NEAR(known(int(beside.x), int(beside.y)), alone(int(beside.x), int(beside.y)), 0.02);
   const Finished info = run_tool({"info", frame, "--also", earlier});
   EXPECT_THAT(info.out, testing::ContainsRegex("[1-9][0-9]* contradict it"));
+  EXPECT_THAT(info.out, Not(HasSubstr("the same scene")));
+  const std::string larger = write("larger.exr", all_of({before, sphere({-0.6, 0, 1}, 1)}),
+                                   pinhole(kView, 45, {0.4, -5, 3}, {0, 0, 0}), kView);
+  EXPECT_THAT(run_tool({"info", frame, "--also", larger}).out,
+              HasSubstr("is this the same scene, at the same time?"));
 }
 
 TEST_F(FurtherViews, GiveTheSameBitsInAnyOrderAndForAnyThreads) {

@@ -23,13 +23,15 @@ function drawStages() {
   const whole = row => row.estimate.wall_ms + row.filter.wall_ms;
   const standard = bench.rows.filter(row => row.standard);
   const median = standard.map(whole).sort((a, b) => a - b)[Math.floor(standard.length / 2)];
-  const common = bench.stages_ms.read + bench.stages_ms.prepare + bench.stages_ms.write;
+  const {read, known, prepare, write} = bench.stages_ms;
+  const common = read + known + prepare + write;
   // One bar of ten seconds would leave nothing to see of the others.
   const fits = row => whole(row) <= 5 * (median + common);
   const rows = standard.filter(fits);
   const same = stage => rows.map(() => bench.stages_ms[stage]);
   stages.data = {labels: rows.map(row => row.method), datasets: [
     {label: "read", backgroundColor: "#55606e", data: same("read")},
+    {label: "known", backgroundColor: "#66788a", data: same("known")},
     {label: "prepare", backgroundColor: "#7b8794", data: same("prepare")},
     {label: "estimate", backgroundColor: "#ffb347", data: rows.map(row => row.estimate.wall_ms)},
     {label: "filter", backgroundColor: "#67c98b", data: rows.map(row => row.filter.wall_ms)},
