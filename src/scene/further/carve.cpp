@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Along the view ray of a pixel, and along the tangent plane beyond the frame's border, points are
-// asked for what the views know about them, near to far in steps that grow as distances do. The
-// first point that is known ends the guess: where a view looks through it nothing is solid, and
-// where it shows a surface that surface is measured.
+// asked for what the views know about them, near to far in steps that grow as distances do. Where a
+// view looks through a point nothing is solid, and the guess ends. Where a view shows a surface,
+// that one is measured.
 #include "scene/further/carve.h"
 
 #include <algorithm>
@@ -33,6 +33,16 @@ bool is_empty(const std::vector<FurtherView>& views, const glm::vec3& p, float w
 bool is_known(const std::vector<FurtherView>& views, const glm::vec3& p) {
   return std::any_of(views.begin(), views.end(),
                      [&](const FurtherView& view) { return view.look(p) != Sight::unknown; });
+}
+
+/// Whether a surface that goes on beyond the frame for `length` ends here: where a view looks
+/// through it. Where one shows it the guess was right, and goes on beyond that view's picture too;
+/// but a panorama has no border, so that it needs no guess from there on.
+bool ends_beyond(const std::vector<FurtherView>& views, const glm::vec3& p, float length) {
+  return is_empty(views, p, length) ||
+         std::any_of(views.begin(), views.end(), [&](const FurtherView& view) {
+           return view.closed && view.look(p) == Sight::surface;
+         });
 }
 
 /// The distance of the first point on the way from `start` that `ends`, to within a tenth of it;
@@ -122,7 +132,7 @@ class Carver {
       if (!(length > 0)) return;
       const float known =
           first_on_way(s.position, along / length, first_step(s), farthest_,
-                       [&](const glm::vec3& p, float) { return is_known(views_, p); });
+                       [&](const glm::vec3& p, float t) { return ends_beyond(views_, p, t); });
       if (known < farthest_) solids_.beyond.at(x, y) = known;
     };
     for (int x = 0; x < w; ++x) end(x, 0, {0, -1}), end(x, h - 1, {0, 1});
