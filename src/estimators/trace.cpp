@@ -32,17 +32,18 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
 #include <memory>
 #include <utility>
 
 #include "estimators/further/further_light.h"
 #include "estimators/further/further_rays.h"
+#include "estimators/ray_start.h"
 #include "estimators/trace/ray_scene.h"
 #include "math/frame.h"
 #include "math/light_range.h"
 #include "math/luminance.h"
+#include "math/sampling.h"
 #include "math/sobol.h"
 #include "scene/light/sun.h"
 #include "scene/pixel_footprint.h"
@@ -53,10 +54,6 @@ namespace {
 
 /// The spread of the means of so many parts of the samples gives the standard error.
 constexpr int kGroups = 4;
-
-/// Rays begin above their surface, by so many times what storing P may have moved it, and by a part
-/// of what a pixel shows, which is large against the rounding of a ray.
-constexpr float kRoundings = 4, kFootprints = 2e-3f;
 
 /// Seeds of the two uses of a pixel's sequence.
 constexpr std::uint32_t kSurfaceSeed = 0x51ab, kSunSeed = 0x9c3d;
@@ -142,6 +139,7 @@ class Trace {
  private:
   int width() const { return scene_.geometry.surfel.width; }
   int height() const { return scene_.geometry.surfel.height; }
+
   /// Whether the frame or a further view shows something in the way.
   bool is_blocked(const Receiver& p, const glm::vec3& to) const {
     return rays_.is_blocked(p.origin, to, request_.radius) ||
@@ -154,7 +152,8 @@ class Trace {
     const Geometry& g = scene_.geometry;
     const Surfel& s = g.surfel[pixel];
     const glm::vec3 normal(s.normal), position(s.position);
-    const float above = kRoundings * s.rounding + kFootprints * footprint_.at(-position.z);
+    const float above =
+        kAboveRoundings * s.rounding + kAboveFootprints * footprint_.at(-position.z);
     return {glm::dvec3(position) + double(above) * glm::dvec3(normal), normal, frame_about(normal),
             hash_of(std::uint32_t(g.window.x0 - g.display.x0 + x),
                     std::uint32_t(g.window.y0 - g.display.y0 + y), request_.seed)};
@@ -176,11 +175,8 @@ class Trace {
         progress_);
   }
 
-  /// A direction in the hemisphere with the density of the cosine: the disc, lifted.
   static glm::vec3 direction(const Receiver& p, int sample) {
-    const glm::vec2 u = sobol_point(std::uint32_t(sample), p.seed ^ kSurfaceSeed);
-    const float r = std::sqrt(u.x), azimuth = 2 * glm::pi<float>() * u.y;
-    return p.frame * glm::vec3(r * std::cos(azimuth), r * std::sin(azimuth), std::sqrt(1 - u.x));
+    return cosine_direction(p.frame, sobol_point(std::uint32_t(sample), p.seed ^ kSurfaceSeed));
   }
 
   void gather_visibility(std::size_t pixel, const Receiver& p) {
@@ -234,9 +230,7 @@ class Trace {
     std::array<float, kGroups> seen{}, above{};
     for (int s = 0; s < samples_; ++s) {
       const glm::vec2 u = sobol_point(std::uint32_t(s), hash_of(p.seed, number, kSunSeed));
-      const float off = sun.angular_radius * std::sqrt(u.x), azimuth = 2 * glm::pi<float>() * u.y;
-      const glm::vec3 to =
-          glm::normalize(frame * glm::vec3(off * std::cos(azimuth), off * std::sin(azimuth), 1));
+      const glm::vec3 to = disc_direction(frame, sun.angular_radius, u);
       if (glm::dot(to, p.normal) <= 0) continue;
       above[group_of(s)] += 1;
       seen[group_of(s)] += !is_blocked(p, to);

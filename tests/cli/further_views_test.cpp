@@ -34,6 +34,18 @@ FramePart part_of(const Surface& scene, const Camera& camera, const Window& wind
   return part;
 }
 
+/// Six walls without thickness: seen from both sides.
+Surface closed_room() {
+  const auto wall = [](const glm::dvec3& at, const glm::dvec3& normal) {
+    return cut(plane(at, normal), [](const glm::dvec3& p) {
+      return std::abs(p.x) < 3.001 && std::abs(p.y) < 3.001 && p.z > -0.001 && p.z < 3.001;
+    });
+  };
+  return all_of({wall({0, 0, 0}, {0, 0, 1}), wall({0, 0, 3}, {0, 0, -1}),
+                 wall({-3, 0, 0}, {1, 0, 0}), wall({3, 0, 0}, {-1, 0, 0}),
+                 wall({0, -3, 0}, {0, 1, 0}), wall({0, 3, 0}, {0, -1, 0})});
+}
+
 class FurtherViews : public testing::Test {
  protected:
   std::string write(const std::string& name, const Surface& scene, const Camera& camera,
@@ -83,12 +95,10 @@ double rmse(const Plane<float>& ao, const Surface& scene, const Camera& camera,
 }
 
 TEST_F(FurtherViews, ClosedRoomIsDarkWithAPanorama) {
-  const Surface room = all_of({plane({0, 0, 0}, {0, 0, 1}), plane({0, 0, 3}, {0, 0, -1}),
-                               plane({-3, 0, 0}, {1, 0, 0}), plane({3, 0, 0}, {-1, 0, 0}),
-                               plane({0, -3, 0}, {0, 1, 0}), plane({0, 3, 0}, {0, -1, 0})});
   const glm::dvec3 eye(-0.5, -2, 1.4), target(0.3, 3, 1.2);
-  const std::string frame = write("frame.exr", room, pinhole(kFrame, 50, eye, target), kFrame),
-                    around = write("around.exr", room, panorama(eye, target), kPanorama);
+  const std::string frame =
+                        write("frame.exr", closed_room(), pinhole(kFrame, 50, eye, target), kFrame),
+                    around = write("around.exr", closed_room(), panorama(eye, target), kPanorama);
   const auto mean = [](const Plane<float>& ao) {
     double sum = 0;
     for (const float a : ao.pixels) sum += a;
@@ -98,6 +108,79 @@ TEST_F(FurtherViews, ClosedRoomIsDarkWithAPanorama) {
     EXPECT_GT(mean(ao(frame, {}, {"--method", method, "--offscreen", "open"})), 0.3) << method;
     EXPECT_LT(mean(ao(frame, {around}, {"--method", method})), 0.02) << method;
   }
+}
+
+/// A sky with a sun that stands high: it would light the floor of the room if nothing asked what is
+/// behind the camera.
+TEST_F(FurtherViews, NoSunShinesIntoAClosedRoom) {
+  const glm::dvec3 eye(-0.5, -2, 1.4), target(0.3, 3, 0.6);
+  const std::string frame =
+                        write("frame.exr", closed_room(), pinhole(kFrame, 50, eye, target), kFrame),
+                    around = write("around.exr", closed_room(), panorama(eye, target), kPanorama),
+                    out = folder.path() / "out.exr";
+  for (const std::string method : {"bitmask", "trace"}) {
+    const auto mean_direct = [&](const std::vector<std::string>& more) {
+      std::vector<std::string> arguments = {
+          frame,      "-o",       out,    "--overwrite", "--products",
+          "direct",   "--method", method, "--env",       data("environments/sky.exr"),
+          "--env-up", "z"};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      EXPECT_EQ(run_tool(arguments).code, 0);
+      double sum = 0;
+      const Plane<float> direct = channel(out, "direct.R");
+      for (const float d : direct.pixels) sum += double(d);
+      return sum / double(direct.size());
+    };
+    EXPECT_GT(mean_direct({"--offscreen", "open"}), 0.2) << method;
+    EXPECT_LT(mean_direct({"--also", around}), 0.02) << method;
+  }
+}
+
+/// Views from outside show the other side of walls that stand behind the camera: they are lit
+/// there, and dark inside.
+TEST_F(FurtherViews, WallsSeenFromOutsideSendNoLightInside) {
+  const glm::dvec3 eye(-0.5, -2, 1.4), target(0.3, 3, 1.2);
+  const Camera above = pinhole(kView, 50, {8, 9, 8}, {0, 0, 1.5}),
+               below = pinhole(kView, 50, {-8, -9, -5}, {0, 0, 1.5});
+  const std::string frame =
+                        write("frame.exr", closed_room(), pinhole(kFrame, 50, eye, target), kFrame),
+                    a = write("a.exr", closed_room(), above, kView),
+                    b = write("b.exr", closed_room(), below, kView),
+                    out = folder.path() / "out.exr";
+  for (const std::string method : {"bitmask", "trace"}) {
+    EXPECT_EQ(run_tool({frame, "-o", out, "--overwrite", "--products", "ao,bounce", "--method",
+                        method, "--also", a, "--also", b})
+                  .code,
+              0);
+    double ao = 0, bounce = 0;
+    const Plane<float> all_ao = channel(out, "ao.Y"), all_bounce = channel(out, "bounce.R");
+    for (std::size_t i = 0; i < all_ao.size(); ++i)
+      ao += double(all_ao[i]), bounce += double(all_bounce[i]);
+    fmt::print("{}: ao {:.4f}, bounce {:.4f}\n", method, ao / double(all_ao.size()),
+               bounce / double(all_ao.size()));
+    EXPECT_LT(ao / double(all_ao.size()), 0.03) << method;
+    EXPECT_LT(bounce / double(all_ao.size()), 0.03) << method;
+  }
+}
+
+/// Wires stand before a coarse view's background, which looks past them: they keep their
+/// thickness.
+TEST_F(FurtherViews, DoNotCarveWhatTheyDoNotResolve) {
+  std::vector<Surface> things = {plane({}, {0, 0, 1})};
+  for (int i = -8; i <= 8; ++i) {
+    things.push_back(Box{{0.12 * i - 0.015, -0.015, 0}, {0.12 * i + 0.015, 0.015, 0.8}}.surface());
+  }
+  const Surface fence = all_of(things);
+  const Window coarse{0, 0, 48, 36};
+  const Camera camera = pinhole(kFrame, 30, {0, -4, 1.2}, {0, 0, 0.3});
+  const std::string frame = write("frame.exr", fence, camera, kFrame),
+                    view = write("view.exr", fence,
+                                 pinhole(coarse, 40, {0.4, -3.8, 1.4}, {0, 0, 0.3}), coarse);
+  const auto floor = [](const glm::dvec3& p) { return p.z < 1e-6 && std::abs(p.x) < 0.9; };
+  const double alone = rmse(ao(frame, {}), fence, camera, floor),
+               known = rmse(ao(frame, {view}), fence, camera, floor);
+  fmt::print("RMSE {:.4f} alone, {:.4f} with a coarse view\n", alone, known);
+  EXPECT_LT(known, 1.02 * alone);
 }
 
 TEST_F(FurtherViews, BoxBehindABoxHidesWhatItHides) {

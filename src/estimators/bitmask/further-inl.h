@@ -10,19 +10,21 @@
 #define SSDO_BITMASK_FURTHER_INL_H_
 #endif
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "estimators/bitmask/lanes-inl.h"
+#include "estimators/ray_start.h"
 #include "math/sequence_numbers.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
+/// Fewer rays cost less and see less: ao at the small and the large radius and in a white world,
+/// mean RMSE of three scenes with four views, .056 .054 .050 with 8 sectors, .056 .052 .049 with 4
+/// at twice the rays, .057 .059 .057 with 16.
 constexpr int kSectorsPerRay = 8;
-
-/// Rays begin above their surface, by so many times what storing P may have moved it, and by a part
-/// of what a pixel shows.
-constexpr float kAboveRoundings = 4, kAboveFootprints = 2e-3f;
 
 /// The lanes of a vector, one by one.
 struct Lanes {

@@ -108,8 +108,8 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const SideF
                                           march.radius, [&]() HWY_ATTR { return e.depth; });
     const M hides = hn::Or(meets, hn::And(crosses, rises));
     M may_meet = hn::And(leaves_frame, border.distance_px <= set(p.reach_px));
-    if (!march.scene.border_beyond
-             .empty())  // where a view shows what is there, nothing is left open
+    // Where a view shows what is there, nothing is left open.
+    if (!march.scene.border_beyond.empty())
       may_meet = hn::And(may_meet, border(march.scene.border_beyond) >= set(kEndlessLength));
     const V passes = hn::IfThenElse(may_meet, set(past / kWitnesses), set(1.0f / kWitnesses));
     passed = passed + hn::IfThenElseZero(hn::AndNot(hides, open), passes);

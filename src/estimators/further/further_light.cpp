@@ -5,15 +5,14 @@
 #include "estimators/further/further_light.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
 #include <utility>
 
 #include "estimators/further/further_rays.h"
 #include "math/frame.h"
 #include "math/light_range.h"
+#include "math/sampling.h"
 #include "math/sobol.h"
 #include "parallel/tiles.h"
 
@@ -106,9 +105,8 @@ class Lamps {
   }
 
   static glm::vec3 direction(const glm::mat3& frame, int sample, std::uint32_t seed) {
-    const glm::vec2 u = sobol_point(std::uint32_t(sample), hash_of(seed, 0, kSurfaceSeed));
-    const float r = std::sqrt(u.x), azimuth = 2 * glm::pi<float>() * u.y;
-    return frame * glm::vec3(r * std::cos(azimuth), r * std::sin(azimuth), std::sqrt(1 - u.x));
+    return cosine_direction(frame,
+                            sobol_point(std::uint32_t(sample), hash_of(seed, 0, kSurfaceSeed)));
   }
 
   glm::vec3 direct_light(const Side& side) const {
@@ -142,10 +140,7 @@ class Lamps {
     int seen = 0;
     for (int s = 0; s < kSunRays; ++s) {
       const glm::vec2 u = sobol_point(std::uint32_t(s), hash_of(side.seed, number, kSunSeed));
-      const float off = sun.angular_radius * std::sqrt(u.x), azimuth = 2 * glm::pi<float>() * u.y;
-      const glm::vec3 to =
-          glm::normalize(frame * glm::vec3(off * std::cos(azimuth), off * std::sin(azimuth), 1));
-      seen += !rays_.is_blocked(side.start, to, radius_);
+      seen += !rays_.is_blocked(side.start, disc_direction(frame, sun.angular_radius, u), radius_);
     }
     return cosine * sun.irradiance * (float(seen) / kSunRays);
   }

@@ -4,6 +4,7 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <glm/geometric.hpp>
 
 #include "error.h"

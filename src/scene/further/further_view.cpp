@@ -19,7 +19,8 @@ constexpr float kNothing = std::numeric_limits<float>::infinity();
 /// Depths that differ by less than so many footprints are of one surface, tilted as it may be.
 constexpr float kSightGap = 3;
 
-/// A view shows what is so many of its pixels wide wherever these fall.
+/// A view shows what is so many of its pixels wide wherever these fall. With 0, leaves that views
+/// look past were carved away: ao of foliage at the small radius .18 in place of .09.
 constexpr float kResolved = 3;
 
 /// Most of the median distance by which P may miss its pixel: of another camera than a pinhole or

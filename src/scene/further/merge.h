@@ -18,8 +18,6 @@ struct MergeCounts {
   std::size_t added = 0;          ///< the frame does not show what they show
   std::size_t seen = 0;           ///< the frame shows it as well
   std::size_t contradictory = 0;  ///< it would lie before what the frame shows: something moved
-
-  std::size_t all() const { return added + seen + contradictory; }
 };
 
 /// Joins what further views show. The views' order does not matter. `albedo` is the frame's.
