@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -21,6 +22,12 @@ UpAxis up_axis_of(const Imf::Header& header) {
   }
   const bool blender = string_attribute(header, "Software").find("Blender") != std::string::npos;
   return blender ? UpAxis::z : UpAxis::y;
+}
+
+bool wants_reflection(const OutputOptions& output) {
+  return contains(output.products, "reflection") || contains(output.products, kAllProducts) ||
+         std::any_of(output.saves.begin(), output.saves.end(),
+                     [](const SaveRequest& save) { return save.product == "reflection"; });
 }
 
 void warn_of_idle_depth_options(Frame& frame, const GBufferOptions& options) {
@@ -66,7 +73,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const Fr
   Stopwatch watch;
   // Names that nothing asks for are no reason to refuse a frame.
   std::vector<Role> unused;
-  if (!find_method(options.model.method).products.reflection) unused.push_back(Role::roughness);
+  if (!wants_reflection(options.output)) unused.push_back(Role::roughness);
   if (!options.model.temporal) unused.push_back(Role::motion);
   View view = read_view(files.input, files.aovs, options.input, options.camera, unused);
   frame.files = std::move(view.files);
@@ -120,6 +127,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const Fr
                                known.warnings.end());
   frame.plan = make_plan(model, options.output, scene, frame.gbuffer, frame.input);
   explain_views(frame.plan, frame.views);
+  if (const auto much = explain_guessed(frame.plan, scene)) frame.report.warnings.push_back(*much);
   frame.times.prepare = watch.lap() - frame.times.read - frame.times.known;
   return frame;
 }

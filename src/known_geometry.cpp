@@ -88,6 +88,7 @@ std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
   scene.further = merge_views(known.views, scene.geometry, scene.senders.albedo, counts);
   warn_of_contradictions(counts, known.warnings);
   if (!thickness) carve(scene.solids, scene.geometry, known.views);
+  scene.views = std::move(known.views);
   return counts;
 }
 

@@ -2,13 +2,16 @@
 #include "plan.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "error.h"
+#include "estimators/guessed.h"
 #include "estimators/registry.h"
 #include "math/luminance.h"
 #include "product_choice.h"
@@ -23,6 +26,9 @@ constexpr float kAutoRadius = 0.3f;
 
 /// A bounce from surfaces that are darker than this everywhere is below 1 % of the light.
 constexpr float kDarkAlbedo = 0.01f;
+
+/// More than this of a result should not rest on guesses.
+constexpr float kMuchGuessed = 0.3f;
 
 struct OptionOfModel {
   std::string_view name;
@@ -244,6 +250,34 @@ void explain_views(Plan& plan, const std::vector<MergeCounts>& views) {
         view.file, view.added, view.seen, view.contradictory,
         view.has_albedo ? "" : "; it has no albedo, so that it sends no light"));
   }
+}
+
+std::optional<std::string> explain_guessed(Plan& plan, const Scene& scene) {
+  if (!plan.method->products.guessed) return std::nullopt;
+  const GuessedMean guessed = mean_guessed(scene, plan.request.radius);
+  std::array<std::size_t, kUnseenPlaces.size()> most_first;
+  std::iota(most_first.begin(), most_first.end(), std::size_t(0));
+  std::stable_sort(most_first.begin(), most_first.end(),
+                   [&](std::size_t a, std::size_t b) { return guessed.at[a] > guessed.at[b]; });
+  std::vector<std::string> parts;
+  std::vector<std::string_view> remedies;
+  for (const std::size_t i : most_first) {
+    // Parts that are less than a tenth of all help nobody decide what to render.
+    if (guessed.at[i] < 0.1f * guessed.all || guessed.at[i] < 0.005f) break;
+    parts.push_back(fmt::format("{} {:.2f}", kUnseenPlaces[i].name, guessed.at[i]));
+    const std::string_view remedy = kUnseenPlaces[i].remedy;
+    if (std::find(remedies.begin(), remedies.end(), remedy) == remedies.end())
+      remedies.push_back(remedy);
+  }
+  const std::string share = fmt::format("{:.2f} of all directions", guessed.all),
+                    where = parts.empty() ? "" : fmt::format(" ({})", fmt::join(parts, ", ")),
+                    remedy = remedies.empty()
+                                 ? ""
+                                 : fmt::format("; render {}", fmt::join(remedies, ", "));
+  plan.reasons.push_back(
+      fmt::format("guessed: {} lead past what no picture shows{}{}", share, where, remedy));
+  if (guessed.all <= kMuchGuessed) return std::nullopt;
+  return fmt::format("{} are guessed{}", share, remedy);
 }
 
 nlohmann::json to_json(const Plan& plan, const std::vector<std::string>& history) {

@@ -30,7 +30,8 @@
 //   a gentle curve would show the sectors as bands.
 // - direct is a ratio to the exact unoccluded irradiance E(N): the noise of a few directions
 //   cancels. L is taken in spherical harmonics, of the environment without its suns; each sun is a
-//   direction of its own, tested along the slice that holds it (bitmask/sun.cpp).
+//   direction of its own, tested along the slice that holds it (bitmask/sun.cpp). So is what
+//   facets mirror (bitmask/reflection.cpp).
 // - bounce takes the radiance of the first surface in each sector; no 1/d^2, so no singularity
 //   (bitmask/bounce.cpp, and bitmask/senders.cpp for what is sent).
 // - A sampled pixel represents the stretch of the march up to halfway to the samples before and
@@ -40,21 +41,20 @@
 //   (bitmask/extension-inl.h) are guesses that GTAO does not make. Half of a map's light
 //   comes through those beyond, and the more of a sun's, the more open the frame is
 //   (bitmask/beyond.h).
-// - What only further views show may be anywhere, behind the camera too: rays ask it for the sectors
-//   that the march leaves open (bitmask/further-inl.h).
+// - What only further views show may be anywhere, behind the camera too: rays ask it for the
+//   sectors that the march leaves open (bitmask/further-inl.h).
 #include "estimators/bitmask.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/gtc/constants.hpp>
 #include <memory>
 
+#include "estimators/bitmask/basis_weights.h"
 #include "estimators/bitmask/beyond.h"
 #include "estimators/bitmask/march.h"
-#include "math/frame.h"
+#include "estimators/guessed.h"
 #include "math/light_range.h"
-#include "math/sequence_numbers.h"
 #include "scene/light/light.h"
 
 namespace ssdo {
@@ -66,8 +66,8 @@ constexpr int kPeriod = Interleaving::kPeriod;
 /// less noise than direct light has. Measured on seven frames.
 constexpr int bounce_steps(int steps) { return (2 * steps + 2) / 3; }
 
-/// The edge of a sun's shadow shows single steps, because no other slices average them away.
-constexpr int kSunSteps = 2;
+/// Rays into what is mirrored, for every slice.
+constexpr int kReflectionRays = 2;
 
 /// With few slices, one pixel of 2 x 2 gathers bounce light, in 1.5 times as many slices: on seven
 /// frames error and noise are the same as with all pixels.
@@ -77,20 +77,6 @@ constexpr int bounce_slices(int slices) { return slices < 4 ? (3 * slices + 1) /
 /// One colour for each pixel, in the order of the march.
 InterleavedVectors make_color(const Interleaving& layout) {
   return {InterleavedPlane(layout), InterleavedPlane(layout), InterleavedPlane(layout)};
-}
-
-/// The light's coefficients, channel by channel, times the constants that make spherical harmonics
-/// orthonormal, which the polynomials of the march lack. Light of order 0 has band 0 alone.
-std::vector<float> basis_weights(const Light& light, int order) {
-  const int count = sh_count(order);
-  std::vector<float> weights(std::size_t(3 * count), 0.0f);
-  for (int c = 0; c < 3; ++c) {
-    float* channel = &weights[std::size_t(c * count)];
-    if (light.order == 0) channel[0] = 1;
-    for (int i = 0; light.order > 0 && i < count; ++i)
-      channel[i] = kShConstants[std::size_t(i)] * light.coefficients[std::size_t(i)][c];
-  }
-  return weights;
 }
 
 /// The method on one frame.
@@ -124,6 +110,10 @@ class Bitmask {
     }
     out_.ao = picture(ao_, 1.0f);
     if (wants_light()) out_.direct = picture(direct_);
+    if (request_.products.reflection) gather_reflection();
+    if (request_.products.guessed)
+      out_.guessed =
+          guessed_shares(scene_, march_scene_.receivers, request_.radius, request_.seed, progress_);
     return std::move(out_);
   }
 
@@ -242,31 +232,33 @@ class Bitmask {
         request_.extend_offscreen
             ? sun_past_beyond(mean_ao(march_scene_, scene_.geometry.display, request_.radius))
             : 1;
-    for (const Sun& sun : light.suns) add_sun(sun, past);
+    const RayDistances distances_px = ray_distances(scene_.geometry.display, request_.steps);
+    for (const Sun& sun : light.suns) add_sun(sun, distances_px, past);
   }
 
   /// Adds the light of a sun where it is seen. Members of the pattern look at different points of
   /// its disc.
-  void add_sun(const Sun& sun, float past_beyond) {
-    SunJob job{march_, {}, {}, &sun, past_beyond, &direct_};
-    const glm::mat3 frame = frame_about(sun.direction);
-    const double diagonal =
-        std::hypot(scene_.geometry.display.width(), scene_.geometry.display.height());
-    const int members = kPeriod * kPeriod, steps = kSunSteps * request_.steps;
-    for (int m = 0; m < members; ++m) {
-      const int rank = SlicePattern::rank(m);
-      const float angle = float(2 * glm::pi<double>() * fraction(rank * kR2First)),
-                  off = sun.angular_radius * std::sqrt((float(rank) + 0.5f) / float(members));
-      const glm::vec3 to =
-          glm::normalize(frame * glm::vec3(off * std::cos(angle), off * std::sin(angle), 1));
-      job.directions[std::size_t(m)] = to;
-      const double start = fraction(rank * kR2Second);
-      for (int i = 0; i < steps; ++i)
-        job.distances_px[std::size_t(m)].push_back(
-            float(march_distance((i + start) / steps, diagonal)));
-    }
+  void add_sun(const Sun& sun, const RayDistances& distances_px, float past_beyond) {
+    const SunJob job{march_, directions_to(sun), distances_px, &sun, past_beyond, &direct_};
     for_each_band_of(
         lit_part(), [&](const Window& part) { march_sun(job, part); }, progress_);
+  }
+
+  void gather_reflection() {
+    InterleavedPlane open(layout_), roughness(layout_);
+    for_each_row(layout_.height(), [&](int y) {
+      roughness.fill_row(layout_, y, float(request_.parameters.at("roughness")));
+      if (scene_.roughness.empty()) return;
+      for_each_pixel(
+          y, [&](std::size_t pixel, std::ptrdiff_t i) { roughness[i] = scene_.roughness[pixel]; });
+    });
+    const RayDistances distances_px = ray_distances(scene_.geometry.display, request_.steps);
+    const ReflectionJob job{
+        march_, distances_px, &roughness, kReflectionRays * request_.slices, request_.seed, &open};
+    for_each_band_of(
+        march_scene_.receivers, [&](const Window& part) { march_reflection(job, part); },
+        progress_);
+    out_.reflection = picture(open, 1.0f);
   }
 
   /// The light that the solids of a layer send: that of the pixels that show them, if any.
@@ -376,13 +368,20 @@ Method bitmask_method() {
   return {
       .name = "bitmask",
       .summary = "slices with a visibility bitmask; light and bounce from the same march",
-      .products = {.ao = true, .direct = true, .bounce = true, .bent = true, .error = true},
+      .products = {.ao = true,
+                   .direct = true,
+                   .bounce = true,
+                   .bent = true,
+                   .reflection = true,
+                   .error = true,
+                   .guessed = true},
       .takes = {.radius = true,
                 .endless_radius = true,
                 .thickness = true,
                 .march = true,
                 .receivers = true},
       .pattern_size = kPeriod,
+      .parameters = {kRoughness},
       .samples_per_pixel = [](const Request& r) { return 2 * r.slices * r.steps; },
       .estimate = estimate,
       .ladder = {.rungs = {slices_and_steps(1, 6), slices_and_steps(2, 8), slices_and_steps(2, 16),

@@ -23,6 +23,10 @@ struct Parameter {
   bool whole = false;  ///< takes whole numbers only
 };
 
+/// Of every method that makes reflections.
+inline constexpr Parameter kRoughness = {
+    "roughness", 0.5, 0, 1, "", "of what mirrors, where there is no layer of it"};
+
 using ParameterValues = std::map<std::string, double, std::less<>>;
 
 /// What is asked of a method.

@@ -226,7 +226,8 @@ Products estimate_gtao(const Scene& scene, const Request& request, const Progres
     HWY_DYNAMIC_DISPATCH(gtao_of_tile)(job, tile, ao);
   });
   if (request.products.reflection)
-    out.reflection = reflection_occlusion(scene, request, planes, out.bent);
+    out.reflection = reflection_occlusion(scene, request, planes, out.bent,
+                                          float(parameter("reflection-strength")));
   normalise_all(out.bent);
   if (request.products.direct) out.direct = direct_light(scene, out, bounces);
   if (!request.products.bent) out.bent = {};
@@ -249,7 +250,7 @@ Method gtao_method() {
               {"thickness", 1, 0, 1, "", "share of a horizon that lower surfaces beyond it leave"},
               {"multi-bounce", 0, 0, 1, "",
                "1: direct with light between surfaces, by their albedo", true},
-              {"roughness", 0.5, 0, 1, "", "of what mirrors, where there is no layer of it"},
+              kRoughness,
               {"reflection-strength", 0.5, 0, 1, "", "1/2: slices that agree see a half-ball"},
           },
       .samples_per_pixel =

@@ -22,6 +22,7 @@ struct ProductSet {
   bool bent = false;
   bool reflection = false;
   bool error = false;
+  bool guessed = false;
 
   bool operator==(const ProductSet&) const = default;
 };
@@ -34,6 +35,7 @@ struct Products {
   Plane<glm::vec3> bent;    ///< unit, camera space
   Plane<float> reflection;  ///< share of a reflection that is not occluded
   Plane<float> error;  ///< of the luminance of direct + bounce, with the sign of one draw of noise
+  Plane<float> guessed;  ///< share of the hemisphere that no picture shows
 };
 
 /// What the values of a product are. It decides how filters, --temporal and pictures treat them.
@@ -65,7 +67,7 @@ struct Product {
 };
 
 /// In the order of lists and files.
-inline constexpr std::array<Product, 7> kProducts = {{
+inline constexpr std::array<Product, 8> kProducts = {{
     {.name = "ao",
      .kind = ProductKind::share,
      .channels = "Y",
@@ -120,6 +122,12 @@ inline constexpr std::array<Product, 7> kProducts = {{
      .plane = &Products::error,
      .made_of = {.direct = true, .error = true},
      .with = {.bounce = true}},
+    {.name = "guessed",
+     .kind = ProductKind::share,
+     .channels = "Y",
+     .in = &ProductSet::guessed,
+     .plane = &Products::guessed,
+     .made_of = {.guessed = true}},
     {.name = "composite",
      .kind = ProductKind::light,
      .channels = "RGBA",

@@ -38,14 +38,17 @@
 
 #include "estimators/further/further_light.h"
 #include "estimators/further/further_rays.h"
+#include "estimators/guessed.h"
 #include "estimators/ray_start.h"
 #include "estimators/trace/ray_scene.h"
 #include "math/frame.h"
 #include "math/light_range.h"
 #include "math/luminance.h"
+#include "math/microfacets.h"
 #include "math/sampling.h"
 #include "math/sobol.h"
 #include "scene/light/sun.h"
+#include "scene/normals.h"
 #include "scene/pixel_footprint.h"
 #include "scene/surfel.h"
 
@@ -55,8 +58,8 @@ namespace {
 /// The spread of the means of so many parts of the samples gives the standard error.
 constexpr int kGroups = 4;
 
-/// Seeds of the two uses of a pixel's sequence.
-constexpr std::uint32_t kSurfaceSeed = 0x51ab, kSunSeed = 0x9c3d;
+/// Seeds of the uses of a pixel's sequence.
+constexpr std::uint32_t kSurfaceSeed = 0x51ab, kSunSeed = 0x9c3d, kFacetSeed = 0x2f17;
 
 using Groups = std::array<float, kGroups>;
 
@@ -133,6 +136,13 @@ class Trace {
       for (std::size_t i = 0; i < luminances_.size(); ++i)
         out_.error[i] = standard_error(luminances_[i]);
     }
+    if (request_.products.reflection) {
+      out_.reflection = Plane<float>(width(), height(), 1.0f);
+      for_each_surface([&](std::size_t pixel, const Receiver& p) { gather_reflection(pixel, p); });
+    }
+    if (request_.products.guessed)
+      out_.guessed = guessed_shares(scene_, {0, 0, width(), height()}, request_.radius,
+                                    request_.seed, progress_);
     return std::move(out_);
   }
 
@@ -207,6 +217,24 @@ class Trace {
       out_.bent[pixel] = length > 0 ? bent / length : p.normal;
     }
     if (wants_light_) add_direct(pixel, p, light, ao);
+  }
+
+  /// What facets mirror, each by as much as others leave of it.
+  void gather_reflection(std::size_t pixel, const Receiver& p) {
+    const float roughness = scene_.roughness.empty() ? float(request_.parameters.at("roughness"))
+                                                     : scene_.roughness[pixel];
+    const glm::vec3 viewer = direction_to_viewer(scene_.geometry.surfel[pixel].position,
+                                                 scene_.geometry.camera.orthographic) *
+                             p.frame;
+    float open = 0, all = 0;
+    for (int s = 0; s < samples_; ++s) {
+      const auto [to, share] =
+          mirror_at_facet(viewer, roughness, sobol_point(std::uint32_t(s), p.seed ^ kFacetSeed));
+      if (share <= 0) continue;
+      all += share;
+      if (!is_blocked(p, p.frame * to)) open += share;
+    }
+    if (all > 0) out_.reflection[pixel] = open / all;
   }
 
   void add_direct(std::size_t pixel, const Receiver& p, const LightSums& light, float ao) {
@@ -324,10 +352,17 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
 Method trace_method() {
   return {.name = "trace",
           .summary = "rays against the frame as thick solids: slow, the yardstick of the others",
-          .products = {.ao = true, .direct = true, .bounce = true, .bent = true, .error = true},
+          .products = {.ao = true,
+                       .direct = true,
+                       .bounce = true,
+                       .bent = true,
+                       .reflection = true,
+                       .error = true,
+                       .guessed = true},
           .takes = {.radius = true, .endless_radius = true, .thickness = true},
           .pattern_size = 1,
-          .parameters = {{"samples", 64, kGroups, 65536, "rays", "per pixel and bounce", true}},
+          .parameters = {{"samples", 64, kGroups, 65536, "rays", "per pixel and bounce", true},
+                         kRoughness},
           .samples_per_pixel = [](const Request& r) { return int(r.parameters.at("samples")); },
           .estimate = estimate,
           .ladder = {.rungs = rungs_of("samples", {4, 16, 64}),

@@ -56,9 +56,9 @@ void add_pixels(Continuity& sum, const FrameSurfaces& before, const FrameSurface
       const glm::dvec2 from_motion =
           motion.empty() ? glm::dvec2(NAN) : centre_of(now.geometry, x, y) + glm::dvec2(motion[i]);
       const PixelsBefore at = reprojection.find(surfel[i], from_motion);
-      if (at.sight == Sight::nothing) continue;
+      if (at.sight == SeenBefore::nothing) continue;
       sum.met += 1;
-      if (at.sight == Sight::same && (!colored || is_like(now.albedo[i], before.albedo, at)))
+      if (at.sight == SeenBefore::same && (!colored || is_like(now.albedo[i], before.albedo, at)))
         sum.kept += 1;
     }
   }

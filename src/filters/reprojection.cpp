@@ -68,7 +68,9 @@ PixelsBefore Reprojection::find(const Surfel& surfel, const glm::dvec2& from_mot
   }
   if (sum < kLeastShare) found.count = 0;
   for (int k = 0; k < found.count; ++k) found.weight[k] /= float(sum);
-  found.sight = found.count > 0 ? Sight::same : through ? Sight::through : Sight::nothing;
+  found.sight = found.count > 0 ? SeenBefore::same
+                : through       ? SeenBefore::through
+                                : SeenBefore::nothing;
   return found;
 }
 

@@ -11,7 +11,7 @@
 namespace ssdo {
 
 /// What the frame before shows at the place of a point of the present frame.
-enum class Sight {
+enum class SeenBefore {
   nothing,  ///< it is outside that picture, or something else may hide it
   same,     ///< its surface
   through,  ///< what lies behind it: it was not there
@@ -22,7 +22,7 @@ struct PixelsBefore {
   std::size_t pixel[4];
   float weight[4];
   int count = 0;
-  Sight sight = Sight::nothing;  ///< `same` where there are pixels
+  SeenBefore sight = SeenBefore::nothing;  ///< `same` where there are pixels
 };
 
 /// Finds in the frame before what a pixel shows. Between the two camera spaces lies a rotation and

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <vector>
 
 #include "math/plane.h"
 #include "scene/further/further_surfaces.h"
+#include "scene/further/further_view.h"
 #include "scene/geometry.h"
 #include "scene/light/light.h"
 #include "scene/solids.h"
@@ -22,7 +24,8 @@ struct Senders {
 struct Scene {
   Geometry geometry;
   Solids solids;
-  FurtherSurfaces further;  ///< what other views show that the frame does not
+  std::vector<FurtherView> views;  ///< of other cameras
+  FurtherSurfaces further;         ///< what they show that the frame does not
   Senders senders;
   Light light;
   Plane<float> roughness;  ///< 0..1; empty: the same everywhere, a parameter of the method

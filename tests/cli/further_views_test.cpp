@@ -183,6 +183,35 @@ TEST_F(FurtherViews, DoNotCarveWhatTheyDoNotResolve) {
   EXPECT_LT(known, 1.02 * alone);
 }
 
+TEST_F(FurtherViews, AreKnownAndNotGuessed) {
+  const glm::dvec3 eye(-0.5, -2, 1.4), target(0.3, 3, 1.2);
+  const std::string frame =
+                        write("frame.exr", closed_room(), pinhole(kFrame, 50, eye, target), kFrame),
+                    around = write("around.exr", closed_room(), panorama(eye, target), kPanorama),
+                    out = folder.path() / "out.exr";
+  const auto mean_guessed = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {frame, "-o", out, "--overwrite", "--products", "guessed"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished run = run_tool(arguments);
+    EXPECT_EQ(run.code, 0) << run.err;
+    double sum = 0;
+    const Plane<float> guessed = channel(out, "guessed.Y");
+    for (const float g : guessed.pixels) sum += double(g);
+    return sum / double(guessed.size());
+  };
+  for (const std::string method : {"bitmask", "trace"}) {
+    EXPECT_GT(mean_guessed({"--method", method}), 0.5);
+    EXPECT_LT(mean_guessed({"--method", method, "--also", around}), 0.03);
+  }
+  const Finished alone = run_tool({"info", frame}),
+                 known = run_tool({"info", frame, "--also", around});
+  EXPECT_THAT(alone.out, AllOf(HasSubstr("behind the camera"), HasSubstr("render a panorama")));
+  EXPECT_THAT(alone.out, HasSubstr("are guessed; render"));
+  EXPECT_THAT(known.out, AllOf(HasSubstr("guessed: 0.0"), Not(HasSubstr("are guessed"))));
+  EXPECT_THAT(run_tool({"info", frame, "--products", "guessed", "--method", "gtao"}).error_line(),
+              HasSubstr("these do: bitmask, trace"));
+}
+
 TEST_F(FurtherViews, BoxBehindABoxHidesWhatItHides) {
   const Box before{{-0.5, -0.6, 0}, {0.5, -0.4, 1.1}}, behind{{-0.4, 0.1, 0}, {0.4, 0.5, 0.8}};
   const Surface scene = all_of({plane({}, {0, 0, 1}), before.surface(), behind.surface()});

@@ -45,6 +45,7 @@ TEST_F(Outputs, AnExrHoldsTheProductsThatAreNamedAndTheirValuesDoNotDependOnIt) 
       {"ao", {"ao.Y"}},
       {"bent", {"bent.X", "bent.Y", "bent.Z"}},
       {"error", {"error.Y"}},
+      {"guessed", {"guessed.Y"}},
       {"direct", {"direct.R", "direct.G", "direct.B"}},
       {"bounce", {"bounce.R", "bounce.G", "bounce.B"}},
       {"composite", {"R", "G", "B", "A"}}};
@@ -53,13 +54,14 @@ TEST_F(Outputs, AnExrHoldsTheProductsThatAreNamedAndTheirValuesDoNotDependOnIt) 
   std::map<std::string, Plane<float>> all;
   for (const std::string& name : channel_names(path("out.exr")))
     all[name] = channel(path("out.exr"), name);
-  EXPECT_EQ(all.size(), 15u);
+  EXPECT_EQ(all.size(), 16u);
   for (const std::vector<std::string>& wanted : {std::vector<std::string>{"ao"},
                                                  {"direct"},
                                                  {"bounce"},
                                                  {"composite"},
                                                  {"bent"},
                                                  {"error"},
+                                                 {"guessed"},
                                                  {"bounce", "ao"}}) {
     std::string list;
     std::vector<std::string> expected;

@@ -51,7 +51,7 @@ TEST(Products, AreFoundByNameOrListed) {
   const Error error = error_of([] { find_product("normals"); });
   EXPECT_THAT(error, IsError(ExitCode::usage, "product 'normals': there are ao, bent"));
   EXPECT_THAT(error, IsError(ExitCode::usage, "composite, and all"));
-  EXPECT_EQ(product_names(), "ao, bent, reflection, direct, bounce, error, composite");
+  EXPECT_EQ(product_names(), "ao, bent, reflection, direct, bounce, error, guessed, composite");
 }
 
 TEST(Products, AmbientLightTakesThePlaceOfDirectInTheCompositeAlone) {

@@ -90,7 +90,8 @@ TEST(Methods, AreFoundByNameAndOneIsTheReference) {
 }
 
 TEST(Methods, AreListedWithTheirProducts) {
-  EXPECT_THAT(describe_methods(), HasSubstr("\n  products: ao, bent, direct, bounce, error\n"));
+  EXPECT_THAT(describe_methods(),
+              HasSubstr("\n  products: ao, bent, reflection, direct, bounce, error, guessed\n"));
   EXPECT_THAT(describe_methods(), HasSubstr("\n  products: ao, bent, reflection, direct\n"));
 }
 

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 
 #include "estimators/recorded_errors.h"
 #include "estimators/registry.h"
@@ -138,14 +139,15 @@ Result shown(const Geometry& geometry, const Products& products) {
 }
 
 Result run(const std::string& method, const Subject& scene, const std::string& environment,
-           std::optional<double> radius) {
+           std::optional<double> radius, bool guessed = false) {
   FrameOptions options;
   options.model.method = method;
   if (method == "trace") options.model.set = {"samples=16"};
   if (find_method(method).takes.radius) options.model.radius = radius;
   options.light.env = environment;
   Frame frame = prepare_frame(options, Lighting(options.light), {scene.frame, {}, scene.also});
-  const Plan& plan = frame.plan;
+  Plan& plan = frame.plan;
+  plan.request.products.guessed = guessed;
   Geometry& geometry = frame.scene.geometry;
   Products filtered = filter_geometry(plan.method->estimate(frame.scene, plan.request, {}),
                                       geometry, plan.method->pattern_size);
@@ -196,6 +198,67 @@ TEST_P(Truth, ErrorsAreThoseRecorded) {
   expect_recorded("bounce", bounce, bounce.mean, recorded.bounce);
 }
 
+/// How well the product guessed predicts the error of ao.
+class Prediction {
+ public:
+  void add(const Result& r, const Subject& scene, const std::string& truth,
+           const std::string& layer) {
+    constexpr int kBlock = 8;
+    const Plane<float> right = std::move(read_truth(scene, truth, layer)[0]);
+    const Plane<Surfel>& surfel = r.geometry.surfel;
+    for (int y = 0; y + kBlock <= surfel.height; y += kBlock) {
+      for (int x = 0; x + kBlock <= surfel.width; x += kBlock) {
+        double error = 0, guessed = 0;
+        int surfaces = 0;
+        for (int i = 0; i < kBlock * kBlock; ++i) {
+          const std::size_t at = surfel.index(x + i % kBlock, y + i / kBlock);
+          if (!r.geometry.is_surface(at)) continue;
+          const double e = double(r.products.ao[at]) - double(right[at]),
+                       g = double(r.products.guessed[at]);
+          if (g < kLittle) little_.rmse += e * e, little_.mean += 1;
+          error += std::abs(e), guessed += g, ++surfaces;
+        }
+        if (surfaces < kBlock * kBlock) continue;
+        errors_.push_back(error / surfaces), guesses_.push_back(guessed / surfaces);
+      }
+    }
+  }
+
+  /// RMSE of the pixels of which less than this is guessed.
+  static constexpr double kLittle = 0.05;
+  double rmse_of_little() const { return std::sqrt(little_.rmse / little_.mean); }
+
+  /// Spearman's correlation over blocks.
+  double rank_correlation() const {
+    const std::vector<double> a = ranks(errors_), b = ranks(guesses_);
+    const double middle = double(a.size() - 1) / 2;
+    double ab = 0, aa = 0, bb = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const double u = a[i] - middle, v = b[i] - middle;
+      ab += u * v, aa += u * u, bb += v * v;
+    }
+    return ab / std::sqrt(aa * bb);
+  }
+
+ private:
+  /// Equal values share their mean rank.
+  static std::vector<double> ranks(const std::vector<double>& values) {
+    std::vector<std::size_t> order(values.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t i, std::size_t j) { return values[i] < values[j]; });
+    std::vector<double> rank(values.size());
+    for (std::size_t from = 0, to = 0; from < order.size(); from = to) {
+      while (to < order.size() && values[order[to]] == values[order[from]]) ++to;
+      for (std::size_t i = from; i < to; ++i) rank[order[i]] = double(from + to - 1) / 2;
+    }
+    return rank;
+  }
+
+  Error2 little_;  ///< sum of squares, and their number as `mean`
+  std::vector<double> errors_, guesses_;
+};
+
 /// The means over the further scenes of what the default method is wrong by.
 class KnownGeometry : public testing::TestWithParam<RecordedKnownGeometry> {};
 
@@ -204,21 +267,22 @@ TEST_P(KnownGeometry, ErrorsAreThoseRecorded) {
   const std::vector<Subject> scenes = further_scenes(recorded.file, recorded.also);
   if (scenes.empty()) GTEST_SKIP() << "the scenes are not there";
   Error2 small, large, white, direct, bounce;
+  Prediction prediction;
   for (const Subject& scene : scenes) {
     const auto add = [&](Error2& sum, const std::string& what, const Error2& e, double relative) {
       fmt::print("{} {} {:.4f}\n", scene.name, what, e.rmse / relative);
       sum.rmse += e.rmse / relative / double(scenes.size());
       sum.bias += e.bias / relative / double(scenes.size());
     };
-    for (Error2* sum : {&small, &large}) {
-      const double radius = sum == &small ? scene.radius_small : scene.radius_large;
-      add(*sum, fmt::format("ao at {:g}", radius),
-          error_of_ao(run("bitmask", scene, "1", radius), scene, fmt::format("ao_{:g}", radius),
-                      "AO"),
-          1);
-    }
-    add(white, "white",
-        error_of_ao(run("bitmask", scene, "1", std::nullopt), scene, "white", "DiffDir"), 1);
+    const auto add_ao = [&](Error2& sum, std::optional<double> radius, const std::string& truth,
+                            const std::string& layer) {
+      const Result r = run("bitmask", scene, "1", radius, true);
+      add(sum, truth, error_of_ao(r, scene, truth, layer), 1);
+      prediction.add(r, scene, truth, layer);
+    };
+    add_ao(small, scene.radius_small, fmt::format("ao_{:g}", scene.radius_small), "AO");
+    add_ao(large, scene.radius_large, fmt::format("ao_{:g}", scene.radius_large), "AO");
+    add_ao(white, std::nullopt, "white", "DiffDir");
     const Result r = run("bitmask", scene, scene.environment, std::nullopt);
     const Error2 d = error_of_direct(r, scene), b = error_of_bounce(r, scene);
     add(direct, "direct", d, d.mean);
@@ -229,6 +293,10 @@ TEST_P(KnownGeometry, ErrorsAreThoseRecorded) {
   expect_recorded("ao, white world", white, 1, recorded.white);
   expect_recorded("direct", direct, 1, recorded.direct);
   expect_recorded("bounce", bounce, 1, recorded.bounce);
+  fmt::print("guessed: RMSE of ao {:.4f} where it is below {}, rank correlation {:.3f}\n",
+             prediction.rmse_of_little(), Prediction::kLittle, prediction.rank_correlation());
+  EXPECT_LT(prediction.rmse_of_little(), 0.03);
+  EXPECT_NEAR(prediction.rank_correlation(), recorded.rank_guessed, 0.02);
 }
 
 INSTANTIATE_TEST_SUITE_P(FurtherScenes, KnownGeometry, testing::ValuesIn(kRecordedKnownGeometry),

@@ -48,12 +48,18 @@ HWY_INLINE V3 start_of_rays(const MarchScene& scene, const MarchReceiver& p) {
   return mul_add(p.normal, hn::MulAdd(rounding, set(kAboveRoundings), footprint), p.position);
 }
 
+/// The member of the pattern that a vector of pixels is.
+HWY_INLINE int member_at(const MarchScene& scene, const Place& place) {
+  constexpr int kPeriod = Interleaving::kPeriod;
+  return ((place.y + scene.first_y) & (kPeriod - 1)) * kPeriod + place.column_phase;
+}
+
 /// A number in [0, 1) that differs between the members of the pattern and their sides, so that rays
 /// of neighbours go to different sectors and a filter averages them.
 HWY_INLINE float turn_of(const MarchScene& scene, const Place& place, float phase) {
   constexpr int kPeriod = Interleaving::kPeriod;
-  const int member = ((place.y + scene.first_y) & (kPeriod - 1)) * kPeriod + place.column_phase;
-  const double turn = SlicePattern::rank(member) * kR2First + kPeriod * double(phase);
+  const double turn =
+      SlicePattern::rank(member_at(scene, place)) * kR2First + kPeriod * double(phase);
   return std::min(float(fraction(turn)), 0x1.fffffep-1f);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimators/bitmask/march_scene.h"
+#include "estimators/bitmask/ray_pattern.h"
 #include "estimators/bitmask/slice_pattern.h"
 #include "estimators/further/further_light.h"
 #include "estimators/further/further_rays.h"
@@ -76,13 +77,21 @@ struct BounceJob {
 /// The direct light of a sun where it is visible.
 struct SunJob {
   March march;
-  /// For each member of the pattern a unit direction to a point of the sun, and at which distances
-  /// in the picture the march samples, near to far.
-  std::array<glm::vec3, Interleaving::kPeriod * Interleaving::kPeriod> directions;
-  std::array<std::vector<float>, Interleaving::kPeriod * Interleaving::kPeriod> distances_px;
+  PerMember<glm::vec3> directions;  ///< unit, to points of the sun
+  const RayDistances& distances_px;
   const Sun* sun;
   float past_beyond;           ///< share of it that passes what may stand beyond the frame
   InterleavedVectors* direct;  ///< added to
+};
+
+/// How much of what rough surfaces mirror is not blocked.
+struct ReflectionJob {
+  March march;
+  const RayDistances& distances_px;
+  const InterleavedPlane* roughness;  ///< 0..1
+  int rays;                           ///< of each pixel
+  unsigned seed;
+  InterleavedPlane* open;  ///< 0..1
 };
 
 /// All of these work on a part of the raster, and may write to pixels beside it in the same rows.
@@ -91,6 +100,7 @@ void march_bounce(const BounceJob& job, const Window& part);
 /// After march_bounce of the part and, where the pattern has a spacing, of the pixels around it.
 void spread_bounce(const BounceJob& job, const Window& part);
 void march_sun(const SunJob& job, const Window& part);
+void march_reflection(const ReflectionJob& job, const Window& part);
 void find_senders(const SenderJob& job, const Window& part);
 
 }  // namespace ssdo

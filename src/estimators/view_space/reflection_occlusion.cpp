@@ -86,11 +86,11 @@ namespace ssdo {
 HWY_EXPORT(reflection_of_tile);
 
 Plane<float> reflection_occlusion(const Scene& scene, const Request& request,
-                                  const ViewPlanes& planes, const Plane<glm::vec3>& bent) {
+                                  const ViewPlanes& planes, const Plane<glm::vec3>& bent,
+                                  float strength) {
   const bool layer = !scene.roughness.empty();
   const ReflectionJob job{planes, bent, layer ? &scene.roughness : nullptr,
-                          float(request.parameters.at("roughness")),
-                          float(request.parameters.at("reflection-strength"))};
+                          float(request.parameters.at("roughness")), strength};
   return find_openness(planes, {}, [&](const Tile& tile, Plane<float>& open) {
     HWY_DYNAMIC_DISPATCH(reflection_of_tile)(job, tile, open);
   });

@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "parallel/tiles.h"
+#include "scene/view.h"
 
 namespace ssdo {
 namespace {

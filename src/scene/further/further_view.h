@@ -10,7 +10,6 @@
 #include "scene/camera/camera.h"
 #include "scene/geometry.h"
 #include "scene/surfel.h"
-#include "scene/view.h"
 
 namespace ssdo {
 

@@ -32,10 +32,8 @@ Plane<float> reflect(const Geometry& g, const Plane<glm::vec3>& bent, double rou
   Scene scene = scene_of(g);
   if (layer) scene.roughness = *layer;
   const Request request{
-      .products = {.reflection = true},
-      .radius = 1,
-      .parameters = {{"roughness", roughness}, {"reflection-strength", strength}}};
-  return reflection_occlusion(scene, request, make_view_planes(g), bent);
+      .products = {.reflection = true}, .radius = 1, .parameters = {{"roughness", roughness}}};
+  return reflection_occlusion(scene, request, make_view_planes(g), bent, float(strength));
 }
 
 /// A pixel of which both cones are known: between their axes lies an angle up to half a turn.

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/guessed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "estimators/further/further_rays.h"
+#include "estimators/ray_start.h"
+#include "math/frame.h"
+#include "math/sampling.h"
+#include "math/sobol.h"
+#include "scene/normals.h"
+#include "scene/pixel_footprint.h"
+#include "scene/same_surface.h"
+
+namespace ssdo {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Rays of a pixel whose neighbours a filter averages, and of one that stands for many.
+constexpr int kRays = 2, kRaysOfMean = 8;
+
+/// A mean takes about so many pixels, evenly spread: it is then within 0.01.
+constexpr int kPixelsOfMean = 1024;
+
+/// Places along a ray where the frame is asked, from one pixel away to its diagonal; they lie
+/// farther apart the farther they are.
+constexpr int kSteps = 24;
+
+/// Beyond the frame, places lie so much farther each, up to so many times the distance of the
+/// farthest surface.
+constexpr float kGrowth = 1.3f, kFarthest = 4;
+
+/// Rays this close to the way to the viewer leave the frame towards what is behind the camera.
+constexpr float kTowardsCamera = 0.5f;
+
+constexpr std::uint32_t kSeed = 0x6e55;
+
+/// A ray and its picture: a straight line, which starts at `from` and leads along `way`, a unit
+/// vector, y down. A place `r` pixels along it shows the point at r w / (speed - r away).
+struct Sightline {
+  glm::vec3 origin, to;
+  glm::vec2 from, way;
+  float w, away, speed;
+  float most;  ///< length of the ray
+
+  float length_at(float r) const {
+    const float left = speed - r * away;
+    return left > 0 ? std::min(r * w / left, most) : most;
+  }
+  float pixels_at(float length) const {
+    return std::isinf(length) ? speed / away : speed * length / (w + away * length);
+  }
+  glm::vec3 point(float length) const { return origin + length * to; }
+};
+
+class Guesses {
+ public:
+  Guesses(const Scene& scene, float radius)
+      : scene_(scene),
+        surfel_(scene.geometry.surfel),
+        depth_(surfel_.width, surfel_.height, kInfinity),
+        footprint_(scene.geometry.camera),
+        radius_(radius),
+        further_(scene.further.empty()
+                     ? nullptr
+                     : std::make_unique<FurtherRays>(scene.further.vertices, scene.further.added)) {
+    const Camera& camera = scene.geometry.camera;
+    f_ = {float(camera.fx), float(camera.fy)};
+    c_ = {float(camera.cx - scene.geometry.window.x0), float(camera.cy - scene.geometry.window.y0)};
+    float farthest = 0;
+    for (std::size_t i = 0; i < depth_.size(); ++i) {
+      if (!surfel_[i].is_usable()) continue;
+      depth_[i] = -surfel_[i].position.z;
+      farthest = std::max(farthest, glm::length(surfel_[i].position));
+    }
+    far_ = std::min(radius, kFarthest * farthest);
+    const float diagonal = std::hypot(float(surfel_.width), float(surfel_.height));
+    for (std::size_t i = 0; i < distances_.size(); ++i)
+      distances_[i] =
+          std::pow(diagonal, std::pow((float(i) + 0.5f) / float(distances_.size()), kCloser));
+  }
+
+  /// Where each guessed ray of a pixel first passed what no picture shows.
+  template <class OnGuessed>
+  void gather(int x, int y, int rays, unsigned seed, const OnGuessed& on_guessed) const {
+    const Surfel& s = surfel_(x, y);
+    const float above =
+        kAboveRoundings * s.rounding + kAboveFootprints * footprint_.at(-s.position.z);
+    const glm::vec3 origin = s.position + above * s.normal;
+    const glm::vec3 to_viewer =
+        direction_to_viewer(s.position, scene_.geometry.camera.orthographic);
+    const glm::mat3 frame = frame_about(s.normal);
+    const Window &window = scene_.geometry.window, &display = scene_.geometry.display;
+    const std::uint32_t hash = hash_of(std::uint32_t(window.x0 - display.x0 + x),
+                                       std::uint32_t(window.y0 - display.y0 + y), seed ^ kSeed);
+    for (int k = 0; k < rays; ++k) {
+      const glm::vec3 to = cosine_direction(frame, sobol_point(std::uint32_t(k), hash));
+      const auto unseen = follow(sightline(origin, to), s.normal, int(hash >> 16) + k * kSpread,
+                                 glm::dot(to, to_viewer) > kTowardsCamera);
+      if (unseen) on_guessed(*unseen);
+    }
+  }
+
+ private:
+  /// Exponent of the places' distances, and how many sets of them there are.
+  static constexpr float kCloser = 0.7f;
+  static constexpr int kSets = 16, kSpread = 5;
+
+  Sightline sightline(const glm::vec3& origin, const glm::vec3& to) const {
+    const bool orthographic = scene_.geometry.camera.orthographic;
+    Sightline line{origin, to,     {}, {}, orthographic ? 1 : -origin.z, orthographic ? 0 : -to.z,
+                   0,      radius_};
+    const glm::vec2 at(origin.x, -origin.y), along(to.x, -to.y);
+    line.from = c_ + f_ * at / line.w;
+    const glm::vec2 moves = f_ * (along * line.w - at * line.away) / line.w;
+    line.speed = glm::length(moves);
+    line.way = line.speed > 0 ? moves / line.speed : glm::vec2(1, 0);
+    return line;
+  }
+
+  /// The place where a ray leaves the frame, in pixels along its picture, and on which side.
+  std::pair<float, Unseen> leaves(const Sightline& line) const {
+    const auto crosses = [](float from, float way, float size) {
+      return way > 0 ? (size - from) / way : way < 0 ? from / -way : kInfinity;
+    };
+    const float across = crosses(line.from.x, line.way.x, float(surfel_.width)),
+                down = crosses(line.from.y, line.way.y, float(surfel_.height));
+    if (across < down) return {across, line.way.x > 0 ? Unseen::right : Unseen::left};
+    return {down, line.way.y > 0 ? Unseen::bottom : Unseen::top};
+  }
+
+  std::size_t pixel_at(const Sightline& line, float r) const {
+    const glm::vec2 at = line.from + r * line.way;
+    return surfel_.index(std::clamp(int(at.x), 0, surfel_.width - 1),
+                         std::clamp(int(at.y), 0, surfel_.height - 1));
+  }
+
+  /// How far behind the front of what a pixel shows a ray passes, along the axis; not above 0: in
+  /// front of it. What lies below the receiver's tangent plane cannot be passed behind.
+  float behind_front(const Sightline& line, float r, const glm::vec3& normal) const {
+    const std::size_t pixel = pixel_at(line, r);
+    const float behind = -line.origin.z - line.length_at(r) * line.to.z - depth_[pixel];
+    if (!(behind > 0)) return 0;
+    return glm::dot(surfel_[pixel].position - line.origin, normal) > 0 ? behind : 0;
+  }
+
+  /// Whether a ray that is in front of what the picture shows at `before` and behind it at `after`
+  /// meets it in between: the rest of the picture there is one surface.
+  bool meets(const Sightline& line, float before, float after, const glm::vec3& normal) const {
+    while (after - before > 1) {
+      const float middle = 0.5f * (before + after);
+      (behind_front(line, middle, normal) > 0 ? after : before) = middle;
+    }
+    const Surfel &a = surfel_[pixel_at(line, before)], &b = surfel_[pixel_at(line, after)];
+    if (a.is_usable() && on_one_surface({a.position, a.normal}, {b.position, b.normal}, footprint_))
+      return true;
+    // Within a pixel the ray crosses the plane of what is seen there, and not far from it.
+    const float gap = kSurfaceGap * footprint_.at(-b.position.z);
+    const glm::vec3 from = line.point(line.length_at(before)) - b.position,
+                    to = line.point(line.length_at(after)) - b.position;
+    const float above = glm::dot(from, b.normal), below = -glm::dot(to, b.normal);
+    if (above < 0 || below < -gap) return false;
+    const float share = above / std::max(above + below, above);
+    return glm::distance(from + share * (to - from), glm::vec3(0)) <= gap;
+  }
+
+  bool a_view_shows(const glm::vec3& point) const {
+    return std::any_of(scene_.views.begin(), scene_.views.end(),
+                       [&](const FurtherView& view) { return view.look(point) != Sight::unknown; });
+  }
+
+  /// The first place on a ray's way that no picture shows, if the ray meets nothing that one shows.
+  std::optional<Unseen> follow(const Sightline& line, const glm::vec3& normal, int set,
+                               bool to_camera) const {
+    if (further_ && further_->is_blocked(line.origin, line.to, radius_)) return std::nullopt;
+    const auto [border, side] = leaves(line);
+    const float whole =
+        line.most < kInfinity || line.away > 0 ? line.pixels_at(line.most) : kInfinity;
+    const bool stays = whole > 0 && whole <= border;
+    const float end = stays ? whole : border;
+    std::optional<Unseen> unseen;
+    float before = 0;
+    bool in_front = true;
+    for (int i = 0; i <= kSteps; ++i) {
+      const float r = i < kSteps
+                          ? std::min(distances_[std::size_t(i * kSets + (set & (kSets - 1)))], end)
+                          : end;
+      const float behind = behind_front(line, r, normal);
+      if (behind > 0) {
+        if (in_front && meets(line, before, r, normal)) return std::nullopt;
+        in_front = false;
+        if (!unseen && !a_view_shows(line.point(std::min(line.length_at(r), far_))))
+          unseen = Unseen::behind_things;
+      } else {
+        in_front = true;
+        before = r;
+      }
+      if (r >= end) break;
+    }
+    if (unseen || stays || !surfel_[pixel_at(line, end - 0.5f)].is_usable()) return unseen;
+    const Unseen out = to_camera ? Unseen::behind_camera : side;
+    if (scene_.views.empty()) return out;
+    const float start = line.length_at(border);
+    for (float length = std::max(start, footprint_.at(line.w)); length < far_; length *= kGrowth)
+      if (!a_view_shows(line.point(length))) return out;
+    return std::nullopt;
+  }
+
+  const Scene& scene_;
+  const Plane<Surfel>& surfel_;
+  Plane<float> depth_;  ///< along the axis; infinite where nothing is shown
+  PixelFootprint footprint_;
+  float radius_, far_;
+  std::unique_ptr<FurtherRays> further_;  ///< null: there are no further views
+  glm::vec2 f_, c_;
+  std::array<float, std::size_t(kSteps* kSets)> distances_;
+};
+
+}  // namespace
+
+Plane<float> guessed_shares(const Scene& scene, const Window& part, float radius, unsigned seed,
+                            const Progress& progress) {
+  const Guesses guesses(scene, radius);
+  Plane<float> shares(part.width(), part.height(), 0.0f);
+  for_each_tile(
+      shares.width, shares.height,
+      [&](const Tile& tile) {
+        for (int y = tile.y0; y < tile.y1; ++y) {
+          for (int x = tile.x0; x < tile.x1; ++x) {
+            if (!scene.geometry.surfel(part.x0 + x, part.y0 + y).is_usable()) continue;
+            int count = 0;
+            guesses.gather(part.x0 + x, part.y0 + y, kRays, seed, [&](Unseen) { ++count; });
+            shares(x, y) = float(count) / kRays;
+          }
+        }
+      },
+      progress);
+  return shares;
+}
+
+GuessedMean mean_guessed(const Scene& scene, float radius) {
+  const Guesses guesses(scene, radius);
+  const Plane<Surfel>& surfel = scene.geometry.surfel;
+  const Window &window = scene.geometry.window,
+               shown = intersection(window, scene.geometry.display);
+  const int apart = std::max(1, int(std::sqrt(double(shown.area()) / kPixelsOfMean)));
+  GuessedMean mean;
+  int surfaces = 0;
+  for (int y = shown.y0 - window.y0 + apart / 2; y < shown.y1 - window.y0; y += apart) {
+    for (int x = shown.x0 - window.x0 + apart / 2; x < shown.x1 - window.x0; x += apart) {
+      if (!surfel(x, y).is_usable()) continue;
+      ++surfaces;
+      guesses.gather(x, y, kRaysOfMean, 0, [&](Unseen at) { mean.at[std::size_t(at)] += 1; });
+    }
+  }
+  if (surfaces == 0) return {};
+  for (float& share : mean.at) {
+    share /= float(kRaysOfMean * surfaces);
+    mean.all += share;
+  }
+  return mean;
+}
+
+}  // namespace ssdo

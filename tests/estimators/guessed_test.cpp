@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/guessed.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "estimators/bitmask/request.h"
+#include "support/boxes.h"
+
+namespace ssdo::test {
+namespace {
+
+const Window kWindow{0, 0, 160, 120};
+constexpr float kPixel = 0.05f;
+
+/// Looks straight down from above; pixels are kPixel wide.
+Camera from_above() {
+  return look_at(camera_from_ortho_width(kPixel * kWindow.width(), kWindow, 1), {0, 0, 5}, {},
+                 {0, 1, 0});
+}
+
+Scene seen_from_above(const Surface& surface) {
+  return scene_of(geometry_of(surface, from_above(), kWindow));
+}
+
+Plane<float> shares(const Scene& scene, float radius) {
+  return guessed_shares(scene, {0, 0, kWindow.width(), kWindow.height()}, radius, 0, {});
+}
+
+/// Mean down a column, far from its ends.
+double mean_of_column(const Plane<float>& plane, int x) {
+  double sum = 0;
+  for (int y = 30; y < 90; ++y) sum += double(plane(x, y)) / 60;
+  return sum;
+}
+
+TEST(Guessed, RaysOverTheBorderAreThoseOfADiscSegment) {
+  const float radius = 20 * kPixel;
+  const Scene scene = seen_from_above(plane({}, {0, 0, 1}));
+  const Plane<float> guessed = shares(scene, radius);
+  for (const int x : {0, 4, 9, 14, 19, 25, 80}) {
+    const double exact = disc_segment((x + 0.5) / 20);
+    fmt::print("column {}: {:.3f}, exact {:.3f}\n", x, mean_of_column(guessed, x), exact);
+    EXPECT_NEAR(mean_of_column(guessed, x), exact, 0.06);
+    EXPECT_NEAR(mean_of_column(guessed, kWindow.width() - 1 - x), exact, 0.06);
+  }
+  const GuessedMean mean = mean_guessed(scene, radius);
+  const auto at = [&](Unseen place) { return mean.at[std::size_t(place)]; };
+  EXPECT_NEAR(at(Unseen::left), at(Unseen::right), 0.005);
+  EXPECT_NEAR(at(Unseen::top), at(Unseen::bottom), 0.005);
+  EXPECT_GT(at(Unseen::left), 0.005);
+  EXPECT_EQ(at(Unseen::behind_things), 0);
+}
+
+TEST(Guessed, NothingBehindASkyIsGuessed) {
+  const Scene scene = seen_from_above(cut(plane({}, {0, 0, 1}), [](const glm::dvec3& p) {
+    return std::abs(p.x) < 3 && std::abs(p.y) < 2;
+  }));
+  const Plane<float> guessed = shares(scene, kNoLimit);
+  for (const float share : guessed.pixels) EXPECT_EQ(share, 0);
+  EXPECT_EQ(mean_guessed(scene, kNoLimit).all, 0);
+}
+
+/// A slab floats over the ground: rays from beside it that pass below its edge are lost.
+TEST(Guessed, WhatPassesBelowASlab) {
+  constexpr double kEdge = 0.5, kHeight = 0.6, kRadius = 1.2;
+  const Scene scene = seen_from_above(
+      all_of({plane({}, {0, 0, 1}), cut(plane({0, 0, kHeight}, {0, 0, 1}),
+                                        [](const glm::dvec3& p) { return p.x > kEdge; })}));
+  const Plane<float> guessed = shares(scene, kRadius);
+  for (const double x : {-0.6, -0.2, 0.2, 0.4}) {
+    int below = 0;
+    constexpr int kCount = 1 << 16;
+    for_each_cosine_direction({0, 0, 1}, kCount, [&](const glm::dvec3& d) {
+      const double length = (kEdge - x) / d.x;
+      below += d.x > 0 && length < kRadius && length * d.z < kHeight;
+    });
+    const double exact = double(below) / kCount;
+    const int column = int((x + kPixel / 2) / double(kPixel)) + kWindow.width() / 2;
+    fmt::print("at {}: {:.3f}, exact {:.3f}\n", x, mean_of_column(guessed, column), exact);
+    EXPECT_NEAR(mean_of_column(guessed, column), exact, 0.06);
+  }
+  EXPECT_GT(mean_guessed(scene, kRadius).at[std::size_t(Unseen::behind_things)], 0.01);
+}
+
+TEST(Guessed, SurfacesThatAreSeenAreKnown) {
+  const Camera camera = tilted(camera_from_fov(60, kWindow, 1), 40);
+  const Scene scene = scene_of(geometry_of(floor_and_wall(), camera, kWindow));
+  const Plane<float> guessed = shares(scene, 0.5);
+  EXPECT_LT(middle(
+                kWindow, [&](int x, int y) { return double(guessed(x, y)); }, 16),
+            0.01);
+}
+
+}  // namespace
+}  // namespace ssdo::test
