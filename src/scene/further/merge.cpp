@@ -51,7 +51,7 @@ class Merger {
     const glm::vec3 p = s.position;
     const bool ortho = frame_.camera.orthographic;
     if (!ortho && !(p.z < 0)) return Fate::added;
-    if (glm::dot(s.normal, direction_to_viewer(p, ortho)) <= 0) return Fate::added;
+    const bool faces_away = glm::dot(s.normal, direction_to_viewer(p, ortho)) <= 0;
     const glm::dvec2 at = frame_.camera.project(glm::dvec3(p));
     const double px = std::floor(at.x - frame_.window.x0), py = std::floor(at.y - frame_.window.y0);
     if (!(px >= 0 && py >= 0 && px < frame_.surfel.width && py < frame_.surfel.height))
@@ -64,10 +64,14 @@ class Merger {
         const float tolerance =
             kSurfaceTolerance * footprint_.at(-shown->position.z) + s.rounding + shown->rounding;
         const bool faces = glm::dot(s.normal, shown->normal) > 0;
-        if (faces &&
+        if (!faces_away && faces &&
             std::abs(glm::dot(p - shown->position, shown->normal)) <= tolerance)
           return Fate::seen;
-        behind |= dx == 0 && dy == 0 && -p.z > -shown->position.z;
+        // The frame sees the back of a sheet where the view sees its front, and solids have a rim.
+        if (faces_away)
+          behind |= -p.z > -shown->position.z - tolerance;
+        else
+          behind |= dx == 0 && dy == 0 && -p.z > -shown->position.z;
       }
     }
     return behind ? Fate::added : Fate::contradictory;
