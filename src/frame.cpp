@@ -66,8 +66,8 @@ std::vector<std::string> Frame::warnings() const {
   return all;
 }
 
-Frame prepare_frame(const FrameOptions& options, const Lighting& light, const FrameFiles& files,
-                    int number) {
+Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherPictures& pictures,
+                    const FrameFiles& files, int number) {
   Frame frame;
   frame.input = files.input;
   Stopwatch watch;
@@ -75,12 +75,14 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const Fr
   std::vector<Role> unused;
   if (!wants_reflection(options.output)) unused.push_back(Role::roughness);
   if (!options.model.temporal) unused.push_back(Role::motion);
-  View view = read_view(files.input, files.aovs, options.input, options.camera, unused);
+  std::deque<ExrReader> opened = open_view(files.input, files.aovs);
+  const double opening = watch.lap();
+  View view = read_view(std::move(opened), files.aovs, options.input, options.camera, unused);
   frame.files = std::move(view.files);
   frame.layers = std::move(view.layers);
   frame.gbuffer = std::move(view.gbuffer);
   frame.report = std::move(view.report);
-  frame.times.read = view.read_ms;
+  frame.times.read = opening + view.read_ms;
 
   Scene& scene = frame.scene;
   scene.geometry = std::move(view.geometry);
@@ -93,8 +95,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const Fr
                             frame.input));
   }
   Stopwatch of_known;
-  KnownGeometry known = read_known_geometry(files.also, view.deep, scene.geometry, frame.input,
-                                            frame.part().view, options.input);
+  KnownGeometry known = read_known_geometry(frame, files, options, pictures, view.deep);
   frame.times.known = of_known.lap();
   if (known.deep.empty()) warn_of_idle_depth_options(frame, options.input.gbuffer);
   const bool world = scene.geometry.world_known;
@@ -118,17 +119,21 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, const Fr
     std::optional<float> thickness;
     if (model.thickness) thickness = float(*model.thickness);
     frame.views = use_known_geometry(known, scene, thickness, options.input.gbuffer);
-  } else if (!files.also.empty()) {
-    known.warnings.push_back(fmt::format(
-        "--also has no effect: method {} does not look behind what is seen", model.method));
+  } else {
+    const auto warn = [&](std::string_view option) {
+      known.warnings.push_back(fmt::format(
+          "{} has no effect: method {} does not look behind what is seen", option, model.method));
+    };
+    if (!files.also.empty()) warn("--also");
+    if (!files.neighbours.empty()) warn("--neighbours");
   }
-  if (!files.also.empty()) frame.times.known += of_known.lap();
+  if (!files.also.empty() || !files.neighbours.empty()) frame.times.known += of_known.lap();
   frame.report.warnings.insert(frame.report.warnings.end(), known.warnings.begin(),
                                known.warnings.end());
   frame.plan = make_plan(model, options.output, scene, frame.gbuffer, frame.input);
   explain_views(frame.plan, frame.views);
   if (const auto much = explain_guessed(frame.plan, scene)) frame.report.warnings.push_back(*much);
-  frame.times.prepare = watch.lap() - frame.times.read - frame.times.known;
+  frame.times.prepare = watch.lap() - view.read_ms - frame.times.known;
   return frame;
 }
 

@@ -10,6 +10,7 @@
 #include "lighting.h"
 #include "outputs.h"
 #include "plan.h"
+#include "scene/further/further_pictures.h"
 #include "scene/further/merge.h"
 #include "scene/gbuffer.h"
 #include "scene/layers/layers.h"
@@ -28,8 +29,8 @@ struct FrameOptions {
   ColorOptions color;
 };
 
-/// Milliseconds of wall time per stage; `known` is what --also takes, with the solids that it
-/// changes.
+/// Milliseconds of wall time per stage; `known` is what --also and --neighbours take, with the
+/// solids that they change.
 struct StageTimes {
   double read = 0, known = 0, prepare = 0, estimate = 0, filter = 0, compose = 0, write = 0;
 };
@@ -42,7 +43,7 @@ struct Frame {
   Scene scene;
   GBuffer gbuffer;  ///< what the scene has not taken: layers as rendered, alpha, motion
   GeometryReport report;
-  std::vector<MergeCounts> views;  ///< what further views add, in the order of --also
+  std::vector<MergeCounts> views;  ///< what further views add: those of --also, then neighbours
   std::string light;               ///< one line
   Plan plan;
   std::vector<std::string> history;  ///< what a temporal plan takes from the frame before, and why
@@ -55,11 +56,12 @@ struct Frame {
 };
 
 /// Reads the files of a frame and decides what to do with them: read, layers, gbuffer, camera,
-/// geometry, plan. `files` has the place of those that `options` names. `number` is the frame's in
-/// its sequence: a temporal plan has another sampling pattern in every frame.
-/// Errors: those of the stages; ExitCode::input for a file of --also that is missing or no EXR.
-Frame prepare_frame(const FrameOptions& options, const Lighting& light, const FrameFiles& files,
-                    int number = 0);
+/// geometry, plan. `files` has the place of those that `options` names; `pictures` are those of
+/// the run. `number` is the frame's in its sequence: a temporal plan has another sampling pattern
+/// in every frame. Errors: those of the stages; ExitCode::input for a file of --also that is
+/// missing or no EXR.
+Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherPictures& pictures,
+                    const FrameFiles& files, int number = 0);
 
 /// What the header of the frame's part says about colour.
 ColorTags color_tags(const Frame& frame);

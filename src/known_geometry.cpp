@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "error.h"
@@ -14,6 +16,8 @@
 
 namespace ssdo {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// The samples of a deep file. Those of several views show the frame's.
 DeepImage read_deep_image(const ExrReader& file, const std::string& view,
@@ -40,40 +44,93 @@ Solids find_solids(const Geometry& geometry, const std::vector<DeepImage>& image
 /// their pixels.
 constexpr double kMostContradiction = 0.1;
 
-void warn_of_contradictions(const std::vector<MergeCounts>& views,
-                            std::vector<std::string>& warnings) {
-  for (const MergeCounts& view : views) {
-    const std::size_t common = view.seen + view.contradictory;
-    if (double(view.contradictory) <= kMostContradiction * double(common)) continue;
+void warn_of(const MergeCounts& view, std::vector<std::string>& warnings) {
+  if (view.is_neighbour) {
+    // What moves in a shot contradicts its frames, and needs no warning.
+    if (!view.is_of_another_scene()) return;
     warnings.push_back(
-        fmt::format("{}: {:.0f} % of what the frame should see too lies before what it shows, and "
-                    "is left out; is this the same scene, at the same time?",
-                    view.file, 100.0 * double(view.contradictory) / double(common)));
+        fmt::format("{}: left out as a neighbour: of {} pixels that show what the frame should see "
+                    "too, {} lie where it shows a surface, as after a cut",
+                    view.file, view.in_common(), view.seen));
+    return;
   }
+  if (double(view.contradictory) <= kMostContradiction * double(view.in_common())) return;
+  warnings.push_back(
+      fmt::format("{}: {:.0f} % of what the frame should see too lies before what it shows, and is "
+                  "left out; is this the same scene, at the same time?",
+                  view.file, 100.0 * double(view.contradictory) / double(view.in_common())));
 }
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return a == b || fs::equivalent(a, b, ignored);
+}
+
+/// Reads the views of one frame.
+class ViewReader {
+ public:
+  ViewReader(const Frame& frame, const FrameOptions& options, FurtherPictures& pictures,
+             KnownGeometry& known)
+      : frame_(frame), options_(options), pictures_(pictures), known_(known) {}
+
+  void add_also(const std::string& path) {
+    const FurtherPictures::Picture picture = pictures_.also(path);
+    if (!picture) {
+      known_.deep.push_back(read_deep_image(ExrReader(path), frame_.part().view,
+                                            options_.input.gbuffer, known_.warnings));
+      return;
+    }
+    if (!knows_place("--also " + path)) return;
+    known_.views.push_back(place(picture, frame_.scene.geometry));
+    known_.warnings.insert(known_.warnings.end(), picture->warnings.begin(),
+                           picture->warnings.end());
+  }
+
+  /// Without the warnings of reading it: they are those of the frame.
+  void add_neighbour(const FrameFiles& files) {
+    std::error_code ignored;
+    if (!fs::exists(files.input, ignored) || !knows_place("--neighbours")) return;
+    try {
+      FurtherView view =
+          place(pictures_.neighbour(files, options_.input, options_.camera), frame_.scene.geometry);
+      view.is_neighbour = true;
+      known_.views.push_back(std::move(view));
+    } catch (const Error& e) {
+      known_.warnings.push_back(fmt::format("left out as a neighbour: {}", e.what()));
+    }
+  }
+
+ private:
+  /// False for a frame without surfaces, to which no view can add anything.
+  bool knows_place(const std::string& option) const {
+    const Geometry& geometry = frame_.scene.geometry;
+    if (geometry.world_known || geometry.median_depth <= 0) return geometry.world_known;
+    throw Error(ExitCode::layer,
+                fmt::format("{}: knows no world space to place {} in; render P in "
+                            "world space, or give --camera FILE.json with its pose",
+                            frame_.input, option));
+  }
+
+  const Frame& frame_;
+  const FrameOptions& options_;
+  FurtherPictures& pictures_;
+  KnownGeometry& known_;
+};
 
 }  // namespace
 
-KnownGeometry read_known_geometry(const std::vector<std::string>& also,
-                                  const std::optional<DeepImage>& own, const Geometry& frame,
-                                  const std::string& input, const std::string& view,
-                                  const InputOptions& options) {
+KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
+                                  const FrameOptions& options, FurtherPictures& pictures,
+                                  const std::optional<DeepImage>& own) {
   KnownGeometry known;
-  for (const std::string& path : also) {
-    const ExrReader file(path);
-    if (has_deep_part(file)) {
-      known.deep.push_back(read_deep_image(file, view, options.gbuffer, known.warnings));
-      continue;
-    }
-    if (!frame.world_known) {
-      throw Error(ExitCode::layer,
-                  fmt::format("{}: knows no world space to place --also {} in; render P in world "
-                              "space, or give --camera FILE.json with its pose",
-                              input, path));
-    }
-    known.views.push_back(read_further_view(path, frame));
-    const auto& warnings = known.views.back().warnings;
-    known.warnings.insert(known.warnings.end(), warnings.begin(), warnings.end());
+  ViewReader reader(frame, options, pictures, known);
+  for (const std::string& path : files.also) reader.add_also(path);
+  const bool uses_views = find_method(options.model.method).takes.thickness;
+  for (const FrameFiles& neighbour : files.neighbours) {
+    const bool is_given =
+        std::any_of(files.also.begin(), files.also.end(),
+                    [&](const std::string& path) { return is_same_file(path, neighbour.input); });
+    if (uses_views && !is_given) reader.add_neighbour(neighbour);
   }
   if (own) known.deep.push_back(*own);
   return known;
@@ -86,9 +143,14 @@ std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
   std::vector<MergeCounts> counts;
   if (known.views.empty()) return counts;
   scene.further = merge_views(known.views, scene.geometry, scene.senders.albedo, counts);
-  warn_of_contradictions(counts, known.warnings);
-  if (!thickness) carve(scene.solids, scene.geometry, known.views);
-  scene.views = std::move(known.views);
+  std::vector<FurtherView> of_scene;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    warn_of(counts[i], known.warnings);
+    if (!counts[i].is_of_another_scene()) of_scene.push_back(known.views[i]);
+  }
+  std::erase_if(counts, [](const MergeCounts& view) { return view.is_of_another_scene(); });
+  if (!thickness) carve(scene.solids, scene.geometry, of_scene);
+  scene.views = std::move(of_scene);
   return counts;
 }
 

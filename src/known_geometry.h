@@ -5,32 +5,33 @@
 #include <string>
 #include <vector>
 
+#include "frame.h"
 #include "io/deep_reader.h"
+#include "scene/further/further_pictures.h"
 #include "scene/further/further_view.h"
 #include "scene/further/merge.h"
 #include "scene/scene.h"
-#include "scene/view.h"
 
 namespace ssdo {
 
-/// What the files of --also show of a frame's scene.
+/// What the files of --also, and the neighbours in the sequence, show of a frame's scene.
 struct KnownGeometry {
   std::vector<DeepImage> deep;     ///< of the frame itself
   std::vector<FurtherView> views;  ///< of other cameras, in the frame's camera space
   std::vector<std::string> warnings;
 };
 
-/// Reads them. `own` are the deep samples that the frame itself was read from; `view` is the name
-/// of the frame's view in files of several.
+/// Reads what `files` name beside the frame, but for neighbours that do not exist; of those that
+/// cannot be read, a warning tells. `own` are the deep samples that the frame itself was read from.
 /// Errors: those of the stages that read; ExitCode::layer where the frame knows no world space to
 /// place other views in.
-KnownGeometry read_known_geometry(const std::vector<std::string>& also,
-                                  const std::optional<DeepImage>& own, const Geometry& frame,
-                                  const std::string& input, const std::string& view,
-                                  const InputOptions& options);
+KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
+                                  const FrameOptions& options, FurtherPictures& pictures,
+                                  const std::optional<DeepImage>& own);
 
 /// Fills the solids and the further surfaces of a scene: measured where deep images or further
-/// views show them, guessed elsewhere, or as thick as `thickness`. Gives what each view added.
+/// views show them, guessed elsewhere, or as thick as `thickness`. Gives what each view added; of
+/// neighbours of another scene, warnings tell.
 /// Errors: ExitCode::layer for a view of another scene, and a deep image of another frame.
 std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
                                             std::optional<float> thickness,

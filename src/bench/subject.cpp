@@ -98,8 +98,9 @@ Subject read_subject(const BenchJob& job, std::vector<RunFile> inputs) {
   prepared.model.method = thorough_method().name;
   prepared.output.products.clear();
   const Lighting light(prepared.light);
-  subject.frame =
-      prepare_frame(prepared, light, {job.input, prepared.input.aovs, prepared.input.also});
+  FurtherPictures pictures;
+  subject.frame = prepare_frame(prepared, light, pictures,
+                                {job.input, prepared.input.aovs, prepared.input.also});
   subject.products = choose_products(job, subject);
   subject.surface_pixels = count_surfaces(subject.frame);
   for (const auto& [product, truth] : subject.truths) check_truth(truth, subject);

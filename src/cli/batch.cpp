@@ -61,7 +61,9 @@ class Batch {
       : options_(options),
         resources_(resources),
         jobs_(plan_jobs(options)),
-        progress_(options.batch.progress, options.verbosity.quiet) {}
+        progress_(options.batch.progress, options.verbosity.quiet) {
+    for (const Job& job : jobs_) pictures_.expect(job.files);
+  }
 
   ExitCode run() {
     ExitCode code = ExitCode::done;
@@ -88,6 +90,7 @@ class Batch {
       if (options_.command == Command::info) list(jobs_[i]);
       if (!light_) light_.emplace(options_.light);
       const std::optional<Error> error = error_of_job(i);
+      pictures_.release(jobs_[i].files);
       if (error) {
         // A job of one frame fails if that frame fails.
         if (jobs_.size() == 1) throw *error;
@@ -205,13 +208,13 @@ class Batch {
     }
   }
 
-  Frame prepare(std::size_t i) const {
+  Frame prepare(std::size_t i) {
     const Job& job = jobs_[i];
     if (job.frame && !fs::exists(job.files.input)) {
       throw Error(ExitCode::input,
                   fmt::format("{}: frame {} of the range is missing", job.files.input, *job.frame));
     }
-    return prepare_frame(options_, *light_, job.files, job.frame.value_or(0));
+    return prepare_frame(options_, *light_, pictures_, job.files, job.frame.value_or(0));
   }
 
   /// The frame of job `i`, waiting for it if it is being read already; starts to read the next one.
@@ -285,6 +288,7 @@ class Batch {
   const Resources& resources_;
   std::vector<Job> jobs_;
   std::optional<Lighting> light_;  ///< read after the first listing of `info`
+  FurtherPictures pictures_;       ///< of all frames
   ProgressLine progress_;
   nlohmann::json statistics_ = nlohmann::json::array(), infos_ = nlohmann::json::array();
   std::size_t next_index_ = 0;

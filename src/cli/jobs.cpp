@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <cstdlib>
 
 #include "error.h"
@@ -30,6 +31,25 @@ void check_kinds(const std::vector<Target>& targets) {
   }
 }
 
+/// The files of a frame without further views, with its number in their patterns.
+FrameFiles files_at(const Options& options, int frame) {
+  FrameFiles files{expand_pattern(options.input_file, frame), options.input.aovs, {}};
+  for (LayerRequest& request : files.aovs) request.file = expand_pattern(request.file, frame);
+  return files;
+}
+
+/// Those before and after a frame, whether they exist or not.
+std::vector<FrameFiles> neighbours_of(const Options& options, int frame) {
+  std::vector<FrameFiles> neighbours;
+  const Neighbours& wanted = options.input.neighbours;
+  for (int k = -wanted.count; k <= wanted.count; ++k) {
+    const std::int64_t number = frame + std::int64_t(k) * wanted.step;
+    if (k != 0 && std::int64_t(int(number)) == number)
+      neighbours.push_back(files_at(options, int(number)));
+  }
+  return neighbours;
+}
+
 Job single_job(const Options& options, std::vector<Target> targets) {
   if (options.model.temporal) {
     throw Error(
@@ -52,10 +72,10 @@ Job single_job(const Options& options, std::vector<Target> targets) {
 }
 
 Job job_of_frame(const Options& options, const std::vector<Target>& targets, int frame) {
-  Job job{frame, files_named(options), targets};
-  job.files.input = expand_pattern(job.files.input, frame);
-  for (LayerRequest& request : job.files.aovs) request.file = expand_pattern(request.file, frame);
-  for (std::string& path : job.files.also) path = expand_pattern(path, frame);
+  Job job{frame, files_at(options, frame), targets};
+  for (const std::string& path : options.input.also)
+    job.files.also.push_back(expand_pattern(path, frame));
+  job.files.neighbours = neighbours_of(options, frame);
   for (Target& target : job.targets) target.path = expand_pattern(target.path, frame);
   return job;
 }
@@ -106,6 +126,12 @@ std::vector<Job> plan_jobs(const Options& options) {
 }
 
 FrameFiles files_named(const Options& options) {
+  if (options.input.neighbours.count > 0) {
+    throw Error(ExitCode::usage,
+                fmt::format("{}: --neighbours needs a frame pattern in the input's name, such as "
+                            "shot.####.exr",
+                            options.input_file));
+  }
   return {options.input_file, options.input.aovs, options.input.also};
 }
 
@@ -119,6 +145,10 @@ std::vector<RunFile> inputs_of(const Options& options, const FrameFiles& files) 
                                  {"--config", options.config_file}};
   for (const LayerRequest& request : files.aovs) inputs.push_back({"--aov", request.file});
   for (const std::string& path : files.also) inputs.push_back({"--also", path});
+  for (const FrameFiles& neighbour : files.neighbours) {
+    inputs.push_back({"--neighbours", neighbour.input});
+    for (const LayerRequest& request : neighbour.aovs) inputs.push_back({"--aov", request.file});
+  }
   return inputs;
 }
 

@@ -23,7 +23,8 @@ struct Job {
 /// ExitCode::input for a sequence without frames; those of check_run_files, over all frames.
 std::vector<Job> plan_jobs(const Options& options);
 
-/// The files of a frame whose names hold no patterns.
+/// The files of a frame whose names hold no patterns. Errors: ExitCode::usage for --neighbours,
+/// which such a frame has not.
 FrameFiles files_named(const Options& options);
 
 /// Every file that a frame is made from: `files`, those of --env, --camera, --config and the

@@ -99,6 +99,9 @@ void add_input(CLI::App& app, InputOptions& o) {
   group.repeatable("--also", "FILE", o.also,
                    "a further G-buffer of the same scene with P in world space: another camera, a "
                    "panorama, or a deep image of this frame");
+  group.text(
+      "--neighbours", "K[xSTEP]", [&](const Text& text) { o.neighbours = read_neighbours(text); },
+      "K frames before and after in the same sequence, every STEP, as further G-buffers");
   group.value("--part", "NAME|N", o.part,
               "look for layers in this part or view, and what completes it");
   group.text(

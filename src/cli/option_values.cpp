@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -27,6 +28,19 @@ std::optional<std::pair<double, double>> read_pair(const std::string& text) {
   if (comma == std::string::npos) return std::nullopt;
   const auto a = parse_number(text.substr(0, comma)), b = parse_number(text.substr(comma + 1));
   return a && b ? std::optional(std::pair(*a, *b)) : std::nullopt;
+}
+
+/// All of them are in memory at once.
+constexpr int kMostNeighbours = 100;
+constexpr int kLargestStep = 10000;
+
+/// A whole number from 1 to `most`, in digits alone; nothing for any other text.
+std::optional<int> read_whole(const std::string& text, int most) {
+  int number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [next, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || next != end || number < 1 || number > most) return std::nullopt;
+  return number;
 }
 
 }  // namespace
@@ -70,6 +84,20 @@ glm::vec2 read_motion_scale(const std::string& text) {
   if (!scale || !usable(scale->first) || !usable(scale->second))
     throw_usage(fmt::format("--motion-scale {}: expected two factors X,Y, such as -1,-1", text));
   return {float(scale->first), float(scale->second)};
+}
+
+Neighbours read_neighbours(const std::string& text) {
+  const auto cross = text.find('x');
+  const bool stepped = cross != std::string::npos;
+  const auto count = read_whole(text.substr(0, cross), kMostNeighbours),
+             step = stepped ? read_whole(text.substr(cross + 1), kLargestStep) : 1;
+  if (!count || !step) {
+    throw_usage(
+        fmt::format("--neighbours {}: expected K or KxSTEP, K frames before and after from "
+                    "1 to {} and a STEP from 1 to {}, such as 2 or 4x2",
+                    text, kMostNeighbours, kLargestStep));
+  }
+  return {*count, *step};
 }
 
 SaveRequest read_save(const std::string& text) {

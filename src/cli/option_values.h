@@ -27,6 +27,9 @@ void read_depth_kind(const std::string& text, GBufferOptions& out);
 /// X,Y: two factors.
 glm::vec2 read_motion_scale(const std::string& text);
 
+/// K or KxSTEP: whole numbers from 1 on.
+Neighbours read_neighbours(const std::string& text);
+
 /// PRODUCT=FILE.
 SaveRequest read_save(const std::string& text);
 

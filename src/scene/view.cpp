@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/view.h"
 
+#include <utility>
+
 #include "scene/deep/channels.h"
 #include "scene/deep/deep_frame.h"
 #include "stopwatch.h"
@@ -27,12 +29,18 @@ Plane<float> take_depth_from_samples(View& view, const std::string& part, GBuffe
 
 }  // namespace
 
-View read_view(const std::string& input, const std::vector<LayerRequest>& aovs,
+std::deque<ExrReader> open_view(const std::string& input, const std::vector<LayerRequest>& aovs) {
+  std::deque<ExrReader> files;
+  for (const std::string& path : files_of_frame(input, aovs)) files.emplace_back(path);
+  return files;
+}
+
+View read_view(std::deque<ExrReader> opened, const std::vector<LayerRequest>& aovs,
                const InputOptions& options, const CameraOptions& camera,
                const std::vector<Role>& unused) {
   View view;
   Stopwatch watch;
-  for (const std::string& path : files_of_frame(input, aovs)) view.files.emplace_back(path);
+  view.files = std::move(opened);
   std::vector<const ExrReader*> files;
   for (const ExrReader& file : view.files) files.push_back(&file);
   view.layers = find_layers(files, aovs, options.part, unused);
@@ -45,7 +53,8 @@ View read_view(const std::string& input, const std::vector<LayerRequest>& aovs,
   view.gbuffer.warnings.insert(view.gbuffer.warnings.begin(), warnings.begin(), warnings.end());
   view.read_ms = watch.lap();
 
-  view.geometry = build_geometry(view.gbuffer, camera, input, view.report);
+  view.geometry =
+      build_geometry(view.gbuffer, camera, view.files.front().path().string(), view.report);
   // From here on there is one position and one normal: those of the geometry.
   view.gbuffer.position = view.gbuffer.normal = {};
   view.gbuffer.depth = {};

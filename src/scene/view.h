@@ -15,11 +15,18 @@
 
 namespace ssdo {
 
+/// Which frames before and after a frame of a sequence show more of its scene.
+struct Neighbours {
+  int count = 0;  ///< before, and as many after; 0: none are used
+  int step = 1;   ///< frames from one to the next
+};
+
 /// Which files and layers are read, and how.
 struct InputOptions {
   std::vector<LayerRequest> aovs;
   std::vector<std::string> also;  ///< further pictures of the same scene, or their patterns
-  std::string part;               ///< name or number; empty: all
+  Neighbours neighbours;
+  std::string part;  ///< name or number; empty: all
   GBufferOptions gbuffer;
   bool listed = false;  ///< the user has seen the list of layers: errors need not say where it is
 };
@@ -29,6 +36,7 @@ struct FrameFiles {
   std::string input;
   std::vector<LayerRequest> aovs;
   std::vector<std::string> also;  ///< further pictures of the same scene, in the order of --also
+  std::vector<FrameFiles> neighbours = {};  ///< frames of the same sequence; need not exist
 };
 
 /// What one camera shows: a G-buffer, from its files to its surfaces in camera space.
@@ -42,11 +50,13 @@ struct View {
   double read_ms = 0;  ///< wall time of what was read, without the geometry
 };
 
-/// Reads the file `input` and the files that `aovs` name: read, layers, gbuffer, camera, geometry.
-/// `aovs` are the requests for layers, with files of this very frame. The roles in `unused` are
-/// filled on request only.
+/// The file `input`, then the files that `aovs` name. Errors: those of ExrReader.
+std::deque<ExrReader> open_view(const std::string& input, const std::vector<LayerRequest>& aovs);
+
+/// Reads what open_view() has opened: layers, gbuffer, camera, geometry. `aovs` are the requests
+/// for layers, with files of this very frame. The roles in `unused` are filled on request only.
 /// Errors: those of the stages.
-View read_view(const std::string& input, const std::vector<LayerRequest>& aovs,
+View read_view(std::deque<ExrReader> files, const std::vector<LayerRequest>& aovs,
                const InputOptions& options, const CameraOptions& camera,
                const std::vector<Role>& unused);
 

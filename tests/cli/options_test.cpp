@@ -115,6 +115,21 @@ TEST(Options, OfDepthNameAKindOrItsRange) {
   }
 }
 
+TEST(Options, OfNeighboursTakeWholeNumbersFromOneOn) {
+  const auto neighbours = [](const std::string& text) {
+    const Neighbours found = parse({"--neighbours", text}).input.neighbours;
+    return std::pair(found.count, found.step);
+  };
+  EXPECT_EQ(parse({}).input.neighbours.count, 0);
+  EXPECT_EQ(neighbours("2"), std::pair(2, 1));
+  EXPECT_EQ(neighbours("4x2"), std::pair(4, 2));
+  for (const std::string text : {"0", "-1", "x2", "2x", "2x0", "2x-1", "1x2x3", "2.5", "a", "2 ",
+                                 "+2", "101", "99999999999", "2x99999999999"}) {
+    EXPECT_THAT(refusal({"--neighbours", text}),
+                HasSubstr("--neighbours " + text + ": expected K or KxSTEP"));
+  }
+}
+
 TEST(Options, LandInTheirFields) {
   const Options o = parse({"--aov",
                            "position=P",

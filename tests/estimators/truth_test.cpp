@@ -145,7 +145,9 @@ Result run(const std::string& method, const Subject& scene, const std::string& e
   if (method == "trace") options.model.set = {"samples=16"};
   if (find_method(method).takes.radius) options.model.radius = radius;
   options.light.env = environment;
-  Frame frame = prepare_frame(options, Lighting(options.light), {scene.frame, {}, scene.also});
+  FurtherPictures pictures;
+  Frame frame =
+      prepare_frame(options, Lighting(options.light), pictures, {scene.frame, {}, scene.also});
   Plan& plan = frame.plan;
   plan.request.products.guessed = guessed;
   Geometry& geometry = frame.scene.geometry;

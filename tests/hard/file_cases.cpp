@@ -128,8 +128,9 @@ Geometry read_through_file(const FramePart& part, double fov, Plane<glm::vec3>* 
   write_frame(dir / "frame.exr", part);
   FrameOptions options;
   if (fov > 0) options.camera.fov = fov;
-  Frame frame =
-      prepare_frame(options, Lighting(options.light), {(dir / "frame.exr").string(), {}, {}});
+  FurtherPictures pictures;
+  Frame frame = prepare_frame(options, Lighting(options.light), pictures,
+                              {(dir / "frame.exr").string(), {}, {}});
   if (albedo) *albedo = std::move(frame.scene.senders.albedo);
   return std::move(frame.scene.geometry);
 }

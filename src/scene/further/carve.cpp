@@ -24,10 +24,14 @@ constexpr float kGrowth = 2, kFirst = 2;
 /// No guess is asked for beyond so many times the distance to the farthest surface.
 constexpr float kFarthest = 4;
 
-/// Whether a view looks through a place that would be inside of something so wide.
-bool is_empty(const std::vector<FurtherView>& views, const glm::vec3& p, float width) {
-  return std::any_of(views.begin(), views.end(),
-                     [&](const FurtherView& view) { return view.look(p, width) == Sight::empty; });
+/// Whether a view looks through a place that would be inside of something so wide with this front.
+/// One that looks through the front too shows another time, when that thing stood elsewhere: it
+/// knows nothing of it.
+bool is_empty(const std::vector<FurtherView>& views, const glm::vec3& front, const glm::vec3& p,
+              float width) {
+  return std::any_of(views.begin(), views.end(), [&](const FurtherView& view) {
+    return view.look(p, width) == Sight::empty && view.look(front) != Sight::empty;
+  });
 }
 
 bool is_known(const std::vector<FurtherView>& views, const glm::vec3& p) {
@@ -35,11 +39,12 @@ bool is_known(const std::vector<FurtherView>& views, const glm::vec3& p) {
                      [&](const FurtherView& view) { return view.look(p) != Sight::unknown; });
 }
 
-/// Whether a surface that goes on beyond the frame for `length` ends here: where a view looks
+/// Whether a surface that goes on from `border` for `length` ends here: where a view looks
 /// through it. Where one shows it the guess was right, and goes on beyond that view's picture too;
 /// but a panorama has no border, so that it needs no guess from there on.
-bool ends_beyond(const std::vector<FurtherView>& views, const glm::vec3& p, float length) {
-  return is_empty(views, p, length) ||
+bool ends_beyond(const std::vector<FurtherView>& views, const glm::vec3& border, const glm::vec3& p,
+                 float length) {
+  return is_empty(views, border, p, length) ||
          std::any_of(views.begin(), views.end(), [&](const FurtherView& view) {
            return view.closed && view.look(p) == Sight::surface;
          });
@@ -100,7 +105,7 @@ class Carver {
     const glm::vec3 front = s.position + distance * along;
     const float end =
         first_on_way(front, along, first_step(s), most,
-                     [&](const glm::vec3& p, float t) { return is_empty(views_, p, t); });
+                     [&](const glm::vec3& p, float t) { return is_empty(views_, front, p, t); });
     if (end < most) thickness = end;
   }
 
@@ -136,9 +141,9 @@ class Carver {
           across * glm::dot(s.normal, to_viewer) - to_viewer * glm::dot(s.normal, across);
       const float length = glm::length(along);
       if (!(length > 0)) return;
-      const float known =
-          first_on_way(s.position, along / length, first_step(s), farthest_,
-                       [&](const glm::vec3& p, float t) { return ends_beyond(views_, p, t); });
+      const float known = first_on_way(
+          s.position, along / length, first_step(s), farthest_,
+          [&](const glm::vec3& p, float t) { return ends_beyond(views_, s.position, p, t); });
       if (known < farthest_) solids_.beyond.at(x, y) = known;
     };
     for (int x = 0; x < w; ++x) end(x, 0, {0, -1}), end(x, h - 1, {0, 1});

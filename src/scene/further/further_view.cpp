@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/further/further_view.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <glm/matrix.hpp>
 #include <utility>
 
-#include "error.h"
 #include "parallel/tiles.h"
 #include "scene/view.h"
 
 namespace ssdo {
 namespace {
-
-constexpr float kNothing = std::numeric_limits<float>::infinity();
 
 /// Depths that differ by less than so many footprints are of one surface, tilted as it may be.
 constexpr float kSightGap = 3;
@@ -23,30 +17,6 @@ constexpr float kSightGap = 3;
 /// A view shows what is so many of its pixels wide wherever these fall. With 0, leaves that views
 /// look past were carved away: ao of foliage at the small radius .18 in place of .09.
 constexpr float kResolved = 3;
-
-/// Most of the median distance by which P may miss its pixel: of another camera than a pinhole or
-/// a panorama, or filtered beyond use.
-constexpr double kMostMissPx = 0.5;
-
-void check(const View& view, const std::string& file) {
-  if (!view.layers[Role::position]) {
-    throw Error(ExitCode::layer,
-                fmt::format("{}: has no position; a further view needs P in world space", file));
-  }
-  const Geometry& g = view.geometry;
-  if (g.median_depth > 0 && !g.world_known) {
-    throw Error(ExitCode::layer, fmt::format("{}: P is in camera space; a further view needs P in "
-                                             "world space, as the frame's is",
-                                             file));
-  }
-  if (view.report.residual && view.report.residual->median_px > kMostMissPx) {
-    throw Error(ExitCode::layer,
-                fmt::format("{}: neither a pinhole camera nor a lat-long panorama shows P where it "
-                            "stands (half of it misses its pixel by {:.2g} px or more); render one "
-                            "of these",
-                            file, view.report.residual->median_px));
-  }
-}
 
 /// The camera that takes points of the frame's camera space to those of `view`'s.
 Camera seen_from(const Camera& view, const Camera& frame) {
@@ -58,33 +28,23 @@ Camera seen_from(const Camera& view, const Camera& frame) {
 
 }  // namespace
 
-FurtherView read_further_view(const std::string& file, const Geometry& frame) {
-  View view = read_view(file, {}, {}, {}, {Role::motion, Role::roughness, Role::radiance});
-  check(view, file);
-  FurtherView out;
-  out.file = file;
-  out.camera = seen_from(view.geometry.camera, frame.camera);
-  out.window = view.geometry.window;
-  out.closed = out.camera.panorama && view.geometry.window.width() == view.geometry.display.width();
-  out.surfel = std::move(view.geometry.surfel);
-  out.depth = Plane<float>(out.surfel.width, out.surfel.height, kNothing);
-  const glm::dmat3 to_frame = glm::transpose(out.camera.rotation);
-  for_each_row(out.surfel.height, [&](int y) {
-    for (int x = 0; x < out.surfel.width; ++x) {
-      Surfel& s = out.surfel(x, y);
+FurtherView place(FurtherPictures::Picture picture, const Geometry& frame) {
+  const Camera camera = seen_from(picture->camera, frame.camera);
+  return {std::move(picture), camera};
+}
+
+Plane<Surfel> FurtherView::surfels_in_frame() const {
+  Plane<Surfel> placed = surfel;
+  const glm::dmat3 to_frame = glm::transpose(camera.rotation);
+  for_each_row(placed.height, [&](int y) {
+    for (int x = 0; x < placed.width; ++x) {
+      Surfel& s = placed(x, y);
       if (!s.is_surface()) continue;
-      const glm::dvec3 own(s.position);
-      out.depth(x, y) = float(out.camera.depth_of(own));
-      s.position = glm::vec3(to_frame * own + out.camera.origin);
+      s.position = glm::vec3(to_frame * glm::dvec3(s.position) + camera.origin);
       s.normal = glm::vec3(to_frame * glm::dvec3(s.normal));
     }
   });
-  out.albedo = std::move(view.gbuffer.albedo);
-  for (const std::string& warning : view.gbuffer.warnings)
-    out.warnings.push_back(file + ": " + warning);
-  for (const std::string& warning : view.report.warnings)
-    out.warnings.push_back(file + ": " + warning);
-  return out;
+  return placed;
 }
 
 Sight FurtherView::look(const glm::vec3& point, float width) const {

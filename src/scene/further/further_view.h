@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <glm/vec3.hpp>
 #include <limits>
-#include <string>
-#include <vector>
 
 #include "math/plane.h"
 #include "scene/camera/camera.h"
+#include "scene/further/further_pictures.h"
 #include "scene/geometry.h"
 #include "scene/surfel.h"
 
@@ -20,16 +20,22 @@ enum class Sight {
   empty,    ///< it looks through
 };
 
-/// What another camera shows of the scene, or a panorama, in the camera space of the frame.
+/// A further picture, placed in the camera space of a frame. What does not depend on the frame
+/// stays in the picture, which all frames share.
 struct FurtherView {
-  std::string file;
-  Camera camera;            ///< from the frame's camera space to its own
-  Window window;            ///< of the planes, in the pixels of its display window
-  bool closed = false;      ///< a panorama whose last column lies beside its first
-  Plane<Surfel> surfel;     ///< normals are on the side of its own camera
-  Plane<float> depth;       ///< Camera::depth_of; infinite where there is no surface
-  Plane<glm::vec3> albedo;  ///< empty where the file has none
-  std::vector<std::string> warnings;
+  FurtherPictures::Picture picture;
+  Camera camera;              ///< from the frame's camera space to its own
+  bool is_neighbour = false;  ///< of the frame's own sequence
+
+  const std::string& file = picture->file;
+  const Window& window = picture->window;
+  const bool& closed = picture->closed;
+  const Plane<Surfel>& surfel = picture->surfel;  ///< in its own camera space
+  const Plane<float>& depth = picture->depth;
+  const Plane<glm::vec3>& albedo = picture->albedo;
+
+  /// Its surfels in the camera space of the frame.
+  Plane<Surfel> surfels_in_frame() const;
 
   /// Width of what a pixel at this depth shows, in scene units.
   float footprint(float at_depth) const {
@@ -42,10 +48,7 @@ struct FurtherView {
   Sight look(const glm::vec3& point, float width = std::numeric_limits<float>::infinity()) const;
 };
 
-/// Reads a G-buffer of the same scene by the stages of any view. Its layers are found by their
-/// names, and its camera is fitted from its P, which has to be in world space as that of the frame
-/// is. Errors: those of the stages; ExitCode::layer where P is missing or in camera space, and
-/// where no camera explains it.
-FurtherView read_further_view(const std::string& file, const Geometry& frame);
+/// Places a picture in the camera space of a frame whose world is known.
+FurtherView place(FurtherPictures::Picture picture, const Geometry& frame);
 
 }  // namespace ssdo

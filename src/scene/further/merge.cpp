@@ -36,8 +36,9 @@ constexpr float kSurfaceTolerance = 3;
 constexpr int kFrameColumns = 320;
 
 /// A view whose pixels nearly all contradict the frame, and so many of them, is of another scene.
+/// Between frames of a sequence where half has changed there is a cut, as --temporal has it.
 constexpr std::size_t kFewestInCommon = 50;
-constexpr double kLeastInCommon = 0.02;
+constexpr double kLeastInCommon = 0.02, kLeastOfNeighbour = 0.5;
 
 enum class Fate : unsigned char { none, added, seen, contradictory };
 
@@ -50,7 +51,7 @@ class Merger {
     const glm::vec3 p = s.position;
     const bool ortho = frame_.camera.orthographic;
     if (!ortho && !(p.z < 0)) return Fate::added;
-    if (glm::dot(s.normal, direction_to_viewer(p, ortho)) <= 0) return Fate::added;
+    const bool faces_away = glm::dot(s.normal, direction_to_viewer(p, ortho)) <= 0;
     const glm::dvec2 at = frame_.camera.project(glm::dvec3(p));
     const double px = std::floor(at.x - frame_.window.x0), py = std::floor(at.y - frame_.window.y0);
     if (!(px >= 0 && py >= 0 && px < frame_.surfel.width && py < frame_.surfel.height))
@@ -63,9 +64,14 @@ class Merger {
         const float tolerance =
             kSurfaceTolerance * footprint_.at(-shown->position.z) + s.rounding + shown->rounding;
         const bool faces = glm::dot(s.normal, shown->normal) > 0;
-        if (faces && std::abs(glm::dot(p - shown->position, shown->normal)) <= tolerance)
+        if (!faces_away && faces &&
+            std::abs(glm::dot(p - shown->position, shown->normal)) <= tolerance)
           return Fate::seen;
-        behind |= dx == 0 && dy == 0 && -p.z > -shown->position.z;
+        // The frame sees the back of a sheet where the view sees its front, and solids have a rim.
+        if (faces_away)
+          behind |= -p.z > -shown->position.z - tolerance;
+        else
+          behind |= dx == 0 && dy == 0 && -p.z > -shown->position.z;
       }
     }
     return behind ? Fate::added : Fate::contradictory;
@@ -204,16 +210,14 @@ class Mesher {
   Plane<std::uint32_t> index_;
 };
 
-Plane<Fate> judge_view(const FurtherView& view, const Merger& merger, MergeCounts& counts) {
-  Plane<Fate> fates(view.surfel.width, view.surfel.height, Fate::none);
-  for_each_row(view.surfel.height, [&](int y) {
-    for (int x = 0; x < view.surfel.width; ++x) {
-      const Surfel& s = view.surfel(x, y);
+Plane<Fate> judge(const Plane<Surfel>& surfel, const Merger& merger, MergeCounts& counts) {
+  Plane<Fate> fates(surfel.width, surfel.height, Fate::none);
+  for_each_row(surfel.height, [&](int y) {
+    for (int x = 0; x < surfel.width; ++x) {
+      const Surfel& s = surfel(x, y);
       if (s.is_surface()) fates(x, y) = merger.judge(s);
     }
   });
-  counts.file = view.file;
-  counts.has_albedo = !view.albedo.empty();
   for (const Fate fate : fates.pixels) {
     counts.added += fate == Fate::added;
     counts.seen += fate == Fate::seen;
@@ -222,18 +226,20 @@ Plane<Fate> judge_view(const FurtherView& view, const Merger& merger, MergeCount
   return fates;
 }
 
-void check(const MergeCounts& counts) {
-  const std::size_t in_common = counts.seen + counts.contradictory;
-  if (in_common < kFewestInCommon || double(counts.seen) >= kLeastInCommon * double(in_common))
-    return;
+[[noreturn]] void refuse(const MergeCounts& counts) {
   throw Error(ExitCode::layer,
               fmt::format("{}: of {} pixels that show what the frame should see too, {} lie where "
                           "the frame shows a surface; give a view of the same scene, with P in the "
                           "same world space and unit",
-                          counts.file, in_common, counts.seen));
+                          counts.file, counts.in_common(), counts.seen));
 }
 
 }  // namespace
+
+bool MergeCounts::is_of_another_scene() const {
+  const double least = is_neighbour ? kLeastOfNeighbour : kLeastInCommon;
+  return in_common() >= kFewestInCommon && double(seen) < least * double(in_common());
+}
 
 FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometry& frame,
                             const Plane<glm::vec3>& albedo, std::vector<MergeCounts>& counts) {
@@ -246,9 +252,16 @@ FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometr
             [&](std::size_t a, std::size_t b) { return views[a].file < views[b].file; });
   for (const std::size_t k : order) {
     const FurtherView& view = views[k];
-    const Plane<Fate> fates = judge_view(view, merger, counts[k]);
-    check(counts[k]);
-    Mesher({view.surfel, view.albedo, view.camera, view.window, view.closed, 1}, fates, out).run();
+    const Plane<Surfel> surfel = view.surfels_in_frame();
+    counts[k].file = view.file;
+    counts[k].has_albedo = !view.albedo.empty();
+    counts[k].is_neighbour = view.is_neighbour;
+    const Plane<Fate> fates = judge(surfel, merger, counts[k]);
+    if (counts[k].is_of_another_scene()) {
+      if (!view.is_neighbour) refuse(counts[k]);
+      continue;
+    }
+    Mesher({surfel, view.albedo, view.camera, view.window, view.closed, 1}, fates, out).run();
   }
   Camera own = frame.camera;  // what it shows is in its own camera space
   own.rotation = glm::dmat3(1), own.origin = glm::dvec3(0);

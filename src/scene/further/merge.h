@@ -18,11 +18,18 @@ struct MergeCounts {
   std::size_t added = 0;          ///< the frame does not show what they show
   std::size_t seen = 0;           ///< the frame shows it as well
   std::size_t contradictory = 0;  ///< it would lie before what the frame shows: something moved
+  bool is_neighbour = false;      ///< of the frame's own sequence, where things may move
+
+  /// Pixels that show what the frame should see too.
+  std::size_t in_common() const { return seen + contradictory; }
+
+  /// Whether too little lies where the frame shows it: the view is of another scene.
+  bool is_of_another_scene() const;
 };
 
 /// Joins what further views show. The views' order does not matter. `albedo` is the frame's.
-/// `counts` has a row for each view, in their order.
-/// Errors: ExitCode::layer for a view of which nothing lies where the frame shows it.
+/// `counts` has a row for each view, in their order. Neighbours of another scene, as they are
+/// before and after a cut, are left out. Errors: ExitCode::layer for another view of such a scene.
 FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometry& frame,
                             const Plane<glm::vec3>& albedo, std::vector<MergeCounts>& counts);
 

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/further/further_pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "error.h"
+#include "parallel/tiles.h"
+#include "scene/deep/channels.h"
+
+namespace ssdo {
+namespace {
+
+constexpr float kNothing = std::numeric_limits<float>::infinity();
+
+/// Most of the median distance by which P may miss its pixel: of another camera than a pinhole or
+/// a panorama, or filtered beyond use.
+constexpr double kMostMissPx = 0.5;
+
+/// Layers that no further picture needs.
+const std::vector<Role> kUnused = {Role::motion, Role::roughness, Role::radiance, Role::ambient,
+                                   Role::beauty};
+
+/// How a file is read.
+constexpr std::string_view kByNames = "--also", kAsInput = "--neighbours";
+
+void check(const View& view, const std::string& file) {
+  if (!view.layers[Role::position]) {
+    throw Error(ExitCode::layer,
+                fmt::format("{}: has no position; a further view needs P in world space", file));
+  }
+  const Geometry& g = view.geometry;
+  if (g.median_depth > 0 && !g.world_known) {
+    throw Error(ExitCode::layer, fmt::format("{}: P is in camera space; a further view needs P in "
+                                             "world space, as the frame's is",
+                                             file));
+  }
+  if (view.report.residual && view.report.residual->median_px > kMostMissPx) {
+    throw Error(ExitCode::layer,
+                fmt::format("{}: neither a pinhole camera nor a lat-long panorama shows P where it "
+                            "stands (half of it misses its pixel by {:.2g} px or more); render one "
+                            "of these",
+                            file, view.report.residual->median_px));
+  }
+}
+
+/// Keeps of a view what further pictures need.
+FurtherPictures::Picture picture_of(View view, const std::string& file) {
+  check(view, file);
+  FurtherPicture out;
+  out.file = file;
+  out.camera = view.geometry.camera;
+  out.window = view.geometry.window;
+  out.closed = out.camera.panorama && out.window.width() == view.geometry.display.width();
+  out.surfel = std::move(view.geometry.surfel);
+  out.depth = Plane<float>(out.surfel.width, out.surfel.height, kNothing);
+  for_each_row(out.surfel.height, [&](int y) {
+    for (int x = 0; x < out.surfel.width; ++x) {
+      const Surfel& s = out.surfel(x, y);
+      if (s.is_surface()) out.depth(x, y) = float(out.camera.depth_of(glm::dvec3(s.position)));
+    }
+  });
+  out.albedo = std::move(view.gbuffer.albedo);
+  for (const std::string& warning : view.gbuffer.warnings)
+    out.warnings.push_back(file + ": " + warning);
+  for (const std::string& warning : view.report.warnings)
+    out.warnings.push_back(file + ": " + warning);
+  return std::make_shared<const FurtherPicture>(std::move(out));
+}
+
+}  // namespace
+
+std::vector<FurtherPictures::Key> FurtherPictures::keys_of(const FrameFiles& frame) {
+  std::vector<Key> keys;
+  for (const std::string& file : frame.also) keys.emplace_back(kByNames, file);
+  for (const FrameFiles& other : frame.neighbours) keys.emplace_back(kAsInput, other.input);
+  return keys;
+}
+
+void FurtherPictures::expect(const FrameFiles& frame) {
+  const std::lock_guard lock(mutex_);
+  for (const Key& key : keys_of(frame)) ++entries_[key].frames;
+}
+
+void FurtherPictures::release(const FrameFiles& frame) {
+  const std::lock_guard lock(mutex_);
+  for (const Key& key : keys_of(frame)) {
+    const auto entry = entries_.find(key);
+    if (entry != entries_.end() && --entry->second.frames == 0) entries_.erase(entry);
+  }
+}
+
+FurtherPictures::Picture FurtherPictures::also(const std::string& file) {
+  return get({kByNames, file}, [&]() -> Picture {
+    std::deque<ExrReader> opened = open_view(file, {});
+    if (has_deep_part(opened.front())) return nullptr;
+    return picture_of(read_view(std::move(opened), {}, {}, {}, kUnused), file);
+  });
+}
+
+FurtherPictures::Picture FurtherPictures::neighbour(const FrameFiles& frame,
+                                                    const InputOptions& input,
+                                                    const CameraOptions& camera) {
+  return get({kAsInput, frame.input}, [&] {
+    std::vector<LayerRequest> aovs = frame.aovs;
+    std::erase_if(aovs, [](const LayerRequest& request) {
+      return std::find(kUnused.begin(), kUnused.end(), request.role) != kUnused.end();
+    });
+    return picture_of(read_view(open_view(frame.input, aovs), aovs, input, camera, kUnused),
+                      frame.input);
+  });
+}
+
+FurtherPictures::Picture FurtherPictures::get(const Key& key,
+                                              const std::function<Picture()>& read) {
+  std::promise<Picture> promise;
+  std::shared_future<Picture> picture;
+  bool is_first = false;
+  {
+    const std::lock_guard lock(mutex_);
+    std::shared_future<Picture>& known = entries_[key].picture;
+    is_first = !known.valid();
+    if (is_first) known = promise.get_future().share();
+    picture = known;
+  }
+  // Outside of the lock: other files can be read meanwhile.
+  if (is_first) {
+    try {
+      promise.set_value(read());
+    } catch (...) {
+      promise.set_exception(std::current_exception());
+    }
+  }
+  return picture.get();
+}
+
+}  // namespace ssdo

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <future>
+#include <glm/vec3.hpp>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "math/plane.h"
+#include "scene/camera/camera.h"
+#include "scene/surfel.h"
+#include "scene/view.h"
+
+namespace ssdo {
+
+/// What another camera shows of the scene, or a panorama, in its own camera space: the same for
+/// every frame.
+struct FurtherPicture {
+  std::string file;
+  Camera camera;            ///< from world space to its own
+  Window window;            ///< of the planes, in the pixels of its display window
+  bool closed = false;      ///< a panorama whose last column lies beside its first
+  Plane<Surfel> surfel;     ///< normals are on the side of its own camera
+  Plane<float> depth;       ///< Camera::depth_of; infinite where there is no surface
+  Plane<glm::vec3> albedo;  ///< empty where the file has none
+  std::vector<std::string> warnings;
+};
+
+/// The further pictures of a run: each is read once, and kept as long as frames will ask for it.
+/// May be asked from several threads.
+class FurtherPictures {
+ public:
+  using Picture = std::shared_ptr<const FurtherPicture>;
+
+  /// A further frame will ask for its files, until it is released. Files that no frame expects any
+  /// more are forgotten; those that none has expected are kept.
+  void expect(const FrameFiles& frame);
+  void release(const FrameFiles& frame);
+
+  /// A file of --also: a G-buffer whose layers are found by their names, and whose camera is fitted
+  /// from its P. Nothing where the file is a deep image. An error comes again in every call.
+  /// Errors: those of the stages of a view; ExitCode::layer where P is missing or in camera space,
+  /// and where no camera explains it.
+  Picture also(const std::string& file);
+
+  /// Another frame of INPUT's sequence, read as INPUT is. Errors: as also().
+  Picture neighbour(const FrameFiles& frame, const InputOptions& input,
+                    const CameraOptions& camera);
+
+ private:
+  /// How a file is read, and its path.
+  using Key = std::pair<std::string_view, std::string>;
+  struct Entry {
+    std::shared_future<Picture> picture;
+    int frames = 0;  ///< that will ask for it
+  };
+
+  static std::vector<Key> keys_of(const FrameFiles& frame);
+  Picture get(const Key& key, const std::function<Picture()>& read);
+
+  std::mutex mutex_;
+  std::map<Key, Entry> entries_;
+};
+
+}  // namespace ssdo

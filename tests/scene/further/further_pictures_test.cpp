@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/further/further_pictures.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <future>
+
+#include "error.h"
+#include "support/frame_file.h"
+#include "support/temp_dir.h"
+
+namespace ssdo::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Picture = FurtherPictures::Picture;
+
+class FurtherPicturesOf : public testing::Test {
+ protected:
+  FurtherPicturesOf() {
+    for (const std::string name : {"a", "b"}) write_frame(path(name), frame_of(small_picture()));
+  }
+  std::string path(const std::string& name) const { return folder / (name + ".exr"); }
+  FrameFiles also(const std::vector<std::string>& names) const {
+    FrameFiles files;
+    for (const std::string& name : names) files.also.push_back(path(name));
+    return files;
+  }
+  TempDir folder;
+  FurtherPictures pictures;
+};
+
+TEST_F(FurtherPicturesOf, ARunAreReadOnce) {
+  const Picture first = pictures.also(path("a"));
+  ASSERT_TRUE(first);
+  fs::remove(path("a"));
+  EXPECT_EQ(pictures.also(path("a")), first);
+  EXPECT_NE(pictures.also(path("b")), first);
+}
+
+TEST_F(FurtherPicturesOf, ARunAreKeptUntilNoFrameExpectsThem) {
+  const FrameFiles one = also({"a"}), two = also({"a", "b"});
+  pictures.expect(one);
+  pictures.expect(two);
+  std::weak_ptr<const FurtherPicture> a = pictures.also(path("a")), b = pictures.also(path("b"));
+  pictures.release(one);
+  EXPECT_FALSE(a.expired());
+  pictures.release(two);
+  EXPECT_TRUE(a.expired());
+  EXPECT_TRUE(b.expired());
+  EXPECT_TRUE(pictures.also(path("a"))) << "read anew";
+}
+
+TEST_F(FurtherPicturesOf, ASequenceAreKeptForTheFramesToCome) {
+  FrameFiles first, second;
+  first.neighbours = {{path("a"), {}, {}}};
+  second.neighbours = {{path("a"), {}, {}}, {path("b"), {}, {}}};
+  pictures.expect(first);
+  pictures.expect(second);
+  std::weak_ptr<const FurtherPicture> a = pictures.neighbour(first.neighbours[0], {}, {});
+  pictures.release(first);
+  EXPECT_FALSE(a.expired());
+  EXPECT_EQ(pictures.neighbour(second.neighbours[0], {}, {}), a.lock());
+  pictures.release(second);
+  EXPECT_TRUE(a.expired());
+}
+
+TEST_F(FurtherPicturesOf, ARunAreReadOnceByManyThreads) {
+  std::vector<std::future<Picture>> asked;
+  for (int i = 0; i < 8; ++i)
+    asked.push_back(std::async(std::launch::async, [&] { return pictures.also(path("a")); }));
+  const Picture one = pictures.also(path("a"));
+  for (std::future<Picture>& picture : asked) EXPECT_EQ(picture.get(), one);
+}
+
+TEST_F(FurtherPicturesOf, DamagedFilesFailEveryTime) {
+  fs::resize_file(path("a"), fs::file_size(path("a")) / 2);
+  EXPECT_THROW(pictures.also(path("a")), Error);
+  fs::copy_file(path("b"), path("a"), fs::copy_options::overwrite_existing);
+  EXPECT_THROW(pictures.also(path("a")), Error) << "a run has one picture of a file";
+}
+
+}  // namespace
+}  // namespace ssdo::test
