@@ -73,11 +73,14 @@ class Carver {
   }
 
   void carve() {
+    if (solids_.end.empty())
+      solids_.end = Plane<Origin>(frame_.surfel.width, frame_.surfel.height, Origin::guessed);
     for_each_row(frame_.surfel.height, [&](int y) {
       for (int x = 0; x < frame_.surfel.width; ++x) {
         const std::size_t pixel = frame_.surfel.index(x, y);
         if (!frame_.surfel[pixel].is_usable()) continue;
-        shorten(solids_.thickness[pixel], pixel, 0);
+        if (!solids_.end_is_measured(pixel) && shorten(solids_.thickness[pixel], pixel, 0))
+          solids_.end[pixel] = Origin::measured;
         for (SolidLayer& layer : solids_.behind) carve_behind(layer, pixel);
       }
     });
@@ -92,8 +95,8 @@ class Carver {
   }
 
   /// Ends a solid whose front lies `distance` behind what the pixel shows where a view looks
-  /// through it.
-  void shorten(float& thickness, std::size_t pixel, float distance) const {
+  /// through it. Whether one does.
+  bool shorten(float& thickness, std::size_t pixel, float distance) const {
     const Surfel& s = frame_.surfel[pixel];
     const glm::vec3 along = away_from_viewer(s);
     const float most = std::min(thickness, farthest_);
@@ -102,6 +105,7 @@ class Carver {
         first_on_way(front, along, first_step(s), most,
                      [&](const glm::vec3& p, float t) { return is_empty(views_, p, t); });
     if (end < most) thickness = end;
+    return end < most;
   }
 
   void carve_behind(SolidLayer& layer, std::size_t pixel) const {

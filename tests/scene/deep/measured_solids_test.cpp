@@ -119,10 +119,14 @@ TEST(MeasuredSolids, HaveMeasuredThicknesses) {
       const Geometry& g = found.geometry;
       int pixels = 0;
       for (std::size_t i = 0; i < g.surfel.size(); ++i) {
-        if (!shows(g, i, kNear)) continue;
+        if (!shows(g, i, kNear)) {
+          EXPECT_FALSE(found.solids.end_is_measured(i));
+          continue;
+        }
         const Ray ray = ray_through(camera, double(i % 120) + 0.5, double(i / 120) + 0.5);
         const auto [enter, leave] = kNear.cross(ray);
         EXPECT_NEAR(found.solids.at(0, i).thickness, leave - enter, 1e-4);
+        EXPECT_TRUE(found.solids.end_is_measured(i));
         const auto [second_enter, second_leave] = kHidden.cross(ray);
         if (second_enter > second_leave || second_leave - second_enter < 0.2) continue;
         EXPECT_NEAR(found.solids.at(1, i).thickness, second_leave - second_enter, 1e-4);
