@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -15,13 +13,6 @@ namespace ssdo {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
-
-/// Depths that differ by less than so many footprints are of one surface, tilted as it may be.
-constexpr float kSightGap = 3;
-
-/// A view shows what is so many of its pixels wide wherever these fall. With 0, leaves that views
-/// look past were carved away: ao of foliage at the small radius .18 in place of .09.
-constexpr float kResolved = 3;
 
 /// Most of the median distance by which P may miss its pixel: of another camera than a pinhole or
 /// a panorama, or filtered beyond use.
@@ -84,29 +75,6 @@ FurtherView read_further_view(const std::string& file, const Geometry& frame) {
   for (const std::string& warning : view.report.warnings)
     out.warnings.push_back(file + ": " + warning);
   return out;
-}
-
-Sight FurtherView::look(const glm::vec3& point, float width) const {
-  const glm::dvec3 own = camera.to_camera(glm::dvec3(point));
-  const double depth_here = camera.depth_of(own);
-  if (!camera.orthographic && !(depth_here > 0)) return Sight::unknown;
-  const float pixel = footprint(float(depth_here));
-  if (!(width > kResolved * pixel)) return Sight::unknown;
-  const glm::dvec2 at = camera.project(own);
-  const double left = std::floor(at.x - window.x0 - 0.5), top = std::floor(at.y - window.y0 - 0.5);
-  const int w = surfel.width, h = surfel.height;
-  if (!(top >= 0 && top + 1 < h)) return Sight::unknown;
-  if (!closed && !(left >= 0 && left + 1 < w)) return Sight::unknown;
-  const float gap = kSightGap * pixel;
-  int beyond = 0, before = 0;
-  for (int k = 0; k < 4; ++k) {
-    const int x = (int(left) + k % 2 + w) % w, y = int(top) + k / 2;
-    const float shown = depth(x, y);
-    beyond += shown > float(depth_here) + gap;
-    before += shown < float(depth_here) - gap;
-  }
-  if (before > 0) return Sight::unknown;
-  return beyond == 4 ? Sight::empty : Sight::surface;
 }
 
 }  // namespace ssdo

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <glm/vec3.hpp>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,13 +13,6 @@
 #include "scene/view.h"
 
 namespace ssdo {
-
-/// What a further view knows about a point.
-enum class Sight {
-  unknown,  ///< outside of its picture, or behind what it shows
-  surface,  ///< it shows a surface there
-  empty,    ///< it looks through
-};
 
 /// What another camera shows of the scene, or a panorama, in the camera space of the frame.
 struct FurtherView {
@@ -36,11 +29,6 @@ struct FurtherView {
   float footprint(float at_depth) const {
     return (camera.orthographic ? 1.0f : at_depth) / float(std::min(camera.fx, camera.fy));
   }
-
-  /// What the four pixels around the picture of a point agree on. A view does not show what is
-  /// narrower than a few of its pixels but looks past it: `width` is that of what the point would
-  /// be in, in scene units.
-  Sight look(const glm::vec3& point, float width = std::numeric_limits<float>::infinity()) const;
 };
 
 /// Reads a G-buffer of the same scene by the stages of any view. Its layers are found by their
