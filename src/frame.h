@@ -42,7 +42,7 @@ struct Frame {
   Scene scene;
   GBuffer gbuffer;  ///< what the scene has not taken: layers as rendered, alpha, motion
   GeometryReport report;
-  std::vector<MergeCounts> views;  ///< what further views add, in the order of --also
+  std::vector<MergeCounts> views;  ///< what further views add; those of back faces last
   std::string light;               ///< one line
   Plan plan;
   std::vector<std::string> history;  ///< what a temporal plan takes from the frame before, and why

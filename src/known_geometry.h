@@ -30,8 +30,9 @@ KnownGeometry read_known_geometry(const std::vector<std::string>& also,
                                   const InputOptions& options);
 
 /// Fills the solids and the further surfaces of a scene: measured where deep images or further
-/// views show them, guessed elsewhere, or as thick as `thickness`. Gives what each view added.
-/// Errors: ExitCode::layer for a view of another scene, and a deep image of another frame.
+/// views show them, guessed elsewhere, or as thick as `thickness`. Gives what each view added,
+/// those of back faces last, which are taken out of `known`. Errors: ExitCode::layer for a view of
+/// another scene, and a deep image of another frame.
 std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
                                             std::optional<float> thickness,
                                             const GBufferOptions& reading);

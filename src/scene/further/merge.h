@@ -11,13 +11,15 @@
 
 namespace ssdo {
 
-/// What became of the pixels of a further view that show a surface.
+/// What became of the pixels of a further view that show a surface. Of a view of back faces only
+/// `backs` counts.
 struct MergeCounts {
   std::string file;
   bool has_albedo = false;
   std::size_t added = 0;          ///< the frame does not show what they show
   std::size_t seen = 0;           ///< the frame shows it as well
   std::size_t contradictory = 0;  ///< it would lie before what the frame shows: something moved
+  std::size_t backs = 0;          ///< pixels of the frame whose thickness it shows
 };
 
 /// Joins what further views show. The views' order does not matter. `albedo` is the frame's.
