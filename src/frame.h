@@ -43,8 +43,9 @@ struct Frame {
   Scene scene;
   GBuffer gbuffer;  ///< what the scene has not taken: layers as rendered, alpha, motion
   GeometryReport report;
-  std::vector<MergeCounts> views;  ///< what further views add: those of --also, then neighbours
-  std::string light;               ///< one line
+  /// What further views add: those of --also, then neighbours, then back faces.
+  std::vector<MergeCounts> views;
+  std::string light;  ///< one line
   Plan plan;
   std::vector<std::string> history;  ///< what a temporal plan takes from the frame before, and why
   StageTimes times;                  ///< of the stages up to here

@@ -12,6 +12,7 @@
 #include "scene/deep/deep_frame.h"
 #include "scene/deep/join_measured.h"
 #include "scene/deep/measured_solids.h"
+#include "scene/further/back_faces.h"
 #include "scene/further/carve.h"
 
 namespace ssdo {
@@ -37,6 +38,26 @@ Solids find_solids(const Geometry& geometry, const std::vector<DeepImage>& image
   if (reading.depth_kind)
     depths.kind = *reading.depth_kind == DepthKind::ray ? DepthKind::ray : DepthKind::planar;
   return join_measured(geometry, measure_solids(geometry, images, depths, warnings), thickness);
+}
+
+/// Takes the views of back faces out of `views`: they tell how thick things are, and as surfaces
+/// they would be seen from the inside.
+std::vector<MergeCounts> use_back_faces(std::vector<FurtherView>& views, Scene& scene) {
+  std::vector<MergeCounts> counts;
+  std::vector<FurtherView> others;
+  std::vector<Plane<float>> distances;
+  for (FurtherView& view : views) {
+    auto found = find_back_faces(view, scene.geometry);
+    if (!found) {
+      others.push_back(std::move(view));
+      continue;
+    }
+    counts.push_back({.file = view.picture->file, .backs = count_back_faces(*found)});
+    distances.push_back(std::move(*found));
+  }
+  views = std::move(others);
+  end_at_back_faces(scene.solids, distances);
+  return counts;
 }
 
 /// Of what a view and the frame should both see: what differs by more has moved, or the view is of
@@ -140,8 +161,8 @@ std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
                                             std::optional<float> thickness,
                                             const GBufferOptions& reading) {
   scene.solids = find_solids(scene.geometry, known.deep, thickness, reading, known.warnings);
-  std::vector<MergeCounts> counts;
-  if (known.views.empty()) return counts;
+  std::vector<MergeCounts> of_backs = use_back_faces(known.views, scene), counts;
+  if (known.views.empty()) return of_backs;
   scene.further = merge_views(known.views, scene.geometry, scene.senders.albedo, counts);
   std::vector<FurtherView> of_scene;
   for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -151,6 +172,7 @@ std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
   std::erase_if(counts, [](const MergeCounts& view) { return view.is_of_another_scene(); });
   if (!thickness) carve(scene.solids, scene.geometry, of_scene);
   scene.views = std::move(of_scene);
+  counts.insert(counts.end(), of_backs.begin(), of_backs.end());
   return counts;
 }
 

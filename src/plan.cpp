@@ -244,6 +244,12 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
 
 void explain_views(Plan& plan, const std::vector<MergeCounts>& views) {
   for (const MergeCounts& view : views) {
+    if (view.backs > 0) {
+      plan.reasons.push_back(fmt::format(
+          "{}: back faces from the frame's own camera; they say how thick things are in {} pixels",
+          view.file, view.backs));
+      continue;
+    }
     plan.reasons.push_back(fmt::format(
         "{}: {} pixels show what the frame does not, {} what it shows as well, {} contradict it "
         "and are left out{}",

@@ -13,6 +13,7 @@
 #include "math/frame.h"
 #include "math/sampling.h"
 #include "math/sobol.h"
+#include "scene/further/sight.h"
 #include "scene/normals.h"
 #include "scene/pixel_footprint.h"
 #include "scene/same_surface.h"
@@ -43,7 +44,7 @@ constexpr std::uint32_t kSeed = 0x6e55;
 
 /// A ray and its picture: a straight line, which starts at `from` and leads along `way`, a unit
 /// vector, y down. A place `r` pixels along it shows the point at r w / (speed - r away).
-struct Sightline {
+struct PicturedRay {
   glm::vec3 origin, to;
   glm::vec2 from, way;
   float w, away, speed;
@@ -101,7 +102,7 @@ class Guesses {
                                        std::uint32_t(window.y0 - display.y0 + y), seed ^ kSeed);
     for (int k = 0; k < rays; ++k) {
       const glm::vec3 to = cosine_direction(frame, sobol_point(std::uint32_t(k), hash));
-      const auto unseen = follow(sightline(origin, to), s.normal, int(hash >> 16) + k * kSpread,
+      const auto unseen = follow(pictured(origin, to), s.normal, int(hash >> 16) + k * kSpread,
                                  glm::dot(to, to_viewer) > kTowardsCamera);
       if (unseen) on_guessed(*unseen);
     }
@@ -112,10 +113,10 @@ class Guesses {
   static constexpr float kCloser = 0.7f;
   static constexpr int kSets = 16, kSpread = 5;
 
-  Sightline sightline(const glm::vec3& origin, const glm::vec3& to) const {
+  PicturedRay pictured(const glm::vec3& origin, const glm::vec3& to) const {
     const bool orthographic = scene_.geometry.camera.orthographic;
-    Sightline line{origin, to,     {}, {}, orthographic ? 1 : -origin.z, orthographic ? 0 : -to.z,
-                   0,      radius_};
+    PicturedRay line{origin, to,     {}, {}, orthographic ? 1 : -origin.z, orthographic ? 0 : -to.z,
+                     0,      radius_};
     const glm::vec2 at(origin.x, -origin.y), along(to.x, -to.y);
     line.from = c_ + f_ * at / line.w;
     const glm::vec2 moves = f_ * (along * line.w - at * line.away) / line.w;
@@ -125,7 +126,7 @@ class Guesses {
   }
 
   /// The place where a ray leaves the frame, in pixels along its picture, and on which side.
-  std::pair<float, Unseen> leaves(const Sightline& line) const {
+  std::pair<float, Unseen> leaves(const PicturedRay& line) const {
     const auto crosses = [](float from, float way, float size) {
       return way > 0 ? (size - from) / way : way < 0 ? from / -way : kInfinity;
     };
@@ -135,7 +136,7 @@ class Guesses {
     return {down, line.way.y > 0 ? Unseen::bottom : Unseen::top};
   }
 
-  std::size_t pixel_at(const Sightline& line, float r) const {
+  std::size_t pixel_at(const PicturedRay& line, float r) const {
     const glm::vec2 at = line.from + r * line.way;
     return surfel_.index(std::clamp(int(at.x), 0, surfel_.width - 1),
                          std::clamp(int(at.y), 0, surfel_.height - 1));
@@ -143,7 +144,7 @@ class Guesses {
 
   /// How far behind the front of what a pixel shows a ray passes, along the axis; not above 0: in
   /// front of it. What lies below the receiver's tangent plane cannot be passed behind.
-  float behind_front(const Sightline& line, float r, const glm::vec3& normal) const {
+  float behind_front(const PicturedRay& line, float r, const glm::vec3& normal) const {
     const std::size_t pixel = pixel_at(line, r);
     const float behind = -line.origin.z - line.length_at(r) * line.to.z - depth_[pixel];
     if (!(behind > 0)) return 0;
@@ -152,7 +153,7 @@ class Guesses {
 
   /// Whether a ray that is in front of what the picture shows at `before` and behind it at `after`
   /// meets it in between: the rest of the picture there is one surface.
-  bool meets(const Sightline& line, float before, float after, const glm::vec3& normal) const {
+  bool meets(const PicturedRay& line, float before, float after, const glm::vec3& normal) const {
     while (after - before > 1) {
       const float middle = 0.5f * (before + after);
       (behind_front(line, middle, normal) > 0 ? after : before) = middle;
@@ -170,13 +171,20 @@ class Guesses {
     return glm::distance(from + share * (to - from), glm::vec3(0)) <= gap;
   }
 
-  bool a_view_shows(const glm::vec3& point) const {
-    return std::any_of(scene_.views.begin(), scene_.views.end(),
-                       [&](const FurtherView& view) { return view.look(point) != Sight::unknown; });
+  /// What the further views know about a ray.
+  std::vector<SightLine> sights(const PicturedRay& line) const {
+    std::vector<SightLine> all;
+    for (const FurtherView& view : scene_.views) all.emplace_back(view, line.origin, line.to);
+    return all;
+  }
+
+  static bool one_shows(const std::vector<SightLine>& views, float length) {
+    return std::any_of(views.begin(), views.end(),
+                       [&](const SightLine& view) { return view.at(length) != Sight::unknown; });
   }
 
   /// The first place on a ray's way that no picture shows, if the ray meets nothing that one shows.
-  std::optional<Unseen> follow(const Sightline& line, const glm::vec3& normal, int set,
+  std::optional<Unseen> follow(const PicturedRay& line, const glm::vec3& normal, int set,
                                bool to_camera) const {
     if (further_ && further_->is_blocked(line.origin, line.to, radius_)) return std::nullopt;
     const auto [border, side] = leaves(line);
@@ -184,6 +192,7 @@ class Guesses {
         line.most < kInfinity || line.away > 0 ? line.pixels_at(line.most) : kInfinity;
     const bool stays = whole > 0 && whole <= border;
     const float end = stays ? whole : border;
+    const std::vector<SightLine> views = sights(line);
     std::optional<Unseen> unseen;
     float before = 0;
     bool in_front = true;
@@ -195,7 +204,7 @@ class Guesses {
       if (behind > 0) {
         if (in_front && meets(line, before, r, normal)) return std::nullopt;
         in_front = false;
-        if (!unseen && !a_view_shows(line.point(std::min(line.length_at(r), far_))))
+        if (!unseen && !one_shows(views, std::min(line.length_at(r), far_)))
           unseen = Unseen::behind_things;
       } else {
         in_front = true;
@@ -208,7 +217,7 @@ class Guesses {
     if (scene_.views.empty()) return out;
     const float start = line.length_at(border);
     for (float length = std::max(start, footprint_.at(line.w)); length < far_; length *= kGrowth)
-      if (!a_view_shows(line.point(length))) return out;
+      if (!one_shows(views, length)) return out;
     return std::nullopt;
   }
 

@@ -188,7 +188,7 @@ glm::vec3 normal_of_solid(const Geometry& geometry, const Solids& solids, int la
 }
 
 Solids constant_thickness(const Geometry& geometry, float thickness) {
-  return {Plane<float>(geometry.surfel.width, geometry.surfel.height, thickness), {}, {}};
+  return {Plane<float>(geometry.surfel.width, geometry.surfel.height, thickness), {}, {}, {}};
 }
 
 Solids guess_solids(const Geometry& geometry) {
@@ -214,7 +214,7 @@ Solids guess_solids(const Geometry& geometry) {
       if (sender >= 0) second.thickness(x, y) = thickness[std::size_t(sender)];
     }
   });
-  Solids solids{std::move(thickness), {}, {}};
+  Solids solids{std::move(thickness), {}, {}, {}};
   solids.behind.push_back(std::move(second));
   return solids;
 }

@@ -71,6 +71,7 @@ class BorderOf {
 /// shows, the others are behind it. Without planes everything that is seen is endless.
 struct Solids {
   Plane<float> thickness;          ///< of layer 0, from front to back; empty: infinite
+  Plane<Origin> end;               ///< how it is known where layer 0 ends; empty: guessed
   std::vector<SolidLayer> behind;  ///< layers 1, 2, ..., kMostLayers - 1 at most
   BorderOf<float> beyond;  ///< how far what the border shows may go on beyond it, in scene units;
                            ///< empty: without limit
@@ -79,6 +80,11 @@ struct Solids {
 
   Origin origin(int layer, std::size_t pixel) const {
     return layer == 0 ? Origin::seen : behind[std::size_t(layer - 1)].origin[pixel];
+  }
+
+  /// Whether another picture shows where layer 0 ends.
+  bool end_is_measured(std::size_t pixel) const {
+    return !end.empty() && end[pixel] == Origin::measured;
   }
 
   /// The solid of a layer at a pixel that shows a surface.

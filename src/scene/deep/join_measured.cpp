@@ -55,10 +55,14 @@ class Join {
       add_guesses(k + 1);
     }
     out_.thickness = std::move(guess_.thickness);
+    out_.end = Plane<Origin>(owner_.width, owner_.height, Origin::guessed);
     for_each_pixel([&](std::size_t i) {
       float& thickness = out_.thickness[i];
       if (has(0, i)) thickness = std::min(before_seen[i], measured_.behind[0].distance[i]);
-      if (measured_.seen_thickness[i] < kInfinity) thickness = measured_.seen_thickness[i];
+      if (measured_.seen_thickness[i] < kInfinity) {
+        thickness = measured_.seen_thickness[i];
+        out_.end[i] = Origin::measured;
+      }
     });
     return std::move(out_);
   }

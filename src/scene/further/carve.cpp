@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "parallel/tiles.h"
+#include "scene/further/sight.h"
 #include "scene/normals.h"
 #include "scene/pixel_footprint.h"
 
@@ -24,45 +25,55 @@ constexpr float kGrowth = 2, kFirst = 2;
 /// No guess is asked for beyond so many times the distance to the farthest surface.
 constexpr float kFarthest = 4;
 
-/// Whether a view looks through a place that would be inside of something so wide with this front.
-/// One that looks through the front too shows another time, when that thing stood elsewhere: it
-/// knows nothing of it.
-bool is_empty(const std::vector<FurtherView>& views, const glm::vec3& front, const glm::vec3& p,
-              float width) {
-  return std::any_of(views.begin(), views.end(), [&](const FurtherView& view) {
-    return view.look(p, width) == Sight::empty && view.look(front) != Sight::empty;
-  });
-}
+/// What the views know about the points of one line.
+class SightLines {
+ public:
+  explicit SightLines(const std::vector<FurtherView>& views) : views_(views) {}
 
-bool is_known(const std::vector<FurtherView>& views, const glm::vec3& p) {
-  return std::any_of(views.begin(), views.end(),
-                     [&](const FurtherView& view) { return view.look(p) != Sight::unknown; });
-}
+  void aim(const glm::vec3& start, const glm::vec3& direction) {
+    lines_.clear();
+    for (const FurtherView& view : views_) lines_.emplace_back(view, start, direction);
+  }
 
-/// Whether a surface that goes on from `border` for `length` ends here: where a view looks
-/// through it. Where one shows it the guess was right, and goes on beyond that view's picture too;
-/// but a panorama has no border, so that it needs no guess from there on.
-bool ends_beyond(const std::vector<FurtherView>& views, const glm::vec3& border, const glm::vec3& p,
-                 float length) {
-  return is_empty(views, border, p, length) ||
-         std::any_of(views.begin(), views.end(), [&](const FurtherView& view) {
-           return view.closed && view.look(p) == Sight::surface;
-         });
-}
+  /// Whether a view looks through the point `t` behind a front, which would be inside of something
+  /// so wide. One that looks through the front too shows another time, when that thing stood
+  /// elsewhere: it knows nothing of it.
+  bool is_empty(float front, float t) const {
+    return std::any_of(lines_.begin(), lines_.end(), [&](const SightLine& line) {
+      return line.at(front + t, t) == Sight::empty && line.at(front) != Sight::empty;
+    });
+  }
 
-/// The distance of the first point on the way from `start` that `ends`, to within a tenth of it;
-/// `most` if none does.
+  bool is_known(float t) const {
+    return std::any_of(lines_.begin(), lines_.end(),
+                       [&](const SightLine& line) { return line.at(t) != Sight::unknown; });
+  }
+
+  /// Whether a surface that goes on beyond the frame from the start of the line ends at `t`: where
+  /// a view looks through it. Where one shows it the guess was right, and goes on beyond that
+  /// view's picture too; but a panorama has no border, so that it needs no guess from there on.
+  bool ends_beyond(float t) const {
+    if (is_empty(0, t)) return true;
+    for (std::size_t k = 0; k < views_.size(); ++k)
+      if (views_[k].picture->closed && lines_[k].at(t) == Sight::surface) return true;
+    return false;
+  }
+
+ private:
+  const std::vector<FurtherView>& views_;
+  std::vector<SightLine> lines_;
+};
+
+/// The least distance that `ends`, to within a tenth of it; `most` if none does.
 template <class Ends>
-float first_on_way(const glm::vec3& start, const glm::vec3& direction, float first, float most,
-                   const Ends& ends) {
-  const auto ends_at = [&](float t) { return ends(start + t * direction, t); };
+float first_on_way(float first, float most, const Ends& ends) {
   for (float t = first; t < most; t *= kGrowth) {
-    if (!ends_at(t)) continue;
+    if (!ends(t)) continue;
     if (t == first) return t;
     float before = t / kGrowth, after = t;
     for (int i = 0; i < 3; ++i) {
       const float between = std::sqrt(before * after);
-      (ends_at(between) ? after : before) = between;
+      (ends(between) ? after : before) = between;
     }
     return after;
   }
@@ -78,12 +89,13 @@ class Carver {
   }
 
   void carve() {
+    if (solids_.end.empty())
+      solids_.end = Plane<Origin>(frame_.surfel.width, frame_.surfel.height, Origin::guessed);
     for_each_row(frame_.surfel.height, [&](int y) {
+      SightLines lines(views_);
       for (int x = 0; x < frame_.surfel.width; ++x) {
         const std::size_t pixel = frame_.surfel.index(x, y);
-        if (!frame_.surfel[pixel].is_usable()) continue;
-        shorten(solids_.thickness[pixel], pixel, 0);
-        for (SolidLayer& layer : solids_.behind) carve_behind(layer, pixel);
+        if (frame_.surfel[pixel].is_usable()) carve_pixel(pixel, lines);
       }
     });
     end_continuations();
@@ -92,39 +104,40 @@ class Carver {
  private:
   float first_step(const Surfel& s) const { return kFirst * footprint_.at(-s.position.z); }
 
-  glm::vec3 away_from_viewer(const Surfel& s) const {
-    return -direction_to_viewer(s.position, frame_.camera.orthographic);
-  }
-
-  /// Ends a solid whose front lies `distance` behind what the pixel shows where a view looks
-  /// through it.
-  void shorten(float& thickness, std::size_t pixel, float distance) const {
+  void carve_pixel(std::size_t pixel, SightLines& lines) {
     const Surfel& s = frame_.surfel[pixel];
-    const glm::vec3 along = away_from_viewer(s);
-    const float most = std::min(thickness, farthest_);
-    const glm::vec3 front = s.position + distance * along;
-    const float end =
-        first_on_way(front, along, first_step(s), most,
-                     [&](const glm::vec3& p, float t) { return is_empty(views_, front, p, t); });
-    if (end < most) thickness = end;
+    lines.aim(s.position, -direction_to_viewer(s.position, frame_.camera.orthographic));
+    const float first = first_step(s);
+    if (!solids_.end_is_measured(pixel) && shorten(solids_.thickness[pixel], first, 0, lines))
+      solids_.end[pixel] = Origin::measured;
+    for (SolidLayer& layer : solids_.behind) {
+      if (layer.origin[pixel] != Origin::guessed) continue;
+      const float distance = layer.distance[pixel];
+      if (!(distance < farthest_)) continue;
+      if (lines.is_known(distance))
+        layer.distance[pixel] = std::numeric_limits<float>::infinity();
+      else
+        shorten(layer.thickness[pixel], first, distance, lines);
+    }
   }
 
-  void carve_behind(SolidLayer& layer, std::size_t pixel) const {
-    if (layer.origin[pixel] != Origin::guessed) return;
-    const float distance = layer.distance[pixel];
-    if (!(distance < farthest_)) return;
-    if (is_known(views_, point_behind(frame_, pixel, distance)))
-      layer.distance[pixel] = std::numeric_limits<float>::infinity();
-    else
-      shorten(layer.thickness[pixel], pixel, distance);
+  /// Ends a solid whose front lies at `distance` on the lines where a view looks through it.
+  /// Whether one does.
+  bool shorten(float& thickness, float first, float distance, const SightLines& lines) const {
+    const float most = std::min(thickness, farthest_);
+    const float end =
+        first_on_way(first, most, [&](float t) { return lines.is_empty(distance, t); });
+    if (end < most) thickness = end;
+    return end < most;
   }
 
   /// How far what the border shows goes on beyond it.
   void end_continuations() {
     const int w = frame_.surfel.width, h = frame_.surfel.height;
     solids_.beyond = BorderOf<float>(w, h, std::numeric_limits<float>::infinity());
-    const bool panorama =
-        std::any_of(views_.begin(), views_.end(), [](const auto& view) { return view.closed; });
+    const bool panorama = std::any_of(views_.begin(), views_.end(),
+                                      [](const auto& view) { return view.picture->closed; });
+    SightLines lines(views_);
     const auto end = [&](int x, int y, const glm::vec2& outward) {
       const Surfel& s = frame_.surfel(x, y);
       if (!s.is_usable()) {
@@ -141,9 +154,9 @@ class Carver {
           across * glm::dot(s.normal, to_viewer) - to_viewer * glm::dot(s.normal, across);
       const float length = glm::length(along);
       if (!(length > 0)) return;
-      const float known = first_on_way(
-          s.position, along / length, first_step(s), farthest_,
-          [&](const glm::vec3& p, float t) { return ends_beyond(views_, s.position, p, t); });
+      lines.aim(s.position, along / length);
+      const float known =
+          first_on_way(first_step(s), farthest_, [&](float t) { return lines.ends_beyond(t); });
       if (known < farthest_) solids_.beyond.at(x, y) = known;
     };
     for (int x = 0; x < w; ++x) end(x, 0, {0, -1}), end(x, h - 1, {0, 1});

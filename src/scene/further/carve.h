@@ -9,9 +9,9 @@
 
 namespace ssdo {
 
-/// Takes from guessed solids what further views know better: they end where a view looks through
-/// them, and surfaces that were guessed behind others or beyond the frame end where a view shows
-/// what is there.
+/// Takes from guessed solids, but not from measured ones, what further views know better: they end
+/// where a view looks through them, and surfaces that were guessed behind others or beyond the
+/// frame end where a view shows what is there.
 void carve(Solids& solids, const Geometry& frame, const std::vector<FurtherView>& views);
 
 }  // namespace ssdo

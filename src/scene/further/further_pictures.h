@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <future>
-#include <glm/vec3.hpp>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -11,31 +10,16 @@
 #include <utility>
 #include <vector>
 
-#include "math/plane.h"
-#include "scene/camera/camera.h"
-#include "scene/surfel.h"
+#include "scene/further/further_view.h"
 #include "scene/view.h"
 
 namespace ssdo {
-
-/// What another camera shows of the scene, or a panorama, in its own camera space: the same for
-/// every frame.
-struct FurtherPicture {
-  std::string file;
-  Camera camera;            ///< from world space to its own
-  Window window;            ///< of the planes, in the pixels of its display window
-  bool closed = false;      ///< a panorama whose last column lies beside its first
-  Plane<Surfel> surfel;     ///< normals are on the side of its own camera
-  Plane<float> depth;       ///< Camera::depth_of; infinite where there is no surface
-  Plane<glm::vec3> albedo;  ///< empty where the file has none
-  std::vector<std::string> warnings;
-};
 
 /// The further pictures of a run: each is read once, and kept as long as frames will ask for it.
 /// May be asked from several threads.
 class FurtherPictures {
  public:
-  using Picture = std::shared_ptr<const FurtherPicture>;
+  using Picture = FurtherView::Picture;
 
   /// A further frame will ask for its files, until it is released. Files that no frame expects any
   /// more are forgotten; those that none has expected are kept.

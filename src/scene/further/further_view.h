@@ -3,36 +3,37 @@
 
 #include <algorithm>
 #include <glm/vec3.hpp>
-#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "math/plane.h"
 #include "scene/camera/camera.h"
-#include "scene/further/further_pictures.h"
 #include "scene/geometry.h"
 #include "scene/surfel.h"
 
 namespace ssdo {
 
-/// What a further view knows about a point.
-enum class Sight {
-  unknown,  ///< outside of its picture, or behind what it shows
-  surface,  ///< it shows a surface there
-  empty,    ///< it looks through
+/// What another camera shows of the scene, or a panorama, in its own camera space: the same for
+/// every frame.
+struct FurtherPicture {
+  std::string file;
+  Camera camera;            ///< from world space to its own
+  Window window;            ///< of the planes, in the pixels of its display window
+  bool closed = false;      ///< a panorama whose last column lies beside its first
+  Plane<Surfel> surfel;     ///< normals are on the side of its own camera
+  Plane<float> depth;       ///< Camera::depth_of; infinite where there is no surface
+  Plane<glm::vec3> albedo;  ///< empty where the file has none
+  std::vector<std::string> warnings;
 };
 
-/// A further picture, placed in the camera space of a frame. What does not depend on the frame
-/// stays in the picture, which all frames share.
+/// A further picture, placed in the camera space of a frame.
 struct FurtherView {
-  FurtherPictures::Picture picture;
+  using Picture = std::shared_ptr<const FurtherPicture>;
+
+  Picture picture;
   Camera camera;              ///< from the frame's camera space to its own
   bool is_neighbour = false;  ///< of the frame's own sequence
-
-  const std::string& file = picture->file;
-  const Window& window = picture->window;
-  const bool& closed = picture->closed;
-  const Plane<Surfel>& surfel = picture->surfel;  ///< in its own camera space
-  const Plane<float>& depth = picture->depth;
-  const Plane<glm::vec3>& albedo = picture->albedo;
 
   /// Its surfels in the camera space of the frame.
   Plane<Surfel> surfels_in_frame() const;
@@ -41,14 +42,9 @@ struct FurtherView {
   float footprint(float at_depth) const {
     return (camera.orthographic ? 1.0f : at_depth) / float(std::min(camera.fx, camera.fy));
   }
-
-  /// What the four pixels around the picture of a point agree on. A view does not show what is
-  /// narrower than a few of its pixels but looks past it: `width` is that of what the point would
-  /// be in, in scene units.
-  Sight look(const glm::vec3& point, float width = std::numeric_limits<float>::infinity()) const;
 };
 
 /// Places a picture in the camera space of a frame whose world is known.
-FurtherView place(FurtherPictures::Picture picture, const Geometry& frame);
+FurtherView place(FurtherView::Picture picture, const Geometry& frame);
 
 }  // namespace ssdo

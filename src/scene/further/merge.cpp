@@ -248,20 +248,24 @@ FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometr
   counts.assign(views.size(), {});
   std::vector<std::size_t> order(views.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return views[a].file < views[b].file; });
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return views[a].picture->file < views[b].picture->file;
+  });
   for (const std::size_t k : order) {
     const FurtherView& view = views[k];
     const Plane<Surfel> surfel = view.surfels_in_frame();
-    counts[k].file = view.file;
-    counts[k].has_albedo = !view.albedo.empty();
+    counts[k].file = view.picture->file;
+    counts[k].has_albedo = !view.picture->albedo.empty();
     counts[k].is_neighbour = view.is_neighbour;
     const Plane<Fate> fates = judge(surfel, merger, counts[k]);
     if (counts[k].is_of_another_scene()) {
       if (!view.is_neighbour) refuse(counts[k]);
       continue;
     }
-    Mesher({surfel, view.albedo, view.camera, view.window, view.closed, 1}, fates, out).run();
+    Mesher(
+        {surfel, view.picture->albedo, view.camera, view.picture->window, view.picture->closed, 1},
+        fates, out)
+        .run();
   }
   Camera own = frame.camera;  // what it shows is in its own camera space
   own.rotation = glm::dmat3(1), own.origin = glm::dvec3(0);

@@ -11,7 +11,8 @@
 
 namespace ssdo {
 
-/// What became of the pixels of a further view that show a surface.
+/// What became of the pixels of a further view that show a surface. Of a view of back faces only
+/// `backs` counts.
 struct MergeCounts {
   std::string file;
   bool has_albedo = false;
@@ -19,6 +20,7 @@ struct MergeCounts {
   std::size_t seen = 0;           ///< the frame shows it as well
   std::size_t contradictory = 0;  ///< it would lie before what the frame shows: something moved
   bool is_neighbour = false;      ///< of the frame's own sequence, where things may move
+  std::size_t backs = 0;          ///< pixels of the frame whose thickness it shows
 
   /// Pixels that show what the frame should see too.
   std::size_t in_common() const { return seen + contradictory; }

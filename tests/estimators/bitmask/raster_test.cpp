@@ -100,7 +100,7 @@ TEST(BitmaskRaster, ALayerBlocksAndSendsWhateverItsNumber) {
     ASSERT_EQ(three.layers(), 3);
     EXPECT_EQ(count_differences(run(g, all_products(two)), run(g, all_products(three)), kWindow),
               0);
-    const Solids one{two.thickness, {}, {}};
+    const Solids one{two.thickness, {}, {}, {}};
     EXPECT_GT(count_differences(run(g, all_products(one)), run(g, all_products(two)), kWindow),
               100);
   }

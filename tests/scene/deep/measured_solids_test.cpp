@@ -123,6 +123,7 @@ TEST(MeasuredSolids, HaveMeasuredThicknesses) {
         const Ray ray = ray_through(camera, double(i % 120) + 0.5, double(i / 120) + 0.5);
         const auto [enter, leave] = kNear.cross(ray);
         EXPECT_NEAR(found.solids.at(0, i).thickness, leave - enter, 1e-4);
+        EXPECT_TRUE(found.solids.end_is_measured(i));
         const auto [second_enter, second_leave] = kHidden.cross(ray);
         if (second_enter > second_leave || second_leave - second_enter < 0.2) continue;
         EXPECT_NEAR(found.solids.at(1, i).thickness, second_leave - second_enter, 1e-4);
@@ -140,6 +141,8 @@ TEST(MeasuredSolids, AreNothingWhereNothingIsHidden) {
   const Solids guess = guess_solids(found.geometry);
   ASSERT_EQ(found.solids.layers(), guess.layers());
   EXPECT_EQ(found.solids.thickness.pixels, guess.thickness.pixels);
+  for (std::size_t i = 0; i < guess.thickness.size(); ++i)
+    EXPECT_FALSE(found.solids.end_is_measured(i));
   EXPECT_EQ(found.solids.behind[0].distance.pixels, guess.behind[0].distance.pixels);
   EXPECT_EQ(found.solids.behind[0].sender.pixels, guess.behind[0].sender.pixels);
 }
