@@ -25,7 +25,7 @@ namespace ssdo::HWY_NAMESPACE {
 /// white world and relative RMSE of direct light, of foliage with overscan and four views: .0735
 /// .169 with 2.5 rays, .0710 .164 with 3.3; .0697 .162 with a ray for every 8 open sectors, which
 /// are more.
-constexpr float kRaysPerSlice = 3.3f;
+constexpr float kRaysPerSlice = 2.4f, kBounceRaysPerSlice = 1.6f;
 
 /// The lanes of a vector, one by one.
 struct Lanes {
@@ -103,8 +103,8 @@ struct SectorStrata {
   int sector[kMost];
   int count = 0;
 
-  HWY_INLINE void divide(const SectorDirections& of, int lane, std::uint32_t open, float turn,
-                         float round_up) {
+  HWY_INLINE void divide(const SectorDirections& of, int lane, std::uint32_t open, float rays,
+                         float turn, float round_up) {
     if (open == 0) return;
     float weights[SliceSectors::kCount];
     float all = 0;
@@ -113,7 +113,7 @@ struct SectorStrata {
       all += weights[k] = of.weight(lane, k);
     }
     // Rounded up as often as the fraction says.
-    count = std::clamp(int(kRaysPerSlice * all / of.whole(lane) + round_up), 1, kMost);
+    count = std::clamp(int(rays * all / of.whole(lane) + round_up), 1, kMost);
     const float each = all / float(count);
     float before = 0;
     std::uint32_t rest = open;
@@ -147,13 +147,14 @@ HWY_INLINE VU sectors_of_further(const March& march, const MarchReceiver& p, con
   const Lanes3 start(start_of_rays(march.scene, p));
   const float first = hn::GetLane(side.start) - 0.5f;  // the same for all lanes
   const SectorDirections sectors(p, side, first);
-  const float turn = turn_of(march.scene, p.place, first), round_up = first - std::floor(first);
+  const float turn = turn_of(march.scene, p.place, first), round_up = first - std::floor(first),
+              rays = Met::kWantsHits ? kBounceRaysPerSlice : kRaysPerSlice;
   alignas(64) std::uint32_t asked[kLanes], hidden[kLanes];
   hn::Store(hn::IfThenElseZero(hn::RebindMask(du, p.valid), open), du, asked);
   SectorStrata strata[kLanes];
   int most = 0;
   for (int lane = 0; lane < kLanes; ++lane) {
-    strata[lane].divide(sectors, lane, asked[lane], turn, round_up);
+    strata[lane].divide(sectors, lane, asked[lane], rays, turn, round_up);
     most = std::max(most, strata[lane].count);
   }
   VU all = set_bits(0);

@@ -15,6 +15,7 @@
 #include "scene/further/sight.h"
 #include "scene/normals.h"
 #include "scene/pixel_footprint.h"
+#include "scene/same_surface.h"
 
 namespace ssdo {
 namespace {
@@ -91,11 +92,14 @@ class Carver {
   void carve() {
     if (solids_.end.empty())
       solids_.end = Plane<Origin>(frame_.surfel.width, frame_.surfel.height, Origin::guessed);
-    for_each_row(frame_.surfel.height, [&](int y) {
+    const int w = frame_.surfel.width, h = frame_.surfel.height;
+    for_each_row((h + 1) / 2, [&](int block_y) {
       SightLines lines(views_);
-      for (int x = 0; x < frame_.surfel.width; ++x) {
-        const std::size_t pixel = frame_.surfel.index(x, y);
-        if (frame_.surfel[pixel].is_usable()) carve_pixel(pixel, lines);
+      for (int x0 = 0; x0 < w; x0 += 2) {
+        Ending known;
+        for (int y = 2 * block_y; y < std::min(2 * block_y + 2, h); ++y)
+          for (int x = x0; x < std::min(x0 + 2, w); ++x)
+            carve_pixel(frame_.surfel.index(x, y), known, lines);
       }
     });
     end_continuations();
@@ -104,31 +108,61 @@ class Carver {
  private:
   float first_step(const Surfel& s) const { return kFirst * footprint_.at(-s.position.z); }
 
-  void carve_pixel(std::size_t pixel, SightLines& lines) {
+  /// Where the solid that a pixel shows ends, as far as it was asked for. Views are coarse: of each
+  /// 2 x 2 pixels those on one surface share it.
+  struct Ending {
+    const Surfel* of = nullptr;
+    float asked = 0, end = 0;
+  };
+
+  bool holds_for(const Ending& known, const Surfel& s, float most) const {
+    constexpr float kHardlyMore = 1.1f;
+    return known.of && most <= kHardlyMore * known.asked &&
+           on_one_surface({known.of->position, known.of->normal}, {s.position, s.normal},
+                          footprint_);
+  }
+
+  void carve_pixel(std::size_t pixel, Ending& known, SightLines& lines) {
     const Surfel& s = frame_.surfel[pixel];
-    lines.aim(s.position, -direction_to_viewer(s.position, frame_.camera.orthographic));
+    if (!s.is_usable()) return;
     const float first = first_step(s);
-    if (!solids_.end_is_measured(pixel) && shorten(solids_.thickness[pixel], first, 0, lines))
-      solids_.end[pixel] = Origin::measured;
+    bool aimed = false;
+    const auto aim = [&] {
+      if (!aimed)
+        lines.aim(s.position, -direction_to_viewer(s.position, frame_.camera.orthographic));
+      aimed = true;
+    };
+    if (!solids_.end_is_measured(pixel)) {
+      float& thickness = solids_.thickness[pixel];
+      const float most = std::min(thickness, farthest_);
+      if (!holds_for(known, s, most)) {
+        aim();
+        known = {&s, most, end_of(first, most, 0, lines)};
+      }
+      if (known.end < std::min(most, known.asked)) {
+        thickness = known.end;
+        solids_.end[pixel] = Origin::measured;
+      }
+    }
     for (SolidLayer& layer : solids_.behind) {
       if (layer.origin[pixel] != Origin::guessed) continue;
       const float distance = layer.distance[pixel];
       if (!(distance < farthest_)) continue;
-      if (lines.is_known(distance))
+      aim();
+      if (lines.is_known(distance)) {
         layer.distance[pixel] = std::numeric_limits<float>::infinity();
-      else
-        shorten(layer.thickness[pixel], first, distance, lines);
+        continue;
+      }
+      float& thickness = layer.thickness[pixel];
+      const float most = std::min(thickness, farthest_), end = end_of(first, most, distance, lines);
+      if (end < most) thickness = end;
     }
   }
 
-  /// Ends a solid whose front lies at `distance` on the lines where a view looks through it.
-  /// Whether one does.
-  bool shorten(float& thickness, float first, float distance, const SightLines& lines) const {
-    const float most = std::min(thickness, farthest_);
-    const float end =
-        first_on_way(first, most, [&](float t) { return lines.is_empty(distance, t); });
-    if (end < most) thickness = end;
-    return end < most;
+  /// Where a solid of this thickness, whose front lies at `distance` on the lines, ends because a
+  /// view looks through it; `most` where none does.
+  float end_of(float first, float most, float distance, const SightLines& lines) const {
+    return first_on_way(first, most, [&](float t) { return lines.is_empty(distance, t); });
   }
 
   /// How far what the border shows goes on beyond it.

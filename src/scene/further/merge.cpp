@@ -5,7 +5,8 @@
 // - What lies within kSurfaceTolerance footprints of a surface that the frame shows there is that
 //   surface. The frame knows it better: coarse triangles would cut through the finer surface.
 // - What lies before what the frame shows there would be seen by it. It has moved, and is dropped.
-// - All else is new: behind what the frame shows, outside of it, or a surface's other side.
+// - All else is new: behind what the frame shows, outside of it, or a surface's other side. Of what
+//   several views show, the one whose pixels are finest there adds it.
 //
 // Neighbours of one view are joined as those of the frame are, if they share their fate. Where they
 // are not, each reaches half-way to the next on its own tangent plane: leaves and wires are single
@@ -18,6 +19,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <numeric>
 
 #include "error.h"
@@ -40,7 +42,7 @@ constexpr int kFrameColumns = 320;
 constexpr std::size_t kFewestInCommon = 50;
 constexpr double kLeastInCommon = 0.02, kLeastOfNeighbour = 0.5;
 
-enum class Fate : unsigned char { none, added, seen, contradictory };
+enum class Fate : unsigned char { none, added, repeated, seen, contradictory };
 
 class Merger {
  public:
@@ -82,6 +84,69 @@ class Merger {
   PixelFootprint footprint_;
 };
 
+/// What one further view shows of the others' surfaces.
+class Rival {
+ public:
+  explicit Rival(const FurtherView& view) : view_(view) {}
+
+  /// Width of what the pixel of a place covers of its surface, in scene units; infinite where it is
+  /// seen from behind or nearly edge-on.
+  float width_of(const Surfel& s) const {
+    const glm::dvec3 own = view_.camera.to_camera(glm::dvec3(s.position));
+    return width_of(own, view_.camera.rotation * glm::dvec3(s.normal));
+  }
+
+  /// The same where it shows that surface; infinite where it does not.
+  float width_if_shown(const Surfel& s) const {
+    const Camera& camera = view_.camera;
+    const glm::dvec3 own = camera.to_camera(glm::dvec3(s.position)),
+                     normal = camera.rotation * glm::dvec3(s.normal);
+    const float width = width_of(own, normal);
+    if (width == kNowhere) return width;
+    const glm::dvec2 at = camera.project(own);
+    const Window& window = view_.picture->window;
+    const double px = std::floor(at.x - window.x0), py = std::floor(at.y - window.y0);
+    if (!(std::abs(px) < 1e6 && std::abs(py) < 1e6)) return kNowhere;
+    const Surfel* shown = surface_at(view_.picture->surfel, int(px), int(py));
+    if (!shown || glm::dot(glm::vec3(normal), shown->normal) < kAlike) return kNowhere;
+    const float off =
+        std::abs(glm::dot(glm::vec3(own - glm::dvec3(shown->position)), shown->normal));
+    return off <= width + s.rounding + shown->rounding ? width : kNowhere;
+  }
+
+ private:
+  static constexpr float kNowhere = std::numeric_limits<float>::infinity();
+  static constexpr float kLeastFacing = 0.1f, kAlike = 0.7f;  ///< cosines
+
+  float width_of(const glm::dvec3& own, const glm::dvec3& normal) const {
+    const auto depth = float(view_.camera.depth_of(own));
+    const float facing =
+        glm::dot(glm::vec3(normal), direction_to_viewer(glm::vec3(own), view_.camera.orthographic));
+    if (!(facing > kLeastFacing) || (!view_.camera.orthographic && !(depth > 0))) return kNowhere;
+    return view_.footprint(depth) / facing;
+  }
+
+  const FurtherView& view_;
+};
+
+/// Of the views from the first on, in their order, the `k`-th leaves out what another one shows
+/// more finely, or as finely and earlier.
+void leave_out_repeated(const std::vector<Rival>& rivals, std::size_t k,
+                        const Plane<Surfel>& surfel, Plane<Fate>& fates) {
+  for_each_row(surfel.height, [&](int y) {
+    for (int x = 0; x < surfel.width; ++x) {
+      if (fates(x, y) != Fate::added) continue;
+      const float own = rivals[k].width_of(surfel(x, y));
+      for (std::size_t j = 0; j < rivals.size(); ++j) {
+        if (j == k) continue;
+        const float other = rivals[j].width_if_shown(surfel(x, y));
+        if (other < own || (j < k && other == own && std::isfinite(other)))
+          fates(x, y) = Fate::repeated;
+      }
+    }
+  });
+}
+
 /// The pixels of a view, or every so many of them.
 struct Grid {
   const Plane<Surfel>& surfel;
@@ -117,7 +182,7 @@ class Mesher {
   Fate fate(int x, int y) const { return fates_(x * grid_.step, y * grid_.step); }
 
   void add_vertex(int x, int y) {
-    if (fate(x, y) == Fate::none || fate(x, y) == Fate::contradictory) return;
+    if (fate(x, y) != Fate::added && fate(x, y) != Fate::seen) return;
     const std::size_t from = grid_.surfel.index(x * grid_.step, y * grid_.step);
     const Surfel& s = grid_.surfel[from];
     const double depth = grid_.camera.depth_of(grid_.camera.to_camera(glm::dvec3(s.position)));
@@ -251,20 +316,31 @@ FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometr
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return views[a].picture->file < views[b].picture->file;
   });
+  struct Judged {
+    const FurtherView* view;
+    Plane<Fate> fates;
+  };
+  std::vector<Judged> judged;
+  std::vector<Rival> rivals;
   for (const std::size_t k : order) {
     const FurtherView& view = views[k];
-    const Plane<Surfel> surfel = view.surfels_in_frame();
     counts[k].file = view.picture->file;
     counts[k].has_albedo = !view.picture->albedo.empty();
     counts[k].is_neighbour = view.is_neighbour;
-    const Plane<Fate> fates = judge(surfel, merger, counts[k]);
-    if (counts[k].is_of_another_scene()) {
-      if (!view.is_neighbour) refuse(counts[k]);
-      continue;
+    Plane<Fate> fates = judge(view.surfels_in_frame(), merger, counts[k]);
+    if (!counts[k].is_of_another_scene()) {
+      judged.push_back({&view, std::move(fates)});
+      rivals.emplace_back(view);
+    } else if (!view.is_neighbour) {
+      refuse(counts[k]);
     }
-    Mesher(
-        {surfel, view.picture->albedo, view.camera, view.picture->window, view.picture->closed, 1},
-        fates, out)
+  }
+  for (std::size_t k = 0; k < judged.size(); ++k) {
+    auto& [view, fates] = judged[k];
+    const Plane<Surfel> surfel = view->surfels_in_frame();
+    leave_out_repeated(rivals, k, surfel, fates);
+    const FurtherPicture& picture = *view->picture;
+    Mesher({surfel, picture.albedo, view->camera, picture.window, picture.closed, 1}, fates, out)
         .run();
   }
   Camera own = frame.camera;  // what it shows is in its own camera space

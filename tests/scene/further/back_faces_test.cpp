@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 
 #include "estimators/bitmask/request.h"
+#include "scene/further/further_pictures.h"
 #include "support/boxes.h"
 #include "support/frame_file.h"
 #include "support/run_tool.h"
@@ -91,7 +92,7 @@ class BackFaces : public testing::Test {
   }
 
   std::optional<Plane<float>> find(const std::string& file, const Geometry& frame) {
-    return find_back_faces(read_further_view(file, frame), frame);
+    return find_back_faces(place(FurtherPictures().also(file), frame), frame);
   }
 
   TempDir folder;
