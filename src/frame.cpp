@@ -132,7 +132,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
                                known.warnings.end());
   frame.plan = make_plan(model, options.output, scene, frame.gbuffer, frame.input);
   explain_views(frame.plan, frame.views);
-  if (const auto much = explain_guessed(frame.plan, scene)) frame.report.warnings.push_back(*much);
+  frame.advice = explain_guessed(frame.plan, scene);
   frame.times.prepare = watch.lap() - view.read_ms - frame.times.known;
   return frame;
 }

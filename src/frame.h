@@ -47,6 +47,7 @@ struct Frame {
   std::vector<MergeCounts> views;
   std::string light;  ///< one line
   Plan plan;
+  std::string advice;                ///< what to render where much is guessed: see explain_guessed
   std::vector<std::string> history;  ///< what a temporal plan takes from the frame before, and why
   StageTimes times;                  ///< of the stages up to here
 

@@ -258,8 +258,8 @@ void explain_views(Plan& plan, const std::vector<MergeCounts>& views) {
   }
 }
 
-std::optional<std::string> explain_guessed(Plan& plan, const Scene& scene) {
-  if (!plan.method->products.guessed) return std::nullopt;
+std::string explain_guessed(Plan& plan, const Scene& scene) {
+  if (!plan.method->products.guessed) return {};
   const GuessedMean guessed = mean_guessed(scene, plan.request.radius);
   std::array<std::size_t, kUnseenPlaces.size()> most_first;
   std::iota(most_first.begin(), most_first.end(), std::size_t(0));
@@ -282,7 +282,7 @@ std::optional<std::string> explain_guessed(Plan& plan, const Scene& scene) {
                                  : fmt::format("; render {}", fmt::join(remedies, ", "));
   plan.reasons.push_back(
       fmt::format("guessed: {} lead past what no picture shows{}{}", share, where, remedy));
-  if (guessed.all <= kMuchGuessed) return std::nullopt;
+  if (guessed.all <= kMuchGuessed) return {};
   return fmt::format("{} are guessed{}", share, remedy);
 }
 

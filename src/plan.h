@@ -74,9 +74,9 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
 /// Adds what further views contribute to the reasons.
 void explain_views(Plan& plan, const std::vector<MergeCounts>& views);
 
-/// Adds how much of the result is guessed, and what would help, to the reasons. The line is also a
-/// warning where it is much: then it is returned.
-std::optional<std::string> explain_guessed(Plan& plan, const Scene& scene);
+/// Adds how much of the result is guessed, and what would help, to the reasons. Where it is much, it
+/// gives a warning for who asks before rendering; nothing is wrong with the frame.
+std::string explain_guessed(Plan& plan, const Scene& scene);
 
 /// `history` is what a temporal plan takes from the frame before, and why: it ends the reasons.
 nlohmann::json to_json(const Plan& plan, const std::vector<std::string>& history = {});

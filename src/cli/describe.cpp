@@ -16,6 +16,13 @@ namespace {
 
 using nlohmann::json;
 
+/// Before a frame is rendered, what to render with it is worth a warning too.
+std::vector<std::string> warnings_of(const Frame& frame) {
+  std::vector<std::string> all = frame.warnings();
+  if (!frame.advice.empty()) all.push_back(frame.advice);
+  return all;
+}
+
 std::string describe_camera(const Frame& frame) {
   const Camera& c = frame.scene.geometry.camera;
   const int width = frame.scene.geometry.display.width();
@@ -132,7 +139,7 @@ std::string describe(const Frame& frame) {
                            frame.plan.filter->name, frame.plan.temporal ? " and temporal" : ""));
   for (const std::string& reason : frame.plan.reasons) line("", reason);
   for (const std::string& line_of_history : frame.history) line("", line_of_history);
-  for (const std::string& warning : frame.warnings()) line("warning", warning);
+  for (const std::string& warning : warnings_of(frame)) line("warning", warning);
   return text;
 }
 
@@ -158,7 +165,7 @@ nlohmann::json to_json(const Frame& frame) {
           {"median_depth", g.median_depth},
           {"light", frame.light},
           {"plan", to_json(frame.plan, frame.history)},
-          {"warnings", frame.warnings()}};
+          {"warnings", warnings_of(frame)}};
 }
 
 }  // namespace ssdo

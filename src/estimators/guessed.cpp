@@ -138,8 +138,11 @@ class Guesses {
 
   std::size_t pixel_at(const PicturedRay& line, float r) const {
     const glm::vec2 at = line.from + r * line.way;
-    return surfel_.index(std::clamp(int(at.x), 0, surfel_.width - 1),
-                         std::clamp(int(at.y), 0, surfel_.height - 1));
+    // Not-a-number, of a point in the camera's own plane, is pixel 0.
+    const auto whole = [](float x, int size) {
+      return x > 0 ? int(std::min(x, float(size - 1))) : 0;
+    };
+    return surfel_.index(whole(at.x, surfel_.width), whole(at.y, surfel_.height));
   }
 
   /// How far behind the front of what a pixel shows a ray passes, along the axis; not above 0: in
@@ -152,7 +155,7 @@ class Guesses {
   }
 
   /// Whether a ray that is in front of what the picture shows at `before` and behind it at `after`
-  /// meets it in between: the rest of the picture there is one surface.
+  /// meets that surface in between, and does not slip behind its edge.
   bool meets(const PicturedRay& line, float before, float after, const glm::vec3& normal) const {
     while (after - before > 1) {
       const float middle = 0.5f * (before + after);
@@ -169,6 +172,23 @@ class Guesses {
     if (above < 0 || below < -gap) return false;
     const float share = above / std::max(above + below, above);
     return glm::distance(from + share * (to - from), glm::vec3(0)) <= gap;
+  }
+
+  /// Whether a place on the view ray of a pixel, so far behind what that shows along the axis, is
+  /// within a solid whose front and back other pictures have measured.
+  bool is_in_measured_solid(std::size_t pixel, float behind) const {
+    const Solids& solids = scene_.solids;
+    const glm::vec3& p = surfel_[pixel].position;
+    const float distance =
+        scene_.geometry.camera.orthographic ? behind : behind * glm::length(p) / -p.z;
+    if (solids.end_is_measured(pixel) && distance <= solids.thickness[pixel]) return true;
+    for (int k = 1; k < solids.layers(); ++k) {
+      const Solid solid = solids.at(k, pixel);
+      if (solids.origin(k, pixel) == Origin::measured && distance >= solid.distance &&
+          distance <= solid.distance + solid.thickness)
+        return true;
+    }
+    return false;
   }
 
   /// What the further views know about a ray.
@@ -203,6 +223,7 @@ class Guesses {
       const float behind = behind_front(line, r, normal);
       if (behind > 0) {
         if (in_front && meets(line, before, r, normal)) return std::nullopt;
+        if (is_in_measured_solid(pixel_at(line, r), behind)) return std::nullopt;
         in_front = false;
         if (!unseen && !one_shows(views, std::min(line.length_at(r), far_)))
           unseen = Unseen::behind_things;

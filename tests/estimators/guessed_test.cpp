@@ -83,6 +83,19 @@ TEST(Guessed, WhatPassesBelowASlab) {
   EXPECT_GT(mean_guessed(scene, kRadius).at[std::size_t(Unseen::behind_things)], 0.01);
 }
 
+TEST(Guessed, MeasuredSolidsAreKnown) {
+  Scene scene = seen_from_above(
+      all_of({plane({}, {0, 0, 1}),
+              cut(plane({0, 0, 0.6}, {0, 0, 1}), [](const glm::dvec3& p) { return p.x > 0.5; })}));
+  scene.solids = constant_thickness(scene.geometry, 0.8f);
+  const int beside = kWindow.width() / 2 + 6;
+  EXPECT_GT(mean_of_column(shares(scene, 1), beside), 0.2) << "as thick as somebody said";
+  scene.solids.end = Plane<Origin>(kWindow.width(), kWindow.height(), Origin::measured);
+  EXPECT_EQ(mean_of_column(shares(scene, 1), beside), 0) << "down to the ground";
+  for (float& thickness : scene.solids.thickness.pixels) thickness = 0.1f;
+  EXPECT_GT(mean_of_column(shares(scene, 1), beside), 0.1) << "what is below the slab is not seen";
+}
+
 TEST(Guessed, SurfacesThatAreSeenAreKnown) {
   const Camera camera = tilted(camera_from_fov(60, kWindow, 1), 40);
   const Scene scene = scene_of(geometry_of(floor_and_wall(), camera, kWindow));
