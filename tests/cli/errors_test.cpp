@@ -189,7 +189,7 @@ TEST(Refusals, OfMissingAndAmbiguousLayers) {
       << "nor do bent and the error of direct";
   EXPECT_THAT(channel_names(dir / "out.exr"),
               testing::ElementsAre("ao.Y", "bent.X", "bent.Y", "bent.Z", "direct.B", "direct.G",
-                                   "direct.R", "error.Y"));
+                                   "direct.R", "error.Y", "guessed.Y"));
 }
 
 /// Issue 20: INPUT was that of `info` or of the main job, whichever came last.
