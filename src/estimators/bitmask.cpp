@@ -228,8 +228,12 @@ class Bitmask {
     if (request_.products.bent) out_.bent = picture(bent);
     if (!wants_light()) return;
     if (light.suns.empty()) return;
+    // A panorama shows what stands beyond the border, and rays have asked it.
+    const bool all_is_shown =
+        std::any_of(scene_.views.begin(), scene_.views.end(),
+                    [](const FurtherView& view) { return view.picture->closed; });
     const float past =
-        request_.extend_offscreen
+        request_.extend_offscreen && !all_is_shown
             ? sun_past_beyond(mean_ao(march_scene_, scene_.geometry.display, request_.radius))
             : 1;
     const RayDistances distances_px = ray_distances(scene_.geometry.display, request_.steps);

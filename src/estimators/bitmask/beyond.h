@@ -14,6 +14,8 @@
 //
 //   sun past the border = min(1, A / 0.6),   A the mean ao of the frame's surfaces
 //
+// Where a panorama shows what stands there, all that it does not hide comes through.
+//
 // Relative RMSE of direct light against a path tracer before and after, and, where there is a sun,
 // A and the share of it that has the least error. Alley, colonnade, court, close-up and stones are
 // small scenes that were made to test the rule:

@@ -156,10 +156,7 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const SideF
     const M meets = blocks<kOrthographic>(p, side, ray, hn::And(open, leaves), e.start.s, e.above,
                                           march.radius, [&]() HWY_ATTR { return e.depth; });
     const M hides = hn::Or(meets, hn::And(crosses, rises));
-    M may_meet = hn::And(leaves_frame, border.distance_px <= set(p.reach_px));
-    // Where a view shows what is there, nothing is left open.
-    if (!march.scene.border_beyond.empty())
-      may_meet = hn::And(may_meet, border(march.scene.border_beyond) >= set(kEndlessLength));
+    const M may_meet = hn::And(leaves_frame, border.distance_px <= set(p.reach_px));
     const V passes = hn::IfThenElse(may_meet, set(past / kWitnesses), set(1.0f / kWitnesses));
     passed = passed + hn::IfThenElseZero(hn::AndNot(hides, open), passes);
   }

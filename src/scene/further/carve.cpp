@@ -169,16 +169,10 @@ class Carver {
   void end_continuations() {
     const int w = frame_.surfel.width, h = frame_.surfel.height;
     solids_.beyond = BorderOf<float>(w, h, std::numeric_limits<float>::infinity());
-    const bool panorama = std::any_of(views_.begin(), views_.end(),
-                                      [](const auto& view) { return view.picture->closed; });
     SightLines lines(views_);
     const auto end = [&](int x, int y, const glm::vec2& outward) {
       const Surfel& s = frame_.surfel(x, y);
-      if (!s.is_usable()) {
-        // Nothing goes on there, and a panorama shows all that stands beyond.
-        if (panorama) solids_.beyond.at(x, y) = 0;
-        return;
-      }
+      if (!s.is_usable()) return;
       // The direction in the tangent plane whose picture leads straight out of the frame: within
       // the plane through the viewer, the surface and a place beside it.
       const glm::vec3 to_viewer = direction_to_viewer(s.position, frame_.camera.orthographic);
