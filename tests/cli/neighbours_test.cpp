@@ -9,6 +9,7 @@
 
 #include "estimators/bitmask/request.h"
 #include "support/boxes.h"
+#include "support/error_matchers.h"
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
@@ -124,7 +125,7 @@ TEST_F(NeighboursOf, TheEndsOfAShotAreThoseThatExist) {
   fs::remove(file(2));
   const std::string at_end = info(1, {"--neighbours", "3"});
   EXPECT_THAT(at_end, AllOf(HasSubstr(adds(3)), HasSubstr(adds(4)), Not(HasSubstr(adds(5)))));
-  EXPECT_THAT(at_end, Not(HasSubstr("warning")));
+  EXPECT_THAT(at_end, WarnsOfNothing());
   EXPECT_EQ(run({"--frames", "5", "--neighbours", "4x1000"}).code, 0);
 }
 
@@ -177,7 +178,7 @@ TEST_F(NeighboursOf, AMovingThingAreLeftOutWhereItWas) {
   EXPECT_LT(beside, 1.1 * beside_alone);
   const std::string told = info(3, {"--neighbours", "1"});
   EXPECT_THAT(told, testing::ContainsRegex("[1-9][0-9]+ contradict it"));
-  EXPECT_THAT(told, Not(HasSubstr("warning"))) << "things move in a shot";
+  EXPECT_THAT(told, WarnsOfNothing()) << "things move in a shot";
 }
 
 TEST_F(NeighboursOf, AFrameThatCannotBeUsedAreLeftOutWithAWarning) {
@@ -211,7 +212,7 @@ TEST_F(NeighboursOf, AFrameAreReadAsItIs) {
   };
   for (int frame = 2; frame <= 4; ++frame) rename(frame);
   EXPECT_THAT(info(3, {"--neighbours", "1", "--aov", "position=where"}),
-              AllOf(HasSubstr(adds(2)), HasSubstr(adds(4)), Not(HasSubstr("warning"))));
+              AllOf(HasSubstr(adds(2)), HasSubstr(adds(4)), WarnsOfNothing()));
   // Layers of other files follow the neighbours' frames.
   write_shot();
   for (int frame = 2; frame <= 4; ++frame) fs::rename(file(frame), file(frame, "more"));
@@ -219,7 +220,7 @@ TEST_F(NeighboursOf, AFrameAreReadAsItIs) {
   const std::string of_more =
       "position=" + std::string(folder / "more.####.exr") + ":ViewLayer.Position";
   EXPECT_THAT(info(3, {"--neighbours", "1", "--aov", of_more}),
-              AllOf(HasSubstr(adds(2)), HasSubstr(adds(4)), Not(HasSubstr("warning"))));
+              AllOf(HasSubstr(adds(2)), HasSubstr(adds(4)), WarnsOfNothing()));
 }
 
 TEST_F(NeighboursOf, AFrameWithoutWorldOrASingleFileAreRefused) {

@@ -19,4 +19,10 @@ MATCHER_P2(IsError, code, text, "") {
   return arg.code == code && std::string(arg.what()).find(text) != std::string::npos;
 }
 
+/// Matches what the tool says about a frame if it warns of nothing but how much is guessed, which
+/// begins with a number.
+MATCHER(WarnsOfNothing, "") {
+  return !testing::Value(arg, testing::ContainsRegex("warning +[^0-9 ]"));
+}
+
 }  // namespace ssdo::test
