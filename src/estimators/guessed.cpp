@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "estimators/bitmask/slice_pattern.h"
 #include "estimators/further/further_rays.h"
 #include "estimators/ray_start.h"
 #include "math/frame.h"
@@ -23,7 +24,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Rays of a pixel whose neighbours a filter averages, and of one that stands for many.
+/// Rays of a pixel that a filter averages with its neighbours, and of one that stands for many.
 constexpr int kRays = 2, kRaysOfMean = 8;
 
 /// A mean takes about so many pixels, evenly spread: it is then within 0.01.
@@ -87,9 +88,24 @@ class Guesses {
           std::pow(diagonal, std::pow((float(i) + 0.5f) / float(distances_.size()), kCloser));
   }
 
+  /// Of one sequence, the points that the rays of a pixel are.
+  struct Samples {
+    int first, count;
+    std::uint32_t seed;
+  };
+
+  /// All pixels of a window as large as the pattern together cover the hemisphere evenly.
+  Samples samples_at(int x, int y, unsigned seed) const {
+    constexpr int kPeriod = Interleaving::kPeriod;
+    const Window &window = scene_.geometry.window, &display = scene_.geometry.display;
+    const int column = (window.x0 - display.x0 + x) & (kPeriod - 1),
+              row = (window.y0 - display.y0 + y) & (kPeriod - 1);
+    return {SlicePattern::rank(row * kPeriod + column) * kRays, kRays, hash_of(seed, 0, kSeed)};
+  }
+
   /// Where each guessed ray of a pixel first passed what no picture shows.
   template <class OnGuessed>
-  void gather(int x, int y, int rays, unsigned seed, const OnGuessed& on_guessed) const {
+  void gather(int x, int y, const Samples& samples, const OnGuessed& on_guessed) const {
     const Surfel& s = surfel_(x, y);
     const float above =
         kAboveRoundings * s.rounding + kAboveFootprints * footprint_.at(-s.position.z);
@@ -97,12 +113,9 @@ class Guesses {
     const glm::vec3 to_viewer =
         direction_to_viewer(s.position, scene_.geometry.camera.orthographic);
     const glm::mat3 frame = frame_about(s.normal);
-    const Window &window = scene_.geometry.window, &display = scene_.geometry.display;
-    const std::uint32_t hash = hash_of(std::uint32_t(window.x0 - display.x0 + x),
-                                       std::uint32_t(window.y0 - display.y0 + y), seed ^ kSeed);
-    for (int k = 0; k < rays; ++k) {
-      const glm::vec3 to = cosine_direction(frame, sobol_point(std::uint32_t(k), hash));
-      const auto unseen = follow(pictured(origin, to), s.normal, int(hash >> 16) + k * kSpread,
+    for (int k = samples.first; k < samples.first + samples.count; ++k) {
+      const glm::vec3 to = cosine_direction(frame, sobol_point(std::uint32_t(k), samples.seed));
+      const auto unseen = follow(pictured(origin, to), s.normal, k * kSpread,
                                  glm::dot(to, to_viewer) > kTowardsCamera);
       if (unseen) on_guessed(*unseen);
     }
@@ -265,7 +278,8 @@ Plane<float> guessed_shares(const Scene& scene, const Window& part, float radius
           for (int x = tile.x0; x < tile.x1; ++x) {
             if (!scene.geometry.surfel(part.x0 + x, part.y0 + y).is_usable()) continue;
             int count = 0;
-            guesses.gather(part.x0 + x, part.y0 + y, kRays, seed, [&](Unseen) { ++count; });
+            const int px = part.x0 + x, py = part.y0 + y;
+            guesses.gather(px, py, guesses.samples_at(px, py, seed), [&](Unseen) { ++count; });
             shares(x, y) = float(count) / kRays;
           }
         }
@@ -286,7 +300,9 @@ GuessedMean mean_guessed(const Scene& scene, float radius) {
     for (int x = shown.x0 - window.x0 + apart / 2; x < shown.x1 - window.x0; x += apart) {
       if (!surfel(x, y).is_usable()) continue;
       ++surfaces;
-      guesses.gather(x, y, kRaysOfMean, 0, [&](Unseen at) { mean.at[std::size_t(at)] += 1; });
+      const Guesses::Samples samples{0, kRaysOfMean,
+                                     hash_of(std::uint32_t(x), std::uint32_t(y), kSeed)};
+      guesses.gather(x, y, samples, [&](Unseen at) { mean.at[std::size_t(at)] += 1; });
     }
   }
   if (surfaces == 0) return {};
