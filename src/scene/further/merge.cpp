@@ -89,6 +89,8 @@ class Rival {
  public:
   explicit Rival(const FurtherView& view) : view_(view) {}
 
+  bool has_albedo() const { return !view_.picture->albedo.empty(); }
+
   /// Width of what the pixel of a place covers of its surface, in scene units; infinite where it is
   /// seen from behind or nearly edge-on.
   float width_of(const Surfel& s) const {
@@ -129,8 +131,8 @@ class Rival {
   const FurtherView& view_;
 };
 
-/// Of the views from the first on, in their order, the `k`-th leaves out what another one shows
-/// more finely, or as finely and earlier.
+/// The `k`-th view leaves out what another one shows more finely, or as finely and earlier. One
+/// without albedo replaces none that has it: its surfaces send no light.
 void leave_out_repeated(const std::vector<Rival>& rivals, std::size_t k,
                         const Plane<Surfel>& surfel, Plane<Fate>& fates) {
   for_each_row(surfel.height, [&](int y) {
@@ -138,7 +140,7 @@ void leave_out_repeated(const std::vector<Rival>& rivals, std::size_t k,
       if (fates(x, y) != Fate::added) continue;
       const float own = rivals[k].width_of(surfel(x, y));
       for (std::size_t j = 0; j < rivals.size(); ++j) {
-        if (j == k) continue;
+        if (j == k || (rivals[k].has_albedo() && !rivals[j].has_albedo())) continue;
         const float other = rivals[j].width_if_shown(surfel(x, y));
         if (other < own || (j < k && other == own && std::isfinite(other)))
           fates(x, y) = Fate::repeated;

@@ -24,9 +24,13 @@ class Merge : public testing::Test {
     frame_.world_known = true;
   }
 
-  FurtherView view(const std::string& name, const Window& window, const glm::dvec3& eye) {
+  FurtherView view(const std::string& name, const Window& window, const glm::dvec3& eye,
+                   bool albedo = true) {
     const Camera camera = look_at(camera_from_fov(45, window, 1), eye, {0, 0.3, 0.4}, {0, 0, 1});
-    write_frame(folder_.path() / name, frame_of(take_picture(scene_, camera, window)));
+    FramePart part = frame_of(take_picture(scene_, camera, window));
+    for (const char* c : {"R", "G", "B"})
+      if (!albedo) part.channels.erase(std::string("ViewLayer.DiffCol.") + c);
+    write_frame(folder_.path() / name, part);
     return place(FurtherPictures().also(folder_.path() / name), frame_);
   }
 
@@ -62,6 +66,14 @@ TEST_F(Merge, OfWhatSeveralViewsShowTheFinestAddsIt) {
   EXPECT_GT(alone.added.size(), 1000u);
   EXPECT_LT(double(both.added.size()), 1.05 * double(alone.added.size()));
   EXPECT_NEAR(area(both), area(alone), 0.05 * area(alone));
+}
+
+TEST_F(Merge, AViewWithoutAlbedoTakesNoLightFromOneThatHasIt) {
+  const glm::dvec3 eye(-3.5, 2.5, 2.5);
+  const FurtherView fine = view("fine.exr", kFine, eye, false),
+                    coarse = view("coarse.exr", kCoarse, eye);
+  const std::size_t of_coarse = merge({coarse}).added.size(), of_fine = merge({fine}).added.size();
+  EXPECT_EQ(merge({coarse, fine}).added.size(), of_coarse + of_fine);
 }
 
 TEST_F(Merge, OfEqualViewsOneAddsIt) {
