@@ -163,26 +163,6 @@ TEST_F(FurtherViews, WallsSeenFromOutsideSendNoLightInside) {
   }
 }
 
-/// Wires stand before a coarse view's background, which looks past them: they keep their
-/// thickness.
-TEST_F(FurtherViews, DoNotCarveWhatTheyDoNotResolve) {
-  std::vector<Surface> things = {plane({}, {0, 0, 1})};
-  for (int i = -8; i <= 8; ++i) {
-    things.push_back(Box{{0.12 * i - 0.015, -0.015, 0}, {0.12 * i + 0.015, 0.015, 0.8}}.surface());
-  }
-  const Surface fence = all_of(things);
-  const Window coarse{0, 0, 48, 36};
-  const Camera camera = pinhole(kFrame, 30, {0, -4, 1.2}, {0, 0, 0.3});
-  const std::string frame = write("frame.exr", fence, camera, kFrame),
-                    view = write("view.exr", fence,
-                                 pinhole(coarse, 40, {0.4, -3.8, 1.4}, {0, 0, 0.3}), coarse);
-  const auto floor = [](const glm::dvec3& p) { return p.z < 1e-6 && std::abs(p.x) < 0.9; };
-  const double alone = rmse(ao(frame, {}), fence, camera, floor),
-               known = rmse(ao(frame, {view}), fence, camera, floor);
-  fmt::print("RMSE {:.4f} alone, {:.4f} with a coarse view\n", alone, known);
-  EXPECT_LT(known, 1.02 * alone);
-}
-
 TEST_F(FurtherViews, AreKnownAndNotGuessed) {
   const glm::dvec3 eye(-0.5, -2, 1.4), target(0.3, 3, 1.2);
   const std::string frame =

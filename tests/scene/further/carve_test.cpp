@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/further/carve.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "estimators/bitmask/request.h"
+#include "scene/further/further_pictures.h"
+#include "support/boxes.h"
+#include "support/frame_file.h"
+#include "support/temp_dir.h"
+
+namespace ssdo::test {
+namespace {
+
+/// Posts on a floor. The share of the pixels that show them whose guessed thickness a view from
+/// beside ends.
+double share_cut(const Window& view_window) {
+  std::vector<Surface> things = {plane({}, {0, 0, 1})};
+  for (int i = -4; i <= 4; ++i)
+    things.push_back(Box{{0.3 * i - 0.05, -0.05, 0}, {0.3 * i + 0.05, 0.05, 1}}.surface());
+  const Surface scene = all_of(things);
+  const Window window{0, 0, 160, 120};
+  const auto looks = [](const Window& w, double fov, const glm::dvec3& eye) {
+    return look_at(camera_from_fov(fov, w, 1), eye, {0, 0, 0.4}, {0, 0, 1});
+  };
+  Geometry frame = geometry_of(scene, looks(window, 30, {0, -4, 1.2}), window);
+  frame.world_known = true;
+  const TempDir folder;
+  write_frame(folder / "view.exr",
+              frame_of(take_picture(scene, looks(view_window, 40, {1.2, -3.8, 1.6}), view_window)));
+  Solids solids = guess_solids(frame);
+  const Plane<float> guessed = solids.thickness;
+  carve(solids, frame, {place(FurtherPictures().also(folder / "view.exr"), frame)});
+  int posts = 0, cut = 0;
+  for (std::size_t i = 0; i < guessed.size(); ++i) {
+    const glm::dvec3 p =
+        glm::transpose(frame.camera.rotation) * glm::dvec3(frame.surfel[i].position) +
+        frame.camera.origin;
+    if (p.z < 0.1) continue;
+    ++posts;
+    cut += solids.thickness[i] < guessed[i];
+  }
+  EXPECT_GT(posts, 500);
+  fmt::print("{} x {}: {} of {} cut\n", view_window.width(), view_window.height(), cut, posts);
+  return double(cut) / posts;
+}
+
+TEST(Carve, AViewLooksPastWhatItsPixelsDoNotResolve) { EXPECT_EQ(share_cut({0, 0, 24, 18}), 0); }
+
+TEST(Carve, AViewThatResolvesThingsEndsThem) { EXPECT_GT(share_cut({0, 0, 640, 480}), 0.02); }
+
+}  // namespace
+}  // namespace ssdo::test
