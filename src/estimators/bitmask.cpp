@@ -236,14 +236,15 @@ class Bitmask {
         request_.extend_offscreen && !all_is_shown
             ? sun_past_beyond(mean_ao(march_scene_, scene_.geometry.display, request_.radius))
             : 1;
-    const RayDistances distances_px = ray_distances(scene_.geometry.display, request_.steps);
-    for (const Sun& sun : light.suns) add_sun(sun, distances_px, past);
+    const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
+    for (const Sun& sun : light.suns) add_sun(sun, bounds, past);
   }
 
   /// Adds the light of a sun where it is seen. Members of the pattern look at different points of
   /// its disc.
-  void add_sun(const Sun& sun, const RayDistances& distances_px, float past_beyond) {
-    const SunJob job{march_, directions_to(sun), distances_px, &sun, past_beyond, &direct_};
+  void add_sun(const Sun& sun, const std::vector<DepthBounds>& bounds, float past_beyond) {
+    const PerMember<glm::vec3> directions = directions_to(sun);
+    const SunJob job{march_, bounds, directions, &sun, past_beyond, &direct_};
     for_each_band_of(
         lit_part(), [&](const Window& part) { march_sun(job, part); }, progress_);
   }
@@ -256,9 +257,9 @@ class Bitmask {
       for_each_pixel(
           y, [&](std::size_t pixel, std::ptrdiff_t i) { roughness[i] = scene_.roughness[pixel]; });
     });
-    const RayDistances distances_px = ray_distances(scene_.geometry.display, request_.steps);
-    const ReflectionJob job{
-        march_, distances_px, &roughness, kReflectionRays * request_.slices, request_.seed, &open};
+    const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
+    const ReflectionJob job{march_,        bounds, &roughness, kReflectionRays * request_.slices,
+                            request_.seed, &open};
     for_each_band_of(
         march_scene_.receivers, [&](const Window& part) { march_reflection(job, part); },
         progress_);

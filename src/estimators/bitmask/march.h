@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "estimators/bitmask/depth_bounds.h"
 #include "estimators/bitmask/march_scene.h"
 #include "estimators/bitmask/ray_pattern.h"
 #include "estimators/bitmask/slice_pattern.h"
@@ -77,8 +78,8 @@ struct BounceJob {
 /// The direct light of a sun where it is visible.
 struct SunJob {
   March march;
-  PerMember<glm::vec3> directions;  ///< unit, to points of the sun
-  const RayDistances& distances_px;
+  const std::vector<DepthBounds>& bounds;
+  const PerMember<glm::vec3>& directions;  ///< unit, to points of the sun
   const Sun* sun;
   float past_beyond;           ///< share of it that passes what may stand beyond the frame
   InterleavedVectors* direct;  ///< added to
@@ -87,7 +88,7 @@ struct SunJob {
 /// How much of what rough surfaces mirror is not blocked.
 struct ReflectionJob {
   March march;
-  const RayDistances& distances_px;
+  const std::vector<DepthBounds>& bounds;
   const InterleavedPlane* roughness;  ///< 0..1
   int rays;                           ///< of each pixel
   unsigned seed;

@@ -9,25 +9,6 @@
 #include "math/sequence_numbers.h"
 
 namespace ssdo {
-namespace {
-
-/// The edge of a shadow that single rays throw shows their steps, because no other slices average
-/// them away.
-constexpr int kSteps = 2;
-
-}  // namespace
-
-RayDistances ray_distances(const Window& display, int steps) {
-  RayDistances distances_px;
-  const double diagonal = std::hypot(display.width(), display.height());
-  for (std::size_t m = 0; m < distances_px.size(); ++m) {
-    const double start = fraction(SlicePattern::rank(int(m)) * kR2Second);
-    for (int i = 0; i < kSteps * steps; ++i)
-      distances_px[m].push_back(float(march_distance((i + start) / (kSteps * steps), diagonal)));
-  }
-  return distances_px;
-}
-
 PerMember<glm::vec3> directions_to(const Sun& sun) {
   PerMember<glm::vec3> directions;
   const glm::mat3 frame = frame_about(sun.direction);

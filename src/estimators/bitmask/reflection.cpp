@@ -55,8 +55,7 @@ void reflection(const ReflectionJob& job, const Window& part) {
                                   sobol_point(std::uint32_t(sample), hash_of(job.seed, 0, 0)));
       const M above = hn::And(p.valid, m.share > set(0));
       const V passed =
-          passes<kOrthographic>(job.march, p, m.to, job.distances_px[std::size_t(member)], above,
-                                turn_of_member(member), 1);
+          passes<kOrthographic>(job.march, job.bounds, p, m.to, above, turn_of_member(member), 1);
       open = hn::MulAdd(passed, m.share, open);
       all = all + hn::IfThenElseZero(above, m.share);
     }

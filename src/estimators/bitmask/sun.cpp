@@ -19,9 +19,9 @@ void sun(const SunJob& job, const Window& part) {
     const int member = member_at(scene, place);
     MarchReceiver p = load_receiver(scene, place);
     p.reach_px = reach_px(scene, p, job.march.radius);
-    const V visible = passes<kOrthographic>(job.march, p, set(job.directions[std::size_t(member)]),
-                                            job.distances_px[std::size_t(member)], p.valid,
-                                            turn_of_member(member), job.past_beyond);
+    const V visible =
+        passes<kOrthographic>(job.march, job.bounds, p, set(job.directions[std::size_t(member)]),
+                              p.valid, turn_of_member(member), job.past_beyond);
     const V cosine = facing(load_normals(scene, place.index, p.valid), job.sun->direction);
     const V3 before_it = load(*job.direct, place.index);
     store(mul_add(set(job.sun->irradiance), visible * cosine, before_it), *job.direct, place.index);
