@@ -30,6 +30,9 @@ constexpr float kDarkAlbedo = 0.01f;
 /// More than this of a result should not rest on guesses.
 constexpr float kMuchGuessed = 0.3f;
 
+/// What is wider, in degrees, is not called a sun.
+constexpr float kWidestSun = 4;
+
 struct OptionOfModel {
   std::string_view name;
   bool given, taken;
@@ -106,6 +109,19 @@ void choose_bounces(Plan& plan, int wanted, const Scene& scene) {
   plan.reasons.push_back(fmt::format("no bounce: the albedo is {:.2g} at most", double(brightest)));
 }
 
+/// A sun or a larger source, and how large it is.
+std::string shape_of(const Sun& sun) {
+  const float longer = glm::degrees(sun.extent.x), shorter = glm::degrees(sun.extent.y);
+  // The rectangle with the moments of a disc has sides of sqrt(3) radii.
+  const float radius = longer / std::sqrt(3.0f);
+  const bool is_round =
+      longer < 1.2f * shorter && glm::degrees(sun.angular_radius) < 1.12f * radius;
+  const float wide = is_round ? 2 * radius : longer;
+  const std::string_view what = wide < kWidestSun ? "a sun" : "a source";
+  if (is_round || wide < kWidestSun) return fmt::format("{} {:.2g} degrees wide", what, wide);
+  return fmt::format("{} {:.2g} x {:.2g} degrees", what, longer, shorter);
+}
+
 void explain_light(Plan& plan, const Light& light) {
   if (!plan.request.products.direct) return;
   if (light.is_constant()) {
@@ -114,8 +130,10 @@ void explain_light(Plan& plan, const Light& light) {
   }
   for (const Sun& sun : light.suns) {
     plan.reasons.push_back(fmt::format(
-        "a sun {:.2g} degrees wide with {:.3g} of irradiance over pi, treated separately",
-        2 * glm::degrees(sun.angular_radius), luminance(sun.irradiance)));
+        "{} gives {:.0f} % of the light that a surface facing it gets ({:.3g} of "
+        "irradiance over pi), treated separately: spherical harmonics would hold {:.0f} "
+        "% of it",
+        shape_of(sun), 100 * sun.share, luminance(sun.irradiance), 100 * sun.held));
   }
   std::string energy;
   for (const double share : light.band_energy) energy += fmt::format(" {:.1f}", 100 * share);

@@ -6,12 +6,13 @@
 //
 //   ao      = number open / n
 //   direct  = E(N)/pi * sum_open L(w_i) / sum_all L(w_i)   channel by channel, then the suns, each
-//             by its share of seen points of its disc
+//             by the share of its seen points in the cosines of all that are above the horizon
 //   bounce  = sum L_out(q_i) / n                            q_i: the surface that is met first
 //
 // L is the environment without its suns, looked up as it is: a method whose light is in spherical
-// harmonics shows here what they leave out. The ratio goes to the plain sum as n grows; where all
-// is open it is exact with any n.
+// harmonics shows here what they leave out. Where all is open, both ratios are exact with any n.
+// Elsewhere the first goes to the plain sum as n grows; with few rays it is biased where they meet
+// bright parts of L by chance. What is concentrated enough for that to matter is among the suns.
 //
 // What a surface sends is its albedo times all the light that arrives, as in method bitmask: the
 // side that is not seen has the light of its own side, as far as the seen one is open.
@@ -249,21 +250,21 @@ class Trace {
     if (request_.products.error) luminances_[pixel] = groups;
   }
 
-  /// What a sun gives; `groups` gain what it gives in each part of the samples.
+  /// What a sun gives; `groups` gain what it gives in each part of the samples. Every point of it
+  /// counts by its own cosine: one at the horizon gives less than one above it.
   glm::vec3 light_of(const Sun& sun, std::uint32_t number, const Receiver& p,
                      Groups& groups) const {
-    const float cosine = glm::dot(p.normal, sun.direction);
-    if (cosine <= 0) return glm::vec3(0);
-    const glm::mat3 frame = frame_about(sun.direction);
+    const glm::vec3 unoccluded = sun.cosine(p.normal) * sun.irradiance;
+    if (unoccluded == glm::vec3(0)) return unoccluded;
     std::array<float, kGroups> seen{}, above{};
     for (int s = 0; s < samples_; ++s) {
-      const glm::vec2 u = sobol_point(std::uint32_t(s), hash_of(p.seed, number, kSunSeed));
-      const glm::vec3 to = disc_direction(frame, sun.angular_radius, u);
-      if (glm::dot(to, p.normal) <= 0) continue;
-      above[group_of(s)] += 1;
-      seen[group_of(s)] += !is_blocked(p, to);
+      const glm::vec3 to =
+          sun.point(sobol_point(std::uint32_t(s), hash_of(p.seed, number, kSunSeed)));
+      const float cosine = glm::dot(to, p.normal);
+      if (cosine <= 0) continue;
+      above[group_of(s)] += cosine;
+      if (!is_blocked(p, to)) seen[group_of(s)] += cosine;
     }
-    const glm::vec3 unoccluded = cosine * sun.irradiance;
     float all_seen = 0, all_above = 0;
     for (int g = 0; g < kGroups; ++g) {
       all_seen += seen[g], all_above += above[g];

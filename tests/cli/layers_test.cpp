@@ -95,6 +95,12 @@ TEST(Info, SaysWhatItFoundAndWouldDo) {
       run_tool({"info", data("still_life.exr"), "--env", data("environments/sky.exr")});
   EXPECT_THAT(sky.out,
               testing::AllOf(HasSubstr("a sun"), HasSubstr("spherical harmonics to order")));
+  // Its key light is 64 x 44 degrees between soft edges, its rim light 14 x 70.
+  const Finished studio =
+      run_tool({"info", data("still_life.exr"), "--env", data("environments/studio.exr")});
+  EXPECT_THAT(studio.out, testing::AllOf(HasSubstr("a source 64 x 43 degrees"),
+                                         HasSubstr("a source 68 x 15 degrees"),
+                                         HasSubstr("harmonics would hold")));
   EXPECT_EQ(j["surface_pixels"].get<int>() + j["background_pixels"].get<int>(), 576 * 324);
 }
 

@@ -134,15 +134,17 @@ class Lamps {
   }
 
   glm::vec3 sunlight(const Sun& sun, std::uint32_t number, const Side& side) const {
-    const float cosine = glm::dot(side.normal, sun.direction);
-    if (cosine <= 0) return glm::vec3(0);
-    const glm::mat3 frame = frame_about(sun.direction);
-    int seen = 0;
+    const glm::vec3 unoccluded = sun.cosine(side.normal) * sun.irradiance;
+    if (unoccluded == glm::vec3(0)) return unoccluded;
+    float seen = 0, above = 0;
     for (int s = 0; s < kSunRays; ++s) {
-      const glm::vec2 u = sobol_point(std::uint32_t(s), hash_of(side.seed, number, kSunSeed));
-      seen += !rays_.is_blocked(side.start, disc_direction(frame, sun.angular_radius, u), radius_);
+      const glm::vec3 to =
+          sun.point(sobol_point(std::uint32_t(s), hash_of(side.seed, number, kSunSeed)));
+      const float cosine = std::max(0.0f, glm::dot(to, side.normal));
+      above += cosine;
+      if (cosine > 0 && !rays_.is_blocked(side.start, to, radius_)) seen += cosine;
     }
-    return cosine * sun.irradiance * (float(seen) / kSunRays);
+    return above > 0 ? unoccluded * (seen / above) : glm::vec3(0);
   }
 
   glm::vec3 bounced_light(const Side& side, const FurtherLight& sent) const {

@@ -37,14 +37,18 @@ glm::vec3 Environment::direction_at(float polar, float azimuth) const {
   return {across * std::sin(azimuth), std::cos(polar), across * std::cos(azimuth)};
 }
 
-float Environment::azimuth_of(int x) const {
+float Environment::azimuth_at(float column) const {
   // The map turned by +rotate shows at azimuth a what the unturned map shows at a - rotate.
-  const float u = (float(x) + 0.5f) / float(map_->width);
-  return 2 * kPi * (0.5f - u) + glm::radians(frame_.rotate_degrees);
+  return 2 * kPi * (0.5f - column / float(map_->width)) + glm::radians(frame_.rotate_degrees);
+}
+
+glm::mat3 Environment::axes() const {
+  if (frame_.up == UpAxis::z) return glm::mat3(1);
+  return {glm::vec3(0, 0, 1), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)};
 }
 
 glm::vec3 Environment::texel_direction(int x, int y) const {
-  return direction_at(kPi * (float(y) + 0.5f) / float(map_->height), azimuth_of(x));
+  return direction_at(kPi * (float(y) + 0.5f) / float(map_->height), azimuth_at(float(x) + 0.5f));
 }
 
 glm::vec2 Environment::texel_at(const glm::vec3& d) const {
@@ -94,7 +98,8 @@ std::vector<Environment::Patch> Environment::patches(const glm::mat3& world_to_c
   std::vector<Patch> sky(std::size_t(columns) * std::size_t(rows));
   // Unit vectors around the horizon, so that the loop over texels has no trigonometry.
   std::vector<glm::vec3> horizon(std::size_t(map.width));
-  for (int x = 0; x < map.width; ++x) horizon[x] = direction_at(kPi / 2, azimuth_of(x));
+  for (int x = 0; x < map.width; ++x)
+    horizon[x] = direction_at(kPi / 2, azimuth_at(float(x) + 0.5f));
   const auto first_texel = [](int patch, int patches, int texels) {
     return int(std::int64_t(patch) * texels / patches);
   };

@@ -55,6 +55,11 @@ class Environment {
   glm::vec3 texel_direction(int x, int y) const;
   glm::vec2 texel_at(const glm::vec3& direction_world) const;
 
+  /// Angle around the up axis at a place in columns, centres at halves. The direction at an angle p
+  /// to the up axis is axes() * (sin p cos azimuth, sin p sin azimuth, cos p).
+  float azimuth_at(float column) const;
+  glm::mat3 axes() const;
+
   /// Steradians of a texel in row `y`.
   float texel_solid_angle(int y) const;
 
@@ -78,9 +83,6 @@ class Environment {
 
   /// World direction from the angle to the up axis and the one around it.
   glm::vec3 direction_at(float polar, float azimuth) const;
-
-  /// Angle around the up axis of a column's centre.
-  float azimuth_of(int x) const;
 
   std::shared_ptr<const Plane<glm::vec3>> map_;
   EnvironmentFrame frame_;

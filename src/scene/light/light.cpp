@@ -9,6 +9,8 @@
 #include <memory>
 
 #include "parallel/tiles.h"
+#include "scene/light/sky_grid.h"
+#include "scene/light/take_suns.h"
 
 namespace ssdo {
 namespace {
@@ -177,8 +179,7 @@ OctahedralMap irradiance(const Sky& sky, const Light& model) {
 glm::vec3 Light::unoccluded(const glm::vec3& normal) const {
   if (is_constant()) return environment.constant_radiance();  // looking it up would round
   glm::vec3 sum = irradiance(normal);
-  for (const Sun& sun : suns)
-    sum += std::max(0.0f, glm::dot(normal, sun.direction)) * sun.irradiance;
+  for (const Sun& sun : suns) sum += sun.cosine(normal) * sun.irradiance;
   return sum;
 }
 
@@ -195,10 +196,10 @@ Light model_light(const Environment& environment, const glm::mat3& world_to_came
   SunsAndRest parts = take_suns(environment);
   model.suns = std::move(parts.suns);
   model.sky = parts.rest;
-  for (Sun& sun : model.suns) sun.direction = world_to_camera * sun.direction;
-  const Environment rest = refined(parts.rest);
-  project(rest.patches(world_to_camera, kBandColumns), model);
-  const std::vector<Patch> patches = rest.patches(world_to_camera, kLobeColumns);
+  for (Sun& sun : model.suns) sun.turn(world_to_camera);
+  const SkyGrid grid(refined(parts.rest), world_to_camera, kBandColumns);
+  project(grid.patches, model);
+  const std::vector<Patch> patches = grid.merged(kLobeColumns).patches;
   const Sky sky(patches);
   measure_residuals(patches, sky, model);
   model.irradiance = irradiance(sky, model);

@@ -23,7 +23,7 @@ constexpr double kBandLimited = 0.005, kLightResidual = 0.1;
 struct Light {
   Environment environment = Environment::constant(glm::vec3(0));  ///< all of it
   Environment sky = Environment::constant(glm::vec3(0));          ///< without the suns
-  std::vector<Sun> suns;                                          ///< strongest first, at most 4
+  std::vector<Sun> suns;                                          ///< strongest first, at most 8
 
   /// Of the radiance without the suns, by spherical harmonic. All orders are filled.
   std::array<glm::vec3, kShCount> coefficients{};

@@ -1,32 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "scene/light/environment.h"
+#include "scene/light/sun_shape.h"
 
 namespace ssdo {
 
-/// A concentrated source taken out of an environment.
+/// A concentrated source of any shape taken out of an environment: the sun, a lamp, a window.
 struct Sun {
-  glm::vec3 direction{0};    ///< unit, towards it
-  float angular_radius = 0;  ///< radians, of the disc that holds its light; half a texel or more
-  glm::vec3 irradiance{0};   ///< on a surface that faces it, over pi: unoccluded direct light is
-                             ///< irradiance * cos
+  glm::vec3 direction{0};  ///< unit, towards its middle: that of the vector sum of its light
+  float angular_radius =
+      0;  ///< radians, from the middle to its farthest light; half a texel or more
+  glm::vec3 irradiance{0};  ///< over pi, on a surface that faces it: the length of the vector sum
+  glm::vec2 extent{0};  ///< radians, sides of the even rectangle with its moments, longer one first
+  float share = 0;      ///< of the irradiance that a surface facing it has from everywhere
+  float held = 0;       ///< share of its light that spherical harmonics would keep in its place
+
+  SunShape shape;
+
+  /// Centres of parts of equal light, scaled so that their mean is `direction`, and half the width
+  /// of such a part in radians.
+  std::vector<glm::vec3> points;
+  float point_radius = 0;
+
+  /// Unit direction to a point of it, in proportion to its light, for `u` in the unit square.
+  glm::vec3 point(const glm::vec2& u) const { return shape.point(u); }
+
+  /// What turns `irradiance` into that of a surface with this normal: the mean of the cosines to
+  /// all points above the horizon, 1 for `direction`. dot(normal, direction) if all of it is above.
+  float cosine(const glm::vec3& normal) const {
+    const float middle = glm::dot(normal, direction), edge = std::sin(angular_radius);
+    if (middle >= edge) return middle;
+    return middle <= -edge ? 0 : cosine_at_horizon(normal);
+  }
+
+  void turn(const glm::mat3& by);
+
+ private:
+  float cosine_at_horizon(const glm::vec3& normal) const;
 };
+
+/// Fills in `points` and `point_radius` of a source that has all the rest.
+void set_points(Sun& sun);
+
+/// The mean of max(0, x) over the numbers x that are `radius` from `middle` at most: the cosine to
+/// a part of a source, which the horizon may cut.
+inline float mean_above_horizon(float middle, float radius) {
+  const float cut = std::max(0.0f, radius - std::abs(middle));
+  return std::max(0.0f, middle) + cut * cut / (4 * radius);
+}
 
 /// How bright a colour is whatever its space: the mean of its channels.
 inline float brightness(const glm::vec3& c) { return (c.x + c.y + c.z) / 3; }
-
-/// An environment in two parts whose light adds up to the whole.
-struct SunsAndRest {
-  std::vector<Sun> suns;  ///< strongest first, at most 4, directions in world space
-  Environment rest;       ///< suns are filled with the radiance around them
-};
-
-/// Takes out what is within 5 degrees of a point and gives at least 5 % of the irradiance of a
-/// surface that faces it. Not for a constant.
-SunsAndRest take_suns(const Environment& whole);
 
 }  // namespace ssdo

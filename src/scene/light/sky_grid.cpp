@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/light/sky_grid.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+#include "scene/light/sun.h"
+
+namespace ssdo {
+
+SkyGrid::SkyGrid(const Environment& environment, const glm::mat3& world_to_camera, int most_columns)
+    : columns(std::min(environment.map()->width, most_columns)),
+      patches(environment.patches(world_to_camera, most_columns)) {
+  rows = int(patches.size()) / columns;
+}
+
+SkyGrid SkyGrid::merged(int most_columns) const {
+  SkyGrid out;
+  out.columns = std::min(columns, most_columns);
+  out.rows = std::min(rows, std::max(1, most_columns / 2));
+  out.patches.resize(std::size_t(out.columns) * std::size_t(out.rows));
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      const Environment::Patch& part = patches[index(x, y)];
+      Environment::Patch& whole =
+          out.patches[out.index(x * out.columns / columns, y * out.rows / rows)];
+      whole.direction +=
+          (std::abs(brightness(part.power)) + 1e-6f * part.solid_angle) * part.direction;
+      whole.power += part.power;
+      whole.solid_angle += part.solid_angle;
+    }
+  }
+  for (Environment::Patch& patch : out.patches) patch.direction = glm::normalize(patch.direction);
+  return out;
+}
+
+}  // namespace ssdo

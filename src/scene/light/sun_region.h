@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <glm/trigonometric.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+#include "scene/light/sky_grid.h"
+
+namespace ssdo {
+
+/// What is farther from the middle of a source belongs to the sky: harmonics hold most of it.
+const float kMostSunRadius = glm::radians(40.0f);
+
+/// Patches of a grid that touch each other and are brighter than what is around them.
+struct SunRegion {
+  std::vector<std::size_t> patches;
+  float threshold = 0;  ///< radiance that all have but the dim ones at its border
+  glm::vec3 middle{0};  ///< unit, of its light
+  float light = 0;      ///< irradiance over pi of a surface that faces the middle
+  float missing = 0;    ///< that part of it which harmonics do not hold
+};
+
+/// Radiance that harmonics hold in a patch.
+using HeldRadiance = std::function<float(std::size_t patch)>;
+
+/// Finds the patches around a bright one that form a source.
+class SunGrowth {
+ public:
+  SunGrowth(const SkyGrid& grid, HeldRadiance held);
+
+  /// Lowers the threshold from the radiance of `seed` on, step by step, and adds what is connected.
+  /// Returns the region of the first step that is missing `least(its middle)` at least and that
+  /// half the threshold would hardly add to; nothing if there is none within kMostSunRadius.
+  std::optional<SunRegion> grow(std::size_t seed, const std::function<float(glm::vec3)>& least);
+
+ private:
+  struct Sums {
+    glm::dvec3 light{0};
+    double missing = 0, power = 0, solid_angle = 0;
+  };
+  bool flood(int step, std::size_t seed, Sums& sums);
+  bool is_wide(const glm::vec3& middle) const;
+  SunRegion region_of(const Sums& sums) const;
+
+  const SkyGrid& grid_;
+  HeldRadiance held_;
+  std::vector<std::size_t> patches_;              ///< of the region, as they were reached
+  std::vector<std::vector<std::size_t>> border_;  ///< what touches it, by the step that takes it
+  std::vector<bool> reached_;
+};
+
+}  // namespace ssdo

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "scene/light/environment.h"
+#include "scene/light/sun.h"
+
+namespace ssdo {
+
+/// An environment in two parts whose light adds up to the whole in every texel.
+struct SunsAndRest {
+  std::vector<Sun> suns;  ///< strongest first, at most 8, in world space
+  Environment rest;       ///< suns are filled with the radiance around them
+};
+
+/// Takes out the sources that spherical harmonics cannot hold: connected bright texels, no farther
+/// than 40 degrees from their middle, whose light less that of harmonics in the same place is at
+/// least 5 % of the irradiance of a surface that faces it. Not for a constant.
+SunsAndRest take_suns(const Environment& whole);
+
+}  // namespace ssdo
