@@ -20,11 +20,15 @@ HWY_INLINE V facing(const V3& normal, const glm::vec3& to) {
   return hn::Max(dot(normal, set(to)), set(0));
 }
 
+/// The direct light of a sun on surfaces with nothing around them.
+HWY_INLINE V3 unoccluded(const Sun& sun, const V3& normal) {
+  return set(sun.irradiance) * facing(normal, sun.direction);
+}
+
 /// Light::unoccluded()
 HWY_INLINE V3 unoccluded(const Light& light, const V3& normal) {
   V3 sum = look_up(light.irradiance, normal);
-  for (const Sun& sun : light.suns)
-    sum = mul_add(set(sun.irradiance), facing(normal, sun.direction), sum);
+  for (const Sun& sun : light.suns) sum = sum + unoccluded(sun, normal);
   return sum;
 }
 
