@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filters/shares.h"
 #include "math/luminance.h"
 #include "stopwatch.h"
 
@@ -53,17 +54,17 @@ Products as_error(Plane<float> plane) {
 Products over_geometry(Products found, const Geometry& geometry, const Window& receivers) {
   if (receivers.area() == 0 || receivers == geometry.window) return found;
   const int left = receivers.x0 - geometry.window.x0, top = receivers.y0 - geometry.window.y0;
-  for_each_plane(
-      [&](const Product& product, auto& plane) {
-        if (plane.empty()) return;
-        using Value = std::decay_t<decltype(plane[0])>;
-        Plane<Value> whole(geometry.surfel.width, geometry.surfel.height,
-                           Value(product.background));
-        for (int y = 0; y < plane.height; ++y)
-          std::copy_n(&plane(0, y), plane.width, &whole(left, top + y));
-        plane = std::move(whole);
-      },
-      found);
+  const auto place = [&](auto& plane, float background) {
+    if (plane.empty()) return;
+    using Value = std::decay_t<decltype(plane[0])>;
+    Plane<Value> whole(geometry.surfel.width, geometry.surfel.height, Value(background));
+    for (int y = 0; y < plane.height; ++y)
+      std::copy_n(&plane(0, y), plane.width, &whole(left, top + y));
+    plane = std::move(whole);
+  };
+  for_each_plane([&](const Product& product, auto& plane) { place(plane, product.background); },
+                 found);
+  for_each_share([&](auto& plane) { place(plane, 0); }, found);
   return found;
 }
 
@@ -146,8 +147,7 @@ class Round {
   }
 
   Products filtered(Products products) const {
-    return apply_filter(*plan_.filter, std::move(products), scene_.geometry,
-                        plan_.method->pattern_size);
+    return filter_shares(*plan_.filter, std::move(products), scene_, plan_.method->pattern_size);
   }
 
   /// Turns the difference of halves into the product `error`.

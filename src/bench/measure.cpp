@@ -6,6 +6,7 @@
 
 #include "color/compose.h"
 #include "estimate.h"
+#include "filters/shares.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -84,8 +85,8 @@ Measured measure(const Frame& frame, const Plan& plan, const Progress& progress)
     out.products =
         plan.method->estimate(frame.scene, plan.request, out.runs == 0 ? progress : Progress());
     estimates.push_back(watch.lap());
-    out.products = apply_filter(*plan.filter, std::move(out.products), frame.scene.geometry,
-                                plan.method->pattern_size);
+    out.products = filter_shares(*plan.filter, std::move(out.products), frame.scene,
+                                 plan.method->pattern_size);
     filters.push_back(watch.lap());
     spent += estimates.back().wall_ms + filters.back().wall_ms;
     ++out.runs;

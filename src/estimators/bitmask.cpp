@@ -53,14 +53,12 @@
 #include "estimators/bitmask/basis_weights.h"
 #include "estimators/bitmask/beyond.h"
 #include "estimators/bitmask/march.h"
+#include "estimators/bitmask/raster.h"
 #include "estimators/guessed.h"
-#include "math/light_range.h"
 #include "scene/light/light.h"
 
 namespace ssdo {
 namespace {
-
-constexpr int kPeriod = Interleaving::kPeriod;
 
 /// Bounce light is a small part of all light on most surfaces: with two thirds of the steps it adds
 /// less noise than direct light has. Measured on seven frames.
@@ -74,11 +72,6 @@ constexpr int kReflectionRays = 2;
 constexpr int bounce_spacing(int slices) { return slices < 4 ? 2 : 1; }
 constexpr int bounce_slices(int slices) { return slices < 4 ? (3 * slices + 1) / 2 : slices; }
 
-/// One colour for each pixel, in the order of the march.
-InterleavedVectors make_color(const Interleaving& layout) {
-  return {InterleavedPlane(layout), InterleavedPlane(layout), InterleavedPlane(layout)};
-}
-
 /// The method on one frame.
 class Bitmask {
  public:
@@ -88,6 +81,7 @@ class Bitmask {
         progress_(progress),
         march_scene_(make_march_scene(scene.geometry, scene.solids, request.receivers)),
         layout_(march_scene_.layout),
+        raster_(march_scene_),
         pattern_(layout_, scene.geometry.display, request.slices, request.steps, request.seed),
         bounce_pattern_(layout_, scene.geometry.display, bounce_slices(request.slices),
                         bounce_steps(request.steps), request.seed, bounce_spacing(request.slices)),
@@ -101,15 +95,15 @@ class Bitmask {
 
   Products run() {
     gather_visibility();
-    if (request_.products.bounce) out_.bounce = picture(gather_bounce());
+    if (request_.products.bounce) out_.bounce = raster_.picture(gather_bounce());
     if (request_.products.error) {
       const bool bounces = bounce_error_.data() != nullptr;
-      out_.error = of_receivers(0.0f, [&](std::ptrdiff_t i) {
+      out_.error = raster_.of_receivers(0.0f, [&](std::ptrdiff_t i) {
         return bounces ? error_[i] + bounce_error_[i] : error_[i];
       });
     }
-    out_.ao = picture(ao_, 1.0f);
-    if (wants_light()) out_.direct = picture(direct_);
+    out_.ao = raster_.picture(ao_, 1.0f);
+    if (wants_light()) out_.direct = raster_.picture(direct_);
     if (request_.products.reflection) gather_reflection();
     if (request_.products.guessed)
       out_.guessed =
@@ -141,76 +135,24 @@ class Bitmask {
         progress);
   }
 
-  /// Calls `work(pixel, index)` for each pixel of a row of the raster; index is that of the march.
-  template <class Work>
-  void for_each_pixel(int y, const Work& work) const {
-    for (int first = 0; first < std::min(kPeriod, layout_.width()); ++first) {
-      std::ptrdiff_t i = layout_.index(first, y);
-      for (int x = first; x < layout_.width(); x += kPeriod)
-        work(scene_.geometry.surfel.index(x, y), i++);
-    }
-  }
-
-  /// `value(index)` of every receiver; `background` where there is no surface.
-  template <class T, class Value>
-  Plane<T> of_receivers(const T& background, const Value& value) const {
-    const Window& to = march_scene_.receivers;
-    Plane<T> out;
-    out.width = to.width(), out.height = to.height();
-    out.pixels.resize(to.area());
-    for_each_row(to.height(), [&](int y) {
-      for (int first = 0; first < std::min(kPeriod, to.width()); ++first) {
-        std::ptrdiff_t i = layout_.index(to.x0 + first, to.y0 + y);
-        for (int x = first; x < to.width(); x += kPeriod, ++i)
-          out(x, y) = march_scene_.shows_surface(i) ? value(i) : background;
-      }
-    });
-    return out;
-  }
-
-  Plane<float> picture(const InterleavedPlane& plane, float background = 0) const {
-    return of_receivers(background, [&](std::ptrdiff_t i) { return plane[i]; });
-  }
-
-  Plane<glm::vec3> picture(const InterleavedVectors& color) const {
-    return of_receivers(glm::vec3(0), [&](std::ptrdiff_t i) {
-      return glm::vec3(color[0][i], color[1][i], color[2][i]);
-    });
-  }
-
-  InterleavedVectors black() const {
-    InterleavedVectors color = make_color(layout_);
-    for_each_row(layout_.height(), [&](int y) {
-      for (InterleavedPlane& plane : color) plane.fill_row(layout_, y, 0);
-    });
-    return color;
-  }
-
-  /// A value of every pixel in the order of the march, clamped to the range of light.
-  InterleavedVectors interleaved(const Plane<glm::vec3>& picture) const {
-    InterleavedVectors color = black();
-    for_each_row(layout_.height(), [&](int y) {
-      for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
-        const glm::vec3 value = within_range(picture[pixel]);
-        for (int c = 0; c < 3; ++c) color[std::size_t(c)][i] = value[c];
-      });
-    });
-    return color;
-  }
-
   void gather_visibility() {
     const Light& light = scene_.light;
     VisibilityJob job{.march = march_, .irradiance = &light.irradiance, .ao = &ao_};
     InterleavedVectors bent;
     if (request_.products.bent) {
-      bent = make_color(layout_);
+      bent = raster_.make_color();
       job.bent = &bent;
       job.order = 1;
     }
     std::vector<float> weights;
+    InterleavedVectors sky_share;
     if (wants_light()) {
-      direct_ = make_color(layout_);
+      direct_ = raster_.make_color();
       job.direct = &direct_;
+      if (!light.is_constant()) {
+        sky_share = raster_.make_color();
+        job.sky_share = &sky_share;
+      }
       if (light.order > 0 || request_.products.error) {
         job.order = std::max(light.order, 1);
         weights = basis_weights(light, job.order);
@@ -225,9 +167,9 @@ class Bitmask {
     }
     for_each_band_of(
         lit_part(), [&](const Window& part) { march_visibility(job, part); }, progress_);
-    if (request_.products.bent) out_.bent = picture(bent);
-    if (!wants_light()) return;
-    if (light.suns.empty()) return;
+    if (request_.products.bent) out_.bent = raster_.picture(bent);
+    if (job.sky_share) out_.sky_share = raster_.picture(sky_share);
+    if (!wants_light() || light.suns.empty()) return;
     // A panorama shows what stands beyond the border, and rays have asked it.
     const bool all_is_shown =
         std::any_of(scene_.views.begin(), scene_.views.end(),
@@ -244,9 +186,11 @@ class Bitmask {
   /// its disc.
   void add_sun(const Sun& sun, const std::vector<DepthBounds>& bounds, float past_beyond) {
     const PerMember<glm::vec3> directions = directions_to(sun);
-    const SunJob job{march_, bounds, directions, &sun, past_beyond, &direct_};
+    InterleavedPlane share(layout_);
+    const SunJob job{march_, bounds, directions, &sun, past_beyond, &direct_, &share};
     for_each_band_of(
         lit_part(), [&](const Window& part) { march_sun(job, part); }, progress_);
+    out_.sun_shares.push_back(raster_.picture(share));
   }
 
   void gather_reflection() {
@@ -254,7 +198,7 @@ class Bitmask {
     for_each_row(layout_.height(), [&](int y) {
       roughness.fill_row(layout_, y, float(request_.parameters.at("roughness")));
       if (scene_.roughness.empty()) return;
-      for_each_pixel(
+      raster_.for_each_pixel(
           y, [&](std::size_t pixel, std::ptrdiff_t i) { roughness[i] = scene_.roughness[pixel]; });
     });
     const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
@@ -263,7 +207,7 @@ class Bitmask {
     for_each_band_of(
         march_scene_.receivers, [&](const Window& part) { march_reflection(job, part); },
         progress_);
-    out_.reflection = picture(open, 1.0f);
+    out_.reflection = raster_.picture(open, 1.0f);
   }
 
   /// The light that the solids of a layer send: that of the pixels that show them, if any.
@@ -271,7 +215,7 @@ class Bitmask {
                         InterleavedVectors& behind) const {
     for_each_row(layout_.height(), [&](int y) {
       for (InterleavedPlane& plane : behind) plane.fill_row(layout_, y, 0);
-      for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
+      raster_.for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
         const int sender = scene_.solids.at(layer, pixel).sender;
         if (sender < 0) return;
         const std::ptrdiff_t from =
@@ -290,18 +234,19 @@ class Bitmask {
   /// Each pass is lit by the one before.
   InterleavedVectors gather_bounce() {
     const bool lit = senders_need_light();  // else a layer says what is sent
-    InterleavedVectors given = interleaved(lit ? scene_.senders.albedo : scene_.senders.radiance),
-                       bounce = black(), sent_back, gathered = make_color(layout_),
+    InterleavedVectors given = raster_.interleaved(lit ? scene_.senders.albedo
+                                                       : scene_.senders.radiance),
+                       bounce = raster_.black(), sent_back, gathered = raster_.make_color(),
                        sent_before_last;
     std::vector<InterleavedVectors> sent_behind;
     for (std::size_t k = 0; k < scene_.solids.behind.size(); ++k)
-      sent_behind.push_back(make_color(layout_));
+      sent_behind.push_back(raster_.make_color());
     InterleavedPlane weights(layout_), difference;
     const bool two_sided = lit && !scene_.light.is_constant();
-    if (two_sided) sent_back = black();
+    if (two_sided) sent_back = raster_.black();
     if (request_.products.error && request_.bounces > 0)
       difference = InterleavedPlane(layout_), bounce_error_ = InterleavedPlane(layout_);
-    if (lit && request_.bounces > 1) sent_before_last = black();
+    if (lit && request_.bounces > 1) sent_before_last = raster_.black();
     const Window raster = march_scene_.raster();
     std::vector<FurtherLight> sent_further;
     if (further_ && request_.bounces > 0)
@@ -355,6 +300,7 @@ class Bitmask {
   const Progress& progress_;
   MarchScene march_scene_;
   const Interleaving& layout_;
+  const Raster raster_;
   SlicePattern pattern_, bounce_pattern_;
   std::unique_ptr<FurtherRays> further_;  ///< null: there are no further views
   March march_, bounce_march_;
@@ -385,7 +331,7 @@ Method bitmask_method() {
                 .thickness = true,
                 .march = true,
                 .receivers = true},
-      .pattern_size = kPeriod,
+      .pattern_size = Interleaving::kPeriod,
       .parameters = {kRoughness},
       .samples_per_pixel = [](const Request& r) { return 2 * r.slices * r.steps; },
       .estimate = estimate,

@@ -36,6 +36,12 @@ struct Products {
   Plane<float> reflection;  ///< share of a reflection that is not occluded
   Plane<float> error;  ///< of the luminance of direct + bounce, with the sign of one draw of noise
   Plane<float> guessed;  ///< share of the hemisphere that no picture shows
+
+  // What `direct` is made of, where the method knows: what arrives of the sky's light, channel by
+  // channel, and of the light of each sun. About 0..1, but noise is not cut off, so that means are
+  // right. Filters take these in place of `direct` (filters/shares.h).
+  Plane<glm::vec3> sky_share;
+  std::vector<Plane<float>> sun_shares;
 };
 
 /// What the values of a product are. It decides how filters, --temporal and pictures treat them.
@@ -61,7 +67,8 @@ struct Product {
   std::string_view all_needs = "";  ///< role of a layer without which --products all leaves it out
   float background = 0;             ///< its value where there is no surface
   bool usual = false;               ///< made where --products is not given
-  bool shadowed = false;      ///< steps of its brightness are edges of shadows, which filters keep
+  bool shadowed = false;      ///< steps of it are edges of shadows, which filters keep; without
+                              ///< occlusion each channel is about 1, `direct` where it is a share
   bool measured = false;      ///< by bench
   std::string_view aka = "";  ///< names that renderers give such a layer, in lower case
 };
@@ -169,6 +176,15 @@ void for_each_plane(const Visit& visit, All&... all) {
     else if (const auto* vector = std::get_if<Plane<glm::vec3> Products::*>(&product.plane))
       visit(product, all.**vector...);
   }
+}
+
+/// Calls visit(plane of each of `all`) for what `direct` is made of: the sky's share, then each
+/// sun's; some planes may be empty. `all` have as many suns as the first.
+template <class Visit, class First, class... Others>
+void for_each_share(const Visit& visit, First& first, Others&... others) {
+  visit(first.sky_share, others.sky_share...);
+  for (std::size_t i = 0; i < first.sun_shares.size(); ++i)
+    visit(first.sun_shares[i], others.sun_shares[i]...);
 }
 
 }  // namespace ssdo

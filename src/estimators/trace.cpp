@@ -123,7 +123,10 @@ class Trace {
     wants_light_ = request_.products.direct || request_.products.bounce || request_.products.error;
     out_.ao = Plane<float>(width(), height(), 1.0f);
     if (request_.products.bent) out_.bent = Plane<glm::vec3>(width(), height(), glm::vec3(0));
-    if (wants_light_) out_.direct = Plane<glm::vec3>(width(), height(), glm::vec3(0));
+    if (wants_light_) {
+      out_.direct = out_.sky_share = Plane<glm::vec3>(width(), height(), glm::vec3(0));
+      out_.sun_shares.assign(scene_.light.suns.size(), Plane<float>(width(), height(), 0.0f));
+    }
     if (request_.products.error) luminances_ = Plane<Groups>(width(), height(), Groups{});
     for_each_surface([&](std::size_t pixel, const Receiver& p) { gather_visibility(pixel, p); });
     if (request_.products.bounce) {
@@ -242,20 +245,28 @@ class Trace {
     const bool even = scene_.light.is_constant();
     const glm::vec3 unoccluded =
         even ? scene_.light.environment.constant_radiance() : scene_.light.irradiance(p.normal);
-    out_.direct[pixel] = unoccluded * (even ? glm::vec3(ao) : light.share_of_all(ao));
+    const glm::vec3 share = even ? glm::vec3(ao) : light.share_of_all(ao);
+    out_.direct[pixel] = unoccluded * share;
+    out_.sky_share[pixel] = share;
     Groups groups{};
     for (int g = 0; g < kGroups; ++g) groups[g] = luminance(unoccluded * light.share_of_group(g));
     for (std::size_t i = 0; i < scene_.light.suns.size(); ++i)
-      out_.direct[pixel] += light_of(scene_.light.suns[i], std::uint32_t(i), p, groups);
+      out_.direct[pixel] +=
+          light_of(scene_.light.suns[i], std::uint32_t(i), p, groups, out_.sun_shares[i][pixel]);
     if (request_.products.error) luminances_[pixel] = groups;
   }
 
-  /// What a sun gives; `groups` gain what it gives in each part of the samples. Every point of it
-  /// counts by its own cosine: one at the horizon gives less than one above it.
-  glm::vec3 light_of(const Sun& sun, std::uint32_t number, const Receiver& p,
-                     Groups& groups) const {
+  /// What a sun gives; `groups` gain what it gives in each part of the samples, `share` is the part
+  /// of it that arrives. Every point of it counts by its own cosine: one at the horizon gives less
+  /// than one above it. A normal that faces away leaves the share to what stands in between: it may
+  /// be that of a normal map, and a filter takes it for neighbours.
+  glm::vec3 light_of(const Sun& sun, std::uint32_t number, const Receiver& p, Groups& groups,
+                     float& share) const {
     const glm::vec3 unoccluded = sun.cosine(p.normal) * sun.irradiance;
-    if (unoccluded == glm::vec3(0)) return unoccluded;
+    if (unoccluded == glm::vec3(0)) {
+      share = !is_blocked(p, sun.direction);
+      return unoccluded;
+    }
     std::array<float, kGroups> seen{}, above{};
     for (int s = 0; s < samples_; ++s) {
       const glm::vec3 to =
@@ -270,7 +281,8 @@ class Trace {
       all_seen += seen[g], all_above += above[g];
       groups[g] += luminance(unoccluded) * (above[g] > 0 ? seen[g] / above[g] : 0);
     }
-    return all_above > 0 ? unoccluded * (all_seen / all_above) : glm::vec3(0);
+    share = all_above > 0 ? all_seen / all_above : 0;
+    return unoccluded * share;
   }
 
   /// What each pixel sends: its albedo times all the light that arrives, or the layer that says so.

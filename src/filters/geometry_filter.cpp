@@ -19,12 +19,21 @@
 // centres are (+-2, +-2) pixels away, so a second pass computes it from the result of the first:
 //
 //   out(p) = m(p) + 1/4 sum_q w(p, q) l(p, q) (m(q) - m(p)),   m the result for T = 4
-//   l = ramp(|b_q - b_p| / (r (b_p + b_q + (A_p + A_q) / 4))),   b the brightness of m, A = b / ao
+//   l = ramp(|b_q - b_p| / (r (b_p + b_q + 1/2))),   b the mean over the channels of m
 //
-// w reduces the share of a q across a geometric edge, and l that of a q whose ao or direct light
-// differs by more than noise, which lies across the edge of a shadow. In a dark pixel, noise is
-// large relative to its own light b but small relative to its unoccluded light A, so the tolerance
-// of l grows with A. Bounce light has more noise and no sharp shadows: l = 1.
+// w reduces the share of a q across a geometric edge, and l that of a q whose ao or share of the
+// light differs by more than noise, which lies across the edge of a shadow. In a dark pixel, noise
+// is large relative to its own b but small relative to the 1 of an open one, of which 1/4 is added
+// for each of both pixels. Bounce light has more noise and no sharp shadows: l = 1.
+//
+// bounce = R (1 - ao), R the mean radiance of what hides. In the second pass ao keeps edges that
+// bounce does not, so that their means would not belong together: a white furnace, ao + bounce = 1,
+// was off by up to 0.08. So R is averaged, by 1 - ao, and multiplied by what the pass leaves of
+// 1 - ao:
+//
+//   out(p) = (mean of bounce + e bounce(p)) / (mean of 1 - ao + e (1 - ao(p))) (1 - ao_out(p))
+//
+// with l = 1 in both means. e is small: R is that of p where its neighbours are open.
 //
 // Lanes are neighbouring pixels of a row; two rows at a time share their loads. Pixels without a
 // surface have a normal of 0 here, so that w is 0. This file is compiled once for every instruction
@@ -46,7 +55,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-constexpr float kStepTolerance = 0.15f;  ///< r; measured, with the 1/4 before A
+constexpr float kStepTolerance = 0.15f;  ///< r; measured, with the 1/4
 
 /// Signed distance of q from p's tangent plane.
 HWY_INLINE V above_plane(const Shown& p, const Shown& q) {
@@ -191,16 +200,24 @@ class TileFilter {
   AlignedFloats averages_;  ///< by row, component and column; last component: sum of the weights
 };
 
-/// b and A of a pixel: its brightness, and about what it would be without occlusion.
-struct Brightness {
-  V value, open;
+/// l(p, q), from the brightness of both.
+HWY_INLINE V likeness(V p, V q) {
+  const V step = hn::Abs(q - p) / hn::Max(p + q + set(0.5f), set(0.25f));
+  return saturate(hn::NegMulAdd(step, set(2 / kStepTolerance), set(2)));
+}
+
+/// Something for each of the four neighbours of the second pass.
+struct Corners {
+  V v[4];
+
+  HWY_INLINE V operator[](int k) const { return v[k]; }
 };
 
-/// l(p, q).
-HWY_INLINE V likeness(const Brightness& p, const Brightness& q) {
-  const V scale = hn::MulAdd(set(0.25f), p.open + q.open, p.value + q.value);
-  const V step = hn::Abs(q.value - p.value) / hn::Max(scale, set(1e-30f));
-  return saturate(hn::NegMulAdd(step, set(2 / kStepTolerance), set(2)));
+/// own + sum of weights (values - own)
+HWY_INLINE V average(V own, const Corners& weights, const Corners& values) {
+  V sum = own;
+  for (int k = 0; k < 4; ++k) sum = hn::MulAdd(weights[k], values[k] - own, sum);
+  return sum;
 }
 
 /// The second pass.
@@ -212,10 +229,11 @@ class CornerFilter {
         tile_(tile),
         rows_(means, geometry.surfel, tile, offset, 2 * offset + 1, out),
         results_(zeros((rows_.components() + 1) * rows_.stride())) {
-    int channel = TileRows::kSurfelChannels;
+    int c = 0;
     for (const Part& part : rows_.parts()) {
-      if (part.noisy == means.ao.pixels.data()) ao_ = channel;
-      channel += part.components;
+      if (part.noisy == means.ao.pixels.data()) ao_ = c;
+      if (part.noisy == reinterpret_cast<const float*>(means.bounce.pixels.data())) bounce_ = c;
+      c += part.components;
     }
   }
 
@@ -229,59 +247,80 @@ class CornerFilter {
   }
 
  private:
-  static constexpr float kLeastOpen = 0.02f;
+  static constexpr float kOwnRadiance = 1e-3f;  ///< e
 
-  float* is_surface() const { return results_.get() + rows_.components() * rows_.stride(); }
+  float* result(int c) const { return results_.get() + c * rows_.stride(); }
+  float* is_surface() const { return result(rows_.components()); }
+
+  /// What the first pass has found for component `c`.
+  HWY_INLINE V mean(int c, int x, int y) const {
+    return load(rows_.row(y, TileRows::kSurfelChannels + c) + x + offset_);
+  }
+  HWY_INLINE Corners means_around(int c, int x, int y) const {
+    const int d = offset_;
+    return {{mean(c, x - d, y - d), mean(c, x + d, y - d), mean(c, x - d, y + d),
+             mean(c, x + d, y + d)}};
+  }
+
+  /// w / 4 of the four neighbours.
+  HWY_INLINE Corners weigh(int x, int y) const {
+    const int left = x, right = x + 2 * offset_, above = y - offset_, below = y + offset_;
+    const Shown p = rows_.shown(y, x + offset_);
+    const Shown q[4] = {rows_.shown(above, left), rows_.shown(above, right),
+                        rows_.shown(below, left), rows_.shown(below, right)};
+    store(dot(p.normal, p.normal), is_surface() + x);
+    Corners weights;
+    for (int k = 0; k < 4; ++k) {
+      const V w = similarity(p, q[k], [&]() HWY_ATTR { return q[3 - k]; });
+      weights.v[k] = set(0.25f) * w;
+    }
+    return weights;
+  }
+
+  /// w l / 4 for the components from `c` on that belong together.
+  HWY_INLINE Corners weigh_shadowed(int c, int components, int x, int y, Corners weights) const {
+    V own = mean(c, x, y);
+    Corners around = means_around(c, x, y);
+    if (components == 3) {
+      const auto third_of = [](V a, V b, V d) HWY_ATTR { return (a + b + d) * set(1.0f / 3); };
+      const Corners second = means_around(c + 1, x, y), third = means_around(c + 2, x, y);
+      own = third_of(own, mean(c + 1, x, y), mean(c + 2, x, y));
+      for (int k = 0; k < 4; ++k) around.v[k] = third_of(around[k], second[k], third[k]);
+    }
+    for (int k = 0; k < 4; ++k) weights.v[k] = weights[k] * likeness(own, around[k]);
+    return weights;
+  }
 
   /// A vector of pixels from column `x` of the tile on.
   HWY_INLINE void filter(int x, int y) {
-    const int stride = rows_.stride();
-    const int above = y - offset_, below = y + offset_, left = x, right = x + 2 * offset_;
-    const Shown p = rows_.shown(y, x + offset_);
-    const Shown q0 = rows_.shown(above, left), q1 = rows_.shown(above, right),
-                q2 = rows_.shown(below, left), q3 = rows_.shown(below, right);
-    const auto weight = [&](const Shown& q, const Shown& opposite) HWY_ATTR {
-      return set(0.25f) * similarity(p, q, [&]() HWY_ATTR { return opposite; });
-    };
-    const V w0 = weight(q0, q3), w1 = weight(q1, q2), w2 = weight(q2, q1), w3 = weight(q3, q0);
-    store(dot(p.normal, p.normal), is_surface() + x);
+    const Corners weights = weigh(x, y);
     int c = 0;
     for (const Part& part : rows_.parts()) {
-      const auto mean_at = [&](int k, int row, int column) HWY_ATTR {
-        return load(rows_.row(row, TileRows::kSurfelChannels + c + k) + column);
-      };
-      V v0 = w0, v1 = w1, v2 = w2, v3 = w3;
-      if (part.shadowed) {
-        const auto brightness_at = [&](int row, int column) HWY_ATTR {
-          V value = mean_at(0, row, column);
-          if (part.components == 3)
-            value = value + mean_at(1, row, column) + mean_at(2, row, column);
-          if (!ao_) return Brightness{value, value};
-          const V ao = load(rows_.row(row, *ao_) + column);
-          return Brightness{value, value / hn::Max(ao, set(kLeastOpen))};
-        };
-        const Brightness own = brightness_at(y, x + offset_);
-        v0 = v0 * likeness(own, brightness_at(above, left));
-        v1 = v1 * likeness(own, brightness_at(above, right));
-        v2 = v2 * likeness(own, brightness_at(below, left));
-        v3 = v3 * likeness(own, brightness_at(below, right));
-      }
-      for (int k = 0; k < part.components; ++k) {
-        const V own = mean_at(k, y, x + offset_);
-        V sum = hn::MulAdd(v0, mean_at(k, above, left) - own, own);
-        sum = hn::MulAdd(v1, mean_at(k, above, right) - own, sum);
-        sum = hn::MulAdd(v2, mean_at(k, below, left) - own, sum);
-        sum = hn::MulAdd(v3, mean_at(k, below, right) - own, sum);
-        store(sum, results_.get() + (c + k) * stride + x);
-      }
-      c += part.components;
+      const Corners of_part =
+          part.shadowed ? weigh_shadowed(c, part.components, x, y, weights) : weights;
+      for (const int end = c + part.components; c < end; ++c)
+        store(average(mean(c, x, y), of_part, means_around(c, x, y)), result(c) + x);
+    }
+    if (ao_ && bounce_) hold_bounce_to_ao(x, y, weights);
+  }
+
+  /// Turns the mean bounce into the mean radiance of what hides, times what hides by the new ao.
+  HWY_INLINE void hold_bounce_to_ao(int x, int y, const Corners& weights) {
+    const V e = set(kOwnRadiance), one = set(1), own_closed = one - mean(*ao_, x, y),
+            closed = one - average(mean(*ao_, x, y), weights, means_around(*ao_, x, y));
+    // Below rounding nothing hides.
+    const V whole = hn::MulAdd(e, own_closed, closed);
+    const V scale = hn::IfThenElseZero(whole > set(1e-6f), (one - load(result(*ao_) + x)) / whole);
+    for (int c = *bounce_; c < *bounce_ + 3; ++c) {
+      float* at = result(c) + x;
+      store(hn::MulAdd(e, mean(c, x, y), load(at)) * scale, at);
     }
   }
 
   const int offset_;
   const Tile tile_;
   TileRows rows_;
-  std::optional<int> ao_;  ///< its channel
+  std::optional<int> ao_, bounce_;  ///< their first components
   AlignedFloats results_;  ///< by component and column; last component: 0 without a surface
 };
 

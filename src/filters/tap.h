@@ -28,6 +28,9 @@ inline Products like(const Products& other) {
   for_each_plane([](const Product&, auto& to,
                     const auto& from) { to = std::decay_t<decltype(from)>::like(from); },
                  products, other);
+  products.sun_shares.resize(other.sun_shares.size());
+  for_each_share([](auto& to, const auto& from) { to = std::decay_t<decltype(from)>::like(from); },
+                 products, other);
   return products;
 }
 

@@ -55,24 +55,30 @@ struct Part {
   float* out;
   int components;
   Finish finish;
-  bool shadowed;  ///< steps of its brightness are edges of shadows
+  bool shadowed;  ///< steps of it are edges of shadows
 };
 
 /// Those planes that exist.
 inline std::vector<Part> parts_of(const Products& noisy, Products& out) {
   static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
   std::vector<Part> parts;
+  const auto add = [&](const auto& from, auto& to, Finish finish, bool shadowed) {
+    if (from.empty()) return;
+    parts.push_back({reinterpret_cast<const float*>(from.pixels.data()),
+                     reinterpret_cast<float*>(to.pixels.data()),
+                     int(sizeof(from[0]) / sizeof(float)), finish, shadowed});
+  };
   for_each_plane(
       [&](const Product& product, const auto& from, auto& to) {
-        if (from.empty()) return;
         const Finish finish = product.kind == ProductKind::share       ? Finish::clamp
                               : product.kind == ProductKind::direction ? Finish::normalise
                                                                        : Finish::none;
-        parts.push_back({reinterpret_cast<const float*>(from.pixels.data()),
-                         reinterpret_cast<float*>(to.pixels.data()),
-                         int(sizeof(from[0]) / sizeof(float)), finish, product.shadowed});
+        add(from, to, finish, product.shadowed);
       },
       noisy, out);
+  // Several passes are one mean: shares are clamped after the last (shares.cpp).
+  for_each_share([&](const auto& from, auto& to) { add(from, to, Finish::none, true); }, noisy,
+                 out);
   return parts;
 }
 

@@ -15,7 +15,7 @@
 
 #include "estimators/recorded_errors.h"
 #include "estimators/registry.h"
-#include "filters/geometry_filter.h"
+#include "filters/shares.h"
 #include "frame.h"
 #include "io/exr_reader.h"
 #include "support/crop.h"
@@ -150,10 +150,10 @@ Result run(const std::string& method, const Subject& scene, const std::string& e
       prepare_frame(options, Lighting(options.light), pictures, {scene.frame, {}, scene.also});
   Plan& plan = frame.plan;
   plan.request.products.guessed = guessed;
-  Geometry& geometry = frame.scene.geometry;
-  Products filtered = filter_geometry(plan.method->estimate(frame.scene, plan.request, {}),
-                                      geometry, plan.method->pattern_size);
-  return shown(geometry, filtered);
+  const Products filtered = filter_shares(find_filter("geometry"),
+                                          plan.method->estimate(frame.scene, plan.request, {}),
+                                          frame.scene, plan.method->pattern_size);
+  return shown(frame.scene.geometry, filtered);
 }
 
 Error2 error_of_ao(const Result& r, const Subject& scene, const std::string& truth,

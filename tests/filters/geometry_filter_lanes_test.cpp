@@ -36,12 +36,11 @@ double reference_weight(const Geometry& g, int x, int y, int dx, int dy) {
 }
 
 double brightness(double v) { return v; }
-double brightness(const glm::dvec3& v) { return v.x + v.y + v.z; }
+double brightness(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3; }
 
-/// How a product is finished, and what says how much of a step in it is noise.
+/// How a product is finished, and whether steps in it are edges of shadows.
 struct Kind {
-  bool unit = false;
-  const Plane<float>* ao = nullptr;  ///< null: steps count as noise
+  bool unit = false, shadowed = false;
 };
 
 /// The sums at the top of geometry_filter.cpp, in double.
@@ -52,20 +51,15 @@ Value reference(const Plane<T>& in, const Geometry& g, int pattern_size, int x, 
   };
   if (pattern_size > 4) {
     const auto mean = [&](int qx, int qy) { return reference<Value>(in, g, 4, qx, qy, kind); };
-    const auto in_the_open = [&](int qx, int qy) {
-      return brightness(mean(qx, qy)) /
-             std::max(reference<double>(*kind.ao, g, 4, qx, qy, {}), 0.02);
-    };
     const Value own = mean(x, y);
     Value sum = own;
     for (const int qy : {y - 2, y + 2}) {
       for (const int qx : {x - 2, x + 2}) {
         if (!surface_at(g, qx, qy)) continue;
         double weight = reference_weight(g, x, y, qx - x, qy - y) / 4;
-        if (kind.ao) {
+        if (kind.shadowed) {
           const double p = brightness(own), q = brightness(mean(qx, qy)),
-                       scale = p + q + (in_the_open(x, y) + in_the_open(qx, qy)) / 4,
-                       step = std::abs(q - p) / std::max(scale, 1e-30);
+                       step = std::abs(q - p) / std::max(p + q + 0.5, 0.25);
           weight *= std::clamp(2 - 2 * step / 0.15, 0.0, 1.0);
         }
         sum += weight * (mean(qx, qy) - own);
@@ -87,6 +81,17 @@ Value reference(const Plane<T>& in, const Geometry& g, int pattern_size, int x, 
     }
   }
   return finished(sum / weights);
+}
+
+/// Bounce light, which a second pass holds to what ao leaves.
+glm::dvec3 reference_bounce(const Products& in, const Geometry& g, int pattern_size, int x, int y) {
+  const glm::dvec3 mean = reference<glm::dvec3>(in.bounce, g, pattern_size, x, y, {});
+  if (pattern_size <= 4) return mean;
+  const double e = 1e-3, open = reference<double>(in.ao, g, pattern_size, x, y, {}),
+               own_open = reference<double>(in.ao, g, 4, x, y, {}),
+               ao = reference<double>(in.ao, g, pattern_size, x, y, {.shadowed = true});
+  const glm::dvec3 own = reference<glm::dvec3>(in.bounce, g, 4, x, y, {});
+  return (mean + e * own) / (1 - open + e * (1 - own_open)) * (1 - ao);
 }
 
 TEST(GeometryFilterLanes, AreTheReference) {
@@ -112,12 +117,16 @@ TEST(GeometryFilterLanes, AreTheReference) {
           const auto expected = [&](const Plane<float>& plane, Kind kind = {}) {
             return reference<double>(plane, g, pattern_size, x, y, kind);
           };
-          const Kind shadowed{.ao = &in.ao};
+          const Kind shadowed{.shadowed = true};
           EXPECT_NEAR(out.ao(x, y), expected(in.ao, shadowed), 1e-4);
           EXPECT_NEAR(out.reflection(x, y), expected(in.reflection, shadowed), 1e-4);
           EXPECT_NEAR(out.error(x, y), expected(in.error), 1e-4);
           EXPECT_LT(difference(out.direct(x, y), expected3(in.direct, shadowed)), 1e-4);
-          EXPECT_LT(difference(out.bounce(x, y), expected3(in.bounce)), 1e-4);
+          EXPECT_LT(difference(out.sky_share(x, y), expected3(in.sky_share, shadowed)), 1e-4);
+          for (std::size_t k = 0; k < 2; ++k)
+            EXPECT_NEAR(out.sun_shares[k](x, y), expected(in.sun_shares[k], shadowed), 1e-4);
+          EXPECT_LT(difference(out.bounce(x, y), reference_bounce(in, g, pattern_size, x, y)),
+                    1e-4);
           EXPECT_LT(difference(out.bent(x, y), expected3(in.bent, {.unit = true})), 1e-4);
           EXPECT_NEAR(glm::length(out.bent(x, y)), 1, 1e-6);
         }

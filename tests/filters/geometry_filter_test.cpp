@@ -6,6 +6,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "support/analytic_scene.h"
+#include "support/random_frame.h"
 
 namespace ssdo::test {
 namespace {
@@ -58,12 +59,34 @@ TEST(GeometryFilter, KeepsTheEdgeOfAShadow) {
   for (int y = 0; y < kWindow.height(); ++y) {
     for (int x = 0; x < 30; ++x) p.ao(x, y) = 0.4f, p.direct(x, y) = glm::vec3(0.4f, 0.3f, 0.5f);
   }
+  p.sun_shares = {p.ao};
   // Averaged over 8 x 8, these would have 0.56 and 0.74 of ao.
   const Products out = filter_geometry(p, g, 8);
+  EXPECT_LT(out.sun_shares[0](28, 24), 0.47);
+  EXPECT_GT(out.sun_shares[0](31, 24), 0.83);
   EXPECT_LT(out.ao(28, 24), 0.47);
   EXPECT_GT(out.ao(31, 24), 0.83);
   EXPECT_LT(out.direct(28, 24).y, 0.3 + 2.7 * 0.14);
   EXPECT_GT(out.direct(31, 24).y, 0.3 + 2.7 * 0.86);
+}
+
+TEST(GeometryFilter, ABounceBelongsToItsAo) {
+  // White surfaces in white light at the edge of a contact shadow: ao + bounce is 1.
+  const Geometry g =
+      geometry_of(plane({}, {0, 0, 1}),
+                  look_at(camera_from_fov(40, kWindow, 1), {0, 0, 5}, {}, {0, 1, 0}), kWindow);
+  Products p;
+  p.ao = noise_of_a_pattern(g, 8, 0.1f).ao;
+  for (int y = 0; y < kWindow.height(); ++y) {
+    for (int x = 0; x < 30; ++x) p.ao(x, y) += 0.4f;
+    for (int x = 44; x < kWindow.width(); ++x) p.ao(x, y) = 1;
+  }
+  p.bounce = Plane<glm::vec3>(kWindow.width(), kWindow.height());
+  for (std::size_t i = 0; i < p.ao.size(); ++i) p.bounce[i] = glm::vec3(1 - p.ao[i]);
+  const Products out = filter_geometry(p, g, 8);
+  for (std::size_t i = 0; i < p.ao.size(); ++i)
+    EXPECT_LT(difference(out.bounce[i], glm::dvec3(1 - out.ao[i])), 1e-4);
+  EXPECT_EQ(out.bounce(60, 20), glm::vec3(0));
 }
 
 TEST(GeometryFilter, LeavesLittleOfThePatternOnACurvedSurface) {

@@ -19,7 +19,7 @@ glm::vec3 vector_of(Random& random, float size);
 /// Uneven surfaces with steps between them, a tenth of them missing.
 Geometry random_geometry(int width, int height, unsigned seed);
 
-/// All products, with values on the background too.
+/// All products, with values on the background too, and the shares of a sky and two suns.
 Products random_products(const Geometry& g, unsigned seed);
 
 double difference(const glm::dvec3& a, const glm::dvec3& b);

@@ -37,8 +37,9 @@ struct VisibilityJob {
   float through_beyond = 0;  ///< share of it that comes through what may go on beyond the frame
 
   InterleavedPlane* ao = nullptr;
-  InterleavedVectors* bent = nullptr;    ///< unit; null: not wanted
-  InterleavedVectors* direct = nullptr;  ///< null: not wanted
+  InterleavedVectors* bent = nullptr;       ///< unit; null: not wanted
+  InterleavedVectors* direct = nullptr;     ///< null: not wanted
+  InterleavedVectors* sky_share = nullptr;  ///< what of the light arrives; null: not wanted
   InterleavedPlane* difference =
       nullptr;  ///< standard error of its luminance, signed; null: not wanted
 };
@@ -83,6 +84,7 @@ struct SunJob {
   const Sun* sun;
   float past_beyond;           ///< share of it that passes what may stand beyond the frame
   InterleavedVectors* direct;  ///< added to
+  InterleavedPlane* share;     ///< 0..1, of what a surface of any normal would get
 };
 
 /// How much of what rough surfaces mirror is not blocked.

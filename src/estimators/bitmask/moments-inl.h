@@ -152,6 +152,9 @@ struct CircleDirections {
   }
 };
 
+/// How far outside of 0..1 a share of light may be.
+constexpr float kShareBeyond = 1;
+
 /// Sums over slices: of the sectors that are closed, in bands 0 and 1, of what is hidden from the
 /// light, and of all sectors above the tangent plane.
 template <int kOrder>
@@ -204,6 +207,8 @@ struct Moments {
 
   /// Visible part of the light with these weights. Both sums are over the same directions, so that
   /// noise cancels and an open surface receives exactly all of it. `otherwise` where there is none.
+  /// Noise may lead out of 0..1, so that means among pixels are right, but not far: few slices may
+  /// hold next to no light.
   HWY_INLINE V share_of_light(const float* light, V otherwise) const {
     V lost = set(0), total = set(0);
     for (int i = 0; i < kCount; ++i) {
@@ -211,8 +216,7 @@ struct Moments {
       lost = hn::MulAdd(l, hidden[i], lost);
       total = hn::MulAdd(l, whole[i], total);
     }
-    const V one = set(1);
-    const V share = hn::Clamp(one - lost / total, set(0), one);
+    const V share = hn::Clamp(set(1) - lost / total, set(-kShareBeyond), set(1 + kShareBeyond));
     return hn::IfThenElse(total > set(0), share, otherwise);
   }
 

@@ -4,19 +4,17 @@
 #include <cmath>
 
 #include "estimators/bitmask/slice_pattern.h"
-#include "math/frame.h"
-#include "math/sampling.h"
 #include "math/sequence_numbers.h"
 
 namespace ssdo {
+
 PerMember<glm::vec3> directions_to(const Sun& sun) {
   PerMember<glm::vec3> directions;
-  const glm::mat3 frame = frame_about(sun.direction);
   for (std::size_t m = 0; m < directions.size(); ++m) {
     const int rank = SlicePattern::rank(int(m));
     const glm::vec2 u((float(rank) + 0.5f) / float(directions.size()),
                       float(fraction(rank * kR2First)));
-    directions[m] = disc_direction(frame, sun.angular_radius, u);
+    directions[m] = sun.point(u);
   }
   return directions;
 }

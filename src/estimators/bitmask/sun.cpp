@@ -22,9 +22,9 @@ void sun(const SunJob& job, const Window& part) {
     const V visible =
         passes<kOrthographic>(job.march, job.bounds, p, set(job.directions[std::size_t(member)]),
                               p.valid, turn_of_member(member), job.past_beyond);
-    const V cosine = facing(load_normals(scene, place.index, p.valid), job.sun->direction);
-    const V3 before_it = load(*job.direct, place.index);
-    store(mul_add(set(job.sun->irradiance), visible * cosine, before_it), *job.direct, place.index);
+    store(visible, *job.share, place.index);
+    const V3 light = unoccluded(*job.sun, load_normals(scene, place.index, p.valid));
+    store(mul_add(light, visible, load(*job.direct, place.index)), *job.direct, place.index);
   });
 }
 

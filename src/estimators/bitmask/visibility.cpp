@@ -54,17 +54,22 @@ void visibility(const VisibilityJob& job, const Window& part) {
         }
         if (!job.direct) return;
         const V3 unoccluded = look_up(*job.irradiance, normals);
-        const auto visible = [&](const Moments<kOrder>& moments) HWY_ATTR {
-          if (!job.light) return unoccluded * ao;
+        const auto share_of = [&](const Moments<kOrder>& moments) HWY_ATTR {
+          if (!job.light) return V3{ao, ao, ao};
           const auto share = [&](int c) HWY_ATTR {
             return moments.share_of_light(job.light + c * Moments<kOrder>::kCount, ao);
           };
-          return unoccluded * V3{share(0), share(1), share(2)};
+          return V3{share(0), share(1), share(2)};
         };
-        store(visible(sum), *job.direct, i);
+        const auto visible = [&](const V3& share) HWY_ATTR {
+          return unoccluded * V3{saturate(share.x), saturate(share.y), saturate(share.z)};
+        };
+        const V3 share = share_of(sum);
+        store(visible(share), *job.direct, i);
+        if (job.sky_share) store(share, *job.sky_share, i);
         if (job.difference) {
-          const V difference =
-              luminance(visible(first_half)) - luminance(visible(sum.minus(first_half)));
+          const V difference = luminance(visible(share_of(first_half))) -
+                               luminance(visible(share_of(sum.minus(first_half))));
           const V scale = set(error_of_difference(march, p.place, firsts, count_of_slices));
           store(difference * scale, *job.difference, i);
         }

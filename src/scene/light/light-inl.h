@@ -38,10 +38,15 @@ HWY_INLINE V facing(const Sun& sun, const V3& normal) {
   return hn::IfThenElse(part, sum * set(1 / float(sun.points.size())), whole);
 }
 
+/// The direct light of a sun on surfaces with nothing around them.
+HWY_INLINE V3 unoccluded(const Sun& sun, const V3& normal) {
+  return set(sun.irradiance) * facing(sun, normal);
+}
+
 /// Light::unoccluded()
 HWY_INLINE V3 unoccluded(const Light& light, const V3& normal) {
   V3 sum = look_up(light.irradiance, normal);
-  for (const Sun& sun : light.suns) sum = mul_add(set(sun.irradiance), facing(sun, normal), sum);
+  for (const Sun& sun : light.suns) sum = sum + unoccluded(sun, normal);
   return sum;
 }
 

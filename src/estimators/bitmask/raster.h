@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <glm/vec3.hpp>
+
+#include "estimators/bitmask/march_scene.h"
+#include "math/light_range.h"
+#include "math/plane.h"
+#include "parallel/tiles.h"
+#include "simd/interleaved.h"
+
+namespace ssdo {
+
+/// Planes of a picture in the order of the march, and back.
+class Raster {
+ public:
+  explicit Raster(const MarchScene& scene) : scene_(scene), layout_(scene.layout) {}
+
+  /// One colour for each pixel, not initialised.
+  InterleavedVectors make_color() const {
+    return {InterleavedPlane(layout_), InterleavedPlane(layout_), InterleavedPlane(layout_)};
+  }
+
+  InterleavedVectors black() const {
+    InterleavedVectors color = make_color();
+    for_each_row(layout_.height(), [&](int y) {
+      for (InterleavedPlane& plane : color) plane.fill_row(layout_, y, 0);
+    });
+    return color;
+  }
+
+  /// A value of every pixel of the raster, clamped to the range of light.
+  InterleavedVectors interleaved(const Plane<glm::vec3>& picture) const {
+    InterleavedVectors color = black();
+    for_each_row(layout_.height(), [&](int y) {
+      for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
+        const glm::vec3 value = within_range(picture[pixel]);
+        for (int c = 0; c < 3; ++c) color[std::size_t(c)][i] = value[c];
+      });
+    });
+    return color;
+  }
+
+  /// Calls `work(pixel, index)` for each pixel of a row of the raster; index is that of the march.
+  template <class Work>
+  void for_each_pixel(int y, const Work& work) const {
+    for (int first = 0; first < std::min(kPeriod, layout_.width()); ++first) {
+      std::ptrdiff_t i = layout_.index(first, y);
+      const std::size_t row = std::size_t(y) * std::size_t(layout_.width());
+      for (int x = first; x < layout_.width(); x += kPeriod) work(row + std::size_t(x), i++);
+    }
+  }
+
+  /// `value(index)` of every receiver; `background` where there is no surface.
+  template <class T, class Value>
+  Plane<T> of_receivers(const T& background, const Value& value) const {
+    const Window& to = scene_.receivers;
+    Plane<T> out;
+    out.width = to.width(), out.height = to.height();
+    out.pixels.resize(to.area());
+    for_each_row(to.height(), [&](int y) {
+      for (int first = 0; first < std::min(kPeriod, to.width()); ++first) {
+        std::ptrdiff_t i = layout_.index(to.x0 + first, to.y0 + y);
+        for (int x = first; x < to.width(); x += kPeriod, ++i)
+          out(x, y) = scene_.shows_surface(i) ? value(i) : background;
+      }
+    });
+    return out;
+  }
+
+  Plane<float> picture(const InterleavedPlane& plane, float background = 0) const {
+    return of_receivers(background, [&](std::ptrdiff_t i) { return plane[i]; });
+  }
+
+  Plane<glm::vec3> picture(const InterleavedVectors& color) const {
+    return of_receivers(glm::vec3(0), [&](std::ptrdiff_t i) {
+      return glm::vec3(color[0][i], color[1][i], color[2][i]);
+    });
+  }
+
+ private:
+  static constexpr int kPeriod = Interleaving::kPeriod;
+
+  const MarchScene& scene_;
+  const Interleaving& layout_;
+};
+
+}  // namespace ssdo

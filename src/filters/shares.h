@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "estimators/estimator.h"
+#include "filters/registry.h"
+#include "scene/scene.h"
+
+namespace ssdo {
+
+/// The products after a filter that averages what arrives of the light, not the light: shading by
+/// the normal of each pixel stays as it is. See shares.cpp.
+Products filter_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size);
+
+/// Products as filter_shares() hands them to the filter: without `direct` where its shares are
+/// known, else with the share of all light that arrives in its place; with `bent` turned as the
+/// normal is turned to the z axis.
+Products to_shares(Products products, const Scene& scene);
+
+/// The other way: shares times the light of each pixel's normal. What shows no surface gets none.
+Products from_shares(Products products, const Scene& scene);
+
+}  // namespace ssdo

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Filters average what arrives of the light and leave what normals make of it.
+#include "filters/shares.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/trigonometric.hpp>
+#include <memory>
+
+#include "estimators/registry.h"
+#include "support/analytic_scene.h"
+#include "support/random_frame.h"
+#include "support/scene_of.h"
+
+namespace ssdo::test {
+namespace {
+
+const Window kWindow{0, 0, 96, 64};
+
+const Camera& camera() {
+  static const Camera c = look_at(camera_from_ortho_width(6, kWindow, 1), {0, 0, 5}, {}, {0, 1, 0});
+  return c;
+}
+
+/// Normals of a map of waves along x, which lean up to `degrees`.
+void add_waves(Geometry& g, double length_px, double degrees = 15) {
+  for (int y = 0; y < g.surfel.height; ++y) {
+    for (int x = 0; x < g.surfel.width; ++x) {
+      const double lean = glm::radians(degrees) * std::sin(2 * 3.14159265358979 * x / length_px);
+      g.surfel(x, y).normal = glm::vec3(std::sin(lean), 0, std::cos(lean));
+    }
+  }
+}
+
+/// Light of the half above the plane, stronger on one side; with or without a sun 35 degrees high.
+Environment light_from_a_side(bool sun, float sky = 1) {
+  const auto map = std::make_shared<Plane<glm::vec3>>(256, 128);
+  const Environment directions(map, {});
+  for (int y = 0; y < map->height; ++y) {
+    for (int x = 0; x < map->width; ++x) {
+      const glm::vec3 d = directions.texel_direction(x, y);
+      (*map)(x, y) = sky * (d.z > 0 ? d.z * (glm::vec3(1.2f) + d.x) : glm::vec3(0));
+    }
+  }
+  const double height = glm::radians(35.0);
+  const glm::vec2 at = directions.texel_at(glm::vec3(std::cos(height), 0, std::sin(height)));
+  if (sun) (*map)(int(at.x), int(at.y)) = glm::vec3(20000, 18000, 15000);
+  return Environment(map, {});
+}
+
+Products estimated(const Method& method, const Scene& scene, ProductSet products, int bounces = 0) {
+  return method.estimate(scene,
+                         {.products = products & method.products,
+                          .radius = 1,
+                          .bounces = bounces,
+                          .parameters = resolve_parameters(method, {})},
+                         {});
+}
+
+Products through_filter(const Method& method, const Scene& scene, const Products& noisy,
+                        std::string_view filter = "geometry") {
+  return filter_shares(find_filter(filter), noisy, scene, method.pattern_size);
+}
+
+/// The slope of `found` over `expected`, pixel by pixel, away from the border.
+template <class Found, class Expected>
+double contrast(const Found& found, const Expected& expected) {
+  double sum_e = 0, sum_f = 0, count = 0;
+  const auto each = [](const auto& visit) {
+    for (int y = 12; y < kWindow.height() - 12; ++y)
+      for (int x = 16; x < kWindow.width() - 16; ++x) visit(x, y);
+  };
+  each([&](int x, int y) { sum_e += expected(x, y), sum_f += found(x, y), count += 1; });
+  double covariance = 0, variance = 0;
+  each([&](int x, int y) {
+    const double e = expected(x, y) - sum_e / count;
+    covariance += e * (found(x, y) - sum_f / count), variance += e * e;
+  });
+  return covariance / variance;
+}
+
+TEST(Shares, ContrastOfNormalMapsIsKept) {
+  for (const char* name : {"bitmask", "ssdo", "trace", "ssao"}) {
+    const Method& method = find_method(name);
+    for (const double length_px : {5.0, 8.0, 16.0}) {
+      for (const bool sun : {true, false}) {
+        Geometry g = geometry_of(plane({}, {0, 0, 1}), camera(), kWindow);
+        add_waves(g, length_px);
+        const Scene scene = scene_of(g, light_from_a_side(sun));
+        ASSERT_EQ(scene.light.suns.size(), sun ? 1u : 0u);
+        const Products noisy = estimated(method, scene, {.ao = true, .direct = true, .bent = true}),
+                       out = through_filter(method, scene, noisy);
+        const auto light = [&](int x, int y) {
+          return double(scene.light.unoccluded(scene.geometry.surfel(x, y).normal).y);
+        };
+        const auto green = [](const Products& p) {
+          return [&p](int x, int y) { return double(p.direct(x, y).y); };
+        };
+        const double kept = contrast(green(out), light), before = contrast(green(noisy), light);
+        fmt::print("{}, waves of {} px{}: contrast {:.3f}, unfiltered {:.3f}\n", name, length_px,
+                   sun ? " in the sun" : "", kept, before);
+        EXPECT_GT(kept, 0.97);
+        EXPECT_LT(kept, 1.03);
+        if (out.bent.empty()) continue;
+        // The plane itself hides what lies below it from normals that lean.
+        const auto normal = [&](int x, int y) {
+          return double(scene.geometry.surfel(x, y).normal.x);
+        };
+        const auto bent = [](const Products& p) {
+          return [&p](int x, int y) { return double(p.bent(x, y).x); };
+        };
+        EXPECT_GT(contrast(bent(out), normal), 0.97 * contrast(bent(noisy), normal));
+        EXPECT_LT(contrast(bent(out), normal), 1.03);
+      }
+    }
+  }
+}
+
+TEST(Shares, BentOnAnOpenSurfaceIsItsNormal) {
+  Geometry g = geometry_of(plane({}, {0, 0, 1}), camera(), kWindow);
+  add_waves(g, 7, 20);
+  const Scene scene = scene_of(g);
+  Products p;
+  p.bent = Plane<glm::vec3>::like(g.surfel);
+  for (std::size_t i = 0; i < p.bent.size(); ++i) p.bent[i] = g.surfel[i].normal;
+  for (const Filter& filter : filters()) {
+    const Products out = filter_shares(filter, p, scene, 8);
+    for (std::size_t i = 0; i < p.bent.size(); ++i)
+      EXPECT_LT(difference(out.bent[i], g.surfel[i].normal), 1e-6) << filter.name;
+  }
+}
+
+TEST(Shares, AFurnaceStaysExactAcrossAContactEdge) {
+  // A white box on a white floor: direct + bounce is 1 before the filter, and after it.
+  const Surface wall =
+      cut(plane({0, 0.4, 0}, {0, -1, 0}), [](const glm::dvec3& p) { return p.z > 0 && p.z < 0.5; });
+  const Surface room = all_of({plane({}, {0, 0, 1}), wall});
+  const Camera from_above =
+      look_at(camera_from_fov(40, kWindow, 1), {0.3, -3, 2.5}, {0, 0, 0.1}, {0, 0, 1});
+  Scene scene =
+      scene_of(geometry_of(room, from_above, kWindow), Environment::constant(glm::vec3(1)));
+  scene.senders.radiance = Plane<glm::vec3>(kWindow.width(), kWindow.height(), glm::vec3(1));
+  const Method& method = find_method("bitmask");
+  const Products out = through_filter(
+      method, scene, estimated(method, scene, {.ao = true, .direct = true, .bounce = true}, 1));
+  double worst = 0, least = 1;
+  for (std::size_t i = 0; i < out.direct.size(); ++i) {
+    if (!scene.geometry.is_surface(i)) continue;
+    worst = std::max(worst, difference(out.direct[i] + out.bounce[i], glm::dvec3(1)));
+    least = std::min(least, double(out.ao[i]));
+  }
+  EXPECT_LT(least, 0.6) << "there is a contact";
+  EXPECT_LT(worst, 0.01);
+}
+
+TEST(Shares, TheEdgeOfAShadowStaysWhereItIs) {
+  Geometry g = geometry_of(plane({}, {0, 0, 1}), camera(), kWindow);
+  add_waves(g, 8);
+  const Scene scene = scene_of(g, light_from_a_side(true));
+  constexpr int kEdge = 47;
+  Products p;
+  p.ao = Plane<float>(kWindow.width(), kWindow.height(), 1);
+  p.sky_share = p.direct = Plane<glm::vec3>(kWindow.width(), kWindow.height(), glm::vec3(1));
+  p.sun_shares = {Plane<float>(kWindow.width(), kWindow.height(), 0)};
+  for (int y = 0; y < kWindow.height(); ++y)
+    for (int x = kEdge; x < kWindow.width(); ++x) p.sun_shares[0](x, y) = 1;
+  const Products out = filter_shares(find_filter("geometry"), p, scene, 8);
+  const Sun& sun = scene.light.suns[0];
+  const int y = kWindow.height() / 2;
+  for (int x = 8; x < kWindow.width() - 8; ++x) {
+    const glm::vec3 n = g.surfel(x, y).normal;
+    const double arrives = double(out.direct(x, y).x - scene.light.irradiance(n).x) /
+                           double(sun.irradiance.x * std::max(0.0f, glm::dot(n, sun.direction)));
+    // Four pixels are averaged whatever they show.
+    const bool dark = x < kEdge;
+    EXPECT_NEAR(arrives, dark ? 0 : 1, x < kEdge - 2 || x >= kEdge + 2 ? 0.1 : 0.5) << x;
+  }
+}
+
+TEST(Shares, AreOfTheLightThatTheNormalReceives) {
+  Geometry g = geometry_of(plane({}, {0, 0, 1}), camera(), kWindow);
+  add_waves(g, 11, 70);  // some face away from the sun
+  const Scene scene = scene_of(g, light_from_a_side(true, 0.01f));
+  Products p;
+  p.ao = Plane<float>(kWindow.width(), kWindow.height(), 0.5f);
+  p.direct = Plane<glm::vec3>::like(g.surfel);
+  for (std::size_t i = 0; i < p.direct.size(); ++i)
+    p.direct[i] = 0.7f * scene.light.unoccluded(g.surfel[i].normal);
+  const Products shares = to_shares(p, scene);
+  for (const glm::vec3& share : shares.direct.pixels)
+    EXPECT_LT(difference(share, glm::dvec3(0.7)), 1e-4);
+
+  Products parts;
+  parts.direct = p.direct;
+  parts.sky_share = Plane<glm::vec3>(kWindow.width(), kWindow.height(), glm::vec3(0.3f, 2, -1));
+  parts.sun_shares = {Plane<float>(kWindow.width(), kWindow.height(), 0.6f)};
+  const Products light = from_shares(to_shares(parts, scene), scene);
+  EXPECT_TRUE(light.sky_share.empty() && light.sun_shares.empty());
+  for (std::size_t i = 0; i < p.direct.size(); ++i) {
+    const glm::vec3 n = g.surfel[i].normal;
+    const Sun& sun = scene.light.suns[0];
+    const glm::vec3 expected = glm::vec3(0.3f, 1, 0) * scene.light.irradiance(n) +
+                               0.6f * std::max(0.0f, glm::dot(n, sun.direction)) * sun.irradiance;
+    EXPECT_LT(difference(light.direct[i], expected), 1e-5 * (1 + glm::length(expected)));
+  }
+}
+
+TEST(Shares, WhereNoLightFallsAoIsTheShare) {
+  const Geometry g = geometry_of(plane({}, {0, 0, 1}), camera(), kWindow);
+  const Scene scene = scene_of(g, Environment::constant({1, 0, 2}));
+  Products p;
+  p.ao = Plane<float>(kWindow.width(), kWindow.height(), 0.25f);
+  p.direct = Plane<glm::vec3>(kWindow.width(), kWindow.height(), glm::vec3(0.5f, 0, 0.5f));
+  const Products shares = to_shares(p, scene);
+  EXPECT_EQ(shares.direct(5, 5), glm::vec3(0.5f, 0.25f, 0.25f));
+  EXPECT_EQ(from_shares(shares, scene).direct(5, 5), p.direct(5, 5));
+}
+
+TEST(Shares, EveryMethodComposesWhatItFound) {
+  // Without a filter the bits stay; shares taken and given back change the last digits.
+  const Surface scene_surface = all_of({plane({}, {0, 0, 1}), sphere({0.3, 0.2, 0.5}, 0.6)});
+  for (const Method& method : methods()) {
+    if (!method.products.direct) continue;
+    SCOPED_TRACE(method.name);
+    Geometry g = geometry_of(scene_surface, camera(), kWindow);
+    const Scene scene = scene_of(g, light_from_a_side(true, 1));
+    const ProductSet set = {.ao = true, .direct = true, .bent = true};
+    const Products noisy = estimated(method, scene, set);
+    const Products none = through_filter(method, scene, noisy, "none");
+    EXPECT_EQ(none.direct.pixels, noisy.direct.pixels);
+    EXPECT_TRUE(none.sky_share.empty() && none.sun_shares.empty());
+    EXPECT_EQ(noisy.sun_shares.size(), noisy.sky_share.empty() ? 0 : scene.light.suns.size());
+    const Products composed = from_shares(to_shares(noisy, scene), scene);
+    int off = 0;
+    for (std::size_t i = 0; i < noisy.direct.size(); ++i) {
+      off += difference(composed.direct[i], noisy.direct[i]) >
+             1e-5 * (1 + glm::length(noisy.direct[i]));
+      if (noisy.bent.empty()) continue;
+      EXPECT_LT(difference(composed.bent[i], noisy.bent[i]), 1e-5);
+    }
+    // gtao looks light up along the bent normal, where there may be more than twice as much.
+    EXPECT_LE(off, method.name == "gtao" ? int(noisy.direct.size() / 50) : 0);
+  }
+}
+
+TEST(Shares, BackgroundStaysBlackWhateverItHolds) {
+  const Geometry g = random_geometry(70, 30, 11);
+  Scene scene = scene_of(g, light_from_a_side(true));
+  Products p = random_products(g, 12);
+  p.sun_shares.resize(1);
+  for (std::size_t i = 0; i < p.ao.size(); ++i) {
+    if (g.is_surface(i)) continue;
+    scene.geometry.surfel[i] = {glm::vec3(NAN), 0, glm::vec3(NAN), NAN};
+    p.sky_share[i] = glm::vec3(NAN);
+  }
+  const Products out = filter_shares(find_filter("geometry"), p, scene, 8);
+  for (std::size_t i = 0; i < p.ao.size(); ++i) {
+    EXPECT_TRUE(std::isfinite(glm::length(out.direct[i])));
+    EXPECT_TRUE(g.is_surface(i) || out.direct[i] == glm::vec3(0));
+  }
+}
+
+}  // namespace
+}  // namespace ssdo::test
