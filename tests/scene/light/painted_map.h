@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/trigonometric.hpp>
 #include <memory>
 #include <random>
+#include <vector>
 
 #include "scene/light/environment.h"
 
@@ -60,7 +64,7 @@ class TexelSum {
     for (int y = 0; y < map.map()->height; ++y) {
       for (int x = 0; x < map.map()->width; ++x) {
         const glm::dvec3 power(map.gain() * map.texel_solid_angle(y) * (*map.map())(x, y));
-        texels_.push_back({glm::dvec3(map.texel_direction(x, y)), power / 3.14159265358979});
+        texels_.push_back({glm::dvec3(map.texel_direction(x, y)), power / glm::pi<double>()});
       }
     }
   }

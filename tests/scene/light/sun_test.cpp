@@ -117,7 +117,7 @@ double cosine_of_disc(double radius_degrees, double elevation_degrees) {
     // Rings of equal solid angle.
     const double c = 1 - (1 - std::cos(radius)) * (i + 0.5) / kRings, s = std::sqrt(1 - c * c);
     for (int k = 0; k < kSpokes; ++k) {
-      const double turn = 2 * 3.14159265358979 * (k + 0.5) / kSpokes;
+      const double turn = 2 * glm::pi<double>() * (k + 0.5) / kSpokes;
       sum += std::max(0.0, c * std::sin(e) + s * std::cos(turn) * std::cos(e));
       all += c;
     }
