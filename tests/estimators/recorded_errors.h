@@ -65,7 +65,7 @@ inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometry = {
      0.0554,
      0.0503,
      0.0410,
-     0.1338,
+     0.1309,
      0.2774,
      0.77},
 };
