@@ -149,7 +149,8 @@ class Bitmask {
     if (wants_light()) {
       direct_ = raster_.make_color();
       job.direct = &direct_;
-      if (!light.is_constant()) {
+      out_.shares.are_ao = light.is_constant();
+      if (!out_.shares.are_ao) {
         sky_share = raster_.make_color();
         job.sky_share = &sky_share;
       }
@@ -168,7 +169,7 @@ class Bitmask {
     for_each_band_of(
         lit_part(), [&](const Window& part) { march_visibility(job, part); }, progress_);
     if (request_.products.bent) out_.bent = raster_.picture(bent);
-    if (job.sky_share) out_.sky_share = raster_.picture(sky_share);
+    if (job.sky_share) out_.shares.sky = raster_.picture(sky_share);
     if (!wants_light() || light.suns.empty()) return;
     // A panorama shows what stands beyond the border, and rays have asked it.
     const bool all_is_shown =
@@ -190,7 +191,7 @@ class Bitmask {
     const SunJob job{march_, bounds, directions, &sun, past_beyond, &direct_, &share};
     for_each_band_of(
         lit_part(), [&](const Window& part) { march_sun(job, part); }, progress_);
-    out_.sun_shares.push_back(raster_.picture(share));
+    out_.shares.suns.push_back(raster_.picture(share));
   }
 
   void gather_reflection() {

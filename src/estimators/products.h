@@ -27,6 +27,14 @@ struct ProductSet {
   bool operator==(const ProductSet&) const = default;
 };
 
+/// How much of the light arrives: what filters average in place of `direct` (filters/shares.h).
+/// About 0..1, but noise is not cut off, so that means are right.
+struct LightShares {
+  Plane<glm::vec3> sky;            ///< of what the sky gives, channel by channel
+  std::vector<Plane<float>> suns;  ///< of what each sun gives, as if its light met any normal
+  bool are_ao = false;  ///< light comes from everywhere alike, and ao is its share; no planes then
+};
+
 /// Planes over the receivers of the request: those that were asked for, and others that the method
 /// found on its way; the rest are empty. Linear, without the receiver's albedo.
 struct Products {
@@ -36,12 +44,7 @@ struct Products {
   Plane<float> reflection;  ///< share of a reflection that is not occluded
   Plane<float> error;  ///< of the luminance of direct + bounce, with the sign of one draw of noise
   Plane<float> guessed;  ///< share of the hemisphere that no picture shows
-
-  // What `direct` is made of, where the method knows: what arrives of the sky's light, channel by
-  // channel, and of the light of each sun. About 0..1, but noise is not cut off, so that means are
-  // right. Filters take these in place of `direct` (filters/shares.h).
-  Plane<glm::vec3> sky_share;
-  std::vector<Plane<float>> sun_shares;
+  LightShares shares;    ///< what `direct` is made of, where the method knows
 };
 
 /// What the values of a product are. It decides how filters, --temporal and pictures treat them.
@@ -182,9 +185,9 @@ void for_each_plane(const Visit& visit, All&... all) {
 /// sun's; some planes may be empty. `all` have as many suns as the first.
 template <class Visit, class First, class... Others>
 void for_each_share(const Visit& visit, First& first, Others&... others) {
-  visit(first.sky_share, others.sky_share...);
-  for (std::size_t i = 0; i < first.sun_shares.size(); ++i)
-    visit(first.sun_shares[i], others.sun_shares[i]...);
+  visit(first.shares.sky, others.shares.sky...);
+  for (std::size_t i = 0; i < first.shares.suns.size(); ++i)
+    visit(first.shares.suns[i], others.shares.suns[i]...);
 }
 
 }  // namespace ssdo

@@ -124,8 +124,10 @@ class Trace {
     out_.ao = Plane<float>(width(), height(), 1.0f);
     if (request_.products.bent) out_.bent = Plane<glm::vec3>(width(), height(), glm::vec3(0));
     if (wants_light_) {
-      out_.direct = out_.sky_share = Plane<glm::vec3>(width(), height(), glm::vec3(0));
-      out_.sun_shares.assign(scene_.light.suns.size(), Plane<float>(width(), height(), 0.0f));
+      out_.direct = Plane<glm::vec3>(width(), height(), glm::vec3(0));
+      out_.shares.are_ao = scene_.light.is_constant();
+      if (!out_.shares.are_ao) out_.shares.sky = out_.direct;
+      out_.shares.suns.assign(scene_.light.suns.size(), Plane<float>(width(), height(), 0.0f));
     }
     if (request_.products.error) luminances_ = Plane<Groups>(width(), height(), Groups{});
     for_each_surface([&](std::size_t pixel, const Receiver& p) { gather_visibility(pixel, p); });
@@ -247,12 +249,12 @@ class Trace {
         even ? scene_.light.environment.constant_radiance() : scene_.light.irradiance(p.normal);
     const glm::vec3 share = even ? glm::vec3(ao) : light.share_of_all(ao);
     out_.direct[pixel] = unoccluded * share;
-    out_.sky_share[pixel] = share;
+    if (!even) out_.shares.sky[pixel] = share;
     Groups groups{};
     for (int g = 0; g < kGroups; ++g) groups[g] = luminance(unoccluded * light.share_of_group(g));
     for (std::size_t i = 0; i < scene_.light.suns.size(); ++i)
       out_.direct[pixel] +=
-          light_of(scene_.light.suns[i], std::uint32_t(i), p, groups, out_.sun_shares[i][pixel]);
+          light_of(scene_.light.suns[i], std::uint32_t(i), p, groups, out_.shares.suns[i][pixel]);
     if (request_.products.error) luminances_[pixel] = groups;
   }
 

@@ -18,19 +18,22 @@
 // view axis. The rotation that takes N there by the shortest way is smooth over all normals that
 // the camera sees.
 //
+// Where the share of all light is ao, there is nothing to be filtered but ao.
+//
 // ao is averaged as it is. What of ao is open by the normal alone would be divided out in
 // shares_of_row() and multiplied in light_of_row().
 //
 // Compiled once for every instruction set.
 #include "filters/shares.h"
 
+#include <algorithm>
 #include <utility>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/shares.cpp"
 #include <hwy/foreach_target.h>
 
-#include "parallel/tiles.h"
+#include "filters/tile_rows-inl.h"
 #include "scene/light/light-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -45,26 +48,16 @@ struct Normals {
   M valid;
 };
 
+HWY_INLINE Normals normals_of(const Surfels& q) {
+  return {if_then_else(q.surface, q.normal, set(glm::vec3(0, 0, 1))), q.surface};
+}
+
+/// Of `count` surfels, or as many as there are lanes.
 HWY_INLINE Normals normals_of(const Surfel* from, int count) {
-  V3 n;
-  V valid;
-  if (count >= kLanes) {
-    static_assert(sizeof(Surfel) == 8 * sizeof(float));
-    const VI index = hn::Iota(DI(), 0) * set_int(8);
-    const float* normal = &from->normal.x;
-    n = {gather(normal, index), gather(normal + 1, index), gather(normal + 2, index)};
-    valid = gather(&from->valid, index);
-  } else {
-    float of_lane[4][kLanes] = {};
-    for (int i = 0; i < count; ++i) {
-      for (int c = 0; c < 3; ++c) of_lane[c][i] = from[i].normal[c];
-      of_lane[3][i] = from[i].valid;
-    }
-    n = {load(of_lane[0]), load(of_lane[1]), load(of_lane[2])};
-    valid = load(of_lane[3]);
-  }
-  const M surface = valid != set(0);
-  return {if_then_else(surface, n, set(glm::vec3(0, 0, 1))), surface};
+  if (count >= kLanes) return normals_of(load_surfels(from));
+  Surfel copies[kLanes];
+  std::copy_n(from, count, copies);
+  return normals_of(load_surfels(copies));
 }
 
 /// Calls `work(index, count, normals)` for vectors of a row; the last may have fewer pixels than
@@ -125,7 +118,7 @@ void shares_of_row(const Scene& scene, Products& products, int y) {
 /// The light of a row from its shares.
 void light_of_row(const Scene& scene, Products& products, int y) {
   const Light& light = scene.light;
-  const bool by_part = !products.sky_share.empty();
+  Plane<glm::vec3>& found = products.shares.sky.empty() ? products.direct : products.shares.sky;
   for_each_vector(
       scene.geometry.surfel, y, [&](std::size_t i, int count, const Normals& normals) HWY_ATTR {
         const V3 n = normals.n;
@@ -134,18 +127,20 @@ void light_of_row(const Scene& scene, Products& products, int y) {
                    bent = normalise(turned(deviation, set(glm::vec3(0, 0, 1)), n));
           store_first(count, if_then_else(normals.valid, bent, deviation), &products.bent[i]);
         }
-        if (products.direct.empty()) return;
+        if (found.empty()) return;
         V3 sum;
-        if (by_part) {
-          sum = saturate(load_first(count, &products.sky_share[i])) * unoccluded_sky(light, n);
-          for (std::size_t k = 0; k < products.sun_shares.size(); ++k) {
-            const V share = saturate(load_first(count, &products.sun_shares[k][i]));
+        if (products.shares.are_ao) {
+          sum = unoccluded_light(light, n) * load_first(count, &products.ao[i]);
+        } else if (products.shares.sky.empty()) {
+          sum = load_first(count, &products.direct[i]) * unoccluded_light(light, n);
+        } else {
+          sum = saturate(load_first(count, &products.shares.sky[i])) * unoccluded_sky(light, n);
+          for (std::size_t k = 0; k < products.shares.suns.size(); ++k) {
+            const V share = saturate(load_first(count, &products.shares.suns[k][i]));
             sum = mul_add(unoccluded(light.suns[k], n), share, sum);
           }
-        } else {
-          sum = load_first(count, &products.direct[i]) * unoccluded_light(light, n);
         }
-        store_first(count, if_then_else_zero(normals.valid, sum), &products.direct[i]);
+        store_first(count, if_then_else_zero(normals.valid, sum), &found[i]);
       });
 }
 
@@ -158,18 +153,23 @@ namespace ssdo {
 HWY_EXPORT(shares_of_row);
 HWY_EXPORT(light_of_row);
 
+namespace {
+
+Products without_shares(Products products) {
+  products.shares = {};
+  return products;
+}
+
+}  // namespace
+
 Products filter_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size) {
-  if (filter.apply) {
-    noisy = apply_filter(filter, to_shares(std::move(noisy), scene), scene.geometry, pattern_size);
-    return from_shares(std::move(noisy), scene);
-  }
-  noisy.sky_share = {};
-  noisy.sun_shares.clear();
-  return noisy;
+  if (!filter.apply) return without_shares(std::move(noisy));
+  noisy = apply_filter(filter, to_shares(std::move(noisy), scene), scene.geometry, pattern_size);
+  return from_shares(std::move(noisy), scene);
 }
 
 Products to_shares(Products products, const Scene& scene) {
-  if (!products.sky_share.empty()) products.direct = {};
+  if (!products.shares.sky.empty() || products.shares.are_ao) products.direct = {};
   if (products.direct.empty() && products.bent.empty()) return products;
   for_each_row(scene.geometry.surfel.height, [&](int y) {
     HWY_DYNAMIC_DISPATCH(shares_of_row)(scene, products, y);
@@ -178,15 +178,15 @@ Products to_shares(Products products, const Scene& scene) {
 }
 
 Products from_shares(Products products, const Scene& scene) {
-  if (!products.sky_share.empty()) products.direct = Plane<glm::vec3>::like(scene.geometry.surfel);
-  if (!products.direct.empty() || !products.bent.empty()) {
+  // The light of the sky's share takes its place.
+  if (products.shares.are_ao) products.direct = Plane<glm::vec3>::like(scene.geometry.surfel);
+  if (!products.direct.empty() || !products.shares.sky.empty() || !products.bent.empty()) {
     for_each_row(scene.geometry.surfel.height, [&](int y) {
       HWY_DYNAMIC_DISPATCH(light_of_row)(scene, products, y);
     });
   }
-  products.sky_share = {};
-  products.sun_shares.clear();
-  return products;
+  if (!products.shares.sky.empty()) products.direct = std::move(products.shares.sky);
+  return without_shares(std::move(products));
 }
 
 }  // namespace ssdo

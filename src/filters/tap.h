@@ -28,7 +28,8 @@ inline Products like(const Products& other) {
   for_each_plane([](const Product&, auto& to,
                     const auto& from) { to = std::decay_t<decltype(from)>::like(from); },
                  products, other);
-  products.sun_shares.resize(other.sun_shares.size());
+  products.shares.are_ao = other.shares.are_ao;
+  products.shares.suns.resize(other.shares.suns.size());
   for_each_share([](auto& to, const auto& from) { to = std::decay_t<decltype(from)>::like(from); },
                  products, other);
   return products;

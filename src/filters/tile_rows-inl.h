@@ -82,6 +82,32 @@ inline std::vector<Part> parts_of(const Products& noisy, Products& out) {
   return parts;
 }
 
+/// Surfels side by side; only `surface` counts where there is none.
+struct Surfels {
+  V3 position, normal;
+  V rounding;
+  M surface;
+};
+
+HWY_INLINE Surfels load_surfels(const Surfel* from) {
+  static_assert(sizeof(Surfel) == 8 * sizeof(float));
+#if HWY_TARGET == HWY_SCALAR
+  return {set(from->position), set(from->normal), set(from->rounding), set(from->valid) != set(0)};
+#else
+  const D d;
+  // Position and validity, normal and rounding, position, ... of two halves of the vector.
+  V x0, y0, z0, w0, x1, y1, z1, w1;
+  hn::LoadInterleaved4(d, &from[0].position.x, x0, y0, z0, w0);
+  hn::LoadInterleaved4(d, &from[kLanes / 2].position.x, x1, y1, z1, w1);
+  const auto even = [d](V a, V b) HWY_ATTR { return hn::ConcatEven(d, b, a); };
+  const auto odd = [d](V a, V b) HWY_ATTR { return hn::ConcatOdd(d, b, a); };
+  return {{even(x0, x1), even(y0, y1), even(z0, z1)},
+          {odd(x0, x1), odd(y0, y1), odd(z0, z1)},
+          odd(w0, w1),
+          even(w0, w1) != set(0)};
+#endif
+}
+
 /// What pixels side by side show. What is not a surface has no normal.
 struct Shown {
   V3 position, normal;
@@ -183,31 +209,14 @@ class TileRows {
       surface_[std::size_t(i)] = surface;
       for (int c = 0; c < kSurfelChannels; ++c) to[c * stride_ + i] = surface ? values[c] : 0.0f;
     };
-#if HWY_TARGET == HWY_SCALAR
-    for (int i = 0; i < count; ++i) single(i);
-#else
-    static_assert(sizeof(Surfel) == 8 * sizeof(float));
     const auto whole = [&](int i) HWY_ATTR {
-      const D d;
-      // Position and validity, normal and rounding, position, ... of two halves of the vector.
-      V x0, y0, z0, w0, x1, y1, z1, w1;
-      hn::LoadInterleaved4(d, &from[i].position.x, x0, y0, z0, w0);
-      hn::LoadInterleaved4(d, &from[i + kLanes / 2].position.x, x1, y1, z1, w1);
-      const M surface = hn::ConcatEven(d, w1, w0) != set(0);
-      store(hn::IfThenElseZero(surface, set(1)), surface_.get() + i);
-      const auto store_channel = [&](V values, int c) HWY_ATTR {
-        store(hn::IfThenElseZero(surface, values), to + c * stride_ + i);
-      };
-      store_channel(hn::ConcatEven(d, x1, x0), 0);
-      store_channel(hn::ConcatEven(d, y1, y0), 1);
-      store_channel(hn::ConcatEven(d, z1, z0), 2);
-      store_channel(hn::ConcatOdd(d, x1, x0), 3);
-      store_channel(hn::ConcatOdd(d, y1, y0), 4);
-      store_channel(hn::ConcatOdd(d, z1, z0), 5);
-      store_channel(hn::ConcatOdd(d, w1, w0), 6);
+      const Surfels q = load_surfels(from + i);
+      store(hn::IfThenElseZero(q.surface, set(1)), surface_.get() + i);
+      store_apart(if_then_else_zero(q.surface, q.position), stride_, to + i);
+      store_apart(if_then_else_zero(q.surface, q.normal), stride_, to + 3 * stride_ + i);
+      store(hn::IfThenElseZero(q.surface, q.rounding), to + 6 * stride_ + i);
     };
     cover(count, whole, single);
-#endif
   }
 
   void gather_part(const Part& part, std::size_t first, int count, float* to) const {

@@ -12,6 +12,7 @@
 
 #include "estimators/registry.h"
 #include "support/analytic_scene.h"
+#include "support/chosen_isa.h"
 #include "support/random_frame.h"
 #include "support/scene_of.h"
 
@@ -163,10 +164,10 @@ TEST(Shares, TheEdgeOfAShadowStaysWhereItIs) {
   constexpr int kEdge = 47;
   Products p;
   p.ao = Plane<float>(kWindow.width(), kWindow.height(), 1);
-  p.sky_share = p.direct = Plane<glm::vec3>(kWindow.width(), kWindow.height(), glm::vec3(1));
-  p.sun_shares = {Plane<float>(kWindow.width(), kWindow.height(), 0)};
+  p.shares.sky = p.direct = Plane<glm::vec3>(kWindow.width(), kWindow.height(), glm::vec3(1));
+  p.shares.suns = {Plane<float>(kWindow.width(), kWindow.height(), 0)};
   for (int y = 0; y < kWindow.height(); ++y)
-    for (int x = kEdge; x < kWindow.width(); ++x) p.sun_shares[0](x, y) = 1;
+    for (int x = kEdge; x < kWindow.width(); ++x) p.shares.suns[0](x, y) = 1;
   const Products out = filter_shares(find_filter("geometry"), p, scene, 8);
   const Sun& sun = scene.light.suns[0];
   const int y = kWindow.height() / 2;
@@ -195,10 +196,10 @@ TEST(Shares, AreOfTheLightThatTheNormalReceives) {
 
   Products parts;
   parts.direct = p.direct;
-  parts.sky_share = Plane<glm::vec3>(kWindow.width(), kWindow.height(), glm::vec3(0.3f, 2, -1));
-  parts.sun_shares = {Plane<float>(kWindow.width(), kWindow.height(), 0.6f)};
+  parts.shares.sky = Plane<glm::vec3>(kWindow.width(), kWindow.height(), glm::vec3(0.3f, 2, -1));
+  parts.shares.suns = {Plane<float>(kWindow.width(), kWindow.height(), 0.6f)};
   const Products light = from_shares(to_shares(parts, scene), scene);
-  EXPECT_TRUE(light.sky_share.empty() && light.sun_shares.empty());
+  EXPECT_TRUE(light.shares.sky.empty() && light.shares.suns.empty());
   for (std::size_t i = 0; i < p.direct.size(); ++i) {
     const glm::vec3 n = g.surfel[i].normal;
     const Sun& sun = scene.light.suns[0];
@@ -231,8 +232,8 @@ TEST(Shares, EveryMethodComposesWhatItFound) {
     const Products noisy = estimated(method, scene, set);
     const Products none = through_filter(method, scene, noisy, "none");
     EXPECT_EQ(none.direct.pixels, noisy.direct.pixels);
-    EXPECT_TRUE(none.sky_share.empty() && none.sun_shares.empty());
-    EXPECT_EQ(noisy.sun_shares.size(), noisy.sky_share.empty() ? 0 : scene.light.suns.size());
+    EXPECT_TRUE(none.shares.sky.empty() && none.shares.suns.empty());
+    EXPECT_EQ(noisy.shares.suns.size(), noisy.shares.sky.empty() ? 0 : scene.light.suns.size());
     const Products composed = from_shares(to_shares(noisy, scene), scene);
     int off = 0;
     for (std::size_t i = 0; i < noisy.direct.size(); ++i) {
@@ -246,15 +247,55 @@ TEST(Shares, EveryMethodComposesWhatItFound) {
   }
 }
 
+TEST(Shares, ConstantLightNeedsAoAlone) {
+  Geometry g =
+      geometry_of(all_of({plane({}, {0, 0, 1}), sphere({0.3, 0.2, 0.5}, 0.6)}), camera(), kWindow);
+  const Scene scene = scene_of(g, Environment::constant({2, 1, 0.5f}));
+  for (const char* name : {"bitmask", "trace", "hbao"}) {
+    SCOPED_TRACE(name);
+    const Method& method = find_method(name);
+    const Products out =
+        through_filter(method, scene, estimated(method, scene, {.ao = true, .direct = true}));
+    for (std::size_t i = 0; i < out.direct.size(); ++i)
+      EXPECT_LT(difference(out.direct[i], glm::dvec3(2, 1, 0.5) * double(out.ao[i])), 1e-5);
+  }
+}
+
+TEST(Shares, AgreeAmongInstructionSets) {
+  for (const Size size : kSizes) {
+    const Scene scene =
+        scene_of(random_geometry(size.width, size.height, 3), light_from_a_side(true));
+    Products parts = random_products(scene.geometry, 4), whole = parts;
+    parts.shares.suns.resize(1);
+    whole.shares.sky = {}, whole.shares.suns.clear();
+    for (const Products& in : {parts, whole}) {
+      const auto run = [&](const char* isa) {
+        const ChosenIsa chosen(isa);
+        return from_shares(to_shares(in, scene), scene);
+      };
+      const Products scalar = run("scalar");
+      for (const char* isa : {"avx2", "avx512"}) {
+        if (!has_isa(isa)) continue;
+        const Products vector = run(isa);
+        for (std::size_t i = 0; i < in.ao.size(); ++i) {
+          EXPECT_LT(difference(vector.direct[i], scalar.direct[i]),
+                    1e-5 * (1 + glm::length(scalar.direct[i])));
+          EXPECT_LT(difference(vector.bent[i], scalar.bent[i]), 1e-5);
+        }
+      }
+    }
+  }
+}
+
 TEST(Shares, BackgroundStaysBlackWhateverItHolds) {
   const Geometry g = random_geometry(70, 30, 11);
   Scene scene = scene_of(g, light_from_a_side(true));
   Products p = random_products(g, 12);
-  p.sun_shares.resize(1);
+  p.shares.suns.resize(1);
   for (std::size_t i = 0; i < p.ao.size(); ++i) {
     if (g.is_surface(i)) continue;
     scene.geometry.surfel[i] = {glm::vec3(NAN), 0, glm::vec3(NAN), NAN};
-    p.sky_share[i] = glm::vec3(NAN);
+    p.shares.sky[i] = glm::vec3(NAN);
   }
   const Products out = filter_shares(find_filter("geometry"), p, scene, 8);
   for (std::size_t i = 0; i < p.ao.size(); ++i) {

@@ -53,7 +53,7 @@ Products random_products(const Geometry& g, unsigned seed) {
         for (auto& value : plane.pixels) value = random_value(random, product.kind, value);
       },
       products);
-  products.sun_shares.resize(2);
+  products.shares.suns.resize(2);
   for_each_share(
       [&](auto& plane) {
         plane = std::decay_t<decltype(plane)>::like(g.surfel);
