@@ -65,6 +65,7 @@ Products over_geometry(Products found, const Geometry& geometry, const Window& r
   for_each_plane([&](const Product& product, auto& plane) { place(plane, product.background); },
                  found);
   for_each_share([&](auto& plane) { place(plane, 0); }, found);
+  for (ShadowDraw& draw : found.shares.draws) place(draw.weight, 0), place(draw.width_px, 0);
   return found;
 }
 

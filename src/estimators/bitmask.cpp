@@ -180,18 +180,19 @@ class Bitmask {
             ? sun_past_beyond(mean_ao(march_scene_, scene_.geometry.display, request_.radius))
             : 1;
     const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
-    for (const Sun& sun : light.suns) add_sun(sun, bounds, past);
+    for (const Sun& sun : light.suns) add_sun(sun, bounds, pass_beyond(past, sun.held));
   }
 
   /// Adds the light of a sun where it is seen. Members of the pattern look at different points of
   /// its disc.
-  void add_sun(const Sun& sun, const std::vector<DepthBounds>& bounds, float past_beyond) {
-    const PerMember<glm::vec3> directions = directions_to(sun);
-    InterleavedPlane share(layout_);
-    const SunJob job{march_, bounds, directions, &sun, past_beyond, &direct_, &share};
+  void add_sun(const Sun& sun, const std::vector<DepthBounds>& bounds, const PassBeyond& pass) {
+    const PerMember<glm::vec3> directions = directions_to(sun, request_.seed);
+    InterleavedPlane share(layout_), weight(layout_), width_px(layout_);
+    const SunJob job{march_, bounds, directions, &sun, pass, &direct_, &share, &weight, &width_px};
     for_each_band_of(
         lit_part(), [&](const Window& part) { march_sun(job, part); }, progress_);
     out_.shares.suns.push_back(raster_.picture(share));
+    out_.shares.draws.push_back({raster_.picture(weight), raster_.picture(width_px)});
   }
 
   void gather_reflection() {

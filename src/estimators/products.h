@@ -27,11 +27,18 @@ struct ProductSet {
   bool operator==(const ProductSet&) const = default;
 };
 
+/// What is known of a share of a sun that a single ray has found, beside the share.
+struct ShadowDraw {
+  Plane<float> weight;    ///< in a mean: the cosine of the ray to the normal
+  Plane<float> width_px;  ///< of the penumbra that what is in its way throws here; 0: nothing is
+};
+
 /// How much of the light arrives: what filters average in place of `direct` (filters/shares.h).
 /// About 0..1, but noise is not cut off, so that means are right.
 struct LightShares {
   Plane<glm::vec3> sky;            ///< of what the sky gives, channel by channel
   std::vector<Plane<float>> suns;  ///< of what each sun gives, as if its light met any normal
+  std::vector<ShadowDraw> draws;   ///< of each sun; empty where the shares are means of many rays
   bool are_ao = false;  ///< light comes from everywhere alike, and ao is its share; no planes then
 };
 

@@ -42,48 +42,23 @@
 
 #include <cstdlib>
 #include <optional>
+#include <utility>
+#include <vector>
 
+#include "filters/shadow_filter.h"
 #include "filters/tap.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/geometry_filter.cpp"
 #include <hwy/foreach_target.h>
 
+#include "filters/similarity-inl.h"
 #include "filters/tile_rows-inl.h"
-#include "scene/same_surface-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
 constexpr float kStepTolerance = 0.15f;  ///< r; measured, with the 1/4
-
-/// Signed distance of q from p's tangent plane.
-HWY_INLINE V above_plane(const Shown& p, const Shown& q) {
-  return dot(q.position - p.position, p.normal);
-}
-
-/// The factor of w that depends on the plane, with `above` = n_p . (q - p) and the distance by
-/// which rounding may have moved it. Not inlined, since it is rarely needed: for most neighbours a
-/// comparison of squares shows that the factor is 1.
-HWY_NOINLINE V plane_ramp(V above, V rounding, V distance2, const Shown& p, const Shown& o) {
-  const V off_plane = hn::Max(set(0), hn::Abs(above) - rounding),
-          bend = hn::Max(set(0), hn::Abs(above + above_plane(p, o)) - rounding - rounding);
-  const M exists = dot(o.normal, o.normal) > set(0);
-  const V h = hn::IfThenElse(exists, hn::Min(off_plane, bend), off_plane);
-  return hn::IfThenElse(distance2 > set(0), plane_weight(h / hn::Sqrt(distance2)), set(1));
-}
-
-/// w(p, q); 0 where one of them shows no surface. `opposite()` gives the pixel on p's other side.
-template <class Opposite>
-HWY_INLINE V similarity(const Shown& p, const Shown& q, const Opposite& opposite) {
-  const V turn = normal_weight(dot(p.normal, q.normal));
-  const V3 to_q = q.position - p.position;
-  const V distance2 = dot(to_q, to_q), above = above_plane(p, q);
-  const V rounding = p.rounding + q.rounding;
-  const V off_plane = hn::Max(set(0), hn::Abs(above) - rounding);
-  if (all(within_sine(off_plane, distance2, kPlaneSine / 2))) return turn;
-  return turn * plane_ramp(above, rounding, distance2, p, opposite());
-}
 
 class TileFilter {
  public:
@@ -343,7 +318,9 @@ namespace ssdo {
 HWY_EXPORT(filter_tile);
 HWY_EXPORT(filter_corners);
 
-Products filter_geometry(Products noisy, const Geometry& geometry, int pattern_size) {
+namespace {
+
+Products filter_all(Products noisy, const Geometry& geometry, int pattern_size) {
   constexpr int kMostAtOnce = 4;
   const int width = geometry.surfel.width, height = geometry.surfel.height;
   const bool twice = pattern_size > kMostAtOnce;
@@ -357,6 +334,18 @@ Products filter_geometry(Products noisy, const Geometry& geometry, int pattern_s
     HWY_DYNAMIC_DISPATCH(filter_corners)(means, geometry, pattern_size / 4, tile, noisy);
   });
   return noisy;
+}
+
+}  // namespace
+
+Products filter_geometry(Products noisy, const Geometry& geometry, int pattern_size) {
+  if (noisy.shares.draws.empty()) return filter_all(std::move(noisy), geometry, pattern_size);
+  const std::vector<Plane<float>> suns = std::exchange(noisy.shares.suns, {});
+  const std::vector<ShadowDraw> draws = std::exchange(noisy.shares.draws, {});
+  Products out = filter_all(std::move(noisy), geometry, pattern_size);
+  for (std::size_t k = 0; k < suns.size(); ++k)
+    out.shares.suns.push_back(filter_shadow(suns[k], draws[k], geometry, pattern_size));
+  return out;
 }
 
 }  // namespace ssdo

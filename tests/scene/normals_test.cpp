@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Normals of frames that have depth and no N.
+// Normals of frames that have depth and no N, and of surfaces under a normal map.
 #include "scene/normals.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <glm/trigonometric.hpp>
 
 #include "support/analytic_scene.h"
@@ -103,6 +104,55 @@ TEST(NormalsFromDepth, FaceTheViewerWhereThereIsNoPlaneToSee) {
       EXPECT_LT(glm::length(normal_at(g, i) - view), 1e-6);
     }
   }
+}
+
+/// What geometric_normal() says of a pixel, and the normal that the pixel has.
+struct NormalPair {
+  glm::vec3 geometric, shading;
+};
+NormalPair normals_at(const Geometry& g, int x, int y) {
+  const Surfel& s = g.surfel(x, y);
+  return {geometric_normal(g.surfel, x, y, -glm::normalize(s.position)), s.normal};
+}
+
+TEST(GeometricNormals, AreThoseOfTheSurfaceUnderANormalMap) {
+  const Camera camera = look_at(camera_from_fov(40, kWindow, 1), {0, -3, 2}, {}, {0, 0, 1});
+  const glm::vec3 up(camera.rotation * glm::dvec3(0, 0, 1));
+  for (const double lean : {1.0, 10.0, 40.0}) {
+    Geometry g = geometry_of(plane({}, {0, 0, 1}), camera, kWindow);
+    const double a = glm::radians(lean);
+    const glm::vec3 shading(camera.rotation * glm::dvec3(std::sin(a), 0, std::cos(a)));
+    for (Surfel& s : g.surfel.pixels) s.normal = shading;
+    const NormalPair inside = normals_at(g, 30, 20);
+    // Within two degrees both are one.
+    EXPECT_LT(glm::distance(inside.geometric, lean < 2 ? shading : up), 1e-4) << lean;
+    const NormalPair border = normals_at(g, 0, 47);
+    EXPECT_LT(glm::distance(border.geometric, lean < 2 ? shading : up), 1e-4) << "at the border";
+  }
+}
+
+TEST(GeometricNormals, AreThoseOfThePixelWherePositionsTellNone) {
+  const Camera camera = look_at(camera_from_fov(40, kWindow, 1), {0, -3, 2}, {}, {0, 0, 1});
+  // Across an edge between two faces, and across a silhouette.
+  const Surface faces =
+      all_of({cut(plane({}, {0, 0, 1}), [](auto& p) { return p.x < 0.01; }),
+              cut(plane({0.01, 0, 0}, {-1, 0, 0.3}), [](auto& p) { return p.x >= 0.01; })});
+  const Surface ball = all_of({plane({}, {0, 0, 1}), sphere({0, 0, 0.5}, 0.5)});
+  for (const Surface& scene : {faces, ball}) {
+    const Geometry g = geometry_of(scene, camera, kWindow);
+    for (int y = 0; y < kWindow.height(); ++y) {
+      for (int x = 0; x < kWindow.width(); ++x) {
+        if (!g.surfel(x, y).is_usable()) continue;
+        const NormalPair n = normals_at(g, x, y);
+        EXPECT_GT(glm::dot(n.geometric, n.shading), 0.96f) << x << " " << y;
+      }
+    }
+  }
+  // Positions in half floats leave no slope.
+  Geometry g = geometry_of(plane({}, {0, 0, 1}), camera, kWindow);
+  for (Surfel& s : g.surfel.pixels)
+    s.normal = glm::normalize(s.normal + glm::vec3(0.5f, 0, 0)), s.rounding = 0.02f;
+  EXPECT_EQ(normals_at(g, 30, 20).geometric, g.surfel(30, 20).normal);
 }
 
 }  // namespace

@@ -45,4 +45,8 @@ float sun_past_beyond(float mean_ao) {
   return std::min(1.0f, mean_ao / kOpenFrame);
 }
 
+PassBeyond pass_beyond(float sun_past, float held) {
+  return {sun_past + held * (1 - sun_past), held * kLightThroughBeyond};
+}
+
 }  // namespace ssdo

@@ -46,4 +46,13 @@ float mean_ao(const MarchScene& scene, const Window& display, float radius);
 /// that goes on hides it. `mean_ao` is that of the frame.
 float sun_past_beyond(float mean_ao);
 
+/// Shares of the rays to a source, 0..1: of those that leave the frame and that nothing hides which
+/// goes on beyond it, and of those that something does.
+struct PassBeyond {
+  float past = 1, through = 0;
+};
+
+/// Those of a source of which harmonics would hold the share `held`: by so much it is sky.
+PassBeyond pass_beyond(float sun_past, float held);
+
 }  // namespace ssdo

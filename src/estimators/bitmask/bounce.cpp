@@ -46,7 +46,7 @@ HWY_INLINE M faces(const MarchScene& scene, std::ptrdiff_t q, const SliceStep& s
   return dot(load(scene.normal, q), from_q) > set(0);
 }
 
-/// Measure of a set of sectors: the integral of the cosine to the normal.
+/// Measure of a set of sectors: the integral of the cosine to the shading normal.
 HWY_INLINE V measure_of(const MarchReceiver& p, const SideFrame& side, VU bits) {
   const VU one = set_bits(1), last = set_bits(31);
   const VU first = hn::PopulationCount(hn::AndNot(bits, bits - one));
@@ -57,10 +57,11 @@ HWY_INLINE V measure_of(const MarchReceiver& p, const SideFrame& side, VU bits) 
       const float* table = slice_sectors().of_first[std::size_t(m)].data();
       return lookup32(table, end) - lookup32(table, begin);
     };
-    return dot(V2{p.facing, side.n_t}, V2{moment(1), moment(SliceSectors::sine_moment(1))});
+    return dot(V2{p.shading_v, side.shading_t},
+               V2{moment(1), moment(SliceSectors::sine_moment(1))});
   }
   const auto moments = moments_of_bits<1>(bits);
-  return dot(V2{p.facing, side.n_t}, V2{moments.cosine[1], moments.sine[1]});
+  return dot(V2{p.shading_v, side.shading_t}, V2{moments.cosine[1], moments.sine[1]});
 }
 
 /// Light from what only further views show.

@@ -33,7 +33,7 @@ class DepthBounds {
     float nearest;  ///< of the fronts at the middle of the cell; minus infinity: nothing is there
     std::uint32_t slopes;  ///< of that bound per pixel: to the right as the upper half of a float,
                            ///< to the bottom in the lower 16 bits
-    float farthest;  ///< of the backs; infinity: nothing is there
+    float farthest;        ///< of the backs; infinity: nothing is there
     float unused = 0;
   };
 

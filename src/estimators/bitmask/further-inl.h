@@ -71,7 +71,7 @@ struct SectorDirections {
   Lanes facing, n_t;
 
   HWY_INLINE SectorDirections(const MarchReceiver& p, const SideFrame& side, float first)
-      : v(p.to_viewer), t(side.t), facing(p.facing), n_t(side.n_t) {
+      : v(p.to_viewer), t(side.t), facing(p.shading_v), n_t(side.shading_t) {
     for (int k = 0; k < SliceSectors::kCount; ++k) {
       const float c = std::clamp((first - float(k)) / SliceSectors::kPerCosine, -1.0f, 1.0f);
       cosine[k] = c, sine[k] = std::sqrt(1 - c * c);

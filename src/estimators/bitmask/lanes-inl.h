@@ -69,7 +69,9 @@ struct Place {
   int y, column_phase, column;
 };
 
-/// Receivers among the pixels of MarchScene. Their normals are bent to face the viewer.
+/// Receivers among the pixels of MarchScene. Their normals are bent to face the viewer. The march
+/// is bounded by the surface itself, with `normal`; what it finds is weighed by the cosine to
+/// `shading`.
 struct MarchReceiver : Receiver {
   Place place;         ///< of all lanes
   float reach_px = 0;  ///< of all lanes: no pixel farther away in the picture is within the radius
@@ -77,10 +79,21 @@ struct MarchReceiver : Receiver {
   V3 to_viewer;        ///< unit: V
   V distance;          ///< to the viewer
   V facing;            ///< N.V
+  V3 shading;          ///< unit
+  V shading_v;         ///< its cosine to V
   /// The surface in the pixel (dx, dy) away lies above the tangent plane, measured along V, by
   /// depth (rise + rise_x dx + rise_y dy) + plane. What rounding may have added is subtracted.
   V rise, rise_x, rise_y, plane;
 };
+
+/// Bends unit normals to face the viewer, and returns their cosines to V.
+HWY_INLINE V bend_to_viewer(V3& normal, const V3& to_viewer) {
+  const V least = set(kLeastFacing), facing = dot(normal, to_viewer);
+  const M away = facing < least;
+  if (!any(away)) return facing;
+  normal = mul_add(to_viewer, hn::IfThenElseZero(away, least - facing), normal);
+  return hn::Max(facing, least);
+}
 
 HWY_INLINE MarchReceiver load_receiver(const MarchScene& scene, const Place& place) {
   const auto [i, y, column_phase, column] = place;
@@ -108,14 +121,9 @@ HWY_INLINE MarchReceiver load_receiver(const MarchScene& scene, const Place& pla
     p.rise = zero - length;  // N.V / facing is 1
     p.distance = depth * length;
   }
-  p.facing = dot(p.normal, p.to_viewer);
-  const V least = set(kLeastFacing);
-  const M away = p.facing < least;
-  if (any(away)) {
-    const V lift = hn::IfThenElseZero(away, least - p.facing);
-    p.normal = mul_add(p.to_viewer, lift, p.normal);
-    p.facing = hn::Max(p.facing, least);
-  }
+  p.facing = bend_to_viewer(p.normal, p.to_viewer);
+  p.shading = load(scene.shading, i);
+  p.shading_v = bend_to_viewer(p.shading, p.to_viewer);
   const V along_view = one / p.facing;
   p.rise_x = p.normal.x * along_view * set(1 / scene.fx);
   p.rise_y = p.normal.y * along_view * set(-1 / scene.fy);
@@ -124,9 +132,9 @@ HWY_INLINE MarchReceiver load_receiver(const MarchScene& scene, const Place& pla
   return p;
 }
 
-/// The normals of the frame; (0, 0, 1) in lanes without a surface.
-HWY_INLINE V3 load_normals(const MarchScene& scene, std::ptrdiff_t i, M valid) {
-  return if_then_else(valid, load(scene.normal, i), set(glm::vec3(0, 0, 1)));
+/// Normals of the frame, of the surface or of its shading; (0, 0, 1) in lanes without a surface.
+HWY_INLINE V3 load_normals(const InterleavedVectors& normals, std::ptrdiff_t i, M valid) {
+  return if_then_else(valid, load(normals, i), set(glm::vec3(0, 0, 1)));
 }
 
 /// Height of the surface at `depth`, (dx, dy) pixels from the receiver.
@@ -194,9 +202,11 @@ struct SideFrame {
   V2 across;  ///< s of a point of a ray is its depth times across . (dx, dy)
   V slope;    ///< n_t / n_v
   V n_t;
+  V shading_t;     ///< T . shading
   V start;         ///< start_of_sectors() of the side's phase
-  VU above;        ///< the sectors above the tangent plane
+  VU above;        ///< the sectors above the plane across the shading normal
   VU above_count;  ///< their number, 0..31; the last sector points away from the viewer
+  VU open;         ///< those of them that the surface itself does not hide
 };
 
 /// The sectors hidden by a solid whose front is at s and at the height `above` over the receiver's
@@ -216,11 +226,11 @@ HWY_INLINE VU sectors_behind(const MarchReceiver& p, const SideFrame& side, V s,
                             hn::AndNot(bits_from(to), bits_from(from)));
 }
 
-/// The frame of a slice at a receiver: T, the component of the normal along it, and the weight w of
-/// bitmask.cpp, which makes slices that are uniform in the picture uniform around V.
+/// The frame of a slice at a receiver: T, the components of both normals along it, and the weight w
+/// of bitmask.cpp, which makes slices that are uniform in the picture uniform around V.
 struct SliceFrame {
   V3 t;
-  V n_t, weight;
+  V n_t, shading_t, weight;
 };
 
 HWY_INLINE SliceFrame slice_frame(const MarchScene& scene, const MarchReceiver& p,
@@ -234,7 +244,19 @@ HWY_INLINE SliceFrame slice_frame(const MarchScene& scene, const MarchReceiver& 
   f.t = t * hn::Sqrt(f.weight);
   // The weight has the unit of f^2, which cancels in the ratios that are taken.
   f.n_t = dot(p.normal, f.t);
+  f.shading_t = dot(p.shading, f.t);
   return f;
+}
+
+/// The number of sectors above the plane across a normal with these components along V and T. In
+/// the slice, the angle from V to that plane is that to the normal plus pi/2. Directions that
+/// rounding could lift above it are left out, and so is a sector of which more than half lies
+/// below: its integral is negative.
+HWY_INLINE VU count_above(V n_v, V n_t, float phase) {
+  const V2 normal{n_t, n_v};
+  const V cosine = hn::NegMulAdd(n_t, reciprocal_sqrt(dot(normal, normal)), set(kCosineError));
+  const V last_above = start_of_sectors(phase > 0.5f ? phase : 0.5f);
+  return hn::Min(sector_at(cosine, last_above), set_bits(31));
 }
 
 /// The side along the slice's direction, where `forward`, or against it.
@@ -243,18 +265,13 @@ HWY_INLINE SideFrame side_frame(const MarchScene& scene, const MarchReceiver& p,
   SideFrame side;
   side.t = forward ? f.t : set(glm::vec3(0)) - f.t;
   side.n_t = forward ? f.n_t : set(0) - f.n_t;
+  side.shading_t = forward ? f.shading_t : set(0) - f.shading_t;
   side.across = {side.t.x * set(1 / scene.fx), side.t.y * set(-1 / scene.fy)};
   side.slope = side.n_t / p.facing;
-  // In the slice, the angle from V to the tangent plane is that to the normal plus pi/2. Directions
-  // that rounding could lift above the plane are left out, and so is a sector of which more than
-  // half lies below the plane: its integral is negative.
-  const V cosine =
-      hn::NegMulAdd(side.n_t, reciprocal_sqrt(dot(V2{side.n_t, p.facing}, V2{side.n_t, p.facing})),
-                    set(kCosineError));
-  const V last_above = start_of_sectors(phase > 0.5f ? phase : 0.5f);
-  side.above_count = hn::Min(sector_at(cosine, last_above), set_bits(31));
   side.start = start_of_sectors(phase);
+  side.above_count = count_above(p.shading_v, side.shading_t, phase);
   side.above = hn::Not(bits_from(side.above_count));
+  side.open = hn::And(side.above, hn::Not(bits_from(count_above(p.facing, side.n_t, phase))));
   return side;
 }
 

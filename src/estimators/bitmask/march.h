@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "estimators/bitmask/beyond.h"
 #include "estimators/bitmask/depth_bounds.h"
 #include "estimators/bitmask/march_scene.h"
 #include "estimators/bitmask/ray_pattern.h"
@@ -82,9 +83,10 @@ struct SunJob {
   const std::vector<DepthBounds>& bounds;
   const PerMember<glm::vec3>& directions;  ///< unit, to points of the sun
   const Sun* sun;
-  float past_beyond;           ///< share of it that passes what may stand beyond the frame
-  InterleavedVectors* direct;  ///< added to
-  InterleavedPlane* share;     ///< 0..1, of what a surface of any normal would get
+  PassBeyond pass;
+  InterleavedVectors* direct;           ///< added to
+  InterleavedPlane* share;              ///< 0..1, of what a surface of any normal would get
+  InterleavedPlane *weight, *width_px;  ///< those of ShadowDraw
 };
 
 /// How much of what rough surfaces mirror is not blocked.

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "parallel/tiles.h"
+#include "scene/normals.h"
 #include "scene/surfel.h"
 
 namespace ssdo {
@@ -19,7 +20,7 @@ constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 /// What a pixel shows, in the planes of MarchScene.
 struct Cell {
   float depth = kNothing, ray_length = 1;  ///< the ray's per unit of depth
-  glm::vec3 normal{kNothing};
+  glm::vec3 normal{kNothing}, shading{kNothing};
   float rounding = kNothing;
 
   bool is_surface() const { return holds_solid(depth); }
@@ -43,8 +44,10 @@ class Cells {
     const glm::vec2 slope((float(x + scene_.first_x) - scene_.axis_x) / scene_.fx,
                           (scene_.axis_y - float(y + scene_.first_y)) / scene_.fy);
     if (!scene_.orthographic) cell.ray_length = std::sqrt(1 + glm::dot(slope, slope));
-    cell.depth = depth_on_ray(s, slope, cell.ray_length);
-    cell.normal = s.normal;
+    cell.shading = s.normal;
+    cell.normal = geometric_normal(g_.surfel, x, y,
+                                   direction_to_viewer(glm::vec3(s.position), scene_.orthographic));
+    cell.depth = depth_on_ray(s, cell.normal, slope, cell.ray_length);
     cell.rounding = s.rounding;
     return cell;
   }
@@ -63,8 +66,9 @@ class Cells {
  private:
   /// Depth at which the ray through a pixel's middle, which has this slope and length per unit of
   /// depth, meets the tangent plane of what the pixel shows.
-  float depth_on_ray(const Surfel& s, const glm::vec2& slope, float length) const {
-    const glm::vec3 position(s.position), normal(s.normal);
+  float depth_on_ray(const Surfel& s, const glm::vec3& normal, const glm::vec2& slope,
+                     float length) const {
+    const glm::vec3 position(s.position);
     const float depth = -position.z;
     const glm::vec3 ray(slope, scene_.orthographic ? 0.0f : -1.0f),
         on_ray = scene_.orthographic ? glm::vec3(slope, position.z) : depth * ray;
@@ -101,6 +105,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                    g.window.y0 - g.display.y0,
                    {},
                    {plane(), plane(), plane()},
+                   {plane(), plane(), plane()},
                    plane(),
                    BorderLayout(layout),
                    {},
@@ -118,7 +123,10 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
         const int x = column * kPeriod + column_phase - layout.phase();
         const Cell cell = x >= 0 && x < g.surfel.width ? cells.at(x, y) : Cell();
         const std::ptrdiff_t i = row + column;
-        for (int c = 0; c < 3; ++c) scene.normal[std::size_t(c)][i] = cell.normal[c];
+        for (std::size_t c = 0; c < 3; ++c) {
+          scene.normal[c][i] = cell.normal[int(c)];
+          scene.shading[c][i] = cell.shading[int(c)];
+        }
         scene.rounding[i] = cell.rounding;
         for (int k = 0; k < solids.layers(); ++k) {
           const Span span =
@@ -132,8 +140,8 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
   scene.border_depth =
       scene.border.gather([&](int x, int y) { return scene.depth()[layout.index(x, y)]; });
   for (int c = 0; c < 3; ++c) {
-    scene.border_normal[c] =
-        scene.border.gather([&](int x, int y) { return g.surfel(x, y).normal[c]; });
+    scene.border_normal[c] = scene.border.gather(
+        [&](int x, int y) { return scene.normal[std::size_t(c)][layout.index(x, y)]; });
   }
   scene.border_thickness = scene.border.gather([&](int x, int y) {
     return std::min(solids.at(0, g.surfel.index(x, y)).thickness, kEndlessLength);

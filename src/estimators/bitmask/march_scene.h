@@ -76,7 +76,8 @@ struct MarchScene {
   float axis_x, axis_y;            ///< pixel of the display window that the camera's axis meets
   int first_x, first_y;            ///< pixel (0, 0) in the display window
   std::vector<MarchLayer> layers;  ///< near to far; layer 0 is what pixels show
-  InterleavedVectors normal;       ///< unit, of layer 0, camera space
+  InterleavedVectors normal;       ///< unit, of layer 0, camera space: that of the surface
+  InterleavedVectors shading;      ///< the same as shading sees it: light is weighed by it
   InterleavedPlane rounding;       ///< distance by which storing P may have moved layer 0
   BorderLayout border;
   BorderValues border_depth, border_normal[3];

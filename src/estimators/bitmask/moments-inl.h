@@ -228,7 +228,7 @@ struct Moments {
     const auto along = [&](V normal, int band) HWY_ATTR {  // bands of order 1 are y, z, x
       return hn::MulAdd(ao, hn::MulSub(full, normal, whole[band]), whole[band] - closed[band]);
     };
-    const V3 mean{along(p.normal.x, 3), along(p.normal.y, 1), along(p.normal.z, 2)};
+    const V3 mean{along(p.shading.x, 3), along(p.shading.y, 1), along(p.shading.z, 2)};
     return if_then_else(dot(mean, mean) > set(0), normalise(mean), otherwise);
   }
 

@@ -13,7 +13,7 @@ namespace ssdo {
 template <class T>
 using PerMember = std::array<T, Interleaving::kPeriod * Interleaving::kPeriod>;
 
-/// Unit directions to points of a sun's disc, evenly spread.
-PerMember<glm::vec3> directions_to(const Sun& sun);
+/// Unit directions to points of a sun, evenly spread; another seed exchanges them.
+PerMember<glm::vec3> directions_to(const Sun& sun, unsigned seed);
 
 }  // namespace ssdo

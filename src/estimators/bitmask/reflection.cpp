@@ -44,7 +44,7 @@ void reflection(const ReflectionJob& job, const Window& part) {
     const int member = member_at(scene, place);
     MarchReceiver p = load_receiver(scene, place);
     p.reach_px = reach_px(scene, p, job.march.radius);
-    const Lanes3 normals(load_normals(scene, place.index, p.valid)),
+    const Lanes3 normals(load_normals(scene.shading, place.index, p.valid)),
         viewers(if_then_else(p.valid, p.to_viewer, set(glm::vec3(0, 0, 1))));
     const Lanes roughness(hn::IfThenElse(p.valid, load(*job.roughness, place.index), set(1)));
     V open = set(0), all = set(0);
@@ -54,8 +54,9 @@ void reflection(const ReflectionJob& job, const Window& part) {
       const Mirrored m = mirrored(normals, viewers, roughness,
                                   sobol_point(std::uint32_t(sample), hash_of(job.seed, 0, 0)));
       const M above = hn::And(p.valid, m.share > set(0));
-      const V passed =
-          passes<kOrthographic>(job.march, job.bounds, p, m.to, above, turn_of_member(member), 1);
+      V blocked_at;
+      const V passed = passes<kOrthographic>(job.march, job.bounds, p, m.to, above,
+                                             turn_of_member(member), PassBeyond{}, blocked_at);
       open = hn::MulAdd(passed, m.share, open);
       all = all + hn::IfThenElseZero(above, m.share);
     }

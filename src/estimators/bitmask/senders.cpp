@@ -28,7 +28,7 @@ void sent_by_pixels(const SenderJob& job, const Window& part) {
     const auto send = [&](const V3& light, InterleavedVectors& to)
                           HWY_ATTR { store(within_range(albedo * (light + bounce)), to, i); };
     if (job.sent_back) {
-      const V3 back = set(glm::vec3(0)) - load_normals(scene, i, holds_solid(depth));
+      const V3 back = set(glm::vec3(0)) - load_normals(scene.normal, i, holds_solid(depth));
       send(unoccluded(job.light, back) * load(*job.ao, i), *job.sent_back);
     }
     send(load(*job.direct, i), *job.sent);

@@ -43,7 +43,7 @@ HWY_INLINE VU march_raster(const March& march, const MarchReceiver& p, const Sid
   const MarchLayer& seen = scene.layers.front();
   const int layers = int(scene.layers.size());
   const int height = scene.layout.height(), columns = scene.layout.columns();
-  VU open = side.above;
+  VU open = side.open;
   for (const SliceStep& step : steps) {
     const int row = p.place.y + step.row, first = p.place.column + step.column_shift;
     if (step.inner_px > p.reach_px || row < 0 || row >= height || first >= columns ||

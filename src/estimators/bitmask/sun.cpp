@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The light of a sun, by a ray from each pixel to a point of its disc. Compiled once for every
+// The light of a sun, by a ray from each pixel to a point of it. Compiled once for every
 // instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/sun.cpp"
 #include <hwy/foreach_target.h>
+
+#include <algorithm>
+#include <cmath>
 
 #include "estimators/bitmask/ray-inl.h"
 #include "scene/light/light-inl.h"
@@ -12,19 +15,64 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
+/// Directions to points of a sun, and their cosines to the normals.
+struct SunPoints {
+  V3 to;
+  V cosine;
+};
+
+/// The point that a member of the pattern looks at. Where that is below the horizon of a lane, as
+/// part of a sun may be, another one.
+HWY_INLINE SunPoints points_above(const SunJob& job, int member, const V3& normal) {
+  constexpr int kTries = 8, kApart = 9;  // members that lie apart in both directions
+  const auto at = [&](int k) HWY_ATTR {
+    const V3 to = set(job.directions[std::size_t(member + kApart * k) % job.directions.size()]);
+    return SunPoints{to, dot(normal, to)};
+  };
+  SunPoints found = at(0);
+  const V middle = dot(normal, set(job.sun->direction));
+  const M sets = hn::Abs(middle) < set(std::sin(job.sun->angular_radius));
+  for (int k = 1; k < kTries; ++k) {
+    const M below = hn::And(sets, found.cosine <= set(0));
+    if (!any(below)) break;
+    const SunPoints other = at(k);
+    found = {if_then_else(below, other.to, found.to),
+             hn::IfThenElse(below, other.cosine, found.cosine)};
+  }
+  return found;
+}
+
+/// Width in pixels of the penumbra that something throws at this distance.
+template <bool kOrthographic>
+HWY_INLINE V penumbra_px(const SunJob& job, const MarchReceiver& p, V distance) {
+  const MarchScene& scene = job.march.scene;
+  const V width = distance * set(2 * job.sun->angular_radius * std::max(scene.fx, scene.fy));
+  const V px = kOrthographic ? width : width / (set(0) - p.position.z);
+  return hn::Clamp(px, set(1), set(float(Interleaving::kPeriod)));
+}
+
 template <bool kOrthographic>
 void sun(const SunJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
   for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
+    const std::ptrdiff_t i = place.index;
     const int member = member_at(scene, place);
     MarchReceiver p = load_receiver(scene, place);
     p.reach_px = reach_px(scene, p, job.march.radius);
-    const V visible =
-        passes<kOrthographic>(job.march, job.bounds, p, set(job.directions[std::size_t(member)]),
-                              p.valid, turn_of_member(member), job.past_beyond);
-    store(visible, *job.share, place.index);
-    const V3 light = unoccluded(*job.sun, load_normals(scene, place.index, p.valid));
-    store(mul_add(light, visible, load(*job.direct, place.index)), *job.direct, place.index);
+    const SunPoints points = points_above(job, member, p.normal);
+    const M above = hn::And(p.valid, points.cosine > set(0));
+    V visible = set(0), width = visible;
+    if (any(above)) {
+      V blocked_at;
+      visible = passes<kOrthographic>(job.march, job.bounds, p, points.to, above,
+                                      turn_of_member(member), job.pass, blocked_at);
+      width = hn::IfThenElseZero(visible < set(1), penumbra_px<kOrthographic>(job, p, blocked_at));
+    }
+    store(visible, *job.share, i);
+    store(hn::IfThenElseZero(above, points.cosine), *job.weight, i);
+    store(width, *job.width_px, i);
+    const V3 light = unoccluded(*job.sun, load_normals(scene.shading, i, p.valid));
+    store(mul_add(light, visible, load(*job.direct, i)), *job.direct, i);
   });
 }
 

@@ -34,11 +34,13 @@ void visibility(const VisibilityJob& job, const Window& part) {
                 march, p, side, slice, forward, ignore, IgnoreHits(),
                 [&](const Border&, VU bits) HWY_ATTR { hidden_beyond = bits; });
             const VU bits = hn::AndNot(open, side.above);
-            whole.add(moments_of_first<kOrder + 1>(side.above_count), p.facing, side.n_t, forward);
+            whole.add(moments_of_first<kOrder + 1>(side.above_count), p.shading_v, side.shading_t,
+                      forward);
             if (none(bits)) continue;
-            hidden.add(moments_of_bits<kOrder + 1>(bits), p.facing, side.n_t, forward);
+            hidden.add(moments_of_bits<kOrder + 1>(bits), p.shading_v, side.shading_t, forward);
             if (job.through_beyond == 0 || none(hidden_beyond)) continue;
-            beyond.add(moments_of_bits<kOrder + 1>(hidden_beyond), p.facing, side.n_t, forward);
+            beyond.add(moments_of_bits<kOrder + 1>(hidden_beyond), p.shading_v, side.shading_t,
+                       forward);
           }
           CircleMoments<kOrder> hidden_from_light = hidden;
           if (job.through_beyond > 0) hidden_from_light.subtract(beyond, set(job.through_beyond));
@@ -48,7 +50,7 @@ void visibility(const VisibilityJob& job, const Window& part) {
         const V ao = sum.open_share();
         store(hn::IfThenElse(p.valid, ao, set(1)), *job.ao, i);
         if (!job.bent && !job.direct) return;
-        const V3 normals = load_normals(march.scene, i, p.valid);
+        const V3 normals = load_normals(march.scene.shading, i, p.valid);
         if constexpr (kOrder > 0) {
           if (job.bent) store(sum.bent_normal(p, ao, normals), *job.bent, i);
         }

@@ -33,6 +33,7 @@ struct RayInSlice {
   V step_x, step_y;  ///< its direction in the picture, unit, pixels
   V end_px;          ///< how far away in the picture it reaches the horizon
   V nearing;         ///< by how much its nearness grows per pixel
+  V per_px;          ///< way along it per pixel, at a depth of 1
 };
 
 /// Sets `side` to that of the slice which contains the direction `l`, a unit vector.
@@ -65,7 +66,16 @@ HWY_INLINE RayInSlice ray_in_slice(const MarchScene& scene, const MarchReceiver&
   const V unit = set(1) / hn::Max(length, set(1e-20f));
   ray.step_x = way.x * unit, ray.step_y = way.y * unit;
   ray.nearing = l.z * unit;
+  ray.per_px = unit;
   return ray;
+}
+
+/// How far a ray has come after so many pixels of the picture.
+template <bool kOrthographic>
+HWY_INLINE V way_along(const RayInSlice& ray, const MarchReceiver& p, V pixels) {
+  if constexpr (kOrthographic) return pixels * ray.per_px;
+  const V depth = set(0) - p.position.z;
+  return pixels * depth * depth * ray.per_px / hn::MulAdd(ray.nearing * depth, pixels, set(1));
 }
 
 /// The frame from the receivers, and what is in the way of their rays.
@@ -88,8 +98,9 @@ class Walk {
     end_ = hn::Min(hn::Min(leaves_frame, ray.end_px), set(p.reach_px));
   }
 
-  /// Which lanes of `open` see past what the frame shows.
-  HWY_INLINE M run(M open) const {
+  /// Which lanes of `open` see past what the frame shows. `blocked_px` becomes the distance in the
+  /// picture of what is in the way of the others.
+  HWY_INLINE M run(M open, V& blocked_px) const {
     const D d;
     const DI di;
     const VI zero = set_int(0), one = set_int(1);
@@ -131,7 +142,8 @@ class Walk {
                                              half, t, leaves));
       }
       if (any(in_pixel)) {
-        const M blocked = is_blocked(low_x, low_y, at_x, at_y, in_pixel, t, leaves);
+        const M blocked = is_blocked(low_x, low_y, at_x, at_y, in_pixel);
+        blocked_px = hn::IfThenElse(blocked, t, blocked_px);
         open = hn::AndNot(blocked, open);
         looks = hn::AndNot(blocked, looks);
       }
@@ -202,7 +214,7 @@ class Walk {
 
   /// Which lanes of `looks` have a solid of their pixel in the way between `from` and `to`. The
   /// pixel is (dx, dy) away, and (x, y) in the grid of cells.
-  HWY_INLINE M is_blocked(V dx, V dy, VI x, VI y, M looks, V from, V to) const {
+  HWY_INLINE M is_blocked(V dx, V dy, VI x, VI y, M looks) const {
     constexpr int kSmallest = DepthBounds::kSmallest;
     const VI in_cell = set_int((1 << kSmallest) - 1);
     const VI cell =
@@ -210,15 +222,22 @@ class Walk {
     const VI pixel = hn::ShiftLeft<2 * kSmallest>(cell) +
                      hn::ShiftLeft<kSmallest>(hn::And(y, in_cell)) + hn::And(x, in_cell);
     const VI index = hn::IfThenElseZero(hn::RebindMask(DI(), looks), hn::ShiftLeft<1>(pixel));
-    const V way = linear(dx, dy), ray_from = growth_ * from, ray_to = growth_ * to;
+    // A pixel stands for its row or column of the ray if that passes nearest to its middle; those
+    // that it only touches would widen everything by a part of a pixel.
+    const V aside = hn::Abs(dx * ray_.step_y - dy * ray_.step_x);
+    looks =
+        hn::And(looks, aside <= set(0.5f) * hn::Max(hn::Abs(ray_.step_x), hn::Abs(ray_.step_y)));
+    const V t = hn::MulAdd(dx, ray_.step_x, dy * ray_.step_y);
+    const V way = linear(dx, dy), height = growth_ * t;
     M blocked = hn::AndNot(looks, looks);
+    if (!any(looks)) return blocked;
     for (const DepthBounds& layer : bounds_) {
       const float* pixels = &layer.pixels()->x;
       const V near = gather(pixels, index), front = hn::MulAdd(a_, near, way);
-      const M meets = hn::And(looks, hn::And(front > set(0), front >= ray_from));
+      const M meets = hn::And(looks, hn::And(front > set(0), front >= height));
       if (!any(meets)) continue;
       const V back = hn::MulAdd(a_, gather(pixels + 1, index), way);
-      const M hides = hn::And(hn::And(meets, back <= ray_to), within_radius(dx, dy, near, front));
+      const M hides = hn::And(hn::And(meets, back <= height), within_radius(dx, dy, near, front));
       blocked = hn::Or(blocked, hides);
     }
     return blocked;

@@ -153,6 +153,31 @@ TEST(BitmaskProperties, TheSceneMayBeMeasuredInAnyUnit) {
   }
 }
 
+TEST(BitmaskProperties, ACameraMayBeRolled) {
+  const Surface scene =
+      all_of({plane({}, {0, 0, 1}), sphere({0.3, 0, 0.5}, 0.5),
+              cut(plane({0, 1.2, 0}, {0, -1, 0}), [](const glm::dvec3& p) { return p.z > 0; })});
+  const Window wide{0, 0, 192, 108}, tall{0, 0, 108, 192};
+  const glm::dvec3 eye(0.5, -3, 1.6), target(0, 0, 0.4), up(0, 0, 1);
+  const Camera level = look_at(camera_from_fov(50, wide, 1), eye, target, up);
+  Camera on_edge = camera_from_fov(50, tall, 1);
+  on_edge.fx = level.fx, on_edge.fy = level.fy;
+  const glm::dvec3 right = glm::cross(glm::normalize(target - eye), up);
+  const Camera rolled = look_at(on_edge, eye, target, right);
+  const auto mean_ao = [&](const Camera& camera, const Window& window) {
+    const Geometry g = geometry_of(scene, camera, window);
+    const Solids solids = guess_solids(g);
+    const Products out = run(g, {.radius = kNoLimit, .slices = 8, .steps = 48, .solids = &solids});
+    double sum = 0;
+    for (const float ao : out.ao.pixels) sum += ao / double(out.ao.size());
+    return sum;
+  };
+  const double one = mean_ao(level, wide), other = mean_ao(rolled, tall);
+  fmt::print("mean ao: {:.4f} level, {:.4f} rolled by 90 degrees\n", one, other);
+  EXPECT_LT(one, 0.9) << "something is hidden";
+  EXPECT_NEAR(one, other, 0.004);
+}
+
 TEST(BitmaskProperties, ThePatternMovesWithTheDisplayWindow) {
   const Geometry g = geometry_of(still_life(), camera(), kWindow);
   const Products here = run(g, all_products());

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The filter of shadows. A pixel's ray to one point of a sun says yes or no; T x T pixels of the
+// pattern together look at all of it. But a sharp shadow, of a small sun or of something near, is
+// the same for all points of the sun, and a mean over the pattern would blur it, or wash a thin one
+// away. How wide the penumbra is follows from what is in the way: 2 a r, a the angular radius of
+// the sun and r the distance to it (Fernando 2005, Percentage-Closer Soft Shadows, takes a mean of
+// it too). So with the widths that blocked neighbours have found,
+//
+//   W(p)   = sum_q (1 - v(q)) w(p, q) c(q) W(q) / sum_q (1 - v(q)) w(p, q) c(q)
+//   out(p) = sum_q b(q) w(p, q) c(q) v(q) / sum_q b(q) w(p, q) c(q)
+//
+// v being the shares, c the cosine of each ray, w that of geometry_filter.cpp and b a box of W x W
+// pixels, whole pixels and parts of those at its border. W is T at most.
+//
+// Most pixels have neighbours that all see the sun, or none that does: their share is that.
+#include "filters/shadow_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "filters/shadow_filter.cpp"
+#include <hwy/foreach_target.h>
+
+#include "filters/similarity-inl.h"
+#include "filters/tile_rows-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace ssdo::HWY_NAMESPACE {
+
+class ShadowTile {
+ public:
+  /// `noisy` has the share, the weight and the width in place of shares of suns; the first of `out`
+  /// is written.
+  ShadowTile(const Products& noisy, const Geometry& geometry, int pattern_size, const Tile& tile,
+             Products& out)
+      : half_(pattern_size / 2),
+        most_(float(pattern_size)),
+        tile_(tile),
+        rows_(noisy, geometry.surfel, tile, half_, window(), out),
+        extremes_(zeros(2 * window() * rows_.stride())),
+        likeness_(zeros(window() * window() * kLanes)),
+        result_(zeros(rows_.stride())),
+        out_(out.shares.suns[0]) {}
+
+  void run() {
+    int gathered = tile_.y0 - half_;
+    const int width = tile_.x1 - tile_.x0;
+    for (int y = tile_.y0; y < tile_.y1; ++y) {
+      for (; gathered <= y + half_; ++gathered) {
+        rows_.gather(gathered);
+        find_extremes(gathered);
+      }
+      for (int x = 0; x < width; x += kLanes) store(filtered(x, y), result_.get() + x);
+      std::copy_n(result_.get(), width, &out_(tile_.x0, y));
+    }
+  }
+
+ private:
+  static constexpr int kShare = TileRows::kSurfelChannels, kWeight = kShare + 1,
+                       kWidth = kShare + 2;
+
+  int window() const { return 2 * half_ + 1; }
+
+  /// The least and the largest share within half a window in row `y`, of surfaces.
+  float* least(int y) const {
+    const int slot = (y - tile_.y0 + half_) % window();
+    return extremes_.get() + 2 * slot * rows_.stride();
+  }
+  float* largest(int y) const { return least(y) + rows_.stride(); }
+
+  void find_extremes(int y) const {
+    for (int x = 0; x < tile_.x1 - tile_.x0; x += kLanes) {
+      V low = set(2), high = set(-2);
+      for (int dx = 0; dx < window(); ++dx) {
+        const V share = load(rows_.row(y, kShare) + x + dx);
+        const M surface = is_surface(rows_.shown(y, x + dx));
+        low = hn::Min(low, hn::IfThenElse(surface, share, set(2)));
+        high = hn::Max(high, hn::IfThenElse(surface, share, set(-2)));
+      }
+      store(low, least(y) + x), store(high, largest(y) + x);
+    }
+  }
+
+  static HWY_INLINE M is_surface(const Shown& p) { return dot(p.normal, p.normal) > set(0); }
+
+  /// A vector of pixels from column `x` of the tile on.
+  V filtered(int x, int y) const {
+    V low = set(2), high = set(-2);
+    for (int dy = -half_; dy <= half_; ++dy) {
+      low = hn::Min(low, load(least(y + dy) + x));
+      high = hn::Max(high, load(largest(y + dy) + x));
+    }
+    const V own = load(rows_.row(y, kShare) + x + half_);
+    if (all(low >= high)) return own;
+    const V reach = set(0.5f) * penumbra_width(x, y) + set(0.5f);
+    V sum = set(0), weights = sum;
+    const float* like = likeness_.get();
+    for (int dy = -half_; dy <= half_; ++dy) {
+      const V in_rows = saturate(reach - set(float(std::abs(dy))));
+      for (int dx = -half_; dx <= half_; ++dx, like += kLanes) {
+        const V in_box = in_rows * saturate(reach - set(float(std::abs(dx))));
+        const V w = in_box * load(like) * load(rows_.row(y + dy, kWeight) + x + half_ + dx);
+        weights = weights + w;
+        sum = hn::MulAdd(w, load(rows_.row(y + dy, kShare) + x + half_ + dx), sum);
+      }
+    }
+    return hn::IfThenElse(weights > set(1e-6f), sum / weights, own);
+  }
+
+  /// W(p), 1 to T pixels; fills likeness_ with w.
+  V penumbra_width(int x, int y) const {
+    const Shown p = rows_.shown(y, x + half_);
+    V sum = set(0), weights = sum;
+    float* like = likeness_.get();
+    for (int dy = -half_; dy <= half_; ++dy) {
+      for (int dx = -half_; dx <= half_; ++dx, like += kLanes) {
+        const int at = x + half_ + dx;
+        const V w = similarity(p, rows_.shown(y + dy, at),
+                               [&]() HWY_ATTR { return rows_.shown(y - dy, x + half_ - dx); });
+        store(w, like);
+        const V blocked = w * load(rows_.row(y + dy, kWeight) + at) *
+                          (set(1) - load(rows_.row(y + dy, kShare) + at));
+        weights = weights + blocked;
+        sum = hn::MulAdd(blocked, load(rows_.row(y + dy, kWidth) + at), sum);
+      }
+    }
+    // A pixel whose own ray sets has neighbours alone.
+    const M sets = load(rows_.row(y, kWeight) + x + half_) <= set(0);
+    const V alone = hn::IfThenElse(sets, set(most_), set(1));
+    const V width = hn::IfThenElse(weights > set(1e-6f), sum / weights, alone);
+    return hn::Clamp(width, set(1), set(most_));
+  }
+
+  const int half_;
+  const float most_;
+  const Tile tile_;
+  TileRows rows_;
+  AlignedFloats extremes_;  ///< by row modulo the window: least, then largest
+  AlignedFloats likeness_;  ///< w of each neighbour of a vector of pixels
+  AlignedFloats result_;
+  Plane<float>& out_;
+};
+
+void shadow_of_tile(const Products& noisy, const Geometry& geometry, int pattern_size,
+                    const Tile& tile, Products& out) {
+  ShadowTile(noisy, geometry, pattern_size, tile, out).run();
+}
+
+}  // namespace ssdo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ssdo {
+
+HWY_EXPORT(shadow_of_tile);
+
+Plane<float> filter_shadow(const Plane<float>& share, const ShadowDraw& draw,
+                           const Geometry& geometry, int pattern_size) {
+  Products noisy, out;
+  noisy.shares.suns = {share, draw.weight, draw.width_px};
+  out.shares.suns = {share, {}, {}};
+  for_each_tile(share.width, share.height, [&](const Tile& tile) {
+    HWY_DYNAMIC_DISPATCH(shadow_of_tile)(noisy, geometry, pattern_size, tile, out);
+  });
+  return std::move(out.shares.suns[0]);
+}
+
+}  // namespace ssdo
+#endif

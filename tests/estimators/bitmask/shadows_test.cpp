@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Shadows of suns and softboxes, as the tool makes them at standard quality with its filter,
+// against rays in double to many points of the source.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "../../scene/light/painted_map.h"
+#include "estimators/bitmask/request.h"
+#include "filters/registry.h"
+#include "filters/shares.h"
+#include "support/boxes.h"
+
+namespace ssdo::test {
+namespace {
+
+const Window kWindow{0, 0, 480, 270};
+
+/// A disc in a map that is black else, with an irradiance over pi of 1.
+struct Disc {
+  glm::dvec3 middle;
+  float radius;  ///< degrees
+
+  Environment map() const {
+    const glm::vec3 to(middle);
+    const float wide = radius < 2 ? 2048 : 512;
+    const double omega = 2 * kPi * (1 - std::cos(glm::radians(double(radius))));
+    return paint(
+        int(wide),
+        [&](const glm::vec3& d) { return glm::vec3(in_disc(d, to, radius) ? kPi / omega : 0); }, 2);
+  }
+
+  /// Points of equal light, on a spiral.
+  std::vector<glm::dvec3> points(int count) const {
+    const glm::dvec3 side = std::abs(middle.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 t = glm::normalize(glm::cross(side, middle)), b = glm::cross(middle, t);
+    std::vector<glm::dvec3> out;
+    for (int i = 0; i < count; ++i) {
+      const double c = 1 - (i + 0.5) / count * (1 - std::cos(glm::radians(double(radius))));
+      const double s = std::sqrt(1 - c * c), a = i * kPi * (3 - std::sqrt(5.0));
+      out.push_back(c * middle + s * (std::cos(a) * t + std::sin(a) * b));
+    }
+    return out;
+  }
+};
+
+Products lit(const Geometry& g, const Environment& map, unsigned seed = 0) {
+  Scene scene = scene_of(g, map);
+  scene.solids = guess_solids(g);
+  Products out = bitmask_method().estimate(scene,
+                                           {.products = {.ao = true, .direct = true},
+                                            .radius = kNoLimit,
+                                            .seed = seed,
+                                            .slices = 2,
+                                            .steps = 16},
+                                           {});
+  return filter_shares(find_filter("geometry"), std::move(out), scene, 8);
+}
+
+/// The share of a disc's light that arrives at each pixel: as found, and by rays. -1 where the
+/// surface turns away from it.
+struct Shadows {
+  Plane<double> found, exact;
+
+  Shadows(const Surface& scene, const Camera& camera, const Disc& disc, int rays = 48)
+      : found(kWindow.width(), kWindow.height(), -1), exact(found) {
+    const Products out = lit(geometry_of(scene, camera, kWindow), disc.map());
+    const std::vector<glm::dvec3> points = disc.points(rays);
+    for (int y = 0; y < found.height; ++y) {
+      for (int x = 0; x < found.width; ++x) {
+        if (!scene(ray_through(camera, x + 0.5, y + 0.5))) continue;
+        const Point p = point_at(scene, camera, kWindow, x, y);
+        double arrives = 0, all = 0;
+        for (const glm::dvec3& to : points) {
+          const double cosine = std::max(0.0, glm::dot(p.normal, to)) / rays;
+          all += cosine;
+          if (cosine > 0 && is_open(scene, p, to, kNoLimit)) arrives += cosine;
+        }
+        if (all < 0.05) continue;
+        found(x, y) = out.direct(x, y).x / all, exact(x, y) = arrives / all;
+      }
+    }
+  }
+
+  /// Mean light where there is none at all.
+  double leak() const {
+    double sum = 0, count = 0;
+    for (std::size_t i = 0; i < exact.size(); ++i)
+      if (exact[i] == 0) sum += found[i], count += 1;
+    EXPECT_GT(count, 50) << "there is an umbra";
+    return sum / count;
+  }
+
+  /// Share of the pixels that are off by more than a half though all pixels within two agree.
+  double far_off() const {
+    double off = 0, count = 0;
+    for (int y = 2; y < exact.height - 2; ++y) {
+      for (int x = 2; x < exact.width - 2; ++x) {
+        if (exact(x, y) < 0) continue;
+        bool even = true;
+        for (int dy = -2; dy <= 2; ++dy)
+          for (int dx = -2; dx <= 2; ++dx) even &= exact(x + dx, y + dy) == exact(x, y);
+        count += 1;
+        off += even && std::abs(found(x, y) - exact(x, y)) > 0.5;
+      }
+    }
+    return off / count;
+  }
+};
+
+Camera from_above() {
+  return look_at(camera_from_fov(50, kWindow, 1), {0, -8, 4}, {0, 0, 0.5}, {0, 0, 1});
+}
+Surface ground() { return plane({}, {0, 0, 1}); }
+
+/// A post that stands on the ground.
+Surface post(double radius, double height) {
+  return [=](const Ray& ray) -> std::optional<Hit> {
+    const glm::dvec2 o(ray.origin), d(ray.direction);
+    const double a = glm::dot(d, d), b = glm::dot(o, d), c = glm::dot(o, o) - radius * radius;
+    const double root = b * b - a * c;
+    if (root <= 0) return std::nullopt;
+    const double t = (-b - std::sqrt(root)) / a, z = ray.origin.z + t * ray.direction.z;
+    if (t < 1e-9 || z < 0 || z > height) return std::nullopt;
+    return Hit{t, glm::dvec3((o + t * d) / radius, 0)};
+  };
+}
+
+TEST(BitmaskShadows, AWallsShadowEndsWhereItEnds) {
+  const Surface scene = all_of({ground(), Box{{-2, 0, 0}, {2, 0.25, 1.6}}.surface()});
+  const Shadows s(scene, from_above(), {glm::normalize(glm::dvec3(0.3, 0.8, 1)), 0.4f});
+  fmt::print("wall: {:.4f} leaks, {:.4f} off\n", s.leak(), s.far_off());
+  EXPECT_LT(s.leak(), 0.01);
+  EXPECT_LT(s.far_off(), 0.005);
+}
+
+TEST(BitmaskShadows, BoxesThrowTheirs) {
+  const Surface scene = all_of({ground(), Box{{-1.5, -0.5, 0}, {-0.5, 0.5, 1}}.surface(),
+                                Box{{0.6, 0.2, 0}, {1.4, 1, 1.4}}.surface()});
+  for (const double elevation : {30.0, 50.0}) {
+    const double c = std::cos(glm::radians(elevation));
+    const glm::dvec3 to(0.6 * c, 0.8 * c, std::sin(glm::radians(elevation)));
+    const Shadows s(scene, from_above(), {to, 0.4f});
+    fmt::print("boxes, {:.0f} degrees: {:.4f} leaks, {:.4f} off\n", elevation, s.leak(),
+               s.far_off());
+    EXPECT_LT(s.leak(), 0.01);
+    // Boxes are taken to be as deep as they appear wide.
+    EXPECT_LT(s.far_off(), 0.015);
+  }
+}
+
+TEST(BitmaskShadows, ThinPostsKeepTheirs) {
+  const Camera camera = from_above();
+  const double pixel = 8.5 / camera.fx;
+  for (const int wide : {3, 6, 12}) {
+    const Surface scene = all_of({ground(), post(0.5 * wide * pixel, 2.5)});
+    const Shadows s(scene, camera, {glm::normalize(glm::dvec3(-1, -0.35, 0.62)), 0.27f});
+    fmt::print("post of {} px: {:.3f} leaks, {:.4f} off\n", wide, s.leak(), s.far_off());
+    // The strip of 3 pixels is hardly wider than the half pixel by which its edges may be off.
+    EXPECT_LT(s.leak(), wide == 3 ? 0.2 : 0.06);
+    EXPECT_LT(s.far_off(), 0.002);
+  }
+}
+
+TEST(BitmaskShadows, SoftBoxesThrowSoftOnes) {
+  const Surface scene = all_of({ground(), Box{{-1, -0.5, 0}, {0.6, 0.9, 1.2}}.surface()});
+  const glm::dvec3 to = glm::normalize(glm::dvec3(0.25, 0.7, 0.75));
+  for (const float radius : {5.5f, 10.0f, 20.0f}) {
+    const Shadows s(scene, from_above(), {to, radius}, 128);
+    double error = 0, squares = 0, count = 0;
+    for (std::size_t i = 0; i < s.exact.size(); ++i) {
+      if (s.exact[i] <= 0 || s.exact[i] >= 1) continue;
+      error += s.found[i] - s.exact[i], count += 1;
+      squares += (s.found[i] - s.exact[i]) * (s.found[i] - s.exact[i]);
+    }
+    fmt::print("disc of {} degrees: {:.4f} leaks, penumbra {:+.3f}, RMS {:.3f} of {:.0f} pixels\n",
+               radius, s.leak(), error / count, std::sqrt(squares / count), count);
+    EXPECT_LT(s.leak(), 0.01) << radius;
+    EXPECT_LT(std::abs(error / count), 0.03) << radius;
+    EXPECT_LT(std::sqrt(squares / count), 0.13) << radius;
+  }
+}
+
+TEST(BitmaskShadows, AHillThrowsNoneAlongTheBorder) {
+  const Surface hill = sphere({0, 2, -18.5}, 19);
+  const Camera camera = look_at(camera_from_fov(50, kWindow, 1), {0, -9, 5}, {0, 0, 0}, {0, 0, 1});
+  const Shadows s(hill, camera, {glm::normalize(glm::dvec3(1, 0.1, 0.45)), 0.4f}, 8);
+  double lost = 0, count = 0, worst = 1;
+  for (int y = 0; y < kWindow.height(); ++y) {
+    for (int x = kWindow.width() - 8; x < kWindow.width(); ++x) {
+      if (s.exact(x, y) < 1) continue;
+      lost += 1 - s.found(x, y), count += 1;
+      worst = std::min(worst, s.found(x, y));
+    }
+  }
+  fmt::print("hill: {:.4f} of the sun is lost along the border, least {:.3f}\n", lost / count,
+             worst);
+  ASSERT_GT(count, 500);
+  EXPECT_LT(lost / count, 0.003);
+}
+
+TEST(BitmaskShadows, AnOpenPlaneHasThePartOfASettingSunThatIsAbove) {
+  const Geometry g = geometry_of(ground(), from_above(), kWindow);
+  for (const float elevation : {-2.0f, 0.0f, 0.5f, 3.0f, 20.0f}) {
+    for (const float radius : {4.5f, 15.0f}) {
+      const Disc disc{glm::dvec3(direction_of(30, elevation)), radius};
+      double exact = 0;
+      const int count = 1 << 14;
+      for (const glm::dvec3& to : disc.points(count)) exact += std::max(0.0, to.z) / count;
+      const Products out = lit(g, disc.map());
+      double worst = 0;
+      for (int y = 100; y < 260; ++y)  // below the horizon
+        for (int x = 0; x < kWindow.width(); ++x)
+          worst = std::max(worst, std::abs(out.direct(x, y).x - exact));
+      EXPECT_LT(worst, 2e-3) << elevation << " " << radius << ", exactly " << exact;
+    }
+  }
+}
+
+TEST(BitmaskShadows, AnotherSeedLooksAtOtherPoints) {
+  const Surface scene = all_of({ground(), Box{{-1, -0.5, 0}, {0.6, 0.9, 1.2}}.surface()});
+  const Geometry g = geometry_of(scene, from_above(), kWindow);
+  const Disc disc{glm::normalize(glm::dvec3(0.25, 0.7, 0.75)), 5};
+  Scene lit_scene = scene_of(g, disc.map());
+  const auto draw = [&](unsigned seed) {
+    return bitmask_method().estimate(lit_scene,
+                                     {.products = {.ao = true, .direct = true},
+                                      .radius = kNoLimit,
+                                      .seed = seed,
+                                      .slices = 1,
+                                      .steps = 8},
+                                     {});
+  };
+  Plane<double> mean(kWindow.width(), kWindow.height(), 0);
+  constexpr int kSeeds = 64;
+  std::vector<Products> draws;
+  for (int s = 0; s < kSeeds; ++s) draws.push_back(draw(unsigned(s)));
+  for (const Products& d : draws)
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += d.direct[i].x / kSeeds;
+  const auto rms = [&](int count) {
+    double squares = 0;
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      double part = 0;
+      for (int s = 0; s < count; ++s) part += draws[std::size_t(s)].direct[i].x / count;
+      squares += (part - mean[i]) * (part - mean[i]) / double(mean.size());
+    }
+    return std::sqrt(squares);
+  };
+  fmt::print("of seeds: one {:.4f} from the mean, 16 {:.4f}\n", rms(1), rms(16));
+  EXPECT_LT(rms(16), 0.3 * rms(1));
+}
+
+}  // namespace
+}  // namespace ssdo::test
