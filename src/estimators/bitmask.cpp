@@ -179,7 +179,7 @@ class Bitmask {
         request_.extend_offscreen && !all_is_shown
             ? sun_past_beyond(mean_ao(march_scene_, scene_.geometry.display, request_.radius))
             : 1;
-    const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
+    const std::vector<DepthBounds> bounds = depth_bounds(march_scene_, scene_.solids);
     for (const Sun& sun : light.suns) add_sun(sun, bounds, pass_beyond(past, sun.held));
   }
 
@@ -203,7 +203,7 @@ class Bitmask {
       raster_.for_each_pixel(
           y, [&](std::size_t pixel, std::ptrdiff_t i) { roughness[i] = scene_.roughness[pixel]; });
     });
-    const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
+    const std::vector<DepthBounds> bounds = depth_bounds(march_scene_, scene_.solids);
     const ReflectionJob job{march_,        bounds, &roughness, kReflectionRays * request_.slices,
                             request_.seed, &open};
     for_each_band_of(

@@ -56,11 +56,13 @@ class ErrorProduct : public testing::TestWithParam<std::string> {
 
   std::string path(const std::string& name) const { return dir_ / name; }
 
+  /// In light without concentrated sources: their penumbras have noise that the product does not
+  /// know of (man ssdo, PRODUCTS).
   Lit run(std::vector<std::string> flags, bool with_error = true) const {
-    flags.insert(flags.begin(), {path("in.exr"), "-o", path("out.exr"), "--overwrite",
-                                 "--pixel-type", "float", "--env", data("environments/sky.exr"),
-                                 "--env-up", "z", "--stats", path("stats.json"), "--products",
-                                 with_error ? "direct,bounce,error" : "direct,bounce"});
+    flags.insert(flags.begin(),
+                 {path("in.exr"), "-o", path("out.exr"), "--overwrite", "--pixel-type", "float",
+                  "--env", "1,0.8,0.6", "--stats", path("stats.json"), "--products",
+                  with_error ? "direct,bounce,error" : "direct,bounce"});
     const Finished done = run_tool(flags);
     EXPECT_EQ(done.code, 0) << done.err;
     Lit lit;

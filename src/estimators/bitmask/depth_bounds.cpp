@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+//
+// Things are taken to be as deep as they appear wide (scene/solids.cpp). This is right for slices,
+// which average over many directions, and too much for a single ray to a sun or a mirror: of a ball
+// that is seen from the front, only rays that pass straight behind its middle find so much of it.
+// So guesses count by kGuessedDepth of their depth here. Relative error of direct light with 1, 0.7
+// and 0.5: still life 0.152, 0.125 and 0.118; things on a table 0.113, 0.108 and 0.110, with
+// overscan and four views 0.075, 0.062 and 0.057; a street with those 0.297, 0.283 and 0.263.
 #include "estimators/bitmask/depth_bounds.h"
 
 #include <algorithm>
@@ -6,6 +13,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <limits>
 #include <span>
@@ -15,10 +23,24 @@
 namespace ssdo {
 namespace {
 
+constexpr float kGuessedDepth = 0.5f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// More than rounding moves a nearness, relative to it.
 constexpr float kRounding = 1e-6f;
+
+/// Whether all that is seen is as deep as the user says.
+bool depth_is_given(const Solids& solids) {
+  const auto& all = solids.thickness.pixels;
+  return std::adjacent_find(all.begin(), all.end(), std::not_equal_to<>()) == all.end();
+}
+
+/// The share of its depth that the solid of a layer counts by.
+float share_of_depth(const Solids& solids, int layer, std::size_t pixel) {
+  const bool measured =
+      layer == 0 ? solids.end_is_measured(pixel) : solids.origin(layer, pixel) == Origin::measured;
+  return measured ? 1 : kGuessedDepth;
+}
 
 /// A number that keeps its value as the upper half of a float.
 float shortened(float x) {
@@ -87,8 +109,9 @@ Cell joined(std::span<const Member<Cell>> members) {
 
 }  // namespace
 
-DepthBounds::DepthBounds(const MarchScene& scene, const MarchLayer& layer) {
+DepthBounds::DepthBounds(const MarchScene& scene, const Solids& solids, int layer) {
   constexpr int kSide = 1 << kLargest, kHalvings = kLargest - kSmallest;
+  given_ = depth_is_given(solids);
   first_x_ = scene.first_x & (kSide - 1), first_y_ = scene.first_y & (kSide - 1);
   columns_ = ((first_x_ + scene.layout.width() - 1) >> kSmallest) + 1;
   rows_ = (((first_y_ + scene.layout.height() - 1) >> kLargest) + 1) << kHalvings;
@@ -96,7 +119,7 @@ DepthBounds::DepthBounds(const MarchScene& scene, const MarchLayer& layer) {
   const std::size_t count = 2 * std::size_t(rows_) * std::size_t(columns_);
   cells_.assign(count, {-kInfinity, 0, kInfinity});
   pixels_.resize(count / 2 << (2 * kSmallest));
-  for_each_row(rows_, [&](int row) { gather_pixels(scene, layer, row); });
+  for_each_row(rows_, [&](int row) { gather_pixels(scene, solids, layer, row); });
   for (int size = kSmallest + 1; size <= kLargest; ++size)
     for_each_row(rows_ >> (size - kSmallest), [&](int row) { gather_cells(size, row); });
 }
@@ -121,8 +144,9 @@ void DepthBounds::store(int size, int column, int row, const Cell& cell) {
       cell.farthest};
 }
 
-void DepthBounds::gather_pixels(const MarchScene& scene, const MarchLayer& layer, int row) {
+void DepthBounds::gather_pixels(const MarchScene& scene, const Solids& solids, int layer, int row) {
   constexpr int kSide = 1 << kSmallest;
+  const MarchLayer& of = scene.layers[std::size_t(layer)];
   const Interleaving& layout = scene.layout;
   const int y0 = std::max(0, row * kSide - first_y_),
             y1 = std::min(layout.height(), (row + 1) * kSide - first_y_);
@@ -135,8 +159,11 @@ void DepthBounds::gather_pixels(const MarchScene& scene, const MarchLayer& layer
     for (int y = y0; y < y1; ++y) {
       for (int x = std::max(0, left); x < std::min(layout.width(), left + kSide); ++x) {
         const std::ptrdiff_t i = layout.index(x, y);
-        const float front = layer.depth[i], thickness = layer.thickness[i];
+        const float front = of.depth[i];
         if (!holds_solid(front)) continue;
+        const auto at = std::size_t(y) * std::size_t(layout.width()) + std::size_t(x);
+        const float share = given_ ? 1 : share_of_depth(solids, layer, at),
+                    thickness = share * of.thickness[i];
         Cell pixel;
         pixel.nearest = scene.orthographic ? -front : 1 / front;
         pixel.farthest = scene.orthographic ? -front - thickness : 1 / (front * (1 + thickness));
@@ -167,9 +194,10 @@ void DepthBounds::gather_cells(int size, int row) {
   }
 }
 
-std::vector<DepthBounds> depth_bounds(const MarchScene& scene) {
+std::vector<DepthBounds> depth_bounds(const MarchScene& scene, const Solids& solids) {
   std::vector<DepthBounds> of_layers;
-  for (const MarchLayer& layer : scene.layers) of_layers.emplace_back(scene, layer);
+  for (int layer = 0; layer < solids.layers(); ++layer)
+    of_layers.emplace_back(scene, solids, layer);
   return of_layers;
 }
 
