@@ -72,14 +72,16 @@ glm::vec3 gradient_normal(const Plane<Surfel>& surfels, int x, int y, const glm:
 }
 
 glm::vec3 geometric_normal(const Plane<Surfel>& surfels, int x, int y, const glm::vec3& view) {
-  constexpr float kSameCosine = 0.9994f;
+  constexpr float kSameCosine = 0.9994f, kSteep = 0.05f;
   const glm::vec3 shading = surfels(x, y).normal;
   const glm::vec3 n =
       glm::cross(smooth_step(surfels, x, y, 0, 1), smooth_step(surfels, x, y, 1, 0));
   const float length = glm::length(n);
   if (!(length > 0)) return shading;
   const glm::vec3 normal = n / (glm::dot(n, view) < 0 ? -length : length);
-  return glm::dot(normal, shading) > kSameCosine ? shading : normal;
+  // A surface so steep may be the average of what is before an edge and what is behind it.
+  const bool steep = glm::dot(normal, view) < kSteep;
+  return steep || glm::dot(normal, shading) > kSameCosine ? shading : normal;
 }
 
 }  // namespace ssdo

@@ -23,6 +23,9 @@ using testing::HasSubstr;
 
 constexpr int kEvery = 4;
 
+/// By so much the product may say too much: the filter takes more of the light's noise than of it.
+constexpr double kMost = 2.7;
+
 void write_smaller(const std::string& from, const std::string& to) {
   FramePart part;
   for (const char* name : {"Position.X", "Position.Y", "Position.Z", "Normal.X", "Normal.Y",
@@ -121,7 +124,7 @@ TEST_P(ErrorProduct, IsTheDistanceFromTheLimit) {
                  said / found);
       EXPECT_NEAR(lit.statistics["error"]["rms"], said, 1e-4 * said);
       EXPECT_GT(said / found, 0.5) << label;
-      EXPECT_LT(said / found, 2) << label;
+      EXPECT_LT(said / found, kMost) << label;
       if (filter != "geometry") break;
     }
   }
@@ -143,7 +146,7 @@ TEST_P(ErrorProduct, HasTheNoiseThatOtherSeedsHave) {
       fmt::print("{} {:>2} slices: noise {:.4f}, seeds differ by {:.4f}: {:.2f}\n", filter, slices,
                  said, found, said / found);
       EXPECT_GT(said / found, 0.5) << filter << " " << slices;
-      EXPECT_LT(said / found, 2) << filter << " " << slices;
+      EXPECT_LT(said / found, kMost) << filter << " " << slices;
     }
   }
 }
@@ -159,7 +162,7 @@ TEST_P(ErrorProduct, IsReachedWhereItIsAskedFor) {
              lit.statistics["plan"]["steps"].get<int>(), found);
   EXPECT_LE(rms(lit.error), wanted);
   EXPECT_LT(found, 2 * wanted);
-  EXPECT_GT(found, wanted / 2);
+  EXPECT_GT(found, wanted / kMost);
   EXPECT_EQ(lit.messages, "");
 }
 

@@ -46,7 +46,9 @@ float sun_past_beyond(float mean_ao) {
 }
 
 PassBeyond pass_beyond(float sun_past, float held) {
-  return {sun_past + held * (1 - sun_past), held * kLightThroughBeyond};
+  constexpr float kSky = 0.25f;
+  const float sky = std::min(1.0f, held / kSky);
+  return {sun_past + sky * (1 - sun_past), sky * kLightThroughBeyond};
 }
 
 }  // namespace ssdo

