@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Things are taken to be as deep as they appear wide (scene/solids.cpp). This is right for slices,
-// which average over many directions, and too much for a single ray to a sun or a mirror: of a ball
-// that is seen from the front, only rays that pass straight behind its middle find so much of it.
-// So guesses count by kGuessedDepth of their depth here. Relative error of direct light with 1, 0.7
-// and 0.5: still life 0.152, 0.125 and 0.118; things on a table 0.113, 0.108 and 0.110, with
-// overscan and four views 0.075, 0.062 and 0.057; a street with those 0.297, 0.283 and 0.263. But
-// of the shadow of a ball on the ground 0.5 loses a quarter.
+// Things are taken to be as deep as they appear wide (scene/solids.cpp). Slices average over many
+// directions; a single ray to a sun meets a wrong guess whole, and boxes and heads of a still life
+// are less deep. So guesses count by kGuessedDepth of their depth here. Relative error of direct
+// light with 1, 0.7 and 0.5: still life 0.152, 0.125 and 0.118; things on a table 0.113, 0.108 and
+// 0.110, with overscan and four views 0.075, 0.062 and 0.057; a street with those 0.297, 0.283 and
+// 0.263. But posts and balls are as deep as wide: of what a ball on the ground lights or leaves
+// dark, 0.7, 4.7 and 6.2 % of the frame's pixels are wrong. 0.85 is 0.137 and 2.6 %.
 #include "estimators/bitmask/depth_bounds.h"
 
 #include <algorithm>
