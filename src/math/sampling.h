@@ -17,11 +17,4 @@ inline glm::vec3 cosine_direction(const glm::mat3& frame, const glm::vec2& u) {
   return frame * glm::vec3(r * std::cos(azimuth), r * std::sin(azimuth), std::sqrt(1 - u.x));
 }
 
-/// A unit direction to a point of a small disc around the third axis of `frame`, evenly spread over
-/// it. `angular_radius` in radians; `u` in the unit square.
-inline glm::vec3 disc_direction(const glm::mat3& frame, float angular_radius, const glm::vec2& u) {
-  const float off = angular_radius * std::sqrt(u.x), azimuth = 2 * glm::pi<float>() * u.y;
-  return glm::normalize(frame * glm::vec3(off * std::cos(azimuth), off * std::sin(azimuth), 1));
-}
-
 }  // namespace ssdo
