@@ -23,7 +23,8 @@ using testing::HasSubstr;
 
 constexpr int kEvery = 4;
 
-/// By so much the product may say too much: the filter takes more of the light's noise than of it.
+/// Largest factor by which the product may say too much. The filter removes less of the signed
+/// difference that it is made of than of the noise of light.
 constexpr double kMost = 2.7;
 
 void write_smaller(const std::string& from, const std::string& to) {
