@@ -135,6 +135,24 @@ class Bitmask {
         progress);
   }
 
+  /// The same for parts as wide as a vector and taller than bands: rays of pixels above each other
+  /// visit the same cells, which are to stay in the cache.
+  template <class Work>
+  void for_each_tall_part_of(const Window& part, const Work& work, const Progress& progress) const {
+    constexpr int kWidth = kMostLanes * Interleaving::kPeriod, kHeight = 64;
+    const int first = ((part.x0 + layout_.phase()) & -kWidth) - layout_.phase(),
+              columns = (part.x1 - first + kWidth - 1) / kWidth,
+              rows = (part.height() + kHeight - 1) / kHeight;
+    for_each_task(
+        std::size_t(columns) * std::size_t(rows),
+        [&](std::size_t i) {
+          const int x = first + int(i) % columns * kWidth, y = part.y0 + int(i) / columns * kHeight;
+          work(Window{std::max(x, part.x0), y, std::min(x + kWidth, part.x1),
+                      std::min(y + kHeight, part.y1)});
+        },
+        progress);
+  }
+
   void gather_visibility() {
     const Light& light = scene_.light;
     VisibilityJob job{.march = march_, .irradiance = &light.irradiance, .ao = &ao_};
@@ -189,7 +207,7 @@ class Bitmask {
     const PerMember<glm::vec3> directions = directions_to(sun, request_.seed);
     InterleavedPlane share(layout_), weight(layout_), width_px(layout_);
     const SunJob job{march_, bounds, directions, &sun, pass, &direct_, &share, &weight, &width_px};
-    for_each_band_of(
+    for_each_tall_part_of(
         lit_part(), [&](const Window& part) { march_sun(job, part); }, progress_);
     out_.shares.suns.push_back(raster_.picture(share));
     out_.shares.draws.push_back({raster_.picture(weight), raster_.picture(width_px)});

@@ -13,7 +13,8 @@ namespace {
 constexpr int kTileSize = 64;  ///< position and normal of 64 x 64 pixels fill half an L2 cache
 constexpr int kBandHeight = 16;
 
-/// Calls `work(i)` for i from 0 to count - 1.
+}  // namespace
+
 void for_each_task(std::size_t count, const std::function<void(std::size_t)>& work,
                    const Progress& progress) {
   std::mutex mutex;
@@ -25,8 +26,6 @@ void for_each_task(std::size_t count, const std::function<void(std::size_t)>& wo
     progress(++done, count);
   });
 }
-
-}  // namespace
 
 void for_each_tile(int width, int height, const std::function<void(const Tile&)>& work,
                    const Progress& progress) {

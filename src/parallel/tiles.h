@@ -24,6 +24,10 @@ void for_each_tile(int width, int height, const std::function<void(const Tile&)>
 void for_each_band(int height, const std::function<void(int y0, int y1)>& work,
                    const Progress& progress = {});
 
+/// Calls `work(i)` once for each i from 0 to count - 1, in the same way.
+void for_each_task(std::size_t count, const std::function<void(std::size_t)>& work,
+                   const Progress& progress = {});
+
 /// Calls `work` once for each row.
 void for_each_row(int height, const std::function<void(int y)>& work);
 

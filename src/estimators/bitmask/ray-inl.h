@@ -86,25 +86,45 @@ HWY_INLINE float turn_of_member(int member) {
 /// How far away something of which no more is known is.
 constexpr float kFarAway = 1e30f;
 
-/// The share of a ray that arrives, 0..1, of those lanes of `open` that see past all that is known.
-/// `turn` and `pass` are those of open_beyond(). `blocked_at` becomes the way along the ray
-/// to what the frame shows in its way, or kFarAway.
-template <bool kOrthographic>
-HWY_INLINE V passes(const March& march, const std::vector<DepthBounds>& bounds,
-                    const MarchReceiver& p, const V3& to, M open, float turn,
-                    const PassBeyond& pass, V& blocked_at) {
+/// A ray from each receiver, of those lanes that look for what is in its way.
+struct Ray {
   SideFrame side;
-  const RayInSlice ray = ray_in_slice(march.scene, p, to, side);
-  const V zero = set(0);
-  open = hn::And(open, dot(V2{side.n_t, p.facing}, V2{ray.along.s, ray.along.v}) > zero);
-  V blocked_px = zero;
-  const M passes_frame = Walk<kOrthographic>(march, bounds, p, side, ray).run(open, blocked_px);
-  blocked_at = hn::IfThenElse(hn::AndNot(passes_frame, open),
-                              way_along<kOrthographic>(ray, p, blocked_px), set(kFarAway));
-  open = passes_frame;
-  if (march.further && any(open)) open = open_past_further(march, p, to, open);
-  if (!march.extend || !any(open)) return hn::IfThenElseZero(open, set(1));
-  return open_beyond<kOrthographic>(march, p, side, ray, open, turn, pass);
+  RayInSlice in_slice;
+  V3 to;
+  M open;
+};
+
+HWY_INLINE Ray make_ray(const MarchScene& scene, const MarchReceiver& p, const V3& to, M open) {
+  Ray ray;
+  ray.to = to;
+  ray.in_slice = ray_in_slice(scene, p, to, ray.side);
+  const SlicePoint along = ray.in_slice.along;
+  ray.open = hn::And(open, dot(V2{ray.side.n_t, p.facing}, V2{along.s, along.v}) > set(0));
+  return ray;
+}
+
+/// What becomes of rays.
+struct Arrival {
+  V share;       ///< of the ray, 0..1, that sees past all that is known
+  V blocked_at;  ///< way along it to what the frame shows in its way, or kFarAway
+};
+
+/// Of rays that the frame blocks at `blocked_px`, that of Walk. `turn` and `pass` are those of
+/// open_beyond().
+template <bool kOrthographic>
+HWY_INLINE Arrival arrival(const March& march, const MarchReceiver& p, const Ray& ray, V blocked_px,
+                           float turn, const PassBeyond& pass) {
+  const M meets = blocked_px >= set(0);
+  Arrival a;
+  a.blocked_at =
+      hn::IfThenElse(hn::And(ray.open, meets),
+                     way_along<kOrthographic>(ray.in_slice, p, blocked_px), set(kFarAway));
+  M open = hn::AndNot(meets, ray.open);
+  if (march.further && any(open)) open = open_past_further(march, p, ray.to, open);
+  a.share = march.extend && any(open)
+                ? open_beyond<kOrthographic>(march, p, ray.side, ray.in_slice, open, turn, pass)
+                : hn::IfThenElseZero(open, set(1));
+  return a;
 }
 
 }  // namespace ssdo::HWY_NAMESPACE

@@ -39,7 +39,12 @@ HWY_INLINE Mirrored mirrored(const Lanes3& normals, const Lanes3& viewers, const
 
 template <bool kOrthographic>
 void reflection(const ReflectionJob& job, const Window& part) {
+  constexpr int kTogether = 8;  // rays of each pixel on their way at once
   const MarchScene& scene = job.march.scene;
+  Walk<kOrthographic> walk(job.march, job.bounds, kTogether * kLanes);
+  const auto places = [](int k) HWY_ATTR { return hn::Iota(DI(), k * kLanes); };
+  Ray rays[kTogether];
+  V shares[kTogether];
   for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
     const int member = member_at(scene, place);
     MarchReceiver p = load_receiver(scene, place);
@@ -48,17 +53,25 @@ void reflection(const ReflectionJob& job, const Window& part) {
         viewers(if_then_else(p.valid, p.to_viewer, set(glm::vec3(0, 0, 1))));
     const Lanes roughness(hn::IfThenElse(p.valid, load(*job.roughness, place.index), set(1)));
     V open = set(0), all = set(0);
-    for (int k = 0; k < job.rays; ++k) {
-      // All members together cover the square evenly.
-      const int sample = SlicePattern::rank(member) * job.rays + k;
-      const Mirrored m = mirrored(normals, viewers, roughness,
-                                  sobol_point(std::uint32_t(sample), hash_of(job.seed, 0, 0)));
-      const M above = hn::And(p.valid, m.share > set(0));
-      V blocked_at;
-      const V passed = passes<kOrthographic>(job.march, job.bounds, p, m.to, above,
-                                             turn_of_member(member), PassBeyond{}, blocked_at);
-      open = hn::MulAdd(passed, m.share, open);
-      all = all + hn::IfThenElseZero(above, m.share);
+    for (int first = 0; first < job.rays; first += kTogether) {
+      const int count = std::min(kTogether, job.rays - first);
+      walk.clear();
+      for (int k = 0; k < count; ++k) {
+        // All members together cover the square evenly.
+        const int sample = SlicePattern::rank(member) * job.rays + first + k;
+        const Mirrored m = mirrored(normals, viewers, roughness,
+                                    sobol_point(std::uint32_t(sample), hash_of(job.seed, 0, 0)));
+        shares[k] = m.share;
+        rays[k] = make_ray(scene, p, m.to, hn::And(p.valid, m.share > set(0)));
+        walk.put(places(k), p, rays[k].side, rays[k].in_slice, rays[k].open);
+      }
+      walk.run();
+      for (int k = 0; k < count; ++k) {
+        const Arrival a = arrival<kOrthographic>(job.march, p, rays[k], walk.blocked_px(places(k)),
+                                                 turn_of_member(member), PassBeyond{});
+        open = hn::MulAdd(a.share, shares[k], open);
+        all = all + hn::IfThenElseZero(p.valid, hn::Max(shares[k], set(0)));
+      }
     }
     const V share = hn::IfThenElse(all > set(0), open / hn::Max(all, set(1e-20f)), set(1));
     store(share, *job.open, place.index);

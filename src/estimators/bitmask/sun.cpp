@@ -51,28 +51,78 @@ HWY_INLINE V penumbra_px(const SunJob& job, const MarchReceiver& p, V distance) 
   return hn::Clamp(px, set(1), set(float(Interleaving::kPeriod)));
 }
 
+/// Pixels whose rays are on their way together: a vector wide and kRows high, or what of that is in
+/// a part of the raster.
+struct Block {
+  static constexpr int kRows = 4, kWidth = Interleaving::kPeriod * kLanes, kPixels = kRows * kWidth;
+
+  Window part;
+
+  /// Numbers for the pixels of a vector; those of a square of pixels follow on each other.
+  HWY_INLINE VI places(const Place& at) const {
+    constexpr int kSquare = kRows * kRows;
+    const int in_lane =
+        at.column_phase / kRows * kSquare + (at.y - part.y0) * kRows + at.column_phase % kRows;
+    return hn::Iota(DI(), 0) * set_int(Interleaving::kPeriod * kRows) + set_int(in_lane);
+  }
+};
+
+/// Calls `work(block)` for the blocks of a part of the raster.
+template <class Work>
+HWY_INLINE void for_each_block(const MarchScene& scene, const Window& part, const Work& work) {
+  const int phase = scene.layout.phase(), first = ((part.x0 + phase) & -Block::kWidth) - phase;
+  for (int y = part.y0; y < part.y1; y += Block::kRows) {
+    for (int x = first; x < part.x1; x += Block::kWidth) {
+      work(Block{{std::max(x, part.x0), y, std::min(x + Block::kWidth, part.x1),
+                  std::min(y + Block::kRows, part.y1)}});
+    }
+  }
+}
+
+/// Rays from a vector of receivers to the points that their member of the pattern looks at.
+struct SunRays {
+  MarchReceiver p;
+  V cosine;
+  Ray ray;
+};
+
+HWY_INLINE SunRays sun_rays(const SunJob& job, const Place& place) {
+  const MarchScene& scene = job.march.scene;
+  SunRays rays{load_receiver(scene, place), {}, {}};
+  MarchReceiver& p = rays.p;
+  p.reach_px = reach_px(scene, p, job.march.radius);
+  const SunPoints points = points_above(job, member_at(scene, place), p.normal);
+  rays.cosine = points.cosine;
+  rays.ray = make_ray(scene, p, points.to, hn::And(p.valid, points.cosine > set(0)));
+  return rays;
+}
+
 template <bool kOrthographic>
 void sun(const SunJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
-  for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
-    const std::ptrdiff_t i = place.index;
-    const int member = member_at(scene, place);
-    MarchReceiver p = load_receiver(scene, place);
-    p.reach_px = reach_px(scene, p, job.march.radius);
-    const SunPoints points = points_above(job, member, p.normal);
-    const M above = hn::And(p.valid, points.cosine > set(0));
-    V visible = set(0), width = visible;
-    if (any(above)) {
-      V blocked_at;
-      visible = passes<kOrthographic>(job.march, job.bounds, p, points.to, above,
-                                      turn_of_member(member), job.pass, blocked_at);
-      width = hn::IfThenElseZero(visible < set(1), penumbra_px<kOrthographic>(job, p, blocked_at));
-    }
-    store(visible, *job.share, i);
-    store(hn::IfThenElseZero(above, points.cosine), *job.weight, i);
-    store(width, *job.width_px, i);
-    const V3 light = unoccluded(*job.sun, load_normals(scene.shading, i, p.valid));
-    store(mul_add(light, visible, load(*job.direct, i)), *job.direct, i);
+  Walk<kOrthographic> walk(job.march, job.bounds, Block::kPixels);
+  for_each_block(scene, part, [&](const Block& block) HWY_ATTR {
+    walk.clear();
+    for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
+      const SunRays rays = sun_rays(job, place);
+      walk.put(block.places(place), rays.p, rays.ray.side, rays.ray.in_slice, rays.ray.open);
+    });
+    walk.run();
+    for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
+      const std::ptrdiff_t i = place.index;
+      const auto [p, cosine, ray] = sun_rays(job, place);
+      const Arrival a =
+          arrival<kOrthographic>(job.march, p, ray, walk.blocked_px(block.places(place)),
+                                 turn_of_member(member_at(scene, place)), job.pass);
+      const M above = hn::And(p.valid, cosine > set(0));
+      store(a.share, *job.share, i);
+      store(hn::IfThenElseZero(above, cosine), *job.weight, i);
+      store(hn::IfThenElseZero(hn::And(above, a.share < set(1)),
+                               penumbra_px<kOrthographic>(job, p, a.blocked_at)),
+            *job.width_px, i);
+      const V3 light = unoccluded(*job.sun, load_normals(scene.shading, i, p.valid));
+      store(mul_add(light, a.share, load(*job.direct, i)), *job.direct, i);
+    });
   });
 }
 
