@@ -186,7 +186,8 @@ class Bitmask {
   /// Adds the light of a sun where it is seen. Members of the pattern look at different points of
   /// its disc.
   void add_sun(const Sun& sun, const std::vector<DepthBounds>& bounds, const PassBeyond& pass) {
-    const PerMember<glm::vec3> directions = directions_to(sun, request_.seed);
+    const std::vector<PerMember<glm::vec3>> directions =
+        directions_to(sun, rays_to_sun(request_.slices), request_.seed);
     InterleavedPlane share(layout_), weight(layout_), width_px(layout_);
     const SunJob job{march_, bounds, directions, &sun, pass, &direct_, &share, &weight, &width_px};
     for_each_band_of(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The light of a sun, by a ray from each pixel to a point of it. Compiled once for every
-// instruction set.
+// The light of a sun, by rays from each pixel to points of it: one at few slices. Compiled once for
+// every instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/sun.cpp"
 #include <hwy/foreach_target.h>
@@ -21,12 +21,13 @@ struct SunPoints {
   V cosine;
 };
 
-/// The point that a member of the pattern looks at. Where that is below the horizon of a lane, as
-/// part of a sun may be, another one.
-HWY_INLINE SunPoints points_above(const SunJob& job, int member, const V3& normal) {
+/// The point that a ray of a member of the pattern goes to. Where that is below the horizon of a
+/// lane, as part of a sun may be, another one.
+HWY_INLINE SunPoints points_above(const SunJob& job, const PerMember<glm::vec3>& directions,
+                                  int member, const V3& normal) {
   constexpr int kTries = 8, kApart = 9;  // members that lie apart in both directions
   const auto at = [&](int k) HWY_ATTR {
-    const V3 to = set(job.directions[std::size_t(member + kApart * k) % job.directions.size()]);
+    const V3 to = set(directions[std::size_t(member + kApart * k) % directions.size()]);
     return SunPoints{to, dot(normal, to)};
   };
   SunPoints found = at(0);
@@ -59,18 +60,27 @@ void sun(const SunJob& job, const Window& part) {
     const int member = member_at(scene, place);
     MarchReceiver p = load_receiver(scene, place);
     p.reach_px = reach_px(scene, p, job.march.radius);
-    const SunPoints points = points_above(job, member, p.normal);
-    const M above = hn::And(p.valid, points.cosine > set(0));
-    V visible = set(0), width = visible;
-    if (any(above)) {
+    // Means over the rays: of what arrives by their cosines, of widths by what does not.
+    const V zero = set(0), rays = set(float(job.directions.size()));
+    V weight = zero, arrives = zero, blocked = zero, widths = zero;
+    for (const PerMember<glm::vec3>& directions : job.directions) {
+      const SunPoints points = points_above(job, directions, member, p.normal);
+      const M above = hn::And(p.valid, points.cosine > zero);
+      if (!any(above)) continue;
       V blocked_at;
-      visible = passes<kOrthographic>(job.march, job.bounds, p, points.to, above,
-                                      turn_of_member(member), job.pass, blocked_at);
-      width = hn::IfThenElseZero(visible < set(1), penumbra_px<kOrthographic>(job, p, blocked_at));
+      const V passed = passes<kOrthographic>(job.march, job.bounds, p, points.to, above,
+                                             turn_of_member(member), job.pass, blocked_at);
+      const V cosine = hn::IfThenElseZero(above, points.cosine), lost = cosine * (set(1) - passed);
+      weight = weight + cosine;
+      arrives = hn::MulAdd(cosine, passed, arrives);
+      blocked = blocked + lost;
+      widths = hn::MulAdd(lost, penumbra_px<kOrthographic>(job, p, blocked_at), widths);
     }
+    const V visible = hn::IfThenElseZero(weight > zero, arrives / weight);
     store(visible, *job.share, i);
-    store(hn::IfThenElseZero(above, points.cosine), *job.weight, i);
-    store(width, *job.width_px, i);
+    store(weight / rays, *job.weight, i);
+    store(hn::IfThenElseZero(blocked > zero, widths / blocked), *job.width_px, i);
+    if (!job.direct) return;
     const V3 light = unoccluded(*job.sun, load_normals(scene.shading, i, p.valid));
     store(mul_add(light, visible, load(*job.direct, i)), *job.direct, i);
   });
