@@ -204,13 +204,23 @@ class Bitmask {
   /// Adds the light of a sun where it is seen. Members of the pattern look at different points of
   /// its disc.
   void add_sun(const Sun& sun, const std::vector<DepthBounds>& bounds, const PassBeyond& pass) {
-    const PerMember<glm::vec3> directions = directions_to(sun, request_.seed);
     InterleavedPlane share(layout_), weight(layout_), width_px(layout_);
-    const SunJob job{march_, bounds, directions, &sun, pass, &direct_, &share, &weight, &width_px};
-    for_each_tall_part_of(
-        lit_part(), [&](const Window& part) { march_sun(job, part); }, progress_);
-    out_.shares.suns.push_back(raster_.picture(share));
-    out_.shares.draws.push_back({raster_.picture(weight), raster_.picture(width_px)});
+    const auto find = [&](const Window& to, RaySet set, InterleavedVectors* direct) {
+      const std::vector<PerMember<glm::vec3>> directions =
+          directions_to(sun, rays_to_sun(request_.slices), request_.seed, set);
+      const SunJob job{march_, bounds, directions, &sun, pass, direct, &share, &weight, &width_px};
+      for_each_tall_part_of(
+          to, [&](const Window& part) { march_sun(job, part); }, progress_);
+    };
+    const auto draw = [&] {
+      return ShadowDraw{raster_.picture(weight), raster_.picture(width_px)};
+    };
+    LightShares& shares = out_.shares;
+    find(lit_part(), RaySet::of_light, &direct_);
+    shares.suns.push_back(raster_.picture(share)), shares.draws.push_back(draw());
+    if (!request_.products.error) return;
+    find(march_scene_.receivers, RaySet::of_error, nullptr);
+    shares.suns_again.push_back(raster_.picture(share)), shares.draws_again.push_back(draw());
   }
 
   void gather_reflection() {

@@ -27,9 +27,9 @@ struct ProductSet {
   bool operator==(const ProductSet&) const = default;
 };
 
-/// What is known of a share of a sun that a single ray has found, beside the share.
+/// What is known of a share of a sun that few rays have found, beside the share.
 struct ShadowDraw {
-  Plane<float> weight;    ///< in a mean: the cosine of the ray to the normal
+  Plane<float> weight;    ///< in a mean: the mean cosine of the rays to the normal
   Plane<float> width_px;  ///< of the penumbra that what is in its way throws here; 0: nothing is
 };
 
@@ -39,6 +39,8 @@ struct LightShares {
   Plane<glm::vec3> sky;            ///< of what the sky gives, channel by channel
   std::vector<Plane<float>> suns;  ///< of what each sun gives, as if its light met any normal
   std::vector<ShadowDraw> draws;   ///< of each sun; empty where the shares are means of many rays
+  std::vector<Plane<float>> suns_again;  ///< `suns` by rays to other points of them, for the error
+  std::vector<ShadowDraw> draws_again;   ///< theirs; both are empty where no error is wanted
   bool are_ao = false;  ///< light comes from everywhere alike, and ao is its share; no planes then
 };
 
@@ -189,12 +191,14 @@ void for_each_plane(const Visit& visit, All&... all) {
 }
 
 /// Calls visit(plane of each of `all`) for what `direct` is made of: the sky's share, then each
-/// sun's; some planes may be empty. `all` have as many suns as the first.
+/// sun's, then those by other points; some planes may be empty. `all` have as many as the first.
 template <class Visit, class First, class... Others>
 void for_each_share(const Visit& visit, First& first, Others&... others) {
   visit(first.shares.sky, others.shares.sky...);
   for (std::size_t i = 0; i < first.shares.suns.size(); ++i)
     visit(first.shares.suns[i], others.shares.suns[i]...);
+  for (std::size_t i = 0; i < first.shares.suns_again.size(); ++i)
+    visit(first.shares.suns_again[i], others.shares.suns_again[i]...);
 }
 
 }  // namespace ssdo

@@ -342,9 +342,14 @@ Products filter_geometry(Products noisy, const Geometry& geometry, int pattern_s
   if (noisy.shares.draws.empty()) return filter_all(std::move(noisy), geometry, pattern_size);
   const std::vector<Plane<float>> suns = std::exchange(noisy.shares.suns, {});
   const std::vector<ShadowDraw> draws = std::exchange(noisy.shares.draws, {});
+  const std::vector<Plane<float>> again = std::exchange(noisy.shares.suns_again, {});
+  const std::vector<ShadowDraw> draws_again = std::exchange(noisy.shares.draws_again, {});
   Products out = filter_all(std::move(noisy), geometry, pattern_size);
   for (std::size_t k = 0; k < suns.size(); ++k)
     out.shares.suns.push_back(filter_shadow(suns[k], draws[k], geometry, pattern_size));
+  for (std::size_t k = 0; k < again.size(); ++k)
+    out.shares.suns_again.push_back(
+        filter_shadow(again[k], draws_again[k], geometry, pattern_size));
   return out;
 }
 

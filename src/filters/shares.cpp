@@ -29,6 +29,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "filters/sun_errors.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/shares.cpp"
 #include <hwy/foreach_target.h>
@@ -163,9 +165,10 @@ Products without_shares(Products products) {
 }  // namespace
 
 Products filter_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size) {
-  if (!filter.apply) return without_shares(std::move(noisy));
-  noisy = apply_filter(filter, to_shares(std::move(noisy), scene), scene.geometry, pattern_size);
-  return from_shares(std::move(noisy), scene);
+  if (filter.apply)
+    noisy = apply_filter(filter, to_shares(std::move(noisy), scene), scene.geometry, pattern_size);
+  add_sun_errors(noisy, scene);
+  return filter.apply ? from_shares(std::move(noisy), scene) : without_shares(std::move(noisy));
 }
 
 Products to_shares(Products products, const Scene& scene) {

@@ -30,6 +30,7 @@ inline Products like(const Products& other) {
                  products, other);
   products.shares.are_ao = other.shares.are_ao;
   products.shares.suns.resize(other.shares.suns.size());
+  products.shares.suns_again.resize(other.shares.suns_again.size());
   for_each_share([](auto& to, const auto& from) { to = std::decay_t<decltype(from)>::like(from); },
                  products, other);
   return products;

@@ -81,10 +81,10 @@ struct BounceJob {
 struct SunJob {
   March march;
   const std::vector<DepthBounds>& bounds;
-  const PerMember<glm::vec3>& directions;  ///< unit, to points of the sun
+  const std::vector<PerMember<glm::vec3>>& directions;  ///< of each ray; unit, to points of the sun
   const Sun* sun;
   PassBeyond pass;
-  InterleavedVectors* direct;           ///< added to
+  InterleavedVectors* direct;           ///< added to; null: not wanted
   InterleavedPlane* share;              ///< 0..1, of what a surface of any normal would get
   InterleavedPlane *weight, *width_px;  ///< those of ShadowDraw
 };

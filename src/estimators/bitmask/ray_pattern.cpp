@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "estimators/bitmask/ray_pattern.h"
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 
 #include "estimators/bitmask/slice_pattern.h"
@@ -21,13 +23,18 @@ int reversed(int rank) {
 
 }  // namespace
 
-// Points of Sobol's sequence: of neighbours in the pattern, as of consecutive seeds, any power of
-// two are spread evenly in both coordinates.
-PerMember<glm::vec3> directions_to(const Sun& sun, unsigned seed) {
-  PerMember<glm::vec3> directions;
-  for (std::size_t m = 0; m < directions.size(); ++m) {
-    const auto number = std::uint32_t(reversed(SlicePattern::rank(int(m)))) ^ seed;
-    directions[m] = sun.point(sobol_point(number, 0));
+int rays_to_sun(int slices) { return int(std::bit_floor(unsigned(std::max(1, slices / 2)))); }
+
+// Points of Sobol's sequence: of the rays of a pixel, of those of neighbours in the pattern, as of
+// consecutive seeds, any power of two are spread evenly in both coordinates.
+std::vector<PerMember<glm::vec3>> directions_to(const Sun& sun, int rays, unsigned seed,
+                                                RaySet set) {
+  std::vector<PerMember<glm::vec3>> directions(static_cast<std::size_t>(rays));
+  for (std::size_t m = 0; m < directions[0].size(); ++m) {
+    const auto place = std::uint32_t(reversed(SlicePattern::rank(int(m)))) ^ seed;
+    for (std::uint32_t k = 0; k < std::uint32_t(rays); ++k)
+      directions[k][m] =
+          sun.point(sobol_point(place * std::uint32_t(rays) + k, std::uint32_t(set)));
   }
   return directions;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The light of a sun, by a ray from each pixel to a point of it. Compiled once for every
-// instruction set.
+// The light of a sun, by rays from each pixel to points of it: one at few slices. Compiled once for
+// every instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/sun.cpp"
 #include <hwy/foreach_target.h>
@@ -21,12 +21,13 @@ struct SunPoints {
   V cosine;
 };
 
-/// The point that a member of the pattern looks at. Where that is below the horizon of a lane, as
-/// part of a sun may be, another one.
-HWY_INLINE SunPoints points_above(const SunJob& job, int member, const V3& normal) {
+/// The point that a ray of a member of the pattern goes to. Where that is below the horizon of a
+/// lane, as part of a sun may be, another one.
+HWY_INLINE SunPoints points_above(const SunJob& job, const PerMember<glm::vec3>& directions,
+                                  int member, const V3& normal) {
   constexpr int kTries = 8, kApart = 9;  // members that lie apart in both directions
   const auto at = [&](int k) HWY_ATTR {
-    const V3 to = set(job.directions[std::size_t(member + kApart * k) % job.directions.size()]);
+    const V3 to = set(directions[std::size_t(member + kApart * k) % directions.size()]);
     return SunPoints{to, dot(normal, to)};
   };
   SunPoints found = at(0);
@@ -82,18 +83,20 @@ HWY_INLINE void for_each_block(const MarchScene& scene, const Window& part, cons
 /// Rays from a vector of receivers to the points that their member of the pattern looks at.
 struct SunRays {
   MarchReceiver p;
-  V cosine;
+  V cosine;  ///< to the normal; 0 where there is no ray
   Ray ray;
 };
 
-HWY_INLINE SunRays sun_rays(const SunJob& job, const Place& place) {
+HWY_INLINE SunRays sun_rays(const SunJob& job, const PerMember<glm::vec3>& directions,
+                            const Place& place) {
   const MarchScene& scene = job.march.scene;
   SunRays rays{load_receiver(scene, place), {}, {}};
   MarchReceiver& p = rays.p;
   p.reach_px = reach_px(scene, p, job.march.radius);
-  const SunPoints points = points_above(job, member_at(scene, place), p.normal);
-  rays.cosine = points.cosine;
-  rays.ray = make_ray(scene, p, points.to, hn::And(p.valid, points.cosine > set(0)));
+  const SunPoints points = points_above(job, directions, member_at(scene, place), p.normal);
+  const M above = hn::And(p.valid, points.cosine > set(0));
+  rays.cosine = hn::IfThenElseZero(above, points.cosine);
+  rays.ray = make_ray(scene, p, points.to, above);
   return rays;
 }
 
@@ -102,26 +105,44 @@ void sun(const SunJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
   Walk<kOrthographic> walk(job.march, job.bounds, Block::kPixels);
   for_each_block(scene, part, [&](const Block& block) HWY_ATTR {
-    walk.clear();
+    // First sums: the weights are the cosines of the rays, and their shares those that arrive.
     for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
-      const SunRays rays = sun_rays(job, place);
-      walk.put(block.places(place), rays.p, rays.ray.side, rays.ray.in_slice, rays.ray.open);
+      for (InterleavedPlane* sum : {job.weight, job.share, job.width_px})
+        store(set(0), *sum, place.index);
     });
-    walk.run();
+    for (const PerMember<glm::vec3>& directions : job.directions) {
+      walk.clear();
+      for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
+        const SunRays rays = sun_rays(job, directions, place);
+        walk.put(block.places(place), rays.p, rays.ray.side, rays.ray.in_slice, rays.ray.open);
+      });
+      walk.run();
+      for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
+        const std::ptrdiff_t i = place.index;
+        const auto [p, cosine, ray] = sun_rays(job, directions, place);
+        const Arrival a =
+            arrival<kOrthographic>(job.march, p, ray, walk.blocked_px(block.places(place)),
+                                   turn_of_member(member_at(scene, place)), job.pass);
+        const V lost = cosine * (set(1) - a.share);
+        store(load(*job.weight, i) + cosine, *job.weight, i);
+        store(hn::MulAdd(cosine, a.share, load(*job.share, i)), *job.share, i);
+        store(hn::MulAdd(lost, penumbra_px<kOrthographic>(job, p, a.blocked_at),
+                         load(*job.width_px, i)),
+              *job.width_px, i);
+      });
+    }
     for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
       const std::ptrdiff_t i = place.index;
-      const auto [p, cosine, ray] = sun_rays(job, place);
-      const Arrival a =
-          arrival<kOrthographic>(job.march, p, ray, walk.blocked_px(block.places(place)),
-                                 turn_of_member(member_at(scene, place)), job.pass);
-      const M above = hn::And(p.valid, cosine > set(0));
-      store(a.share, *job.share, i);
-      store(hn::IfThenElseZero(above, cosine), *job.weight, i);
-      store(hn::IfThenElseZero(hn::And(above, a.share < set(1)),
-                               penumbra_px<kOrthographic>(job, p, a.blocked_at)),
-            *job.width_px, i);
-      const V3 light = unoccluded(*job.sun, load_normals(scene.shading, i, p.valid));
-      store(mul_add(light, a.share, load(*job.direct, i)), *job.direct, i);
+      const V zero = set(0), weight = load(*job.weight, i), arrives = load(*job.share, i),
+              blocked = weight - arrives, widths = load(*job.width_px, i);
+      const V share = hn::IfThenElseZero(weight > zero, arrives / weight);
+      store(share, *job.share, i);
+      store(weight / set(float(job.directions.size())), *job.weight, i);
+      store(hn::IfThenElseZero(blocked > zero, widths / blocked), *job.width_px, i);
+      if (!job.direct) return;
+      const M valid = holds_solid(load(scene.depth(), i));
+      const V3 light = unoccluded(*job.sun, load_normals(scene.shading, i, valid));
+      store(mul_add(light, share, load(*job.direct, i)), *job.direct, i);
     });
   });
 }

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The points of a source that the rays of a pixel and of its neighbours go to.
+#include "estimators/bitmask/ray_pattern.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <memory>
+#include <set>
+#include <tuple>
+
+#include "scene/light/light.h"
+
+namespace ssdo::test {
+namespace {
+
+/// A disc of 10 degrees around the middle of the map, in the dark.
+Sun soft_box() {
+  constexpr int kWidth = 256, kHeight = 128;
+  auto map = std::make_shared<Plane<glm::vec3>>(kWidth, kHeight, glm::vec3(0));
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      if (std::hypot(x + 0.5 - kWidth / 2, y + 0.5 - kHeight / 2) < 10 * kWidth / 360.0)
+        (*map)(x, y) = glm::vec3(10);
+  return model_light(Environment(map, {}), glm::mat3(1)).suns.at(0);
+}
+
+using Directions = std::vector<PerMember<glm::vec3>>;
+
+/// How far the mean over the rays of a pixel is off that over all, as a root mean square.
+double spread_of_pixels(const Directions& directions) {
+  glm::dvec3 all(0);
+  for (const auto& of_ray : directions)
+    for (const glm::vec3& to : of_ray) all += glm::dvec3(to);
+  const double rays = double(directions.size()), members = double(directions[0].size());
+  all /= rays * members;
+  double sum = 0;
+  for (std::size_t m = 0; m < directions[0].size(); ++m) {
+    glm::dvec3 mean(0);
+    for (const auto& of_ray : directions) mean += glm::dvec3(of_ray[m]) / rays;
+    sum += glm::dot(mean - all, mean - all);
+  }
+  return std::sqrt(sum / members);
+}
+
+TEST(RayPattern, RaysGrowWithTheSlices) {
+  EXPECT_EQ(rays_to_sun(1), 1);
+  EXPECT_EQ(rays_to_sun(2), 1);
+  EXPECT_EQ(rays_to_sun(6), 2);
+  EXPECT_EQ(rays_to_sun(24), 8);
+  EXPECT_EQ(rays_to_sun(64), 32);
+}
+
+TEST(RayPattern, RaysOfAPixelAreSpreadMoreEvenlyThanByChance) {
+  const Sun sun = soft_box();
+  double before = spread_of_pixels(directions_to(sun, 1, 0));
+  EXPECT_GT(before, 0.05) << "the source is wide";
+  for (const int rays : {2, 4, 8}) {
+    const double spread = spread_of_pixels(directions_to(sun, rays, 0));
+    EXPECT_LT(spread, before / 1.5) << rays;  // sqrt(2) by chance
+    before = spread;
+  }
+}
+
+TEST(RayPattern, NeighboursAndRaysTogetherAreTheSource) {
+  const Sun sun = soft_box();
+  for (const int rays : {1, 2, 8}) {
+    glm::dvec3 mean(0);
+    const Directions directions = directions_to(sun, rays, 5);
+    for (const auto& of_ray : directions)
+      for (const glm::vec3& to : of_ray) mean += glm::dvec3(to) / (64.0 * rays);
+    EXPECT_LT(glm::length(glm::normalize(mean) - glm::dvec3(sun.direction)), 0.01) << rays;
+  }
+}
+
+TEST(RayPattern, NoDirectionIsTakenTwice) {
+  const Sun sun = soft_box();
+  constexpr int kSeeds = 8, kRays = 2;
+  std::set<std::tuple<float, float, float>> seen;
+  std::size_t count = 0;
+  const auto add = [&](const Directions& directions, std::size_t member) {
+    for (const auto& of_ray : directions) {
+      const glm::vec3 to = of_ray[member];
+      seen.insert({to.x, to.y, to.z}), count += 1;
+    }
+  };
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+    add(directions_to(sun, kRays, seed), 11);
+    add(directions_to(sun, kRays, seed, RaySet::of_error), 11);
+  }
+  EXPECT_EQ(count, std::size_t(2 * kSeeds * kRays));
+  EXPECT_EQ(seen.size(), count);
+}
+
+}  // namespace
+}  // namespace ssdo::test
