@@ -13,8 +13,17 @@
 //
 //   |n_p| / 4 sum_h (-cos(2h - n) + cos n + 2 h sin n)
 //
-// and ao the mean over slices. The bent normal leans by (h1 + h2) / 2 in each slice; those
-// directions are added without |n_p|. k is max(min(R / 2 in pixels, 512), steps) / (steps + 1).
+// and ao the mean over slices. k is max(min(R / 2 in pixels, 512), steps) / (steps + 1).
+//
+// The bent normal is the first moment of what is open, with the same weight |n_p| cos(h - n)
+// |sin h|. With c1, s1, c2, s2 the cosines and sines of both angles, t along s, C = c1 + c2,
+// C3 = c1^3 + c2^3 and S3 = s1^3 + s2^3, that of a slice is
+//
+//   |n_p| / 3 ((cos n (2 - C3) + sin n S3) v - (sin n (4 - 3 C + C3) + cos n S3) t)
+//
+// and 2/3 N the mean over all slices where nothing is hidden. A few slices miss that by what they
+// have with C = C3 = S3 = 0; this much, times ao over the ao of the same slices with all open, is
+// added. It makes an open surface exact and leaves a closed one without a bent normal.
 //
 // What differs, and why:
 // - Slices turn and steps shift (u) by the 4 x 4 patterns of Jimenez et al., which the filter of
@@ -26,11 +35,13 @@
 // - Pixels that are not square are seen as they are.
 // - Left out are the engines' exponent of 2.5 and intensity on ao, its fade with distance, and
 //   that the bent normal is turned away from the viewer: they have no meaning in light.
+// - Engines add unit vectors at the angles (h1 + h2) / 2 for the bent normal. That has another
+//   weight than ao: of an open plane it is as much as 24 degrees off N, with any number of slices.
 //
 // Known faults, kept: horizons see one layer, and with thickness 1 whatever is in front is
 // endlessly thick; the falloff lets near occluders pass some light; the reach on the screen is
-// half the radius; two steps miss what is small; the bent normal is that of the slices' arcs
-// without the cosine.
+// half the radius; two steps miss what is small; a few slices give too little light, or too much,
+// where a surface is seen at a grazing angle.
 //
 // The direct light is the irradiance of the bent normal times ao, or with `multi-bounce` times what
 // multi_bounce.h makes of ao and the albedo. That stands for bounces, so that none is made besides.
@@ -78,7 +89,7 @@ struct GtaoJob {
   float reach_px;          ///< of the last step at depth 1, or at any where orthographic
   float falloff;           ///< 2 / R^2
   float thinness;          ///< 1 - thickness
-  Plane<glm::vec3>& bent;  ///< mean over slices, not normalised; empty where nobody asks
+  Plane<glm::vec3>& bent;  ///< N times ao where open evenly; empty where nobody asks
 };
 
 }  // namespace ssdo
@@ -105,6 +116,20 @@ HWY_INLINE V next_horizon(const GtaoJob& job, const ViewReceiver& p, const V3& t
                         hn::MulAdd(hn::Min(cosine - horizon, set(0)), set(job.thinness), horizon));
 }
 
+/// First moment of a slice's open part between directions of these cosines to the viewer, times
+/// 3/2. `upright` and `aside` are |n_p| cos n and |n_p| sin n.
+HWY_INLINE V3 moment_of(V upright, V aside, V cos1, V cos2, const V3& to_viewer,
+                        const V3& tangent) {
+  const auto cubed = [](V v) HWY_ATTR { return v * v * v; };
+  const auto sine = [](V cosine) HWY_ATTR {
+    return hn::Sqrt(hn::Max(hn::NegMulAdd(cosine, cosine, set(1)), set(0)));
+  };
+  const V cubes = cubed(cos1) + cubed(cos2), sine_cubes = cubed(sine(cos2)) - cubed(sine(cos1));
+  const V along = hn::MulAdd(upright, set(2) - cubes, aside * sine_cubes);
+  const V across = hn::MulAdd(aside, set(4) - set(3) * (cos1 + cos2) + cubes, upright * sine_cubes);
+  return mul_add(to_viewer, along * set(0.5f), tangent * (across * set(-0.5f)));
+}
+
 HWY_INLINE V acos_of(V cosine) { return hn::Acos(D(), hn::Min(hn::Max(cosine, set(-1)), set(1))); }
 
 void gtao_of_tile(const GtaoJob& job, const Tile& tile, Plane<float>& ao) {
@@ -118,8 +143,8 @@ void gtao_of_tile(const GtaoJob& job, const Tile& tile, Plane<float>& ao) {
     const V step = hn::Max(hn::Min(reach, set(512)), steps) / (steps + set(1));
     const V first = load(job.first_step.at(planes, x, y));
     const V upright = dot(p.normal, to_viewer);
-    V sum = set(0);
-    V3 bent = set(glm::vec3(0));
+    V sum = set(0), sum_if_open = set(0);
+    V3 moment = set(glm::vec3(0)), moment_if_open = moment;
     for (const SliceTurns& turn : job.slices) {
       const V turn_x = load(turn.cosine.at(planes, x, y)),
               turn_y = load(turn.sine.at(planes, x, y));
@@ -143,12 +168,17 @@ void gtao_of_tile(const GtaoJob& job, const Tile& tile, Plane<float>& ao) {
                     hn::Cos(d, h2 + h2 - n);
       sum = hn::MulAdd(length * set(0.25f), arc, sum);
       if (job.bent.empty()) continue;
-      const V middle = both * set(0.5f);
-      bent = mul_add(to_viewer, hn::Cos(d, middle),
-                     mul_add(tangent, hn::Neg(hn::Sin(d, middle)), bent));
+      // The clamped angles are a right angle from n: their cosines are sin n and -sin n.
+      moment = moment + moment_of(upright, aside, hn::Max(cos_ahead, sin_n),
+                                  hn::Max(cos_behind, hn::Neg(sin_n)), to_viewer, tangent);
+      moment_if_open = moment_if_open + mul_add(to_viewer, upright, tangent * (set(-2) * aside));
+      sum_if_open = hn::MulAdd(length, hn::MulAdd(n, sin_n, cos_n), sum_if_open);
     }
-    if (!job.bent.empty())
-      store_first(tile.x1 - x, bent * hn::IfThenElseZero(p.valid, share), &job.bent(x, y));
+    if (!job.bent.empty()) {
+      const V open = sum / hn::Max(sum_if_open, set(1e-20f));
+      const V3 bent = mul_add(p.normal, open, (moment - moment_if_open * open) * share);
+      store_first(tile.x1 - x, bent * hn::IfThenElseZero(p.valid, set(1)), &job.bent(x, y));
+    }
     return sum * share;
   });
 }
@@ -251,7 +281,7 @@ Method gtao_method() {
               {"multi-bounce", 0, 0, 1, "",
                "1: direct with light between surfaces, by their albedo", true},
               kRoughness,
-              {"reflection-strength", 0.5, 0, 1, "", "1/2: slices that agree see a half-ball"},
+              {"reflection-strength", 0.5, 0, 1, "", "1/2: an open surface sees a half-ball"},
           },
       .samples_per_pixel =
           [](const Request& r) {

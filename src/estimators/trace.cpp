@@ -24,6 +24,9 @@
 // What only further views show is a second set of triangles, in camera space, for it may lie behind
 // the camera; it sends what rays among all views find (further/further_light.h).
 //
+// Rays start from the surface itself, whose normal comes from P (scene/normals.h), and those below
+// it are blocked; their directions are distributed about the normal of shading.
+//
 // Directions are points of Sobol's sequence, scrambled anew for every pixel (math/sobol.h). Their
 // error falls about as n^-3/4, and is not shared by neighbours, so that no filter is needed and
 // means over a frame are exact. Surfaces end with the frame.
@@ -66,9 +69,9 @@ using Groups = std::array<float, kGroups>;
 
 /// Directions of the seen points of one pixel.
 struct Receiver {
-  glm::dvec3 origin;  ///< above the surface
-  glm::vec3 normal;
-  glm::mat3 frame;  ///< about the normal
+  glm::dvec3 origin;          ///< above the surface
+  glm::vec3 normal, surface;  ///< that of shading and that of the geometry
+  glm::mat3 frame;            ///< about the normal of shading
   std::uint32_t seed;
 };
 
@@ -156,9 +159,9 @@ class Trace {
   int width() const { return scene_.geometry.surfel.width; }
   int height() const { return scene_.geometry.surfel.height; }
 
-  /// Whether the frame or a further view shows something in the way.
+  /// Whether the frame or a further view shows something in the way, or the surface itself is.
   bool is_blocked(const Receiver& p, const glm::vec3& to) const {
-    return rays_.is_blocked(p.origin, to, request_.radius) ||
+    return glm::dot(to, p.surface) <= 0 || rays_.is_blocked(p.origin, to, request_.radius) ||
            (further_ && further_->is_blocked(glm::vec3(p.origin), to, request_.radius));
   }
 
@@ -167,10 +170,13 @@ class Trace {
   Receiver receiver(int x, int y, std::size_t pixel) const {
     const Geometry& g = scene_.geometry;
     const Surfel& s = g.surfel[pixel];
-    const glm::vec3 normal(s.normal), position(s.position);
+    const glm::vec3 normal(s.normal), position(s.position),
+        surface =
+            geometric_normal(g.surfel, x, y, direction_to_viewer(position, g.camera.orthographic));
     const float above =
         kAboveRoundings * s.rounding + kAboveFootprints * footprint_.at(-position.z);
-    return {glm::dvec3(position) + double(above) * glm::dvec3(normal), normal, frame_about(normal),
+    return {glm::dvec3(position) + double(above) * glm::dvec3(surface), normal, surface,
+            frame_about(normal),
             hash_of(std::uint32_t(g.window.x0 - g.display.x0 + x),
                     std::uint32_t(g.window.y0 - g.display.y0 + y), request_.seed)};
   }
@@ -318,8 +324,9 @@ class Trace {
       std::array<int, kGroups> number{};
       for (int s = 0; s < samples_; ++s) {
         const glm::vec3 to = direction(p, s);
-        const auto [hit, distance] = rays_.first_hit(p.origin, to, request_.radius);
         ++number[group_of(s)];
+        if (glm::dot(to, p.surface) <= 0) continue;
+        const auto [hit, distance] = rays_.first_hit(p.origin, to, request_.radius);
         if (further_) {
           const auto other = further_->first_hit(glm::vec3(p.origin), to, request_.radius);
           if (other.sender >= 0 && other.distance < distance) {

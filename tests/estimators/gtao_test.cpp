@@ -26,7 +26,7 @@ struct SlowGtao {
   double thickness = 1;
 
   double ao = 1;
-  glm::dvec3 bent = glm::dvec3(0);  ///< mean over slices
+  glm::dvec3 bent = glm::dvec3(0);  ///< not unit
   bool doubtful = false;            ///< whether rounding may have moved a step
 
   double horizon(const glm::dvec3& p, const glm::dvec3& v, const Surfel& s, int x, int y,
@@ -50,8 +50,21 @@ struct SlowGtao {
     return glm::mix(cosine, h, thickness);
   }
 
+  /// Integral of the directions from h1 to h2, with the weight of ao; (along v, across it).
+  static glm::dvec2 moment(double h1, double h2, double n) {
+    glm::dvec2 sum(0);
+    const int parts = 64;
+    for (int i = 0; i < parts; ++i) {
+      const double h = h1 + (h2 - h1) * (i + 0.5) / parts;
+      sum += std::cos(h - n) * std::abs(std::sin(h)) * glm::dvec2(std::cos(h), std::sin(h));
+    }
+    return sum * ((h2 - h1) / parts);
+  }
+
   void look_from(int x, int y) {
     doubtful = false, ao = 0, bent = glm::dvec3(0);
+    double ao_if_open = 0;
+    glm::dvec3 bent_if_open(0);
     const Surfel& s = g.surfel(x, y);
     const glm::dvec3 p(s.position), normal(s.normal);
     const glm::dvec3 v = g.camera.orthographic ? glm::dvec3(0, 0, 1) : glm::normalize(-p);
@@ -81,10 +94,16 @@ struct SlowGtao {
                    sign = glm::dot(projected, tangent) < 0 ? -1 : 1, n = -sign * std::acos(cos_n);
       const double right_angle = glm::half_pi<double>();
       const double h1 = n + std::max(-std::acos(h[0]) - n, -right_angle),
-                   h2 = n + std::min(std::acos(h[1]) - n, right_angle), middle = (h1 + h2) / 2;
-      ao += length * (arc(h1, n) + arc(h2, n)) / slices;
-      bent += (v * std::cos(middle) - tangent * std::sin(middle)) / double(slices);
+                   h2 = n + std::min(std::acos(h[1]) - n, right_angle);
+      const auto add = [&](double from, double to, double& sum, glm::dvec3& directions) {
+        sum += length * (arc(from, n) + arc(to, n)) / slices;
+        const glm::dvec2 lean = moment(from, 0, n) + moment(0, to, n);
+        directions += length / slices * (v * lean.x - tangent * lean.y);
+      };
+      add(h1, h2, ao, bent);
+      add(n - right_angle, n + right_angle, ao_if_open, bent_if_open);
     }
+    bent += ao / ao_if_open * (2.0 / 3 * normal - bent_if_open);
     ao = std::clamp(ao, 0.0, 1.0);
   }
 };
@@ -109,7 +128,9 @@ double expect_the_slow_result(const Geometry& g, SlowGtao slow, const Products& 
       if (slow.doubtful) continue;
       EXPECT_NEAR(out.ao(x, y), slow.ao, 2e-4) << x << "," << y;
       const glm::dvec3 bent = glm::normalize(slow.bent);
-      EXPECT_LT(glm::length(glm::dvec3(out.bent(x, y)) - bent), 1e-3) << x << "," << y;
+      if (slow.ao > 0.05) {
+        EXPECT_LT(glm::length(glm::dvec3(out.bent(x, y)) - bent), 2e-3) << x << "," << y;
+      }
       least = std::min(least, slow.ao), ++compared;
     }
   }
@@ -163,6 +184,23 @@ TEST(Gtao, AnOpenPlaneDoesNotHideItself) {
   }
 }
 
+/// Also from an elevation of 10 degrees, and with so few slices that they do not say it themselves.
+TEST(Gtao, TheBentNormalOfAnOpenPlaneIsItsNormal) {
+  for (const Camera& projection :
+       {camera_from_fov(20, kWindow, 1), camera_from_ortho_width(6, kWindow, 1)}) {
+    for (const double tilt : {0.0, 30.0, 60.0, 70.0, 79.0}) {
+      const Geometry g = geometry_of(plane({}, {0, 0, 1}), tilted(projection, tilt), kWindow);
+      for (const char* slices : {"slices=1", "slices=2", "slices=7"}) {
+        const Products out = estimate(g, 1, {slices});
+        for (std::size_t i = 0; i < out.bent.size(); ++i) {
+          if (!g.is_surface(i)) continue;
+          ASSERT_LT(glm::distance(out.bent[i], g.surfel[i].normal), 1e-4) << tilt << " " << slices;
+        }
+      }
+    }
+  }
+}
+
 TEST(Gtao, TheFootOfAWallSeesTheSkyThatTheWallLeaves) {
   const Window window{0, 0, 240, 96};
   const Surface scene =
@@ -182,9 +220,11 @@ TEST(Gtao, TheFootOfAWallSeesTheSkyThatTheWallLeaves) {
     if (!s.is_surface() || p.z > 1e-3 || p.y < -1 || p.y > 0.8) continue;
     const double to_wall = 1 - p.y, expected = 0.5 + 0.5 * to_wall / std::hypot(to_wall, 1.0);
     EXPECT_NEAR(out.ao(120, y), expected, 0.03) << "at " << p.y;
-    // Away from the wall.
+    // Of directions above the wall's edge, (y, z) is the integral of (cos, sin) sin.
+    const double edge = std::atan2(1, to_wall), aside = -0.5 * std::sin(edge) * std::sin(edge),
+                 up = 0.5 * (glm::pi<double>() - edge) + 0.25 * std::sin(2 * edge);
     const glm::dvec3 bent = glm::transpose(g.camera.rotation) * glm::dvec3(out.bent(120, y));
-    EXPECT_LT(bent.y, -0.05) << "at " << p.y;
+    EXPECT_NEAR(std::atan2(bent.y, bent.z), std::atan2(aside, up), 0.03) << "at " << p.y;
     ++compared;
   }
   EXPECT_GT(compared, 5);

@@ -16,7 +16,10 @@
 #define SSDO_BITMASK_PIECE_INL_H_
 #endif
 
+#include <algorithm>
+
 #include "estimators/bitmask/lanes-inl.h"
+#include "scene/same_surface.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -121,6 +124,47 @@ HWY_INLINE VU sectors_behind_piece(const MarchReceiver& p, const SideFrame& side
   const VU from = hn::Min(inner, outer), to = hn::Max(hn::Max(inner, outer), back);
   return hn::IfThenElseZero(hn::RebindMask(DU(), meets),
                             hn::AndNot(bits_from(to), bits_from(from)));
+}
+
+/// The front that a march met at a step, and its pixel; no step: none so far.
+struct Front {
+  const SliceStep* step;
+  std::ptrdiff_t pixel;
+  V depth;
+};
+
+/// The sectors between two fronts that a march meets one after the other, where they are on one
+/// surface (scene/same_surface.h): it is closed between them. Solids hide those sectors by
+/// themselves only if they are thicker than the fronts are apart. `is_above`: the later one is
+/// above the receiver's tangent plane.
+template <bool kOrthographic>
+HWY_INLINE VU sectors_between(const March& march, const MarchReceiver& p, const SideFrame& side,
+                              const Front& before, const Front& here, M is_above) {
+  const MarchScene& scene = march.scene;
+  const auto point = [&](const Front& f) HWY_ATTR {
+    const V dx = set(f.step->dx), dy = set(f.step->dy), across = dot(V2{dx, dy}, side.across),
+            s = kOrthographic ? across : f.depth * across,
+            rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise));
+    return SlicePoint{s,
+                      hn::NegMulAdd(s, side.slope, height_above<kOrthographic>(p, rise, f.depth))};
+  };
+  const auto position = [&](const Front& f) HWY_ATTR {
+    const V x = p.slope_x + set(f.step->dx / scene.fx), y = p.slope_y - set(f.step->dy / scene.fy),
+            z = set(0) - f.depth;
+    if constexpr (kOrthographic) return V3{x, y, z};
+    return V3{x * f.depth, y * f.depth, z};
+  };
+  const V3 way = position(before) - position(here);
+  const V gap = hn::Max(hn::Abs(dot(load(scene.normal, here.pixel), way)),
+                        hn::Abs(dot(load(scene.normal, before.pixel), way)));
+  V most = set(kSurfaceGap / std::min(scene.fx, scene.fy));
+  if constexpr (!kOrthographic) most = most * hn::Min(before.depth, here.depth);
+  const SlicePoint end = point(here);
+  const M meets =
+      hn::And(hn::And(is_above, gap <= most), dot(end, end) <= set(march.radius * march.radius));
+  const VU a = sector_of(point(before), side.start), b = sector_of(end, side.start);
+  return hn::IfThenElseZero(hn::RebindMask(DU(), meets),
+                            hn::AndNot(bits_from(hn::Max(a, b)), bits_from(hn::Min(a, b))));
 }
 
 }  // namespace ssdo::HWY_NAMESPACE

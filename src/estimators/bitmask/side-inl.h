@@ -44,6 +44,7 @@ HWY_INLINE VU march_raster(const March& march, const MarchReceiver& p, const Sid
   const int layers = int(scene.layers.size());
   const int height = scene.layout.height(), columns = scene.layout.columns();
   VU open = side.open;
+  Front before{nullptr, 0, set(0)};
   for (const SliceStep& step : steps) {
     const int row = p.place.y + step.row, first = p.place.column + step.column_shift;
     if (step.inner_px > p.reach_px || row < 0 || row >= height || first >= columns ||
@@ -62,11 +63,14 @@ HWY_INLINE VU march_raster(const March& march, const MarchReceiver& p, const Sid
     const auto meet = [&](int layer, V depth, V above, const auto& piece) HWY_ATTR {
       const V s = kOrthographic ? across : depth * across,
               thickness = load(scene.layers[std::size_t(layer)].thickness, i);
-      const VU bits =
-          step.inner == step.outer
-              ? sectors_behind<kOrthographic>(p, side, s, above, thickness, march.radius)
-              : sectors_behind_piece<kOrthographic>(p, side, piece(), s, above, thickness,
-                                                    march.radius);
+      VU bits = step.inner == step.outer
+                    ? sectors_behind<kOrthographic>(p, side, s, above, thickness, march.radius)
+                    : sectors_behind_piece<kOrthographic>(p, side, piece(), s, above, thickness,
+                                                          march.radius);
+      if (layer == 0 && before.step) {
+        bits = hn::Or(bits, sectors_between<kOrthographic>(march, p, side, before,
+                                                           {&step, i, depth}, above > set(0)));
+      }
       on_met(layer, i, step, hn::And(open, bits));
       open = hn::AndNot(bits, open);
     };
@@ -76,6 +80,7 @@ HWY_INLINE VU march_raster(const March& march, const MarchReceiver& p, const Sid
         return piece_at<kOrthographic>(scene, p, side, step, i, depth, rise, across);
       });
     }
+    before = {&step, i, depth};
     for (int k = 1; k < layers; ++k) {
       const InterleavedPlane& fronts = scene.layers[std::size_t(k)].depth;
       prefetch(fronts);

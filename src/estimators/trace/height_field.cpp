@@ -290,7 +290,8 @@ class Builder {
     if (size == 4 && sides >= 3)
       return add_sheet({*nodes[0], *nodes[1], *nodes[2], *nodes[3]}, block);
 
-    Point centre{centre_px, 0, 0};
+    // On a round silhouette the surface lies behind all planes that touch it: the farthest counts.
+    std::optional<Point> farthest;
     glm::vec2 at_all(0);
     bool all_continued = true;
     for (int k = 0; k < 4; ++k) {
@@ -300,10 +301,9 @@ class Builder {
       const Point here = p.value_or(point(*nodes[k]));
       all_continued &= p.has_value();
       at_all += here.at / float(size);
-      centre.front += here.front / float(size);
-      centre.back += here.back / float(size);
+      if (!farthest || here.front < farthest->front) farthest = here;
     }
-    if (!all_continued) centre.at = at_all;
+    const Point centre{all_continued ? centre_px : at_all, farthest->front, farthest->back};
     for (int k = 0; k < 4; ++k) {
       if (!nodes[k]) continue;
       const Node& n = *nodes[k];

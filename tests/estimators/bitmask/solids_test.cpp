@@ -61,6 +61,29 @@ TEST(BitmaskSolids, ASphereHidesItsFormFactor) {
               off_axis(tilted(camera_from_fov(40, kWindow, 1), 30, 9), kWindow, {-0.7, 0.7}));
 }
 
+/// A wall seen over its top from behind: as far as it is thin, only what is between the pixels that
+/// show it closes it, however many steps there are.
+TEST(BitmaskSolids, AThinWallIsClosedBetweenThePixelsThatShowIt) {
+  const Surface wall = cut(plane({0, -0.4, 0}, {0, -1, 0}), [](const glm::dvec3& p) {
+    return p.z > 0 && p.z < 0.3 && std::abs(p.x) < 0.8;
+  });
+  const Surface scene = all_of({plane({}, {0, 0, 1}), wall});
+  const double expected = ao_by_rays(scene, {{0, 0, 0}, {0, 0, 1}}, kNoLimit);
+  for (const bool orthographic : {false, true}) {
+    const Camera projection =
+        orthographic ? camera_from_ortho_width(2.4, kWindow, 1) : camera_from_fov(24, kWindow, 1);
+    const Geometry g = geometry_of(scene, tilted(projection, 40), kWindow);
+    const Solids thin = constant_thickness(g, 1e-3f);
+    for (const int steps : {16, 64, 256, 4096}) {
+      const Products out = run(g, {.radius = kNoLimit, .steps = steps, .solids = &thin});
+      const double found = middle(
+          kWindow, [&](int x, int y) { return double(out.ao(x, y)); }, 4);
+      fmt::print("thin wall, {} steps: {:.4f}, by rays {:.4f}\n", steps, found, expected);
+      EXPECT_NEAR(found, expected, steps < 64 ? 0.01 : 0.004) << steps << " " << orthographic;
+    }
+  }
+}
+
 /// A round cliff around a third of the receiver's horizon, 60 degrees high: it hides a third of
 /// cos^2 30 = 3/4, and 3/4 are left. The camera on the open side sees all of it at every tilt.
 Surface cliff(double a) {

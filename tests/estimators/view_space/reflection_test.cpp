@@ -15,13 +15,23 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 const Window kWindow{0, 0, 48, 36};
 
-/// The seed's formula in double, from the angles of both cones and the angle between their axes.
-double slow_occlusion(double length, double between, double roughness, double strength) {
+/// Solid angle of the overlap in double, from the angles of both cones and the angle between their
+/// axes.
+double slow_overlap(double length, double between, double roughness, double strength) {
   const double reflection = std::max(roughness, 0.1) * kPi, open = length * kPi * strength;
   const double difference = std::abs(reflection - open);
   const double t = (between - difference) / (reflection + open - difference);
-  const double overlap = slow_smoothstep(0, 1, 1 - std::min(std::max(t, 0.0), 1.0));
-  return overlap * std::min(std::max((open - 0.1) / 0.2, 0.0), 1.0);
+  const double share = slow_smoothstep(0, 1, 1 - std::min(std::max(t, 0.0), 1.0));
+  const double opened = std::min(std::max((open - 0.1) / 0.2, 0.0), 1.0);
+  return share * opened * 2 * kPi * (1 - std::cos(std::min(reflection, open)));
+}
+
+/// Of that, the part that an open surface has too: its normal is so far from what is mirrored.
+double slow_occlusion(double length, double between, double from_normal, double roughness,
+                      double strength) {
+  const double of_open = slow_overlap(1, from_normal, roughness, strength);
+  if (of_open == 0) return 0;
+  return std::min(slow_overlap(length, between, roughness, strength) / of_open, 1.0);
 }
 
 glm::vec3 at_angle(double angle) { return {float(std::sin(angle)), 0, float(std::cos(angle))}; }
@@ -60,7 +70,7 @@ Plane<float> reflect_cones(const std::vector<Cones>& pixels, double strength) {
   return reflect(g, bent, 0, &roughness, strength);
 }
 
-TEST(Reflection, ConesMeetAsInTheSeed) {
+TEST(Reflection, ConesMeetAsInDouble) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> share(0, 1);
   int partly = 0;
@@ -72,7 +82,8 @@ TEST(Reflection, ConesMeetAsInTheSeed) {
     const Plane<float> found = reflect_cones(pixels, strength);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const Cones& of = pixels[i];
-      const double expected = slow_occlusion(of.length, of.between, of.roughness, strength);
+      const double expected =
+          slow_occlusion(of.length, of.between, of.between / 2, of.roughness, strength);
       ASSERT_NEAR(found[i], expected, 5e-4)
           << of.length << " " << of.between << " " << of.roughness << " " << strength;
       partly += expected > 0.01 && expected < 0.99;
@@ -97,10 +108,14 @@ TEST(Reflection, OneWhereAConeIsInsideTheOtherZeroWhereTheyDoNotTouch) {
 
 TEST(Reflection, TheLengthOfTheBentNormalDecides) {
   EXPECT_EQ(reflect_one(0, 0.4, 0.5), 0) << "all is closed";
-  // A visible cone of 0.1 radians is closed, one of 0.3 is fully counted.
+  // A visible cone of 0.1 radians is closed, one of 0.3 is fully counted: by its solid angle.
+  const auto share = [](double angle, double of) {
+    return (1 - std::cos(angle)) / (1 - std::cos(of));
+  };
   EXPECT_EQ(reflect_one(0.0999 / (kPi / 2), 0, 0.1), 0);
-  EXPECT_NEAR(reflect_one(0.2 / (kPi / 2), 0, 0.1), 0.5, 1e-5);
-  EXPECT_NEAR(reflect_one(0.3001 / (kPi / 2), 0, 0.1), 1, 1e-5);
+  EXPECT_NEAR(reflect_one(0.2 / (kPi / 2), 0, 0.1), 0.5 * share(0.2, 0.1 * kPi), 1e-5);
+  EXPECT_NEAR(reflect_one(0.3001 / (kPi / 2), 0, 0.1), share(0.3001, 0.1 * kPi), 1e-5);
+  EXPECT_NEAR(reflect_one(0.5, 0, 0.4), share(kPi / 4, 0.4 * kPi), 1e-5);
 }
 
 TEST(Reflection, VectorsGiveWhatOneLaneGives) {
@@ -131,7 +146,8 @@ TEST(Reflection, EveryPixelMirrorsItsOwnRay) {
           g.camera.orthographic ? glm::dvec3(0, 0, -1) : p / std::sqrt(glm::dot(p, p));
       const glm::dvec3 r = from_viewer - 2 * glm::dot(from_viewer, n) * n, b(up);
       const double length = std::sqrt(glm::dot(b, b));
-      const double expected = slow_occlusion(length, std::acos(glm::dot(b, r) / length), 0.3, 0.5);
+      const double expected = slow_occlusion(length, std::acos(glm::dot(b, r) / length),
+                                             std::acos(glm::dot(n, r)), 0.3, 0.5);
       EXPECT_NEAR(found[i], g.is_surface(i) ? expected : 1, 2e-4) << i;
       least = std::min(least, expected), most = std::max(most, expected);
     }
@@ -175,20 +191,15 @@ Products reflected_by_gtao(const Geometry& g, const std::vector<std::string>& se
       {});
 }
 
-TEST(Reflection, GtaoTakesTheMeanOfItsSlicesBeforeItIsMadeUnit) {
-  // At the foot of a wall the slices lean to different sides.
+TEST(Reflection, GtaoTakesItsBentNormalBeforeItIsMadeUnit) {
   const Geometry g =
       geometry_of(still_life(), tilted(camera_from_fov(50, kWindow, 1), 50), kWindow);
-  const auto make = [&](const char* slices) {
-    return reflected_by_gtao(g, {slices, "roughness=0.2"}, {.bent = true, .reflection = true});
-  };
-  const Products one = make("slices=1"), three = make("slices=3");
-  const Plane<float> of_one = reflect(g, one.bent, 0.2), of_three = reflect(g, three.bent, 0.2);
+  const Products three =
+      reflected_by_gtao(g, {"slices=3", "roughness=0.2"}, {.bent = true, .reflection = true});
+  const Plane<float> of_unit = reflect(g, three.bent, 0.2);
   int narrower = 0;
-  for (std::size_t i = 0; i < of_one.size(); ++i) {
-    EXPECT_NEAR(one.reflection[i], of_one[i], 1e-4) << "of one slice it is unit from the start";
-    narrower += three.reflection[i] < of_three[i] - 0.02f;
-  }
+  for (std::size_t i = 0; i < of_unit.size(); ++i)
+    narrower += three.reflection[i] < of_unit[i] - 0.02f;
   EXPECT_GT(narrower, 50);
   // Whoever asks for nothing else gets nothing else.
   const Products alone = reflected_by_gtao(g, {"slices=3", "roughness=0.2"}, {.reflection = true});
@@ -196,13 +207,18 @@ TEST(Reflection, GtaoTakesTheMeanOfItsSlicesBeforeItIsMadeUnit) {
   EXPECT_TRUE(alone.bent.empty() && alone.direct.empty());
 }
 
-TEST(Reflection, AnOpenPlaneThatFacesTheViewerMirrorsAll) {
-  const Geometry g =
-      geometry_of(plane({}, {0, 0, 1}), tilted(camera_from_ortho_width(6, kWindow, 1), 0), kWindow);
-  for (const char* roughness : {"roughness=0", "roughness=0.5", "roughness=1"}) {
-    for (const float open :
-         reflected_by_gtao(g, {roughness}, {.reflection = true}).reflection.pixels)
-      EXPECT_NEAR(open, 1, 1e-4);
+TEST(Reflection, AnOpenPlaneMirrorsAllFromAnyElevation) {
+  for (const Camera& projection :
+       {camera_from_fov(20, kWindow, 1), camera_from_ortho_width(6, kWindow, 1)}) {
+    for (const double elevation : {90.0, 45.0, 30.0, 20.0, 11.0}) {
+      const Geometry g =
+          geometry_of(plane({}, {0, 0, 1}), tilted(projection, 90 - elevation), kWindow);
+      for (const char* roughness : {"roughness=0", "roughness=0.2", "roughness=1"}) {
+        for (const float open :
+             reflected_by_gtao(g, {roughness}, {.reflection = true}).reflection.pixels)
+          ASSERT_NEAR(open, 1, 1e-4) << elevation << " " << roughness;
+      }
+    }
   }
 }
 
