@@ -88,9 +88,10 @@ class Bitmask {
         further_(scene.further.empty()
                      ? nullptr
                      : std::make_unique<FurtherRays>(scene.further.vertices, scene.further.added)),
-        march_{march_scene_, pattern_, request.radius, request.extend_offscreen, further_.get()},
-        bounce_march_{march_scene_, bounce_pattern_, request.radius, request.extend_offscreen,
-                      further_.get()},
+        march_{march_scene_,  pattern_,      request.radius, request.extend_offscreen,
+               may_be_thin(), further_.get()},
+        bounce_march_{march_scene_,  bounce_pattern_, request.radius, request.extend_offscreen,
+                      may_be_thin(), further_.get()},
         ao_(layout_) {}
 
   Products run() {
@@ -115,6 +116,9 @@ class Bitmask {
   bool wants_light() const {
     return request_.products.direct || request_.products.bounce || request_.products.error;
   }
+
+  /// Some solids are no guesses.
+  bool may_be_thin() const { return !scene_.solids.end.empty(); }
 
   bool senders_need_light() const { return scene_.senders.radiance.empty(); }
 

@@ -188,7 +188,8 @@ glm::vec3 normal_of_solid(const Geometry& geometry, const Solids& solids, int la
 }
 
 Solids constant_thickness(const Geometry& geometry, float thickness) {
-  return {Plane<float>(geometry.surfel.width, geometry.surfel.height, thickness), {}, {}, {}};
+  const int w = geometry.surfel.width, h = geometry.surfel.height;
+  return {Plane<float>(w, h, thickness), Plane<Origin>(w, h, Origin::given), {}, {}};
 }
 
 Solids guess_solids(const Geometry& geometry) {

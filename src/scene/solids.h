@@ -16,6 +16,7 @@ enum class Origin : std::uint8_t {
   seen,      ///< the pixel shows its front
   guessed,   ///< the pixels around suggest it
   measured,  ///< another picture shows it
+  given,     ///< the user says so
 };
 
 /// Most solids of one pixel, with the one that is seen. Every march tests all layers at each step.
@@ -85,6 +86,11 @@ struct Solids {
   /// Whether another picture shows where layer 0 ends.
   bool end_is_measured(std::size_t pixel) const {
     return !end.empty() && end[pixel] == Origin::measured;
+  }
+
+  /// Whether that is more than a guess.
+  bool end_is_known(std::size_t pixel) const {
+    return !end.empty() && end[pixel] != Origin::guessed;
   }
 
   /// The solid of a layer at a pixel that shows a surface.

@@ -14,7 +14,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <glm/vec2.hpp>
 #include <limits>
 #include <span>
@@ -30,17 +29,11 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// More than rounding moves a nearness, relative to it.
 constexpr float kRounding = 1e-6f;
 
-/// Whether all that is seen is as deep as the user says.
-bool depth_is_given(const Solids& solids) {
-  const auto& all = solids.thickness.pixels;
-  return std::adjacent_find(all.begin(), all.end(), std::not_equal_to<>()) == all.end();
-}
-
 /// The share of its depth that the solid of a layer counts by.
 float share_of_depth(const Solids& solids, int layer, std::size_t pixel) {
-  const bool measured =
-      layer == 0 ? solids.end_is_measured(pixel) : solids.origin(layer, pixel) == Origin::measured;
-  return measured ? 1 : kGuessedDepth;
+  const bool known =
+      layer == 0 ? solids.end_is_known(pixel) : solids.origin(layer, pixel) == Origin::measured;
+  return known ? 1 : kGuessedDepth;
 }
 
 /// A number that keeps its value as the upper half of a float.
@@ -112,7 +105,6 @@ Cell joined(std::span<const Member<Cell>> members) {
 
 DepthBounds::DepthBounds(const MarchScene& scene, const Solids& solids, int layer) {
   constexpr int kSide = 1 << kLargest, kHalvings = kLargest - kSmallest;
-  given_ = depth_is_given(solids);
   first_x_ = scene.first_x & (kSide - 1), first_y_ = scene.first_y & (kSide - 1);
   columns_ = ((first_x_ + scene.layout.width() - 1) >> kSmallest) + 1;
   rows_ = (((first_y_ + scene.layout.height() - 1) >> kLargest) + 1) << kHalvings;
@@ -163,8 +155,7 @@ void DepthBounds::gather_pixels(const MarchScene& scene, const Solids& solids, i
         const float front = of.depth[i];
         if (!holds_solid(front)) continue;
         const auto at = std::size_t(y) * std::size_t(layout.width()) + std::size_t(x);
-        const float share = given_ ? 1 : share_of_depth(solids, layer, at),
-                    thickness = share * of.thickness[i];
+        const float thickness = share_of_depth(solids, layer, at) * of.thickness[i];
         Cell pixel;
         pixel.nearest = scene.orthographic ? -front : 1 / front;
         pixel.farthest = scene.orthographic ? -front - thickness : 1 / (front * (1 + thickness));

@@ -58,7 +58,6 @@ class DepthBounds {
   void gather_pixels(const MarchScene& scene, const Solids& solids, int layer, int row);
   void gather_cells(int size, int row);
 
-  bool given_;  ///< depths are no guesses
   int first_x_, first_y_, columns_, rows_;
   std::vector<Stored> cells_;
   std::vector<glm::vec2> pixels_;

@@ -67,7 +67,7 @@ HWY_INLINE VU march_raster(const March& march, const MarchReceiver& p, const Sid
                     ? sectors_behind<kOrthographic>(p, side, s, above, thickness, march.radius)
                     : sectors_behind_piece<kOrthographic>(p, side, piece(), s, above, thickness,
                                                           march.radius);
-      if (layer == 0 && before.step) {
+      if (march.may_be_thin && layer == 0 && before.step) {
         bits = hn::Or(bits, sectors_between<kOrthographic>(march, p, side, before,
                                                            {&step, i, depth}, above > set(0)));
       }

@@ -319,7 +319,9 @@ class Walk {
       looks = hn::And(looks, hn::And(front > set(0), front >= w.growth * w.t));
       if (!any(looks)) return meets;  // what lies behind is lower still
       const V back = hn::MulAdd(w.a, gather(cells + 2, cell), lowest);
-      meets = hn::Or(meets, hn::And(looks, back <= w.growth * to));
+      const M met = hn::And(looks, back <= w.growth * to);
+      meets = hn::Or(meets, met);
+      looks = hn::AndNot(met, looks);
     }
     return meets;
   }
@@ -346,16 +348,18 @@ class Walk {
     const V t = hn::MulAdd(dx, w.step_x, dy * w.step_y);
     const V way = linear(w, dx, dy), height = w.growth * t;
     M blocked = hn::AndNot(looks, looks);
-    if (!any(looks)) return blocked;
     for (const DepthBounds& layer : bounds_) {
+      if (!any(looks)) return blocked;
       const float* pixels = &layer.pixels()->x;
       const V near = gather(pixels, index), front = hn::MulAdd(w.a, near, way);
       const M meets = hn::And(looks, hn::And(front > set(0), front >= height));
+      looks = hn::AndNot(front < height, looks);
       if (!any(meets)) continue;
       const V back = hn::MulAdd(w.a, gather(pixels + 1, index), way);
       const M hides =
           hn::And(hn::And(meets, back <= height), within_radius(w, dx, dy, near, front));
       blocked = hn::Or(blocked, hides);
+      looks = hn::AndNot(hides, looks);
     }
     return blocked;
   }
