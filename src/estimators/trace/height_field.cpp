@@ -16,7 +16,9 @@
 #include <optional>
 #include <utility>
 
+#include "estimators/trace/cell_links.h"
 #include "parallel/tiles.h"
+#include "scene/normals.h"
 #include "scene/same_surface.h"
 #include "scene/surfel.h"
 
@@ -162,10 +164,16 @@ class Builder {
   /// depth.
   std::optional<Point> continued(const Node& n, const glm::vec2& at, const Node* other) const {
     const glm::vec3& c = corner(n);
-    const SurfacePoint here = surface_point(n);
+    SurfacePoint here = surface_point(n);
+    const glm::vec3 view = direction_to_viewer(here.position, out_.space.orthographic());
+    if (n.layer == 0) {
+      const int w = geometry_.surfel.width;
+      here.normal = geometric_normal(geometry_.surfel, n.pixel % w, n.pixel / w, view);
+    }
     const float step = glm::dot(out_.space.slope(here.position, here.normal), at - glm::vec2(c));
     const float room = other ? std::abs(corner(*other).z - c.z) : std::abs(c.z);
-    if (!(std::abs(step) <= 0.5f * room)) return std::nullopt;
+    // Of smooth normals some face away, at the outline of facets.
+    if (!(glm::dot(here.normal, view) > 0) || !(std::abs(step) <= 0.5f * room)) return std::nullopt;
     const float front = c.z + step, back = backs_[n.corner];
     return Point{at, front, out_.space.orthographic() ? back + step : back * (front / c.z)};
   }
@@ -183,7 +191,7 @@ class Builder {
       simple &= at[k].count == 1;
     }
     if (!any) return;
-    Links links = link(at);
+    CellLinks links = link(at);
     if (simple && links.count() == 4)
       return add_sheet({at[0][0], at[1][0], at[2][0], at[3][0]}, block);
     const Camera& camera = geometry_.camera;
@@ -197,31 +205,9 @@ class Builder {
     }
   }
 
-  /// For each side k of a cell, from corner k to the next, and each node at its start: the node at
-  /// its end that it is joined to, or -1.
-  struct Links {
-    int to[4][kMostLayers];
-    bool seen[4][kMostLayers] = {};
-
-    Links() {
-      for (auto& side : to) std::fill(std::begin(side), std::end(side), -1);
-    }
-    int count() const {
-      int n = 0;
-      for (const auto& side : to)
-        n += int(std::count_if(std::begin(side), std::end(side), [](int l) { return l >= 0; }));
-      return n;
-    }
-    /// The node at the start of side k that is joined to node `l` at its end.
-    int from(int k, int l) const {
-      const auto* found = std::find(std::begin(to[k]), std::end(to[k]), l);
-      return found == std::end(to[k]) ? -1 : int(found - std::begin(to[k]));
-    }
-  };
-
   /// Joins what is of one layer first, then across layers.
-  Links link(const Cell& at) const {
-    Links links;
+  CellLinks link(const Cell& at) const {
+    CellLinks links;
     for (int k = 0; k < 4; ++k) {
       const Nodes &here = at[std::size_t(k)], &next = at[std::size_t(k + 1) % 4];
       bool taken[kMostLayers] = {};
@@ -240,44 +226,9 @@ class Builder {
     return links;
   }
 
-  /// The nodes that are joined to one of them, one in each corner, from the first on; layers[k] is
-  /// -1 where there is none.
-  struct Group {
-    int layers[4] = {-1, -1, -1, -1};
-    bool joined_to_next[4] = {};
-  };
-
-  static Group walk(Links& links, int corner, int layer) {
-    Group group;
-    group.layers[corner] = layer;
-    links.seen[corner][layer] = true;
-    for (int k = corner, l = layer; (l = links.to[k][l]) >= 0;) {
-      const int next = (k + 1) % 4;
-      if (group.layers[next] >= 0) {
-        group.joined_to_next[k] = group.layers[next] == l;
-        break;
-      }
-      if (links.seen[next][l]) break;
-      group.joined_to_next[k] = true;
-      group.layers[next] = l;
-      links.seen[next][l] = true;
-      k = next;
-    }
-    for (int k = corner, l = layer;;) {
-      const int before = (k + 3) % 4;
-      l = links.from(before, l);
-      if (l < 0 || group.layers[before] >= 0 || links.seen[before][l]) break;
-      group.joined_to_next[before] = true;
-      group.layers[before] = l;
-      links.seen[before][l] = true;
-      k = before;
-    }
-    return group;
-  }
-
-  void add_group(const Cell& at, Links& links, int corner, int layer, const glm::vec2& centre_px,
-                 Block& block) const {
-    const Group group = walk(links, corner, layer);
+  void add_group(const Cell& at, CellLinks& links, int corner, int layer,
+                 const glm::vec2& centre_px, Block& block) const {
+    const CellGroup group = group_from(links, corner, layer);
     std::array<const Node*, 4> nodes{};
     int size = 0, sides = 0;
     for (int k = 0; k < 4; ++k) {

@@ -30,6 +30,39 @@ TEST(TraceConvex, ASphereIsOpenToItsSilhouette) {
   }
 }
 
+/// What so many planes that touch the unit sphere enclose, with the sphere's normals.
+Surface facets(int count) {
+  std::vector<glm::dvec3> planes;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count, turn = i * kPi * (3 - std::sqrt(5.0));
+    planes.emplace_back(std::sqrt(1 - z * z) * glm::dvec2(std::cos(turn), std::sin(turn)), z);
+  }
+  return [planes](const Ray& ray) -> std::optional<Hit> {
+    double enters = 0, leaves = 1e9;
+    for (const glm::dvec3& n : planes) {
+      const double facing = glm::dot(n, ray.direction), t = (1 - glm::dot(n, ray.origin)) / facing;
+      (facing < 0 ? enters : leaves) = facing < 0 ? std::max(enters, t) : std::min(leaves, t);
+    }
+    if (enters == 0 || enters > leaves) return std::nullopt;
+    return Hit{enters, glm::normalize(ray.origin + enters * ray.direction)};
+  };
+}
+
+/// At the outline of facets smooth normals face away from the viewer.
+TEST(TraceConvex, FacetsUnderSmoothNormalsAreOpen) {
+  const Geometry g = geometry_of(facets(400), tilted(camera_from_fov(40, kWindow, 1), 30), kWindow);
+  const Products out = run_trace(g, {.radius = kNoLimit, .samples = 256});
+  double sum = 0, count = 0;
+  float least = 1;
+  for (std::size_t i = 0; i < out.ao.size(); ++i) {
+    if (!g.surfel[i].is_surface()) continue;
+    sum += double(out.ao[i]), count += 1, least = std::min(least, out.ao[i]);
+  }
+  fmt::print("facets: mean ao {:.4f}, least {:.3f} of {}\n", sum / count, least, count);
+  EXPECT_GT(sum / count, 0.995);
+  EXPECT_GT(least, 0.95f);
+}
+
 /// Normals that lean away from a plane: it hides what of their hemispheres is below it, half of
 /// one minus the cosine, and nothing else.
 TEST(TraceConvex, APlaneHidesWhatShadingNormalsSeeBelowIt) {
