@@ -118,7 +118,10 @@ class Bitmask {
   }
 
   /// Some solids are no guesses.
-  bool may_be_thin() const { return !scene_.solids.end.empty(); }
+  bool may_be_thin() const {
+    const auto& ends = scene_.solids.end.pixels;
+    return std::any_of(ends.begin(), ends.end(), [](Origin o) { return o != Origin::guessed; });
+  }
 
   bool senders_need_light() const { return scene_.senders.radiance.empty(); }
 
