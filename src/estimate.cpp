@@ -197,7 +197,7 @@ bool refine(Request& request, double wanted, const ErrorFound& found) {
 std::string describe(const ErrorFound& found, const Method& method, const Request& request) {
   std::string text = fmt::format("error of direct + bounce {:.2g}", found.all);
   if (method.takes.march)
-    text += fmt::format(": {:.2g} is the noise of {} slices, {:.2g} the bias of {} steps",
+    text += fmt::format(": {:.2g} is the noise at {} slices, {:.2g} the bias of {} steps",
                         found.noise, request.slices, found.steps, request.steps);
   return text;
 }
