@@ -8,6 +8,7 @@
 #include "estimators/trace_request.h"
 #include "parallel/tiles.h"
 #include "scene/deep/join_measured.h"
+#include "scene/light/painted_map.h"
 #include "support/boxes.h"
 
 namespace ssdo::test {
@@ -91,6 +92,41 @@ TEST(DeepSolids, HideWhatTheirBoxesHide) {
     EXPECT_LT(by_front.first, 0.6 * alone.first);
     EXPECT_LT(by_front.second, 0.6 * alone.second);
     EXPECT_GT(alone.second, 3 * exact.second) << "the frame alone cannot know";
+  }
+}
+
+/// A low sun shines under the roof on the hidden box, whose shadow lies on the floor beside it.
+TEST(DeepSolids, ThrowShadowsOfASun) {
+  const double elevation = glm::radians(15.0);
+  const glm::dvec3 to(std::cos(elevation), 0, std::sin(elevation));
+  const Environment map = paint(
+      1024, [&](const glm::vec3& d) { return glm::vec3(in_disc(d, to, 0.5f) ? 1 : 0); }, 2);
+  for (const bool orthographic : {true, false}) {
+    const Camera camera = above(orthographic);
+    const Geometry g = geometry_of(scene(), camera, kWindow);
+    const Solids known = measured(g, deep_of(camera, true));
+    const BitmaskRequest request{.radius = kNoLimit,
+                                 .environment = map,
+                                 .products = {.direct = true},
+                                 .slices = 2,
+                                 .steps = 16,
+                                 .solids = &known};
+    const Products out = run(g, request);
+    const float full = run(geometry_of(ground(), camera, kWindow), request).direct(120, 80).x;
+    int lit = 0, shadow = 0, wrong = 0;
+    for (int y = 20; y < kWindow.height() - 20; ++y) {
+      for (int x = 0; x < kWindow.width(); ++x) {
+        const Point p = point_at(scene(), camera, kWindow, x, y);
+        if (p.position.z > 1e-6) continue;
+        const bool open = is_open(scene(), p, to, kNoLimit);
+        (open ? lit : shadow)++;
+        wrong += (out.direct(x, y).x > 0.5f * full) != open;
+      }
+    }
+    fmt::print("{} lit, {} in the shadow, {} wrong\n", lit, shadow, wrong);
+    EXPECT_GT(shadow, 1500);
+    EXPECT_GT(lit, 1500);
+    EXPECT_LT(wrong, 0.05 * shadow);
   }
 }
 

@@ -86,7 +86,7 @@ constexpr float kExtension = 1.5f;
 /// The piece of a surface in a slice that lies beyond the frame, from the border to its end.
 struct Extension {
   SlicePoint start, end;  ///< at the border, and beyond it
-  V above, end_above;     ///< heights of both over the receiver's tangent plane
+  V above;                ///< height of the start over the receiver's tangent plane
   V distance2;            ///< to the border
   V depth;                ///< from front to back at the border
   M exists;
@@ -134,7 +134,6 @@ HWY_INLINE Extension extend(const March& march, const MarchReceiver& p, const Si
     length = hn::Min(length, hn::Sqrt(hn::MulAdd(foot, foot, radius2 - e.distance2)) - foot);
   }
   e.end = along(e.start, length, line);
-  e.end_above = hn::MulAdd(e.end.s, side.slope, e.end.v);
   return e;
 }
 

@@ -44,8 +44,8 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const SideF
     const float aside_px = std::round((float(k) + turn - 0.5f * kWitnesses) * apart_px);
     const Border border = border_along(march.scene, p, ray.step_x, ray.step_y, false, aside_px);
     const Extension e = extend<kOrthographic>(march, p, side, border, kSunWidths);
-    // The ray meets the piece where its ends lie on different sides of it, if they do so ahead of
-    // the receiver and above its tangent plane.
+    // The ray meets the piece where its ends lie on different sides of it, if that is ahead of the
+    // receiver.
     const SlicePoint to = ray.along;
     const V here = e.start.s * to.v - e.start.v * to.s, there = e.end.s * to.v - e.end.v * to.s;
     const M leaves_frame = border.distance_px < ray.end_px,
@@ -53,9 +53,7 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const SideF
     const V part = hn::IfThenElseZero(here != there, here / (here - there));
     const SlicePoint met{hn::MulAdd(part, e.end.s - e.start.s, e.start.s),
                          hn::MulAdd(part, e.end.v - e.start.v, e.start.v)};
-    const M ahead = dot(met, to) > zero,
-            rises = hn::MulAdd(part, e.end_above - e.above, e.above) > zero;
-    const M crosses = hn::And(hn::And(leaves, here * there <= zero), hn::And(ahead, rises));
+    const M crosses = hn::And(hn::And(leaves, here * there <= zero), dot(met, to) > zero);
     const M may_meet = hn::And(leaves_frame, border.distance_px <= set(p.reach_px));
     const V passes = hn::IfThenElse(may_meet, set(pass.past / kWitnesses), set(1.0f / kWitnesses));
     passed = passed + hn::IfThenElseZero(
