@@ -6,6 +6,10 @@
 
 namespace ssdo {
 
+/// Step of the additive recurrence R1, the golden ratio's: fraction(n * kR1) fills 0..1 evenly, and
+/// with n / count in 0..1 beside it the unit square.
+constexpr double kR1 = 0.6180339887498949;
+
 /// Steps of the additive recurrence R2 (Roberts 2018): 1/g and 1/g^2 for g^3 = g + 1. The points
 /// fraction(n * first), fraction(n * second) fill the unit square evenly.
 constexpr double kR2First = 0.7548776662466927, kR2Second = 0.5698402909980532;

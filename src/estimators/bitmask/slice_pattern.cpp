@@ -128,11 +128,11 @@ SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, in
         const double angle = glm::pi<double>() * (k + place) / slices;
         Slice slice{float(std::cos(angle)), float(std::sin(angle)), {}};
         for (int s = 0; s < 2; ++s) {
-          const double n = (rank * slices + k) * 2 + s;
-          const double sign = s == 0 ? 1 : -1;
+          const double n = (rank * slices + k) * 2 + s, sign = s == 0 ? 1 : -1;
+          // Neighbouring directions, of consecutive ranks, have distances that are far apart.
+          const double start = fraction(start1 + rank * kR1 + 0.25 * (2 * k + s));
           slice.sides[s] = make_side(layout, column, row, sign * slice.dx, sign * slice.dy, steps,
-                                     diagonal, fraction(start1 + n * kR2First),
-                                     phase_in(fraction(start2 + n * kR2Second)));
+                                     diagonal, start, phase_in(fraction(start2 + n * kR2Second)));
         }
         members_[std::size_t(row * kPeriod + column)].push_back(std::move(slice));
       }
