@@ -34,7 +34,8 @@
 //   itself. The angles are those at the view ray, where the paper takes the picture's axis.
 // - What is outside the frame or background hides nothing.
 // - The pattern is stratified, and its angles cover the whole turn: the source does not show the
-//   texture that it reads them from, and its directions are not evenly spread.
+//   texture that it reads them from, and its directions are not evenly spread. Seeds shift it by
+//   the sequence R2 of Roberts (2018).
 // - The distance beyond which there is no effect is endless by default; the source names no value.
 // - Pixels that are not square are seen as they are. Normals from depth are made before.
 //
@@ -55,6 +56,7 @@
 #include "estimators/view_space/openness.h"
 #include "estimators/view_space/point_kernel.h"
 #include "estimators/view_space/tiled_noise.h"
+#include "math/sequence_numbers.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/hbao.cpp"
@@ -211,10 +213,10 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
 }  // namespace
 
 HbaoPattern hbao_pattern(unsigned seed) {
-  RandomNumbers random(seed);
-  HbaoPattern pattern;
-  pattern.turn = shuffled_strata(random);
-  pattern.jitter = shuffled_strata(random);
+  RandomNumbers random(0);
+  HbaoPattern pattern{shuffled_strata(random), shuffled_strata(random)};
+  for (float& turn : pattern.turn) turn = float(fraction(turn + seed * kR2First));
+  for (float& jitter : pattern.jitter) jitter = float(fraction(jitter + seed * kR2Second));
   return pattern;
 }
 

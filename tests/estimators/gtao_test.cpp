@@ -173,7 +173,7 @@ TEST(Gtao, ItsParametersAreThoseOfTheMethod) {
 TEST(Gtao, SeedsTurnAndShiftItsPatternAsFramesOfEnginesDo) {
   const Geometry g = room(camera_from_fov(50, kWindow, 1), kWindow);
   const Environment white = Environment::constant(glm::vec3(1));
-  for (const unsigned seed : {1u, 5u, 9u, 23u, 24u, 1001u}) {
+  for (const unsigned seed : {1u, 9u, 1001u}) {
     SCOPED_TRACE(seed);
     SlowGtao slow{g, 1.5};
     slow.seed = seed;

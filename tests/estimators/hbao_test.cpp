@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/trigonometric.hpp>
@@ -208,6 +209,24 @@ TEST(Hbao, HorizonsOfAValleyAreItsOpening) {
     const Surface valley = all_of(
         {plane({}, {-std::sin(s), 0, std::cos(s)}), plane({}, {std::sin(s), 0, std::cos(s)})});
     EXPECT_NEAR(converged_in_the_middle(valley), 1 - 2 * s / glm::pi<double>(), 0.03) << degrees;
+  }
+}
+
+TEST(Hbao, ConsecutiveSeedsSpreadEvenlyInEveryPixel) {
+  constexpr unsigned kSeeds = 64;
+  for (const unsigned first : {0u, 1001u}) {
+    for (std::size_t cell = 0; cell < 16; ++cell) {
+      // A cell of the unit square of turns and jitters for each four of them.
+      std::array<int, 16> found{};
+      for (unsigned seed = first; seed < first + kSeeds; ++seed) {
+        const HbaoPattern pattern = hbao_pattern(seed);
+        ++found[std::size_t(4 * pattern.turn[cell]) * 4 + std::size_t(4 * pattern.jitter[cell])];
+      }
+      for (const int count : found) {
+        EXPECT_GE(count, 2) << first << " " << cell;
+        EXPECT_LE(count, 6) << first << " " << cell;
+      }
+    }
   }
 }
 
