@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Each method has the settings that its users would choose among: its default, a few below and a
-// few above. Its limit is far beyond the last of them. Where the pattern depends on --seed, the
-// limit is the mean over several seeds, since a single pattern leaves an error that more samples do
-// not remove; half the difference between the means of two halves of the seeds measures its noise.
-// Methods without a seed (gtao, sao, msvo) have one run and no such figure.
+// few above. Its limit is far beyond the last of them, and the mean over several seeds, since a
+// single pattern leaves an error that more samples do not remove; half the difference between the
+// means of two halves of the seeds measures its noise. A method without noise (msvo) has one run
+// and no such figure.
 #include "bench/ladder.h"
 
 #include <fmt/format.h>

@@ -59,6 +59,11 @@ const std::vector<IdleRule>& rules() {
          return o.command != Command::bench && !method_of(o).products.bounce;
        },
        "the method makes no bounce"},
+      {{"--seed"},
+       [](const Options& o) {
+         return o.command != Command::bench && method_of(o).ladder.seeds == 1;
+       },
+       "the method has no noise"},
       {{"--products"},
        [](const Options& o) { return o.output.files.empty() && !o.output.saves.empty(); },
        "it is for files of -o, and --save names its product"},

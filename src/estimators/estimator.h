@@ -20,7 +20,8 @@ struct Parameter {
   double low, high;
   std::string_view unit;
   std::string_view meaning;
-  bool whole = false;  ///< takes whole numbers only
+  bool whole = false;           ///< takes whole numbers only
+  std::string_view words = "";  ///< names of the values 0, 1, ..., between blanks, to write them by
 };
 
 /// Of every method that makes reflections.

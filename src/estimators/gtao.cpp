@@ -27,7 +27,9 @@
 //
 // What differs, and why:
 // - Slices turn and steps shift (u) by the 4 x 4 patterns of Jimenez et al., which the filter of
-//   the pipeline removes; engines add one pattern per frame for their temporal filter.
+//   the pipeline removes. To these, engines add what their frame's number chooses of 6 turns and 4
+//   shifts, and the seed does it here: 0 adds nothing, and after 24 seeds each of the 24 is
+//   moved within its own stratum, by the sequence R2 of Roberts (2018).
 // - A step sees the surface in the centre of its pixel, where engines take the depth of that pixel
 //   for another place. Surfaces that are not above the tangent plane by more than the precision of
 //   P and N do not raise the horizon: they hide nothing, and a tilted plane does not hide itself.
@@ -59,6 +61,7 @@
 #include "estimators/view_space/openness.h"
 #include "estimators/view_space/reflection_occlusion.h"
 #include "estimators/view_space/tiled_noise.h"
+#include "math/sequence_numbers.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/gtao.cpp"
@@ -195,12 +198,25 @@ namespace {
 
 constexpr int kPattern = TiledNoise::kSize;
 
+/// Parts of a slice's turn and of a step that a seed adds at every pixel, 0 to 1.
+struct SeedShift {
+  double turn, step;
+};
+
+SeedShift shift_of(unsigned seed) {
+  constexpr std::array<int, 6> kDegrees = {0, 60, 300, 180, 240, 120};  // engines begin at 60
+  constexpr std::array<double, 4> kSteps = {0, 0.5, 0.25, 0.75};
+  const unsigned round = seed / 24;
+  return {kDegrees[seed % 6] / 360.0 + fraction(round * kR2First) / 6,
+          kSteps[seed / 6 % 4] + fraction(round * kR2Second) / 4};
+}
+
 /// Slice `i` of `count` through each pixel of the pattern.
-SliceTurns turns_of(int i, int count) {
+SliceTurns turns_of(int i, int count, double shift) {
   std::array<float, kPattern * kPattern> cosine, sine;
   for (int y = 0; y < kPattern; ++y) {
     for (int x = 0; x < kPattern; ++x) {
-      const double turn = ((x + y) % kPattern * kPattern + x) / 16.0,
+      const double turn = fraction(((x + y) % kPattern * kPattern + x) / 16.0 + shift),
                    angle = (i + turn) * std::numbers::pi / count;
       cosine[std::size_t(y * kPattern + x)] = float(std::cos(angle));
       sine[std::size_t(y * kPattern + x)] = float(std::sin(angle));
@@ -209,11 +225,13 @@ SliceTurns turns_of(int i, int count) {
   return {TiledNoise(cosine), TiledNoise(sine)};
 }
 
-TiledNoise first_steps() {
+TiledNoise first_steps(double shift) {
   std::array<float, kPattern * kPattern> first;
   for (int y = 0; y < kPattern; ++y) {
-    for (int x = 0; x < kPattern; ++x)
-      first[std::size_t(y * kPattern + x)] = 0.25f * float((y - x + kPattern) % kPattern);
+    for (int x = 0; x < kPattern; ++x) {
+      const double step = 0.25 * ((y - x + kPattern) % kPattern);
+      first[std::size_t(y * kPattern + x)] = float(fraction(step + shift));
+    }
   }
   return TiledNoise(first);
 }
@@ -242,11 +260,12 @@ Products estimate_gtao(const Scene& scene, const Request& request, const Progres
   Products out;
   if (request.products.bent || request.products.direct || request.products.reflection)
     out.bent = Plane<glm::vec3>(planes.width(), planes.height(), glm::vec3(0));
+  const SeedShift shift = shift_of(request.seed);
   std::vector<SliceTurns> turns;
-  for (int i = 0; i < slices; ++i) turns.push_back(turns_of(i, slices));
+  for (int i = 0; i < slices; ++i) turns.push_back(turns_of(i, slices, shift.turn));
   const GtaoJob job{planes,
                     std::move(turns),
-                    first_steps(),
+                    first_steps(shift.step),
                     int(parameter("steps")),
                     planes.fy * request.radius / 2,
                     float(2 / (double(request.radius) * double(request.radius))),
@@ -290,7 +309,8 @@ Method gtao_method() {
       .estimate = estimate_gtao,
       .ladder = {.rungs = {slices_and_steps(1, 2), slices_and_steps(2, 2), slices_and_steps(3, 4),
                            slices_and_steps(6, 8)},
-                 .limit = slices_and_steps(32, 32)},
+                 .limit = slices_and_steps(16, 32),
+                 .seeds = 6},
   };
 }
 

@@ -8,7 +8,9 @@
 namespace ssdo {
 
 /// Numbers of 4 x 4 pixels, row by row: by which part of a turn the directions are turned, and
-/// where in the first step the taps start. Each has one of every sixteenth of 0..1.
+/// where in the first step the taps start, 0 to 1. Of seed 0 each has one number of every
+/// sixteenth; other seeds shift them all by the same, so that consecutive ones spread evenly in
+/// every pixel.
 struct HbaoPattern {
   std::array<float, 16> turn, jitter;
 };

@@ -19,7 +19,7 @@ struct Rung {
 struct Ladder {
   std::vector<Rung> rungs;  ///< from cheap to dear; one of them is the method's default
   Rung limit;               ///< so many samples that its own noise does not count
-  int seeds = 1;            ///< of the limit, whose mean is taken: 1 or an even number
+  int seeds = 1;            ///< of the limit, whose mean is taken: even; 1 where none has noise
 };
 
 /// One rung for each value of a parameter.

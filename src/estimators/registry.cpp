@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ranges>
 
 #include "error.h"
 #include "estimators/bitmask.h"
@@ -28,6 +29,30 @@ std::string parameter_names(const Method& method) {
   for (const Parameter& p : method.parameters)
     names += (names.empty() ? "" : ", ") + std::string(p.name);
   return names;
+}
+
+std::vector<std::string_view> words_of(const Parameter& parameter) {
+  std::vector<std::string_view> words;
+  for (const auto word : std::views::split(parameter.words, ' '))
+    words.emplace_back(word.begin(), word.end());
+  return words;
+}
+
+/// NaN for what is neither a word of the parameter nor a number.
+double value_of(const Parameter& parameter, std::string_view text) {
+  const std::vector<std::string_view> words = words_of(parameter);
+  const auto word = std::find(words.begin(), words.end(), text);
+  return word != words.end() ? double(word - words.begin()) : parse_number(text).value_or(NAN);
+}
+
+std::string describe_range(const Parameter& p) {
+  if (!p.words.empty()) return fmt::format("{}", fmt::join(words_of(p), " or "));
+  return fmt::format("{:g} to {:g}", p.low, p.high);
+}
+
+std::string describe_default(const Parameter& p) {
+  if (!p.words.empty()) return std::string(words_of(p)[std::size_t(p.value)]);
+  return fmt::format("{:g}", p.value);
 }
 
 }  // namespace
@@ -69,10 +94,11 @@ void check_value(const Parameter& parameter, double value, const std::string& wr
   if (value >= parameter.low && value <= parameter.high &&
       (!parameter.whole || value == std::floor(value)))
     return;
-  throw Error(
-      ExitCode::usage,
-      fmt::format("{}: {} takes {} from {:g} to {:g}", written, parameter.name,
-                  parameter.whole ? "whole numbers" : "values", parameter.low, parameter.high));
+  const std::string_view kind = !parameter.words.empty() ? ""
+                                : parameter.whole        ? "whole numbers from "
+                                                         : "values from ";
+  throw Error(ExitCode::usage, fmt::format("{}: {} takes {}{}", written, parameter.name, kind,
+                                           describe_range(parameter)));
 }
 
 ParameterValues resolve_parameters(const Method& method, const std::vector<std::string>& settings) {
@@ -86,9 +112,9 @@ ParameterValues resolve_parameters(const Method& method, const std::vector<std::
       throw Error(ExitCode::usage, fmt::format("--set {}: method {} has the parameters {}", setting,
                                                method.name, parameter_names(method)));
     }
-    const auto value = parse_number(std::string_view(setting).substr(equals + 1));
-    check_value(*parameter, value.value_or(NAN), "--set " + setting);
-    values[name] = *value;
+    const double value = value_of(*parameter, std::string_view(setting).substr(equals + 1));
+    check_value(*parameter, value, "--set " + setting);
+    values[name] = value;
   }
   return values;
 }
@@ -103,8 +129,8 @@ std::string describe_methods() {
     }
     text += fmt::format("{}  {}\n  products: {}\n", method.name, method.summary, products);
     for (const Parameter& p : method.parameters) {
-      text += fmt::format("  {:<20} {:>8g}  {:g} to {:g} {}  {}\n", p.name, p.value, p.low, p.high,
-                          p.unit, p.meaning);
+      text += fmt::format("  {:<20} {:>8}  {} {}  {}\n", p.name, describe_default(p),
+                          describe_range(p), p.unit, p.meaning);
     }
   }
   return text;

@@ -27,11 +27,12 @@ bool makes(const Method& method, const Product& product, bool ambient = false);
 const Parameter* find_parameter(const Method& method, std::string_view name);
 
 /// `written` is what the user wrote, for the message.
-/// Errors: ExitCode::usage for a value out of the parameter's range.
+/// Errors: ExitCode::usage for a value out of the parameter's range or that has no word.
 void check_value(const Parameter& parameter, double value, const std::string& written);
 
-/// The method's defaults with `settings` ("NAME=VALUE") laid over them.
-/// Errors: ExitCode::usage for a name the method does not have or a value out of its range.
+/// The method's defaults with `settings` ("NAME=VALUE") laid over them; a value is a number or one
+/// of the parameter's words. Errors: ExitCode::usage for a name the method does not have or a value
+/// out of its range.
 ParameterValues resolve_parameters(const Method& method, const std::vector<std::string>& settings);
 
 /// The text of --list-methods.

@@ -20,6 +20,8 @@
 // - What is outside the frame or background hides nothing; the authors' frames have a border of
 //   pixels that are rendered but not shown.
 // - Pixels that are not square are seen as they are.
+// - Seeds other than 0 turn all spirals by the same angle and move the taps along them, tap i to
+//   (i + u) / N, by the sequence R2 of Roberts (2018); the authors have one pattern for all frames.
 // - Left out are the authors' mean over quads of 2 x 2 pixels and their blur, which the filter
 //   of the pipeline stands for, and normals made from depth, which are made before.
 //
@@ -42,6 +44,7 @@
 
 #include "estimators/view_space/depth_mips.h"
 #include "estimators/view_space/openness.h"
+#include "math/sequence_numbers.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/sao.cpp"
@@ -144,10 +147,12 @@ HWY_EXPORT(sao_of_tile);
 
 namespace {
 
-std::vector<SpiralTap> spiral(int count, int turns) {
+std::vector<SpiralTap> spiral(int count, int turns, unsigned seed) {
+  const double turn = fraction(seed * kR2First), along = fraction(0.5 + seed * kR2Second);
   std::vector<SpiralTap> taps;
   for (int i = 0; i < count; ++i) {
-    const double distance = (i + 0.5) / count, angle = distance * turns * 2 * std::numbers::pi;
+    const double distance = (i + along) / count,
+                 angle = (distance * turns + turn) * 2 * std::numbers::pi;
     taps.push_back(
         {float(distance * std::cos(angle)), float(distance * std::sin(angle)), float(distance)});
   }
@@ -161,7 +166,7 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
   const DepthMips mips(planes);
   const SaoJob job{planes,
                    mips,
-                   spiral(samples, int(parameter("turns"))),
+                   spiral(samples, int(parameter("turns")), request.seed),
                    1 / request.radius,
                    planes.fy * request.radius,
                    float(5 * parameter("intensity") / samples),
@@ -200,7 +205,9 @@ Method sao_method() {
           },
       .samples_per_pixel = [](const Request& r) { return int(r.parameters.at("samples")); },
       .estimate = estimate,
-      .ladder = {.rungs = {spiral(7), spiral(11), spiral(23), spiral(47)}, .limit = spiral(1013)},
+      .ladder = {.rungs = {spiral(7), spiral(11), spiral(23), spiral(47)},
+                 .limit = spiral(1013),
+                 .seeds = 4},
   };
 }
 

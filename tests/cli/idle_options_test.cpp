@@ -63,6 +63,7 @@ TEST_F(IdleOptions, AreWarnedOf) {
                                                 {"--crop"},
                                                 {"--compression", "zip"},
                                                 {"--quality", "draft", "--method", "ssao"},
+                                                {"--seed", "1", "--method", "msvo"},
                                                 {"--offscreen", "open", "--method", "ssdo"}}) {
     EXPECT_THAT(picture(flags), HasSubstr(flags[0] + " has no effect"));
   }
@@ -76,7 +77,7 @@ TEST_F(IdleOptions, WithAnEffectAreNot) {
        {std::vector<std::string>{"--env", data("environments/sky.exr"), "--env-rotate", "30",
                                  "--env-up", "z"},
         {"-o", path("out.png"), "--bits", "16", "--view", "Raw", "--pixel-type", "float"},
-        {"--offscreen", "open", "--bounces", "2"}}) {
+        {"--offscreen", "open", "--bounces", "2", "--seed", "1"}}) {
     const Finished done = run("in.exr", flags);
     EXPECT_EQ(done.code, 0);
     EXPECT_EQ(done.err, "");

@@ -95,7 +95,7 @@ TEST(ManPage, MentionsNoFlagThatDoesNotExist) {
 
 TEST(ManPage, HasTheParametersOfTheMethods) {
   const Finished done = run_tool({"--list-methods"});
-  static const std::regex parameter(R"(\n  ([a-z-]+) +([0-9.e+-]+)  )");
+  static const std::regex parameter(R"(\n  ([a-z-]+) +([0-9a-z.e+-]+)  )");
   const std::string text = page(kMethods);
   int count = 0;
   for (std::sregex_iterator it(done.out.begin(), done.out.end(), parameter), end; it != end; ++it) {

@@ -24,6 +24,7 @@ struct SlowGtao {
   double radius;
   int slices = 2, steps = 2;
   double thickness = 1;
+  unsigned seed = 0;
 
   double ao = 1;
   glm::dvec3 bent = glm::dvec3(0);  ///< not unit
@@ -69,8 +70,14 @@ struct SlowGtao {
     const glm::dvec3 p(s.position), normal(s.normal);
     const glm::dvec3 v = g.camera.orthographic ? glm::dvec3(0, 0, 1) : glm::normalize(-p);
     const int column = x + g.window.x0 - g.display.x0, row = y + g.window.y0 - g.display.y0;
-    const double turn = ((((column + row) & 3) << 2) + (column & 3)) / 16.0,
-                 first = ((row - column) & 3) / 4.0;
+    // What engines add to a frame: the last of their six turns is none, and the seed begins there.
+    constexpr double kTurns[] = {60, 300, 180, 240, 120, 0}, kOffsets[] = {0, 0.5, 0.25, 0.75};
+    const auto part = [](double number) { return number - std::floor(number); };
+    const double turn =
+                     part(((((column + row) & 3) << 2) + (column & 3)) / 16.0 +
+                          kTurns[(seed + 5) % 6] / 360 + part(seed / 24 * 0.7548776662466927) / 6),
+                 first = part(((row - column) & 3) / 4.0 + kOffsets[seed / 6 % 4] +
+                              part(seed / 24 * 0.5698402909980532) / 4);
     const double half = g.camera.fy * radius / (g.camera.orthographic ? 1 : -p.z) / 2;
     const double step = std::max(std::min(half, 512.0), double(steps)) / (steps + 1);
     for (int i = 0; i < slices; ++i) {
@@ -109,10 +116,11 @@ struct SlowGtao {
 };
 
 Products estimate(const Geometry& g, float radius, const std::vector<std::string>& set = {},
-                  const Environment& sky = Environment::constant(glm::vec3(1))) {
+                  const Environment& sky = Environment::constant(glm::vec3(1)), unsigned seed = 0) {
   return gtao_method().estimate(scene_of(g, sky),
                                 {.products = {.ao = true, .direct = true, .bent = true},
                                  .radius = radius,
+                                 .seed = seed,
                                  .parameters = resolve_parameters(gtao_method(), set)},
                                 {});
 }
@@ -160,6 +168,17 @@ TEST(Gtao, ItsParametersAreThoseOfTheMethod) {
   const Geometry g = room(camera_from_fov(50, kWindow, 1), kWindow);
   expect_the_slow_result(g, {g, 1.5, 3, 7, 0.6},
                          estimate(g, 1.5f, {"slices=3", "steps=7", "thickness=0.6"}));
+}
+
+TEST(Gtao, SeedsTurnAndShiftItsPatternAsFramesOfEnginesDo) {
+  const Geometry g = room(camera_from_fov(50, kWindow, 1), kWindow);
+  const Environment white = Environment::constant(glm::vec3(1));
+  for (const unsigned seed : {1u, 9u, 1001u}) {
+    SCOPED_TRACE(seed);
+    SlowGtao slow{g, 1.5};
+    slow.seed = seed;
+    expect_the_slow_result(g, slow, estimate(g, 1.5f, {}, white, seed));
+  }
 }
 
 TEST(Gtao, AnOpenPlaneDoesNotHideItself) {

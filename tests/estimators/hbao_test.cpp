@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/trigonometric.hpp>
@@ -62,7 +63,8 @@ Geometry still(const Camera& projection) {
 }
 
 /// Compares all pixels of which no tap is doubtful; gives the least ao.
-double expect_the_slow_sum(const Geometry& g, SlowHbao slow, const Products& out) {
+template <class Slow>
+double expect_the_slow_sum(const Geometry& g, Slow slow, const Products& out) {
   double least = 1;
   int compared = 0;
   for (int y = 0; y < out.ao.height; ++y) {
@@ -85,7 +87,8 @@ TEST(Hbao, IsTheListingsSum) {
                                             : camera_from_fov(50, kWindow, aspect));
       for (const double radius : {0.3, 0.8}) {
         SCOPED_TRACE(testing::Message() << orthographic << " " << aspect << " " << radius);
-        EXPECT_LT(expect_the_slow_sum(g, {g, radius}, obscure(hbao_method(), g, float(radius))),
+        EXPECT_LT(expect_the_slow_sum(g, SlowHbao{g, radius},
+                                      obscure(hbao_method(), g, float(radius), {"horizon=taps"})),
                   0.6);
       }
     }
@@ -94,10 +97,137 @@ TEST(Hbao, IsTheListingsSum) {
 
 TEST(Hbao, ItsParametersAreThoseOfTheSum) {
   const Geometry g = still(camera_from_fov(50, kWindow, 1));
-  expect_the_slow_sum(
-      g, {g, 0.8, 5, 0.2, 0.7, 0.4, 9},
-      obscure(hbao_method(), g, 0.8f,
-              {"steps=5", "bias=0.2", "strength=0.7", "least-distance=0.4", "max-pixels=9"}));
+  expect_the_slow_sum(g, SlowHbao{g, 0.8, 5, 0.2, 0.7, 0.4, 9},
+                      obscure(hbao_method(), g, 0.8f,
+                              {"horizon=taps", "steps=5", "bias=0.2", "strength=0.7",
+                               "least-distance=0.4", "max-pixels=9"}));
+}
+
+/// With horizon=max: the mean over directions of sin h - sin t, tap by tap in double.
+struct SlowHorizons {
+  const Geometry& g;
+  double radius;
+  int steps = 3;
+  double bias = 0.05, strength = 1;
+  bool doubtful = false;
+
+  double ao(int x, int y) {
+    doubtful = false;
+    const HbaoPattern pattern = hbao_pattern(0);
+    const Surfel& s = g.surfel(x, y);
+    const glm::dvec3 p(s.position), n(s.normal);
+    const glm::dvec3 viewer = g.camera.orthographic ? glm::dvec3(0, 0, 1) : -glm::normalize(p);
+    const std::size_t cell = std::size_t((y & 3) * 4 + (x & 3));
+    const double disc = g.camera.fy * radius / (g.camera.orthographic ? 1 : -p.z),
+                 step = std::min(disc, 128.0) / (steps + 1.0);
+    double sum = 0;
+    for (const double degrees : {0.0, 120.0, 240.0, 90.0}) {
+      const double angle =
+          glm::radians(degrees) + double(pattern.turn[cell]) * glm::two_pi<double>();
+      double highest = 0;
+      for (int i = 0; i < steps; ++i) {
+        const double pixels = (double(pattern.jitter[cell]) + i) * step + 1;
+        const double dx = pixels * std::cos(angle) * g.camera.fx / g.camera.fy,
+                     dy = pixels * std::sin(angle);
+        for (const double offset : {dx, dy})
+          doubtful |= std::abs(offset - std::floor(offset) - 0.5) < 1e-3;
+        const int qx = x + int(std::lround(dx)), qy = y + int(std::lround(dy));
+        if (qx < 0 || qy < 0 || qx >= g.window.width() || qy >= g.window.height()) continue;
+        if (!g.surfel(qx, qy).is_surface()) continue;
+        const glm::dvec3 v = glm::dvec3(g.surfel(qx, qy).position) - p;
+        const double lift = glm::dot(v, n) - double(s.rounding);
+        doubtful |= std::abs(glm::length(v) - radius) < 1e-4;
+        if (lift <= 0 || glm::length(v) >= radius) continue;
+        // Down along the view ray to the tangent plane.
+        const glm::dvec3 below = v - viewer * (lift / std::max(glm::dot(n, viewer), 1e-3));
+        const double h = std::asin(glm::dot(glm::normalize(v), viewer)),
+                     t = std::asin(glm::dot(glm::normalize(below), viewer)) + std::asin(bias);
+        if (t < glm::half_pi<double>()) highest = std::max(highest, std::sin(h) - std::sin(t));
+      }
+      sum += highest / 4;
+    }
+    return std::clamp(1 - strength * sum, 0.0, 1.0);
+  }
+};
+
+TEST(Hbao, HorizonsAreTheSumOfTheText) {
+  for (const bool orthographic : {false, true}) {
+    for (const double aspect : {1.0, 2.0}) {
+      SCOPED_TRACE(testing::Message() << orthographic << " " << aspect);
+      const Geometry g = still(orthographic ? camera_from_ortho_width(4, kWindow, aspect)
+                                            : camera_from_fov(50, kWindow, aspect));
+      EXPECT_LT(expect_the_slow_sum(g, SlowHorizons{g, 0.8},
+                                    obscure(hbao_method(), g, 0.8f, {"horizon=max"})),
+                0.6);
+      expect_the_slow_sum(
+          g, SlowHorizons{g, 0.8, 7, 0.3, 0.6},
+          obscure(hbao_method(), g, 0.8f, {"horizon=max", "steps=7", "bias=0.3", "strength=0.6"}));
+    }
+  }
+}
+
+/// Mean of the pattern's pixels in the middle over several seeds, with taps so close that none is
+/// missed.
+double converged_in_the_middle(const Surface& scene, double tilt_degrees = 0, double radius = 2) {
+  const Window window{0, 0, 168, 168};  // 40 pixels a unit
+  const Geometry g =
+      geometry_of(scene, tilted(camera_from_ortho_width(4.2, window, 1), tilt_degrees), window);
+  double sum = 0;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const Products out = run(hbao_method(), g,
+                             {.radius = float(radius),
+                              .set = {"horizon=max", "steps=64", "bias=0", "max-pixels=1e6"},
+                              .seed = seed});
+    for (int y = 82; y < 86; ++y)
+      for (int x = 82; x < 86; ++x) sum += double(out.ao(x, y)) / (16 * 4);
+  }
+  return sum;
+}
+
+TEST(Hbao, HorizonsOfAStepAreItsIntegral) {
+  // A block of height H from x = d on, seen from above. In a direction at an angle a to the step,
+  // sin h = H / sqrt(H^2 + (d / cos a)^2) where that is within R, and sin t = 0; the integral over
+  // a is asin(H sin a / sqrt(H^2 + d^2)) at the largest a.
+  for (const double height : {0.3, 1.0, 1.7}) {
+    for (const double d : {0.5, 0.9}) {
+      const Surface scene =
+          all_of({plane({}, {0, 0, 1}), cut(plane({0, 0, height}, {0, 0, 1}),
+                                            [=](const glm::dvec3& p) { return p.x > d; })});
+      const double widest = std::acos(std::min(1.0, d / std::sqrt(4 - height * height))),
+                   hidden = std::asin(height * std::sin(widest) / std::hypot(height, d)) /
+                            glm::pi<double>();
+      EXPECT_NEAR(converged_in_the_middle(scene), 1 - hidden, 0.015) << height << " " << d;
+    }
+  }
+}
+
+TEST(Hbao, HorizonsOfAValleyAreItsOpening) {
+  // Two planes that rise at an angle s from their valley, seen from above. At the bottom,
+  // tan h = tan s |cos a| on one side and t = -h on the other: the integral is 1 - 2 s / pi.
+  for (const double degrees : {15.0, 30.0, 45.0, 60.0}) {
+    const double s = glm::radians(degrees);
+    const Surface valley = all_of(
+        {plane({}, {-std::sin(s), 0, std::cos(s)}), plane({}, {std::sin(s), 0, std::cos(s)})});
+    EXPECT_NEAR(converged_in_the_middle(valley), 1 - 2 * s / glm::pi<double>(), 0.03) << degrees;
+  }
+}
+
+TEST(Hbao, ConsecutiveSeedsSpreadEvenlyInEveryPixel) {
+  constexpr unsigned kSeeds = 64;
+  for (const unsigned first : {0u, 1001u}) {
+    for (std::size_t cell = 0; cell < 16; ++cell) {
+      // A cell of the unit square of turns and jitters for each four of them.
+      std::array<int, 16> found{};
+      for (unsigned seed = first; seed < first + kSeeds; ++seed) {
+        const HbaoPattern pattern = hbao_pattern(seed);
+        ++found[std::size_t(4 * pattern.turn[cell]) * 4 + std::size_t(4 * pattern.jitter[cell])];
+      }
+      for (const int count : found) {
+        EXPECT_GE(count, 2) << first << " " << cell;
+        EXPECT_LE(count, 6) << first << " " << cell;
+      }
+    }
+  }
 }
 
 TEST(Hbao, TheUnitOfTheSceneDoesNotMatter) {
@@ -114,8 +244,10 @@ TEST(Hbao, AnOpenPlaneReadsOne) {
        {camera_from_fov(60, kWindow, 1), camera_from_ortho_width(6, kWindow, 1)}) {
     for (const double tilt : {0.0, 30.0, 60.0, 80.0}) {
       const Geometry g = geometry_of(plane({}, {0, 0, 1}), tilted(projection, tilt), kWindow);
-      for (const float ao : obscure(hbao_method(), g, 1, {"bias=0.001"}).ao.pixels)
-        EXPECT_EQ(ao, 1) << tilt;
+      for (const std::string horizon : {"horizon=taps", "horizon=max"}) {
+        for (const float ao : obscure(hbao_method(), g, 1, {"bias=0.001", horizon}).ao.pixels)
+          EXPECT_EQ(ao, 1) << tilt;
+      }
     }
   }
 }
@@ -180,9 +312,11 @@ TEST(Hbao, ConstantLightIsThatColourTimesAo) {
 
 TEST(Hbao, InstructionSetsAndThreadsDoNotMatter) {
   const Geometry g = still(camera_from_fov(50, kWindow, 1));
-  const auto ao = [&] { return obscure(hbao_method(), g, 0.8f).ao; };
-  expect_the_same_from_every_isa(ao);
-  expect_the_same_from_any_threads(ao);
+  for (const std::string horizon : {"horizon=taps", "horizon=max"}) {
+    const auto ao = [&] { return obscure(hbao_method(), g, 0.8f, {horizon}).ao; };
+    expect_the_same_from_every_isa(ao);
+    expect_the_same_from_any_threads(ao);
+  }
 }
 
 TEST(Hbao, NothingThatComesInMakesANaN) {
@@ -191,6 +325,7 @@ TEST(Hbao, NothingThatComesInMakesANaN) {
     SCOPED_TRACE(radius);
     expect_usable(obscure(hbao_method(), g, radius));
     expect_usable(obscure(hbao_method(), g, radius, {"bias=0", "least-distance=1e-6"}));
+    expect_usable(obscure(hbao_method(), g, radius, {"bias=0", "horizon=max"}));
   }
 }
 

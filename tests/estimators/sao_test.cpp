@@ -21,6 +21,7 @@ struct SlowSao {
   double radius;
   int samples = 11, turns = 7;
   double intensity = 1, bias = 0.01, epsilon = 0.01;
+  unsigned seed = 0;
   bool doubtful = false;  ///< whether rounding may have moved a tap of the latest pixel
 
   double ao(int x, int y) {
@@ -28,12 +29,14 @@ struct SlowSao {
     const Surfel& s = g.surfel(x, y);
     const glm::dvec3 p(s.position), n(s.normal);
     const int column = x + g.window.x0 - g.display.x0, row = y + g.window.y0 - g.display.y0;
-    const double spin = 10.0 * unsigned((3 * column) ^ (row + column * row));
+    const double spin = 10.0 * unsigned((3 * column) ^ (row + column * row)) +
+                        glm::two_pi<double>() * std::fmod(seed * 0.7548776662466927, 1);
+    const double start = std::fmod(0.5 + seed * 0.5698402909980532, 1);
     const double disc = g.camera.fy * radius / (g.camera.orthographic ? 1 : -p.z);
     const double r2 = radius * radius, b = bias * radius + double(s.rounding);
     double sum = 0;
     for (int i = 0; i < samples; ++i) {
-      const double alpha = (i + 0.5) / samples,
+      const double alpha = (i + start) / samples,
                    angle = alpha * turns * glm::two_pi<double>() + spin;
       const double dx = alpha * disc * std::cos(angle) * g.camera.fx / g.camera.fy,
                    dy = alpha * disc * std::sin(angle), level = std::log2(alpha * disc);
@@ -97,6 +100,18 @@ TEST(Sao, ItsParametersAreThoseOfTheSum) {
       g, {g, 0.6, 23, 5, 0.4, 0.05, 0.002},
       obscure(sao_method(), g, 0.6f,
               {"samples=23", "turns=5", "intensity=0.4", "bias=0.05", "epsilon=0.002"}));
+}
+
+TEST(Sao, SeedsTurnTheSpiralsAndMoveTheTapsAlongThem) {
+  const Geometry g = geometry_of(
+      still_life(), look_at(camera_from_fov(50, kWindow, 1), {1, -4, 3}, {0, 0.2, 0.4}, {0, 0, 1}),
+      kWindow);
+  for (const unsigned seed : {1u, 2u, 1001u}) {
+    SCOPED_TRACE(seed);
+    SlowSao slow{g, 0.7};
+    slow.seed = seed;
+    expect_the_slow_sum(g, slow, run(sao_method(), g, {.radius = 0.7f, .seed = seed}));
+  }
 }
 
 TEST(Sao, TheUnitOfTheSceneDoesNotMatter) {

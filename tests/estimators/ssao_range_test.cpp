@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "estimators/view_space/point_kernel.h"
 #include "estimators/view_space/point_method_request.h"
+#include "estimators/view_space/slow_point_kernel.h"
 
 namespace ssdo::test {
 namespace {
@@ -28,8 +28,8 @@ double slow_ssao_range(const Geometry& g, int x, int y, double radius, const Set
   const glm::dvec3 tangent = glm::normalize(random - n * glm::dot(random, n));
   const glm::dmat3 frame(tangent, glm::cross(n, tangent), n);
   double sum = 0;
-  for (const glm::vec3& v : point_kernel(64, 0.01f, false, 0)) {
-    const glm::dvec3 turned = frame * glm::dvec3(v);
+  for (const glm::dvec3& v : slow_point_kernel(64, 0.01, false, 0)) {
+    const glm::dvec3 turned = frame * v;
     double z;
     if (!depth_at(g, p + radius * turned, z)) continue;
     const double depth = -z, own = -p.z;

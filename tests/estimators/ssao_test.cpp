@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "estimators/view_space/point_kernel.h"
 #include "estimators/view_space/point_method_request.h"
+#include "estimators/view_space/slow_point_kernel.h"
 
 namespace ssdo::test {
 namespace {
@@ -23,31 +23,13 @@ double slow_ssao(const Geometry& g, int x, int y, double radius, double bias, in
   const glm::dvec3 tangent = glm::normalize(random - n * glm::dot(random, n));
   const glm::dmat3 frame(tangent, glm::cross(n, tangent), n);
   double occlusion = 0;
-  for (const glm::vec3& v : point_kernel(samples, 0.1f, true, seed)) {
-    const glm::dvec3 point = p + radius * (frame * glm::dvec3(v));
+  for (const glm::dvec3& v : slow_point_kernel(samples, 0.1, true, seed)) {
+    const glm::dvec3 point = p + radius * (frame * v);
     double z;
     if (!depth_at(g, point, z) || !(z >= point.z + bias * radius + s.rounding)) continue;
     occlusion += slow_smoothstep(0, 1, radius / std::abs(p.z - z));
   }
   return 1 - occlusion / samples;
-}
-
-TEST(PointKernel, CrowdsAroundTheCentreOfTheHalfBall) {
-  const auto points = point_kernel(64, 0.1f, true, 3);
-  ASSERT_EQ(points.size(), 64u);
-  double near = 0, far = 0;
-  for (std::size_t i = 0; i < 64; ++i) {
-    const double scale = 0.1 + 0.9 * double(i * i) / 4096;
-    EXPECT_LE(glm::length(points[i]), scale * 1.00001);
-    EXPECT_GE(points[i].z, 0);
-    (i < 32 ? near : far) += glm::length(points[i]);
-  }
-  EXPECT_LT(near, 0.6 * far);
-  const auto fixed = point_kernel(16, 0.01f, false, 3);
-  for (std::size_t i = 0; i < 16; ++i)
-    EXPECT_NEAR(glm::length(fixed[i]), 0.01 + 0.99 * double(i * i) / 256, 1e-6);
-  EXPECT_NE(point_kernel(4, 0.1f, true, 1)[0], point_kernel(4, 0.1f, true, 2)[0]);
-  for (const glm::vec3& v : frame_noise(9)) EXPECT_EQ(v.z, 0);
 }
 
 TEST(Ssao, IsTheSlowEvaluation) {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "estimators/ssdo.h"
-
 #include <gtest/gtest.h>
 
 #include <glm/gtc/constants.hpp>
@@ -8,41 +6,14 @@
 #include <random>
 
 #include "error.h"
-#include "estimators/registry.h"
-#include "estimators/view_space/half_ball.h"
-#include "math/frame.h"
+#include "estimators/ssdo_request.h"
 #include "support/analytic_scene.h"
 #include "support/crop.h"
-#include "support/scene_of.h"
 
 namespace ssdo::test {
 namespace {
 
 const Window kWindow{0, 0, 96, 72};
-
-/// What a test asks of the method; the rest are its defaults.
-struct SsdoRequest {
-  float radius = 1;
-  Environment environment = Environment::constant(glm::vec3(1));
-  std::vector<std::string> set = {};
-  float albedo = 0.5f;
-  int bounces = 0;
-  unsigned seed = 0;
-  Plane<glm::vec3> radiance = {};
-};
-
-Products run(const Geometry& geometry, const SsdoRequest& request) {
-  const Method method = ssdo_method();
-  Scene scene = scene_of(geometry, request.environment, request.albedo);
-  scene.senders.radiance = request.radiance;
-  return method.estimate(scene,
-                         {.products = {.ao = true, .direct = true, .bounce = request.bounces > 0},
-                          .radius = request.radius,
-                          .bounces = request.bounces,
-                          .seed = request.seed,
-                          .parameters = resolve_parameters(method, request.set)},
-                         {});
-}
 
 Camera tilted(Camera projection, double tilt_degrees, double distance = 6) {
   const double t = glm::radians(tilt_degrees);
@@ -150,55 +121,6 @@ TEST(Ssdo, BackgroundIsOpenAndUntouched) {
   EXPECT_EQ(out.direct(0, 0), glm::vec3(0));
   EXPECT_EQ(out.bounce(0, 0), glm::vec3(0));
   EXPECT_EQ(out.ao(48, 36), 1) << "a sphere before nothing is not occluded by the nothing";
-}
-
-/// The listing once more, point by point in double, for one pixel.
-glm::dvec3 slow_bounce(const Geometry& g, int x, int y, const Plane<glm::vec3>& sent, double radius,
-                       int samples) {
-  const auto pattern = half_ball_pattern(4, samples, 0);
-  const glm::dvec3 p(g.surfel(x, y).position), n(g.surfel(x, y).normal);
-  const glm::dmat3 frame(frame_about(glm::vec3(n)));
-  glm::dvec3 sum(0);
-  for (const HalfBallSample& s : pattern[std::size_t((y % 4) * 4 + x % 4)]) {
-    const glm::dvec3 point = p + radius * double(s.length) * (frame * glm::dvec3(s.direction));
-    const glm::dvec2 at = g.camera.project(point);
-    if (!g.window.contains(int(std::floor(at.x)), int(std::floor(at.y)))) continue;
-    const int qx = int(at.x), qy = int(at.y);
-    const glm::dvec3 delta = p - glm::dvec3(g.surfel(qx, qy).position),
-                     unit = glm::normalize(delta);
-    if (delta == glm::dvec3(0)) continue;
-    const double receiver = std::max(0.0, glm::dot(unit, -n));
-    const double sender = std::max(0.0, glm::dot(unit, glm::dvec3(g.surfel(qx, qy).normal)));
-    sum += std::min(1.0, radius * radius * receiver * sender / glm::dot(delta, delta)) *
-           glm::dvec3(sent(qx, qy));
-  }
-  return sum * 2.0 * glm::pi<double>() / double(samples) / glm::pi<double>();
-}
-
-TEST(Ssdo, BounceIsTheListingsSum) {
-  const Surface scene =
-      all_of({cut(plane({}, {0, 0, 1}), [](const glm::dvec3& p) { return p.y < 0; }),
-              cut(plane({}, {0, -1, 0}), [](const glm::dvec3& p) { return p.z > 0; }),
-              sphere({0.4, -0.5, 0.3}, 0.3)});
-  const Geometry g = geometry_of(
-      scene, look_at(camera_from_fov(40, kWindow, 1), {0, -4, 3}, {0, -0.3, 0.3}, {0, 0, 1}),
-      kWindow);
-  SsdoRequest request{.radius = 0.8f, .bounces = 1};
-  request.radiance = Plane<glm::vec3>(kWindow.width(), kWindow.height());
-  for (std::size_t i = 0; i < request.radiance.size(); ++i)
-    request.radiance[i] = {0.8f, float(i % 7), 0};
-  const Products out = run(g, request);
-  double total = 0;
-  for (int y = 1; y < kWindow.height(); y += 5) {
-    for (int x = 2; x < kWindow.width(); x += 7) {
-      const glm::dvec3 expected = slow_bounce(g, x, y, request.radiance, 0.8, 16);
-      // A point may project onto the edge between two pixels.
-      for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(out.bounce(x, y)[c], expected[c], 1e-4 + 1e-4 * expected[c]) << x << "," << y;
-      total += expected.x;
-    }
-  }
-  EXPECT_GT(total, 10);
 }
 
 TEST(Ssdo, BounceIsProportionalToTheSendersAlbedoAndGrowsWithPasses) {

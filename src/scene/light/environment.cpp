@@ -14,7 +14,9 @@ namespace ssdo {
 namespace {
 
 constexpr float kPi = glm::pi<float>();
-constexpr int kBlurredSize = 64;       ///< nodes are 3 degrees apart, the lobes 10 or wider
+/// Odd, so that nodes lie where the map is folded: between others, x = 0 and y = 0 were 1 degree
+/// off. Nodes are 3 degrees apart, the lobes 10 or wider.
+constexpr int kBlurredSize = 65;
 constexpr int kBlurSourceWidth = 128;  ///< patches of 2.8 degrees
 
 }  // namespace
