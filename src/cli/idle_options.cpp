@@ -59,6 +59,9 @@ const std::vector<IdleRule>& rules() {
          return o.command != Command::bench && !method_of(o).products.bounce;
        },
        "the method makes no bounce"},
+      {{"--compose"},
+       [](const Options& o) { return o.command == Command::bench; },
+       "bench measures no composite"},
       {{"--products"},
        [](const Options& o) { return o.output.files.empty() && !o.output.saves.empty(); },
        "it is for files of -o, and --save names its product"},
