@@ -63,8 +63,7 @@ class ProductChoice {
 
   /// Whether --compose or a layer of ambient light asks for the composite.
   bool is_asked_for(const Product& product) const {
-    return product.name == "composite" &&
-           (output_.compose || plan_.composition.compose != Compose::relight);
+    return !product.in && (output_.compose || plan_.composition.compose != Compose::relight);
   }
 
   /// What of the planes the wanted products are made of the method makes, and the layers allow.
