@@ -10,7 +10,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "estimators/registry.h"
 #include "scene/light/environment.h"
 #include "support/frame_file.h"
 #include "support/parse_json.h"
@@ -94,7 +93,7 @@ void expect_composite(const TempDir& dir, const Picture& picture,
     ASSERT_LE(std::max({off.x, off.y, off.z}), tolerance) << "pixel " << i;
   }
   EXPECT_GT(sky, 100);
-  EXPECT_LT(sky, found.size() / 2);
+  EXPECT_LT(sky, found.size() - 1000);
 }
 
 /// A map, y up as OpenEXR has it: red light from +x, blue from -x.
@@ -189,24 +188,26 @@ TEST(Ambient, ShadowsOfColouredLightAreColoured) {
   EXPECT_LT(beside(0.7).z + 0.2f, beside(0.7).x) << "blue is hidden";
 }
 
-TEST(Ambient, EveryMethodOccludesByItsOwnDirectLight) {
+/// Methods find direct light by rays, by samples in the picture, along the bent normal, or as ao
+/// times the light of the normal.
+class AmbientByMethod : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Methods, AmbientByMethod, testing::Values("trace", "ssdo", "gtao", "msvo"),
+                         [](const auto& method) { return std::string(method.param); });
+
+TEST_P(AmbientByMethod, IsOccludedByDirectOverUnoccludedLight) {
   const TempDir dir;
   const Picture picture = ball_on_table();
   const Environment environment = two_lights();
   write_frame(dir / "in.exr", rendered(picture));
-  const std::string map = write_map(dir, environment);
-  for (const Method& method : methods()) {
-    SCOPED_TRACE(method.name);
-    compose(dir, kAmbientLayer + std::vector<std::string>{"--env", map, "--method",
-                                                          std::string(method.name), "--products",
-                                                          "direct,composite"});
-    const Plane<glm::vec3> direct = colors(dir, "direct.");
-    const auto expected = [&](std::size_t i) {
-      const glm::vec3 open(unoccluded(environment, picture.normal[i]));
-      return kLamp + glm::min(direct[i] / open, 1.0f) * kAmbient;
-    };
-    expect_composite(dir, picture, expected, 2e-3f);
-  }
+  compose(dir,
+          kAmbientLayer + std::vector<std::string>{"--env", write_map(dir, environment), "--method",
+                                                   GetParam(), "--products", "direct,composite"});
+  const Plane<glm::vec3> direct = colors(dir, "direct.");
+  const auto expected = [&](std::size_t i) {
+    const glm::vec3 open(unoccluded(environment, picture.normal[i]));
+    return kLamp + glm::min(direct[i] / open, 1.0f) * kAmbient;
+  };
+  expect_composite(dir, picture, expected, 2e-3f);
 }
 
 TEST(Ambient, BouncesThatGtaoCountsReachTheComposite) {
@@ -241,12 +242,11 @@ TEST(Ambient, TheSpecularLayerIsMultipliedByReflection) {
   FramePart part = rendered(picture);
   const glm::vec3 specular(0.1f, 0.2f, 0.3f);
   part.add("ViewLayer.Env", Plane<glm::vec3>(64, 48, specular), "RGB");
-  part.channels["ViewLayer.gloss.Y"] = Plane<float>(64, 48, 0.3f);
+  part.channels["ViewLayer.roughness.Y"] = Plane<float>(64, 48, 0.3f);
   write_frame(dir / "in.exr", part);
   const std::vector<std::string> flags =
-      kAmbientLayer + std::vector<std::string>{"--aov",      "specular=ViewLayer.Env",
-                                               "--aov",      "roughness=ViewLayer.gloss",
-                                               "--products", "ao,reflection,composite"};
+      kAmbientLayer + std::vector<std::string>{"--aov", "specular=ViewLayer.Env", "--products",
+                                               "ao,reflection,composite"};
   compose(dir, flags);
   const Plane<float> ao = channel(dir / "out.exr", "ao.Y"),
                      reflection = channel(dir / "out.exr", "reflection.Y");
@@ -254,6 +254,10 @@ TEST(Ambient, TheSpecularLayerIsMultipliedByReflection) {
     return kLamp + ao[i] * kAmbient - (1 - reflection[i]) * specular;
   });
   EXPECT_LT(*std::min_element(reflection.pixels.begin(), reflection.pixels.end()), 0.5f);
+  const Plane<glm::vec3> before = colors(dir);
+  compose(dir, kAmbientLayer + std::vector<std::string>{"--aov", "specular=ViewLayer.Env",
+                                                        "--products", "composite"});
+  EXPECT_EQ(colors(dir).pixels, before.pixels) << "roughness is looked for without the product";
   const Finished idle =
       run_tool(flags + std::vector<std::string>{dir / "in.exr", "-o", dir / "other.exr",
                                                 "--compose", "relight"});
