@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "composite_choice.h"
 #include "error.h"
 #include "estimators/registry.h"
 #include "known_geometry.h"
@@ -24,10 +25,13 @@ UpAxis up_axis_of(const Imf::Header& header) {
   return blender ? UpAxis::z : UpAxis::y;
 }
 
-bool wants_reflection(const OutputOptions& output) {
+bool wants_reflection(const OutputOptions& output, const std::vector<LayerRequest>& aovs) {
   return contains(output.products, "reflection") || contains(output.products, kAllProducts) ||
          std::any_of(output.saves.begin(), output.saves.end(),
-                     [](const SaveRequest& save) { return save.product == "reflection"; });
+                     [](const SaveRequest& save) { return save.product == "reflection"; }) ||
+         (choose_compose(output, aovs) == Compose::occlude &&
+          std::any_of(aovs.begin(), aovs.end(),
+                      [](const LayerRequest& aov) { return aov.role == Role::specular; }));
 }
 
 void warn_of_idle_depth_options(Frame& frame, const GBufferOptions& options) {
@@ -73,11 +77,13 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   Stopwatch watch;
   // Names that nothing asks for are no reason to refuse a frame.
   std::vector<Role> unused;
-  if (!wants_reflection(options.output)) unused.push_back(Role::roughness);
+  if (!wants_reflection(options.output, files.aovs)) unused.push_back(Role::roughness);
   if (!options.model.temporal) unused.push_back(Role::motion);
   std::deque<ExrReader> opened = open_view(files.input, files.aovs);
   const double opening = watch.lap();
-  View view = read_view(std::move(opened), files.aovs, options.input, options.camera, unused);
+  InputOptions input = options.input;
+  input.gbuffer.beauty = choose_compose(options.output, files.aovs) != Compose::relight;
+  View view = read_view(std::move(opened), files.aovs, input, options.camera, unused);
   frame.files = std::move(view.files);
   frame.layers = std::move(view.layers);
   frame.gbuffer = std::move(view.gbuffer);
@@ -131,6 +137,9 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   frame.report.warnings.insert(frame.report.warnings.end(), known.warnings.begin(),
                                known.warnings.end());
   frame.plan = make_plan(model, options.output, scene, frame.gbuffer, frame.input);
+  const std::vector<std::string> idle =
+      idle_for_composite(frame.plan, options.output, frame.gbuffer);
+  frame.report.warnings.insert(frame.report.warnings.end(), idle.begin(), idle.end());
   explain_views(frame.plan, frame.views);
   frame.advice = explain_guessed(frame.plan, scene);
   frame.times.prepare = watch.lap() - view.read_ms - frame.times.known;

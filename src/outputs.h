@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "color/composition.h"
 #include "io/exr_writer.h"
 #include "io/safe_file.h"
 
@@ -19,6 +20,7 @@ struct OutputOptions {
   std::vector<std::string> files;     ///< -o
   std::vector<SaveRequest> saves;     ///< --save
   std::vector<std::string> products;  ///< empty: all that the inputs allow
+  std::optional<Compose> compose;     ///< chosen by the layers where not given
   Imf::PixelType pixel_type = Imf::HALF;
   std::optional<Imf::Compression> compression;  ///< the input's where not given
   int bits = 8;                                 ///< per channel of PNG and TIFF: 8 or 16

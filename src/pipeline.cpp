@@ -21,13 +21,18 @@ const std::string& product_of_picture(const Target& target, const Plan& plan) {
   return target.product ? *target.product : plan.show;
 }
 
+Results results_of(const RelightJob& job, const Plan& plan, const Products& products) {
+  return {job.frame.scene, job.frame.gbuffer, products, plan.composition};
+}
+
 /// Returns how many values were clamped.
 std::size_t write_exr_target(const SafeFile& file, const Target& target, const RelightJob& job,
                              const Plan& plan, const Products& products) {
   const Frame& frame = job.frame;
+  const Results results = results_of(job, plan, products);
   std::vector<NamedPlane> channels;
   for (const std::string& product : target.product ? std::vector{*target.product} : plan.write) {
-    for (NamedPlane& plane : product_channels(product, frame.scene, frame.gbuffer, products))
+    for (NamedPlane& plane : product_channels(product, results))
       channels.push_back(std::move(plane));
   }
   ExrOutput output;
@@ -69,8 +74,8 @@ Written write_targets(const RelightJob& job, const Plan& plan, const Products& p
       out.clamped_values += write_exr_target(file, target, job, plan, products);
     } else {
       const DisplayImage image =
-          make_display_image(product_of_picture(target, plan), job.frame.scene, job.frame.gbuffer,
-                             products, {display, keeps_alpha(target.path)});
+          make_display_image(product_of_picture(target, plan), results_of(job, plan, products),
+                             {display, keeps_alpha(target.path)});
       out.compose_ms += watch.lap();
       write_image(file, image.spec(job.options.output.bits), image.values);
     }

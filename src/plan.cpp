@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "composite_choice.h"
 #include "error.h"
 #include "estimators/guessed.h"
 #include "estimators/registry.h"
@@ -70,14 +71,6 @@ void set_by_option(Plan& plan, const std::string& name, std::optional<int> value
   }
   check_value(*parameter, *value, fmt::format("--{} {}", name, *value));
   plan.request.parameters[name] = *value;
-}
-
-void explain_composite(Plan& plan, const GBuffer& gbuffer) {
-  if (gbuffer.ambient.empty() || !contains(plan.make, "composite")) return;
-  plan.reasons.push_back(gbuffer.beauty.empty()
-                             ? "composite is the ambient layer times ao: there is no beauty"
-                             : "composite is the beauty with its ambient part times ao; all other "
-                               "light stays as rendered");
 }
 
 void explain_reflection(Plan& plan, const Scene& scene) {
@@ -246,8 +239,9 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
   plan.temporal = model.temporal;
   plan.request.seed = model.seed;
   plan.error = model.error;
+  plan.composition = choose_composition(output, scene, gbuffer, plan.request.parameters);
   choose_products(plan, output, scene, gbuffer, file);
-  explain_composite(plan, gbuffer);
+  explain_composite(plan, output, gbuffer);
   explain_reflection(plan, scene);
   check_multi_bounce(plan, scene, file);
   choose_bounces(plan, model.bounces, scene);
@@ -315,6 +309,7 @@ nlohmann::json to_json(const Plan& plan, const std::vector<std::string>& history
                       {"filter", plan.filter->name},
                       {"temporal", plan.temporal},
                       {"reasons", reasons}};
+  if (contains(plan.make, "composite")) j["compose"] = name_of(plan.composition.compose);
   // JSON knows no infinity.
   if (plan.method->takes.radius)
     j["radius"] = std::isinf(plan.request.radius) ? nlohmann::json("inf")

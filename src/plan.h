@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "color/composition.h"
 #include "estimators/registry.h"
 #include "filters/registry.h"
 #include "outputs.h"
@@ -59,6 +60,7 @@ struct Plan {
   std::vector<std::string> make;     ///< products for any of the outputs
   std::vector<std::string> write;    ///< those that every EXR of -o holds, in their order there
   std::string show;                  ///< the one that every picture of -o holds
+  Composition composition;           ///< how the composite is made, where it is
   std::vector<std::string> reasons;  ///< one line per decision
 
   int samples_per_pixel() const;
@@ -74,8 +76,8 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
 /// Adds what further views contribute to the reasons.
 void explain_views(Plan& plan, const std::vector<MergeCounts>& views);
 
-/// Adds how much of the result is guessed, and what would help, to the reasons. Where it is much, it
-/// gives a warning for who asks before rendering; nothing is wrong with the frame.
+/// Adds how much of the result is guessed, and what would help, to the reasons. Where it is much,
+/// it gives a warning for who asks before rendering; nothing is wrong with the frame.
 std::string explain_guessed(Plan& plan, const Scene& scene);
 
 /// `history` is what a temporal plan takes from the frame before, and why: it ends the reasons.

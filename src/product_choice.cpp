@@ -5,8 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 
+#include "composite_choice.h"
 #include "error.h"
 #include "estimators/registry.h"
 #include "io/image_file.h"
@@ -18,62 +20,68 @@ using Names = std::vector<std::string>;
 
 class ProductChoice {
  public:
-  ProductChoice(const Method& method, const OutputOptions& output, const Scene& scene,
-                const GBuffer& gbuffer, const std::string& file)
-      : method_(method),
+  ProductChoice(Plan& plan, const OutputOptions& output, const Scene& scene, const GBuffer& gbuffer,
+                const std::string& file)
+      : plan_(plan),
+        method_(*plan.method),
         output_(output),
+        gbuffer_(gbuffer),
         layers_{{"", true},
                 {"albedo", !scene.senders.albedo.empty()},
+                {"ambient", !gbuffer.ambient.empty()},
                 {"roughness", !scene.roughness.empty()}},
-        ambient_(!gbuffer.ambient.empty()),
-        file_(file) {}
+        file_(file) {
+    row("composite") = composite_row(plan.composition, gbuffer);
+  }
 
-  void choose(Plan& plan) const {
+  void choose() {
     const auto is_picture = [](const std::string& path) { return is_display_image(path); };
     const auto pictures = std::count_if(output_.files.begin(), output_.files.end(), is_picture);
     const bool only_saves = output_.files.empty() && !output_.saves.empty();
     if (std::size_t(pictures) < output_.files.size() || (output_.files.empty() && !only_saves)) {
-      plan.write = of_exr();
-      explain_left_out(plan);
+      plan_.write = of_exr();
+      explain_left_out();
     }
     Names wanted = output_.products;
     std::erase(wanted, kAllProducts);
-    wanted.insert(wanted.end(), plan.write.begin(), plan.write.end());
+    wanted.insert(wanted.end(), plan_.write.begin(), plan_.write.end());
     for (const SaveRequest& save : output_.saves) wanted.push_back(save.product);
-    if (pictures > 0) wanted.push_back(plan.show = of_picture());
-    for (const std::string& name : wanted) check(find_product(name));
-    for (const Product& product : kProducts) {
-      if (contains(wanted, product.name)) plan.make.emplace_back(product.name);
+    if (pictures > 0) wanted.push_back(plan_.show = of_picture());
+    for (const std::string& name : wanted) check(row(name));
+    for (const Product& product : table_) {
+      if (contains(wanted, product.name)) plan_.make.emplace_back(product.name);
     }
-    if (plan.error) wanted.emplace_back("error");
-    plan.request.products = asked_of_method(wanted);
+    if (plan_.error) wanted.emplace_back("error");
+    plan_.request.products = asked_of_method(wanted);
   }
 
  private:
-  bool from_ambient(const Product& product) const {
-    return &made_of(product, ambient_) == &product.made_of_ambient;
-  }
-  bool has_layers(const Product& product) const {
-    return from_ambient(product) || layers_.at(product.needs);
+  /// Errors: those of find_product.
+  Product& row(std::string_view name) { return table_[&find_product(name) - kProducts.data()]; }
+
+  bool has_layers(const Product& product) const { return layers_.at(product.needs); }
+
+  /// Whether --compose or a layer of ambient light asks for the composite.
+  bool is_asked_for(const Product& product) const {
+    return !product.in && (output_.compose || plan_.composition.compose != Compose::relight);
   }
 
   /// What of the planes the wanted products are made of the method makes, and the layers allow.
   ProductSet asked_of_method(const Names& wanted) const {
     ProductSet asked, possible;
-    for (const Product& product : kProducts) {
+    for (const Product& product : table_) {
       if (product.in) possible.*product.in = has_layers(product);
-      if (!contains(wanted, product.name)) continue;
-      asked = asked | made_of(product, ambient_);
-      if (!from_ambient(product)) asked = asked | product.with;
+      if (contains(wanted, product.name)) asked = asked | product.made_of | product.with;
     }
     return asked & possible & method_.products;
   }
 
   Names of_exr() const {
     Names names;
-    for (const Product& product : kProducts) {
+    for (const Product& product : table_) {
       const bool possible =
-          makes(method_, product, ambient_) && has_layers(product) && layers_.at(product.all_needs);
+          is_asked_for(product) ||
+          (makes(method_, product) && has_layers(product) && layers_.at(product.all_needs));
       const bool if_possible =
           output_.products.empty() ? product.usual : contains(output_.products, kAllProducts);
       if (contains(output_.products, product.name) || (if_possible && possible))
@@ -82,15 +90,15 @@ class ProductChoice {
     return names;
   }
 
-  void explain_left_out(Plan& plan) const {
+  void explain_left_out() {
     if (!output_.products.empty()) return;
     std::map<std::string_view, Names> left_out;  // by the layer that is not there
-    for (const Product& product : kProducts) {
+    for (const Product& product : table_) {
       if (product.usual && !has_layers(product))
         left_out[product.needs].push_back(fmt::format("no {}", product.name));
     }
     for (const auto& [layer, products] : left_out)
-      plan.reasons.push_back(
+      plan_.reasons.push_back(
           fmt::format("{}: there is no {}", fmt::join(products, " and "), layer));
   }
 
@@ -107,13 +115,14 @@ class ProductChoice {
   }
 
   void check(const Product& product) const {
-    if (!makes(method_, product, ambient_)) {
+    if (!product.in) check_rendered_layers(plan_.composition.compose, gbuffer_, file_);
+    if (!makes(method_, product)) {
       Names others;
       for (const Method& method : methods()) {
-        if (makes(method, product, ambient_)) others.emplace_back(method.name);
+        if (makes(method, product)) others.emplace_back(method.name);
       }
       throw Error(ExitCode::usage, fmt::format("method {} makes no {}; these do: {}", method_.name,
-                                               product.name, fmt::join(others, ", ")));
+                                               missing_of(product), fmt::join(others, ", ")));
     }
     if (!has_layers(product)) {
       throw Error(ExitCode::layer,
@@ -123,18 +132,29 @@ class ProductChoice {
     }
   }
 
+  /// What the method cannot make of a product: the product, or a part that it is composed of.
+  std::string missing_of(const Product& product) const {
+    for (const Product& part : kProducts) {
+      if (part.in && product.made_of.*part.in && !(method_.products.*part.in) && !product.in)
+        return fmt::format("{} for the {}", part.name, product.name);
+    }
+    return std::string(product.name);
+  }
+
+  Plan& plan_;
   const Method& method_;
   const OutputOptions& output_;
+  const GBuffer& gbuffer_;
   const std::map<std::string_view, bool> layers_;  ///< by role: whether the frame has it
-  const bool ambient_;                             ///< whether the frame has its ambient light
   const std::string& file_;
+  std::array<Product, kProducts.size()> table_ = kProducts;  ///< as it is in this frame
 };
 
 }  // namespace
 
 void choose_products(Plan& plan, const OutputOptions& output, const Scene& scene,
                      const GBuffer& gbuffer, const std::string& file) {
-  ProductChoice(*plan.method, output, scene, gbuffer, file).choose(plan);
+  ProductChoice(plan, output, scene, gbuffer, file).choose();
 }
 
 }  // namespace ssdo

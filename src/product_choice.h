@@ -11,9 +11,8 @@
 namespace ssdo {
 
 /// Decides which products are made, and in which files they go: fills make, write, show,
-/// request.products and reasons of a plan whose method and error are known. `file` is the input's
-/// name, for messages.
-/// Errors: those of make_plan.
+/// request.products and reasons of a plan whose method, error and composition are known. `file` is
+/// the input's name, for messages. Errors: those of make_plan.
 void choose_products(Plan& plan, const OutputOptions& output, const Scene& scene,
                      const GBuffer& gbuffer, const std::string& file);
 

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <memory>
 
 #include "support/error_matchers.h"
 #include "support/scene_of.h"
@@ -22,8 +23,9 @@ using Names = std::vector<std::string>;
 struct Case {
   ModelOptions model = {};
   OutputOptions output = {};
-  bool albedo = true, roughness = false, ambient = false, beauty = false;
+  bool albedo = true, roughness = false, ambient = false, beauty = false, specular = false;
   float brightest_albedo = 0.5f;
+  bool map = false;  ///< light from directions, not from everywhere alike
 };
 
 Plan plan_of(const Case& c) {
@@ -33,12 +35,16 @@ Plan plan_of(const Case& c) {
   geometry.median_depth = 2;
   geometry.camera = camera_from_fov(90, {0, 0, 1, 1}, 1);
   geometry.display = geometry.window = {0, 0, 1, 1};
-  Scene scene = scene_of(geometry, Environment::constant(glm::vec3(1)), c.brightest_albedo);
+  const auto map = std::make_shared<Plane<glm::vec3>>(4, 2, glm::vec3(1));
+  Scene scene =
+      scene_of(geometry, c.map ? Environment(map, {}) : Environment::constant(glm::vec3(1)),
+               c.brightest_albedo);
   if (!c.albedo) scene.senders.albedo = {};
   if (c.roughness) scene.roughness = Plane<float>(1, 1);
   GBuffer gbuffer;
   if (c.ambient) gbuffer.ambient = Plane<glm::vec3>(1, 1);
   if (c.beauty) gbuffer.beauty = Plane<glm::vec3>(1, 1);
+  if (c.specular) gbuffer.specular = Plane<glm::vec3>(1, 1);
   return make_plan(c.model, c.output, scene, gbuffer, "in.exr");
 }
 
@@ -55,6 +61,12 @@ OutputOptions to(Names files, Names products = {}) {
   return output;
 }
 
+OutputOptions composite(std::optional<Compose> compose) {
+  OutputOptions output = to({"out.exr"}, {"composite"});
+  output.compose = compose;
+  return output;
+}
+
 struct ProductCase {
   const char* what;
   Case asked;
@@ -63,6 +75,8 @@ struct ProductCase {
 };
 
 TEST(Plan, MakesTheProductsThatAreAskedForAndAsksTheMethodForTheirParts) {
+  ModelOptions with_bounces = of_method("gtao");
+  with_bounces.set = {"multi-bounce=1"};
   const OutputOptions exr = to({"out.exr"}), everything = to({"out.exr"}, {"all"});
   const ProductSet lit{.ao = true, .direct = true, .bounce = true};
   const ProductCase cases[] = {
@@ -72,9 +86,29 @@ TEST(Plan, MakesTheProductsThatAreAskedForAndAsksTheMethodForTheirParts) {
        {"ao", "direct"},
        {.ao = true, .direct = true}},
       {"ambient light in place of albedo",
-       {.output = to({"out.exr"}, {"composite"}), .albedo = false, .ambient = true},
+       {.output = composite({}), .albedo = false, .ambient = true},
        {"composite"},
        {.ao = true}},
+      {"ambient light under a map",
+       {.output = composite({}), .albedo = false, .ambient = true, .map = true},
+       {"composite"},
+       {.direct = true}},
+      {"bounces that a method counts in direct",
+       {.model = with_bounces, .output = composite({}), .ambient = true},
+       {"composite"},
+       {.direct = true}},
+      {"a specular layer",
+       {.output = composite({}), .ambient = true, .specular = true},
+       {"composite"},
+       {.ao = true, .reflection = true}},
+      {"relight, in spite of an ambient layer",
+       {.output = composite(Compose::relight), .ambient = true},
+       {"composite"},
+       {.direct = true, .bounce = true}},
+      {"add",
+       {.output = composite(Compose::add), .ambient = true, .beauty = true},
+       {"composite"},
+       {.direct = true, .bounce = true}},
       {"a method without bounce",
        {of_method("ssao"), exr},
        {"ao", "direct", "composite"},
@@ -133,6 +167,7 @@ TEST(Plan, AnErrorToStayBelowIsMeasuredButNotWritten) {
 
 TEST(Plan, RefusesProductsThatCannotBeMade) {
   const auto refused = [](const Case& c) { return error_of([&] { plan_of(c); }); };
+  const OutputOptions exr = to({"out.exr"});
   EXPECT_THAT(refused({{}, to({"out.exr"}, {"normals"})}),
               IsError(ExitCode::usage, "product 'normals': there are ao, bent"));
   EXPECT_THAT(refused({of_method("ssao"), to({"out.exr"}, {"bent"})}),
@@ -143,6 +178,16 @@ TEST(Plan, RefusesProductsThatCannotBeMade) {
               IsError(ExitCode::layer, "composite needs a layer for albedo"));
   EXPECT_THAT(refused({{}, to({"out.png"}, {"ao", "direct"})}),
               IsError(ExitCode::usage, "a picture shows one product"));
+  OutputOptions add = to({"out.exr"});
+  add.compose = Compose::add;
+  EXPECT_THAT(refused({.output = add, .albedo = false, .beauty = true}),
+              IsError(ExitCode::layer, "in.exr: composite needs a layer for albedo"))
+      << "what is asked for is not left out";
+  EXPECT_THAT(
+      refused({.model = of_method("ssao"), .output = exr, .ambient = true, .specular = true}),
+      IsError(ExitCode::usage,
+              "method ssao makes no reflection for the composite; these do: "
+              "bitmask, trace, gtao"));
 }
 
 TEST(Plan, SlicesAndStepsReachParametersOfTheseNames) {
@@ -228,8 +273,22 @@ TEST(Plan, SaysWhyItDecidedSo) {
   const ReasonCase cases[] = {
       {"no albedo", {.albedo = false}, "no bounce and no composite: there is no albedo"},
       {"no albedo, ambient", {.albedo = false, .ambient = true}, "no bounce: there is no albedo"},
-      {"ambient", {.ambient = true}, "the ambient layer times ao: there is no beauty"},
-      {"beauty", {.ambient = true, .beauty = true}, "all other light stays as rendered"},
+      {"relight", {}, "composite relight: albedo (direct + bounce); no ambient layer is given"},
+      {"ambient",
+       {.ambient = true},
+       "composite occlude: the ambient layer, as there is no beauty, times ao; an ambient layer is "
+       "given"},
+      {"beauty",
+       {.output = composite(Compose::occlude), .ambient = true, .beauty = true, .specular = true},
+       "composite occlude: the beauty with its ambient layer times ao, and its specular layer "
+       "times "
+       "reflection; as asked"},
+      {"beauty under a map",
+       {.ambient = true, .beauty = true, .map = true},
+       "ambient layer times direct / unoccluded direct, channel by channel;"},
+      {"add",
+       {.output = composite(Compose::add), .beauty = true},
+       "composite add: beauty + albedo (direct + bounce); as asked"},
       {"dark", {.brightest_albedo = 0.005f}, "no bounce: the albedo is 0.005 at most"},
       {"constant light", {}, "direct is ao times the environment's one colour"},
       {"endless", {}, "radius inf: occluders at any distance"},

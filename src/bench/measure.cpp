@@ -70,7 +70,7 @@ ProductChannels channels_of(const Frame& frame, const Plan& plan, const Products
   for (const std::string& name : plan.make) {
     Channels& channels = all[name];
     channels.window = frame.scene.geometry.window;
-    for (NamedPlane& plane : product_channels(name, frame.scene, frame.gbuffer, products))
+    for (NamedPlane& plane : product_channels(name, {frame.scene, frame.gbuffer, products}))
       channels.planes.push_back(std::move(plane.pixels));
   }
   return all;

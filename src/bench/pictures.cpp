@@ -87,7 +87,7 @@ std::string BenchPictures::map_of(const ChannelsDifference& difference, double s
 
 std::string BenchPictures::encode(const std::string& product, const Products& products) const {
   const DisplayImage image =
-      thinned(make_display_image(product, frame_.scene, frame_.gbuffer, products, {&display_}));
+      thinned(make_display_image(product, {frame_.scene, frame_.gbuffer, products}, {&display_}));
   const auto bytes = encode_image("picture.png", image.spec(8), image.values);
   return {bytes.begin(), bytes.end()};
 }

@@ -64,6 +64,9 @@ const std::vector<IdleRule>& rules() {
          return o.command != Command::bench && method_of(o).ladder.seeds == 1;
        },
        "the method has no noise"},
+      {{"--compose"},
+       [](const Options& o) { return o.command == Command::bench; },
+       "bench measures no composite"},
       {{"--products"},
        [](const Options& o) { return o.output.files.empty() && !o.output.saves.empty(); },
        "it is for files of -o, and --save names its product"},

@@ -220,6 +220,15 @@ void add_output(CLI::App& app, OutputOptions& o) {
   group.repeatable("-o,--output", "OUTPUT", o.files,
                    "output, repeatable: .exr holds the products, .png .jpg .tif the composite");
   group.repeatable("--products", "LIST", o.products, describe_products())->delimiter(',');
+  Choices<std::optional<Compose>> composites;
+  Text meanings;
+  for (const ComposeRow& row : kComposites) {
+    composites.emplace_back(row.name, row.compose);
+    meanings += fmt::format("\n{}: {}", row.name, row.meaning);
+  }
+  group.choice(
+      "--compose", o.compose, composites,
+      "what the composite is; default: occlude with an ambient layer, else relight" + meanings);
   group.each(
       "--save", "PRODUCT=FILE", [&](const Text& text) { o.saves.push_back(read_save(text)); },
       "a product in a file of its own, repeatable");

@@ -1,12 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
+//
+// The composites. Rendered layers are premultiplied, and so is the result, so that edges whose
+// alpha is between 0 and 1 need no division.
+//
+//   relight   alpha albedo (direct + bounce)
+//   occlude   beauty - ambient (1 - S) - specular (1 - reflection)
+//   add       beauty + alpha albedo (direct + bounce)
+//
+// S is the share of the environment's light that arrives. Light from everywhere alike is hidden by
+// 1 - ao. Of other light, each channel has a share of its own, direct over the direct light without
+// occluders: what hides a red light and not a green one throws a green shadow, where ao would make
+// it brown (Ritschel, Grosch, Seidel, "Approximating Dynamic Global Illumination in Image Space",
+// 2009). What lamps give stays as rendered: ambient is a part of the beauty.
+//
+// occlude and add keep the beauty and its alpha where there is no geometry.
 #include "color/compose.h"
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <type_traits>
 
 #include "math/light_range.h"
+#include "parallel/tiles.h"
 
 namespace ssdo {
 namespace {
@@ -29,19 +46,39 @@ Plane<glm::vec3> in_input_space(Plane<glm::vec3> directions, const glm::mat3& no
   return directions;
 }
 
-/// beauty - ambient (1 - ao), or ambient ao without a beauty. Occlusion says how much of the sky is
-/// hidden, not of a lamp: what lamps give stays as rendered. Rendered layers are premultiplied.
-Plane<glm::vec3> occlude_ambient(const Scene& scene, const GBuffer& gbuffer,
-                                 const Plane<float>& ao) {
-  const Plane<float> alpha = coverage(scene, gbuffer);
-  Plane<glm::vec3> out(ao.width, ao.height);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (alpha[i] <= 0) continue;
-    const glm::vec3 rest =
-        gbuffer.beauty.empty() ? glm::vec3(0) : gbuffer.beauty[i] - gbuffer.ambient[i];
-    out[i] = (rest + ao[i] * gbuffer.ambient[i]) / alpha[i];
-  }
-  return out;
+/// albedo (direct + bounce).
+glm::vec3 light_of(const Results& r, std::size_t i) {
+  glm::vec3 light = r.products.direct[i];
+  if (!r.products.bounce.empty()) light += r.products.bounce[i];
+  return within_range(light * r.scene.senders.albedo[i]);
+}
+
+/// The share of the environment's light that arrives at a surface, by channel, 0 to 1. Methods that
+/// look light up in another direction than the normal may find more than arrives without occluders;
+/// occlusion brightens nothing. A channel without light has the share of all channels together, and
+/// where there is no light at all, nothing is taken away.
+glm::vec3 arriving_share(const Results& r, std::size_t i) {
+  if (r.composition.share_is_ao) return glm::vec3(r.products.ao[i]);
+  const glm::vec3 direct = r.products.direct[i],
+                  open = r.scene.light.unoccluded(r.scene.geometry.surfel[i].normal);
+  const auto share = [](float part, float whole, float otherwise) {
+    return whole > 0 ? std::clamp(part / whole, 0.0f, 1.0f) : otherwise;
+  };
+  const float all = share(direct.x + direct.y + direct.z, open.x + open.y + open.z, 1);
+  return {share(direct.x, open.x, all), share(direct.y, open.y, all), share(direct.z, open.z, all)};
+}
+
+/// What occlude and add change: the beauty, or the ambient layer alone where there is no beauty.
+const Plane<glm::vec3>& rendered(const GBuffer& gbuffer) {
+  return gbuffer.beauty.empty() ? gbuffer.ambient : gbuffer.beauty;
+}
+
+glm::vec3 occluded(const Results& r, std::size_t i) {
+  const glm::vec3 beauty = rendered(r.gbuffer)[i];
+  glm::vec3 hidden = r.gbuffer.ambient[i] * (glm::vec3(1) - arriving_share(r, i));
+  if (!r.gbuffer.specular.empty()) hidden += r.gbuffer.specular[i] * (1 - r.products.reflection[i]);
+  // No light is negative, unless the render has it so, even where the layers do not add up to it.
+  return glm::max(within_range(beauty - hidden), glm::min(beauty, glm::vec3(0)));
 }
 
 }  // namespace
@@ -57,18 +94,30 @@ Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer) {
   return alpha;
 }
 
-Plane<glm::vec3> composite(const Scene& scene, const GBuffer& gbuffer, const Products& products) {
-  if (!gbuffer.ambient.empty()) return occlude_ambient(scene, gbuffer, products.ao);
-  Plane<glm::vec3> out = products.direct;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (!products.bounce.empty()) out[i] += products.bounce[i];
-    out[i] = within_range(out[i] * scene.senders.albedo[i]);
-  }
+Composite composite(const Results& r) {
+  const Compose compose = r.composition.compose;
+  const Geometry& geometry = r.scene.geometry;
+  Composite out{Plane<glm::vec3>::like(geometry.surfel), coverage(r.scene, r.gbuffer)};
+  for_each_row(out.color.height, [&](int y) {
+    for (int x = 0; x < out.color.width; ++x) {
+      const std::size_t i = out.color.index(x, y);
+      glm::vec3& color = out.color[i];
+      if (compose == Compose::relight) {
+        color = out.alpha[i] * light_of(r, i);
+        continue;
+      }
+      color = rendered(r.gbuffer)[i];
+      if (!geometry.is_surface(i) && !r.gbuffer.alpha.empty() && std::isfinite(r.gbuffer.alpha[i]))
+        out.alpha[i] = r.gbuffer.alpha[i];
+      if (!geometry.surfel[i].is_usable()) continue;
+      color = compose == Compose::occlude ? occluded(r, i)
+                                          : within_range(color + out.alpha[i] * light_of(r, i));
+    }
+  });
   return out;
 }
 
-std::vector<NamedPlane> product_channels(const std::string& name, const Scene& scene,
-                                         const GBuffer& gbuffer, const Products& products) {
+std::vector<NamedPlane> product_channels(const std::string& name, const Results& results) {
   const Product& wanted = find_product(name);
   std::vector<NamedPlane> out;
   const auto append = [&](const std::string& prefix, const auto& plane) {
@@ -80,17 +129,16 @@ std::vector<NamedPlane> product_channels(const std::string& name, const Scene& s
         if (&product != &wanted) return;
         if constexpr (std::is_same_v<decltype(plane), const Plane<glm::vec3>&>) {
           if (product.kind == ProductKind::direction)
-            return append(name + ".", in_input_space(plane, scene.geometry.normals_to_camera));
+            return append(name + ".",
+                          in_input_space(plane, results.scene.geometry.normals_to_camera));
         }
         append(name + ".", plane);
       },
-      products);
+      results.products);
   if (wanted.in) return out;
-  Plane<glm::vec3> color = composite(scene, gbuffer, products);
-  Plane<float> alpha = coverage(scene, gbuffer);
-  for (std::size_t i = 0; i < color.size(); ++i) color[i] *= alpha[i];
-  append("", color);
-  out.push_back({"A", std::move(alpha)});
+  Composite composed = composite(results);
+  append("", composed.color);
+  out.push_back({"A", std::move(composed.alpha)});
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "color/composition.h"
 #include "estimators/estimator.h"
 #include "math/plane.h"
 #include "scene/gbuffer.h"
@@ -18,16 +19,29 @@ struct NamedPlane {
   Plane<float> pixels;
 };
 
+/// A frame and what was found for it: what outputs are made from.
+struct Results {
+  const Scene& scene;
+  const GBuffer& gbuffer;
+  const Products& products;
+  Composition composition = {};
+};
+
+/// Scene-linear colours, premultiplied by alpha.
+struct Composite {
+  Plane<glm::vec3> color;
+  Plane<float> alpha;
+};
+
 /// Coverage: the input's alpha where there is one, else 1 on surfaces; 0 outside the geometry.
 Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer);
 
-/// albedo (direct + bounce); or, where the ambient part of the render is known, that part times ao
-/// with the rest of the beauty, where there is one, as it was. Not premultiplied.
-Plane<glm::vec3> composite(const Scene& scene, const GBuffer& gbuffer, const Products& products);
+/// The composite that `results.composition` asks for; see compose.cpp. The layers and products that
+/// it is made of have to be there.
+Composite composite(const Results& results);
 
 /// The channels of the product `name`, as the table of products has them: directions in the space
 /// of the input's normals, the composite premultiplied.
-std::vector<NamedPlane> product_channels(const std::string& name, const Scene& scene,
-                                         const GBuffer& gbuffer, const Products& products);
+std::vector<NamedPlane> product_channels(const std::string& name, const Results& results);
 
 }  // namespace ssdo

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "color/display_image.h"
 
-#include "color/compose.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {
@@ -27,11 +26,15 @@ void apply_display(Plane<glm::vec3>& colors, const DisplayTransform& display) {
   });
 }
 
-/// What the display transform is given of a product that is light.
-Plane<glm::vec3> colors_of(const Product& product, const Scene& scene, const GBuffer& gbuffer,
-                           const Products& products) {
-  const auto* plane = std::get_if<Plane<glm::vec3> Products::*>(&product.plane);
-  return plane ? products.*(*plane) : composite(scene, gbuffer, products);
+/// What the display transform is given of a product that is light, and where it is shown.
+Composite colors_of(const Product& product, const Results& results, bool straight) {
+  if (const auto* plane = std::get_if<Plane<glm::vec3> Products::*>(&product.plane))
+    return {results.products.*(*plane), coverage(results.scene, results.gbuffer)};
+  Composite shown = composite(results);
+  for (std::size_t i = 0; i < shown.color.size() && straight; ++i) {
+    if (shown.alpha[i] > 0) shown.color[i] /= shown.alpha[i];
+  }
+  return shown;
 }
 
 }  // namespace
@@ -40,15 +43,15 @@ bool needs_display(const std::string& product) {
   return find_product(product).kind == ProductKind::light;
 }
 
-DisplayImage make_display_image(const std::string& name, const Scene& scene, const GBuffer& gbuffer,
-                                const Products& products, const DisplayFormat& format) {
-  const Geometry& geometry = scene.geometry;
+DisplayImage make_display_image(const std::string& name, const Results& results,
+                                const DisplayFormat& format) {
+  const Geometry& geometry = results.scene.geometry;
   const Product& product = find_product(name);
   const bool has_alpha = product.channels == "RGBA";
   DisplayImage image;
   image.width = geometry.display.width();
   image.height = geometry.display.height();
-  image.pixel_aspect = gbuffer.pixel_aspect;
+  image.pixel_aspect = results.gbuffer.pixel_aspect;
   const bool grey = product.channels.size() == 1;
   image.channels = has_alpha && !format.alpha ? 3 : int(product.channels.size());
   const auto channels = std::size_t(image.channels);
@@ -56,26 +59,24 @@ DisplayImage make_display_image(const std::string& name, const Scene& scene, con
   if (product.kind != ProductKind::light) {
     // Data as they are; directions as colours usually show them, -1..1 in 0..1.
     const float scale = grey ? 1.0f : 0.5f, offset = grey ? 0.0f : 0.5f;
-    const std::vector<NamedPlane> planes = product_channels(name, scene, gbuffer, products);
+    const std::vector<NamedPlane> planes = product_channels(name, results);
     for_each_shown_pixel(geometry, [&](std::size_t to, std::size_t from) {
       for (std::size_t c = 0; c < channels; ++c)
         image.values[to * channels + c] = scale * planes[c].pixels[from] + offset;
     });
     return image;
   }
-  Plane<glm::vec3> colors = colors_of(product, scene, gbuffer, products);
-  const Plane<float> alpha = coverage(scene, gbuffer);
+  Composite shown = colors_of(product, results, format.alpha);
   if (has_alpha && !format.alpha) {
-    for (std::size_t i = 0; i < colors.size(); ++i) colors[i] *= alpha[i];
     glm::vec3 black(0);  // which some views lift
     format.transform->apply({&black, 1});
     for (std::size_t i = 0; i < image.values.size(); ++i) image.values[i] = black[int(i % 3)];
   }
-  apply_display(colors, *format.transform);
+  apply_display(shown.color, *format.transform);
   for_each_shown_pixel(geometry, [&](std::size_t to, std::size_t from) {
-    if (alpha[from] <= 0) return;
-    for (int c = 0; c < 3; ++c) image.values[to * channels + std::size_t(c)] = colors[from][c];
-    if (channels == 4) image.values[to * 4 + 3] = alpha[from];
+    if (!has_alpha && shown.alpha[from] <= 0) return;
+    for (int c = 0; c < 3; ++c) image.values[to * channels + std::size_t(c)] = shown.color[from][c];
+    if (channels == 4) image.values[to * 4 + 3] = shown.alpha[from];
   });
   return image;
 }

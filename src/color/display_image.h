@@ -5,10 +5,8 @@
 #include <vector>
 
 #include "color/color.h"
-#include "estimators/estimator.h"
+#include "color/compose.h"
 #include "io/image_file.h"
-#include "scene/gbuffer.h"
-#include "scene/scene.h"
 
 namespace ssdo {
 
@@ -32,9 +30,9 @@ bool needs_display(const std::string& product);
 
 /// Light becomes colours of the display. The composite keeps its alpha and is not premultiplied; or
 /// it lies over black, premultiplied before the display transform, as compositors show and convert
-/// a premultiplied EXR. Directions become RGB with 1/2 for 0, other data grey. Pixels outside the
-/// data window are empty.
-DisplayImage make_display_image(const std::string& name, const Scene& scene, const GBuffer& gbuffer,
-                                const Products& products, const DisplayFormat& format);
+/// a premultiplied EXR. Where its alpha is 0, colours are as they are. Directions become RGB with
+/// 1/2 for 0, other data grey. Pixels outside the data window are empty.
+DisplayImage make_display_image(const std::string& name, const Results& results,
+                                const DisplayFormat& format);
 
 }  // namespace ssdo

@@ -37,11 +37,6 @@ std::string product_names() {
   return names;
 }
 
-const ProductSet& made_of(const Product& product, bool ambient) {
-  const bool from_ambient = ambient && product.made_of_ambient != ProductSet();
-  return from_ambient ? product.made_of_ambient : product.made_of;
-}
-
 bool contains(const ProductSet& larger, const ProductSet& smaller) {
   for (const Product& product : kProducts) {
     if (product.in && smaller.*product.in && !(larger.*product.in)) return false;

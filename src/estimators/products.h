@@ -74,7 +74,6 @@ struct Product {
   std::variant<std::monostate, Plane<float> Products::*, Plane<glm::vec3> Products::*> plane = {};
   ProductSet made_of = {};  ///< what a method has to make for it
   ProductSet with = {};  ///< optional parts: used if the method makes them and their layers exist
-  ProductSet made_of_ambient = {};  ///< in place of both, where the frame has its ambient light
   std::string_view needs = "";      ///< role of a layer that it is not made without
   std::string_view all_needs = "";  ///< role of a layer without which --products all leaves it out
   float background = 0;             ///< its value where there is no surface
@@ -147,12 +146,12 @@ inline constexpr std::array<Product, 8> kProducts = {{
      .in = &ProductSet::guessed,
      .plane = &Products::guessed,
      .made_of = {.guessed = true}},
+    // As relight makes it; other composites change the row: src/composite_choice.cpp.
     {.name = "composite",
      .kind = ProductKind::light,
      .channels = "RGBA",
      .made_of = {.direct = true},
      .with = {.bounce = true},
-     .made_of_ambient = {.ao = true},
      .needs = "albedo",
      .usual = true},
 }};
@@ -165,10 +164,6 @@ const Product& find_product(std::string_view name);
 
 /// "ao, bent, ...".
 std::string product_names();
-
-/// What a method has to make for the product in a frame that has its ambient light, or in one that
-/// has not.
-const ProductSet& made_of(const Product& product, bool ambient);
 
 /// Whether `larger` has all of `smaller`.
 bool contains(const ProductSet& larger, const ProductSet& smaller);

@@ -79,8 +79,8 @@ const Method& reference_method() {
   return *std::find_if(all.begin(), all.end(), [](const Method& m) { return m.is_reference; });
 }
 
-bool makes(const Method& method, const Product& product, bool ambient) {
-  return contains(method.products, made_of(product, ambient));
+bool makes(const Method& method, const Product& product) {
+  return contains(method.products, product.made_of);
 }
 
 const Parameter* find_parameter(const Method& method, std::string_view name) {

@@ -19,9 +19,8 @@ const Method& find_method(std::string_view name);
 /// The one that bench holds all others to.
 const Method& reference_method();
 
-/// Whether the method makes what the product is made of in a frame that has its ambient light, or
-/// in one that has not.
-bool makes(const Method& method, const Product& product, bool ambient = false);
+/// Whether the method makes what the product is made of.
+bool makes(const Method& method, const Product& product);
 
 /// Null where the method has none of that name.
 const Parameter* find_parameter(const Method& method, std::string_view name);

@@ -19,8 +19,9 @@ struct GBuffer {
   Window window, display;
   float pixel_aspect = 1;
   Plane<glm::vec3> position, normal, albedo, radiance;
-  Plane<glm::vec3> ambient;   ///< the part of `beauty` that ambient light gave, as rendered
-  Plane<glm::vec3> beauty;    ///< as rendered; empty where no ambient part is known
+  Plane<glm::vec3> beauty;    ///< as rendered; empty where no composite uses it
+  Plane<glm::vec3> ambient;   ///< the part of `beauty` that ambient light gave
+  Plane<glm::vec3> specular;  ///< the part of `beauty` that mirrors the surroundings
   Plane<float> depth, alpha;  ///< depth: along the axis or the ray, in scene units
   Plane<float> roughness;     ///< of what mirrors, 0..1
   Plane<glm::vec2> motion;    ///< pixels, x right and y down, to where it was in the frame before

@@ -170,9 +170,10 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   if (!(g.pixel_aspect > 0) || !std::isfinite(g.pixel_aspect)) g.pixel_aspect = 1;
   note_precision(g, *lead, part, table[Role::position].has_value());
 
-  std::vector<Role> roles = {Role::position, Role::depth, Role::normal,    Role::albedo,
-                             Role::radiance, Role::alpha, Role::roughness, Role::motion};
-  if (table[Role::ambient]) roles.insert(roles.end(), {Role::ambient, Role::beauty});
+  std::vector<Role> roles = {Role::position, Role::depth,   Role::normal,    Role::albedo,
+                             Role::radiance, Role::alpha,   Role::roughness, Role::motion,
+                             Role::ambient,  Role::specular};
+  if (options.beauty) roles.push_back(Role::beauty);
   check_display_windows(files, table, roles);
   const LayerReader read(files, table, roles, g.window, deep);
   g.position = read.vector(table[Role::position], NAN);
@@ -185,16 +186,16 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   g.motion = read.motion(table[Role::motion]);
   const glm::vec2 scale = options.motion_scale.value_or(glm::vec2(1));
   for (glm::vec2& to : g.motion.pixels) to = {scale.x * to.x, -scale.y * to.y};
-  if (table[Role::ambient]) {
-    g.ambient = read.vector(table[Role::ambient], 0);
-    g.beauty = read.vector(table[Role::beauty], 0);
-  }
+  g.ambient = read.vector(table[Role::ambient], 0);
+  g.specular = read.vector(table[Role::specular], 0);
+  if (options.beauty) g.beauty = read.vector(table[Role::beauty], 0);
 
   undo_depth_encoding(g, options, file);
   find_background(g, options.background_depth);
   undo_normal_encoding(g);
   note_data_windows(files, table, roles, g);
-  for (Plane<glm::vec3>* values : {&g.normal, &g.albedo, &g.radiance, &g.ambient, &g.beauty})
+  for (Plane<glm::vec3>* values :
+       {&g.normal, &g.albedo, &g.radiance, &g.beauty, &g.ambient, &g.specular})
     clear_broken(g, *values);
   clear_negative(g.albedo);
   clear_negative(g.radiance);

@@ -16,6 +16,7 @@ struct GBufferOptions {
   std::optional<DepthKind> depth_kind;    ///< planar where not given
   float depth_near = 0, depth_far = 1;    ///< what 0 and 1 mean in a normalized depth
   std::optional<float> background_depth;  ///< depth from which on a pixel is background
+  bool beauty = false;                    ///< whether a composite uses the colours of the beauty
   std::optional<glm::vec2> motion_scale;  ///< of the motion layer, to what Blender writes: pixels
                                           ///< to the frame before, y up; 1 where not given
 };

@@ -38,6 +38,7 @@ TEST_F(IdleOptions, AreWarnedOf) {
       {{"--quality", "final"}, "--slices and --steps stand in its place"},
       {{"--bits", "16"}, "--bits has no effect"},
       {{"--view", "Raw"}, "--view has no effect"},
+      {{"--compose", "relight", "--products", "ao"}, "--compose has no effect: no output has"},
   };
   for (const auto& [flags, says] : idle) {
     const Finished done = run("in.exr", flags);

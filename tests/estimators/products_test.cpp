@@ -54,15 +54,6 @@ TEST(Products, AreFoundByNameOrListed) {
   EXPECT_EQ(product_names(), "ao, bent, reflection, direct, bounce, error, guessed, composite");
 }
 
-TEST(Products, AmbientLightTakesThePlaceOfDirectInTheCompositeAlone) {
-  for (const Product& product : kProducts) {
-    const bool composed = !product.in;
-    EXPECT_EQ(made_of(product, false), product.made_of);
-    EXPECT_EQ(made_of(product, true) == made_of(product, false), !composed) << product.name;
-  }
-  EXPECT_EQ(made_of(find_product("composite"), true), (ProductSet{.ao = true}));
-}
-
 TEST(ProductSet, HasTheOperationsOfASet) {
   const ProductSet a{.ao = true, .error = true}, b{.direct = true, .error = true};
   EXPECT_EQ(a | b, (ProductSet{.ao = true, .direct = true, .error = true}));

@@ -19,6 +19,7 @@ enum class Role {
   beauty,
   radiance,
   ambient,
+  specular,
   roughness,
   motion,
 };

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace ssdo {
+
+/// What the composite is.
+enum class Compose { relight, occlude, add };
+
+/// A row in the table of composites, in the order of Compose.
+struct ComposeRow {
+  std::string_view name;
+  Compose compose;
+  std::string_view meaning;
+};
+inline constexpr std::array<ComposeRow, 3> kComposites = {{
+    {"relight", Compose::relight, "albedo (direct + bounce)"},
+    {"occlude", Compose::occlude, "the beauty with its ambient layer occluded"},
+    {"add", Compose::add, "beauty + albedo (direct + bounce)"},
+}};
+constexpr std::string_view name_of(Compose compose) {
+  return kComposites[std::size_t(compose)].name;
+}
+
+/// How the composite of a frame is made.
+struct Composition {
+  Compose compose = Compose::relight;
+  /// Of occlude: ao is the share of the ambient light that arrives, the same in every channel.
+  /// Otherwise that share is direct over the direct light without occluders.
+  bool share_is_ao = false;
+};
+
+}  // namespace ssdo
