@@ -213,7 +213,7 @@ class Bitmask {
   void add_sun(const Sun& sun, const std::vector<DepthBounds>& bounds, const PassBeyond& pass) {
     InterleavedPlane share(layout_), weight(layout_), width_px(layout_);
     const auto find = [&](const Window& to, RaySet set, InterleavedVectors* direct) {
-      const std::vector<PerMember<glm::vec3>> directions =
+      const std::vector<RayDirections> directions =
           directions_to(sun, rays_to_sun(request_.slices), request_.seed, set);
       const SunJob job{march_, bounds, directions, &sun, pass, direct, &share, &weight, &width_px};
       for_each_tall_part_of(

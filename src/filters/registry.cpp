@@ -19,7 +19,7 @@ std::span<const Filter> filters() {
       {"box", "mean over the pattern, across edges", filter_box, 4},
       {"gaussian", "Gaussian within a depth and a cone of normals", filter_gaussian, 15},
       {"normal", "seven taps, by normals", filter_normal, 3},
-      {"geometry", "mean over the pattern on one surface", filter_geometry, 4},
+      {"geometry", "mean over the pattern on one surface", filter_geometry, 8},
   }};
   return all;
 }

@@ -11,10 +11,15 @@
 //   out(p) = sum_q b(q) w(p, q) c(q) v(q) / sum_q b(q) w(p, q) c(q)
 //
 // v being the shares, c the cosine of each ray, w that of geometry_filter.cpp and b a box, whole
-// pixels and parts of those at its border. W is T at most, and the box B = W (1 + W / T) / 2 pixels
+// pixels and parts of those at its border. It is T at most, and else B = W (1 + W / T) / 2 pixels
 // wide: a mean widens a penumbra by its own width, and what is three pixels wide loses its shadow
 // to a box of two. Of the umbra of posts of 3 pixels 15 % was lit with B = W, 9 % is so now and
 // 6 % without a filter; the error of walls and boxes is the same.
+//
+// Penumbras that are wider still have room for a mean over 2T x 2T pixels, in which points repeat:
+// it is that of four windows whose centres are T / 2 aside,
+//
+//   out2(p) = out(p) + f / 4 sum_q w(p, q) (out(q) - out(p)),   f = W / T - 1, 0 to 1
 //
 // Most pixels have neighbours that all see the sun, or none that does: their share is that.
 #include "filters/shadow_filter.h"
@@ -35,8 +40,8 @@ namespace ssdo::HWY_NAMESPACE {
 
 class ShadowTile {
  public:
-  /// `noisy` has the share, the weight and the width in place of shares of suns; the first of `out`
-  /// is written.
+  /// `noisy` has the share, the weight and the width in place of shares of suns; of `out` the share
+  /// and the width are written.
   ShadowTile(const Products& noisy, const Geometry& geometry, int pattern_size, const Tile& tile,
              Products& out)
       : half_(pattern_size / 2),
@@ -45,8 +50,9 @@ class ShadowTile {
         rows_(noisy, geometry.surfel, tile, half_, window(), out),
         extremes_(zeros(2 * window() * rows_.stride())),
         likeness_(zeros(window() * window() * kLanes)),
-        result_(zeros(rows_.stride())),
-        out_(out.shares.suns[0]) {}
+        result_(zeros(2 * rows_.stride())),
+        share_out_(out.shares.suns[0]),
+        width_out_(out.shares.suns[2]) {}
 
   void run() {
     int gathered = tile_.y0 - half_;
@@ -56,8 +62,13 @@ class ShadowTile {
         rows_.gather(gathered);
         find_extremes(gathered);
       }
-      for (int x = 0; x < width; x += kLanes) store(filtered(x, y), result_.get() + x);
-      std::copy_n(result_.get(), width, &out_(tile_.x0, y));
+      float *const share = result_.get(), *const of_penumbra = share + rows_.stride();
+      for (int x = 0; x < width; x += kLanes) {
+        const Filtered found = filtered(x, y);
+        store(found.share, share + x), store(found.penumbra, of_penumbra + x);
+      }
+      std::copy_n(share, width, &share_out_(tile_.x0, y));
+      std::copy_n(of_penumbra, width, &width_out_(tile_.x0, y));
     }
   }
 
@@ -89,16 +100,21 @@ class ShadowTile {
 
   static HWY_INLINE M is_surface(const Shown& p) { return dot(p.normal, p.normal) > set(0); }
 
+  /// W is 0 where all neighbours see as much.
+  struct Filtered {
+    V share, penumbra;
+  };
+
   /// A vector of pixels from column `x` of the tile on.
-  V filtered(int x, int y) const {
+  Filtered filtered(int x, int y) const {
     V low = set(2), high = set(-2);
     for (int dy = -half_; dy <= half_; ++dy) {
       low = hn::Min(low, load(least(y + dy) + x));
       high = hn::Max(high, load(largest(y + dy) + x));
     }
     const V own = load(rows_.row(y, kShare) + x + half_);
-    if (all(low >= high)) return own;
-    const V width = penumbra_width(x, y);
+    if (all(low >= high)) return {own, set(0)};
+    const V penumbra = penumbra_width(x, y), width = hn::Min(penumbra, set(most_));
     const V reach = set(0.25f) * width * (set(1) + width * set(1 / most_)) + set(0.5f);
     V sum = set(0), weights = sum;
     const float* like = likeness_.get();
@@ -111,10 +127,10 @@ class ShadowTile {
         sum = hn::MulAdd(w, load(rows_.row(y + dy, kShare) + x + half_ + dx), sum);
       }
     }
-    return hn::IfThenElse(weights > set(1e-6f), sum / weights, own);
+    return {hn::IfThenElse(weights > set(1e-6f), sum / weights, own), penumbra};
   }
 
-  /// W(p), 1 to T pixels; fills likeness_ with w.
+  /// W(p), 1 to 2T pixels; fills likeness_ with w.
   V penumbra_width(int x, int y) const {
     const Shown p = rows_.shown(y, x + half_);
     V sum = set(0), weights = sum;
@@ -135,7 +151,7 @@ class ShadowTile {
     const M sets = load(rows_.row(y, kWeight) + x + half_) <= set(0);
     const V alone = hn::IfThenElse(sets, set(most_), set(1));
     const V width = hn::IfThenElse(weights > set(1e-6f), sum / weights, alone);
-    return hn::Clamp(width, set(1), set(most_));
+    return hn::Clamp(width, set(1), set(2 * most_));
   }
 
   const int half_;
@@ -144,6 +160,56 @@ class ShadowTile {
   TileRows rows_;
   AlignedFloats extremes_;  ///< by row modulo the window: least, then largest
   AlignedFloats likeness_;  ///< w of each neighbour of a vector of pixels
+  AlignedFloats result_;    ///< share, then W
+  Plane<float>&share_out_, &width_out_;
+};
+
+/// The second pass: the mean of four windows around each pixel, as far as its penumbra is wider
+/// than one.
+class WidePenumbraTile {
+ public:
+  /// `found` has the share and W in place of shares of suns; the first of `out` is written.
+  WidePenumbraTile(const Products& found, const Geometry& geometry, int pattern_size,
+                   const Tile& tile, Products& out)
+      : half_(pattern_size / 2),
+        tile_(tile),
+        rows_(found, geometry.surfel, tile, half_, 2 * half_ + 1, out),
+        result_(zeros(rows_.stride())),
+        out_(out.shares.suns[0]) {}
+
+  void run() {
+    int gathered = tile_.y0 - half_;
+    const int width = tile_.x1 - tile_.x0;
+    for (int y = tile_.y0; y < tile_.y1; ++y) {
+      for (; gathered <= y + half_; ++gathered) rows_.gather(gathered);
+      for (int x = 0; x < width; x += kLanes) store(filtered(x, y), result_.get() + x);
+      std::copy_n(result_.get(), width, &out_(tile_.x0, y));
+    }
+  }
+
+ private:
+  V filtered(int x, int y) const {
+    constexpr int kShare = TileRows::kSurfelChannels, kPenumbra = kShare + 1;
+    const int at = x + half_;
+    const V own = load(rows_.row(y, kShare) + at),
+            part = saturate(
+                hn::MulAdd(load(rows_.row(y, kPenumbra) + at), set(0.5f / float(half_)), set(-1)));
+    if (all(part <= set(0))) return own;
+    const Shown p = rows_.shown(y, at);
+    V sum = set(0);
+    for (const int dy : {-half_, half_}) {
+      for (const int dx : {-half_, half_}) {
+        const V w = similarity(p, rows_.shown(y + dy, at + dx),
+                               [&]() HWY_ATTR { return rows_.shown(y - dy, at - dx); });
+        sum = hn::MulAdd(w, load(rows_.row(y + dy, kShare) + at + dx) - own, sum);
+      }
+    }
+    return hn::MulAdd(set(0.25f) * part, sum, own);
+  }
+
+  const int half_;
+  const Tile tile_;
+  TileRows rows_;
   AlignedFloats result_;
   Plane<float>& out_;
 };
@@ -153,6 +219,11 @@ void shadow_of_tile(const Products& noisy, const Geometry& geometry, int pattern
   ShadowTile(noisy, geometry, pattern_size, tile, out).run();
 }
 
+void wide_penumbra_of_tile(const Products& found, const Geometry& geometry, int pattern_size,
+                           const Tile& tile, Products& out) {
+  WidePenumbraTile(found, geometry, pattern_size, tile, out).run();
+}
+
 }  // namespace ssdo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -160,14 +231,21 @@ HWY_AFTER_NAMESPACE();
 namespace ssdo {
 
 HWY_EXPORT(shadow_of_tile);
+HWY_EXPORT(wide_penumbra_of_tile);
 
 Plane<float> filter_shadow(const Plane<float>& share, const ShadowDraw& draw,
                            const Geometry& geometry, int pattern_size) {
-  Products noisy, out;
+  const auto like = [&] { return Plane<float>::like(share); };
+  Products noisy, found, out;
   noisy.shares.suns = {share, draw.weight, draw.width_px};
-  out.shares.suns = {share, {}, {}};
+  found.shares.suns = {like(), {}, like()};
   for_each_tile(share.width, share.height, [&](const Tile& tile) {
-    HWY_DYNAMIC_DISPATCH(shadow_of_tile)(noisy, geometry, pattern_size, tile, out);
+    HWY_DYNAMIC_DISPATCH(shadow_of_tile)(noisy, geometry, pattern_size, tile, found);
+  });
+  found.shares.suns = {std::move(found.shares.suns[0]), std::move(found.shares.suns[2])};
+  out.shares.suns = {like(), {}};
+  for_each_tile(share.width, share.height, [&](const Tile& tile) {
+    HWY_DYNAMIC_DISPATCH(wide_penumbra_of_tile)(found, geometry, pattern_size, tile, out);
   });
   return std::move(out.shares.suns[0]);
 }

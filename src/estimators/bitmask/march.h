@@ -83,7 +83,7 @@ struct BounceJob {
 struct SunJob {
   March march;
   const std::vector<DepthBounds>& bounds;
-  const std::vector<PerMember<glm::vec3>>& directions;  ///< of each ray; unit, to points of the sun
+  const std::vector<RayDirections>& directions;  ///< of each ray; unit, to points of the sun
   const Sun* sun;
   PassBeyond pass;
   InterleavedVectors* direct;           ///< added to; null: not wanted

@@ -10,9 +10,10 @@
 
 namespace ssdo {
 
-/// A value for each member of the pattern of pixels.
-template <class T>
-using PerMember = std::array<T, Interleaving::kPeriod * Interleaving::kPeriod>;
+/// Unit directions by block of the pattern and member: the points of a sun repeat after 2 x 2
+/// blocks, row by row, so that the filter of wide penumbras sees four times as many.
+using RayDirections =
+    std::array<std::array<glm::vec3, Interleaving::kPeriod * Interleaving::kPeriod>, 4>;
 
 /// Points of a sun that have nothing to do with those of the other set.
 enum class RaySet { of_light, of_error };
@@ -21,9 +22,9 @@ enum class RaySet { of_light, of_error };
 /// falls as that of the slices does.
 int rays_to_sun(int slices);
 
-/// Unit directions to points of a sun, evenly spread: for each of `rays`, a power of two, those of
-/// the members. Another seed exchanges them.
-std::vector<PerMember<glm::vec3>> directions_to(const Sun& sun, int rays, unsigned seed,
-                                                RaySet set = RaySet::of_light);
+/// Directions to points of a sun, evenly spread in each block and in all of them, for each of
+/// `rays`, a power of two. Another seed exchanges them.
+std::vector<RayDirections> directions_to(const Sun& sun, int rays, unsigned seed,
+                                         RaySet set = RaySet::of_light);
 
 }  // namespace ssdo

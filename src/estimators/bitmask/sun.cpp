@@ -21,13 +21,26 @@ struct SunPoints {
   V cosine;
 };
 
-/// The point that a ray of a member of the pattern goes to. Where that is below the horizon of a
-/// lane, as part of a sun may be, another one.
-HWY_INLINE SunPoints points_above(const SunJob& job, const PerMember<glm::vec3>& directions,
-                                  int member, const V3& normal) {
+/// The points that the rays of a vector of pixels go to, `aside` members away from its own. Lanes
+/// are in blocks beside each other.
+HWY_INLINE V3 points_of(const MarchScene& scene, const RayDirections& directions,
+                        const Place& place, int aside) {
+  const std::size_t member =
+      std::size_t(member_at(scene, place) + aside) % directions.front().size();
+  const int row = ((place.y + scene.first_y) >> Interleaving::kShift) & 1,
+            column = (place.column + (scene.first_x >> Interleaving::kShift)) & 1;
+  const V3 even = set(directions[std::size_t(2 * row + column)][member]),
+           odd = set(directions[std::size_t(2 * row + (column ^ 1))][member]);
+  return {hn::OddEven(odd.x, even.x), hn::OddEven(odd.y, even.y), hn::OddEven(odd.z, even.z)};
+}
+
+/// The points that the rays of a vector of pixels go to. Where that is below the horizon of a lane,
+/// as part of a sun may be, another one.
+HWY_INLINE SunPoints points_above(const SunJob& job, const RayDirections& directions,
+                                  const Place& place, const V3& normal) {
   constexpr int kTries = 8, kApart = 9;  // members that lie apart in both directions
   const auto at = [&](int k) HWY_ATTR {
-    const V3 to = set(directions[std::size_t(member + kApart * k) % directions.size()]);
+    const V3 to = points_of(job.march.scene, directions, place, kApart * k);
     return SunPoints{to, dot(normal, to)};
   };
   SunPoints found = at(0);
@@ -49,7 +62,7 @@ HWY_INLINE V penumbra_px(const SunJob& job, const MarchReceiver& p, V distance) 
   const MarchScene& scene = job.march.scene;
   const V width = distance * set(2 * job.sun->angular_radius * std::max(scene.fx, scene.fy));
   const V px = kOrthographic ? width : width / (set(0) - p.position.z);
-  return hn::Clamp(px, set(1), set(float(Interleaving::kPeriod)));
+  return hn::Clamp(px, set(1), set(float(2 * Interleaving::kPeriod)));
 }
 
 /// Pixels whose rays are on their way together: a vector wide and kRows high, or what of that is in
@@ -87,13 +100,13 @@ struct SunRays {
   Ray ray;
 };
 
-HWY_INLINE SunRays sun_rays(const SunJob& job, const PerMember<glm::vec3>& directions,
+HWY_INLINE SunRays sun_rays(const SunJob& job, const RayDirections& directions,
                             const Place& place) {
   const MarchScene& scene = job.march.scene;
   SunRays rays{load_receiver(scene, place), {}, {}};
   MarchReceiver& p = rays.p;
   p.reach_px = reach_px(scene, p, job.march.radius);
-  const SunPoints points = points_above(job, directions, member_at(scene, place), p.normal);
+  const SunPoints points = points_above(job, directions, place, p.normal);
   const M above = hn::And(p.valid, points.cosine > set(0));
   rays.cosine = hn::IfThenElseZero(above, points.cosine);
   rays.ray = make_ray(scene, p, points.to, above);
@@ -110,7 +123,7 @@ void sun(const SunJob& job, const Window& part) {
       for (InterleavedPlane* sum : {job.weight, job.share, job.width_px})
         store(set(0), *sum, place.index);
     });
-    for (const PerMember<glm::vec3>& directions : job.directions) {
+    for (const RayDirections& directions : job.directions) {
       walk.clear();
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
         const SunRays rays = sun_rays(job, directions, place);

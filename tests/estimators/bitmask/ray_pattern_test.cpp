@@ -28,22 +28,27 @@ Sun soft_box() {
   return model_light(Environment(map, {}), glm::mat3(1)).suns.at(0);
 }
 
-using Directions = std::vector<PerMember<glm::vec3>>;
+using Directions = std::vector<RayDirections>;
+
+constexpr std::size_t kBlocks = std::tuple_size_v<RayDirections>,
+                      kMembers = std::tuple_size_v<RayDirections::value_type>;
 
 /// How far the mean over the rays of a pixel is off that over all, as a root mean square.
 double spread_of_pixels(const Directions& directions) {
+  const double rays = double(directions.size());
+  std::vector<glm::dvec3> means;
   glm::dvec3 all(0);
-  for (const auto& of_ray : directions)
-    for (const glm::vec3& to : of_ray) all += glm::dvec3(to);
-  const double rays = double(directions.size()), members = double(directions[0].size());
-  all /= rays * members;
-  double sum = 0;
-  for (std::size_t m = 0; m < directions[0].size(); ++m) {
-    glm::dvec3 mean(0);
-    for (const auto& of_ray : directions) mean += glm::dvec3(of_ray[m]) / rays;
-    sum += glm::dot(mean - all, mean - all);
+  for (std::size_t block = 0; block < kBlocks; ++block) {
+    for (std::size_t m = 0; m < kMembers; ++m) {
+      glm::dvec3 mean(0);
+      for (const RayDirections& of_ray : directions) mean += glm::dvec3(of_ray[block][m]) / rays;
+      means.push_back(mean), all += mean;
+    }
   }
-  return std::sqrt(sum / members);
+  all /= double(means.size());
+  double sum = 0;
+  for (const glm::dvec3& mean : means) sum += glm::dot(mean - all, mean - all);
+  return std::sqrt(sum / double(means.size()));
 }
 
 TEST(RayPattern, RaysGrowWithTheSlices) {
@@ -65,14 +70,36 @@ TEST(RayPattern, RaysOfAPixelAreSpreadMoreEvenlyThanByChance) {
   }
 }
 
-TEST(RayPattern, NeighboursAndRaysTogetherAreTheSource) {
+/// The part of a block's rays that go to one side of a line through the source, for the error of a
+/// shadow's edge: the largest difference to that of all points of the source.
+double worst_edge(const Directions& directions, const Sun& sun, std::size_t first,
+                  std::size_t blocks) {
+  const glm::dvec3 middle(sun.direction),
+      side = glm::normalize(glm::cross(middle, glm::dvec3(0.3, 0.5, 0.8))),
+      other = glm::cross(middle, side);
+  double worst = 0;
+  for (int turn = 0; turn < 16; ++turn) {
+    const double angle = turn * glm::radians(22.5);
+    const glm::dvec3 across = std::cos(angle) * side + std::sin(angle) * other;
+    double beyond = 0, count = 0;
+    for (const RayDirections& of_ray : directions) {
+      for (std::size_t block = first; block < first + blocks; ++block) {
+        for (const glm::vec3& to : of_ray[block])
+          beyond += glm::dot(glm::dvec3(to), across) > 0, count += 1;
+      }
+    }
+    worst = std::max(worst, std::abs(beyond / count - 0.5));
+  }
+  return worst;
+}
+
+TEST(RayPattern, EachBlockIsTheSourceAndAllAreItMoreFinely) {
   const Sun sun = soft_box();
   for (const int rays : {1, 2, 8}) {
-    glm::dvec3 mean(0);
     const Directions directions = directions_to(sun, rays, 5);
-    for (const auto& of_ray : directions)
-      for (const glm::vec3& to : of_ray) mean += glm::dvec3(to) / (64.0 * rays);
-    EXPECT_LT(glm::length(glm::normalize(mean) - glm::dvec3(sun.direction)), 0.01) << rays;
+    for (std::size_t block = 0; block < kBlocks; ++block)
+      EXPECT_LT(worst_edge(directions, sun, block, 1), 0.08) << rays;
+    EXPECT_LT(worst_edge(directions, sun, 0, kBlocks), 0.03) << rays;
   }
 }
 
@@ -82,16 +109,18 @@ TEST(RayPattern, NoDirectionIsTakenTwice) {
   std::set<std::tuple<float, float, float>> seen;
   std::size_t count = 0;
   const auto add = [&](const Directions& directions, std::size_t member) {
-    for (const auto& of_ray : directions) {
-      const glm::vec3 to = of_ray[member];
-      seen.insert({to.x, to.y, to.z}), count += 1;
+    for (const RayDirections& of_ray : directions) {
+      for (const auto& of_block : of_ray) {
+        const glm::vec3 to = of_block[member];
+        seen.insert({to.x, to.y, to.z}), count += 1;
+      }
     }
   };
   for (unsigned seed = 0; seed < kSeeds; ++seed) {
     add(directions_to(sun, kRays, seed), 11);
     add(directions_to(sun, kRays, seed, RaySet::of_error), 11);
   }
-  EXPECT_EQ(count, std::size_t(2 * kSeeds * kRays));
+  EXPECT_EQ(count, 2 * kSeeds * kRays * kBlocks);
   EXPECT_EQ(seen.size(), count);
 }
 
