@@ -19,7 +19,9 @@
 // Penumbras that are wider still have room for a mean over 2T x 2T pixels, in which points repeat:
 // it is that of four windows whose centres are T / 2 aside,
 //
-//   out2(p) = out(p) + f / 4 sum_q w(p, q) (out(q) - out(p)),   f = W / T - 1, 0 to 1
+//   out2(p) = out(p) + f / 4 sum_q w(p, q) (out(q) - out(p)),   f = (W / T - 1) / 3, 0 to 1
+//
+// times 8 out (1 - out), at most 1: the ends of a penumbra have no noise, and would become wider.
 //
 // Most pixels have neighbours that all see the sun, or none that does: their share is that.
 #include "filters/shadow_filter.h"
@@ -114,7 +116,7 @@ class ShadowTile {
     }
     const V own = load(rows_.row(y, kShare) + x + half_);
     if (all(low >= high)) return {own, set(0)};
-    const V penumbra = penumbra_width(x, y), width = hn::Min(penumbra, set(most_));
+    const auto [width, penumbra] = penumbra_widths(x, y);
     const V reach = set(0.25f) * width * (set(1) + width * set(1 / most_)) + set(0.5f);
     V sum = set(0), weights = sum;
     const float* like = likeness_.get();
@@ -130,10 +132,15 @@ class ShadowTile {
     return {hn::IfThenElse(weights > set(1e-6f), sum / weights, own), penumbra};
   }
 
-  /// W(p), 1 to 2T pixels; fills likeness_ with w.
-  V penumbra_width(int x, int y) const {
+  /// W(p) by widths of up to T, for the box, and of up to 4T pixels.
+  struct Widths {
+    V box, penumbra;
+  };
+
+  /// Fills likeness_ with w.
+  Widths penumbra_widths(int x, int y) const {
     const Shown p = rows_.shown(y, x + half_);
-    V sum = set(0), weights = sum;
+    V in_box = set(0), sum = in_box, weights = in_box;
     float* like = likeness_.get();
     for (int dy = -half_; dy <= half_; ++dy) {
       for (int dx = -half_; dx <= half_; ++dx, like += kLanes) {
@@ -143,15 +150,17 @@ class ShadowTile {
         store(w, like);
         const V blocked = w * load(rows_.row(y + dy, kWeight) + at) *
                           (set(1) - load(rows_.row(y + dy, kShare) + at));
+        const V width = load(rows_.row(y + dy, kWidth) + at);
         weights = weights + blocked;
-        sum = hn::MulAdd(blocked, load(rows_.row(y + dy, kWidth) + at), sum);
+        sum = hn::MulAdd(blocked, width, sum);
+        in_box = hn::MulAdd(blocked, hn::Min(width, set(most_)), in_box);
       }
     }
     // A pixel whose own ray sets has neighbours alone.
-    const M sets = load(rows_.row(y, kWeight) + x + half_) <= set(0);
+    const M sets = load(rows_.row(y, kWeight) + x + half_) <= set(0), blocks = weights > set(1e-6f);
     const V alone = hn::IfThenElse(sets, set(most_), set(1));
-    const V width = hn::IfThenElse(weights > set(1e-6f), sum / weights, alone);
-    return hn::Clamp(width, set(1), set(2 * most_));
+    const V box = hn::IfThenElse(blocks, in_box / weights, alone);
+    return {hn::Max(box, set(1)), hn::IfThenElseZero(blocks, sum / weights)};
   }
 
   const int half_;
@@ -192,8 +201,9 @@ class WidePenumbraTile {
     constexpr int kShare = TileRows::kSurfelChannels, kPenumbra = kShare + 1;
     const int at = x + half_;
     const V own = load(rows_.row(y, kShare) + at),
-            part = saturate(
-                hn::MulAdd(load(rows_.row(y, kPenumbra) + at), set(0.5f / float(half_)), set(-1)));
+            widths = load(rows_.row(y, kPenumbra) + at) * set(0.5f / float(half_)),
+            inside = saturate(set(8) * own * (set(1) - own)),
+            part = saturate((widths - set(1)) * set(1.0f / 3)) * inside;
     if (all(part <= set(0))) return own;
     const Shown p = rows_.shown(y, at);
     V sum = set(0);

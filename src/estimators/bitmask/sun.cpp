@@ -62,7 +62,7 @@ HWY_INLINE V penumbra_px(const SunJob& job, const MarchReceiver& p, V distance) 
   const MarchScene& scene = job.march.scene;
   const V width = distance * set(2 * job.sun->angular_radius * std::max(scene.fx, scene.fy));
   const V px = kOrthographic ? width : width / (set(0) - p.position.z);
-  return hn::Clamp(px, set(1), set(float(2 * Interleaving::kPeriod)));
+  return hn::Clamp(px, set(1), set(float(4 * Interleaving::kPeriod)));
 }
 
 /// Pixels whose rays are on their way together: a vector wide and kRows high, or what of that is in
