@@ -5,9 +5,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <iterator>
+#include <map>
 #include <vector>
 
 #include "estimators/bitmask/request.h"
+#include "estimators/bitmask/slice_pattern.h"
 #include "filters/registry.h"
 #include "filters/shares.h"
 #include "scene/light/painted_map.h"
@@ -52,21 +56,34 @@ double noise(const Geometry& g, const Environment& map) {
   return std::sqrt(variance / double(pixels)) / (sum / double(pixels));
 }
 
-/// A room without its front wall, and a box and a ball in it.
-Geometry room() {
-  const Surface scene = all_of(
-      {plane({0, 0, 0}, {0, 0, 1}), plane({0, 2, 0}, {0, -1, 0}), plane({-1.5, 0, 0}, {1, 0, 0}),
-       plane({1.5, 0, 0}, {-1, 0, 0}), plane({0, 0, 2}, {0, 0, -1}),
-       Box{{-0.9, 0.4, 0}, {-0.1, 1.2, 1.1}}.surface(), sphere({0.7, 0.3, 0.5}, 0.5)});
-  const Camera camera =
-      look_at(camera_from_fov(60, kWindow, 1), {0, -3, 1.2}, {0, 2, 0.9}, {0, 0, 1});
-  return geometry_of(scene, camera, kWindow);
-}
-
-TEST(BitmaskNoise, OfTheSkyInARoom) {
-  const double found = noise(room(), Environment::constant(glm::vec3(1)));
-  fmt::print("noise of the sky in a room: {:.4f}\n", found);
-  EXPECT_LT(found, 0.03);
+/// A sample at the end of a direction stands for neighbouring directions and distances alike, if
+/// those of neighbouring directions lie at other distances.
+TEST(BitmaskNoise, NeighbouringDirectionsHaveSamplesAtOtherDistances) {
+  const Window window{0, 0, 4000, 900};
+  const double diagonal = std::hypot(4000, 900);
+  const Interleaving layout(window.width(), window.height(), 0);
+  const SlicePattern pattern(layout, window, 1, 1, 0);
+  std::map<double, double> start_by_angle;
+  for (int m = 0; m < Interleaving::kPeriod * Interleaving::kPeriod; ++m) {
+    const Slice& slice = pattern.member(m % Interleaving::kPeriod, m / Interleaving::kPeriod)[0];
+    ASSERT_FALSE(slice.sides[0].steps.empty());
+    const SliceStep& step = slice.sides[0].steps[0];
+    const double distance = std::hypot(step.dx, step.dy);
+    // The inverse of march_distance(), by bisection.
+    double low = 0, high = 1;
+    for (int i = 0; i < 40; ++i)
+      (march_distance((low + high) / 2, diagonal) < distance ? low : high) = (low + high) / 2;
+    start_by_angle[std::atan2(slice.dy, slice.dx)] = low;
+  }
+  ASSERT_EQ(start_by_angle.size(), 64u);
+  int compared = 0;
+  for (auto it = start_by_angle.begin(); std::next(it) != start_by_angle.end(); ++it) {
+    const double one = it->second, other = std::next(it)->second;
+    if (std::min(one, other) < 0.3) continue;  // nearer ones are moved by rounding to pixels
+    EXPECT_GT(std::abs(one - other), 0.2) << "at " << it->first;
+    compared += 1;
+  }
+  EXPECT_GT(compared, 15);
 }
 
 TEST(BitmaskNoise, OfAWidePenumbra) {
@@ -78,7 +95,7 @@ TEST(BitmaskNoise, OfAWidePenumbra) {
       512, [&](const glm::vec3& d) { return glm::vec3(in_disc(d, to, 20) ? 8 : 0); }, 2);
   const double found = noise(geometry_of(scene, camera, kWindow), map);
   fmt::print("noise of a wide penumbra: {:.4f}\n", found);
-  EXPECT_LT(found, 0.03);
+  EXPECT_LT(found, 0.014);
 }
 
 }  // namespace
