@@ -33,6 +33,7 @@ struct BitmaskRequest {
   int bounces = 0;
   Plane<glm::vec3> radiance = {};
   Window receivers = {};
+  unsigned seed = 0;
 };
 
 inline Products run(const Geometry& geometry, const BitmaskRequest& request) {
@@ -45,6 +46,7 @@ inline Products run(const Geometry& geometry, const BitmaskRequest& request) {
                                    {.products = products,
                                     .radius = request.radius,
                                     .bounces = request.bounces,
+                                    .seed = request.seed,
                                     .slices = request.slices,
                                     .steps = request.steps,
                                     .extend_offscreen = request.extend,

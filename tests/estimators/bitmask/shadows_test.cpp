@@ -290,5 +290,27 @@ TEST(BitmaskShadows, AnotherSeedLooksAtOtherPoints) {
   EXPECT_LT(rms(16), 0.3 * rms(1));
 }
 
+/// Noise of a filtered penumbra is seen as soft clouds as wide as the pattern.
+TEST(BitmaskShadows, AWidePenumbraHasLittleNoise) {
+  const Surface scene = all_of({ground(), Box{{-2, 0, 0}, {2, 0.25, 1.6}}.surface()});
+  const Geometry g = geometry_of(scene, from_above(), kWindow);
+  const Environment map = Disc{glm::normalize(glm::dvec3(0.3, 0.8, 0.8)), 20}.map();
+  constexpr int kSeeds = 8;
+  std::vector<Plane<glm::vec3>> of_seeds;
+  for (unsigned k = 0; k < kSeeds; ++k) of_seeds.push_back(lit(g, map, 256 * k).direct);
+  double variance = 0, sum = 0;
+  for (std::size_t i = 0; i < of_seeds[0].size(); ++i) {
+    double mean = 0;
+    for (const auto& of_seed : of_seeds) mean += double(of_seed[i].x) / kSeeds;
+    for (const auto& of_seed : of_seeds)
+      variance += std::pow(double(of_seed[i].x) - mean, 2) / (kSeeds - 1);
+    sum += mean;
+  }
+  const double pixels = double(of_seeds[0].size());
+  const double noise = std::sqrt(variance / pixels) / (sum / pixels);
+  fmt::print("noise of a wide penumbra: {:.4f} of the light\n", noise);
+  EXPECT_LT(noise, 0.014);
+}
+
 }  // namespace
 }  // namespace ssdo::test

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A march of few steps against one that visits every pixel.
+// A march of few steps against one that visits every pixel, and where its steps are.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <iterator>
+#include <map>
+
 #include "estimators/bitmask/request.h"
+#include "estimators/bitmask/slice_pattern.h"
 
 namespace ssdo::test {
 namespace {
@@ -49,6 +54,36 @@ TEST(BitmaskSteps, FewSeeAsMuchAsMany) {
       EXPECT_LT(rms, 0.02) << scene.name << ", " << view;
     }
   }
+}
+
+/// A sample at the end of a direction stands for neighbouring directions and distances alike, if
+/// those of neighbouring directions lie at other distances.
+TEST(BitmaskSteps, NeighbouringDirectionsHaveSamplesAtOtherDistances) {
+  const Window window{0, 0, 4000, 900};
+  const double diagonal = std::hypot(4000, 900);
+  const Interleaving layout(window.width(), window.height(), 0);
+  const SlicePattern pattern(layout, window, 1, 1, 0);
+  std::map<double, double> start_by_angle;
+  for (int m = 0; m < Interleaving::kPeriod * Interleaving::kPeriod; ++m) {
+    const Slice& slice = pattern.member(m % Interleaving::kPeriod, m / Interleaving::kPeriod)[0];
+    ASSERT_FALSE(slice.sides[0].steps.empty());
+    const SliceStep& step = slice.sides[0].steps[0];
+    const double distance = std::hypot(step.dx, step.dy);
+    // The inverse of march_distance(), by bisection.
+    double low = 0, high = 1;
+    for (int i = 0; i < 40; ++i)
+      (march_distance((low + high) / 2, diagonal) < distance ? low : high) = (low + high) / 2;
+    start_by_angle[std::atan2(slice.dy, slice.dx)] = low;
+  }
+  ASSERT_EQ(start_by_angle.size(), 64u);
+  int compared = 0;
+  for (auto it = start_by_angle.begin(); std::next(it) != start_by_angle.end(); ++it) {
+    const double one = it->second, other = std::next(it)->second;
+    if (std::min(one, other) < 0.3) continue;  // nearer ones are moved by rounding to pixels
+    EXPECT_GT(std::abs(one - other), 0.2) << "at " << it->first;
+    compared += 1;
+  }
+  EXPECT_GT(compared, 15);
 }
 
 }  // namespace
