@@ -11,7 +11,6 @@
 
 #include "estimators/bitmask/moments-inl.h"
 #include "estimators/bitmask/side-inl.h"
-#include "scene/same_surface-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -138,36 +137,17 @@ void gather_light(const BounceJob& job, const Window& part) {
       });
 }
 
-/// How much a neighbour, (dx, dy) pixels away, is on the receiver's surface: the weight of
-/// scene/same_surface.h, but for the plane all or nothing.
-template <bool kOrthographic>
-HWY_INLINE V likeness(const MarchScene& scene, const MarchReceiver& p, std::ptrdiff_t q, int dx,
-                      int dy) {
-  const V depth = load(scene.depth(), q);
-  const M valid = hn::And(p.valid, holds_solid(depth));
-  V x = p.slope_x + set(float(dx) / scene.fx), y = p.slope_y - set(float(dy) / scene.fy);
-  if constexpr (!kOrthographic) x = x * depth, y = y * depth;
-  const V3 to_q = V3{x, y, set(0) - depth} - p.position;
-  const M near = within_sine(dot(to_q, p.normal), dot(to_q, to_q), kPlaneSine);
-  const V cosine = dot(p.normal, load(scene.normal, q));
-  return hn::IfThenElseZero(hn::And(valid, near), normal_weight(cosine));
-}
-
 /// Calls `visit(index, dx, dy)` for the pixels around a place that march.
 template <class Visit>
 HWY_INLINE void for_each_gatherer(const MarchScene& scene, int spacing, const Place& place,
                                   const Visit& visit) {
-  constexpr int kPeriod = Interleaving::kPeriod;
   const Interleaving& layout = scene.layout;
   const int off_x = place.column_phase & (spacing - 1),
             off_y = (place.y + scene.first_y) & (spacing - 1);
   for (int dy = -off_y; dy <= off_y; dy += spacing) {
     if (place.y + dy < 0 || place.y + dy >= layout.height()) continue;
     for (int dx = -off_x; dx <= off_x; dx += spacing) {
-      const int column_phase = place.column_phase + dx;
-      visit(layout.index(place.y + dy, column_phase & (kPeriod - 1),
-                         place.column + (column_phase >> Interleaving::kShift)),
-            dx, dy);
+      visit(index_beside(layout, place, dx, dy), dx, dy);
     }
   }
 }

@@ -17,6 +17,7 @@
 #include "estimators/bitmask/march.h"
 #include "estimators/bitmask/slice_sectors.h"
 #include "estimators/receiver-inl.h"
+#include "scene/same_surface-inl.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -68,6 +69,14 @@ struct Place {
   std::ptrdiff_t index;
   int y, column_phase, column;
 };
+
+/// Index of the pixels (dx, dy) away, no more than kPeriod.
+HWY_INLINE std::ptrdiff_t index_beside(const Interleaving& layout, const Place& place, int dx,
+                                       int dy) {
+  const int column_phase = place.column_phase + dx;
+  return layout.index(place.y + dy, column_phase & (Interleaving::kPeriod - 1),
+                      place.column + (column_phase >> Interleaving::kShift));
+}
 
 /// Receivers among the pixels of MarchScene. Their normals are bent to face the viewer. The march
 /// is bounded by the surface itself, with `normal`; what it finds is weighed by the cosine to
@@ -142,6 +151,21 @@ template <bool kOrthographic>
 HWY_INLINE V height_above(const MarchReceiver& p, V rise, V depth) {
   if constexpr (kOrthographic) return rise + (p.plane - depth);
   return hn::MulAdd(depth, rise, p.plane);
+}
+
+/// How much a neighbour, (dx, dy) pixels away, is on the receiver's surface: the weight of
+/// scene/same_surface.h, but for the plane all or nothing.
+template <bool kOrthographic>
+HWY_INLINE V likeness(const MarchScene& scene, const MarchReceiver& p, std::ptrdiff_t q, int dx,
+                      int dy) {
+  const V depth = load(scene.depth(), q);
+  const M valid = hn::And(p.valid, holds_solid(depth));
+  V x = p.slope_x + set(float(dx) / scene.fx), y = p.slope_y - set(float(dy) / scene.fy);
+  if constexpr (!kOrthographic) x = x * depth, y = y * depth;
+  const V3 to_q = V3{x, y, set(0) - depth} - p.position;
+  const M near = within_sine(dot(to_q, p.normal), dot(to_q, to_q), kPlaneSine);
+  const V cosine = dot(p.normal, load(scene.normal, q));
+  return hn::IfThenElseZero(hn::And(valid, near), normal_weight(cosine));
 }
 
 /// Distance in the picture beyond which no point can be within `radius` of a receiver. A view ray

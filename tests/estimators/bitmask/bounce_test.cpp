@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "estimators/bitmask/request.h"
+#include "support/boxes.h"
 
 namespace ssdo::test {
 namespace {
@@ -154,6 +156,43 @@ TEST(BitmaskBounce, FewSlicesKeepToTheirSurface) {
                expected.x, found.z, expected.z);
     EXPECT_LT(glm::length(found - expected), 0.1 * glm::length(expected)) << x;
   }
+}
+
+/// What a filter leaves of the noise: that of means over the pattern.
+TEST(BitmaskBounce, HasLittleNoise) {
+  // A room that is lit through its roof, half of which is missing.
+  const auto back_half = [](const glm::dvec3& p) { return p.y > 0.5; };
+  const Surface room = all_of({plane({0, 0, 0}, {0, 0, 1}), plane({0, 3, 0}, {0, -1, 0}),
+                               plane({-2, 0, 0}, {1, 0, 0}), plane({2, 0, 0}, {-1, 0, 0}),
+                               cut(plane({0, 0, 3}, {0, 0, -1}), back_half)});
+  const Camera camera =
+      look_at(camera_from_fov(90, kWindow, 1), {0.1, -2.5, 1.6}, {0, 2, 1}, {0, 0, 1});
+  const Geometry g = geometry_of(room, camera, kWindow);
+  constexpr int kSeeds = 8, kPattern = 8;
+  std::vector<Products> of_seeds;
+  for (unsigned seed = 0; seed < kSeeds; ++seed)
+    of_seeds.push_back(
+        run(g, {.radius = kNoLimit, .slices = 2, .steps = 16, .bounces = 1, .seed = seed}));
+  double variance = 0, sum = 0;
+  int blocks = 0;
+  for (int y = 0; y + kPattern <= kWindow.height(); y += kPattern) {
+    for (int x = 0; x + kPattern <= kWindow.width(); x += kPattern, ++blocks) {
+      const auto mean_of = [&](const Products& out) {
+        double mean = 0;
+        for (int i = 0; i < kPattern * kPattern; ++i)
+          mean += double(out.bounce(x + i % kPattern, y + i / kPattern).x);
+        return mean / (kPattern * kPattern);
+      };
+      double mean = 0;
+      for (const Products& out : of_seeds) mean += mean_of(out) / kSeeds;
+      for (const Products& out : of_seeds)
+        variance += std::pow(mean_of(out) - mean, 2) / (kSeeds - 1);
+      sum += mean;
+    }
+  }
+  const double noise = std::sqrt(variance / blocks) / (sum / blocks);
+  fmt::print("noise of the bounce: {:.4f} of its mean\n", noise);
+  EXPECT_LT(noise, 0.028);
 }
 
 TEST(BitmaskBounce, InAClosedBoxNothingOutshinesTheSky) {
