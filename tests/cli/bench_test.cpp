@@ -218,6 +218,16 @@ TEST_F(Bench, RefusesWhatItCannotMeasure) {
   EXPECT_THAT(missing.error_line(), HasSubstr("none.exr"));
 }
 
+/// It measures no composite, so that none of the layers of one are needed.
+TEST_F(Bench, NeedsNoLayersOfComposites) {
+  for (const char* compose : {"occlude", "add"}) {
+    const Finished done = run_tool(
+        {"bench", frame_.frame, "--methods", "msvo", "--products", "ao", "--compose", compose});
+    EXPECT_EQ(done.code, 0) << done.err;
+    EXPECT_THAT(done.err, HasSubstr("--compose has no effect: bench measures no composite"));
+  }
+}
+
 TEST_F(Bench, KeepsReportsThatExist) {
   std::ofstream(path("r.csv")) << "precious";
   fails({"--report", path("r.csv")}, 5, "r.csv");
