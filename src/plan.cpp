@@ -9,6 +9,7 @@
 #include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <utility>
 
 #include "composite_choice.h"
 #include "error.h"
@@ -71,6 +72,30 @@ void set_by_option(Plan& plan, const std::string& name, std::optional<int> value
   }
   check_value(*parameter, *value, fmt::format("--{} {}", name, *value));
   plan.request.parameters[name] = *value;
+}
+
+/// A filter that averages a map alone, as products with the surfaces that the map shows.
+MapFilter map_filter(const Filter& filter, int pattern_size) {
+  return [&filter, pattern_size](Plane<float> map, Plane<Surfel> surfel) {
+    Geometry shown;
+    shown.surfel = std::move(surfel);
+    Products products;
+    products.ao = std::move(map);
+    return apply_filter(filter, std::move(products), shown, pattern_size).ao;
+  };
+}
+
+void choose_filter(Plan& plan, const std::string& name) {
+  plan.filter = &find_filter(name, *plan.method);
+  if (name != kSourceFilter) return;
+  const SourceFilter& of_source = plan.method->source_filter;
+  const bool half =
+      of_source.at_half_resolution && of_source.at_half_resolution(plan.request.parameters);
+  plan.reasons.push_back(fmt::format("filter {}: that of the method's source{}", plan.filter->name,
+                                     half ? ", on the map at half resolution" : ""));
+  if (!half) return;
+  plan.half_filter = std::exchange(plan.filter, &find_filter("none"));
+  plan.request.filter_half = map_filter(*plan.half_filter, plan.method->pattern_size / 2);
 }
 
 void explain_reflection(Plan& plan, const Scene& scene) {
@@ -235,7 +260,7 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
   plan.request.parameters = resolve_parameters(*plan.method, model.set);
   set_by_option(plan, "slices", model.slices, model);
   set_by_option(plan, "steps", model.steps, model);
-  plan.filter = &find_filter(model.filter);
+  choose_filter(plan, model.filter);
   plan.temporal = model.temporal;
   plan.request.seed = model.seed;
   plan.error = model.error;
@@ -306,7 +331,7 @@ nlohmann::json to_json(const Plan& plan, const std::vector<std::string>& history
                       {"products", plan.make},
                       {"bounces", plan.request.bounces},
                       {"samples_per_pixel", plan.samples_per_pixel()},
-                      {"filter", plan.filter->name},
+                      {"filter", plan.filter_name()},
                       {"temporal", plan.temporal},
                       {"reasons", reasons}};
   if (contains(plan.make, "composite")) j["compose"] = name_of(plan.composition.compose);

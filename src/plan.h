@@ -45,17 +45,19 @@ struct ModelOptions {
   std::optional<double> error;       ///< largest standard error of direct + bounce
   int bounces = 1;                   ///< 0 to 8
   unsigned seed = 0;
-  std::vector<std::string> set;  ///< NAME=VALUE of the method
-  std::string filter = "geometry";
-  bool temporal = false;  ///< frames of a sequence share what they find
+  std::vector<std::string> set;     ///< NAME=VALUE of the method
+  std::string filter = "geometry";  ///< may be kSourceFilter
+  bool temporal = false;            ///< frames of a sequence share what they find
 };
 
 /// What will be computed for a frame, and why.
 struct Plan {
   const Method* method = nullptr;
-  Request request;                   ///< what the method is asked for
-  std::optional<double> error;       ///< to stay below
-  const Filter* filter = nullptr;    ///< after the estimate
+  Request request;                 ///< what the method is asked for
+  std::optional<double> error;     ///< to stay below
+  const Filter* filter = nullptr;  ///< after the estimate
+  /// Of the map at half resolution, by Request::filter_half; null where there is none.
+  const Filter* half_filter = nullptr;
   bool temporal = false;             ///< then the mean with the frames before
   std::vector<std::string> make;     ///< products for any of the outputs
   std::vector<std::string> write;    ///< those that every EXR of -o holds, in their order there
@@ -64,6 +66,8 @@ struct Plan {
   std::vector<std::string> reasons;  ///< one line per decision
 
   int samples_per_pixel() const;
+  /// Of the filter that takes away the noise of the pattern, wherever that happens.
+  std::string_view filter_name() const { return (half_filter ? half_filter : filter)->name; }
 };
 
 /// Decides from what was asked for and what the frame shows: work that cannot change a product

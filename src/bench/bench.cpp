@@ -61,7 +61,7 @@ class Bench {
     report_.stages = frame_.times;
     report_.processor = processor_name();
     report_.processors = processor_count();
-    report_.filter = frame_.plan.filter->name;
+    report_.filter = job_.frame.model.filter;
   }
 
   void choose_methods() {

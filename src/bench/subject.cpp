@@ -97,6 +97,7 @@ Subject read_subject(const BenchJob& job, std::vector<RunFile> inputs) {
   FrameOptions prepared = job.frame;
   prepared.model.method = thorough_method().name;
   prepared.output.products.clear();
+  prepared.output.compose.reset();  // no composite is measured
   const Lighting light(prepared.light);
   FurtherPictures pictures;
   subject.frame = prepare_frame(prepared, light, pictures,

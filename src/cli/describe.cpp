@@ -136,7 +136,7 @@ std::string describe(const Frame& frame) {
   line("plan", fmt::format("{}: {} ({} samples per pixel, {} bounce(s), filter {}{})",
                            fmt::join(frame.plan.make, ", "), frame.plan.method->name,
                            frame.plan.samples_per_pixel(), frame.plan.request.bounces,
-                           frame.plan.filter->name, frame.plan.temporal ? " and temporal" : ""));
+                           frame.plan.filter_name(), frame.plan.temporal ? " and temporal" : ""));
   for (const std::string& reason : frame.plan.reasons) line("", reason);
   for (const std::string& line_of_history : frame.history) line("", line_of_history);
   for (const std::string& warning : warnings_of(frame)) line("warning", warning);

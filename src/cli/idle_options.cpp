@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "composite_choice.h"
 #include "estimators/registry.h"
 #include "io/image_file.h"
 
@@ -43,6 +44,27 @@ bool is_deep_picture(const std::string& path) {
   return is_picture(path) && ending.find_first_of("jJ") == ending.npos;
 }
 
+/// Whether a file holds one of these products; an EXR holds all if no products are named.
+bool asks_for(const Options& o, const std::vector<std::string_view>& products) {
+  const OutputOptions& output = o.output;
+  const auto is_one = [&](std::string_view name) {
+    return name == kAllProducts || std::ranges::find(products, name) != products.end();
+  };
+  if (std::ranges::any_of(output.saves, is_one, &SaveRequest::product)) return true;
+  if (output.files.empty() && !output.saves.empty()) return false;
+  if (!output.products.empty()) return std::ranges::any_of(output.products, is_one);
+  return output.files.empty() || std::ranges::any_of(output.files, is_exr);
+}
+
+/// Whether all that is made is as it is without these products: occlude takes how much of the light
+/// arrives, and --error measures direct + bounce.
+Condition occlude_without(const std::vector<std::string_view>& products) {
+  return [products](const Options& o) {
+    return o.command != Command::bench && !o.model.error &&
+           choose_compose(o.output, o.input.aovs) == Compose::occlude && !asks_for(o, products);
+  };
+}
+
 const std::vector<IdleRule>& rules() {
   static const std::vector<IdleRule> all = {
       {{"--motion-scale"},
@@ -59,6 +81,12 @@ const std::vector<IdleRule>& rules() {
          return o.command != Command::bench && !method_of(o).products.bounce;
        },
        "the method makes no bounce"},
+      {{"--bounces"},
+       occlude_without({"bounce", "error"}),
+       "composite occlude does not use it, and no output has bounce"},
+      {{"--env-exposure"},
+       occlude_without({"direct", "bounce", "error"}),
+       "composite occlude takes the share of the light that arrives, and no output has light"},
       {{"--seed"},
        [](const Options& o) {
          return o.command != Command::bench && method_of(o).ladder.seeds == 1;

@@ -197,9 +197,14 @@ void add_model(CLI::App& app, ModelOptions& o) {
   Text filter_list;
   for (const Filter& filter : filters())
     filter_list += fmt::format("\n{}: {}", filter.name, filter.summary);
+  filter_list += fmt::format("\n{}: that of the method's source, in its order", kSourceFilter);
   group
       .text(
-          "--filter", "NAME", [&](const Text& text) { o.filter = find_filter(text).name; },
+          "--filter", "NAME",
+          [&](const Text& text) {
+            find_filter(text, methods().front());
+            o.filter = text;
+          },
           "of the sampling pattern:" + filter_list)
       ->default_str(o.filter);
   group.flag("--temporal", o.temporal,

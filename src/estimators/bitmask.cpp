@@ -370,6 +370,7 @@ Method bitmask_method() {
                 .march = true,
                 .receivers = true},
       .pattern_size = Interleaving::kPeriod,
+      .source_filter = {"geometry"},
       .parameters = {kRoughness},
       .samples_per_pixel = [](const Request& r) { return 2 * r.slices * r.steps; },
       .estimate = estimate,

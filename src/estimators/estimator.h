@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -30,6 +31,9 @@ inline constexpr Parameter kRoughness = {
 
 using ParameterValues = std::map<std::string, double, std::less<>>;
 
+/// A filter of a map of ao. `surfel` has the size of the map: what each of its pixels shows.
+using MapFilter = std::function<Plane<float>(Plane<float> map, Plane<Surfel> surfel)>;
+
 /// What is asked of a method.
 struct Request {
   ProductSet products;
@@ -42,6 +46,8 @@ struct Request {
   int slices = 2;                ///< per pixel
   int steps = 16;                ///< per side of a slice, from one pixel to the frame's diagonal
   bool extend_offscreen = true;  ///< surfaces go on beyond the frame
+  /// Of a method that makes ao at half resolution: between that and the upsampling. May be empty.
+  MapFilter filter_half = {};
   /// Pixels that gather, within the geometry's window: products have its size, and all of the
   /// geometry blocks and sends. Area 0: the whole window.
   Window receivers = {};
@@ -56,12 +62,20 @@ struct Takes {
   bool receivers = false;       ///< Request::receivers; without it, all pixels gather
 };
 
+/// The filter with which a method's source ends.
+struct SourceFilter {
+  std::string_view name;  ///< of a row in the table of filters
+  /// Whether it is Request::filter_half for these parameters; null: always after the estimate.
+  bool (*at_half_resolution)(const ParameterValues&) = nullptr;
+};
+
 /// A row in the table of methods.
 struct Method {
   std::string_view name, summary;
   ProductSet products;  ///< what it can make
   Takes takes;
   int pattern_size = 1;  ///< its noise repeats every pattern_size pixels
+  SourceFilter source_filter;
   std::vector<Parameter> parameters = {};
   int (*samples_per_pixel)(const Request&) = nullptr;
   Products (*estimate)(const Scene&, const Request&, const Progress&) = nullptr;

@@ -292,6 +292,7 @@ Method gtao_method() {
       .products = {.ao = true, .direct = true, .bent = true, .reflection = true},
       .takes = {.radius = true},
       .pattern_size = kPattern,
+      .source_filter = {"geometry"},
       .parameters =
           {
               {"slices", 2, 1, 64, "", "per pixel", true},

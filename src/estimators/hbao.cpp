@@ -230,6 +230,7 @@ Method hbao_method() {
       .products = {.ao = true, .direct = true},
       .takes = {.radius = true},
       .pattern_size = TiledNoise::kSize,
+      .source_filter = {"normal"},
       .parameters =
           {
               {"steps", 3, 1, 256, "", "taps in each of the four directions", true},

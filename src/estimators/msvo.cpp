@@ -180,6 +180,7 @@ Method msvo_method() {
       .products = {.ao = true, .direct = true},
       .takes = {},
       .pattern_size = 1,
+      .source_filter = {"none"},
       .parameters =
           {
               {"intensity", 1, 0, 4, "", "gain of the obscurance"},

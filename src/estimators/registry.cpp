@@ -127,7 +127,11 @@ std::string describe_methods() {
       if (product.in && method.products.*product.in)
         products += (products.empty() ? "" : ", ") + std::string(product.name);
     }
-    text += fmt::format("{}  {}\n  products: {}\n", method.name, method.summary, products);
+    text += fmt::format("{}  {}\n  products: {}\n  source filter: {}{}\n", method.name,
+                        method.summary, products, method.source_filter.name,
+                        method.source_filter.at_half_resolution
+                            ? ", on the map at half resolution before it goes up"
+                            : "");
     for (const Parameter& p : method.parameters) {
       text += fmt::format("  {:<20} {:>8}  {} {}  {}\n", p.name, describe_default(p),
                           describe_range(p), p.unit, p.meaning);

@@ -195,6 +195,7 @@ Method sao_method() {
       .products = {.ao = true, .direct = true},
       .takes = {.radius = true},
       .pattern_size = 4,
+      .source_filter = {"depth"},
       .parameters =
           {
               {"samples", 11, 1, 1024, "", "taps per pixel", true},

@@ -112,6 +112,7 @@ Method ssao_method() {
       .products = {.ao = true, .direct = true},
       .takes = {.radius = true},
       .pattern_size = TiledNoise::kSize,
+      .source_filter = {"box"},
       .parameters =
           {
               {"samples", 64, 1, 1024, "", "points per pixel", true},

@@ -10,7 +10,8 @@
 // v_i point to the corners and faces of a cube, m is a random vector of a 4 x 4 pattern. r_i, the
 // potential occluder, is the point of the ray from the viewer through q_i at the depth of the
 // surface that is seen there; z is negative in front of the viewer. ao is evaluated at half width
-// and half height and upsampled bilinearly, or along surfaces, or evaluated at every pixel.
+// and half height and upsampled bilinearly, or along surfaces, or evaluated at every pixel. The
+// source blurs what it has at half resolution before it goes up: Request::filter_half.
 //
 // With distance to the viewer the effect can be taken back, from all of it at distance-start to
 // none at distance-end: the source's advice where depth is too coarse for wide scenes.
@@ -170,6 +171,7 @@ Products estimate_ssao_fade(const Scene& scene, const Request& request, const Pr
   };
   Plane<float> access = find_openness(receivers, progress, find);
   shape(request.parameters, receivers, access);
+  if (half && request.filter_half) access = request.filter_half(std::move(access), half->surfels());
   return products_of_ao(scene, request,
                         !half                     ? std::move(access)
                         : upsampling == kBilinear ? half->upsample_bilinear(access)
@@ -188,6 +190,8 @@ Method ssao_fade_method() {
       .products = {.ao = true, .direct = true},
       .takes = {.radius = true},
       .pattern_size = 2 * TiledNoise::kSize,
+      .source_filter = {"gaussian",
+                        [](const ParameterValues& p) { return int(p.at("upsampling")) != kNone; }},
       .parameters =
           {
               {"epsilon", 0.1, 0, 100, "radii",

@@ -112,6 +112,7 @@ Method ssao_range_method() {
       .products = {.ao = true, .direct = true},
       .takes = {.radius = true},
       .pattern_size = TiledNoise::kSize,
+      .source_filter = {"normal"},
       .parameters =
           {
               {"samples", 64, 1, 1024, "", "points per pixel", true},

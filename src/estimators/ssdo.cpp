@@ -266,6 +266,7 @@ Method ssdo_method() {
       .products = {.ao = true, .direct = true, .bounce = true},
       .takes = {.radius = true},
       .pattern_size = kPatternSize,
+      .source_filter = {"geometry"},
       .parameters =
           {
               {"samples", 16, 1, 1024, "", "points per pixel", true},

@@ -383,6 +383,7 @@ Method trace_method() {
                        .guessed = true},
           .takes = {.radius = true, .endless_radius = true, .thickness = true},
           .pattern_size = 1,
+          .source_filter = {"none"},
           .parameters = {{"samples", 64, kGroups, 65536, "rays", "per pixel and bounce", true},
                          kRoughness},
           .samples_per_pixel = [](const Request& r) { return int(r.parameters.at("samples")); },

@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "filters/box_filter.h"
+#include "filters/depth_filter.h"
 #include "filters/gaussian_filter.h"
 #include "filters/geometry_filter.h"
 #include "filters/normal_filter.h"
@@ -14,11 +15,12 @@
 namespace ssdo {
 
 std::span<const Filter> filters() {
-  static const std::array<Filter, 5> all = {{
+  static const std::array<Filter, 6> all = {{
       {"none", "leaves the sampling pattern", nullptr},
       {"box", "mean over the pattern, across edges", filter_box, 4},
       {"gaussian", "Gaussian within a depth and a cone of normals", filter_gaussian, 15},
       {"normal", "seven taps, by normals", filter_normal, 3},
+      {"depth", "nine taps two pixels apart, by depth", filter_depth, 8},
       {"geometry", "mean over the pattern on one surface", filter_geometry, 8},
   }};
   return all;
@@ -28,10 +30,14 @@ const Filter& find_filter(std::string_view name) {
   std::string names;
   for (const Filter& filter : filters()) {
     if (filter.name == name) return filter;
-    names += (names.empty() ? "" : ", ") + std::string(filter.name);
+    names += std::string(filter.name) + ", ";
   }
-  throw Error(ExitCode::usage,
-              fmt::format("--filter {}: no such filter; there is {}", name, names));
+  throw Error(ExitCode::usage, fmt::format("--filter {}: no such filter; there is {}{}", name,
+                                           names, kSourceFilter));
+}
+
+const Filter& find_filter(std::string_view name, const Method& method) {
+  return find_filter(name == kSourceFilter ? method.source_filter.name : name);
 }
 
 Products apply_filter(const Filter& filter, Products noisy, const Geometry& geometry,

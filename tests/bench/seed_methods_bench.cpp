@@ -46,7 +46,7 @@ struct FilterRow {
 };
 
 const FilterRow kFilterRows[] = {
-    {"box", 16}, {"gaussian", 3 * 22}, {"normal", 14}, {"geometry", 16}};
+    {"box", 16}, {"gaussian", 3 * 22}, {"normal", 14}, {"depth", 18}, {"geometry", 16}};
 
 void count_samples(benchmark::State& state, double samples) {
   using benchmark::Counter;

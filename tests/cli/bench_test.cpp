@@ -119,6 +119,24 @@ TEST_F(Bench, NoiseGoesDownAndTraceIsTheYardstick) {
   EXPECT_EQ(report["surface_pixels"], 32 * (24 - BenchFrame::kSky));
 }
 
+/// Limits have no filter, whichever is asked for.
+TEST_F(Bench, MeasuresEveryMethodWithTheFilterOfItsSource) {
+  const auto with = [&](const std::string& filter) {
+    return report_of({"bench", frame_.frame, "--methods", "ssao-fade,sao", "--products", "ao",
+                      "--filter", filter, "-q"});
+  };
+  const json source = with("source"), none = with("none");
+  EXPECT_EQ(source["filter"], "source");
+  EXPECT_EQ(source["limits"], none["limits"]);
+  ASSERT_EQ(source["rows"].size(), none["rows"].size());
+  for (std::size_t i = 0; i < source["rows"].size(); ++i) {
+    const json& row = source["rows"][i];
+    EXPECT_THAT(std::string(row["command"]), HasSubstr(" --filter source "));
+    EXPECT_NE(row["errors"]["ao"]["noise"], none["rows"][i]["errors"]["ao"]["noise"])
+        << row["method"] << " " << row["setting"];
+  }
+}
+
 TEST_F(Bench, CsvAndTableSayWhatJsonSays) {
   const Finished done = run_tool(with_truth(
       {"--report", path("r.csv"), "--report", path("r.json"), "--products", "ao,direct"}));
@@ -198,6 +216,16 @@ TEST_F(Bench, RefusesWhatItCannotMeasure) {
   const Finished missing = run_tool({"bench", path("none.exr")});
   EXPECT_EQ(missing.code, 3);
   EXPECT_THAT(missing.error_line(), HasSubstr("none.exr"));
+}
+
+/// It measures no composite, so that none of the layers of one are needed.
+TEST_F(Bench, NeedsNoLayersOfComposites) {
+  for (const char* compose : {"occlude", "add"}) {
+    const Finished done = run_tool(
+        {"bench", frame_.frame, "--methods", "msvo", "--products", "ao", "--compose", compose});
+    EXPECT_EQ(done.code, 0) << done.err;
+    EXPECT_THAT(done.err, HasSubstr("--compose has no effect: bench measures no composite"));
+  }
 }
 
 TEST_F(Bench, KeepsReportsThatExist) {

@@ -97,12 +97,12 @@ TEST_F(Config, AValueThatTheOptionDoesNotTakeIsRefusedWithItsLine) {
 TEST_F(Config, EveryKindOfValueIsTaken) {
   write(
       "\xef\xbb\xbfslices = 3\r\n# by a Windows editor\r\nradius = 0.25\nbounces = \"0\"\n"
-      "products = [\"ao\", \"bent\"]\nfilter = 'none'\ntemporal = false\nthickness = inf\n");
+      "products = [\"ao\", \"bent\"]\nfilter = 'source'\ntemporal = false\nthickness = inf\n");
   const json plan = info()["plan"];
   EXPECT_EQ(plan["slices"], 3);
   EXPECT_NEAR(plan["radius"].get<double>(), 0.25, 1e-6);
   EXPECT_EQ(plan["products"], json({"ao", "bent"}));
-  EXPECT_EQ(plan["filter"], "none");
+  EXPECT_EQ(plan["filter"], "geometry") << "that of the source of bitmask";
   EXPECT_THAT(plan["reasons"].dump(), HasSubstr("thickness inf: as given"));
 
   write(

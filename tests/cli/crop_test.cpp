@@ -67,13 +67,15 @@ class Crop : public testing::Test {
 
 TEST_F(Crop, PixelsOfTheDisplayWindowKeepTheirBits) {
   const std::string sky = data("environments/sky.exr");
-  for (const char* filter : {"none", "box", "gaussian", "normal", "geometry"}) {
+  for (const char* filter : {"none", "box", "gaussian", "normal", "depth", "geometry"}) {
     SCOPED_TRACE(filter);
     expect_cropped({"--env", sky, "--env-up", "z", "--filter", filter, "--products",
                     "ao,bent,direct,bounce,composite"});
   }
   expect_cropped({"--env", sky, "--products", "all", "--bounces", "2"});
   expect_cropped({"--method", "ssdo", "--products", "all"});
+  for (const char* method : {"bitmask", "trace", "ssao-fade", "sao"})
+    expect_cropped({"--method", method, "--filter", "source", "--products", "ao,direct"});
 }
 
 TEST_F(Crop, OfADataWindowThatCoversPartOfTheDisplayWindow) {

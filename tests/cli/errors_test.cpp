@@ -82,7 +82,7 @@ TEST(Refusals, OfTheCommandLine) {
       {{"--env-rotate", "nan"}, "--env-rotate"},
       {{"--env-exposure", "nan"}, "--env-exposure"},
       {{"--background-depth", "nan"}, "--background-depth"},
-      {{"--filter", "blur"}, "--filter"},
+      {{"--filter", "blur"}, "depth, geometry, source"},
       {{"--products", "ao,glow"}, "'glow'"},
       {{"--products", "ao,direct", "-o", std::string(dir / "p.png")}, "--save PRODUCT=FILE"},
       {{"--save", "ao"}, "PRODUCT=FILE"},

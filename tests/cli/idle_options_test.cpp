@@ -73,6 +73,43 @@ TEST_F(IdleOptions, AreWarnedOf) {
   EXPECT_THAT(save.error_line(), HasSubstr("--products has no effect"));
 }
 
+/// Composite occlude takes how much of the light arrives: neither how bright it is nor bounces.
+TEST_F(IdleOptions, OfLightInCompositeOccludeAreWarnedOf) {
+  const std::string sky = data("environments/sky.exr");
+  const auto errors = [&](std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {data("still_life.exr"), "--overwrite", "--dry-run", "--env", sky,
+                                 "--aov", "ambient=" + data("still_life_beauty.exr") + ":Ambient"});
+    return run_tool(flags).err;
+  };
+  struct Case {
+    const char* option;
+    std::vector<std::string> outputs;
+    bool idle;
+  };
+  const std::string png = path("o.png"), exr = path("o.exr"), ao = "ao=" + png;
+  const Case cases[] = {
+      {"--bounces", {"-o", png}, true},
+      {"--bounces", {"-o", exr, "--products", "composite,direct"}, true},
+      {"--bounces", {"-o", exr, "--products", "composite,bounce"}, false},
+      {"--bounces", {"-o", exr}, false},
+      {"--bounces", {"-o", png, "--save", "bounce=" + exr}, false},
+      {"--bounces", {"-o", png, "--compose", "relight"}, false},
+      {"--env-exposure", {"-o", png}, true},
+      {"--env-exposure", {"--save", ao}, true},
+      {"--env-exposure", {"-o", exr, "--products", "composite,direct"}, false},
+      {"--env-exposure", {"-o", exr, "--products", "all"}, false},
+      {"--env-exposure", {"-o", png, "--compose", "relight"}, false},
+  };
+  for (const Case& c : cases) {
+    std::vector<std::string> flags = c.outputs;
+    flags.insert(flags.end(), {c.option, "2"});
+    SCOPED_TRACE(testing::PrintToString(flags));
+    const std::string says = std::string("warning: ") + c.option + " has no effect";
+    EXPECT_EQ(errors(flags).find(says) != std::string::npos, c.idle) << errors(flags);
+    EXPECT_THAT(errors(c.outputs), testing::Not(HasSubstr(says))) << "it is not given";
+  }
+}
+
 TEST_F(IdleOptions, WithAnEffectAreNot) {
   for (const std::vector<std::string>& flags :
        {std::vector<std::string>{"--env", data("environments/sky.exr"), "--env-rotate", "30",

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cstdio>
+#include <iterator>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -104,6 +105,36 @@ TEST(ManPage, HasTheParametersOfTheMethods) {
     ++count;
   }
   EXPECT_GT(count, 0);
+}
+
+/// The commands of SYSTEMS OF THE SOURCES, each as words.
+std::vector<std::vector<std::string>> commands_of_sources() {
+  std::string text = std::regex_replace(page(kMethods), std::regex(R"(\\e\n)"), " ");
+  text = text.substr(std::min(text.find(".SH SYSTEMS OF THE SOURCES"), text.size()));
+  std::istringstream lines(text);
+  std::vector<std::vector<std::string>> commands;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("ssdo ")) continue;
+    std::istringstream words(line);
+    commands.emplace_back(std::istream_iterator<std::string>(words),
+                          std::istream_iterator<std::string>());
+  }
+  return commands;
+}
+
+TEST(ManPage, ItsCommandsForTheSystemsOfTheSourcesRun) {
+  const auto commands = commands_of_sources();
+  EXPECT_EQ(commands.size(), 9u) << "one for each system, and two of ssao";
+  for (const std::vector<std::string>& command : commands) {
+    SCOPED_TRACE(testing::PrintToString(command));
+    EXPECT_THAT(command, testing::IsSupersetOf({"--method", "--filter", "source"}));
+    std::vector<std::string> arguments(command.begin() + 1, command.end());
+    arguments.push_back("--dry-run");
+    const Finished done = run_tool(arguments, {.folder = SSDO_SOURCE_DIR});
+    EXPECT_EQ(done.code, 0) << done.err;
+    EXPECT_THAT(done.err, testing::HasSubstr(": that of the method's source"));
+    EXPECT_THAT(done.err, testing::Not(testing::HasSubstr("warning")));
+  }
 }
 
 TEST(ManPage, RendersWithoutWarnings) {

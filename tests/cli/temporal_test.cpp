@@ -177,11 +177,47 @@ TEST(TemporalRuns, DoNotTakeMotionToAFrameThatIsNotTheLast) {
 TEST(Filters, AreNamedInThePlan) {
   const TempDir dir;
   write_sequence(dir, 0);
-  for (const std::string name : {"none", "box", "gaussian", "normal", "geometry"}) {
+  for (const std::string name : {"none", "box", "gaussian", "normal", "depth", "geometry"}) {
     const Finished done = run_tool({"info", dir / "in.5.exr", "--json", "--filter", name});
     ASSERT_EQ(done.code, 0) << done.err;
     EXPECT_EQ(parse_json(done.out)["plan"]["filter"], name);
   }
+}
+
+TEST(Filters, OfTheSourceAreNamedInThePlanAndTheListing) {
+  const TempDir dir;
+  write_sequence(dir, 0);
+  for (const auto& [method, filter] : {std::pair{"ssao-fade", "gaussian"}, {"sao", "depth"}}) {
+    const std::vector<std::string> words = {"info",   dir / "in.5.exr", "--filter",
+                                            "source", "--method",       method};
+    const Finished done = run_tool(words);
+    EXPECT_THAT(done.out, HasSubstr("filter " + std::string(filter) + ")"));
+    EXPECT_THAT(done.out, HasSubstr("filter " + std::string(filter) + ": that of the method's"));
+    std::vector<std::string> json_words = words;
+    json_words.push_back("--json");
+    EXPECT_EQ(parse_json(run_tool(json_words).out)["plan"]["filter"], filter);
+  }
+  EXPECT_THAT(run_tool({"--list-methods"}).out,
+              HasSubstr("\n  source filter: gaussian, on the map"));
+}
+
+/// The filter at half resolution is part of each frame, before the mean over frames.
+TEST(Filters, OfTheSourceGoWithTemporal) {
+  const TempDir dir;
+  write_sequence(dir, 0);
+  const std::vector<std::string> source = {"--method", "ssao-fade", "--filter", "source"};
+  const auto run = [&](const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {dir / "in.@.exr", "-o", dir / (out + ".@.exr"),
+                                      "--pixel-type", "float"};
+    words.insert(words.end(), source.begin(), source.end());
+    words.insert(words.end(), more.begin(), more.end());
+    ASSERT_EQ(run_tool(words).code, 0);
+  };
+  run("mean", {"--temporal", "--frames", "5-6"});
+  for (const std::string frame : {"5", "6"}) run("alone", {"--frames", frame, "--seed", frame});
+  const Plane<float> mean = ao(dir, "mean.6"), a = ao(dir, "alone.5"), b = ao(dir, "alone.6");
+  EXPECT_NE(a.pixels, b.pixels);
+  for (std::size_t i = 0; i < mean.size(); ++i) EXPECT_NEAR(mean[i], (a[i] + b[i]) / 2, 1e-5);
 }
 
 }  // namespace

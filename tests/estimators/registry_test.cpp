@@ -156,6 +156,13 @@ TEST(Methods, AreListedWithTheirProducts) {
   EXPECT_THAT(describe_methods(), HasSubstr("\n  products: ao, bent, reflection, direct\n"));
 }
 
+TEST(Methods, AreListedWithTheFiltersOfTheirSources) {
+  EXPECT_THAT(describe_methods(), HasSubstr("products: ao, direct\n  source filter: box\n"));
+  EXPECT_THAT(describe_methods(),
+              HasSubstr("products: ao, direct\n  source filter: gaussian, on the map at half "
+                        "resolution before it goes up\n"));
+}
+
 TEST(Parameters, AreWrittenByTheirWordsWhereTheyHaveSome) {
   const Method& hbao = find_method("hbao");
   EXPECT_EQ(resolve_parameters(hbao, {}).at("horizon"), 1);

@@ -3,37 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include "estimators/view_space/point_method_request.h"
+#include "estimators/slow_ssao_fade.h"
 
 namespace ssdo::test {
 namespace {
 
 const Window kWindow{0, 0, 96, 72};
 const std::vector<std::string> kEveryPixel = {"upsampling=0"};
-
-/// The formula with the defaults, sample by sample, in double. Noise (column, row).
-double slow_ssao_fade(const Geometry& g, int x, int y, int column, int row, double radius) {
-  const Surfel& s = g.surfel(x, y);
-  if (!s.is_surface()) return 1;
-  const glm::dvec3 p(s.position), n(s.normal);
-  const glm::dvec3 m(fade_noise(0)[std::size_t((row & 3) * 4 + (column & 3))]);
-  double sum = 0;
-  for (const glm::vec3& v : fade_offsets(0)) {
-    const glm::dvec3 offset = glm::dvec3(v) - 2 * glm::dot(glm::dvec3(v), m) * m;
-    const double flip = glm::dot(offset, n) < 0 ? -1 : 1;
-    const glm::dvec3 q = p + flip * radius * offset;
-    double z;
-    if (!depth_at(g, q, z)) continue;
-    const glm::dvec3 r = g.camera.orthographic ? glm::dvec3(q.x, q.y, z) : q * (z / q.z);
-    const double distance = r.z - p.z;
-    if (!(distance > 0.1 * radius + s.rounding)) continue;
-    const double fade = std::min(std::max((2 * radius - distance) / (1.6 * radius), 0.0), 1.0);
-    sum += std::max(glm::dot(n, glm::normalize(r - p)), 0.0) * fade;
-  }
-  return std::pow(1 - sum / 14, 2.0);
-}
 
 Geometry room(const Camera& projection, const Window& window = kWindow) {
   return geometry_of(room_with_a_ball(), tilted(projection, 55), window);
@@ -64,28 +43,43 @@ TEST(SsaoFade, IsTheSlowEvaluation) {
 TEST(SsaoFade, HalfResolutionIsTheSlowEvaluationUpsampled) {
   const Window odd{0, 0, 93, 71};
   const Geometry g = room(camera_from_fov(50, odd, 1), odd);
-  const int columns = 47, rows = 36;
-  Plane<double> half(columns, rows);
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) {
-      half(x, y) = slow_ssao_fade(g, std::min(2 * x + 1, 92), std::min(2 * y + 1, 70), x, y, 0.8f);
-    }
-  }
-  const auto at = [&](int x, int y) {
-    return half(std::clamp(x, 0, columns - 1), std::clamp(y, 0, rows - 1));
-  };
+  const Plane<double> half = slow_half_map(g, 0.8f);
   const Products out = run(ssao_fade_method(), g, {.radius = 0.8f});
   expect_close(
-      out.ao,
-      [&](int x, int y) {
-        // The place of the pixel's centre among the centres of 2 x 2 pixels.
-        const double u = (x + 0.5) / 2 - 0.5, v = (y + 0.5) / 2 - 0.5;
-        const int i = int(std::floor(u)), j = int(std::floor(v));
-        const double a = u - i, b = v - j;
-        return (1 - b) * ((1 - a) * at(i, j) + a * at(i + 1, j)) +
-               b * ((1 - a) * at(i, j + 1) + a * at(i + 1, j + 1));
-      },
-      1e-4, 0.01);
+      out.ao, [&](int x, int y) { return slow_bilinear(half, x, y); }, 1e-4, 0.01);
+}
+
+/// Each upsampling has the filter before it; without upsampling there is no map to filter.
+TEST(SsaoFade, TheMapAtHalfResolutionIsFilteredBeforeItGoesUp) {
+  const Window odd{0, 0, 93, 71};
+  const Geometry g = room(camera_from_fov(50, odd, 1), odd);
+  int calls = 0;
+  const auto filter = [&](Plane<float> map, const Plane<Surfel>& surfel) {
+    ++calls;
+    EXPECT_EQ(map.width, 47);
+    EXPECT_EQ(map.height, 36);
+    for (int y = 0; y < map.height; ++y) {
+      for (int x = 0; x < map.width; ++x) {
+        const glm::ivec2 pixel = sampled_pixel(g, x, y);
+        EXPECT_EQ(surfel(x, y).position, g.surfel(pixel.x, pixel.y).position);
+        map(x, y) = 0.25f;
+      }
+    }
+    return map;
+  };
+  const Method method = ssao_fade_method();
+  for (const auto& [upsampling, filters] : {std::pair{0, false}, {1, true}, {2, true}}) {
+    calls = 0;
+    const Request request{
+        .products = {.ao = true},
+        .radius = 0.8f,
+        .parameters = resolve_parameters(method, {"upsampling=" + std::to_string(upsampling)}),
+        .filter_half = filter};
+    const Plane<float> ao = method.estimate(scene_of(g), request, {}).ao;
+    EXPECT_EQ(calls, int(filters)) << upsampling;
+    const bool flat = std::ranges::all_of(ao.pixels, [](float a) { return a == 0.25f; });
+    EXPECT_EQ(flat, filters) << upsampling;
+  }
 }
 
 TEST(SsaoFade, AnOpenPlaneThatFacesTheViewerReadsOne) {

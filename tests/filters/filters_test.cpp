@@ -2,15 +2,15 @@
 //
 // What holds for every filter: the same result from every instruction set, any number of threads
 // and any crop, and a background that does not spread.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <limits>
 
-#include "error.h"
 #include "filters/registry.h"
 #include "parallel/tiles.h"
 #include "support/chosen_isa.h"
 #include "support/crop.h"
+#include "support/error_matchers.h"
 #include "support/random_frame.h"
 
 namespace ssdo::test {
@@ -109,7 +109,10 @@ TEST(Filters, AreFoundByNameAndNoneChangesNothing) {
   const Products in = random_products(g, 14);
   EXPECT_EQ(filtered("none", in, g).ao.pixels, in.ao.pixels);
   EXPECT_NE(filtered("geometry", in, g).ao.pixels, in.ao.pixels);
-  EXPECT_THROW(find_filter("blur"), Error);
+  EXPECT_THAT(error_of([] { find_filter("blur"); }),
+              IsError(ExitCode::usage,
+                      "--filter blur: no such filter; there is none, box, "
+                      "gaussian, normal, depth, geometry, source"));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Box, Gaussian and normal filter, each against its source's sum, and where they cross edges.
+// Box, Gaussian, normal and depth filter, each against its source's sum, and where they cross
+// edges.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +18,7 @@ namespace {
 
 constexpr int kPattern = 4;
 
-const char* const kFilters[] = {"box", "gaussian", "normal"};
+const char* const kFilters[] = {"box", "gaussian", "normal", "depth"};
 
 Products filtered(std::string_view name, const Products& in, const Geometry& g) {
   return apply_filter(find_filter(name), in, g, kPattern);
@@ -72,6 +73,16 @@ Plane<glm::dvec3> slow(std::string_view name, Plane<glm::dvec3> plane, const Geo
       return same ? std::exp(-(dx * dx + dy * dy) / (2 * 2.5 * 2.5)) : 0.0;
     };
     for (int round = 0; round < 3; ++round) pass(5, 0, weight), pass(0, 5, weight);
+  } else if (name == "depth") {
+    const Weight weight = [](const Surfel& p, const Surfel& q, int dx, int dy) {
+      const double gaussian[] = {0.15317, 0.144893, 0.122649, 0.092902, 0.06297};
+      const int offset = std::abs(dx + dy);
+      if (offset % 2 != 0) return 0.0;
+      const double apart = std::abs(double(p.position.z) - double(q.position.z)) / 300;
+      return (offset > 0 ? 0.3 + gaussian[offset / 2] : gaussian[0]) *
+             std::max(0.0, 1 - 2000 * apart);
+    };
+    pass(8, 0, weight), pass(0, 8, weight);
   } else {
     const Weight weight = [](const Surfel& p, const Surfel& q, int dx, int dy) {
       const double taps[] = {0.37004405286, 0.31718061674, 0.19823788546, 0.11453744493};
@@ -178,12 +189,22 @@ TEST(WindowFilters, CrossAnEdgeOfDepthAsTheirSourcesDo) {
   }
 }
 
+TEST(DepthFilter, CrossesEdgesOfLessThanItsReachInDepth) {
+  for (const auto& [height, crosses] : {std::pair{0.16, false}, std::pair{0.14, true}}) {
+    const Geometry g = raised_half(height, 8);
+    const Products in =
+        step(g, [&](const Surfel& s) { return s.position.z > float(height / 2 - 8); });
+    EXPECT_EQ(pixels_that_changed("depth", in, g) > 0, crosses) << height;
+  }
+}
+
 TEST(WindowFilters, CrossAnEdgeOfNormalsAsTheirSourcesDo) {
   const Geometry corner =
       geometry_of(all_of({plane({}, {0, 0, 1}), plane({}, {0, -1, 0})}),
                   look_at(camera_from_fov(40, kWindow, 1), {0, -4, 4}, {}, {0, 0, 1}), kWindow);
   const Products in = step(corner, [](const Surfel& s) { return s.normal.y > 0.5f; });
   EXPECT_GE(pixels_that_changed("box", in, corner), 3u * 64);
+  EXPECT_GE(pixels_that_changed("depth", in, corner), 3u * 64) << "normals do not count";
   EXPECT_EQ(pixels_that_changed("normal", in, corner), 0u);
   EXPECT_EQ(pixels_that_changed("gaussian", in, corner), 0u);
 }

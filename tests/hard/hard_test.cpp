@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+#include "estimate.h"
 #include "filters/registry.h"
 #include "filters/temporal.h"
 #include "hard/every_method.h"
@@ -66,6 +67,18 @@ std::vector<std::string> settings_of(const Method& method) {
   return method.is_reference ? std::vector<std::string>{"samples=16"} : std::vector<std::string>{};
 }
 
+/// ssao-fade with the filter of its source, which is at half resolution.
+Products fade_with_its_filter(const HardFrame& frame) {
+  const Scene scene = scene_of(frame.geometry, frame.environment);
+  ModelOptions model;
+  model.method = "ssao-fade";
+  model.radius = frame.radius;
+  model.filter = kSourceFilter;
+  OutputOptions output;
+  output.products = {"ao", "direct"};
+  return estimate(scene, make_plan(model, output, scene, {}, ""), [](double) {}, {}).products;
+}
+
 class HardCases : public testing::TestWithParam<HardCase> {
  protected:
   const HardFrame frame_ = GetParam().make();
@@ -119,6 +132,7 @@ TEST_P(HardCases, ThroughEveryFilter) {
   };
   for (const Filter& filter : filters())
     check(filter.name, [&] { return apply_filter(filter, clean, frame_.geometry, 4); });
+  check(kSourceFilter, [&] { return fade_with_its_filter(frame_); });
   check("temporal", [&] {
     History history = accumulate(nullptr, frame_.geometry, clean);
     history.geometry = frame_.geometry;

@@ -107,7 +107,8 @@ HalfResolution::Taps make_taps(int count, int first) {
 }  // namespace
 
 HalfResolution::HalfResolution(const Geometry& geometry, const ViewPlanes& full)
-    : full_(full),
+    : geometry_(geometry),
+      full_(full),
       columns_(make_taps(full.width(), full.first_column)),
       rows_(make_taps(full.height(), full.first_row)),
       receivers_(half_count(full.width(), full.first_column),
@@ -116,21 +117,30 @@ HalfResolution::HalfResolution(const Geometry& geometry, const ViewPlanes& full)
   receivers_.orthographic = full.orthographic;
   receivers_.first_column = full.first_column >> 1;
   receivers_.first_row = full.first_row >> 1;
-  std::vector<int> columns;
-  for (int x = 0; x < width; ++x)
-    columns.push_back(sampled_pixel(x, full.width(), full.first_column));
-  const auto row = [&](int y) { return sampled_pixel(y, full.height(), full.first_row); };
   receivers_.rays_x.assign(std::size_t(receivers_.layout.stride), 0.0f);
   receivers_.rays_y.assign(std::size_t(height) + PaddedLayout::kPad, 0.0f);
   for (int x = 0; x < width; ++x)
-    receivers_.rays_x[std::size_t(x + PaddedLayout::kPad)] = full.ray_x()[columns[std::size_t(x)]];
+    receivers_.rays_x[std::size_t(x + PaddedLayout::kPad)] = full.ray_x()[column(x)];
   for (int y = 0; y < height; ++y)
     receivers_.rays_y[std::size_t(y + PaddedLayout::kPad)] = full.ray_y()[row(y)];
   for_each_row(height, [&](int y) {
     receivers_.clear_row(y);
-    const Surfel* surfel = &geometry.surfel(0, row(y));
-    for (int x = 0; x < width; ++x) receivers_.set(x, y, surfel[columns[std::size_t(x)]]);
+    for (int x = 0; x < width; ++x) receivers_.set(x, y, geometry.surfel(column(x), row(y)));
   });
+}
+
+int HalfResolution::column(int x) const {
+  return sampled_pixel(x, full_.width(), full_.first_column);
+}
+
+int HalfResolution::row(int y) const { return sampled_pixel(y, full_.height(), full_.first_row); }
+
+Plane<Surfel> HalfResolution::surfels() const {
+  Plane<Surfel> out(receivers_.width(), receivers_.height());
+  for_each_row(out.height, [&](int y) {
+    for (int x = 0; x < out.width; ++x) out(x, y) = geometry_.surfel(column(x), row(y));
+  });
+  return out;
 }
 
 Plane<float> HalfResolution::upsample_bilinear(const Plane<float>& half) const {

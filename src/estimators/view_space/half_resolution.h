@@ -12,12 +12,15 @@ namespace ssdo {
 /// ends before it, its neighbour in the window.
 class HalfResolution {
  public:
-  /// `full` are planes of the frame; they have to live as long as this.
+  /// `full` are planes of the frame; both have to live as long as this.
   HalfResolution(const Geometry& geometry, const ViewPlanes& full);
 
   /// The pixels that are evaluated, with their own rays. Only receivers: points are projected to
   /// the full planes.
   const ViewPlanes& receivers() const { return receivers_; }
+
+  /// What those pixels show, for filters of values at half resolution.
+  Plane<Surfel> surfels() const;
 
   /// Bilinear upsampling of values at half resolution, as textures have it: it takes a value to
   /// lie in the middle of its 2 x 2 pixels and knows nothing of edges. Background: 1.
@@ -36,6 +39,11 @@ class HalfResolution {
   };
 
  private:
+  /// The column, and the row, of the frame that one of the half frame is evaluated at.
+  int column(int x) const;
+  int row(int y) const;
+
+  const Geometry& geometry_;
   const ViewPlanes& full_;
   Taps columns_, rows_;
   ViewPlanes receivers_;
