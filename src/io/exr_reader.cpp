@@ -17,6 +17,7 @@
 #include "io/exr_parts.h"
 #include "io/one_line.h"
 #include "io/size_guard.h"
+#include "io/zip_lines.h"
 
 namespace ssdo {
 namespace {
@@ -76,8 +77,15 @@ void read_pixels(Imf::MultiPartInputFile& file, const ExrPart& part,
 }
 
 void read_or_fail(const ExrReader& reader, const ExrPart& part,
-                  const Imf::FrameBuffer& frame_buffer) {
+                  std::span<const ChannelRows> channels) {
   try {
+    if (read_zip_lines(reader.file(), part, channels)) return;
+    Imf::FrameBuffer frame_buffer;
+    for (const auto& [channel, pixels, as_float] : channels) {
+      frame_buffer.insert(channel.name, Imf::Slice::Make(as_float ? Imf::FLOAT : channel.type,
+                                                         pixels, part.header.dataWindow(), 0, 0,
+                                                         channel.x_sampling, channel.y_sampling));
+    }
     read_pixels(reader.file(), part, frame_buffer);
   } catch (const std::exception& error) {
     throw_damaged(reader, part, error);
@@ -115,7 +123,7 @@ std::vector<Plane<float>> ExrReader::read(int index, Names names) const {
   const ExrPart& part = flat_part(*this, index);
   check_size(*this, part, names.size());
   std::vector<Plane<float>> planes;
-  Imf::FrameBuffer frame_buffer;
+  std::vector<ChannelRows> rows;
   for (const std::string& name : names) {
     const ExrChannel& channel = find_channel(*this, part, name);
     if (channel.x_sampling != 1 || channel.y_sampling != 1) {
@@ -124,10 +132,9 @@ std::vector<Plane<float>> ExrReader::read(int index, Names names) const {
                               name, label(part), channel.x_sampling, channel.y_sampling));
     }
     planes.emplace_back(part.data_window.width(), part.data_window.height());
-    frame_buffer.insert(
-        name, Imf::Slice::Make(Imf::FLOAT, planes.back().pixels.data(), part.header.dataWindow()));
+    rows.push_back({channel, reinterpret_cast<std::byte*>(planes.back().pixels.data()), true});
   }
-  read_or_fail(*this, part, frame_buffer);
+  read_or_fail(*this, part, rows);
   fill_repeated(names, planes);
   return planes;
 }
@@ -136,15 +143,13 @@ std::vector<StoredChannel> ExrReader::read_stored(int index, Names names) const 
   const ExrPart& part = flat_part(*this, index);
   check_size(*this, part, names.size());
   std::vector<StoredChannel> stored;
-  Imf::FrameBuffer frame_buffer;
+  std::vector<ChannelRows> rows;
   for (const std::string& name : names) {
     const ExrChannel& channel = find_channel(*this, part, name);
     stored.push_back({channel, std::vector<std::byte>(stored_bytes(part, channel))});
-    frame_buffer.insert(
-        name, Imf::Slice::Make(channel.type, stored.back().pixels.data(), part.header.dataWindow(),
-                               0, 0, channel.x_sampling, channel.y_sampling));
+    rows.push_back({channel, stored.back().pixels.data(), false});
   }
-  read_or_fail(*this, part, frame_buffer);
+  read_or_fail(*this, part, rows);
   fill_repeated(names, stored);
   return stored;
 }

@@ -11,6 +11,7 @@
 #include <half.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "error.h"
 #include "io/checked_file.h"
@@ -18,6 +19,7 @@
 #include "io/exr_parts.h"
 #include "io/exr_stream.h"
 #include "io/one_line.h"
+#include "io/zip_output.h"
 
 namespace ssdo {
 namespace {
@@ -189,11 +191,14 @@ std::size_t round_to_half(std::span<const float> values, half* rounded) {
   return clamped;
 }
 
-/// Writes the window of `out` of planes and channels, which are all over the data window of `part`.
-std::size_t write_strips(Imf::OutputPart& out, const ExrPart& part,
-                         const std::vector<ExrPlane>& planes,
+/// Takes the next rows of a file.
+using WriteRows = std::function<void(const Imf::FrameBuffer&, int rows)>;
+
+/// Writes `window` of planes and channels, which are all over the data window of `part`.
+std::size_t write_strips(const WriteRows& write_rows, const Imath::Box2i& window,
+                         const ExrPart& part, const std::vector<ExrPlane>& planes,
                          const std::vector<KeptChannel>& kept) {
-  const Imath::Box2i window = out.header().dataWindow(), full = part.header.dataWindow();
+  const Imath::Box2i full = part.header.dataWindow();
   const auto columns = std::size_t(window.max.x - window.min.x + 1);
   std::vector<std::vector<half>> strips(planes.size());
   std::size_t clamped = 0;
@@ -221,9 +226,29 @@ std::size_t write_strips(Imf::OutputPart& out, const ExrPart& part,
                             Imf::Slice::Make(Imf::FLOAT, pixels.pixels.data(), full));
       }
     }
+    write_rows(frame_buffer, rows);
+  }
+  return clamped;
+}
+
+std::size_t write_strips(Imf::OutputPart& out, const ExrPart& part,
+                         const std::vector<ExrPlane>& planes,
+                         const std::vector<KeptChannel>& kept) {
+  const auto write_rows = [&](const Imf::FrameBuffer& frame_buffer, int rows) {
     out.setFrameBuffer(frame_buffer);
     out.writePixels(rows);
-  }
+  };
+  return write_strips(write_rows, out.header().dataWindow(), part, planes, kept);
+}
+
+/// A file with one part.
+std::size_t write_zip(Imf::OStream& stream, const Imf::Header& header, const ExrOutput& output,
+                      const std::vector<KeptChannel>& kept) {
+  ZipOutput out(stream, header);
+  const std::size_t clamped = write_strips(
+      [&](const Imf::FrameBuffer& frame_buffer, int rows) { out.write(frame_buffer, rows); },
+      header.dataWindow(), part_of(output), output.planes, kept);
+  out.finish();
   return clamped;
 }
 
@@ -243,6 +268,8 @@ std::size_t write_parts(CheckedFile& checked, const SafeFile& file, const ExrOut
                         const std::vector<KeptChannel>& kept) {
   const std::vector<Imf::Header> headers = headers_for(output, kept);
   ExrStream stream(checked, file.temporary().string());
+  if (headers.size() == 1 && ZipOutput::takes(headers.front()))
+    return write_zip(stream, headers.front(), output, kept);
   Imf::MultiPartOutputFile exr(stream, headers.data(), int(headers.size()));
   if (!output.keep_channels) {
     Imf::OutputPart part(exr, 0);

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/zip_lines.h"
+
+#include <ImfChannelList.h>
+#include <ImfInputPart.h>
+#include <half.h>
+#include <libdeflate.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+
+#include "io/exr_parts.h"
+#include "io/zip_chunk.h"
+#include "parallel/tiles.h"
+
+namespace ssdo {
+namespace {
+
+/// Sums up the differences of consecutive bytes, eight at a time: the even and the odd bytes of a
+/// word are four lanes of 16 bits each, and a product with ones has the sum of the first k of them
+/// in its k-th lane.
+void sum_differences(std::byte* bytes, std::size_t count) {
+  constexpr std::uint64_t kLanes = 0x00ff00ff00ff00ff, kOnes = 0x0001000100010001,
+                          kOffsets = 0x8080808080808080;
+  std::uint64_t sum = 0x80;  // the first byte has no offset
+  std::size_t i = 0;
+  for (; i + 8 <= count; i += 8) {
+    std::uint64_t word;
+    std::memcpy(&word, bytes + i, 8);
+    word ^= kOffsets;  // modulo 256, as adding or subtracting 128
+    const std::uint64_t even = (word & kLanes) * kOnes, odd = ((word >> 8) & kLanes) * kOnes,
+                        before = sum * kOnes;
+    const std::uint64_t sums =
+        ((even + (odd << 16) + before) & kLanes) | (((even + odd + before) & kLanes) << 8);
+    sum = (sum + ((even + odd) >> 48)) & 0xff;
+    std::memcpy(bytes + i, &sums, 8);
+  }
+  for (; i < count; ++i) {
+    sum += std::uint64_t(bytes[i]) ^ 0x80;
+    bytes[i] = std::byte(sum & 0xff);
+  }
+}
+
+/// Bytes of a chunk, in pixel order or with the even ones before the odd ones.
+struct ChunkBytes {
+  const std::byte* bytes;
+  std::size_t count;
+  bool split;
+
+  /// Those from `begin` on, which is even, as `length` is.
+  void copy(std::size_t begin, std::size_t length, std::byte* to) const {
+    if (!split) {
+      std::memcpy(to, bytes + begin, length);
+      return;
+    }
+    const std::byte *even = bytes + begin / 2, *odd = even + count / 2;
+    for (std::size_t i = 0; i < length / 2; ++i) to[2 * i] = even[i], to[2 * i + 1] = odd[i];
+  }
+};
+
+class ZipLines {
+ public:
+  ZipLines(Imf::MultiPartInputFile& file, const ExrPart& part,
+           std::span<const ChannelRows> channels)
+      : lines_(file, part.index),
+        window_(part.data_window),
+        chunk_rows_(rows_of_chunk(part.header.compression())) {
+    for (const ExrChannel& channel : part.channels) {
+      for (const ChannelRows& wanted : channels) {
+        if (wanted.channel.name == channel.name) wanted_.push_back({wanted, line_bytes_});
+      }
+      line_bytes_ += bytes_of(channel.type) * columns();
+    }
+  }
+
+  bool read() {
+    std::atomic<bool> sound = true;
+    const auto chunks = std::size_t((window_.height() + chunk_rows_ - 1) / chunk_rows_);
+    for_each_task(chunks, [&](std::size_t k) {
+      if (sound && !read_chunk(window_.y0 + int(k) * chunk_rows_)) sound = false;
+    });
+    return sound;
+  }
+
+ private:
+  struct Wanted {
+    ChannelRows rows;
+    std::size_t offset;  ///< in a line
+  };
+
+  std::size_t columns() const { return std::size_t(window_.width()); }
+
+  /// False for a chunk that is missing or damaged.
+  bool read_chunk(int y) const {
+    const int rows = std::min(chunk_rows_, window_.y1 - y);
+    const std::size_t size = std::size_t(rows) * line_bytes_;
+    // OpenEXR refuses chunks that are larger than all lines of one.
+    const auto packed =
+        std::make_unique_for_overwrite<std::byte[]>(std::size_t(chunk_rows_) * line_bytes_);
+    int packed_size = 0;
+    try {
+      lines_.rawPixelDataToBuffer(y, reinterpret_cast<char*>(packed.get()), packed_size);
+    } catch (const std::exception&) {
+      return false;
+    }
+    if (packed_size < 0 || std::size_t(packed_size) > size) return false;
+    if (std::size_t(packed_size) == size) {
+      unpack({packed.get(), size, false}, y, rows);
+      return true;
+    }
+    const auto inflated = std::make_unique_for_overwrite<std::byte[]>(size);
+    const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> inflate(
+        libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
+    if (!inflate ||
+        libdeflate_zlib_decompress(inflate.get(), packed.get(), std::size_t(packed_size),
+                                   inflated.get(), size, nullptr) != LIBDEFLATE_SUCCESS)
+      return false;
+    sum_differences(inflated.get(), size);
+    unpack({inflated.get(), size, true}, y, rows);
+    return true;
+  }
+
+  void unpack(const ChunkBytes& chunk, int y, int rows) const {
+    std::vector<half> halves(columns());
+    for (int row = 0; row < rows; ++row) {
+      for (const auto& [to, offset] : wanted_) {
+        const std::size_t begin = std::size_t(row) * line_bytes_ + offset,
+                          stored = bytes_of(to.channel.type) * columns(),
+                          line = std::size_t(y + row - window_.y0);
+        if (to.channel.type == Imf::HALF && to.as_float) {
+          chunk.copy(begin, stored, reinterpret_cast<std::byte*>(halves.data()));
+          std::copy(halves.begin(), halves.end(),
+                    reinterpret_cast<float*>(to.pixels) + line * columns());
+        } else {
+          chunk.copy(begin, stored, to.pixels + line * stored);
+        }
+      }
+    }
+  }
+
+  const Imf::InputPart lines_;
+  const Window window_;
+  const int chunk_rows_;
+  std::size_t line_bytes_ = 0;  ///< of all channels
+  std::vector<Wanted> wanted_;
+};
+
+/// Whether chunks are those of io/zip_chunk.h, of values that need no other conversion.
+bool is_readable(const ExrPart& part, std::span<const ChannelRows> channels) {
+  return is_zip(part.header.compression()) && !part.deep && !is_tiled(part) &&
+         std::all_of(part.channels.begin(), part.channels.end(),
+                     [](const ExrChannel& c) { return c.x_sampling == 1 && c.y_sampling == 1; }) &&
+         std::none_of(channels.begin(), channels.end(), [](const ChannelRows& to) {
+           return to.as_float && to.channel.type == Imf::UINT;
+         });
+}
+
+}  // namespace
+
+bool read_zip_lines(Imf::MultiPartInputFile& file, const ExrPart& part,
+                    std::span<const ChannelRows> channels) {
+  return is_readable(part, channels) && ZipLines(file, part, channels).read();
+}
+
+}  // namespace ssdo

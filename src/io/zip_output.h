@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace ssdo {
+
+/// An EXR of one part in scanlines, packed with ZIP or ZIPS, whose channels have a value in every
+/// pixel. libdeflate packs its chunks side by side, in about a third of the time that OpenEXR takes
+/// for files of the same size. Header and layout are those that OpenEXR writes.
+class ZipOutput {
+ public:
+  /// Whether files with this header are of that kind.
+  static bool takes(const Imf::Header& header);
+
+  /// Writes all but the chunks.
+  ZipOutput(Imf::OStream& stream, const Imf::Header& header);
+
+  /// Writes the next `rows` lines, whole chunks but for the last ones of the file. `frame_buffer`
+  /// has a slice of each channel, in the type of the file and without gaps between its pixels.
+  void write(const Imf::FrameBuffer& frame_buffer, int rows);
+
+  /// Tells the file where its chunks are: what OpenEXR calls an incomplete file is complete.
+  void finish();
+
+ private:
+  std::vector<std::byte> pack(const Imf::FrameBuffer& frame_buffer, int y, int rows) const;
+
+  Imf::OStream& stream_;
+  const Imf::Header header_;
+  const int chunk_rows_;
+  int y_;                               ///< of the next line
+  std::size_t line_bytes_ = 0;          ///< of all channels
+  std::uint64_t table_ = 0;             ///< where the places of chunks stand
+  std::vector<std::uint64_t> offsets_;  ///< places of the chunks so far
+};
+
+}  // namespace ssdo
