@@ -117,11 +117,16 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
   const Cells cells(g, scene);
   for_each_row(g.surfel.height, [&](int y) {
     constexpr int kPad = Interleaving::kPad;
+    // From left to right: eight walks over every eighth pixel would each fetch three rows of
+    // surfels.
+    std::vector<Cell> cells_of_row;
+    cells_of_row.reserve(std::size_t(g.surfel.width));
+    for (int x = 0; x < g.surfel.width; ++x) cells_of_row.push_back(cells.at(x, y));
     for (int column_phase = 0; column_phase < kPeriod; ++column_phase) {
       const std::ptrdiff_t row = layout.index(y, column_phase, 0);
       for (int column = -kPad; column < int(layout.stride()) - kPad; ++column) {
         const int x = column * kPeriod + column_phase - layout.phase();
-        const Cell cell = x >= 0 && x < g.surfel.width ? cells.at(x, y) : Cell();
+        const Cell cell = x >= 0 && x < g.surfel.width ? cells_of_row[std::size_t(x)] : Cell();
         const std::ptrdiff_t i = row + column;
         for (std::size_t c = 0; c < 3; ++c) {
           scene.normal[c][i] = cell.normal[int(c)];

@@ -7,6 +7,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <vector>
 
+#include "parallel/tiles.h"
 #include "scene/camera/null_vector.h"
 #include "scene/camera/projection_model.h"
 
@@ -255,17 +256,30 @@ std::optional<Camera> in_own_space(const Camera& projection, const Plane<glm::ve
 
 Residual measure_residual(const Camera& camera, const Plane<glm::vec3>& positions,
                           const Plane<unsigned char>& valid, const Window& window) {
-  std::vector<double> d;
-  for (int y = 0; y < positions.height; ++y) {
+  constexpr float kLeftOut = -1, kMost = 1e38f;
+  std::vector<float> squares(positions.size(), kLeftOut);
+  for_each_row(positions.height, [&](int y) {
     for (int x = 0; x < positions.width; ++x) {
       if (!valid(x, y)) continue;
-      const glm::dvec2 at = camera.project(camera.to_camera(glm::dvec3(positions(x, y))));
-      const double miss = std::hypot(at.x - (window.x0 + x + 0.5), at.y - (window.y0 + y + 0.5));
-      d.push_back(std::isfinite(miss) ? miss : 1e30);
+      const glm::dvec2 at = camera.project(camera.to_camera(glm::dvec3(positions(x, y)))),
+                       off = at - glm::dvec2(window.x0 + x + 0.5, window.y0 + y + 0.5);
+      const auto square = float(glm::dot(off, off));
+      squares[positions.index(x, y)] = square < kMost ? square : kMost;
     }
-  }
-  if (d.empty()) return {};
-  return {quantile(d, 0.5), quantile(d, 0.99), *std::max_element(d.begin(), d.end())};
+  });
+  std::erase(squares, kLeftOut);
+  if (squares.empty()) return {};
+  // Each is looked for above the one before.
+  auto from = squares.begin();
+  const auto above = [&](std::size_t place) {
+    const auto wanted = squares.begin() + std::ptrdiff_t(place);
+    std::nth_element(from, wanted, squares.end());
+    from = wanted;
+    return std::sqrt(double(*wanted));
+  };
+  const auto count = double(squares.size());
+  const double median = above(std::size_t(0.5 * count)), most = above(std::size_t(0.99 * count));
+  return {median, most, above(squares.size() - 1)};
 }
 
 }  // namespace ssdo
