@@ -88,18 +88,22 @@ TEST_F(DownsampleOption, ByOneIsWithout) {
   EXPECT_EQ(read_file(path("without.exr")), read_file(path("one.exr")));
 }
 
+/// Pixels of overscan that only the pixel filter sees are estimated as well.
 TEST_F(DownsampleOption, CroppedIsACropOfTheWhole) {
-  const std::vector<std::string> flags = {"--products", "ao,bent,direct,bounce,composite",
-                                          "--downsample", "2"};
-  ASSERT_EQ(run("whole.exr", flags).code, 0);
-  std::vector<std::string> cropping = flags;
-  cropping.push_back("--crop");
-  ASSERT_EQ(run("crop.exr", cropping).code, 0);
-  EXPECT_EQ(ExrReader(path("crop.exr")).parts()[0].data_window, (Window{0, 0, 48, 32}));
-  for (const std::string& name : channel_names(path("whole.exr"))) {
-    EXPECT_EQ(channel(path("crop.exr"), name).pixels,
-              crop(channel(path("whole.exr"), name), {7, 4, 55, 36}).pixels)
-        << name;
+  for (const char* filter : {"none", "geometry"}) {
+    SCOPED_TRACE(filter);
+    const std::vector<std::string> flags = {
+        "--products", "ao,bent,direct,bounce,composite", "--downsample", "2", "--filter", filter};
+    ASSERT_EQ(run("whole.exr", flags).code, 0);
+    std::vector<std::string> cropping = flags;
+    cropping.push_back("--crop");
+    ASSERT_EQ(run("crop.exr", cropping).code, 0);
+    EXPECT_EQ(ExrReader(path("crop.exr")).parts()[0].data_window, (Window{0, 0, 48, 32}));
+    for (const std::string& name : channel_names(path("whole.exr"))) {
+      EXPECT_EQ(channel(path("crop.exr"), name).pixels,
+                crop(channel(path("whole.exr"), name), {7, 4, 55, 36}).pixels)
+          << name;
+    }
   }
 }
 
