@@ -68,8 +68,8 @@ std::string remedy(Role role, const Window& own, const Window& wanted,
                    const Downsampling& downsampling) {
   if (!is_rendered(role)) return "layers of a frame share one: render or resize them to one size";
   if (!downsampling.is_identity()) {
-    return fmt::format("with --downsample {} it has that or {}: render or resize it to one of them",
-                       downsampling.factor, text_of(downsampling.small(wanted)));
+    return fmt::format("with --downsample {} it needs {} or {}: render or resize it to one of them",
+                       downsampling.factor, text_of(wanted), text_of(downsampling.small(wanted)));
   }
   const int factor = own.width() > 0 ? wanted.width() / own.width() : 0;
   const bool fits = factor > 1 && Downsampling{factor, wanted}.small(wanted) == own;
