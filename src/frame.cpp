@@ -82,6 +82,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   std::deque<ExrReader> opened = open_view(files.input, files.aovs);
   const double opening = watch.lap();
   InputOptions input = options.input;
+  input.gbuffer.downsample = options.output.downsample;
   input.gbuffer.beauty = choose_compose(options.output, files.aovs) != Compose::relight;
   View view = read_view(std::move(opened), files.aovs, input, options.camera, unused);
   frame.files = std::move(view.files);

@@ -25,6 +25,17 @@ Results results_of(const RelightJob& job, const Plan& plan, const Products& prod
   return {job.frame.scene, job.frame.gbuffer, products, plan.composition};
 }
 
+/// The channels of the input that say where surfaces are and how they move.
+std::vector<ChannelOfPart> geometry_channels(const Frame& frame) {
+  std::vector<ChannelOfPart> channels;
+  for (const Role role : {Role::position, Role::normal, Role::depth, Role::motion}) {
+    const std::optional<Layer>& layer = frame.layers[role];
+    if (!layer || layer->file != frame.lead().file) continue;
+    for (const std::string& name : layer->channels) channels.push_back({layer->part, name});
+  }
+  return channels;
+}
+
 /// Returns how many values were clamped.
 std::size_t write_exr_target(const SafeFile& file, const Target& target, const RelightJob& job,
                              const Plan& plan, const Products& products) {
@@ -40,6 +51,8 @@ std::size_t write_exr_target(const SafeFile& file, const Target& target, const R
   output.part = frame.lead().part;
   output.keep_channels = job.options.output.keep_channels;
   output.crop = job.options.output.crop;
+  output.downsampling = frame.gbuffer.downsampling;
+  output.geometry = geometry_channels(frame);
   output.compression = job.options.output.compression;
   output.attributes = {{"ssdo/version", SSDO_VERSION},
                        {"ssdo/plan", json_text(to_json(plan, frame.history))}};

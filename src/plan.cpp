@@ -228,7 +228,7 @@ void choose_march(Plan& plan, const ModelOptions& model) {
 /// With --crop, pixels that no output holds gather nothing, where that changes no other pixel: not
 /// where their error counts, or where a later frame may show what they show.
 void choose_receivers(Plan& plan, const OutputOptions& output, const Geometry& geometry,
-                      const std::string& file) {
+                      const Downsampling& downsampling, const std::string& file) {
   if (!output.crop) return;
   const Window &data = geometry.window, shown = intersection(data, geometry.display);
   if (shown.area() == 0) {
@@ -243,9 +243,21 @@ void choose_receivers(Plan& plan, const OutputOptions& output, const Geometry& g
                   "sends light, but is not written",
                   shown.width(), shown.height(), data.width(), data.height()));
   if (!plan.method->takes.receivers || plan.temporal || plan.request.products.error) return;
-  const int reach = plan.filter->reach;
+  const int reach = plan.filter->reach + downsampling.reach();
   plan.request.receivers =
       intersection(data, {shown.x0 - reach, shown.y0 - reach, shown.x1 + reach, shown.y1 + reach});
+}
+
+void explain_downsampling(Plan& plan, const GBuffer& gbuffer) {
+  const Downsampling& downsampling = gbuffer.downsampling;
+  plan.downsample = downsampling.factor;
+  if (downsampling.is_identity()) return;
+  const Window large = gbuffer.display, small = downsampling.small(large);
+  plan.reasons.push_back(fmt::format(
+      "downsample {}: the frame's {}x{} pixels become {}x{}, by a Blackman-Harris filter that "
+      "reaches {:g} of them to each side",
+      downsampling.factor, large.width(), large.height(), small.width(), small.height(),
+      Downsampling::kFilterWidth / 2.0));
 }
 
 }  // namespace
@@ -275,7 +287,8 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
   explain_thickness(plan, model);
   explain_measured(plan, scene);
   choose_march(plan, model);
-  choose_receivers(plan, output, scene.geometry, file);
+  choose_receivers(plan, output, scene.geometry, gbuffer.downsampling, file);
+  explain_downsampling(plan, gbuffer);
   return plan;
 }
 
@@ -333,6 +346,7 @@ nlohmann::json to_json(const Plan& plan, const std::vector<std::string>& history
                       {"samples_per_pixel", plan.samples_per_pixel()},
                       {"filter", plan.filter_name()},
                       {"temporal", plan.temporal},
+                      {"downsample", plan.downsample},
                       {"reasons", reasons}};
   if (contains(plan.make, "composite")) j["compose"] = name_of(plan.composition.compose);
   // JSON knows no infinity.

@@ -63,6 +63,7 @@ struct Plan {
   std::vector<std::string> write;    ///< those that every EXR of -o holds, in their order there
   std::string show;                  ///< the one that every picture of -o holds
   Composition composition;           ///< how the composite is made, where it is
+  int downsample = 1;                ///< how many times as large as the outputs the frame is
   std::vector<std::string> reasons;  ///< one line per decision
 
   int samples_per_pixel() const;

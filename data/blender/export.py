@@ -67,8 +67,8 @@ def add_world(scene, environment=None):
     world.cycles.sample_map_resolution = 1024
 
 
-def set_up_cycles(scene, samples, bounces, seed):
-    """The plain estimator: everything that biases or blurs a pixel is off."""
+def set_up_cycles(scene, samples, bounces, seed, antialiased=False):
+    """The plain estimator: everything that biases or blurs a pixel is off, but for its filter."""
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
     cycles.samples, cycles.seed = samples, seed
@@ -78,7 +78,8 @@ def set_up_cycles(scene, samples, bounces, seed):
     cycles.max_bounces = cycles.diffuse_bounces = bounces
     # One ray through the pixel centre. Blender averages Normal and DiffCol over the pixel filter,
     # but takes Position and Depth from the first sample: this way all four are of one point.
-    cycles.filter_width = 0.01
+    cycles.filter_width = 1.5 if antialiased else 0.01
+    scene.render.film_transparent = antialiased
 
 
 def set_up_output(scene, size, path, passes, margin=(0, 0)):
@@ -125,7 +126,8 @@ def read_also(text):
 def views_of(args, scene, picture):
     """The picture and all that is rendered beside it."""
     bpy.context.view_layer.update()  # or the camera's matrix would not know its place yet
-    main, size, target = scene.camera, (picture.width, picture.height), Vector(picture.target)
+    main, target = scene.camera, Vector(picture.target)
+    size = (args.scale * picture.width, args.scale * picture.height)
     further = []
     if args.pano:
         further.append(panorama(scene, args.pano, main))
@@ -148,6 +150,8 @@ def parse_arguments():
     parser.add_argument("scene", choices=SCENES)
     parser.add_argument("-o", "--output", type=Path, required=True)
     parser.add_argument("--camera", type=Path, help="write the camera there, as JSON")
+    parser.add_argument("--scale", type=int, default=1, metavar="N",
+                        help="N times as many pixels in a row and in a column: ssdo --downsample N")
     more = parser.add_argument_group("more of the scene")
     more.add_argument("--overscan", type=float, default=0, metavar="PERCENT",
                       help="so much more picture on each side, beyond the display window")
@@ -161,6 +165,8 @@ def parse_arguments():
     light.add_argument("--bounces", type=int, default=0)
     light.add_argument("--ao-radius", type=float, default=1.0)
     light.add_argument("--seed", type=int, default=0)
+    light.add_argument("--antialiased", action="store_true",
+                       help="Blender's usual pixel filter, and nothing behind the scene: for Combined")
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
 
 
@@ -174,7 +180,7 @@ def main():
     add_camera(scene, picture)
     add_world(scene, picture.environment if args.world == "environment" else None)
     scene.world.light_settings.distance = args.ao_radius  # of the AO pass
-    set_up_cycles(scene, args.samples or 1, args.bounces, args.seed)
+    set_up_cycles(scene, args.samples or 1, args.bounces, args.seed, args.antialiased)
     if args.samples:
         passes = ["z", "diffuse_direct", "diffuse_indirect", "ambient_occlusion"]
     else:

@@ -104,4 +104,5 @@ def main():
     (args.output / "noise.json").write_text(json.dumps(report, indent=1) + "\n")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -255,6 +255,10 @@ void add_output(CLI::App& app, OutputOptions& o) {
   group.flag("--keep-channels", o.keep_channels,
              "pass the input's other channels and parts through");
   group.flag("--crop", o.crop, "write the display window only; overscan still blocks and sends");
+  group
+      .value("--downsample", "N", o.downsample,
+             "the G-buffer is N times as large as the outputs, whose edges are then antialiased")
+      ->check(CLI::Range(1, 8));
   group.flag("--overwrite", o.policy.overwrite, "replace outputs that exist");
   group.flag("--create-dirs", o.policy.create_dirs, "make missing folders of outputs");
 }

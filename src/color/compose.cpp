@@ -3,15 +3,20 @@
 // The composites. Rendered layers are premultiplied, and so is the result, so that edges whose
 // alpha is between 0 and 1 need no division.
 //
-//   relight   alpha albedo (direct + bounce)
+//   relight   F[alpha albedo (direct + bounce)]
 //   occlude   beauty - ambient (1 - S) - specular (1 - reflection)
-//   add       beauty + alpha albedo (direct + bounce)
+//   add       beauty + F[alpha albedo (direct + bounce)]
+//
+// F is the mean of the pixels of the G-buffer that a pixel of the output shows: one of them, or
+// those under the pixel filter with --downsample. The rendered layers have the output's size.
 //
 // S is the share of the environment's light that arrives. Light from everywhere alike is hidden by
 // 1 - ao. Of other light, each channel has a share of its own, direct over the direct light without
 // occluders: what hides a red light and not a green one throws a green shadow, where ao would make
 // it brown (Ritschel, Grosch, Seidel, "Approximating Dynamic Global Illumination in Image Space",
-// 2009). What lamps give stays as rendered: ambient is a part of the beauty.
+// 2009). Under the filter it is F[alpha albedo direct] / F[alpha albedo unoccluded], as an ambient
+// layer that the renderer has filtered is F[alpha albedo unoccluded]. What lamps give stays as
+// rendered: ambient is a part of the beauty.
 //
 // occlude and add keep the beauty and its alpha where there is no geometry.
 #include "color/compose.h"
@@ -22,6 +27,7 @@
 #include <glm/geometric.hpp>
 #include <type_traits>
 
+#include "color/downsample.h"
 #include "math/light_range.h"
 #include "parallel/tiles.h"
 
@@ -53,19 +59,49 @@ glm::vec3 light_of(const Results& r, std::size_t i) {
   return within_range(light * r.scene.senders.albedo[i]);
 }
 
-/// The share of the environment's light that arrives at a surface, by channel, 0 to 1. Methods that
-/// look light up in another direction than the normal may find more than arrives without occluders;
-/// occlusion brightens nothing. A channel without light has the share of all channels together, and
-/// where there is no light at all, nothing is taken away.
-glm::vec3 arriving_share(const Results& r, std::size_t i) {
-  if (r.composition.share_is_ao) return glm::vec3(r.products.ao[i]);
-  const glm::vec3 direct = r.products.direct[i],
-                  open = r.scene.light.unoccluded(r.scene.geometry.surfel[i].normal);
-  const auto share = [](float part, float whole, float otherwise) {
-    return whole > 0 ? std::clamp(part / whole, 0.0f, 1.0f) : otherwise;
+/// What surfaces send of the light that was found, premultiplied.
+Plane<glm::vec3> sent_light(const Results& r, const Plane<float>& alpha) {
+  auto sent = Plane<glm::vec3>::like(alpha);
+  for_each_row(sent.height, [&](int y) {
+    for (std::size_t i = sent.index(0, y); i < sent.index(0, y + 1); ++i)
+      sent[i] = alpha[i] * light_of(r, i);
+  });
+  return at_output_size(sent, r.gbuffer);
+}
+
+/// Of the environment's light at the surfaces of a pixel, what arrives, and all of it.
+struct Arriving {
+  Plane<glm::vec3> part, whole;
+};
+
+Arriving arriving_light(const Results& r) {
+  Arriving light;
+  light.whole = weights_by_albedo(r);
+  light.part = light.whole;
+  for_each_row(light.part.height, [&](int y) {
+    for (std::size_t i = light.part.index(0, y); i < light.part.index(0, y + 1); ++i) {
+      if (light.whole[i] == glm::vec3(0)) continue;  // without a surface there is no normal
+      if (r.composition.share_is_ao) {
+        light.part[i] *= r.products.ao[i];
+      } else {
+        light.part[i] *= r.products.direct[i];
+        light.whole[i] *= r.scene.light.unoccluded(r.scene.geometry.surfel[i].normal);
+      }
+    }
+  });
+  return {at_output_size(light.part, r.gbuffer), at_output_size(light.whole, r.gbuffer)};
+}
+
+/// The share of the light that arrives, by channel, 0 to 1. Methods that look light up in another
+/// direction than the normal may find more than arrives without occluders; occlusion brightens
+/// nothing. A channel without light has the share of all channels together, and where there is no
+/// light at all, nothing is taken away.
+glm::vec3 arriving_share(const glm::vec3& part, const glm::vec3& whole) {
+  const auto share = [](float arriving, float light, float otherwise) {
+    return light > 0 ? std::clamp(arriving / light, 0.0f, 1.0f) : otherwise;
   };
-  const float all = share(direct.x + direct.y + direct.z, open.x + open.y + open.z, 1);
-  return {share(direct.x, open.x, all), share(direct.y, open.y, all), share(direct.z, open.z, all)};
+  const float all = share(part.x + part.y + part.z, whole.x + whole.y + whole.z, 1);
+  return {share(part.x, whole.x, all), share(part.y, whole.y, all), share(part.z, whole.z, all)};
 }
 
 /// What occlude and add change: the beauty, or the ambient layer alone where there is no beauty.
@@ -73,12 +109,40 @@ const Plane<glm::vec3>& rendered(const GBuffer& gbuffer) {
   return gbuffer.beauty.empty() ? gbuffer.ambient : gbuffer.beauty;
 }
 
-glm::vec3 occluded(const Results& r, std::size_t i) {
-  const glm::vec3 beauty = rendered(r.gbuffer)[i];
-  glm::vec3 hidden = r.gbuffer.ambient[i] * (glm::vec3(1) - arriving_share(r, i));
-  if (!r.gbuffer.specular.empty()) hidden += r.gbuffer.specular[i] * (1 - r.products.reflection[i]);
-  // No light is negative, unless the render has it so, even where the layers do not add up to it.
-  return glm::max(within_range(beauty - hidden), glm::min(beauty, glm::vec3(0)));
+Plane<glm::vec3> occluded(const Results& r) {
+  const Plane<glm::vec3>&beauty = rendered(r.gbuffer), &ambient = r.gbuffer.ambient,
+        &specular = r.gbuffer.specular;
+  const Arriving light = arriving_light(r);
+  Plane<float> reflection;
+  if (!specular.empty())
+    reflection = product_at_output_size(find_product("reflection"), r.products.reflection, r);
+  auto out = Plane<glm::vec3>::like(beauty);
+  for_each_row(out.height, [&](int y) {
+    for (std::size_t i = out.index(0, y); i < out.index(0, y + 1); ++i) {
+      glm::vec3 hidden =
+          ambient[i] * (glm::vec3(1) - arriving_share(light.part[i], light.whole[i]));
+      if (!specular.empty()) hidden += specular[i] * (1 - reflection[i]);
+      // No light is negative, unless the render has it so, even where its layers do not add up.
+      out[i] = glm::max(within_range(beauty[i] - hidden), glm::min(beauty[i], glm::vec3(0)));
+    }
+  });
+  return out;
+}
+
+Plane<glm::vec3> added(const Results& r, const Plane<float>& alpha) {
+  Plane<glm::vec3> out = sent_light(r, alpha);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = within_range(rendered(r.gbuffer)[i] + out[i]);
+  return out;
+}
+
+/// Coverage where there is geometry, and the alpha of the render elsewhere.
+Plane<float> rendered_alpha(const Results& r, Plane<float> alpha) {
+  for (std::size_t i = 0; i < alpha.size() && !r.gbuffer.alpha.empty(); ++i) {
+    if (!r.scene.geometry.is_surface(i) && std::isfinite(r.gbuffer.alpha[i]))
+      alpha[i] = r.gbuffer.alpha[i];
+  }
+  return alpha;
 }
 
 }  // namespace
@@ -95,26 +159,11 @@ Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer) {
 }
 
 Composite composite(const Results& r) {
+  const Plane<float> alpha = coverage(r.scene, r.gbuffer);
   const Compose compose = r.composition.compose;
-  const Geometry& geometry = r.scene.geometry;
-  Composite out{Plane<glm::vec3>::like(geometry.surfel), coverage(r.scene, r.gbuffer)};
-  for_each_row(out.color.height, [&](int y) {
-    for (int x = 0; x < out.color.width; ++x) {
-      const std::size_t i = out.color.index(x, y);
-      glm::vec3& color = out.color[i];
-      if (compose == Compose::relight) {
-        color = out.alpha[i] * light_of(r, i);
-        continue;
-      }
-      color = rendered(r.gbuffer)[i];
-      if (!geometry.is_surface(i) && !r.gbuffer.alpha.empty() && std::isfinite(r.gbuffer.alpha[i]))
-        out.alpha[i] = r.gbuffer.alpha[i];
-      if (!geometry.surfel[i].is_usable()) continue;
-      color = compose == Compose::occlude ? occluded(r, i)
-                                          : within_range(color + out.alpha[i] * light_of(r, i));
-    }
-  });
-  return out;
+  if (compose == Compose::relight) return {sent_light(r, alpha), at_output_size(alpha, r.gbuffer)};
+  return {compose == Compose::occlude ? occluded(r) : added(r, alpha),
+          at_output_size(rendered_alpha(r, alpha), r.gbuffer)};
 }
 
 std::vector<NamedPlane> product_channels(const std::string& name, const Results& results) {
@@ -125,12 +174,12 @@ std::vector<NamedPlane> product_channels(const std::string& name, const Results&
       out.push_back({prefix + letter, channel(plane, int(out.size()))});
   };
   for_each_plane(
-      [&](const Product& product, const auto& plane) {
+      [&](const Product& product, const auto& found) {
         if (&product != &wanted) return;
-        if constexpr (std::is_same_v<decltype(plane), const Plane<glm::vec3>&>) {
+        auto plane = product_at_output_size(product, found, results);
+        if constexpr (std::is_same_v<decltype(plane), Plane<glm::vec3>>) {
           if (product.kind == ProductKind::direction)
-            return append(name + ".",
-                          in_input_space(plane, results.scene.geometry.normals_to_camera));
+            plane = in_input_space(std::move(plane), results.scene.geometry.normals_to_camera);
         }
         append(name + ".", plane);
       },

@@ -33,15 +33,16 @@ struct Composite {
   Plane<float> alpha;
 };
 
-/// Coverage: the input's alpha where there is one, else 1 on surfaces; 0 outside the geometry.
+/// Coverage of the pixels of the G-buffer: the input's alpha where there is one, else 1 on
+/// surfaces; 0 outside the geometry.
 Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer);
 
-/// The composite that `results.composition` asks for; see compose.cpp. The layers and products that
-/// it is made of have to be there.
+/// The composite that `results.composition` asks for, over the window of the outputs; see
+/// compose.cpp. The layers and products that it is made of have to be there.
 Composite composite(const Results& results);
 
-/// The channels of the product `name`, as the table of products has them: directions in the space
-/// of the input's normals, the composite premultiplied.
+/// The channels of the product `name` over the window of the outputs, as the table of products has
+/// them: directions in the space of the input's normals, the composite premultiplied.
 std::vector<NamedPlane> product_channels(const std::string& name, const Results& results);
 
 }  // namespace ssdo

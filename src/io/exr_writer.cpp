@@ -11,6 +11,7 @@
 #include <half.h>
 
 #include <algorithm>
+#include <cctype>
 #include <functional>
 
 #include "error.h"
@@ -19,6 +20,7 @@
 #include "io/exr_parts.h"
 #include "io/exr_stream.h"
 #include "io/one_line.h"
+#include "io/pixel_filter.h"
 #include "io/zip_output.h"
 
 namespace ssdo {
@@ -62,6 +64,54 @@ bool has_channel(const ExrPart& part, const std::string& name) {
   return part.header.channels().findChannel(name) != nullptr;
 }
 
+std::string lower_case(std::string text) {
+  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// Whether the values of a channel have a mean. The ids of a Cryptomatte have not, nor have the
+/// directions, depths and coordinates that layers of X, Y and Z hold.
+bool is_color(const ExrPart& part, const std::string& name) {
+  const std::size_t dot = name.rfind('.') + 1;  // 0 where there is none
+  const std::string lower = lower_case(name), component = lower.substr(dot);
+  if (lower.find("crypto") != std::string::npos) return false;
+  if (component == "y") {
+    const std::string x = name[dot] == 'Y' ? "X" : "x";
+    return !has_channel(part, name.substr(0, dot) + x);
+  }
+  return component == "r" || component == "g" || component == "b" || component == "a";
+}
+
+/// Channels of a part, at the output's size.
+std::vector<StoredChannel> read_channels(const ExrOutput& output, const ExrPart& part,
+                                         const std::vector<std::string>& names) {
+  std::vector<StoredChannel> channels = output.input->read_stored(part.index, names);
+  if (output.downsampling.is_identity()) return channels;
+  for (StoredChannel& stored : channels) {
+    const std::string& name = stored.channel.name;
+    const bool is_geometry = std::find(output.geometry.begin(), output.geometry.end(),
+                                       ChannelOfPart{part.index, name}) != output.geometry.end();
+    stored = filter_stored(stored, part.data_window, output.downsampling,
+                           is_geometry || !is_color(part, name));
+  }
+  return channels;
+}
+
+/// Errors: ExitCode::input for a part that is kept and cannot be downsampled.
+void check_downsampling(const ExrOutput& output, const ExrPart& part) {
+  if (!output.keep_channels || output.downsampling.is_identity()) return;
+  const auto fail = [&](const std::string& reason) {
+    throw Error(ExitCode::input, fmt::format("{}: {} {}, and cannot be downsampled; leave out "
+                                             "--downsample or --keep-channels",
+                                             output.input->path().string(), label(part), reason));
+  };
+  if (part.deep && part.index != output.part) fail("is deep");
+  for (const ExrChannel& channel : part.channels) {
+    if (channel.x_sampling != 1 || channel.y_sampling != 1)
+      fail(fmt::format("has a subsampled channel '{}'", channel.name));
+  }
+}
+
 std::vector<KeptChannel> kept_channels(const ExrOutput& output) {
   const ExrPart& part = part_of(output);
   // Deep samples do not fit into a flat part.
@@ -73,20 +123,31 @@ std::vector<KeptChannel> kept_channels(const ExrOutput& output) {
     from.push_back(channel.name);
     to.push_back(taken ? "input." + channel.name : channel.name);
   }
-  std::vector<StoredChannel> stored = output.input->read_stored(output.part, from);
+  std::vector<StoredChannel> stored = read_channels(output, part, from);
   std::vector<KeptChannel> kept;
   for (std::size_t i = 0; i < to.size(); ++i) kept.push_back({to[i], std::move(stored[i])});
   return kept;
 }
 
-/// The pixels of a part that are written.
+/// The pixels of a part that are known, at the output's size.
+Window known_window(const ExrOutput& output, const ExrPart& part) {
+  return output.downsampling.small(part.data_window);
+}
+
+/// Those that are written.
 Window written_window(const ExrOutput& output, const ExrPart& part) {
-  if (!output.crop || part.deep) return part.data_window;
-  return intersection(part.data_window, part.display_window);
+  const Window known = known_window(output, part);
+  if (!output.crop || part.deep) return known;
+  return intersection(known, output.downsampling.small(part.display_window));
 }
 
 bool is_cropped(const ExrOutput& output, const ExrPart& part) {
-  return written_window(output, part) != part.data_window;
+  return written_window(output, part) != known_window(output, part);
+}
+
+/// Whether the pixels of another part than the one with the planes have to be written anew.
+bool is_changed(const ExrOutput& output, const ExrPart& part) {
+  return is_cropped(output, part) || !output.downsampling.is_identity();
 }
 
 [[noreturn]] void fail_to_crop(const ExrOutput& output, const ExrPart& part,
@@ -101,7 +162,7 @@ std::vector<KeptChannel> all_channels(const ExrOutput& output, const ExrPart& pa
   std::vector<std::string> names;
   for (const ExrChannel& channel : part.channels) names.push_back(channel.name);
   std::vector<KeptChannel> kept;
-  for (StoredChannel& channel : output.input->read_stored(part.index, names))
+  for (StoredChannel& channel : read_channels(output, part, names))
     kept.push_back({channel.channel.name, std::move(channel)});
   return kept;
 }
@@ -135,13 +196,15 @@ Imf::Header scanline_header(const ExrOutput& output, const ExrPart& part) {
   header.setType(Imf::SCANLINEIMAGE);
   header.lineOrder() = Imf::INCREASING_Y;
   const Window window = written_window(output, part);
+  const Window display = output.downsampling.small(part.display_window);
   header.dataWindow() = {{window.x0, window.y0}, {window.x1 - 1, window.y1 - 1}};
+  header.displayWindow() = {{display.x0, display.y0}, {display.x1 - 1, display.y1 - 1}};
   return header;
 }
 
 /// That of another part than the one with the planes.
 Imf::Header other_header(const ExrOutput& output, const ExrPart& part) {
-  if (!is_cropped(output, part)) return part.header;
+  if (!is_changed(output, part)) return part.header;
   check_crop(output, part, part.channels);
   Imf::Header header = scanline_header(output, part);
   if (is_lossy(header.compression())) header.compression() = Imf::ZIP_COMPRESSION;
@@ -194,11 +257,11 @@ std::size_t round_to_half(std::span<const float> values, half* rounded) {
 /// Takes the next rows of a file.
 using WriteRows = std::function<void(const Imf::FrameBuffer&, int rows)>;
 
-/// Writes `window` of planes and channels, which are all over the data window of `part`.
+/// Writes `window` of planes and channels, which are all over the window `known`.
 std::size_t write_strips(const WriteRows& write_rows, const Imath::Box2i& window,
-                         const ExrPart& part, const std::vector<ExrPlane>& planes,
+                         const Window& known, const std::vector<ExrPlane>& planes,
                          const std::vector<KeptChannel>& kept) {
-  const Imath::Box2i full = part.header.dataWindow();
+  const Imath::Box2i full({known.x0, known.y0}, {known.x1 - 1, known.y1 - 1});
   const auto columns = std::size_t(window.max.x - window.min.x + 1);
   std::vector<std::vector<half>> strips(planes.size());
   std::size_t clamped = 0;
@@ -231,14 +294,14 @@ std::size_t write_strips(const WriteRows& write_rows, const Imath::Box2i& window
   return clamped;
 }
 
-std::size_t write_strips(Imf::OutputPart& out, const ExrPart& part,
+std::size_t write_strips(Imf::OutputPart& out, const Window& known,
                          const std::vector<ExrPlane>& planes,
                          const std::vector<KeptChannel>& kept) {
   const auto write_rows = [&](const Imf::FrameBuffer& frame_buffer, int rows) {
     out.setFrameBuffer(frame_buffer);
     out.writePixels(rows);
   };
-  return write_strips(write_rows, out.header().dataWindow(), part, planes, kept);
+  return write_strips(write_rows, out.header().dataWindow(), known, planes, kept);
 }
 
 /// A file with one part.
@@ -247,17 +310,17 @@ std::size_t write_zip(Imf::OStream& stream, const Imf::Header& header, const Exr
   ZipOutput out(stream, header);
   const std::size_t clamped = write_strips(
       [&](const Imf::FrameBuffer& frame_buffer, int rows) { out.write(frame_buffer, rows); },
-      header.dataWindow(), part_of(output), output.planes, kept);
+      header.dataWindow(), known_window(output, part_of(output)), output.planes, kept);
   out.finish();
   return clamped;
 }
 
 void check_planes(const ExrOutput& output) {
-  const Window window = part_of(output).data_window;
+  const Window window = known_window(output, part_of(output));
   for (const ExrPlane& plane : output.planes) {
     if (plane.pixels->width == window.width() && plane.pixels->height == window.height()) continue;
     throw Error(ExitCode::failed,
-                fmt::format("{}: plane '{}' is {}x{}, the data window of part {} is {}x{}; this "
+                fmt::format("{}: plane '{}' is {}x{}, the output of part {} is {}x{}; this "
                             "is a defect in ssdo: please report it",
                             output.input->path().string(), plane.name, plane.pixels->width,
                             plane.pixels->height, output.part, window.width(), window.height()));
@@ -273,16 +336,16 @@ std::size_t write_parts(CheckedFile& checked, const SafeFile& file, const ExrOut
   Imf::MultiPartOutputFile exr(stream, headers.data(), int(headers.size()));
   if (!output.keep_channels) {
     Imf::OutputPart part(exr, 0);
-    return write_strips(part, part_of(output), output.planes, kept);
+    return write_strips(part, known_window(output, part_of(output)), output.planes, kept);
   }
   std::size_t clamped = 0;
   for (const ExrPart& part : output.input->parts()) {
     if (part.index == output.part) {
       Imf::OutputPart written(exr, part.index);
-      clamped = write_strips(written, part, output.planes, kept);
-    } else if (is_cropped(output, part)) {
+      clamped = write_strips(written, known_window(output, part), output.planes, kept);
+    } else if (is_changed(output, part)) {
       Imf::OutputPart written(exr, part.index);
-      write_strips(written, part, {}, all_channels(output, part));
+      write_strips(written, known_window(output, part), {}, all_channels(output, part));
     } else {
       copy_part(*output.input, part, exr);
     }
@@ -300,6 +363,7 @@ Imf::Compression compression_for(const ExrOutput& output) {
 
 std::size_t write_exr(const SafeFile& file, const ExrOutput& output) {
   check_planes(output);
+  for (const ExrPart& part : output.input->parts()) check_downsampling(output, part);
   const std::vector<KeptChannel> kept = kept_channels(output);
   CheckedFile checked(file);
   std::size_t clamped = 0;

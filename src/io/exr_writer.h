@@ -12,6 +12,7 @@
 
 #include "io/exr_reader.h"
 #include "io/safe_file.h"
+#include "math/downsampling.h"
 #include "math/plane.h"
 
 namespace ssdo {
@@ -23,13 +24,23 @@ struct ExrPlane {
   const Plane<float>* pixels = nullptr;
 };
 
+/// A channel of a part of the input.
+struct ChannelOfPart {
+  int part = 0;
+  std::string channel;
+
+  bool operator==(const ChannelOfPart&) const = default;
+};
+
 /// What goes into an output EXR.
 struct ExrOutput {
   const ExrReader* input = nullptr;  ///< whose headers are kept
   int part = 0;                      ///< the part of the input that the planes were made from
-  std::vector<ExrPlane> planes;      ///< all over the data window of that part
-  bool keep_channels = false;        ///< pass the other channels and parts through unchanged
-  bool crop = false;                 ///< of every flat part, write the display window only
+  std::vector<ExrPlane> planes;    ///< all over the data window of that part, at the output's size
+  bool keep_channels = false;      ///< pass the other channels and parts through unchanged
+  bool crop = false;               ///< of every flat part, write the display window only
+  Downsampling downsampling = {};  ///< from the input's windows to the output's
+  std::vector<ChannelOfPart> geometry;  ///< those that cannot be filtered, whatever their names
   std::optional<Imf::Compression> compression;                  ///< the input's where not given
   std::vector<std::pair<std::string, std::string>> attributes;  ///< string attributes to add
 };
@@ -52,6 +63,11 @@ Imf::Compression compression_for(const ExrOutput& output);
 /// that reach beyond are decoded and come in scanlines, with the same bits in the pixels that stay.
 /// Deep parts are copied whole.
 ///
+/// With `downsampling` the windows become smaller, and kept channels with them. Colours (R, G, B, A
+/// and a Y alone) are filtered. All others, those of `geometry`, whole numbers and Cryptomattes
+/// have the value next to the middle of a pixel, all of the same place. Other parts are decoded and
+/// come in scanlines.
+///
 /// A kept channel whose name a plane takes moves to "input.NAME". If the input has an "input.NAME"
 /// already, it is an earlier output of this tool: its "input.NAME" stays, and its NAME, an earlier
 /// product, is dropped.
@@ -59,7 +75,8 @@ Imf::Compression compression_for(const ExrOutput& output);
 /// Half values beyond ±65504 are clamped. Returns how many were.
 /// Errors: ExitCode::output if the disk is full or the file cannot be written; ExitCode::input if
 /// what is kept of the input cannot be read, or cannot be cropped: a part that lies outside of the
-/// display window, a channel whose subsampling does not divide it.
+/// display window, a channel whose subsampling does not divide it; or cannot be downsampled: a deep
+/// part, a channel that is subsampled.
 std::size_t write_exr(const SafeFile& file, const ExrOutput& output);
 
 }  // namespace ssdo

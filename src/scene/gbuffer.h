@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "math/downsampling.h"
 #include "math/plane.h"
 
 namespace ssdo {
@@ -14,9 +15,11 @@ namespace ssdo {
 enum class DepthKind { planar, ray, inverse, normalized };
 
 /// The layers of one frame in the space and units of the file, with encodings undone. Every plane
-/// covers `window`; a role that the frame does not have is an empty plane.
+/// covers `window`, but those of the beauty, which cover that of the outputs; a role that the frame
+/// does not have is an empty plane.
 struct GBuffer {
   Window window, display;
+  Downsampling downsampling = {};  ///< from these windows to those of the outputs
   float pixel_aspect = 1;
   Plane<glm::vec3> position, normal, albedo, radiance;
   Plane<glm::vec3> beauty;    ///< as rendered; empty where no composite uses it

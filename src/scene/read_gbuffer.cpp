@@ -9,6 +9,7 @@
 #include <map>
 
 #include "error.h"
+#include "io/pixel_filter.h"
 #include "math/light_range.h"
 #include "scene/background.h"
 #include "scene/depth_encoding.h"
@@ -66,21 +67,26 @@ class LayerReader {
   }
 
   Plane<float> scalar(const std::optional<Layer>& layer, float fill) const {
-    return layer ? plane(*layer, 0, fill) : Plane<float>{};
+    return layer ? plane(window_, *layer, 0, fill) : Plane<float>{};
   }
 
   Plane<glm::vec3> vector(const std::optional<Layer>& layer, float fill) const {
+    return vector_over(window_, layer, fill);
+  }
+
+  Plane<glm::vec3> vector_over(const Window& window, const std::optional<Layer>& layer,
+                               float fill) const {
     if (!layer) return {};
-    const Plane<float> x = plane(*layer, 0, fill), y = plane(*layer, 1, fill),
-                       z = plane(*layer, 2, fill);
-    Plane<glm::vec3> out(window_.width(), window_.height());
+    const Plane<float> x = plane(window, *layer, 0, fill), y = plane(window, *layer, 1, fill),
+                       z = plane(window, *layer, 2, fill);
+    Plane<glm::vec3> out(window.width(), window.height());
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = {x[i], y[i], z[i]};
     return out;
   }
 
   Plane<glm::vec2> motion(const std::optional<Layer>& layer) const {
     if (!layer) return {};
-    const Plane<float> x = plane(*layer, 0, NAN), y = plane(*layer, 1, NAN);
+    const Plane<float> x = plane(window_, *layer, 0, NAN), y = plane(window_, *layer, 1, NAN);
     Plane<glm::vec2> out(window_.width(), window_.height());
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = {x[i], y[i]};
     return out;
@@ -89,10 +95,11 @@ class LayerReader {
  private:
   using Part = std::pair<int, int>;  ///< file and part
 
-  Plane<float> plane(const Layer& layer, std::size_t component, float fill) const {
-    const ExrPart& part = files_[std::size_t(layer.file)]->parts()[std::size_t(layer.part)];
+  Plane<float> plane(const Window& window, const Layer& layer, std::size_t component,
+                     float fill) const {
+    const ExrPart& part = part_of(files_, layer);
     const auto& planes = planes_.at({layer.file, layer.part});
-    return lay_onto(window_, part.data_window, planes.at(layer.channels[component]), fill);
+    return lay_onto(window, part.data_window, planes.at(layer.channels[component]), fill);
   }
 
   const std::vector<const ExrReader*>& files_;
@@ -124,6 +131,37 @@ void clear_broken(GBuffer& g, Plane<T>& values) {
     g.bad_pixels += g.valid[i];
     values[i] = T(0);
   }
+}
+
+/// Reads beauty, ambient and specular, and brings them to the size of the outputs.
+void read_rendered(GBuffer& g, const LayerReader& read, const std::vector<const ExrReader*>& files,
+                   const LayerTable& table, bool has_beauty) {
+  const auto take = [&](Role role, Plane<glm::vec3>& colors) {
+    const std::optional<Layer>& layer = table[role];
+    if (!layer) return;
+    if (has_size_of_outputs(part_of(files, *layer), g.downsampling)) {
+      colors = read.vector_over(g.downsampling.small(g.window), layer, 0);
+      for (glm::vec3& color : colors.pixels) color = is_sane(color) ? color : glm::vec3(0);
+      return;
+    }
+    colors = read.vector(layer, 0);
+    clear_broken(g, colors);
+    colors = filter_pixels(colors, g.window, g.downsampling);
+  };
+  if (has_beauty) take(Role::beauty, g.beauty);
+  take(Role::ambient, g.ambient);
+  take(Role::specular, g.specular);
+}
+
+/// Errors: ExitCode::usage where the factor does not divide the size of the display window.
+Downsampling make_downsampling(int factor, const Window& display, const std::string& file) {
+  if (display.width() % factor != 0 || display.height() % factor != 0) {
+    throw Error(ExitCode::usage,
+                fmt::format("{}: --downsample {} does not divide the display window of {} x {}; "
+                            "render the G-buffer at {} times the size of the output",
+                            file, factor, display.width(), display.height(), factor));
+  }
+  return {factor, display};
 }
 
 /// Sets the precision of P, or of the depth that P is made from, and warns where it is poor.
@@ -162,10 +200,11 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
                      const GBufferOptions& options, const Plane<float>* deep) {
   const std::string file = files[0]->path().string();
   const auto& lead = table[Role::position] ? table[Role::position] : table[Role::depth];
-  const ExrPart& part = files[std::size_t(lead->file)]->parts()[std::size_t(lead->part)];
+  const ExrPart& part = part_of(files, *lead);
   GBuffer g;
   g.window = part.data_window;
   g.display = part.display_window;
+  g.downsampling = make_downsampling(options.downsample, g.display, file);
   g.pixel_aspect = part.header.pixelAspectRatio();
   if (!(g.pixel_aspect > 0) || !std::isfinite(g.pixel_aspect)) g.pixel_aspect = 1;
   note_precision(g, *lead, part, table[Role::position].has_value());
@@ -174,7 +213,7 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
                              Role::radiance, Role::alpha,   Role::roughness, Role::motion,
                              Role::ambient,  Role::specular};
   if (options.beauty) roles.push_back(Role::beauty);
-  check_display_windows(files, table, roles);
+  check_display_windows(files, table, roles, g.downsampling);
   const LayerReader read(files, table, roles, g.window, deep);
   g.position = read.vector(table[Role::position], NAN);
   g.depth = read.scalar(table[Role::depth], NAN);
@@ -186,17 +225,13 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   g.motion = read.motion(table[Role::motion]);
   const glm::vec2 scale = options.motion_scale.value_or(glm::vec2(1));
   for (glm::vec2& to : g.motion.pixels) to = {scale.x * to.x, -scale.y * to.y};
-  g.ambient = read.vector(table[Role::ambient], 0);
-  g.specular = read.vector(table[Role::specular], 0);
-  if (options.beauty) g.beauty = read.vector(table[Role::beauty], 0);
 
   undo_depth_encoding(g, options, file);
   find_background(g, options.background_depth);
   undo_normal_encoding(g);
   note_data_windows(files, table, roles, g);
-  for (Plane<glm::vec3>* values :
-       {&g.normal, &g.albedo, &g.radiance, &g.beauty, &g.ambient, &g.specular})
-    clear_broken(g, *values);
+  for (Plane<glm::vec3>* values : {&g.normal, &g.albedo, &g.radiance}) clear_broken(g, *values);
+  read_rendered(g, read, files, table, options.beauty);
   clear_negative(g.albedo);
   clear_negative(g.radiance);
   clear_broken(g, g.roughness);

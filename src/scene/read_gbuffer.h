@@ -17,6 +17,7 @@ struct GBufferOptions {
   float depth_near = 0, depth_far = 1;    ///< what 0 and 1 mean in a normalized depth
   std::optional<float> background_depth;  ///< depth from which on a pixel is background
   bool beauty = false;                    ///< whether a composite uses the colours of the beauty
+  int downsample = 1;                     ///< how many times as large as the outputs the frame is
   std::optional<glm::vec2> motion_scale;  ///< of the motion layer, to what Blender writes: pixels
                                           ///< to the frame before, y up; 1 where not given
 };
@@ -25,8 +26,10 @@ struct GBufferOptions {
 /// 0, or else by depth (>= 1e9, infinite, NaN, <= 0) where there is one, or else by P (0, >= 1e9,
 /// not finite) or a normal of 0.
 /// The table has a position or a depth, whose data window the planes have. Of a deep part, `deep`
-/// is the depth, its encoding undone but for its kind. Errors: ExitCode::layer when a layer is of
-/// another display window, or the depth has no unit.
+/// is the depth, its encoding undone but for its kind. Beauty, ambient and specular may have the
+/// size of the outputs; if they have that of the other layers, they are filtered to it. Errors:
+/// ExitCode::layer when a layer is of another display window, or the depth has no unit;
+/// ExitCode::usage when `options.downsample` does not divide the display window.
 GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTable& table,
                      const GBufferOptions& options, const Plane<float>* deep = nullptr);
 

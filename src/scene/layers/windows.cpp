@@ -16,10 +16,6 @@ using Files = std::vector<const ExrReader*>;
 
 constexpr float kSameAspect = 1e-4f;
 
-const ExrPart& part_of(const Files& files, const Layer& layer) {
-  return files[std::size_t(layer.file)]->parts()[std::size_t(layer.part)];
-}
-
 Role lead_of(const LayerTable& table) {
   return table[Role::position] ? Role::position : Role::depth;
 }
@@ -44,7 +40,10 @@ bool shows_surface(const GBuffer& g, std::size_t i, Role role) {
 }
 
 void note_data_window(const Files& files, Role role, const Layer& layer, GBuffer& g) {
-  const Window &all = g.window, &own = part_of(files, layer).data_window;
+  const ExrPart& part = part_of(files, layer);
+  const Window &all = g.window, own = has_size_of_outputs(part, g.downsampling)
+                                          ? g.downsampling.large(part.data_window)
+                                          : part.data_window;
   std::size_t surfaces = 0, left_out = 0;
   for (std::size_t i = 0; i < g.valid.size(); ++i) {
     const int x = all.x0 + int(i % std::size_t(g.valid.width)),
@@ -56,25 +55,53 @@ void note_data_window(const Files& files, Role role, const Layer& layer, GBuffer
   }
   if (left_out == 0) return;
   g.warnings.push_back(fmt::format("{} ends at its data window {}: {} of {} surfaces {}",
-                                   text_of(files, role, layer), text_of(own), left_out, surfaces,
-                                   row_of(role).outside));
+                                   text_of(files, role, layer), text_of(part.data_window), left_out,
+                                   surfaces, row_of(role).outside));
+}
+
+bool is_rendered(Role role) {
+  return role == Role::beauty || role == Role::ambient || role == Role::specular;
+}
+
+/// What to do about a layer of role `role` with the display window `own` beside `wanted`.
+std::string remedy(Role role, const Window& own, const Window& wanted,
+                   const Downsampling& downsampling) {
+  if (!is_rendered(role)) return "layers of a frame share one: render or resize them to one size";
+  if (!downsampling.is_identity()) {
+    return fmt::format("with --downsample {} it needs {} or {}: render or resize it to one of them",
+                       downsampling.factor, text_of(wanted), text_of(downsampling.small(wanted)));
+  }
+  const int factor = own.width() > 0 ? wanted.width() / own.width() : 0;
+  const bool fits = factor > 1 && Downsampling{factor, wanted}.small(wanted) == own;
+  return fmt::format("layers of a frame share one: render or resize them to one size{}",
+                     fits ? fmt::format(", or give --downsample {}", factor) : "");
 }
 
 }  // namespace
 
+const ExrPart& part_of(const Files& files, const Layer& layer) {
+  return files[std::size_t(layer.file)]->parts()[std::size_t(layer.part)];
+}
+
+bool has_size_of_outputs(const ExrPart& part, const Downsampling& downsampling) {
+  return !downsampling.is_identity() &&
+         part.display_window == downsampling.small(downsampling.display);
+}
+
 void check_display_windows(const Files& files, const LayerTable& table,
-                           const std::vector<Role>& roles) {
+                           const std::vector<Role>& roles, const Downsampling& downsampling) {
   const Role lead = lead_of(table);
   const Window& wanted = part_of(files, *table[lead]).display_window;
   for (const Role role : roles) {
     if (!table[role]) continue;
-    const Window& own = part_of(files, *table[role]).display_window;
-    if (own == wanted) continue;
+    const ExrPart& part = part_of(files, *table[role]);
+    const Window& own = part.display_window;
+    if (own == wanted || (is_rendered(role) && has_size_of_outputs(part, downsampling))) continue;
     throw Error(ExitCode::layer,
-                fmt::format("{}: {} has the display window {}, and {} has {}; layers of a frame "
-                            "share one: render or resize them to one size",
+                fmt::format("{}: {} has the display window {}, and {} has {}; {}",
                             files[0]->path().string(), text_of(files, role, *table[role]),
-                            text_of(own), text_of(files, lead, *table[lead]), text_of(wanted)));
+                            text_of(own), text_of(files, lead, *table[lead]), text_of(wanted),
+                            remedy(role, own, wanted, downsampling)));
   }
 }
 

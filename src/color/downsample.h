@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "color/compose.h"
+#include "estimators/products.h"
+#include "math/plane.h"
+
+namespace ssdo {
+
+/// A colour for every pixel of the G-buffer, premultiplied or a weight, over the window of outputs:
+/// the mean under the pixel filter.
+template <class T>
+Plane<T> at_output_size(const Plane<T>& values, const GBuffer& gbuffer);
+
+/// What the surface of each pixel of the G-buffer counts in means over surfaces: its coverage, 0
+/// where there is nothing to light; by albedo, times its albedo. All count 1 where a pixel of an
+/// output is one of the G-buffer.
+Plane<float> weights_by_coverage(const Results& results);
+Plane<glm::vec3> weights_by_albedo(const Results& results);
+
+/// A product over the window of outputs: its mean over the surfaces that a pixel shows, with its
+/// background where there is none. Light is weighted by albedo, all else by coverage; a direction
+/// has length 1 again. So albedo times light, both at that size, is what surfaces send there.
+Plane<float> product_at_output_size(const Product& product, const Plane<float>& values,
+                                    const Results& results);
+Plane<glm::vec3> product_at_output_size(const Product& product, const Plane<glm::vec3>& values,
+                                        const Results& results);
+
+}  // namespace ssdo
