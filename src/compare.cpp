@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "io/exr_writer.h"
+#include "io/exr/exr_writer.h"
 #include "io/image_file.h"
 #include "io/json_text.h"
 #include "io/one_line.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "color/color.h"
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 #include "lighting.h"
 #include "outputs.h"
 #include "plan.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "frame.h"
-#include "io/deep_reader.h"
+#include "io/exr/deep_reader.h"
 #include "scene/further/further_pictures.h"
 #include "scene/further/further_view.h"
 #include "scene/further/merge.h"
@@ -30,9 +30,10 @@ KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
                                   const std::optional<DeepImage>& own);
 
 /// Fills the solids and the further surfaces of a scene: measured where deep images or further
-/// views show them, guessed elsewhere, or as thick as `thickness`. Gives what each view added, those
-/// of back faces last, which are taken out of `known`; of neighbours of another scene, warnings tell.
-/// Errors: ExitCode::layer for a view of another scene, and a deep image of another frame.
+/// views show them, guessed elsewhere, or as thick as `thickness`. Gives what each view added,
+/// those of back faces last, which are taken out of `known`; of neighbours of another scene,
+/// warnings tell. Errors: ExitCode::layer for a view of another scene, and a deep image of another
+/// frame.
 std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
                                             std::optional<float> thickness,
                                             const GBufferOptions& reading);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "color/composition.h"
-#include "io/exr_writer.h"
+#include "io/exr/exr_writer.h"
 #include "io/safe_file.h"
 
 namespace ssdo {

@@ -6,7 +6,7 @@
 
 #include "color/compose.h"
 #include "color/display_image.h"
-#include "io/exr_writer.h"
+#include "io/exr/exr_writer.h"
 #include "io/image_file.h"
 #include "io/json_text.h"
 #include "stopwatch.h"

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/listing.h"
-#include "io/exr_parts.h"
+#include "io/exr/exr_parts.h"
 #include "io/one_line.h"
 
 namespace ssdo {

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "error.h"
-#include "io/exr_parts.h"
+#include "io/exr/exr_parts.h"
 #include "io/image_file.h"
 
 namespace ssdo {

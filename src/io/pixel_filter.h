@@ -3,7 +3,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 #include "math/downsampling.h"
 #include "math/plane.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 #include "scene/gbuffer.h"
 #include "scene/layers/layers.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "io/deep_reader.h"
-#include "io/exr_reader.h"
+#include "io/exr/deep_reader.h"
+#include "io/exr/exr_reader.h"
 #include "scene/gbuffer.h"
 #include "scene/geometry.h"
 #include "scene/layers/layers.h"

@@ -17,7 +17,7 @@
 #include "estimators/registry.h"
 #include "filters/shares.h"
 #include "frame.h"
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 #include "support/crop.h"
 
 namespace ssdo::test {
@@ -150,9 +150,9 @@ Result run(const std::string& method, const Subject& scene, const std::string& e
       prepare_frame(options, Lighting(options.light), pictures, {scene.frame, {}, scene.also});
   Plan& plan = frame.plan;
   plan.request.products.guessed = guessed;
-  const Products filtered = filter_shares(find_filter("geometry"),
-                                          plan.method->estimate(frame.scene, plan.request, {}),
-                                          frame.scene, plan.method->pattern_size);
+  const Products filtered =
+      filter_shares(find_filter("geometry"), plan.method->estimate(frame.scene, plan.request, {}),
+                    frame.scene, plan.method->pattern_size);
   return shown(frame.scene.geometry, filtered);
 }
 

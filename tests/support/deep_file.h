@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/deep_reader.h"
+#include "io/exr/deep_reader.h"
 #include "support/analytic_scene.h"
 #include "support/exr_fixture.h"
 

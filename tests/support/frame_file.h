@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 #include "support/analytic_scene.h"
 
 namespace ssdo::test {

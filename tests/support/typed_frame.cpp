@@ -8,7 +8,7 @@
 #include <ImfPartType.h>
 #include <ImfTiledOutputPart.h>
 
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 
 namespace ssdo::test {
 

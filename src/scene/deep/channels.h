@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "io/deep_reader.h"
+#include "io/exr/deep_reader.h"
 
 namespace ssdo {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/deep_reader.h"
+#include "io/exr/deep_reader.h"
 #include "scene/read_gbuffer.h"
 
 namespace ssdo {

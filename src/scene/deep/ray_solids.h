@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "io/deep_reader.h"
+#include "io/exr/deep_reader.h"
 
 namespace ssdo {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 
 namespace ssdo {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 #include "scene/layers/roles.h"
 
 namespace ssdo {

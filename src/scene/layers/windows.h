@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 #include "math/downsampling.h"
 #include "scene/gbuffer.h"
 #include "scene/layers/layers.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 
 namespace ssdo {
 

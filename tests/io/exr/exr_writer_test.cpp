@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/exr_writer.h"
+#include "io/exr/exr_writer.h"
 
 #include <ImfChromaticitiesAttribute.h>
 #include <ImfIntAttribute.h>

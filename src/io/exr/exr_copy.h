@@ -3,7 +3,7 @@
 
 #include <ImfMultiPartOutputFile.h>
 
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 
 namespace ssdo {
 

@@ -3,7 +3,7 @@
 // What the writer refuses to make smaller.
 #include <gtest/gtest.h>
 
-#include "io/exr_writer.h"
+#include "io/exr/exr_writer.h"
 #include "support/error_matchers.h"
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/deep_reader.h"
+#include "io/exr/deep_reader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/deep_reader.h"
+#include "io/exr/deep_reader.h"
 
 #include <ImfChannelList.h>
 #include <ImfDeepFrameBuffer.h>
@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "error.h"
-#include "io/exr_parts.h"
+#include "io/exr/exr_parts.h"
 #include "io/size_guard.h"
 
 namespace ssdo {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/zip_output.h"
+#include "io/exr/zip_output.h"
 
 #include <ImfChannelList.h>
 #include <ImfMultiPartOutputFile.h>
@@ -11,7 +11,7 @@
 #include <memory>
 #include <new>
 
-#include "io/zip_chunk.h"
+#include "io/exr/zip_chunk.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {
@@ -26,7 +26,7 @@ void write_number(Imf::OStream& stream, Number number) {
   stream.write(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
-/// Puts the bytes with even places before the others, as differences: see io/zip_chunk.h.
+/// Puts the bytes with even places before the others, as differences: see io/exr/zip_chunk.h.
 void split_into_differences(const std::vector<std::byte>& bytes, std::vector<std::byte>& out) {
   const std::size_t evens = (bytes.size() + 1) / 2;
   std::vector<std::byte> split(bytes.size());

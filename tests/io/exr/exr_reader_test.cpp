@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <random>
 
-#include "io/deep_reader.h"
+#include "io/exr/deep_reader.h"
 #include "support/error_matchers.h"
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 #include "io/safe_file.h"
 #include "math/downsampling.h"
 #include "math/plane.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/exr_writer.h"
+#include "io/exr/exr_writer.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -16,12 +16,12 @@
 
 #include "error.h"
 #include "io/checked_file.h"
-#include "io/exr_copy.h"
-#include "io/exr_parts.h"
-#include "io/exr_stream.h"
+#include "io/exr/exr_copy.h"
+#include "io/exr/exr_parts.h"
+#include "io/exr/exr_stream.h"
+#include "io/exr/zip_output.h"
 #include "io/one_line.h"
 #include "io/pixel_filter.h"
-#include "io/zip_output.h"
 
 namespace ssdo {
 namespace {

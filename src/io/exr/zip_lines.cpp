@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/zip_lines.h"
+#include "io/exr/zip_lines.h"
 
 #include <ImfChannelList.h>
 #include <ImfInputPart.h>
@@ -12,8 +12,8 @@
 #include <cstring>
 #include <memory>
 
-#include "io/exr_parts.h"
-#include "io/zip_chunk.h"
+#include "io/exr/exr_parts.h"
+#include "io/exr/zip_chunk.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {
@@ -148,7 +148,7 @@ class ZipLines {
   std::vector<Wanted> wanted_;
 };
 
-/// Whether chunks are those of io/zip_chunk.h, of values that need no other conversion.
+/// Whether chunks are those of io/exr/zip_chunk.h, of values that need no other conversion.
 bool is_readable(const ExrPart& part, std::span<const ChannelRows> channels) {
   return is_zip(part.header.compression()) && !part.deep && !is_tiled(part) &&
          std::all_of(part.channels.begin(), part.channels.end(),

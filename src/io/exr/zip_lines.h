@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 
 namespace ssdo {
 

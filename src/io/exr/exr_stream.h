@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "io/checked_file.h"
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 
 namespace ssdo {
 

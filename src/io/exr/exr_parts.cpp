@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/exr_parts.h"
+#include "io/exr/exr_parts.h"
 
 #include <ImfChannelList.h>
 #include <ImfMultiPartInputFile.h>

@@ -18,7 +18,7 @@
 #include <iterator>
 #include <limits>
 
-#include "io/exr_writer.h"
+#include "io/exr/exr_writer.h"
 #include "io/threads.h"
 #include "support/error_matchers.h"
 #include "support/exr_fixture.h"

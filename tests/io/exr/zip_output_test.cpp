@@ -2,7 +2,7 @@
 //
 // Files of our own chunks against OpenEXR: it reads their pixels, and their headers are those that
 // it writes.
-#include "io/zip_output.h"
+#include "io/exr/zip_output.h"
 
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>

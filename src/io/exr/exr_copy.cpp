@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/exr_copy.h"
+#include "io/exr/exr_copy.h"
 
 #include <ImfDeepScanLineInputPart.h>
 #include <ImfDeepScanLineOutputPart.h>
@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "io/exr_parts.h"
+#include "io/exr/exr_parts.h"
 #include "io/one_line.h"
 
 namespace ssdo {

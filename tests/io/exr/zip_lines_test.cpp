@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Chunks of ZIP and ZIPS by our own code against OpenEXR's reader, bit for bit.
-#include "io/zip_lines.h"
+#include "io/exr/zip_lines.h"
 
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>

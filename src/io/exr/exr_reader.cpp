@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/exr_reader.h"
+#include "io/exr/exr_reader.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -14,10 +14,10 @@
 #include <algorithm>
 
 #include "error.h"
-#include "io/exr_parts.h"
+#include "io/exr/exr_parts.h"
+#include "io/exr/zip_lines.h"
 #include "io/one_line.h"
 #include "io/size_guard.h"
-#include "io/zip_lines.h"
 
 namespace ssdo {
 namespace {
