@@ -15,7 +15,7 @@
 #include "math/sampling.h"
 #include "math/sobol.h"
 #include "scene/further/sight.h"
-#include "scene/normals.h"
+#include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
 #include "scene/same_surface.h"
 

@@ -52,7 +52,8 @@
 #include "math/sampling.h"
 #include "math/sobol.h"
 #include "scene/light/sun.h"
-#include "scene/normals.h"
+#include "scene/normals/geometric_normal.h"
+#include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
 #include "scene/surfel.h"
 

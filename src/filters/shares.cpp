@@ -54,21 +54,12 @@ HWY_INLINE Normals normals_of(const Surfels& q) {
   return {if_then_else(q.surface, q.normal, set(glm::vec3(0, 0, 1))), q.surface};
 }
 
-/// Of `count` surfels, or as many as there are lanes.
-HWY_INLINE Normals normals_of(const Surfel* from, int count) {
-  if (count >= kLanes) return normals_of(load_surfels(from));
-  Surfel copies[kLanes];
-  std::copy_n(from, count, copies);
-  return normals_of(load_surfels(copies));
-}
-
 /// Calls `work(index, count, normals)` for vectors of a row; the last may have fewer pixels than
 /// lanes.
 template <class Work>
 HWY_INLINE void for_each_vector(const Plane<Surfel>& surfel, int y, const Work& work) {
   for (int x = 0; x < surfel.width; x += kLanes) {
-    const std::size_t i = surfel.index(x, y);
-    work(i, surfel.width - x, normals_of(&surfel[i], surfel.width - x));
+    work(surfel.index(x, y), surfel.width - x, normals_of(surfels_at(surfel, x, y)));
   }
 }
 

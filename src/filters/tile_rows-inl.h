@@ -18,6 +18,7 @@
 #include "estimators/estimator.h"
 #include "parallel/tiles.h"
 #include "scene/geometry.h"
+#include "scene/surfel-inl.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -80,32 +81,6 @@ inline std::vector<Part> parts_of(const Products& noisy, Products& out) {
   for_each_share([&](const auto& from, auto& to) { add(from, to, Finish::none, true); }, noisy,
                  out);
   return parts;
-}
-
-/// Surfels side by side; only `surface` counts where there is none.
-struct Surfels {
-  V3 position, normal;
-  V rounding;
-  M surface;
-};
-
-HWY_INLINE Surfels load_surfels(const Surfel* from) {
-  static_assert(sizeof(Surfel) == 8 * sizeof(float));
-#if HWY_TARGET == HWY_SCALAR
-  return {set(from->position), set(from->normal), set(from->rounding), set(from->valid) != set(0)};
-#else
-  const D d;
-  // Position and validity, normal and rounding, position, ... of two halves of the vector.
-  V x0, y0, z0, w0, x1, y1, z1, w1;
-  hn::LoadInterleaved4(d, &from[0].position.x, x0, y0, z0, w0);
-  hn::LoadInterleaved4(d, &from[kLanes / 2].position.x, x1, y1, z1, w1);
-  const auto even = [d](V a, V b) HWY_ATTR { return hn::ConcatEven(d, b, a); };
-  const auto odd = [d](V a, V b) HWY_ATTR { return hn::ConcatOdd(d, b, a); };
-  return {{even(x0, x1), even(y0, y1), even(z0, z1)},
-          {odd(x0, x1), odd(y0, y1), odd(z0, z1)},
-          odd(w0, w1),
-          even(w0, w1) != set(0)};
-#endif
 }
 
 /// What pixels side by side show. What is not a surface has no normal.

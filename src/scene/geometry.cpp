@@ -10,8 +10,8 @@
 
 #include "parallel/tiles.h"
 #include "scene/camera/find_camera.h"
-#include "scene/normal_space.h"
-#include "scene/normals.h"
+#include "scene/normals/normal_space.h"
+#include "scene/normals/normals.h"
 #include "scene/silhouettes.h"
 
 namespace ssdo {

@@ -26,8 +26,9 @@
 #include <utility>
 
 #include "parallel/tiles.h"
-#include "scene/normals.h"
-#include "scene/same_surface.h"
+#include "scene/connections.h"
+#include "scene/normals/normals.h"
+#include "scene/pixel_footprint.h"
 
 namespace ssdo {
 namespace {
@@ -40,15 +41,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// little: no value is the best for all of them, and 3 is for occluders nearby.
 constexpr float kPartlySeen = 3;
 
-/// The lines of pixels in one of four directions.
-struct Direction {
-  int dx, dy;
-};
-constexpr Direction kDirections[] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
-
-/// How a pixel meets a neighbour.
+/// How the surface of a pixel meets a neighbour.
 enum class Meets : unsigned char {
-  same_surface,
   ends,         ///< before something farther, or nothing
   goes_behind,  ///< something nearer
   border,
@@ -67,19 +61,23 @@ struct Run {
 
 class Runs {
  public:
-  explicit Runs(const Geometry& geometry) : geometry_(geometry), footprint_(geometry.camera) {}
+  explicit Runs(const Geometry& geometry)
+      : geometry_(geometry),
+        connections_(find_connections(geometry)),
+        footprint_(geometry.camera) {}
 
-  /// Calls `work(run)` for all runs of one direction. Runs do not overlap.
+  /// Calls `work(run)` for all runs of kDirections[k]. Runs do not overlap.
   template <class Work>
-  void for_each(const Direction& direction, const Work& work) const {
+  void for_each(std::size_t k, const Work& work) const {
+    const Direction& direction = kDirections[k];
     const int w = geometry_.surfel.width, h = geometry_.surfel.height;
     // Every line begins in the first row, or in the column that it comes from.
     const int in_first_row = direction.dy == 0 ? 0 : w;
     const int in_first_column = direction.dx == 0 ? 0 : direction.dy == 0 ? h : h - 1;
     for_each_row(in_first_row + in_first_column, [&](int line) {
-      if (line < in_first_row) return walk(line, 0, direction, work);
+      if (line < in_first_row) return walk(line, 0, k, work);
       const int row = line - in_first_row + (direction.dy == 0 ? 0 : 1);
-      walk(direction.dx > 0 ? 0 : w - 1, row, direction, work);
+      walk(direction.dx > 0 ? 0 : w - 1, row, k, work);
     });
   }
 
@@ -91,7 +89,8 @@ class Runs {
 
  private:
   template <class Work>
-  void walk(int x, int y, const Direction& d, const Work& work) const {
+  void walk(int x, int y, std::size_t k, const Work& work) const {
+    const Direction& d = kDirections[k];
     Meets before = Meets::border;
     while (contains(x, y)) {
       if (!geometry_.surfel(x, y).is_surface()) {
@@ -100,28 +99,23 @@ class Runs {
         continue;
       }
       Run run{x, y, 1, d, before, Meets::border};
-      for (;; ++run.length) {
-        const int next_x = x + d.dx, next_y = y + d.dy;
-        run.after = contains(next_x, next_y)
-                        ? meet(geometry_.surfel(x, y), geometry_.surfel(next_x, next_y))
-                        : Meets::border;
-        x = next_x, y = next_y;
-        if (run.after != Meets::same_surface) break;
-      }
+      for (; connections_(x, y) >> k & 1; ++run.length) x += d.dx, y += d.dy;
+      const Surfel& last = geometry_.surfel(x, y);
+      x += d.dx, y += d.dy;
+      if (contains(x, y)) run.after = meet(last, geometry_.surfel(x, y));
       work(run);
       before = run.after == Meets::ends ? Meets::goes_behind : Meets::ends;
     }
   }
 
-  Meets meet(const Surfel& a, const Surfel& b) const {
-    if (!b.is_surface()) return Meets::ends;
-    const auto point = [](const Surfel& s) { return SurfacePoint{s.position, s.normal}; };
-    if (on_one_surface(point(a), point(b), footprint_)) return Meets::same_surface;
-    return a.position.z > b.position.z ? Meets::ends : Meets::goes_behind;
+  /// How `a` meets `b`, which is on another surface or on none.
+  static Meets meet(const Surfel& a, const Surfel& b) {
+    return !b.is_surface() || a.position.z > b.position.z ? Meets::ends : Meets::goes_behind;
   }
 
   const Geometry& geometry_;
-  PixelFootprint footprint_;
+  const Plane<unsigned char> connections_;
+  const PixelFootprint footprint_;
 };
 
 float width_of(const Run& run, const Geometry& geometry, const Runs& runs) {
@@ -197,8 +191,8 @@ Solids guess_solids(const Geometry& geometry) {
   Plane<float> thickness(w, h, kInfinity), distance_px(w, h, kInfinity);
   SolidLayer second(w, h, Origin::guessed);
   const Runs runs(geometry);
-  for (const Direction& direction : kDirections) {
-    runs.for_each(direction, [&](const Run& run) {
+  for (std::size_t k = 0; k < kDirections.size(); ++k) {
+    runs.for_each(k, [&](const Run& run) {
       const float width = width_of(run, geometry, runs);
       for (int i = 0; i < run.length; ++i) {
         float& least = thickness(run.x_at(i), run.y_at(i));

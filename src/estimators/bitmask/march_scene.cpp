@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "parallel/tiles.h"
-#include "scene/normals.h"
+#include "scene/normals/geometric_normal.h"
 #include "scene/surfel.h"
 
 namespace ssdo {
@@ -37,7 +37,8 @@ class Cells {
   Cells(const Geometry& g, const MarchScene& scene)
       : g_(g), scene_(scene), endless_(scene.orthographic ? kEndlessLength : kEndlessShare) {}
 
-  Cell at(int x, int y) const {
+  /// `normal` is that of the surface.
+  Cell at(int x, int y, const glm::vec3& normal) const {
     Cell cell;
     const Surfel& s = g_.surfel(x, y);
     if (!s.is_usable()) return cell;
@@ -45,8 +46,7 @@ class Cells {
                           (scene_.axis_y - float(y + scene_.first_y)) / scene_.fy);
     if (!scene_.orthographic) cell.ray_length = std::sqrt(1 + glm::dot(slope, slope));
     cell.shading = s.normal;
-    cell.normal = geometric_normal(g_.surfel, x, y,
-                                   direction_to_viewer(glm::vec3(s.position), scene_.orthographic));
+    cell.normal = normal;
     cell.depth = depth_on_ray(s, cell.normal, slope, cell.ray_length);
     cell.rounding = s.rounding;
     return cell;
@@ -119,9 +119,12 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
     constexpr int kPad = Interleaving::kPad;
     // From left to right: eight walks over every eighth pixel would each fetch three rows of
     // surfels.
+    std::vector<glm::vec3> normals(std::size_t(g.surfel.width));
+    find_geometric_normals(g.surfel, y, g.camera.orthographic, normals);
     std::vector<Cell> cells_of_row;
-    cells_of_row.reserve(std::size_t(g.surfel.width));
-    for (int x = 0; x < g.surfel.width; ++x) cells_of_row.push_back(cells.at(x, y));
+    cells_of_row.reserve(normals.size());
+    for (int x = 0; x < g.surfel.width; ++x)
+      cells_of_row.push_back(cells.at(x, y, normals[std::size_t(x)]));
     for (int column_phase = 0; column_phase < kPeriod; ++column_phase) {
       const std::ptrdiff_t row = layout.index(y, column_phase, 0);
       for (int column = -kPad; column < int(layout.stride()) - kPad; ++column) {

@@ -18,7 +18,8 @@
 
 #include "estimators/trace/cell_links.h"
 #include "parallel/tiles.h"
-#include "scene/normals.h"
+#include "scene/normals/geometric_normal.h"
+#include "scene/normals/normals.h"
 #include "scene/same_surface.h"
 #include "scene/surfel.h"
 

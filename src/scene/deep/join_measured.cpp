@@ -22,7 +22,7 @@
 #include <utility>
 
 #include "parallel/tiles.h"
-#include "scene/normals.h"
+#include "scene/normals/normals.h"
 #include "scene/same_surface.h"
 
 namespace ssdo {

@@ -13,7 +13,7 @@
 #include "io/exr/exr_parts.h"
 #include "parallel/tiles.h"
 #include "scene/deep/ray_solids.h"
-#include "scene/normals.h"
+#include "scene/normals/normals.h"
 #include "scene/same_surface.h"
 
 namespace ssdo {

@@ -23,7 +23,7 @@
 #include <limits>
 
 #include "parallel/tiles.h"
-#include "scene/normals.h"
+#include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
 #include "scene/same_surface.h"
 

@@ -13,7 +13,7 @@
 
 #include "parallel/tiles.h"
 #include "scene/further/sight.h"
-#include "scene/normals.h"
+#include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
 #include "scene/same_surface.h"
 

@@ -24,7 +24,7 @@
 
 #include "error.h"
 #include "parallel/tiles.h"
-#include "scene/normals.h"
+#include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
 #include "scene/same_surface.h"
 

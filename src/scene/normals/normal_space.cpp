@@ -11,7 +11,7 @@
 // Normals are compared without their sign, since some renderers leave those of back faces as they
 // are: two maps of axes that differ by the sign alone are one candidate, whose sign is decided
 // last.
-#include "scene/normal_space.h"
+#include "scene/normals/normal_space.h"
 
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "scene/camera/projection_model.h"
-#include "scene/normals.h"
+#include "scene/normals/normals.h"
 
 namespace ssdo {
 namespace {

@@ -17,11 +17,6 @@ const Surfel* surface_at(const Plane<Surfel>& surfels, int x, int y);
 /// nothing, the next ones are asked. Zero where the neighbours span no plane.
 glm::vec3 gradient_normal(const Plane<Surfel>& surfels, int x, int y, const glm::vec3& view);
 
-/// The unit normal of the surface itself, whatever a normal map or smooth shading says: from the
-/// positions around a usable pixel where these lie on a smooth surface and rounding leaves them a
-/// slope; else, and within two degrees of it, the normal of the pixel.
-glm::vec3 geometric_normal(const Plane<Surfel>& surfels, int x, int y, const glm::vec3& view);
-
 /// Unit direction from a camera-space point to the viewer.
 glm::vec3 direction_to_viewer(const glm::vec3& p, bool orthographic);
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Normals of frames that have depth and no N, and of surfaces under a normal map.
-#include "scene/normals.h"
+#include "scene/normals/normals.h"
+#include "scene/normals/geometric_normal.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
+#include "scene/normals/geometric_normal.h"
 #include "support/analytic_scene.h"
 
 namespace ssdo::test {
@@ -128,6 +130,32 @@ TEST(GeometricNormals, AreThoseOfTheSurfaceUnderANormalMap) {
     EXPECT_LT(glm::distance(inside.geometric, lean < 2 ? shading : up), 1e-4) << lean;
     const NormalPair border = normals_at(g, 0, 47);
     EXPECT_LT(glm::distance(border.geometric, lean < 2 ? shading : up), 1e-4) << "at the border";
+  }
+}
+
+TEST(GeometricNormals, OfARowAreThoseOfItsPixels) {
+  const Surface ball = all_of(
+      {cut(plane({}, {0, 0, 1}), [](auto& p) { return p.y < 0.4; }), sphere({0, 0, 0.5}, 0.5)});
+  for (const bool orthographic : {false, true}) {
+    const Camera projection =
+        orthographic ? camera_from_ortho_width(3, kWindow, 1) : camera_from_fov(40, kWindow, 1);
+    Geometry g = geometry_of(ball, look_at(projection, {0, -3, 2}, {}, {0, 0, 1}), kWindow);
+    for (std::size_t i = 0; i < g.surfel.size(); i += 3)
+      g.surfel[i].normal = glm::normalize(g.surfel[i].normal + glm::vec3(0.2f, 0, 0));
+    std::vector<glm::vec3> row(std::size_t(kWindow.width()));
+    int surfaces = 0;
+    for (int y = 0; y < kWindow.height(); ++y) {
+      find_geometric_normals(g.surfel, y, orthographic, row);
+      for (int x = 0; x < kWindow.width(); ++x) {
+        const Surfel& s = g.surfel(x, y);
+        if (!s.is_usable()) continue;
+        ++surfaces;
+        const glm::vec3 alone =
+            geometric_normal(g.surfel, x, y, direction_to_viewer(s.position, orthographic));
+        EXPECT_LT(glm::distance(row[std::size_t(x)], alone), 1e-5f) << x << " " << y;
+      }
+    }
+    EXPECT_GT(surfaces, 1000);
   }
 }
 

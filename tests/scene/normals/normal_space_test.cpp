@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Which space and axes stored normals have, by the gradient of P.
-#include "scene/normal_space.h"
+#include "scene/normals/normal_space.h"
 
 #include <gtest/gtest.h>
 

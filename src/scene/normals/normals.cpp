@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/normals/normals.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace ssdo {
+namespace {
+
+/// The shorter of the two steps from a pixel to its neighbours along one axis, pointing forward.
+glm::vec3 shorter_step(const Plane<Surfel>& surfels, int x, int y, int dx, int dy) {
+  const glm::vec3 p(surfels(x, y).position);
+  glm::vec3 best(0);
+  float best_length = 0;
+  for (int pixels = 1; pixels <= 2 && best_length == 0; ++pixels) {
+    for (const int way : {-pixels, pixels}) {
+      const Surfel* q = surface_at(surfels, x + way * dx, y + way * dy);
+      if (!q) continue;
+      const glm::vec3 step = (q->position - p) / float(way);
+      const float length = glm::dot(step, step);
+      if (best_length == 0 || length < best_length) best = step, best_length = length;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+const Surfel* surface_at(const Plane<Surfel>& surfels, int x, int y) {
+  if (x < 0 || y < 0 || x >= surfels.width || y >= surfels.height) return nullptr;
+  const Surfel& s = surfels(x, y);
+  return s.is_surface() ? &s : nullptr;
+}
+
+glm::vec3 direction_to_viewer(const glm::vec3& p, bool orthographic) {
+  return orthographic ? glm::vec3(0, 0, 1) : -glm::normalize(p);
+}
+
+glm::vec3 gradient_normal(const Plane<Surfel>& surfels, int x, int y, const glm::vec3& view) {
+  const glm::vec3 right = shorter_step(surfels, x, y, 1, 0);
+  const glm::vec3 down = shorter_step(surfels, x, y, 0, 1);
+  const glm::vec3 n = glm::cross(down, right);
+  const float length = glm::length(n);
+  if (!(length > 0)) return glm::vec3(0);
+  return glm::dot(n, view) < 0 ? -n / length : n / length;
+}
+
+}  // namespace ssdo
