@@ -69,7 +69,9 @@ void append(std::vector<std::string>& lines, const std::vector<std::string>& mor
 
 std::optional<DisplayTransform> make_display(const RelightJob& job) {
   for (const Target& target : job.targets) {
-    if (!has_exr_ending(target.path) && needs_display(product_of_picture(target, job.frame.plan)))
+    if (has_exr_ending(target.path)) continue;
+    load_image_codec();
+    if (needs_display(product_of_picture(target, job.frame.plan)))
       return DisplayTransform(job.options.color, color_tags(job.frame));
   }
   return std::nullopt;

@@ -39,8 +39,9 @@ struct Relit {
 Relit relight(const RelightJob& job, const std::function<void(double)>& on_progress,
               const Past& past);
 
-/// How colours become those of a display, where a target is a picture that shows colours.
-/// Errors: those of DisplayTransform.
+/// How colours become those of a display, where a target is a picture that shows colours. Where a
+/// target is a picture, loads what writes it.
+/// Errors: those of DisplayTransform and load_image_codec().
 std::optional<DisplayTransform> make_display(const RelightJob& job);
 
 /// Files that have been written but do not have their names yet: the caller commits them.

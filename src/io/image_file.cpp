@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/image_file.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cmath>
-#include <cstdint>
 #include <string>
 
 #include "error.h"
 #include "io/checked_file.h"
+#include "io/images/codec.h"
 #include "io/one_line.h"
-#include "io/size_guard.h"
+#include "io/threads.h"
 
 namespace fs = std::filesystem;
 
@@ -24,15 +21,6 @@ namespace {
 [[noreturn]] void fail(ExitCode code, const fs::path& file, std::string_view what) {
   throw Error(code, fmt::format("{}: {}", file.string(), what));
 }
-
-std::string ending(const fs::path& path) {
-  std::string text = path.extension().string();
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  return text;
-}
-
-bool is_jpeg(const fs::path& path) { return ending(path) == ".jpg" || ending(path) == ".jpeg"; }
 
 void check_exists(const fs::path& path) {
   std::error_code error;
@@ -48,124 +36,52 @@ void check_exists(const fs::path& path) {
   }
 }
 
-std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& path) {
-  check_exists(path);
-  OIIO::ImageSpec as_stored;
-  as_stored.attribute("oiio:UnassociatedAlpha", 1);
-  as_stored.attribute("oiio:RawColor", 1);
-  auto image = OIIO::ImageInput::open(path.string(), &as_stored);
-  if (!image) {
-    fail(ExitCode::input, path,
-         fmt::format("cannot be read as an image ({}); check the file or convert it to EXR",
-                     one_line(OIIO::geterror())));
-  }
-  return image;
+/// Beside the tool, where installing puts it, and above the tests of a build tree.
+std::vector<fs::path> places_of_codec() {
+  const fs::path folder = fs::read_symlink("/proc/self/exe").parent_path();
+  return {folder / kCodecFile, folder / SSDO_MODULE_FOLDER / kCodecFile,
+          folder.parent_path() / kCodecFile};
 }
 
-/// Interleaved values as unsigned integers of the whole range of T.
-template <class T>
-std::vector<std::byte> quantize(const ImageSpec& spec, int channels,
-                                std::span<const float> values) {
-  constexpr float kLargest = float(std::numeric_limits<T>::max());
-  std::vector<std::byte> bytes(std::size_t(spec.width) * spec.height * channels * sizeof(T));
-  T* out = reinterpret_cast<T*>(bytes.data());
-  for (std::size_t i = 0; i < values.size(); i += std::size_t(spec.channels)) {
-    for (int c = 0; c < channels; ++c) {
-      const float value = values[i + std::size_t(c)];
-      const float clamped = value > 0 ? std::min(value, 1.0f) : 0.0f;  // NaN becomes 0
-      *out++ = T(clamped * kLargest + 0.5f);
-    }
+const ImageCodec& open_codec() {
+  const std::vector<fs::path> places = places_of_codec();
+  const auto place = std::find_if(places.begin(), places.end(),
+                                  [](const fs::path& path) { return fs::exists(path); });
+  if (place == places.end()) {
+    throw Error(
+        ExitCode::failed,
+        fmt::format("{}: is missing, and not in {} either; pictures and maps other than EXR "
+                    "need it: install ssdo again",
+                    places[1].lexically_normal().string(), places[0].string()));
   }
-  return bytes;
+  // Never closed: OpenImageIO's threads live on.
+  void* const module = dlopen(place->c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* const found = module ? dlsym(module, kCodecFunction) : nullptr;
+  if (!found) {
+    throw Error(ExitCode::failed, fmt::format("{}: cannot be loaded ({}); install ssdo again",
+                                              place->string(), one_line(dlerror())));
+  }
+  return *reinterpret_cast<GetImageCodec*>(found)(io_threads());
 }
 
-OIIO::ImageSpec stored_spec(const ImageSpec& spec, const fs::path& target) {
-  const bool jpeg = is_jpeg(target);
-  OIIO::ImageSpec stored(spec.width, spec.height, jpeg ? std::min(spec.channels, 3) : spec.channels,
-                         spec.bits == 16 && !jpeg ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
-  stored.attribute("oiio:UnassociatedAlpha", 1);
-  stored.attribute("PixelAspectRatio", spec.pixel_aspect);
-  // TIFF would get the time of writing. This is how EXIF spells a time that is not known.
-  stored.attribute("DateTime", "    :  :     :  :  ");
-  if (jpeg) {
-    stored.attribute("Compression", "jpeg:95");
-    stored.attribute("jpeg:subsampling", "4:4:4");
-  }
-  return stored;
-}
-
-/// JPEG's own limit. libjpeg ends the process where it is exceeded.
-constexpr int kLargestJpeg = 65500;
-
-/// The bytes of the encoded file.
-std::vector<unsigned char> encode(const OIIO::ImageSpec& spec, const fs::path& target,
-                                  const std::vector<std::byte>& pixels) {
-  if (is_jpeg(target) && std::max(spec.width, spec.height) > kLargestJpeg) {
-    fail(ExitCode::output, target,
-         fmt::format(
-             "cannot be encoded: {} x {} is more than the {} pixels of JPEG; use .png or .tif",
-             spec.width, spec.height, kLargestJpeg));
-  }
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  auto image = OIIO::ImageOutput::create(target.string(), &memory);
-  if (!image) {
-    fail(ExitCode::output, target,
-         fmt::format("cannot be written ({}); use .png, .jpg or .tif", one_line(OIIO::geterror())));
-  }
-  if (!image->open(target.string(), spec) || !image->write_image(spec.format, pixels.data()) ||
-      !image->close()) {
-    fail(
-        ExitCode::output, target,
-        fmt::format("cannot be encoded ({}); use another image kind", one_line(image->geterror())));
-  }
-  return bytes;
+/// Loaded when the first image is read or written.
+const ImageCodec& codec() {
+  static const ImageCodec& loaded = open_codec();
+  return loaded;
 }
 
 }  // namespace
 
-bool is_display_image(const fs::path& path) {
-  const std::string kind = ending(path);
-  return kind == ".png" || kind == ".tif" || kind == ".tiff" || is_jpeg(path);
-}
-
-bool keeps_alpha(const fs::path& path) { return !is_jpeg(path); }
-
-bool has_exr_ending(const fs::path& path) { return ending(path) == ".exr"; }
+void load_image_codec() { codec(); }
 
 Image read_image(const fs::path& path) {
-  auto file = open_image(path);
-  const OIIO::ImageSpec& spec = file->spec();
-  if (spec.deep || spec.depth > 1 || spec.nchannels < 1) {
-    fail(ExitCode::input, path, "is not a flat image (it is deep, a volume or has no channels)");
-  }
-  const int colors = spec.nchannels < 3 ? 1 : 3;
-  const int channels = std::max(colors, spec.alpha_channel + 1);
-  check_decoded_size(path, double(spec.width) * spec.height * (sizeof(glm::vec3) + 4.0 * channels));
-  std::vector<float> values(std::size_t(spec.width) * spec.height * channels);
-  // libjpeg fills up what a file lacks with grey, and OpenImageIO reports that but goes on.
-  if (!file->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data()) ||
-      file->has_error()) {
-    fail(ExitCode::input, path,
-         fmt::format("is damaged or cut short ({}); copy it again", one_line(file->geterror())));
-  }
-  Image image{Plane<glm::vec3>(spec.width, spec.height), {}, !spec.format.is_floating_point()};
-  if (spec.alpha_channel >= colors) image.alpha = Plane<float>(spec.width, spec.height);
-  for (std::size_t i = 0; i < image.color.size(); ++i) {
-    const float* value = &values[i * std::size_t(channels)];
-    image.color[i] = colors == 1 ? glm::vec3(*value) : glm::vec3(value[0], value[1], value[2]);
-    if (!image.alpha.empty()) image.alpha[i] = value[spec.alpha_channel];
-  }
-  return image;
+  check_exists(path);
+  return codec().read(path);
 }
 
 std::vector<unsigned char> encode_image(const fs::path& name, const ImageSpec& spec,
                                         std::span<const float> values) {
-  const OIIO::ImageSpec stored = stored_spec(spec, name);
-  const auto pixels = stored.format == OIIO::TypeDesc::UINT16
-                          ? quantize<std::uint16_t>(spec, stored.nchannels, values)
-                          : quantize<std::uint8_t>(spec, stored.nchannels, values);
-  return encode(stored, name, pixels);
+  return codec().encode(name, spec, values);
 }
 
 void write_image(const SafeFile& file, const ImageSpec& spec, std::span<const float> values) {

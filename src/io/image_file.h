@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "io/images/kind.h"
 #include "io/safe_file.h"
 #include "math/plane.h"
 
@@ -18,6 +19,10 @@ struct Image {
   bool integers = false;   ///< stored as integers, which become 0..1
 };
 
+/// Loads the module that the functions below need, before work that would be lost without it.
+/// Errors: ExitCode::failed where it is missing.
+void load_image_codec();
+
 /// Reads any flat image that OpenImageIO reads: Radiance HDR, TIFF, PNG, JPEG.
 /// Errors: ExitCode::input, also for a file that is cut short and that the library would fill up.
 Image read_image(const std::filesystem::path& path);
@@ -29,16 +34,6 @@ struct ImageSpec {
   int bits = 8;            ///< 8 or 16 per channel; JPEG is always 8
   float pixel_aspect = 1;  ///< width of a pixel over its height
 };
-
-/// Whether the ending of `path` is an image kind that write_image can make: .png .jpg .jpeg .tif
-/// .tiff, in any case.
-bool is_display_image(const std::filesystem::path& path);
-
-/// Whether that image kind can hold an alpha: all but JPEG.
-bool keeps_alpha(const std::filesystem::path& path);
-
-/// Whether the ending of `path` is .exr, in any case.
-bool has_exr_ending(const std::filesystem::path& path);
 
 /// The bytes of an image file of the kind that the ending of `name` says, from interleaved values
 /// in 0..1 (others are clamped, NaN becomes 0).

@@ -2,20 +2,26 @@
 #include "io/threads.h"
 
 #include <ImfThreading.h>
-#include <OpenImageIO/imageio.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <string>
 
 namespace ssdo {
+namespace {
+
+std::atomic<int> limit = 0;
+
+}  // namespace
 
 void limit_io_threads(int count) {
+  limit = count;
   // OpenEXR counts helpers beside the calling thread: 0 makes it work alone.
   OPENEXR_IMF_NAMESPACE::setGlobalThreadCount(count == 1 ? 0 : count);
   // OpenImageIO starts $CUE_THREADS threads, be they 99999, before another number can be set.
   setenv("OPENIMAGEIO_THREADS", std::to_string(count).c_str(), 1);
-  OIIO::attribute("threads", count);
-  OIIO::attribute("exr_threads", count == 1 ? -1 : count);
 }
+
+int io_threads() { return limit; }
 
 }  // namespace ssdo

@@ -47,7 +47,7 @@ std::string read_file(const std::filesystem::path& path) {
 }
 
 Finished run_tool(const std::vector<std::string>& arguments, const Surroundings& around) {
-  std::vector<std::string> words = {SSDO_BINARY};
+  std::vector<std::string> words = {around.binary};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

@@ -29,6 +29,7 @@ std::string read_file(const std::filesystem::path& path);
 /// How a run differs from a plain one.
 struct Surroundings {
   std::map<std::string, std::string> variables = {};
+  std::filesystem::path binary = SSDO_BINARY;
   std::filesystem::path folder = {};  ///< to start in
   rlim_t file_size = RLIM_INFINITY;   ///< a disk that is full after this many bytes per file
   int kill_with = 0;                  ///< sent as soon as `kill_when` holds

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "io/image_file.h"
+
+namespace ssdo {
+
+/// What the tool asks of the module that image files go through. It is a file of its own, loaded
+/// when the first image is read or written: Debian's OpenImageIO brings 250 libraries, which take
+/// longer to load than a small frame takes to relight, and EXR to EXR needs none of them.
+struct ImageCodec {
+  /// read_image() of a file that exists.
+  Image (*read)(const std::filesystem::path& path);
+  /// encode_image().
+  std::vector<unsigned char> (*encode)(const std::filesystem::path& name, const ImageSpec& spec,
+                                       std::span<const float> values);
+};
+
+/// The module's file, and the function in it that returns its codec; `threads` are those that it
+/// may use, or 0 to let it choose.
+inline constexpr const char* kCodecFile = "ssdo_images.so";
+inline constexpr const char* kCodecFunction = "ssdo_image_codec";
+using GetImageCodec = const ImageCodec*(int threads);
+
+}  // namespace ssdo
