@@ -30,5 +30,5 @@ for name in "${names[@]}"; do
   panels+=("$name.png" --ch 0,0,0 --resize 288x162
     "--text:x=6:y=18:size=15:color=0,0,0:font=$font" "$name")
 done
-oiiotool "${panels[@]}" --create 288x162 3 --addc 1 --mosaic:pad=4 4x3 -d uint8 --compression jpeg:88 \
+oiiotool --nosoftwareattrib "${panels[@]}" --create 288x162 3 --addc 1 --mosaic:pad=4 4x3 -d uint8 --compression jpeg:88 \
   -o "$pictures/methods.jpg"

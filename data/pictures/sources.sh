@@ -24,4 +24,4 @@ for picture in $(grep -o '[^ ]*\.png' commands); do
     "$picture" --ch 0,1,2 --resize 384x216 --paste +240+0
     "--text:x=8:y=22:size=17:font=$font" "${picture%.png}")
 done
-oiiotool "${panels[@]}" --mosaic:pad=4 3x3 -d uint8 --compression jpeg:88 -o "$pictures/sources.jpg"
+oiiotool --nosoftwareattrib "${panels[@]}" --mosaic:pad=4 3x3 -d uint8 --compression jpeg:88 -o "$pictures/sources.jpg"
