@@ -38,7 +38,9 @@ namespace {
 Plane<float> channel(const Plane<float>& values, int /*c*/) { return values; }
 Plane<float> channel(const Plane<glm::vec3>& colors, int c) {
   Plane<float> out(colors.width, colors.height);
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = colors[i][c];
+  for_each_row(out.height, [&](int y) {
+    for (int x = 0; x < out.width; ++x) out(x, y) = colors(x, y)[c];
+  });
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include <half.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <functional>
 
@@ -22,6 +23,7 @@
 #include "io/exr/zip_output.h"
 #include "io/one_line.h"
 #include "io/pixel_filter.h"
+#include "parallel/tiles.h"
 
 namespace ssdo {
 namespace {
@@ -264,7 +266,7 @@ std::size_t write_strips(const WriteRows& write_rows, const Imath::Box2i& window
   const Imath::Box2i full({known.x0, known.y0}, {known.x1 - 1, known.y1 - 1});
   const auto columns = std::size_t(window.max.x - window.min.x + 1);
   std::vector<std::vector<half>> strips(planes.size());
-  std::size_t clamped = 0;
+  std::atomic<std::size_t> clamped = 0;
   for (int y = window.min.y; y <= window.max.y; y += kStripRows) {
     const int rows = std::min(kStripRows, window.max.y + 1 - y);
     const Imath::Box2i strip_window({window.min.x, y}, {window.max.x, y + rows - 1});
@@ -278,10 +280,10 @@ std::size_t write_strips(const WriteRows& write_rows, const Imath::Box2i& window
       const Plane<float>& pixels = *planes[i].pixels;
       if (planes[i].type == Imf::HALF) {
         strips[i].resize(std::size_t(rows) * columns);
-        for (int row = 0; row < rows; ++row) {
+        for_each_row(rows, [&](int row) {
           const float* values = &pixels(window.min.x - full.min.x, y + row - full.min.y);
           clamped += round_to_half({values, columns}, &strips[i][std::size_t(row) * columns]);
-        }
+        });
         frame_buffer.insert(planes[i].name,
                             Imf::Slice::Make(Imf::HALF, strips[i].data(), strip_window));
       } else {
