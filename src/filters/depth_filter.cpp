@@ -4,9 +4,10 @@
 // Graphics 2012, by the code published with the paper: nine taps, two pixels apart, along rows and
 // then along columns, each weighted by how near it is in depth.
 //
-//   out(p) = sum_i g(|i|) w(p, q) in(q) / sum_i g(|i|) w(p, q),  q = p + 2 i along the row or
-//   column g(0) = 0.15317,  g(i) = 0.3 + 0.144893, 0.122649, 0.092902, 0.06297 for |i| = 1 .. 4,  i
-//   = -4 .. 4 w = max(0, 1 - |z_p - z_q| / 0.15)
+//   out(p) = sum_i g_|i| w(p, q) in(q) / sum_i g_|i| w(p, q)
+//   q = p + 2 i along the row or column, i = -4 .. 4
+//   g_0 = 0.15317,  g_1 .. g_4 = 0.3 + (0.144893, 0.122649, 0.092902, 0.06297)
+//   w = max(0, 1 - |z_p - z_q| / 0.15)
 //
 // The 0.3 lifts all taps but the middle one, so that the window is nearly flat. The code compares
 // depths as shares of a far plane at 300 units, with a slope of 2000: 0.15 is 300 / 2000, a length

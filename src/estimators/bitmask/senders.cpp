@@ -2,8 +2,9 @@
 //
 // The radiance that each pixel sends to others: its albedo times all light that arrives there, a
 // mean over 4 x 4 pixels of its surface. A pixel's own light comes from two slices and one ray to
-// each sun, and many receivers look at the same pixel: sent on as it is, the noise of the light was
-// two thirds of the noise of the bounce. Compiled once for every instruction set.
+// each sun, and many receivers look at the same pixel: sent on as it is, it made the noise of
+// the bounce 1.6 to 1.9 times as large (things on a table, a box of a room). Compiled once for
+// every instruction set.
 //
 // The back side of a surface, which the camera does not see, is assumed to receive the unoccluded
 // light of its own hemisphere times the ao of the front. The sources of the method let surfaces

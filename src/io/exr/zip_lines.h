@@ -17,7 +17,7 @@ struct ChannelRows {
 
 /// Reads channels of a part whose scanlines are packed with ZIP or ZIPS: libdeflate inflates chunks
 /// side by side, and only these channels are unpacked. The bits are those of OpenEXR's own reader,
-/// in a third of its time.
+/// in less than half of its time.
 ///
 /// Returns false, with some pixels written or none, where that reader has to be asked: a part or a
 /// channel of another kind, or a damaged chunk, which it has a message for.

@@ -17,8 +17,8 @@
 namespace ssdo {
 namespace {
 
-/// Of libdeflate. Writing 15 half channels of a frame takes a third of the time that it takes with
-/// zlib's level 4, OpenEXR's own, for 0.4 % more bytes; level 4 takes half of it and saves 1 %.
+/// Of libdeflate. A frame of 15 half channels takes 46 % of the time to write that it takes with
+/// zlib's level 4, OpenEXR's own, for 0.4 % more bytes; level 4 takes 56 % of it for 1.3 % less.
 constexpr int kLevel = 1;
 
 template <class Number>

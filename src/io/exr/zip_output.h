@@ -12,8 +12,8 @@
 namespace ssdo {
 
 /// An EXR of one part in scanlines, packed with ZIP or ZIPS, whose channels have a value in every
-/// pixel. libdeflate packs its chunks side by side, in about a third of the time that OpenEXR takes
-/// for files of the same size. Header and layout are those that OpenEXR writes.
+/// pixel. libdeflate packs its chunks side by side, in less than half of the time that OpenEXR
+/// takes for files of the same size. Header and layout are those that OpenEXR writes.
 class ZipOutput {
  public:
   /// Whether files with this header are of that kind.

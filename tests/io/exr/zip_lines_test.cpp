@@ -128,6 +128,15 @@ TEST(ZipLines, ArePartsOfAFile) {
   EXPECT_EQ(value, float(test_value(1, 5, 3)));
 }
 
+/// Whether the last channel of a file is read without OpenEXR's reader.
+bool reads_last_channel(const std::filesystem::path& path, bool as_float) {
+  const ExrReader reader(path);
+  const ExrPart& part = reader.parts().front();
+  std::vector<ChannelRows> to = {{part.channels.back(), nullptr, as_float}};
+  const std::vector<Bytes> found = buffers(part, to);
+  return read_zip_lines(reader.file(), part, to);
+}
+
 TEST(ZipLines, LeaveOtherPartsToOpenExr) {
   const TempDir dir;
   const Box2i window({0, 0}, {31, 31});
@@ -137,11 +146,7 @@ TEST(ZipLines, LeaveOtherPartsToOpenExr) {
                     tiles = tiled(zip, 16), ids = test_header(window, {{"Z", Imf::UINT}});
   const auto reads = [&](const Imf::Header& header) {
     write_test_exr(dir / "a.exr", {header});
-    const ExrReader reader(dir / "a.exr");
-    const ExrPart& part = reader.parts().front();
-    std::vector<ChannelRows> to = {{part.channels.back(), nullptr, true}};
-    const std::vector<Bytes> found = buffers(part, to);
-    return read_zip_lines(reader.file(), part, to);
+    return reads_last_channel(dir / "a.exr", true);
   };
   EXPECT_TRUE(reads(zip));
   EXPECT_FALSE(reads(piz));
@@ -152,23 +157,36 @@ TEST(ZipLines, LeaveOtherPartsToOpenExr) {
 
 TEST(ZipLines, AreNotReadFromDamagedChunks) {
   const TempDir dir;
-  const Imf::Header header = test_header(Box2i({0, 0}, {31, 31}), {{"Z"}});
+  constexpr int kLastRow = 32, kRows = 4;  // of the last chunk
+  const Imf::Header header = test_header(Box2i({0, 0}, {31, kLastRow + kRows - 1}), {{"Z"}});
   write_test_exr(dir / "a.exr", {header});
   std::ifstream stream(dir / "a.exr", std::ios::binary);
   const std::string whole{std::istreambuf_iterator<char>(stream), {}};
   const auto reads = [&](const std::string& bytes) {
     std::ofstream(dir / "b.exr", std::ios::binary) << bytes;
-    const ExrReader reader(dir / "b.exr");
-    const ExrPart& part = reader.parts().front();
-    std::vector<ChannelRows> to = {{part.channels.front(), nullptr, false}};
-    const std::vector<Bytes> found = buffers(part, to);
-    return read_zip_lines(reader.file(), part, to);
+    return reads_last_channel(dir / "b.exr", false);
   };
   EXPECT_TRUE(reads(whole));
   std::string flipped = whole;
-  flipped[whole.size() - 40] = char(~flipped[whole.size() - 40]);
+  flipped[whole.size() - 10] = char(~flipped[whole.size() - 10]);
   EXPECT_FALSE(reads(flipped)) << "the checksum of the stream tells";
   EXPECT_FALSE(reads(whole.substr(0, whole.size() - 8)));
+
+  const auto number_at = [&](std::size_t place) {
+    int number = 0;
+    std::memcpy(&number, &whole[place], sizeof number);
+    return number;
+  };
+  std::size_t chunk = whole.size() - 8;
+  while (number_at(chunk) != kLastRow ||
+         chunk + 8 + std::size_t(number_at(chunk + 4)) != whole.size())
+    ASSERT_GT(--chunk, 0u);
+  // More than its rows have, but not more than those of a whole chunk; and less than nothing.
+  for (const int size : {kRows * 32 * 4 + 1, -1}) {
+    std::string resized = whole + std::string(1000, '\0');
+    std::memcpy(&resized[chunk + 4], &size, sizeof size);
+    EXPECT_FALSE(reads(resized)) << size;
+  }
 }
 
 }  // namespace

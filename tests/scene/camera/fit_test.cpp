@@ -161,5 +161,22 @@ TEST(PoseFit, RefusesAProjectionThatCannotBe) {
   EXPECT_FALSE(fit_pose(camera_from_fov(20, kWindow, 1), flat.position, flat.valid, kWindow));
 }
 
+TEST(FitCamera, TheResidualIsThatOfAllPixels) {
+  // A wall, with every position moved to the right: by 0 to 1 pixels, each amount once.
+  const Camera camera = camera_from_fov(40, kWindow, 1);
+  Plane<glm::vec3> positions(kWindow.width(), kWindow.height());
+  const Plane<unsigned char> valid(kWindow.width(), kWindow.height(), 1);
+  const std::size_t count = positions.size(), width = std::size_t(positions.width);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double off = double(i * 7919 % count) / double(count);
+    const glm::dvec2 at(double(i % width) + 0.5 + off, double(i / width) + 0.5);
+    positions[i] = glm::vec3(camera.unproject(at, 10));
+  }
+  const Residual residual = measure_residual(camera, positions, valid, kWindow);
+  EXPECT_NEAR(residual.median_px, 0.5, 1e-3);
+  EXPECT_NEAR(residual.p99_px, 0.99, 1e-3);
+  EXPECT_NEAR(residual.max_px, 1, 1e-3);
+}
+
 }  // namespace
 }  // namespace ssdo::test
