@@ -247,21 +247,6 @@ class Bitmask {
     out_.reflection = raster_.picture(open, 1.0f);
   }
 
-  /// The light that the solids of a layer send: that of the pixels that show them, if any.
-  void find_sent_behind(int layer, const InterleavedVectors& sent,
-                        InterleavedVectors& behind) const {
-    for_each_row(layout_.height(), [&](int y) {
-      for (InterleavedPlane& plane : behind) plane.fill_row(layout_, y, 0);
-      raster_.for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
-        const int sender = scene_.solids.at(layer, pixel).sender;
-        if (sender < 0) return;
-        const std::ptrdiff_t from =
-            layout_.index(sender % layout_.width(), sender / layout_.width());
-        for (std::size_t c = 0; c < 3; ++c) behind[c][i] = sent[c][from];
-      });
-    });
-  }
-
   /// A part of the raster with so many pixels around it.
   Window grown(const Window& part, int by) const {
     return {std::max(part.x0 - by, 0), std::max(part.y0 - by, 0),
@@ -271,30 +256,21 @@ class Bitmask {
   /// Each pass is lit by the one before.
   InterleavedVectors gather_bounce() {
     const bool lit = senders_need_light();  // else a layer says what is sent
-    InterleavedVectors given = raster_.interleaved(lit ? scene_.senders.albedo
-                                                       : scene_.senders.radiance),
-                       bounce = raster_.black(), sent_back, gathered = raster_.make_color(),
-                       sent_before_last;
-    std::vector<InterleavedVectors> sent_behind;
-    for (std::size_t k = 0; k < scene_.solids.behind.size(); ++k)
-      sent_behind.push_back(raster_.make_color());
-    InterleavedPlane weights(layout_), difference;
     const bool two_sided = lit && !scene_.light.is_constant();
+    InterleavedVectors sent = lit ? raster_.black() : raster_.interleaved(scene_.senders.radiance),
+                       bounce = raster_.black(), sent_back;
     if (two_sided) sent_back = raster_.black();
-    if (request_.products.error && request_.bounces > 0)
-      difference = InterleavedPlane(layout_), bounce_error_ = InterleavedPlane(layout_);
-    if (lit && request_.bounces > 1) sent_before_last = raster_.black();
+    InterleavedPlane weights(layout_);
+    if (request_.products.error && request_.bounces > 0) bounce_error_ = InterleavedPlane(layout_);
     const Window raster = march_scene_.raster();
     std::vector<FurtherLight> sent_further;
     if (further_ && request_.bounces > 0)
       sent_further = light_further_surfaces(scene_, request_.bounces - 1, request_.radius);
     for (int pass = 1; pass <= request_.bounces; ++pass) {
-      // The last pass no longer needs the albedo, and overwrites it.
-      InterleavedVectors& sent = lit && pass < request_.bounces ? sent_before_last : given;
       if (lit) {
         const SenderJob senders{march_scene_,
                                 &ao_,
-                                &given,
+                                scene_.senders.albedo,
                                 &direct_,
                                 pass > 1 ? &bounce : nullptr,
                                 scene_.light,
@@ -302,8 +278,6 @@ class Bitmask {
                                 two_sided ? &sent_back : nullptr};
         for_each_band_of(raster, [&](const Window& part) { find_senders(senders, part); }, {});
       }
-      for (int k = 1; k < scene_.solids.layers(); ++k)
-        find_sent_behind(k, sent, sent_behind[std::size_t(k - 1)]);
       BorderValues sent_border[3];
       for (int c = 0; c < 3; ++c) {
         sent_border[c] = march_scene_.border.gather(
@@ -314,12 +288,10 @@ class Bitmask {
                           &ao_,
                           &sent,
                           two_sided ? &sent_back : nullptr,
-                          &sent_behind,
+                          scene_.solids,
                           sent_border,
                           further_ ? &sent_further[std::size_t(pass - 1)] : nullptr,
-                          &gathered,
                           &weights,
-                          wants_error ? &difference : nullptr,
                           &bounce,
                           wants_error ? &bounce_error_ : nullptr};
       // Light gathered in the last pass is not sent on: only receivers need it.
@@ -328,6 +300,7 @@ class Bitmask {
           grown(to, bounce_pattern_.spacing() - 1),
           [&](const Window& part) { march_bounce(job, part); }, progress_);
       for_each_band_of(to, [&](const Window& part) { spread_bounce(job, part); }, {});
+      for_each_band_of(to, [&](const Window& part) { finish_bounce(job, part); }, {});
     }
     return bounce;
   }

@@ -45,6 +45,28 @@ HWY_INLINE M faces(const MarchScene& scene, std::ptrdiff_t q, const SliceStep& s
   return dot(load(scene.normal, q), from_q) > set(0);
 }
 
+/// What the solids of layer `layer` send that the pixels at `step` from the receivers hold, in the
+/// lanes of `bits`: what the pixels that show them do, if any.
+HWY_INLINE V3 sent_behind(const BounceJob& job, int layer, const Place& place,
+                          const SliceStep& step, VU bits) {
+  const Interleaving& layout = job.march.scene.layout;
+  const Plane<int>& senders = job.solids.behind[std::size_t(layer - 1)].sender;
+  const int* row = &senders(0, place.y + step.row);
+  const int first =
+      place.column * Interleaving::kPeriod + place.column_phase - layout.phase() + int(step.dx);
+  alignas(64) std::uint32_t met[kLanes];
+  hn::Store(bits, DU(), met);
+  alignas(64) float radiance[3][kLanes] = {};
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (met[lane] == 0) continue;
+    const int sender = row[first + lane * Interleaving::kPeriod];
+    if (sender < 0) continue;
+    const std::ptrdiff_t from = layout.index(sender % layout.width(), sender / layout.width());
+    for (std::size_t c = 0; c < 3; ++c) radiance[c][lane] = (*job.sent)[c][from];
+  }
+  return {load(radiance[0]), load(radiance[1]), load(radiance[2])};
+}
+
 /// Measure of a set of sectors: the integral of the cosine to the shading normal.
 HWY_INLINE V measure_of(const MarchReceiver& p, const SideFrame& side, VU bits) {
   const VU one = set_bits(1), last = set_bits(31);
@@ -106,7 +128,7 @@ void gather_light(const BounceJob& job, const Window& part) {
                 march, p, side, slice, forward,
                 [&](int layer, std::ptrdiff_t q, const SliceStep& step, VU bits) HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {
-                    if (layer > 0) return load((*job.sent_behind)[std::size_t(layer - 1)], q);
+                    if (layer > 0) return sent_behind(job, layer, p.place, step, bits);
                     const V3 front = load(*job.sent, q);
                     if (!job.sent_back) return front;
                     const V3 back = load(*job.sent_back, q);
@@ -123,9 +145,9 @@ void gather_light(const BounceJob& job, const Window& part) {
                 });
           }
         }
-        store(light.sum, *job.gathered, p.place.index);
+        store(light.sum, *job.bounce, p.place.index);
         store(light.weights, *job.weights, p.place.index);
-        if (!job.difference) return;
+        if (!job.error) return;
         // Where one half met nothing, there is no difference to tell the error from.
         const Gathered second_half = light.minus(first_half);
         const V zero = set(0);
@@ -133,51 +155,61 @@ void gather_light(const BounceJob& job, const Window& part) {
         const M both = hn::And(first_half.weights > zero, second_half.weights > zero);
         const V scale =
             light.weights * set(error_of_difference(march, p.place, firsts, count_of_slices));
-        store(hn::IfThenElseZero(both, difference) * scale, *job.difference, p.place.index);
+        store(hn::IfThenElseZero(both, difference) * scale, *job.error, p.place.index);
       });
+}
+
+/// How far to the right of and below pixels that march a place is.
+struct Offset {
+  int x, y;
+};
+
+HWY_INLINE Offset offset_of(const March& march, const Place& place) {
+  const int last = march.pattern.spacing() - 1;
+  return {place.column_phase & last, (place.y + march.scene.first_y) & last};
 }
 
 /// Calls `visit(index, dx, dy)` for the pixels around a place that march.
 template <class Visit>
-HWY_INLINE void for_each_gatherer(const MarchScene& scene, int spacing, const Place& place,
-                                  const Visit& visit) {
-  const Interleaving& layout = scene.layout;
-  const int off_x = place.column_phase & (spacing - 1),
-            off_y = (place.y + scene.first_y) & (spacing - 1);
-  for (int dy = -off_y; dy <= off_y; dy += spacing) {
+HWY_INLINE void for_each_gatherer(const March& march, const Place& place, const Visit& visit) {
+  const Interleaving& layout = march.scene.layout;
+  const int spacing = march.pattern.spacing();
+  const Offset off = offset_of(march, place);
+  for (int dy = -off.y; dy <= off.y; dy += spacing) {
     if (place.y + dy < 0 || place.y + dy >= layout.height()) continue;
-    for (int dx = -off_x; dx <= off_x; dx += spacing) {
+    for (int dx = -off.x; dx <= off.x; dx += spacing) {
       visit(index_beside(layout, place, dx, dy), dx, dy);
     }
   }
 }
 
-/// Gives every pixel its bounce from those that have gathered light.
+/// Gives pixels their bounce from those that have gathered light: these, or the others.
 template <bool kOrthographic>
-void spread(const BounceJob& job, const Window& part) {
+void spread(const BounceJob& job, const Window& part, bool to_gatherers) {
   const MarchScene& scene = job.march.scene;
   for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
+    const Offset off = offset_of(job.march, place);
+    if ((off.x == 0 && off.y == 0) != to_gatherers) return;
     const std::ptrdiff_t i = place.index;
     const V zero = set(0);
     const MarchReceiver p = load_receiver(scene, place);
     Gathered of_surface = no_light(), of_all = no_light();
     V difference = zero;
-    for_each_gatherer(
-        scene, job.march.pattern.spacing(), place, [&](std::ptrdiff_t q, int dx, int dy) HWY_ATTR {
-          const V weights = load(*job.weights, q);
-          const M found = hn::And(holds_solid(load(scene.depth(), q)), weights > zero);
-          if (!any(found)) return;
-          const Gathered light{if_then_else_zero(found, load(*job.gathered, q)),
-                               hn::IfThenElseZero(found, weights)};
-          const V like = dx == 0 && dy == 0 ? set(1) : likeness<kOrthographic>(scene, p, q, dx, dy);
-          of_surface = {mul_add(light.sum, like, of_surface.sum),
-                        hn::MulAdd(light.weights, like, of_surface.weights)};
-          of_all = {of_all.sum + light.sum, of_all.weights + light.weights};
-          if (job.difference) {
-            const V known = hn::IfThenElseZero(found, load(*job.difference, q));
-            difference = hn::MulAdd(known, like, difference);
-          }
-        });
+    for_each_gatherer(job.march, place, [&](std::ptrdiff_t q, int dx, int dy) HWY_ATTR {
+      const V weights = load(*job.weights, q);
+      const M found = hn::And(holds_solid(load(scene.depth(), q)), weights > zero);
+      if (!any(found)) return;
+      const Gathered light{if_then_else_zero(found, load(*job.bounce, q)),
+                           hn::IfThenElseZero(found, weights)};
+      const V like = dx == 0 && dy == 0 ? set(1) : likeness<kOrthographic>(scene, p, q, dx, dy);
+      of_surface = {mul_add(light.sum, like, of_surface.sum),
+                    hn::MulAdd(light.weights, like, of_surface.weights)};
+      of_all = {of_all.sum + light.sum, of_all.weights + light.weights};
+      if (job.error) {
+        const V known = hn::IfThenElseZero(found, load(*job.error, q));
+        difference = hn::MulAdd(known, like, difference);
+      }
+    });
     // ao may see an occluder that no march for the bounce met; it is assumed to be close and to
     // send what the receiver sends.
     const M on_surface = of_surface.weights > zero, anywhere = of_all.weights > zero;
@@ -196,8 +228,9 @@ void gather_in_pixels(const BounceJob& job, const Window& part) {
   job.march.scene.orthographic ? gather_light<true>(job, part) : gather_light<false>(job, part);
 }
 
-void spread_to_pixels(const BounceJob& job, const Window& part) {
-  job.march.scene.orthographic ? spread<true>(job, part) : spread<false>(job, part);
+void spread_to_pixels(const BounceJob& job, const Window& part, bool to_gatherers) {
+  job.march.scene.orthographic ? spread<true>(job, part, to_gatherers)
+                               : spread<false>(job, part, to_gatherers);
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -214,7 +247,11 @@ void march_bounce(const BounceJob& job, const Window& part) {
 }
 
 void spread_bounce(const BounceJob& job, const Window& part) {
-  HWY_DYNAMIC_DISPATCH(spread_to_pixels)(job, part);
+  HWY_DYNAMIC_DISPATCH(spread_to_pixels)(job, part, false);
+}
+
+void finish_bounce(const BounceJob& job, const Window& part) {
+  HWY_DYNAMIC_DISPATCH(spread_to_pixels)(job, part, true);
 }
 
 }  // namespace ssdo

@@ -42,7 +42,7 @@ struct Lanes3 {
 
 /// Where the rays of receivers begin.
 HWY_INLINE V3 start_of_rays(const MarchScene& scene, const MarchReceiver& p) {
-  const V rounding = load(scene.rounding, p.place.index),
+  const V rounding = load_shading(scene, p.place).rounding,
           width = set(kAboveFootprints / (scene.fx < scene.fy ? scene.fx : scene.fy));
   const V footprint = scene.orthographic ? width : width * (set(0) - p.position.z);
   return mul_add(p.normal, hn::MulAdd(rounding, set(kAboveRoundings), footprint), p.position);

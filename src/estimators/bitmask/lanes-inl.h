@@ -10,8 +10,6 @@
 #define SSDO_BITMASK_LANES_INL_H_
 #endif
 
-#include <hwy/cache_control.h>
-
 #include <cmath>
 
 #include "estimators/bitmask/march.h"
@@ -78,6 +76,27 @@ HWY_INLINE std::ptrdiff_t index_beside(const Interleaving& layout, const Place& 
                       place.column + (column_phase >> Interleaving::kShift));
 }
 
+/// The columns of a vector of pixels in the raster; of lanes beside it, the first or the last.
+HWY_INLINE VI columns_of(const MarchScene& scene, const Place& place) {
+  const VI columns =
+      hn::ConvertTo(DI(), lane_columns(scene.layout, place.column_phase, place.column));
+  return hn::Clamp(columns, set_int(0), set_int(scene.layout.width() - 1));
+}
+
+/// What the surfels of a vector of pixels say beside their positions; of lanes beside the raster,
+/// those of its first or last column.
+struct Shading {
+  V3 normal;
+  V rounding;
+};
+
+HWY_INLINE Shading load_shading(const MarchScene& scene, const Place& place) {
+  constexpr int kStride = sizeof(Surfel) / sizeof(float);
+  const float* from = &scene.surfel(0, place.y).normal.x;
+  const VI at = columns_of(scene, place) * set_int(kStride);
+  return {{gather(from, at), gather(from + 1, at), gather(from + 2, at)}, gather(from + 3, at)};
+}
+
 /// Receivers among the pixels of MarchScene. Their normals are bent to face the viewer. The march
 /// is bounded by the surface itself, with `normal`; what it finds is weighed by the cosine to
 /// `shading`.
@@ -108,7 +127,6 @@ HWY_INLINE MarchReceiver load_receiver(const MarchScene& scene, const Place& pla
   const auto [i, y, column_phase, column] = place;
   MarchReceiver p;
   p.place = place;
-  hwy::Prefetch(scene.rounding.data() + i + 4 * kLanes);  // marches read all planes but this one
   const V depth = load(scene.depth(), i);
   p.x = lane_columns(scene.layout, column_phase, column), p.y = set(float(y));
   p.normal = load(scene.normal, i);
@@ -131,19 +149,20 @@ HWY_INLINE MarchReceiver load_receiver(const MarchScene& scene, const Place& pla
     p.distance = depth * length;
   }
   p.facing = bend_to_viewer(p.normal, p.to_viewer);
-  p.shading = load(scene.shading, i);
+  const Shading shading = load_shading(scene, place);
+  p.shading = shading.normal;
   p.shading_v = bend_to_viewer(p.shading, p.to_viewer);
   const V along_view = one / p.facing;
   p.rise_x = p.normal.x * along_view * set(1 / scene.fx);
   p.rise_y = p.normal.y * along_view * set(-1 / scene.fy);
-  const V margin = hn::MulAdd(p.distance, set(kHeightError), load(scene.rounding, i));
+  const V margin = hn::MulAdd(p.distance, set(kHeightError), shading.rounding);
   p.plane = hn::NegMulAdd(margin, along_view, p.distance);
   return p;
 }
 
-/// Normals of the frame, of the surface or of its shading; (0, 0, 1) in lanes without a surface.
-HWY_INLINE V3 load_normals(const InterleavedVectors& normals, std::ptrdiff_t i, M valid) {
-  return if_then_else(valid, load(normals, i), set(glm::vec3(0, 0, 1)));
+/// Normals of a vector of pixels; (0, 0, 1) in lanes without a surface.
+HWY_INLINE V3 usable(const V3& normals, M valid) {
+  return if_then_else(valid, normals, set(glm::vec3(0, 0, 1)));
 }
 
 /// Height of the surface at `depth`, (dx, dy) pixels from the receiver.

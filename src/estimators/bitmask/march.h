@@ -51,10 +51,11 @@ struct VisibilityJob {
 struct SenderJob {
   const MarchScene& scene;
   const InterleavedPlane* ao;
-  const InterleavedVectors *albedo, *direct;
+  const Plane<glm::vec3>& albedo;
+  const InterleavedVectors* direct;
   const InterleavedVectors* bounce;  ///< that has arrived so far; null: none
   const Light& light;
-  InterleavedVectors* sent;       ///< may be the albedo
+  InterleavedVectors* sent;
   InterleavedVectors* sent_back;  ///< null: the same
 };
 
@@ -63,20 +64,18 @@ struct SenderJob {
 struct BounceJob {
   March march;
   const InterleavedPlane* ao;
-  const InterleavedVectors* sent;                      ///< radiance of layer 0
-  const InterleavedVectors* sent_back;                 ///< of its other side; null: the same
-  const std::vector<InterleavedVectors>* sent_behind;  ///< of layers 1, 2, ...
-  const BorderValues* sent_border;   ///< three: of surfaces that continue beyond the frame
-  const FurtherLight* sent_further;  ///< of what only further views show
+  const InterleavedVectors* sent;       ///< radiance of layer 0
+  const InterleavedVectors* sent_back;  ///< of its other side; null: the same
+  const Solids& solids;                 ///< of the scene: whose light layers 1, 2, ... send
+  const BorderValues* sent_border;      ///< three: of surfaces that continue beyond the frame
+  const FurtherLight* sent_further;     ///< of what only further views show
 
-  // What the marches have gathered, by pixel.
-  InterleavedVectors* gathered;  ///< sum of radiance
-  InterleavedPlane* weights;     ///< sum of the weights
-  InterleavedPlane*
-      difference;  ///< error of the mean's luminance, times the weights; null: not wanted
-
+  InterleavedPlane* weights;  ///< of the pixels that march, their sum
+  /// Of these pixels the sum of weighted radiance, until finish_bounce().
   InterleavedVectors* bounce;
-  InterleavedPlane* error;  ///< standard error of its luminance, signed; null: not wanted
+  /// Standard error of the luminance of `bounce`, signed; until finish_bounce() of the mean
+  /// radiance of these pixels, times the weights. Null: not wanted.
+  InterleavedPlane* error;
 };
 
 /// The direct light of a sun where it is visible.
@@ -104,8 +103,10 @@ struct ReflectionJob {
 /// All of these work on a part of the raster, and may write to pixels beside it in the same rows.
 void march_visibility(const VisibilityJob& job, const Window& part);
 void march_bounce(const BounceJob& job, const Window& part);
-/// After march_bounce of the part and, where the pattern has a spacing, of the pixels around it.
+/// To the pixels that do not march, after march_bounce of those around them.
 void spread_bounce(const BounceJob& job, const Window& part);
+/// Of the pixels that march, after spread_bounce everywhere.
+void finish_bounce(const BounceJob& job, const Window& part);
 void march_sun(const SunJob& job, const Window& part);
 void march_reflection(const ReflectionJob& job, const Window& part);
 void find_senders(const SenderJob& job, const Window& part);

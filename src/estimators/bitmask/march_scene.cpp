@@ -20,8 +20,7 @@ constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 /// What a pixel shows, in the planes of MarchScene.
 struct Cell {
   float depth = kNothing, ray_length = 1;  ///< the ray's per unit of depth
-  glm::vec3 normal{kNothing}, shading{kNothing};
-  float rounding = kNothing;
+  glm::vec3 normal{kNothing};
 
   bool is_surface() const { return holds_solid(depth); }
 };
@@ -45,10 +44,8 @@ class Cells {
     const glm::vec2 slope((float(x + scene_.first_x) - scene_.axis_x) / scene_.fx,
                           (scene_.axis_y - float(y + scene_.first_y)) / scene_.fy);
     if (!scene_.orthographic) cell.ray_length = std::sqrt(1 + glm::dot(slope, slope));
-    cell.shading = s.normal;
     cell.normal = normal;
     cell.depth = depth_on_ray(s, cell.normal, slope, cell.ray_length);
-    cell.rounding = s.rounding;
     return cell;
   }
 
@@ -105,8 +102,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                    g.window.y0 - g.display.y0,
                    {},
                    {plane(), plane(), plane()},
-                   {plane(), plane(), plane()},
-                   plane(),
+                   g.surfel,
                    BorderLayout(layout),
                    {},
                    {},
@@ -131,11 +127,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
         const int x = column * kPeriod + column_phase - layout.phase();
         const Cell cell = x >= 0 && x < g.surfel.width ? cells_of_row[std::size_t(x)] : Cell();
         const std::ptrdiff_t i = row + column;
-        for (std::size_t c = 0; c < 3; ++c) {
-          scene.normal[c][i] = cell.normal[int(c)];
-          scene.shading[c][i] = cell.shading[int(c)];
-        }
-        scene.rounding[i] = cell.rounding;
+        for (std::size_t c = 0; c < 3; ++c) scene.normal[c][i] = cell.normal[int(c)];
         for (int k = 0; k < solids.layers(); ++k) {
           const Span span =
               cell.is_surface() ? cells.span(cell, solids.at(k, g.surfel.index(x, y))) : Span();

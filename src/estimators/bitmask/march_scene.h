@@ -6,6 +6,7 @@
 
 #include "scene/geometry.h"
 #include "scene/solids.h"
+#include "scene/surfel.h"
 #include "simd/interleaved.h"
 
 namespace ssdo {
@@ -77,8 +78,9 @@ struct MarchScene {
   int first_x, first_y;            ///< pixel (0, 0) in the display window
   std::vector<MarchLayer> layers;  ///< near to far; layer 0 is what pixels show
   InterleavedVectors normal;       ///< unit, of layer 0, camera space: that of the surface
-  InterleavedVectors shading;      ///< the same as shading sees it: light is weighed by it
-  InterleavedPlane rounding;       ///< distance by which storing P may have moved layer 0
+  /// What only receivers need: the normal that shading sees, by which light is weighed, and the
+  /// rounding.
+  const Plane<Surfel>& surfel;
   BorderLayout border;
   BorderValues border_depth, border_normal[3];
   BorderValues border_thickness;  ///< in scene units

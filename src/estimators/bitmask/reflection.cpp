@@ -49,7 +49,7 @@ void reflection(const ReflectionJob& job, const Window& part) {
     const int member = member_at(scene, place);
     MarchReceiver p = load_receiver(scene, place);
     p.reach_px = reach_px(scene, p, job.march.radius);
-    const Lanes3 normals(load_normals(scene.shading, place.index, p.valid)),
+    const Lanes3 normals(usable(load_shading(scene, place).normal, p.valid)),
         viewers(if_then_else(p.valid, p.to_viewer, set(glm::vec3(0, 0, 1))));
     const Lanes roughness(hn::IfThenElse(p.valid, load(*job.roughness, place.index), set(1)));
     V open = set(0), all = set(0);

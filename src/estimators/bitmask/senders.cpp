@@ -58,18 +58,24 @@ HWY_INLINE Arriving mean_arriving(const SenderJob& job, const Place& place) {
   return {sum.light / weights, sum.ao / weights};
 }
 
+HWY_INLINE V3 albedo_at(const SenderJob& job, const Place& place) {
+  const float* from = &job.albedo(0, place.y).x;
+  const VI at = columns_of(job.scene, place) * set_int(3);
+  return within_range(V3{gather(from, at), gather(from + 1, at), gather(from + 2, at)});
+}
+
 template <bool kOrthographic>
 void send_light(const SenderJob& job, const Window& part) {
   const MarchScene& scene = job.scene;
   for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
     const std::ptrdiff_t i = place.index;
     const Arriving mean = mean_arriving<kOrthographic>(job, place);
-    const V3 albedo = load(*job.albedo, i);
+    const V3 albedo = albedo_at(job, place);
     const auto send = [&](const V3& light, InterleavedVectors& to)
                           HWY_ATTR { store(within_range(albedo * light), to, i); };
     if (job.sent_back) {
       const M valid = holds_solid(load(scene.depth(), i));
-      const V3 back = set(glm::vec3(0)) - load_normals(scene.normal, i, valid);
+      const V3 back = set(glm::vec3(0)) - usable(load(scene.normal, i), valid);
       const V3 bounce = job.bounce ? load(*job.bounce, i) : set(glm::vec3(0));
       send(mul_add(unoccluded(job.light, back), mean.ao, bounce), *job.sent_back);
     }

@@ -50,7 +50,7 @@ void visibility(const VisibilityJob& job, const Window& part) {
         const V ao = sum.open_share();
         store(hn::IfThenElse(p.valid, ao, set(1)), *job.ao, i);
         if (!job.bent && !job.direct) return;
-        const V3 normals = load_normals(march.scene.shading, i, p.valid);
+        const V3 normals = usable(load_shading(march.scene, p.place).normal, p.valid);
         if constexpr (kOrder > 0) {
           if (job.bent) store(sum.bent_normal(p, ao, normals), *job.bent, i);
         }
