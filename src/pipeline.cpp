@@ -41,11 +41,9 @@ std::size_t write_exr_target(const SafeFile& file, const Target& target, const R
                              const Plan& plan, const Products& products) {
   const Frame& frame = job.frame;
   const Results results = results_of(job, plan, products);
-  std::vector<NamedPlane> channels;
-  for (const std::string& product : target.product ? std::vector{*target.product} : plan.write) {
-    for (NamedPlane& plane : product_channels(product, results))
-      channels.push_back(std::move(plane));
-  }
+  std::vector<NamedChannels> products_to_write;
+  for (const std::string& product : target.product ? std::vector{*target.product} : plan.write)
+    products_to_write.push_back(product_channels(product, results));
   ExrOutput output;
   output.input = &frame.files[std::size_t(frame.lead().file)];
   output.part = frame.lead().part;
@@ -56,8 +54,10 @@ std::size_t write_exr_target(const SafeFile& file, const Target& target, const R
   output.compression = job.options.output.compression;
   output.attributes = {{"ssdo/version", SSDO_VERSION},
                        {"ssdo/plan", json_text(to_json(plan, frame.history))}};
-  for (const NamedPlane& plane : channels)
-    output.planes.push_back({plane.channel, job.options.output.pixel_type, &plane.pixels});
+  for (const NamedChannels& product : products_to_write) {
+    for (const NamedChannel& channel : product.channels)
+      output.planes.push_back({channel.name, job.options.output.pixel_type, channel.pixels});
+  }
   return write_exr(file, output);
 }
 

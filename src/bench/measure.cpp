@@ -63,6 +63,14 @@ void blend(ProductChannels& a, const ProductChannels& b, float keep, float take)
   }
 }
 
+Plane<float> copy_of(const ChannelView& channel) {
+  Plane<float> plane(channel.width, channel.height);
+  for (int y = 0; y < plane.height; ++y) {
+    for (int x = 0; x < plane.width; ++x) plane(x, y) = *channel.at(x, y);
+  }
+  return plane;
+}
+
 }  // namespace
 
 ProductChannels channels_of(const Frame& frame, const Plan& plan, const Products& products) {
@@ -70,8 +78,9 @@ ProductChannels channels_of(const Frame& frame, const Plan& plan, const Products
   for (const std::string& name : plan.make) {
     Channels& channels = all[name];
     channels.window = frame.scene.geometry.window;
-    for (NamedPlane& plane : product_channels(name, {frame.scene, frame.gbuffer, products}))
-      channels.planes.push_back(std::move(plane.pixels));
+    const auto found = product_channels(name, {frame.scene, frame.gbuffer, products});
+    for (const NamedChannel& channel : found.channels)
+      channels.planes.push_back(copy_of(channel.pixels));
   }
   return all;
 }

@@ -34,16 +34,6 @@
 namespace ssdo {
 namespace {
 
-/// Channel `c` of a plane.
-Plane<float> channel(const Plane<float>& values, int /*c*/) { return values; }
-Plane<float> channel(const Plane<glm::vec3>& colors, int c) {
-  Plane<float> out(colors.width, colors.height);
-  for_each_row(out.height, [&](int y) {
-    for (int x = 0; x < out.width; ++x) out(x, y) = colors(x, y)[c];
-  });
-  return out;
-}
-
 /// Directions from camera space into the space of the input's normals.
 Plane<glm::vec3> in_input_space(Plane<glm::vec3> directions, const glm::mat3& normals_to_camera) {
   // The one is turned against the other, so that the transpose is the inverse.
@@ -68,7 +58,7 @@ Plane<glm::vec3> sent_light(const Results& r, const Plane<float>& alpha) {
     for (std::size_t i = sent.index(0, y); i < sent.index(0, y + 1); ++i)
       sent[i] = alpha[i] * light_of(r, i);
   });
-  return at_output_size(sent, r.gbuffer);
+  return at_output_size(std::move(sent), r.gbuffer);
 }
 
 /// Of the environment's light at the surfaces of a pixel, what arrives, and all of it.
@@ -91,7 +81,8 @@ Arriving arriving_light(const Results& r) {
       }
     }
   });
-  return {at_output_size(light.part, r.gbuffer), at_output_size(light.whole, r.gbuffer)};
+  return {at_output_size(std::move(light.part), r.gbuffer),
+          at_output_size(std::move(light.whole), r.gbuffer)};
 }
 
 /// The share of the light that arrives, by channel, 0 to 1. Methods that look light up in another
@@ -161,35 +152,42 @@ Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer) {
 }
 
 Composite composite(const Results& r) {
-  const Plane<float> alpha = coverage(r.scene, r.gbuffer);
+  Plane<float> alpha = coverage(r.scene, r.gbuffer);
   const Compose compose = r.composition.compose;
-  if (compose == Compose::relight) return {sent_light(r, alpha), at_output_size(alpha, r.gbuffer)};
+  if (compose == Compose::relight) {
+    Plane<glm::vec3> color = sent_light(r, alpha);
+    return {std::move(color), at_output_size(std::move(alpha), r.gbuffer)};
+  }
   return {compose == Compose::occlude ? occluded(r) : added(r, alpha),
           at_output_size(rendered_alpha(r, alpha), r.gbuffer)};
 }
 
-std::vector<NamedPlane> product_channels(const std::string& name, const Results& results) {
+NamedChannels product_channels(const std::string& name, const Results& results) {
   const Product& wanted = find_product(name);
-  std::vector<NamedPlane> out;
+  NamedChannels out;
   const auto append = [&](const std::string& prefix, const auto& plane) {
-    for (const char letter : wanted.channels.substr(0, sizeof(plane[0]) / sizeof(float)))
-      out.push_back({prefix + letter, channel(plane, int(out.size()))});
+    for (int c = 0; c < ChannelView(plane, 0).step; ++c)
+      out.channels.push_back({prefix + wanted.channels[out.channels.size()], {plane, c}});
   };
   for_each_plane(
       [&](const Product& product, const auto& found) {
         if (&product != &wanted) return;
+        const bool turns = product.kind == ProductKind::direction;
+        if (!turns && results.gbuffer.downsampling.is_identity()) return append(name + ".", found);
         auto plane = product_at_output_size(product, found, results);
         if constexpr (std::is_same_v<decltype(plane), Plane<glm::vec3>>) {
-          if (product.kind == ProductKind::direction)
+          if (turns)
             plane = in_input_space(std::move(plane), results.scene.geometry.normals_to_camera);
         }
         append(name + ".", plane);
+        out.made = std::move(plane);
       },
       results.products);
   if (wanted.in) return out;
   Composite composed = composite(results);
   append("", composed.color);
-  out.push_back({"A", std::move(composed.alpha)});
+  append("", composed.alpha);
+  out.made = std::move(composed);
   return out;
 }
 

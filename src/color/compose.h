@@ -3,21 +3,17 @@
 
 #include <glm/vec3.hpp>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "color/composition.h"
 #include "estimators/estimator.h"
+#include "math/channel_view.h"
 #include "math/plane.h"
 #include "scene/gbuffer.h"
 #include "scene/scene.h"
 
 namespace ssdo {
-
-/// A plane with the channel name that it has in an output EXR.
-struct NamedPlane {
-  std::string channel;
-  Plane<float> pixels;
-};
 
 /// A frame and what was found for it: what outputs are made from.
 struct Results {
@@ -33,6 +29,22 @@ struct Composite {
   Plane<float> alpha;
 };
 
+/// A channel with the name that it has in an output EXR.
+struct NamedChannel {
+  std::string name;
+  ChannelView pixels;
+};
+
+/// The channels of a product.
+struct NamedChannels {
+  NamedChannels() = default;
+  NamedChannels(NamedChannels&&) = default;  // a copy would not be what its channels show
+
+  std::vector<NamedChannel> channels;
+  /// Those of them that were made for the output; the others are views of the products.
+  std::variant<std::monostate, Plane<float>, Plane<glm::vec3>, Composite> made;
+};
+
 /// Coverage of the pixels of the G-buffer: the input's alpha where there is one, else 1 on
 /// surfaces; 0 outside the geometry.
 Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer);
@@ -42,7 +54,8 @@ Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer);
 Composite composite(const Results& results);
 
 /// The channels of the product `name` over the window of the outputs, as the table of products has
-/// them: directions in the space of the input's normals, the composite premultiplied.
-std::vector<NamedPlane> product_channels(const std::string& name, const Results& results);
+/// them: directions in the space of the input's normals, the composite premultiplied. Valid as long
+/// as the results are.
+NamedChannels product_channels(const std::string& name, const Results& results);
 
 }  // namespace ssdo

@@ -62,10 +62,11 @@ DisplayImage make_display_image(const std::string& name, const Results& results,
   if (product.kind != ProductKind::light) {
     // Data as they are; directions as colours usually show them, -1..1 in 0..1.
     const float scale = grey ? 1.0f : 0.5f, offset = grey ? 0.0f : 0.5f;
-    const std::vector<NamedPlane> planes = product_channels(name, results);
+    const NamedChannels planes = product_channels(name, results);
     for_each_shown_pixel(display, data, [&](std::size_t to, std::size_t from) {
       for (std::size_t c = 0; c < channels; ++c)
-        image.values[to * channels + c] = scale * planes[c].pixels[from] + offset;
+        image.values[to * channels + c] =
+            scale * planes.channels[c].pixels.at(int(from), 0)[0] + offset;
     });
     return image;
   }

@@ -40,7 +40,7 @@ Plane<T> weighted_mean(const Plane<T>& values, const Plane<T>& weights, float ba
   for_each_row(values.height, [&](int y) {
     for (int x = 0; x < values.width; ++x) weighted(x, y) = weights(x, y) * values(x, y);
   });
-  Plane<T> mean = at_output_size(weighted, gbuffer);
+  Plane<T> mean = at_output_size(std::move(weighted), gbuffer);
   const Plane<T> total = at_output_size(weights, gbuffer);
   for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = divided(mean[i], total[i], background);
   return mean;
@@ -55,11 +55,12 @@ Plane<glm::vec3> as_colors(const Plane<float>& values) {
 }  // namespace
 
 template <class T>
-Plane<T> at_output_size(const Plane<T>& values, const GBuffer& gbuffer) {
+Plane<T> at_output_size(Plane<T> values, const GBuffer& gbuffer) {
+  if (gbuffer.downsampling.is_identity()) return values;
   return filter_pixels(values, gbuffer.window, gbuffer.downsampling);
 }
-template Plane<float> at_output_size(const Plane<float>&, const GBuffer&);
-template Plane<glm::vec3> at_output_size(const Plane<glm::vec3>&, const GBuffer&);
+template Plane<float> at_output_size(Plane<float>, const GBuffer&);
+template Plane<glm::vec3> at_output_size(Plane<glm::vec3>, const GBuffer&);
 
 Plane<float> weights_by_coverage(const Results& r) {
   Plane<float> weights = coverage(r.scene, r.gbuffer);

@@ -12,7 +12,7 @@ namespace ssdo {
 /// A colour for every pixel of the G-buffer, premultiplied or a weight, over the window of outputs:
 /// the mean under the pixel filter.
 template <class T>
-Plane<T> at_output_size(const Plane<T>& values, const GBuffer& gbuffer);
+Plane<T> at_output_size(Plane<T> values, const GBuffer& gbuffer);
 
 /// What the surface of each pixel of the G-buffer counts in means over surfaces: its coverage, 0
 /// where there is nothing to light; by albedo, times its albedo. All count 1 where a pixel of an

@@ -45,8 +45,9 @@ class Composites : public testing::Test {
   /// Channel names and the values of the first pixel.
   std::vector<std::pair<std::string, float>> channels(const std::string& product) const {
     std::vector<std::pair<std::string, float>> out;
-    for (const NamedPlane& plane : product_channels(product, results()))
-      out.emplace_back(plane.channel, plane.pixels[0]);
+    const NamedChannels found = product_channels(product, results());
+    for (const NamedChannel& channel : found.channels)
+      out.emplace_back(channel.name, *channel.pixels.at(0, 0));
     return out;
   }
 
@@ -98,6 +99,14 @@ TEST_F(Composites, EachProductHasItsChannels) {
   EXPECT_THAT(channels("bent"),
               ElementsAre(Channel("bent.X", 0.6f), Channel("bent.Y", 0), Channel("bent.Z", 0.8f)))
       << "in the space of the input's normals";
+}
+
+TEST_F(Composites, ProductsOfTheirSizeAreWrittenFromWhereTheyAre) {
+  const NamedChannels direct = product_channels("direct", results());
+  EXPECT_EQ(direct.channels[1].pixels.first, &products_.direct[0].y);
+  EXPECT_EQ(direct.channels[1].pixels.at(1, 0), &products_.direct[1].y);
+  const NamedChannels ao = product_channels("ao", results());
+  EXPECT_EQ(ao.channels[0].pixels.at(1, 0), &products_.ao[1]);
 }
 
 TEST_F(Composites, TheCompositeIsAlbedoTimesLightPremultiplied) {

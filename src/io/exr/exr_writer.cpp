@@ -245,15 +245,19 @@ std::vector<Imf::Header> headers_for(const ExrOutput& output,
   return headers;
 }
 
-/// Clamps and rounds values of a row. Returns how many were clamped.
-std::size_t round_to_half(std::span<const float> values, half* rounded) {
+/// Clamps and rounds `count` values that are `step` apart. Returns how many were clamped.
+std::size_t round_to_half(const float* values, int step, std::size_t count, half* rounded) {
   std::size_t clamped = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const float value = values[i];
+  for (std::size_t i = 0; i < count; ++i) {
+    const float value = values[i * std::size_t(step)];
     clamped += std::abs(value) > kLargestHalf;  // false for NaN, which stays
     rounded[i] = half(value > kLargestHalf ? kLargestHalf : std::max(value, -kLargestHalf));
   }
   return clamped;
+}
+
+void copy_values(const float* values, int step, std::size_t count, float* to) {
+  for (std::size_t i = 0; i < count; ++i) to[i] = values[i * std::size_t(step)];
 }
 
 /// Takes the next rows of a file.
@@ -265,7 +269,8 @@ std::size_t write_strips(const WriteRows& write_rows, const Imath::Box2i& window
                          const std::vector<KeptChannel>& kept) {
   const Imath::Box2i full({known.x0, known.y0}, {known.x1 - 1, known.y1 - 1});
   const auto columns = std::size_t(window.max.x - window.min.x + 1);
-  std::vector<std::vector<half>> strips(planes.size());
+  std::vector<std::vector<half>> halves(planes.size());
+  std::vector<std::vector<float>> floats(planes.size());
   std::atomic<std::size_t> clamped = 0;
   for (int y = window.min.y; y <= window.max.y; y += kStripRows) {
     const int rows = std::min(kStripRows, window.max.y + 1 - y);
@@ -277,19 +282,19 @@ std::size_t write_strips(const WriteRows& write_rows, const Imath::Box2i& window
                                            stored.channel.x_sampling, stored.channel.y_sampling));
     }
     for (std::size_t i = 0; i < planes.size(); ++i) {
-      const Plane<float>& pixels = *planes[i].pixels;
-      if (planes[i].type == Imf::HALF) {
-        strips[i].resize(std::size_t(rows) * columns);
+      const auto& [name, type, pixels] = planes[i];
+      const auto fill = [&](auto& strip, const auto& convert) {
+        strip.resize(std::size_t(rows) * columns);
         for_each_row(rows, [&](int row) {
-          const float* values = &pixels(window.min.x - full.min.x, y + row - full.min.y);
-          clamped += round_to_half({values, columns}, &strips[i][std::size_t(row) * columns]);
+          convert(pixels.at(window.min.x - full.min.x, y + row - full.min.y), pixels.step, columns,
+                  &strip[std::size_t(row) * columns]);
         });
-        frame_buffer.insert(planes[i].name,
-                            Imf::Slice::Make(Imf::HALF, strips[i].data(), strip_window));
-      } else {
-        frame_buffer.insert(planes[i].name,
-                            Imf::Slice::Make(Imf::FLOAT, pixels.pixels.data(), full));
-      }
+        frame_buffer.insert(name, Imf::Slice::Make(type, strip.data(), strip_window));
+      };
+      if (type == Imf::HALF)
+        fill(halves[i], [&](auto... row) { clamped += round_to_half(row...); });
+      else
+        fill(floats[i], copy_values);
     }
     write_rows(frame_buffer, rows);
   }
@@ -320,12 +325,12 @@ std::size_t write_zip(Imf::OStream& stream, const Imf::Header& header, const Exr
 void check_planes(const ExrOutput& output) {
   const Window window = known_window(output, part_of(output));
   for (const ExrPlane& plane : output.planes) {
-    if (plane.pixels->width == window.width() && plane.pixels->height == window.height()) continue;
+    if (plane.pixels.width == window.width() && plane.pixels.height == window.height()) continue;
     throw Error(ExitCode::failed,
                 fmt::format("{}: plane '{}' is {}x{}, the output of part {} is {}x{}; this "
                             "is a defect in ssdo: please report it",
-                            output.input->path().string(), plane.name, plane.pixels->width,
-                            plane.pixels->height, output.part, window.width(), window.height()));
+                            output.input->path().string(), plane.name, plane.pixels.width,
+                            plane.pixels.height, output.part, window.width(), window.height()));
   }
 }
 

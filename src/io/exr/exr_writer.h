@@ -12,8 +12,8 @@
 
 #include "io/exr/exr_reader.h"
 #include "io/safe_file.h"
+#include "math/channel_view.h"
 #include "math/downsampling.h"
-#include "math/plane.h"
 
 namespace ssdo {
 
@@ -21,7 +21,7 @@ namespace ssdo {
 struct ExrPlane {
   std::string name;
   Imf::PixelType type = Imf::HALF;
-  const Plane<float>* pixels = nullptr;
+  ChannelView pixels;
 };
 
 /// A channel of a part of the input.

@@ -6,9 +6,11 @@
 #include <ImfMatrixAttribute.h>
 #include <ImfStringAttribute.h>
 #include <gmock/gmock.h>
+#include <half.h>
 
 #include <cstring>
 #include <fstream>
+#include <glm/vec3.hpp>
 
 #include "io/safe_file.h"
 #include "support/error_matchers.h"
@@ -71,6 +73,19 @@ class Writer : public testing::Test {
   std::optional<ExrReader> input_, written_;
   Plane<float> plane_;
 };
+
+TEST_F(Writer, TakesOneNumberOfEachPixel) {
+  make_input({test_header(kWindow, kChannels)});
+  auto vectors = Plane<glm::vec3>::like(plane_);
+  for (std::size_t i = 0; i < plane_.size(); ++i) vectors[i] = {-7, plane_[i], 9};
+  ExrOutput o = output();
+  o.planes[0].pixels = ChannelView(vectors, 1);
+  o.planes.push_back({"half", Imf::HALF, ChannelView(vectors, 1)});
+  write(o);
+  EXPECT_EQ(read("ao.Y").pixels, plane_.pixels);
+  const Plane<float> rounded = read("half");
+  for (std::size_t i = 0; i < plane_.size(); ++i) EXPECT_EQ(rounded[i], float(half(plane_[i])));
+}
 
 TEST_F(Writer, KeepsTheHeaderAndAddsItsOwn) {
   Imf::Header header = test_header(kWindow, kChannels);
