@@ -340,16 +340,20 @@ Products filter_all(Products noisy, const Geometry& geometry, int pattern_size) 
 
 Products filter_geometry(Products noisy, const Geometry& geometry, int pattern_size) {
   if (noisy.shares.draws.empty()) return filter_all(std::move(noisy), geometry, pattern_size);
-  const std::vector<Plane<float>> suns = std::exchange(noisy.shares.suns, {});
-  const std::vector<ShadowDraw> draws = std::exchange(noisy.shares.draws, {});
-  const std::vector<Plane<float>> again = std::exchange(noisy.shares.suns_again, {});
-  const std::vector<ShadowDraw> draws_again = std::exchange(noisy.shares.draws_again, {});
+  const auto shadows = [&](std::vector<Plane<float>>& shares, std::vector<ShadowDraw>& draws) {
+    std::vector<Plane<float>> filtered;
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      filtered.push_back(
+          filter_shadow(std::move(shares[k]), std::move(draws[k]), geometry, pattern_size));
+    }
+    shares.clear(), draws.clear();
+    return filtered;
+  };
+  LightShares& shares = noisy.shares;
+  std::vector<Plane<float>> suns = shadows(shares.suns, shares.draws),
+                            again = shadows(shares.suns_again, shares.draws_again);
   Products out = filter_all(std::move(noisy), geometry, pattern_size);
-  for (std::size_t k = 0; k < suns.size(); ++k)
-    out.shares.suns.push_back(filter_shadow(suns[k], draws[k], geometry, pattern_size));
-  for (std::size_t k = 0; k < again.size(); ++k)
-    out.shares.suns_again.push_back(
-        filter_shadow(again[k], draws_again[k], geometry, pattern_size));
+  out.shares.suns = std::move(suns), out.shares.suns_again = std::move(again);
   return out;
 }
 

@@ -243,21 +243,27 @@ namespace ssdo {
 HWY_EXPORT(shadow_of_tile);
 HWY_EXPORT(wide_penumbra_of_tile);
 
-Plane<float> filter_shadow(const Plane<float>& share, const ShadowDraw& draw,
-                           const Geometry& geometry, int pattern_size) {
-  const auto like = [&] { return Plane<float>::like(share); };
+Plane<float> filter_shadow(Plane<float> share, ShadowDraw draw, const Geometry& geometry,
+                           int pattern_size) {
+  const int width = share.width, height = share.height;
+  const auto planes = [](auto... of_them) {
+    std::vector<Plane<float>> all;
+    (all.push_back(std::move(of_them)), ...);
+    return all;
+  };
   Products noisy, found, out;
-  noisy.shares.suns = {share, draw.weight, draw.width_px};
-  found.shares.suns = {like(), {}, like()};
-  for_each_tile(share.width, share.height, [&](const Tile& tile) {
+  found.shares.suns = planes(Plane<float>::like(share), Plane<float>(), Plane<float>::like(share));
+  noisy.shares.suns = planes(std::move(share), std::move(draw.weight), std::move(draw.width_px));
+  for_each_tile(width, height, [&](const Tile& tile) {
     HWY_DYNAMIC_DISPATCH(shadow_of_tile)(noisy, geometry, pattern_size, tile, found);
   });
-  found.shares.suns = {std::move(found.shares.suns[0]), std::move(found.shares.suns[2])};
-  out.shares.suns = {like(), {}};
-  for_each_tile(share.width, share.height, [&](const Tile& tile) {
+  found.shares.suns.erase(found.shares.suns.begin() + 1);
+  out.shares.suns = planes(std::move(noisy.shares.suns.front()), Plane<float>());
+  noisy = {};
+  for_each_tile(width, height, [&](const Tile& tile) {
     HWY_DYNAMIC_DISPATCH(wide_penumbra_of_tile)(found, geometry, pattern_size, tile, out);
   });
-  return std::move(out.shares.suns[0]);
+  return std::move(out.shares.suns.front());
 }
 
 }  // namespace ssdo

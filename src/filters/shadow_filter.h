@@ -9,7 +9,7 @@ namespace ssdo {
 /// The mean share of a sun that neighbours of a pixel on its surface have found, each by a ray to
 /// another point of it, as far as the penumbra there is wide: see shadow_filter.cpp. `pattern_size`
 /// is the most. Background pixels keep their values.
-Plane<float> filter_shadow(const Plane<float>& share, const ShadowDraw& draw,
-                           const Geometry& geometry, int pattern_size);
+Plane<float> filter_shadow(Plane<float> share, ShadowDraw draw, const Geometry& geometry,
+                           int pattern_size);
 
 }  // namespace ssdo
