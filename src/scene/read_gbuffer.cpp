@@ -31,7 +31,6 @@ bool is_sane(const glm::vec3& v) { return v == within_range(v); }
 
 /// Lays planes that cover `from` onto the window `to`; pixels that they do not cover get `fill`.
 Plane<float> lay_onto(const Window& to, const Window& from, const Plane<float>& plane, float fill) {
-  if (from == to) return plane;
   Plane<float> out(to.width(), to.height(), fill);
   for (int y = std::max(to.y0, from.y0); y < std::min(to.y1, from.y1); ++y) {
     for (int x = std::max(to.x0, from.x0); x < std::min(to.x1, from.x1); ++x) {
@@ -67,7 +66,8 @@ class LayerReader {
   }
 
   Plane<float> scalar(const std::optional<Layer>& layer, float fill) const {
-    return layer ? plane(window_, *layer, 0, fill) : Plane<float>{};
+    Plane<float> laid;
+    return layer ? plane(window_, *layer, 0, fill, laid) : laid;
   }
 
   Plane<glm::vec3> vector(const std::optional<Layer>& layer, float fill) const {
@@ -77,17 +77,21 @@ class LayerReader {
   Plane<glm::vec3> vector_over(const Window& window, const std::optional<Layer>& layer,
                                float fill) const {
     if (!layer) return {};
-    const Plane<float> x = plane(window, *layer, 0, fill), y = plane(window, *layer, 1, fill),
-                       z = plane(window, *layer, 2, fill);
-    Plane<glm::vec3> out(window.width(), window.height());
+    Plane<float> laid[3];
+    const Plane<float>&x = plane(window, *layer, 0, fill, laid[0]),
+          &y = plane(window, *layer, 1, fill, laid[1]),
+          &z = plane(window, *layer, 2, fill, laid[2]);
+    auto out = Plane<glm::vec3>::like(x);
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = {x[i], y[i], z[i]};
     return out;
   }
 
   Plane<glm::vec2> motion(const std::optional<Layer>& layer) const {
     if (!layer) return {};
-    const Plane<float> x = plane(window_, *layer, 0, NAN), y = plane(window_, *layer, 1, NAN);
-    Plane<glm::vec2> out(window_.width(), window_.height());
+    Plane<float> laid[2];
+    const Plane<float>&x = plane(window_, *layer, 0, NAN, laid[0]),
+          &y = plane(window_, *layer, 1, NAN, laid[1]);
+    auto out = Plane<glm::vec2>::like(x);
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = {x[i], y[i]};
     return out;
   }
@@ -95,11 +99,13 @@ class LayerReader {
  private:
   using Part = std::pair<int, int>;  ///< file and part
 
-  Plane<float> plane(const Window& window, const Layer& layer, std::size_t component,
-                     float fill) const {
+  /// A channel over `window`: as it was read where that is its own, else in `laid`.
+  const Plane<float>& plane(const Window& window, const Layer& layer, std::size_t component,
+                            float fill, Plane<float>& laid) const {
     const ExrPart& part = part_of(files_, layer);
-    const auto& planes = planes_.at({layer.file, layer.part});
-    return lay_onto(window, part.data_window, planes.at(layer.channels[component]), fill);
+    const Plane<float>& read = planes_.at({layer.file, layer.part}).at(layer.channels[component]);
+    if (part.data_window == window) return read;
+    return laid = lay_onto(window, part.data_window, read, fill);
   }
 
   const std::vector<const ExrReader*>& files_;
