@@ -125,8 +125,10 @@ class Round {
     const auto progress = [this](std::size_t done, std::size_t count) { tell(done, count); };
     Stopwatch watch;
     Estimate out;
-    Products products = over_geometry(plan_.method->estimate(scene_, request_, progress),
-                                      scene_.geometry, request_.receivers);
+    Request request = request_;
+    request.shares_suffice = plan_.filter->apply && !compares_steps_;
+    Products products = over_geometry(plan_.method->estimate(scene_, request, progress),
+                                      scene_.geometry, request.receivers);
     Plane<float> change;
     if (compares_steps_)
       change = change_by_steps(scene_, *plan_.method, request_, products, progress);

@@ -49,6 +49,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <memory>
+#include <utility>
 
 #include "estimators/bitmask/basis_weights.h"
 #include "estimators/bitmask/beyond.h"
@@ -97,14 +98,14 @@ class Bitmask {
   Products run() {
     gather_visibility();
     if (request_.products.bounce) out_.bounce = raster_.picture(gather_bounce());
+    if (wants_light()) hand_out_light();
     if (request_.products.error) {
       const bool bounces = bounce_error_.data() != nullptr;
       out_.error = raster_.of_receivers(0.0f, [&](std::ptrdiff_t i) {
         return bounces ? error_[i] + bounce_error_[i] : error_[i];
       });
     }
-    out_.ao = raster_.picture(ao_, 1.0f);
-    if (wants_light()) out_.direct = raster_.picture(direct_);
+    out_.ao = raster_.picture(std::move(ao_), 1.0f);
     if (request_.products.reflection) gather_reflection();
     if (request_.products.guessed)
       out_.guessed =
@@ -170,14 +171,11 @@ class Bitmask {
       job.order = 1;
     }
     std::vector<float> weights;
-    InterleavedVectors sky_share;
     if (wants_light()) {
-      direct_ = raster_.make_color();
-      job.direct = &direct_;
       out_.shares.are_ao = light.is_constant();
       if (!out_.shares.are_ao) {
-        sky_share = raster_.make_color();
-        job.sky_share = &sky_share;
+        sky_share_ = raster_.make_color();
+        job.sky_share = &sky_share_;
       }
       if (light.order > 0 || request_.products.error) {
         job.order = std::max(light.order, 1);
@@ -193,8 +191,7 @@ class Bitmask {
     }
     for_each_band_of(
         lit_part(), [&](const Window& part) { march_visibility(job, part); }, progress_);
-    if (request_.products.bent) out_.bent = raster_.picture(bent);
-    if (job.sky_share) out_.shares.sky = raster_.picture(sky_share);
+    if (request_.products.bent) out_.bent = raster_.picture(std::move(bent));
     if (!wants_light() || light.suns.empty()) return;
     // A panorama shows what stands beyond the border, and rays have asked it.
     const bool all_is_shown =
@@ -204,30 +201,65 @@ class Bitmask {
         request_.extend_offscreen && !all_is_shown
             ? sun_past_beyond(mean_ao(march_scene_, scene_.geometry.display, request_.radius))
             : 1;
-    const std::vector<DepthBounds> bounds = depth_bounds(march_scene_, scene_.solids);
-    for (const Sun& sun : light.suns) add_sun(sun, bounds, pass_beyond(past, sun.held));
+    std::vector<SunPlanes> found, again;
+    march_suns(past, found, again);
+    for (SunPlanes& sun : found) {
+      out_.shares.draws.push_back(draw_of(sun));
+      sun_shares_.push_back(std::move(sun.share));
+    }
+    for (SunPlanes& sun : again) {
+      out_.shares.draws_again.push_back(draw_of(sun));
+      out_.shares.suns_again.push_back(raster_.picture(std::move(sun.share)));
+    }
   }
 
-  /// Adds the light of a sun where it is seen. Members of the pattern look at different points of
-  /// its disc.
-  void add_sun(const Sun& sun, const std::vector<DepthBounds>& bounds, const PassBeyond& pass) {
-    InterleavedPlane share(layout_), weight(layout_), width_px(layout_);
-    const auto find = [&](const Window& to, RaySet set, InterleavedVectors* direct) {
-      const std::vector<RayDirections> directions =
-          directions_to(sun, rays_to_sun(request_.slices), request_.seed, set);
-      const SunJob job{march_, bounds, directions, &sun, pass, direct, &share, &weight, &width_px};
-      for_each_tall_part_of(
-          to, [&](const Window& part) { march_sun(job, part); }, progress_);
-    };
-    const auto draw = [&] {
-      return ShadowDraw{raster_.picture(weight), raster_.picture(width_px)};
-    };
-    LightShares& shares = out_.shares;
-    find(lit_part(), RaySet::of_light, &direct_);
-    shares.suns.push_back(raster_.picture(share)), shares.draws.push_back(draw());
-    if (!request_.products.error) return;
-    find(march_scene_.receivers, RaySet::of_error, nullptr);
-    shares.suns_again.push_back(raster_.picture(share)), shares.draws_again.push_back(draw());
+  /// What rays to a sun have found, as SunJob has it.
+  struct SunPlanes {
+    InterleavedPlane share, weight, width_px;
+  };
+
+  ShadowDraw draw_of(SunPlanes& sun) const {
+    return {raster_.picture(std::move(sun.weight)), raster_.picture(std::move(sun.width_px))};
+  }
+
+  /// Finds where suns are seen, and once more by other rays where the error is wanted. `past` is
+  /// sun_past_beyond(). Members of the pattern look at different points of a sun's disc.
+  void march_suns(float past, std::vector<SunPlanes>& found, std::vector<SunPlanes>& again) const {
+    const std::vector<DepthBounds> bounds = depth_bounds(march_scene_, scene_.solids);
+    for (const Sun& sun : scene_.light.suns) {
+      const PassBeyond pass = pass_beyond(past, sun.held);
+      const auto find = [&](const Window& to, RaySet set) {
+        SunPlanes planes{InterleavedPlane(layout_), InterleavedPlane(layout_),
+                         InterleavedPlane(layout_)};
+        const std::vector<RayDirections> directions =
+            directions_to(sun, rays_to_sun(request_.slices), request_.seed, set);
+        const SunJob job{march_, bounds,        directions,     &sun,
+                         pass,   &planes.share, &planes.weight, &planes.width_px};
+        for_each_tall_part_of(
+            to, [&](const Window& part) { march_sun(job, part); }, progress_);
+        return planes;
+      };
+      found.push_back(find(lit_part(), RaySet::of_light));
+      if (request_.products.error) again.push_back(find(march_scene_.receivers, RaySet::of_error));
+    }
+  }
+
+  FoundShares found_shares() const {
+    return {scene_.light, &ao_, out_.shares.are_ao ? nullptr : &sky_share_, sun_shares_};
+  }
+
+  /// Turns what was found of the light into products.
+  void hand_out_light() {
+    if (!request_.shares_suffice) {
+      InterleavedVectors direct = raster_.make_color();
+      const DirectJob job{march_scene_, found_shares(), &direct};
+      for_each_band_of(march_scene_.receivers, [&](const Window& part) { find_direct(job, part); },
+                       {});
+      out_.direct = raster_.picture(std::move(direct));
+    }
+    if (!out_.shares.are_ao) out_.shares.sky = raster_.picture(std::move(sky_share_));
+    for (InterleavedPlane& share : sun_shares_)
+      out_.shares.suns.push_back(raster_.picture(std::move(share)));
   }
 
   void gather_reflection() {
@@ -244,7 +276,7 @@ class Bitmask {
     for_each_band_of(
         march_scene_.receivers, [&](const Window& part) { march_reflection(job, part); },
         progress_);
-    out_.reflection = raster_.picture(open, 1.0f);
+    out_.reflection = raster_.picture(std::move(open), 1.0f);
   }
 
   /// A part of the raster with so many pixels around it.
@@ -257,9 +289,9 @@ class Bitmask {
   InterleavedVectors gather_bounce() {
     const bool lit = senders_need_light();  // else a layer says what is sent
     const bool two_sided = lit && !scene_.light.is_constant();
-    InterleavedVectors sent = lit ? raster_.black() : raster_.interleaved(scene_.senders.radiance),
-                       bounce = raster_.black(), sent_back;
-    if (two_sided) sent_back = raster_.black();
+    InterleavedVectors sent = lit ? raster_.make_color()
+                                  : raster_.interleaved(scene_.senders.radiance),
+                       bounce = request_.bounces > 0 ? raster_.make_color() : raster_.black();
     InterleavedPlane weights(layout_);
     if (request_.products.error && request_.bounces > 0) bounce_error_ = InterleavedPlane(layout_);
     const Window raster = march_scene_.raster();
@@ -268,26 +300,23 @@ class Bitmask {
       sent_further = light_further_surfaces(scene_, request_.bounces - 1, request_.radius);
     for (int pass = 1; pass <= request_.bounces; ++pass) {
       if (lit) {
-        const SenderJob senders{march_scene_,
-                                &ao_,
-                                scene_.senders.albedo,
-                                &direct_,
-                                pass > 1 ? &bounce : nullptr,
-                                scene_.light,
-                                &sent,
-                                two_sided ? &sent_back : nullptr};
+        const SenderJob senders{
+            march_scene_, found_shares(), scene_.senders.albedo, pass > 1 ? &bounce : nullptr,
+            &sent,        two_sided};
         for_each_band_of(raster, [&](const Window& part) { find_senders(senders, part); }, {});
       }
       BorderValues sent_border[3];
       for (int c = 0; c < 3; ++c) {
-        sent_border[c] = march_scene_.border.gather(
-            [&](int x, int y) { return sent[std::size_t(c)][layout_.index(x, y)]; });
+        sent_border[c] = march_scene_.border.gather([&](int x, int y) {
+          const float both = sent[std::size_t(c)][layout_.index(x, y)];
+          return two_sided ? front_side(both) : both;
+        });
       }
       const bool wants_error = request_.products.error && pass == request_.bounces;
       const BounceJob job{bounce_march_,
                           &ao_,
                           &sent,
-                          two_sided ? &sent_back : nullptr,
+                          two_sided,
                           scene_.solids,
                           sent_border,
                           further_ ? &sent_further[std::size_t(pass - 1)] : nullptr,
@@ -315,7 +344,8 @@ class Bitmask {
   std::unique_ptr<FurtherRays> further_;  ///< null: there are no further views
   March march_, bounce_march_;
   InterleavedPlane ao_, error_, bounce_error_;
-  InterleavedVectors direct_;
+  InterleavedVectors sky_share_;              ///< empty where that is ao
+  std::vector<InterleavedPlane> sun_shares_;  ///< by sun
   Products out_;
 };
 

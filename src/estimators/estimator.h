@@ -48,6 +48,7 @@ struct Request {
   bool extend_offscreen = true;  ///< surfaces go on beyond the frame
   /// Of a method that makes ao at half resolution: between that and the upsampling. May be empty.
   MapFilter filter_half = {};
+  bool shares_suffice = false;  ///< `direct` may stay empty where Products::shares make it up
   /// Pixels that gather, within the geometry's window: products have its size, and all of the
   /// geometry blocks and sends. Area 0: the whole window.
   Window receivers = {};

@@ -84,8 +84,6 @@ HWY_INLINE V3 unoccluded_light(const Light& light, const V3& normal) {
   return sum;
 }
 
-HWY_INLINE V3 saturate(const V3& v) { return {saturate(v.x), saturate(v.y), saturate(v.z)}; }
-
 /// The share of its unoccluded light that each pixel of a row receives.
 void shares_of_row(const Scene& scene, Products& products, int y) {
   const bool has_ao = !products.ao.empty();

@@ -116,6 +116,8 @@ HWY_INLINE V3 if_then_else_zero(M m, const V3& yes) {
   return {hn::IfThenElseZero(m, yes.x), hn::IfThenElseZero(m, yes.y), hn::IfThenElseZero(m, yes.z)};
 }
 
+HWY_INLINE V3 saturate(const V3& v) { return {saturate(v.x), saturate(v.y), saturate(v.z)}; }
+
 /// Unit vector; 0 of 0.
 HWY_INLINE V3 normalise(const V3& a) {
   const V length2 = dot(a, a);

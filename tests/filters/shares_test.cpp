@@ -209,6 +209,24 @@ TEST(Shares, AreOfTheLightThatTheNormalReceives) {
   }
 }
 
+TEST(Shares, SufficeForTheLight) {
+  const Surface things = all_of({plane({}, {0, 0, 1}), sphere({0.3, 0.2, 0.5}, 0.6)});
+  const Method& bitmask = find_method("bitmask");
+  for (const Environment& light : {light_from_a_side(true), Environment::constant({1, 0.5f, 2})}) {
+    const Scene scene = scene_of(geometry_of(things, camera(), kWindow), light);
+    Request request{.products = {.ao = true, .direct = true},
+                    .radius = 1,
+                    .parameters = resolve_parameters(bitmask, {})};
+    const Products found = bitmask.estimate(scene, request, {});
+    request.shares_suffice = true;
+    const Products shares = bitmask.estimate(scene, request, {});
+    EXPECT_FALSE(found.direct.empty());
+    EXPECT_TRUE(shares.direct.empty());
+    EXPECT_EQ(through_filter(bitmask, scene, found).direct.pixels,
+              through_filter(bitmask, scene, shares).direct.pixels);
+  }
+}
+
 TEST(Shares, WhereNoLightFallsAoIsTheShare) {
   const Geometry g = geometry_of(plane({}, {0, 0, 1}), camera(), kWindow);
   const Scene scene = scene_of(g, Environment::constant({1, 0, 2}));

@@ -32,6 +32,20 @@ struct Gathered {
 
 HWY_INLINE Gathered no_light() { return {set(glm::vec3(0)), set(0)}; }
 
+/// Of what both sides send.
+HWY_INLINE V front_of(V sides) {
+  return hn::BitCast(D(), hn::And(hn::BitCast(DU(), sides), set_bits(kFrontSide)));
+}
+HWY_INLINE V3 front_of(const V3& sides) {
+  return {front_of(sides.x), front_of(sides.y), front_of(sides.z)};
+}
+HWY_INLINE V3 back_of(const V3& sides) {
+  const auto back = [](V s) HWY_ATTR {
+    return hn::BitCast(D(), hn::ShiftLeft<16>(hn::BitCast(DU(), s)));
+  };
+  return {back(sides.x), back(sides.y), back(sides.z)};
+}
+
 /// Whether the surface at `q`, `step` away from the receiver, turns to it the side that the camera
 /// sees.
 template <bool kOrthographic>
@@ -62,7 +76,10 @@ HWY_INLINE V3 sent_behind(const BounceJob& job, int layer, const Place& place,
     const int sender = row[first + lane * Interleaving::kPeriod];
     if (sender < 0) continue;
     const std::ptrdiff_t from = layout.index(sender % layout.width(), sender / layout.width());
-    for (std::size_t c = 0; c < 3; ++c) radiance[c][lane] = (*job.sent)[c][from];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float sent = (*job.sent)[c][from];
+      radiance[c][lane] = job.two_sided ? front_side(sent) : sent;
+    }
   }
   return {load(radiance[0]), load(radiance[1]), load(radiance[2])};
 }
@@ -122,18 +139,19 @@ void gather_light(const BounceJob& job, const Window& part) {
                 side_frame(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
             const auto receive = [&](VU bits, const auto& sent) HWY_ATTR {
               if (none(bits)) return;
-              light.add(f.weight * measure_of(p, side, bits), sent());
+              // Other lanes look where nothing may have been stored.
+              const M met = hn::RebindMask(D(), bits != set_bits(0));
+              light.add(f.weight * measure_of(p, side, bits), if_then_else_zero(met, sent()));
             };
             march_side<kOrthographic>(
                 march, p, side, slice, forward,
                 [&](int layer, std::ptrdiff_t q, const SliceStep& step, VU bits) HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {
                     if (layer > 0) return sent_behind(job, layer, p.place, step, bits);
-                    const V3 front = load(*job.sent, q);
-                    if (!job.sent_back) return front;
-                    const V3 back = load(*job.sent_back, q);
+                    const V3 sent = load(*job.sent, q);
+                    if (!job.two_sided) return sent;
                     const M seen = faces<kOrthographic>(march.scene, q, step, p);
-                    return if_then_else(seen, front, back);
+                    return if_then_else(seen, front_of(sent), back_of(sent));
                   });
                 },
                 FromFurther<decltype(receive)>{job.sent_further, receive},
@@ -213,7 +231,8 @@ void spread(const BounceJob& job, const Window& part, bool to_gatherers) {
     // ao may see an occluder that no march for the bounce met; it is assumed to be close and to
     // send what the receiver sends.
     const M on_surface = of_surface.weights > zero, anywhere = of_all.weights > zero;
-    const V3 beside = if_then_else(anywhere, of_all.mean(), load(*job.sent, i));
+    const V3 sent = load(*job.sent, i), own = job.two_sided ? front_of(sent) : sent;
+    const V3 beside = if_then_else(anywhere, of_all.mean(), own);
     const V3 radiance = if_then_else(on_surface, of_surface.mean(), beside);
     const V hidden = hn::IfThenElseZero(p.valid, set(1) - load(*job.ao, i));
     store(radiance * hidden, *job.bounce, i);

@@ -70,11 +70,12 @@ class Raster {
     return out;
   }
 
-  Plane<float> picture(const InterleavedPlane& plane, float background = 0) const {
+  /// Of planes that are not needed any more.
+  Plane<float> picture(InterleavedPlane plane, float background = 0) const {
     return of_receivers(background, [&](std::ptrdiff_t i) { return plane[i]; });
   }
 
-  Plane<glm::vec3> picture(const InterleavedVectors& color) const {
+  Plane<glm::vec3> picture(InterleavedVectors color) const {
     return of_receivers(glm::vec3(0), [&](std::ptrdiff_t i) {
       return glm::vec3(color[0][i], color[1][i], color[2][i]);
     });

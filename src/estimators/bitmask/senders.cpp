@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The radiance that each pixel sends to others: its albedo times all light that arrives there, a
-// mean over 4 x 4 pixels of its surface. A pixel's own light comes from two slices and one ray to
-// each sun, and many receivers look at the same pixel: sent on as it is, it made the noise of
-// the bounce 1.6 to 1.9 times as large (things on a table, a box of a room). Compiled once for
-// every instruction set.
+// The direct light of each pixel, and the radiance that it sends to others: its albedo times all
+// light that arrives there. What arrives of the light is a mean over 4 x 4 pixels of its surface. A
+// pixel's own light comes from two slices and one ray to each sun, and many receivers look at the
+// same pixel: sent on as it is, it made the noise of the bounce 1.6 to 1.9 times as large (things
+// on a table, a box of a room). Compiled once for every instruction set.
 //
 // The back side of a surface, which the camera does not see, is assumed to receive the unoccluded
 // light of its own hemisphere times the ao of the front. The sources of the method let surfaces
@@ -24,38 +24,66 @@ namespace ssdo::HWY_NAMESPACE {
 /// evenly.
 constexpr int kWindow = 4;
 
-/// What arrives at a vector of pixels.
-struct Arriving {
-  V3 light;  ///< direct and bounced
-  V ao;
+/// The pixels around each of a vector, and what they count in a mean over its surface.
+struct Around {
+  std::ptrdiff_t index[kWindow * kWindow];
+  V weight[kWindow * kWindow];
+  int count = 0;
+  V all;  ///< sum of the weights
+
+  HWY_INLINE void add(std::ptrdiff_t q, V weight_of_q) {
+    index[count] = q, weight[count++] = weight_of_q;
+    all = all + weight_of_q;
+  }
+
+  /// Of value(index).
+  template <class Value>
+  HWY_INLINE V mean(const Value& value) const {
+    V sum = set(0);
+    for (int k = 0; k < count; ++k) {
+      const V counted = hn::IfThenElseZero(weight[k] > set(0), value(index[k]));
+      sum = hn::MulAdd(counted, weight[k], sum);
+    }
+    return sum / all;
+  }
 };
 
-HWY_INLINE Arriving arriving_at(const SenderJob& job, std::ptrdiff_t i) {
-  const V3 direct = load(*job.direct, i);
-  return {job.bounce ? direct + load(*job.bounce, i) : direct, load(*job.ao, i)};
-}
-
-/// Its mean over the pixels around each, on the same surface.
 template <bool kOrthographic>
-HWY_INLINE Arriving mean_arriving(const SenderJob& job, const Place& place) {
-  const MarchScene& scene = job.scene;
+HWY_INLINE Around around(const MarchScene& scene, const Place& place) {
   const MarchReceiver p = load_receiver(scene, place);
-  Arriving sum{set(glm::vec3(0)), set(0)};
-  V weights = set(0);
+  Around pixels;
+  pixels.all = set(0);
   for (int dy = -kWindow / 2; dy < kWindow / 2; ++dy) {
     if (place.y + dy < 0 || place.y + dy >= scene.layout.height()) continue;
     for (int dx = -kWindow / 2; dx < kWindow / 2; ++dx) {
       const std::ptrdiff_t q = index_beside(scene.layout, place, dx, dy);
       const V weight = dx == 0 && dy == 0 ? set(1) : likeness<kOrthographic>(scene, p, q, dx, dy);
-      const M counts = weight > set(0);
-      if (!any(counts)) continue;
-      const Arriving beside = arriving_at(job, q);
-      sum.light = mul_add(if_then_else_zero(counts, beside.light), weight, sum.light);
-      sum.ao = hn::MulAdd(hn::IfThenElseZero(counts, beside.ao), weight, sum.ao);
-      weights = weights + weight;
+      if (any(weight > set(0))) pixels.add(q, weight);
     }
   }
-  return {sum.light / weights, sum.ao / weights};
+  return pixels;
+}
+
+/// The direct light on surfaces with these normals; `share(plane)` of some light arrives.
+template <class Share>
+HWY_INLINE V3 direct_light(const FoundShares& found, const V3& normal, const Share& share) {
+  const V3 sky = look_up(found.light.irradiance, normal);
+  if (!found.sky) return sky * share(*found.ao);
+  const InterleavedVectors& of_sky = *found.sky;
+  V3 sum = sky * V3{share(of_sky[0]), share(of_sky[1]), share(of_sky[2])};
+  for (std::size_t k = 0; k < found.suns.size(); ++k)
+    sum = mul_add(unoccluded(found.light.suns[k], normal), share(found.suns[k]), sum);
+  return sum;
+}
+
+HWY_INLINE V both_sides(V front, V back) {
+  const auto rounded = [](V v) HWY_ATTR { return hn::BitCast(DU(), v) + set_bits(kHalfOfCut); };
+  const VU sides =
+      hn::Or(hn::And(rounded(front), set_bits(kFrontSide)), hn::ShiftRight<16>(rounded(back)));
+  return hn::BitCast(D(), sides);
+}
+HWY_INLINE V3 both_sides(const V3& front, const V3& back) {
+  return {both_sides(front.x, back.x), both_sides(front.y, back.y), both_sides(front.z, back.z)};
 }
 
 HWY_INLINE V3 albedo_at(const SenderJob& job, const Place& place) {
@@ -64,22 +92,46 @@ HWY_INLINE V3 albedo_at(const SenderJob& job, const Place& place) {
   return within_range(V3{gather(from, at), gather(from + 1, at), gather(from + 2, at)});
 }
 
+/// The normals by which light is weighed.
+HWY_INLINE V3 shading_normals(const MarchScene& scene, const Place& place) {
+  const M valid = holds_solid(load(scene.depth(), place.index));
+  return usable(load_shading(scene, place).normal, valid);
+}
+
 template <bool kOrthographic>
 void send_light(const SenderJob& job, const Window& part) {
   const MarchScene& scene = job.scene;
   for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
     const std::ptrdiff_t i = place.index;
-    const Arriving mean = mean_arriving<kOrthographic>(job, place);
-    const V3 albedo = albedo_at(job, place);
-    const auto send = [&](const V3& light, InterleavedVectors& to)
-                          HWY_ATTR { store(within_range(albedo * light), to, i); };
-    if (job.sent_back) {
-      const M valid = holds_solid(load(scene.depth(), i));
-      const V3 back = set(glm::vec3(0)) - usable(load(scene.normal, i), valid);
-      const V3 bounce = job.bounce ? load(*job.bounce, i) : set(glm::vec3(0));
-      send(mul_add(unoccluded(job.light, back), mean.ao, bounce), *job.sent_back);
+    const Around pixels = around<kOrthographic>(scene, place);
+    const auto mean = [&](const InterleavedPlane& plane) HWY_ATTR {
+      return pixels.mean([&](std::ptrdiff_t q) HWY_ATTR { return load(plane, q); });
+    };
+    const auto mean_share = [&](const InterleavedPlane& plane) HWY_ATTR {
+      return pixels.mean([&](std::ptrdiff_t q) HWY_ATTR { return saturate(load(plane, q)); });
+    };
+    V3 light = direct_light(job.found, shading_normals(scene, place), mean_share);
+    if (job.bounce) {
+      const auto& [red, green, blue] = *job.bounce;
+      light = light + V3{mean(red), mean(green), mean(blue)};
     }
-    send(mean.light, *job.sent);
+    const V3 albedo = albedo_at(job, place);
+    const V3 front = within_range(albedo * light);
+    if (!job.two_sided) return store(front, *job.sent, i);
+    const M valid = holds_solid(load(scene.depth(), i));
+    const V3 behind = set(glm::vec3(0)) - usable(load(scene.normal, i), valid);
+    const V3 bounce = job.bounce ? load(*job.bounce, i) : set(glm::vec3(0));
+    const V3 at_back = mul_add(unoccluded(job.found.light, behind), mean(*job.found.ao), bounce);
+    store(both_sides(front, within_range(albedo * at_back)), *job.sent, i);
+  });
+}
+
+void direct_of_pixels(const DirectJob& job, const Window& part) {
+  for_each_vector(job.scene, part, [&](const Place& place) HWY_ATTR {
+    const auto own = [&](const InterleavedPlane& plane)
+                         HWY_ATTR { return saturate(load(plane, place.index)); };
+    store(direct_light(job.found, shading_normals(job.scene, place), own), *job.direct,
+          place.index);
   });
 }
 
@@ -94,9 +146,14 @@ HWY_AFTER_NAMESPACE();
 namespace ssdo {
 
 HWY_EXPORT(sent_by_pixels);
+HWY_EXPORT(direct_of_pixels);
 
 void find_senders(const SenderJob& job, const Window& part) {
   HWY_DYNAMIC_DISPATCH(sent_by_pixels)(job, part);
+}
+
+void find_direct(const DirectJob& job, const Window& part) {
+  HWY_DYNAMIC_DISPATCH(direct_of_pixels)(job, part);
 }
 
 }  // namespace ssdo

@@ -152,10 +152,6 @@ void sun(const SunJob& job, const Window& part) {
       store(share, *job.share, i);
       store(weight / set(float(job.directions.size())), *job.weight, i);
       store(hn::IfThenElseZero(blocked > zero, widths / blocked), *job.width_px, i);
-      if (!job.direct) return;
-      const M valid = holds_solid(load(scene.depth(), i));
-      const V3 light = unoccluded(*job.sun, usable(load_shading(scene, place).normal, valid));
-      store(mul_add(light, share, load(*job.direct, i)), *job.direct, i);
     });
   });
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The visibility of each pixel and its direct light by method bitmask; see bitmask.cpp. Compiled
-// once for every instruction set.
+// The visibility of each pixel and its share of the light by method bitmask; see bitmask.cpp.
+// Compiled once for every instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/visibility.cpp"
 #include <hwy/foreach_target.h>
@@ -49,13 +49,11 @@ void visibility(const VisibilityJob& job, const Window& part) {
         const std::ptrdiff_t i = p.place.index;
         const V ao = sum.open_share();
         store(hn::IfThenElse(p.valid, ao, set(1)), *job.ao, i);
-        if (!job.bent && !job.direct) return;
+        if (!job.bent && !job.sky_share && !job.difference) return;
         const V3 normals = usable(load_shading(march.scene, p.place).normal, p.valid);
         if constexpr (kOrder > 0) {
           if (job.bent) store(sum.bent_normal(p, ao, normals), *job.bent, i);
         }
-        if (!job.direct) return;
-        const V3 unoccluded = look_up(*job.irradiance, normals);
         const auto share_of = [&](const Moments<kOrder>& moments) HWY_ATTR {
           if (!job.light) return V3{ao, ao, ao};
           const auto share = [&](int c) HWY_ATTR {
@@ -63,15 +61,13 @@ void visibility(const VisibilityJob& job, const Window& part) {
           };
           return V3{share(0), share(1), share(2)};
         };
-        const auto visible = [&](const V3& share) HWY_ATTR {
-          return unoccluded * V3{saturate(share.x), saturate(share.y), saturate(share.z)};
-        };
-        const V3 share = share_of(sum);
-        store(visible(share), *job.direct, i);
-        if (job.sky_share) store(share, *job.sky_share, i);
+        if (job.sky_share) store(share_of(sum), *job.sky_share, i);
         if (job.difference) {
-          const V difference = luminance(visible(share_of(first_half))) -
-                               luminance(visible(share_of(sum.minus(first_half))));
+          const V3 unoccluded = look_up(*job.irradiance, normals);
+          const auto brightness = [&](const Moments<kOrder>& moments) HWY_ATTR {
+            return luminance(unoccluded * saturate(share_of(moments)));
+          };
+          const V difference = brightness(first_half) - brightness(sum.minus(first_half));
           const V scale = set(error_of_difference(march, p.place, firsts, count_of_slices));
           store(difference * scale, *job.difference, i);
         }

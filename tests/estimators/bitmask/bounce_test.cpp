@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "estimators/bitmask/request.h"
@@ -101,6 +102,43 @@ TEST(BitmaskBounce, ALayerOfRadianceHoldsForBothSides) {
   EXPECT_GT(hidden, 20);
   // The side that is not seen is as bright as the layer says of the one that is.
   EXPECT_NEAR(bounce, hidden, 0.01 * hidden);
+}
+
+/// A sky that is bright on one side of y = 0 and black on the other.
+Environment half_a_sky(bool bright_behind) {
+  const auto map = std::make_shared<Plane<glm::vec3>>(64, 32);
+  const Environment directions(map, {});
+  for (int y = 0; y < map->height; ++y) {
+    for (int x = 0; x < map->width; ++x)
+      (*map)(x, y) = glm::vec3((directions.texel_direction(x, y).y > 0) == bright_behind ? 1 : 0);
+  }
+  return Environment(map, {});
+}
+
+TEST(BitmaskBounce, ASideThatIsNotSeenSendsItsOwnLight) {
+  // A low wall, whose front the viewer sees, on a floor that goes on behind it.
+  const Surface scene =
+      all_of({plane({}, {0, 0, 1}), cut(plane({}, {0, -1, 0}), [](const glm::dvec3& p) {
+                return p.z > 0 && p.z < 0.5 && std::abs(p.x) < 1;
+              })});
+  const Geometry g =
+      geometry_of(scene, tilted(camera_from_ortho_width(4, kWindow, 1), 45), kWindow);
+  for (const bool bright_behind : {true, false}) {
+    const Products out = run(g, {.environment = half_a_sky(bright_behind),
+                                 .slices = 8,
+                                 .steps = 64,
+                                 .extend = false,
+                                 .bounces = 1});
+    double behind = 0, in_front = 0;
+    for (int x = 86; x < 106; ++x) {
+      behind += out.bounce(x, 46).x / 20;
+      in_front += out.bounce(x, 85).x / 20;
+    }
+    fmt::print("bounce behind a wall {:.4f}, in front of it {:.4f}\n", behind, in_front);
+    const double lit = bright_behind ? behind : in_front, dark = bright_behind ? in_front : behind;
+    EXPECT_GT(lit, 0.01);
+    EXPECT_GT(lit, 3 * dark);
+  }
 }
 
 /// Mean bounce over the columns of pixels from x0 to x1, in rows where the walls go on.
