@@ -54,6 +54,7 @@ std::size_t write_exr_target(const SafeFile& file, const Target& target, const R
   output.downsampling = frame.gbuffer.downsampling;
   output.geometry = geometry_channels(frame);
   output.compression = job.options.output.compression;
+  output.compression_level = job.options.output.compression_level;
   output.attributes = {{"ssdo/version", SSDO_VERSION},
                        {"ssdo/plan", json_text(to_json(plan, frame.history))}};
   for (const NamedPlane& plane : channels)
