@@ -60,6 +60,7 @@ void open_standard_streams() {
 void keep_freed_memory() {
   mallopt(M_MMAP_MAX, 0);  // no mapping of its own for a plane, which would end with the plane
   mallopt(M_TRIM_THRESHOLD, INT_MAX);
+  mallopt(M_ARENA_MAX, 1);  // what one thread has freed serves the others
 }
 
 /// The last words of a process that fails; what cannot be said (standard error is closed, or its

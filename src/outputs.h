@@ -23,6 +23,7 @@ struct OutputOptions {
   std::optional<Compose> compose;     ///< chosen by the layers where not given
   Imf::PixelType pixel_type = Imf::HALF;
   std::optional<Imf::Compression> compression;  ///< the input's where not given
+  std::optional<int> compression_level;         ///< its own default where not given
   int bits = 8;                                 ///< per channel of PNG and TIFF: 8 or 16
   bool keep_channels = false;
   bool crop = false;   ///< EXR outputs hold the display window only

@@ -52,6 +52,7 @@ std::size_t write_exr_target(const SafeFile& file, const Target& target, const R
   output.downsampling = frame.gbuffer.downsampling;
   output.geometry = geometry_channels(frame);
   output.compression = job.options.output.compression;
+  output.compression_level = job.options.output.compression_level;
   output.attributes = {{"ssdo/version", SSDO_VERSION},
                        {"ssdo/plan", json_text(to_json(plan, frame.history))}};
   for (const NamedChannels& product : products_to_write) {
@@ -104,10 +105,10 @@ Relit relight(const RelightJob& job, const std::function<void(double)>& on_progr
               const Past& past) {
   Relit relit;
   // Made first: a view that does not exist costs no estimate.
-  const std::optional<DisplayTransform> display = make_display(job);
-  if (display) {
-    relit.notes.push_back(display->description());
-    if (!display->warning().empty()) relit.warnings.push_back(display->warning());
+  relit.display = make_display(job);
+  if (relit.display) {
+    relit.notes.push_back(relit.display->description());
+    if (!relit.display->warning().empty()) relit.warnings.push_back(relit.display->warning());
   }
 
   Estimate found = estimate(
@@ -115,23 +116,27 @@ Relit relight(const RelightJob& job, const std::function<void(double)>& on_progr
       past);
   relit.plan = job.frame.plan;
   relit.plan.request = std::move(found.request);
+  relit.products = std::move(found.products);
   relit.history = std::move(found.history);
   relit.error = found.error;
   append(relit.notes, found.notes);
   append(relit.warnings, found.warnings);
+  relit.times = job.frame.times;
+  relit.times.estimate = found.estimate_ms;
+  relit.times.filter = found.filter_ms;
+  return relit;
+}
 
+void write_outputs(const RelightJob& job, Relit& relit,
+                   const std::function<void(double)>& on_progress) {
   const Written written = write_targets(
-      job, relit.plan, found.products, display ? &*display : nullptr,
+      job, relit.plan, relit.products, relit.display ? &*relit.display : nullptr,
       [&](double done) { on_progress(kEstimateShare + (1 - kEstimateShare) * done); });
   relit.clamped_values = written.clamped_values;
   Stopwatch watch;
   for (const auto& file : written.files) file->commit();
-  relit.times = job.frame.times;
-  relit.times.estimate = found.estimate_ms;
-  relit.times.filter = found.filter_ms;
   relit.times.compose = written.compose_ms;
   relit.times.write = written.write_ms + watch.lap();
-  return relit;
 }
 
 }  // namespace ssdo

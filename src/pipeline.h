@@ -25,19 +25,26 @@ struct RelightJob {
 
 /// What came of a job.
 struct Relit {
-  Plan plan;                        ///< of the frame, with the slices and steps that were needed
-  StageTimes times;                 ///< of all stages
-  std::size_t clamped_values = 0;   ///< beyond the range of half
-  std::optional<ErrorFound> error;  ///< where the plan asks for it
-  History history;                  ///< of a temporal plan, for the next frame; without a geometry
-  std::vector<std::string> notes;   ///< how colours were transformed, and what the error is
+  Plan plan;          ///< of the frame, with the slices and steps that were needed
+  Products products;  ///< after the filter
+  std::optional<DisplayTransform> display;  ///< where a target is a picture that shows colours
+  StageTimes times;                         ///< of all stages up to here
+  std::size_t clamped_values = 0;           ///< beyond the range of half
+  std::optional<ErrorFound> error;          ///< where the plan asks for it
+  History history;                 ///< of a temporal plan, for the next frame; without a geometry
+  std::vector<std::string> notes;  ///< how colours were transformed, and what the error is
   std::vector<std::string> warnings;
 };
 
-/// The main job: estimate, filter, compose, colour, write. All targets appear, or none.
-/// `on_progress` is called with the share that is done, 0..1. Errors: those of the stages.
+/// The main job up to its files: estimate and filter. `on_progress` is called with the share that
+/// is done, 0..1. Errors: those of the stages.
 Relit relight(const RelightJob& job, const std::function<void(double)>& on_progress,
               const Past& past);
+
+/// The rest of it: compose, colour, write. All targets appear, or none. Adds to the times and
+/// clamped values of `relit`. Errors: those of the stages.
+void write_outputs(const RelightJob& job, Relit& relit,
+                   const std::function<void(double)>& on_progress);
 
 /// How colours become those of a display, where a target is a picture that shows colours. Where a
 /// target is a picture, loads what writes it.

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+//
+// What a sequence does at one time, with two threads or more:
+//
+//   estimate and filter frame n, and beside it
+//   compose and write frame n - 1, then read and prepare frame n + 1
+//
+// The frame before is written and freed before the next one is read, so that no more than two are
+// in memory. Lines, errors and statistics of a frame wait until those of the frame before are out.
 #include "cli/batch.h"
 
 #include <fmt/format.h>
@@ -6,7 +14,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <future>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -14,53 +21,39 @@
 #include "cli/describe.h"
 #include "cli/jobs.h"
 #include "cli/listing.h"
+#include "cli/place_in_sequence.h"
 #include "cli/progress.h"
 #include "cli/statistics.h"
-#include "filters/continuity.h"
 #include "frame.h"
-#include "io/image_file.h"
 #include "io/json_text.h"
 #include "io/one_line.h"
 #include "io/standard_output.h"
+#include "parallel/background.h"
 #include "pipeline.h"
 
 namespace ssdo {
 namespace {
 
-namespace fs = std::filesystem;
+/// A job on its way from its files to its outputs.
+struct Work {
+  std::size_t index = 0;            ///< of the job
+  OutputPolicy policy = {};         ///< of its outputs
+  std::optional<Frame> frame = {};  ///< while there is something left to do with it
+  Relit relit = {};
+  std::string lines = {};          ///< to be printed
+  nlohmann::json statistics = {};  ///< null unless its outputs were made
+  std::optional<Error> error = {};
+};
 
-bool is_readable(const std::string& path) {
-  try {
-    if (is_display_image(path)) {
-      read_image(path);
-    } else {
-      // All channels of a part share their chunks: if one can be decoded, all can.
-      const ExrReader file(path);
-      for (const ExrPart& part : file.parts()) {
-        if (!part.deep && !part.channels.empty())
-          file.read_stored(part.index, std::vector{part.channels[0].name});
-      }
-    }
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-bool all_done(const Job& job) {
-  for (const Target& target : job.targets) {
-    if (!fs::exists(target.path) || !is_readable(target.path)) return false;
-  }
-  return !job.targets.empty();
-}
-
-/// Runs the jobs one after another.
 class Batch {
  public:
   Batch(const Options& options, const Resources& resources)
       : options_(options),
         resources_(resources),
         jobs_(plan_jobs(options)),
+        overlaps_(resources.threads() > 1 && jobs_.size() > 1),
+        // A temporal frame hands its surfaces to the next one, which therefore waits.
+        writes_behind_(overlaps_ && !options.model.temporal),
         progress_(options.batch.progress, options.verbosity.quiet) {
     for (const Job& job : jobs_) pictures_.expect(job.files);
   }
@@ -85,152 +78,175 @@ class Batch {
   ExitCode run_jobs() {
     if (has_statistics())
       check_output(options_.verbosity.stats, policy_of_statistics(options_.output.policy));
-    ExitCode code = ExitCode::done;
-    for (std::size_t i = 0; i < jobs_.size(); ++i) {
+    for (std::size_t i = 0; i < jobs_.size() && !stopped_; ++i) {
       if (options_.command == Command::info) list(jobs_[i]);
       if (!light_) light_.emplace(options_.light);
-      const std::optional<Error> error = error_of_job(i);
-      pictures_.release(jobs_[i].files);
-      if (error) {
-        // A job of one frame fails if that frame fails.
-        if (jobs_.size() == 1) throw *error;
-        note_in_info(*error);
-        say(error->what());
-        if (code == ExitCode::done) code = error->code;
-        if (options_.batch.on_error == OnError::stop) break;
-      }
-      progress_.tell(double(i + 1) / double(jobs_.size()), jobs_[i].files.input);
-    }
-    return code;
-  }
-
-  std::optional<Error> error_of_job(std::size_t i) {
-    try {
       run_job(i);
-      return std::nullopt;
-    } catch (const Error& e) {
-      return e;
-    } catch (const std::bad_alloc&) {
-      return Error(ExitCode::failed,
-                   fmt::format("{}: not enough memory for this frame", jobs_[i].files.input));
-    } catch (const std::exception& e) {
-      return Error(ExitCode::failed, fmt::format("{}: {}", jobs_[i].files.input, e.what()));
     }
+    if (behind_ && !stopped_) {
+      write(*behind_, progress_of(behind_->index));
+      conclude(*behind_);
+    }
+    return code_;
   }
 
   void run_job(std::size_t i) {
-    const Job& job = jobs_[i];
-    Past past{std::exchange(history_, std::nullopt), {}};
-    OutputPolicy policy = options_.output.policy;
-    const bool relights = options_.command == Command::relight;
-    if (relights && options_.batch.skip_existing) {
-      if (all_done(job)) return say_skipped(job);
-      policy.overwrite = true;  // some of its files are missing or incomplete
+    Work now = ahead_ ? std::move(*ahead_) : prepare(i);
+    ahead_.reset();
+    if (overlaps_) {
+      beside_.start([this, i] {
+        if (behind_) write(*behind_, [](double) {});
+        if (i + 1 < jobs_.size()) ahead_ = prepare(i + 1);
+      });
     }
-    for (const Target& target : job.targets) {
-      if (relights) check_output(target.path, policy);
-    }
-    Frame frame = take_frame(i);
-    if (options_.model.temporal) place_in_sequence(frame, i, past);
-    if (options_.command == Command::info) return show(frame);
-    if (options_.verbosity.dry_run || options_.verbosity.verbose) {
-      print(describe(frame));
-    } else if (!options_.verbosity.quiet) {
-      for (const std::string& warning : frame.warnings()) {
-        say(fmt::format("{}: warning: {}", job.files.input, warning));
-      }
-    }
-    const RelightJob work{options_, frame, job.targets, policy};
-    if (options_.verbosity.dry_run) return say_colors(work);
-    const auto on_progress = [&](double done) {
-      progress_.tell((double(i) + done) / double(jobs_.size()), job.files.input);
-    };
-    Relit relit = relight(work, on_progress, past);
-    for (const std::string& note : relit.notes) say_verbose(note);
-    for (const std::string& warning : relit.warnings) {
-      if (!options_.verbosity.quiet) say(fmt::format("{}: warning: {}", job.files.input, warning));
-    }
-    if (relit.clamped_values > 0 && !options_.verbosity.quiet) {
-      say(
-          fmt::format("{}: warning: {} values were beyond the range of half and clamped to 65504; "
-                      "keep them with --pixel-type float",
-                      job.files.input, relit.clamped_values));
-    }
-    statistics_.push_back(statistics_of(frame, job, resources_, relit));
-    if (!options_.model.temporal) return;
-    history_ = std::move(relit.history);
-    history_->geometry = std::move(frame.scene.geometry);
-    history_->albedo = std::move(frame.scene.senders.albedo);
+    compute(now);
+    if (!writes_behind_) write(now, progress_of(i));
+    beside_.wait();
+    if (behind_) conclude(*behind_);
+    behind_.reset();
+    if (stopped_) return;
+    if (now.frame)
+      behind_ = std::move(now);
+    else
+      conclude(now);
   }
 
-  /// Reports from which frame the history is taken. Clears that of `past` after a cut.
-  void place_in_sequence(Frame& frame, std::size_t i, Past& past) const {
-    std::optional<History>& before = past.history;
-    const Geometry& geometry = frame.scene.geometry;
-    past.motion = std::move(frame.gbuffer.motion);
-    std::string reason =
-        !geometry.world_known ? "no history: the frame knows no world space"
-        : before              ? "history of the frame before, where that shows the same surface"
-                 : "no history: the first frame, or the one before was not made by this run";
-    if (before && before->geometry.world_known && geometry.world_known) {
-      const Continuity found = compare_frames({before->geometry, before->albedo},
-                                              {geometry, frame.scene.senders.albedo}, past.motion);
-      before->albedo = {};  // not needed any more
-      if (found.is_cut()) {
-        before.reset();
-        reason = fmt::format(
-            "no history: a cut, the frame before has {:.0f} % of the surfaces that both look at",
-            100 * found.kept / found.met);
-      }
-    }
-    frame.history.push_back(reason);
-    if (before && !past.motion.empty()) place_motion(frame, past, i);
-  }
-
-  /// Motion vectors refer to the frame before in time, which may not be the one before in the list.
-  void place_motion(Frame& frame, Past& past, std::size_t i) const {
-    if (std::int64_t(*jobs_[i - 1].frame) + 1 != *jobs_[i].frame) {
-      past.motion = {};
-      frame.history.push_back("motion is not used: it leads to a frame that is not the last");
+  /// Calls `step`; what it throws becomes the error of the job.
+  template <class Step>
+  void attempt(Work& work, const Step& step) {
+    const std::string& input = jobs_[work.index].files.input;
+    try {
+      step();
       return;
+    } catch (const Error& e) {
+      work.error = e;
+    } catch (const std::bad_alloc&) {
+      work.error =
+          Error(ExitCode::failed, fmt::format("{}: not enough memory for this frame", input));
+    } catch (const std::exception& e) {
+      work.error = Error(ExitCode::failed, fmt::format("{}: {}", input, e.what()));
     }
-    const std::string& name = frame.layers[Role::motion]->name;
-    const glm::vec2 scale = options_.input.gbuffer.motion_scale.value_or(glm::vec2(1));
-    frame.history.push_back(fmt::format(
-        "motion {} times {:g}, {:g}: pixels to the frame before, y up, where what moves "
-        "has its history",
-        name, scale.x, scale.y));
-    if (contradicts_cameras(past.history->geometry, frame.scene.geometry, past.motion)) {
-      frame.report.warnings.push_back(
-          fmt::format("{} moves other ways than the cameras say; are its units pixels to the frame "
-                      "before, y up? give --motion-scale",
-                      name));
-    }
+    work.frame.reset();
   }
 
-  Frame prepare(std::size_t i) {
-    const Job& job = jobs_[i];
-    if (job.frame && !fs::exists(job.files.input)) {
-      throw Error(ExitCode::input,
-                  fmt::format("{}: frame {} of the range is missing", job.files.input, *job.frame));
-    }
-    return prepare_frame(options_, *light_, pictures_, job.files, job.frame.value_or(0));
+  /// Up to the plan; there is no frame where the job is skipped.
+  Work prepare(std::size_t i) {
+    Work work{.index = i, .policy = options_.output.policy};
+    attempt(work, [&] {
+      if (may_skip(work)) return;
+      const Job& job = jobs_[i];
+      if (job.frame && !std::filesystem::exists(job.files.input)) {
+        throw Error(ExitCode::input, fmt::format("{}: frame {} of the range is missing",
+                                                 job.files.input, *job.frame));
+      }
+      work.frame = prepare_frame(options_, *light_, pictures_, job.files, job.frame.value_or(0));
+    });
+    pictures_.release(jobs_[i].files);
+    return work;
   }
 
-  /// The frame of job `i`, waiting for it if it is being read already; starts to read the next one.
-  Frame take_frame(std::size_t i) {
-    auto current = std::move(next_);
-    const bool ahead = current.valid() && next_index_ == i;
-    if (!ahead) return start_next(i, prepare(i));
-    return start_next(i, current.get());
+  /// Whether the outputs are there. Errors: those of check_output().
+  bool may_skip(Work& work) const {
+    if (options_.command != Command::relight) return false;
+    const Job& job = jobs_[work.index];
+    if (options_.batch.skip_existing) {
+      if (is_done(job)) {
+        if (options_.verbosity.verbose || options_.verbosity.dry_run)
+          add(work, fmt::format("{}: skipped, its outputs exist", job.files.input));
+        return true;
+      }
+      work.policy.overwrite = true;  // some of its files are missing or incomplete
+    }
+    for (const Target& target : job.targets) check_output(target.path, work.policy);
+    return false;
   }
 
-  Frame start_next(std::size_t i, Frame frame) {
-    if (resources_.threads() > 1 && i + 1 < jobs_.size() && !options_.batch.skip_existing) {
-      next_index_ = i + 1;
-      next_ = std::async(std::launch::async, [this, n = i + 1] { return prepare(n); });
+  /// Estimates and filters, or shows what would be done.
+  void compute(Work& work) {
+    Past past{std::exchange(history_, std::nullopt), {}};
+    if (!work.frame) return;
+    attempt(work, [&] {
+      Frame& frame = *work.frame;
+      if (options_.model.temporal) place_in_sequence(frame, past, before(work.index));
+      if (options_.command == Command::info) {
+        show(frame);
+        return work.frame.reset();
+      }
+      if (options_.verbosity.dry_run || options_.verbosity.verbose)
+        work.lines += describe(frame);
+      else
+        add_warnings(work, frame.warnings());
+      if (options_.verbosity.dry_run) {
+        // The last checks that come before the work of a real run.
+        if (const auto display = make_display(job_of(work))) add(work, display->description());
+        return work.frame.reset();
+      }
+      if (!behind_) print_lines(work);
+      work.relit = relight(job_of(work), progress_of(work.index), past);
+      if (options_.verbosity.verbose)
+        for (const std::string& note : work.relit.notes) add(work, note);
+      add_warnings(work, work.relit.warnings);
+      free_occluders(frame.scene);
+    });
+  }
+
+  /// What only estimators look at.
+  static void free_occluders(Scene& scene) {
+    scene.solids = {};
+    scene.views = {};
+    scene.further = {};
+  }
+
+  /// Makes the outputs of a frame that was computed, and frees it.
+  void write(Work& work, const std::function<void(double)>& on_progress) {
+    if (!work.frame) return;
+    attempt(work, [&] {
+      write_outputs(job_of(work), work.relit, on_progress);
+      if (work.relit.clamped_values > 0) {
+        add_warnings(work, {fmt::format("{} values were beyond the range of half and clamped to "
+                                        "65504; keep them with --pixel-type float",
+                                        work.relit.clamped_values)});
+      }
+      work.statistics = statistics_of(*work.frame, jobs_[work.index], resources_, work.relit);
+      if (options_.model.temporal) {
+        history_ = std::move(work.relit.history);
+        history_->geometry = std::move(work.frame->scene.geometry);
+        history_->albedo = std::move(work.frame->scene.senders.albedo);
+      }
+    });
+    work.frame.reset();
+    work.relit = {};
+  }
+
+  /// Says what became of a job, once all those before it are concluded.
+  void conclude(Work& work) {
+    print_lines(work);
+    if (!work.statistics.is_null()) statistics_.push_back(std::move(work.statistics));
+    if (work.error) {
+      // A job of one frame fails if that frame fails.
+      if (jobs_.size() == 1) throw *work.error;
+      note_in_info(*work.error);
+      print(line_of(work.error->what()));
+      if (code_ == ExitCode::done) code_ = work.error->code;
+      stopped_ = options_.batch.on_error == OnError::stop;
+      if (stopped_) return;
     }
-    return frame;
+    progress_of(work.index)(1);
+  }
+
+  RelightJob job_of(const Work& work) const {
+    return {options_, *work.frame, jobs_[work.index].targets, work.policy};
+  }
+
+  FrameBefore before(std::size_t i) const {
+    return {i > 0 && std::int64_t(*jobs_[i - 1].frame) + 1 == *jobs_[i].frame,
+            options_.input.gbuffer.motion_scale.value_or(glm::vec2(1))};
+  }
+
+  std::function<void(double)> progress_of(std::size_t i) {
+    return [this, i](double done) {
+      progress_.tell((double(i) + done) / double(jobs_.size()), jobs_[i].files.input);
+    };
   }
 
   /// Called before anything that can fail, so that `info` lists the layers of every file.
@@ -261,22 +277,24 @@ class Batch {
     print_out(json_text(shown, 2) + "\n");
   }
 
-  /// Prints one line on standard error; if that is closed, the work goes on.
-  void say(const std::string& line) { print("ssdo: " + printable(line) + "\n"); }
+  static std::string line_of(const std::string& text) { return "ssdo: " + printable(text) + "\n"; }
+
+  static void add(Work& work, const std::string& line) { work.lines += line_of(line); }
+
+  void add_warnings(Work& work, const std::vector<std::string>& warnings) const {
+    if (options_.verbosity.quiet) return;
+    for (const std::string& warning : warnings)
+      add(work, fmt::format("{}: warning: {}", jobs_[work.index].files.input, warning));
+  }
+
+  /// Prints on standard error; if that is closed, the work goes on.
   void print(const std::string& text) {
     progress_.clear();
     std::fputs(text.c_str(), stderr);
   }
-  void say_verbose(const std::string& text) {
-    if (options_.verbosity.verbose) say(text);
-  }
-  void say_skipped(const Job& job) {
-    if (options_.verbosity.verbose || options_.verbosity.dry_run)
-      say(fmt::format("{}: skipped, its outputs exist", job.files.input));
-  }
-  /// The end of a dry run: makes the last checks that come before the work of a real run.
-  void say_colors(const RelightJob& job) {
-    if (const auto display = make_display(job)) say(display->description());
+
+  void print_lines(Work& work) {
+    if (!work.lines.empty()) print(std::exchange(work.lines, {}));
   }
 
   /// Statistics are about products, which `info` does not make.
@@ -287,13 +305,18 @@ class Batch {
   const Options& options_;
   const Resources& resources_;
   std::vector<Job> jobs_;
+  const bool overlaps_;            ///< frames are read and written beside the one that is estimated
+  const bool writes_behind_;       ///< not only read
   std::optional<Lighting> light_;  ///< read after the first listing of `info`
   FurtherPictures pictures_;       ///< of all frames
   ProgressLine progress_;
   nlohmann::json statistics_ = nlohmann::json::array(), infos_ = nlohmann::json::array();
-  std::size_t next_index_ = 0;
-  std::future<Frame> next_;
+  ExitCode code_ = ExitCode::done;
+  bool stopped_ = false;
   std::optional<History> history_;  ///< of the frame before, where --temporal asks for it
+  std::optional<Work> ahead_;       ///< the next job, prepared
+  std::optional<Work> behind_;      ///< the last one, computed and not concluded
+  Background beside_;               ///< is waited for before any of the above goes
 };
 
 }  // namespace

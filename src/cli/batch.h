@@ -7,9 +7,10 @@
 
 namespace ssdo {
 
-/// The main job and `info`, over one frame or a sequence. Reads the next frame while this one is
-/// computed, where there is more than one thread. Prints one line per failed frame and returns the
-/// exit code of the first; what is wrong before the first frame is thrown.
+/// The main job and `info`, over one frame or a sequence. Where there is more than one thread, the
+/// frame before is written and the next one read while a frame is estimated. Prints one line per
+/// failed frame and returns the exit code of the first; what is wrong before the first frame is
+/// thrown.
 ExitCode run_batch(const Options& options, const Resources& resources);
 
 }  // namespace ssdo

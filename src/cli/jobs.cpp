@@ -5,8 +5,10 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 
 #include "error.h"
+#include "io/exr/exr_reader.h"
 #include "io/image_file.h"
 #include "io/picture_layers.h"
 #include "io/sequence.h"
@@ -113,6 +115,24 @@ RunFiles files_of(const Options& options, const std::vector<Job>& jobs) {
   return files;
 }
 
+bool is_readable(const std::string& path) {
+  try {
+    if (is_display_image(path)) {
+      read_image(path);
+    } else {
+      // All channels of a part share their chunks: if one can be decoded, all can.
+      const ExrReader file(path);
+      for (const ExrPart& part : file.parts()) {
+        if (!part.deep && !part.channels.empty())
+          file.read_stored(part.index, std::vector{part.channels[0].name});
+      }
+    }
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 std::vector<Job> plan_jobs(const Options& options) {
@@ -123,6 +143,13 @@ std::vector<Job> plan_jobs(const Options& options) {
                               : std::vector{single_job(options, std::move(targets))};
   if (options.command == Command::relight) check_run_files(files_of(options, jobs));
   return jobs;
+}
+
+bool is_done(const Job& job) {
+  for (const Target& target : job.targets) {
+    if (!std::filesystem::exists(target.path) || !is_readable(target.path)) return false;
+  }
+  return !job.targets.empty();
 }
 
 FrameFiles files_named(const Options& options) {

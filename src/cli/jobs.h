@@ -23,6 +23,9 @@ struct Job {
 /// ExitCode::input for a sequence without frames; those of check_run_files, over all frames.
 std::vector<Job> plan_jobs(const Options& options);
 
+/// Whether all outputs of a job exist and can be read.
+bool is_done(const Job& job);
+
 /// The files of a frame whose names hold no patterns. Errors: ExitCode::usage for --neighbours,
 /// which such a frame has not.
 FrameFiles files_named(const Options& options);

@@ -239,18 +239,9 @@ void add_output(CLI::App& app, OutputOptions& o) {
       "a product in a file of its own, repeatable");
   group.choice("--pixel-type", o.pixel_type, {{"half", Imf::HALF}, {"float", Imf::FLOAT}},
                "of EXR outputs");
-  group.choice("--compression", o.compression,
-               {{"none", Imf::NO_COMPRESSION},
-                {"rle", Imf::RLE_COMPRESSION},
-                {"zips", Imf::ZIPS_COMPRESSION},
-                {"zip", Imf::ZIP_COMPRESSION},
-                {"piz", Imf::PIZ_COMPRESSION},
-                {"pxr24", Imf::PXR24_COMPRESSION},
-                {"b44", Imf::B44_COMPRESSION},
-                {"b44a", Imf::B44A_COMPRESSION},
-                {"dwaa", Imf::DWAA_COMPRESSION},
-                {"dwab", Imf::DWAB_COMPRESSION}},
-               "of EXR outputs; default: the input's");
+  group.text(
+      "--compression", "NAME", [&](const Text& text) { read_compression(text, o); },
+      "of EXR outputs: " + compression_forms() + "; default: the input's");
   group.choice("--bits", o.bits, {{"8", 8}, {"16", 16}}, "per channel of PNG and TIFF outputs");
   group.flag("--keep-channels", o.keep_channels,
              "pass the input's other channels and parts through");

@@ -20,6 +20,18 @@ constexpr std::array<std::pair<std::string_view, DepthKind>, 3> kDepthKinds = {
     {{"planar", DepthKind::planar}, {"ray", DepthKind::ray}, {"inverse", DepthKind::inverse}}};
 constexpr std::string_view kNormalized = "normalized:";  ///< and NEAR,FAR
 
+struct CompressionRow {
+  std::string_view name;
+  Imf::Compression compression;
+  int most = 0;  ///< levels go from 1 to this one; 0: there are none
+};
+constexpr CompressionRow kCompressions[] = {
+    {"none", Imf::NO_COMPRESSION},           {"rle", Imf::RLE_COMPRESSION},
+    {"zips", Imf::ZIPS_COMPRESSION, 12},     {"zip", Imf::ZIP_COMPRESSION, 12},
+    {"piz", Imf::PIZ_COMPRESSION},           {"pxr24", Imf::PXR24_COMPRESSION},
+    {"b44", Imf::B44_COMPRESSION},           {"b44a", Imf::B44A_COMPRESSION},
+    {"dwaa", Imf::DWAA_COMPRESSION, 100000}, {"dwab", Imf::DWAB_COMPRESSION, 100000}};
+
 [[noreturn]] void throw_usage(const std::string& message) { throw Error(ExitCode::usage, message); }
 
 /// Two numbers, A,B; nothing for any other text.
@@ -76,6 +88,33 @@ void read_depth_kind(const std::string& text, GBufferOptions& out) {
   out.depth_kind = DepthKind::normalized;
   out.depth_near = float(range->first);
   out.depth_far = float(range->second);
+}
+
+std::string compression_forms() {
+  std::string forms;
+  for (const CompressionRow& row : kCompressions) {
+    forms += fmt::format("{}{}", forms.empty() ? "" : ", ", row.name);
+    if (row.most > 0) forms += fmt::format("[:1..{}]", row.most);
+  }
+  return forms;
+}
+
+void read_compression(const std::string& text, OutputOptions& out) {
+  const auto colon = text.find(':');
+  const bool levelled = colon != std::string::npos;
+  for (const CompressionRow& row : kCompressions) {
+    if (text.substr(0, colon) != row.name) continue;
+    out.compression = row.compression;
+    out.compression_level = levelled ? read_whole(text.substr(colon + 1), row.most) : std::nullopt;
+    if (out.compression_level || !levelled) return;
+    if (row.most > 0) {
+      throw_usage(fmt::format("--compression {}: expected a level from 1 to {}, such as {}:4", text,
+                              row.most, row.name));
+    }
+    throw_usage(fmt::format("--compression {0}: {1} has no levels; give --compression {1}", text,
+                            row.name));
+  }
+  throw_usage(fmt::format("--compression {}: expected one of {}", text, compression_forms()));
 }
 
 glm::vec2 read_motion_scale(const std::string& text) {

@@ -24,6 +24,12 @@ std::string depth_kind_forms();
 /// One of those forms.
 void read_depth_kind(const std::string& text, GBufferOptions& out);
 
+/// The forms of --compression, for help and messages: "none, ..., zip or zip:1 to zip:12, ...".
+std::string compression_forms();
+
+/// One of those forms.
+void read_compression(const std::string& text, OutputOptions& out);
+
 /// X,Y: two factors.
 glm::vec2 read_motion_scale(const std::string& text);
 

@@ -19,7 +19,7 @@ ProgressLine::~ProgressLine() { clear(); }
 
 void ProgressLine::tell(double done, const std::string& what) {
   const int percent = std::clamp(int(100 * done + 0.5), 0, 100);
-  if (percent == last_percent_) return;
+  if (percent <= last_percent_) return;
   last_percent_ = percent;
   std::string line;
   switch (style_) {

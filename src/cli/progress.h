@@ -14,7 +14,8 @@ class ProgressLine {
   ProgressLine(ProgressStyle style, bool quiet);
   ~ProgressLine();
 
-  /// `done` is the share of the whole job, 0..1, and `what` the current work.
+  /// `done` is the share of the whole job, 0..1, and `what` the current work. Less than was told
+  /// before is not shown.
   void tell(double done, const std::string& what);
 
   /// Clears the bar, so that other text can be written.

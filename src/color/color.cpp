@@ -193,6 +193,7 @@ DisplayTransform::DisplayTransform(const ColorOptions& options, const ColorTags&
 
 DisplayTransform::~DisplayTransform() = default;
 DisplayTransform::DisplayTransform(DisplayTransform&&) noexcept = default;
+DisplayTransform& DisplayTransform::operator=(DisplayTransform&&) noexcept = default;
 
 void DisplayTransform::apply(std::span<glm::vec3> colors) const {
   static_assert(sizeof(glm::vec3) == 3 * sizeof(float), "colours are packed RGB");

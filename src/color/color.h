@@ -42,6 +42,7 @@ class DisplayTransform {
   DisplayTransform(const ColorOptions& options, const ColorTags& tags);
   ~DisplayTransform();
   DisplayTransform(DisplayTransform&&) noexcept;
+  DisplayTransform& operator=(DisplayTransform&&) noexcept;
 
   /// Scene-linear to display values, in place. RGB is not premultiplied. Thread-safe. What does not
   /// fit a half float counts as the largest one. Results are not clipped to 0..1.

@@ -83,7 +83,7 @@ TEST_F(Config, AValueThatTheOptionDoesNotTakeIsRefusedWithItsLine) {
                                  "frames = 2026-01-01",   "part = \"\"",
                                  "aov = \"position\"",    "aov = [[\"position=P\"]]",
                                  "save = [\"ao\"]",       "method = \"magic\"",
-                                 "filter = \"magic\"",    "compression = \"gzip\"",
+                                 "filter = \"magic\"",    "compression = \"zip:0\"",
                                  "depth-kind = \"near\"", "motion-scale = \"1\"",
                                  "quality = \"best\"",    "bits = 10"}) {
     write("\n" + line + "\n");

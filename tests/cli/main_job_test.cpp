@@ -220,6 +220,17 @@ TEST(MainJob, WritesEveryCompressionAndBothTypes) {
   }
 }
 
+TEST(MainJob, PacksAsTightAsItIsTold) {
+  const TempDir dir;
+  write_frame(dir / "in.exr", frame_of(small_picture()));
+  const auto size = [&](const std::string& compression) {
+    relight({dir / "in.exr", "-o", dir / "out.exr", "--overwrite", "--compression", compression});
+    return std::filesystem::file_size(dir / "out.exr");
+  };
+  EXPECT_EQ(size("zip"), size("zip:1"));
+  EXPECT_GT(size("zip:1"), size("zip:12"));
+}
+
 TEST(MainJob, KeptChannelsStandBesideTheProducts) {
   const TempDir dir;
   FramePart part = frame_of(small_picture());

@@ -54,9 +54,40 @@ void expect_choices(const std::string& flag, const std::vector<std::pair<std::st
   EXPECT_THAT(help(), HasSubstr(flag + " {" + names + "}"));
 }
 
+TEST(Options, OfCompressionMayHaveALevel) {
+  std::string forms;
+  for (const auto& [name, compression, most] :
+       {std::tuple<std::string, Imf::Compression, int>{"none", Imf::NO_COMPRESSION, 0},
+        {"rle", Imf::RLE_COMPRESSION, 0},
+        {"zips", Imf::ZIPS_COMPRESSION, 12},
+        {"zip", Imf::ZIP_COMPRESSION, 12},
+        {"piz", Imf::PIZ_COMPRESSION, 0},
+        {"pxr24", Imf::PXR24_COMPRESSION, 0},
+        {"b44", Imf::B44_COMPRESSION, 0},
+        {"b44a", Imf::B44A_COMPRESSION, 0},
+        {"dwaa", Imf::DWAA_COMPRESSION, 100000},
+        {"dwab", Imf::DWAB_COMPRESSION, 100000}}) {
+    forms += (forms.empty() ? "" : ", ") + name;
+    if (most > 0) forms += "[:1.." + std::to_string(most) + "]";
+    EXPECT_EQ(parse({"--compression", name}).output.compression, compression);
+    EXPECT_EQ(parse({"--compression", name}).output.compression_level, std::nullopt);
+    for (const int level : {1, most}) {
+      if (most == 0) continue;
+      const OutputOptions o = parse({"--compression", name + ":" + std::to_string(level)}).output;
+      EXPECT_EQ(o.compression, compression);
+      EXPECT_EQ(o.compression_level, level);
+    }
+    for (const std::string& level :
+         std::vector<std::string>{"0", std::to_string(most + 1), "x", "", "-1", "1.5", "4 "})
+      EXPECT_THAT(refusal({"--compression", name + ":" + level}),
+                  HasSubstr(most > 0 ? "a level from 1 to " + std::to_string(most)
+                                     : name + " has no levels"));
+  }
+  EXPECT_THAT(refusal({"--compression", "gzip"}), HasSubstr("expected one of " + forms));
+}
+
 TEST(Options, OfNamesTakeEachNameAndNoOther) {
   using Up = std::optional<UpAxis>;
-  using Codec = std::optional<Imf::Compression>;
   expect_choices<Up>("--env-up", {{"auto", std::nullopt}, {"y", UpAxis::y}, {"z", UpAxis::z}},
                      [](const Options& o) { return o.light.up; });
   expect_choices<bool>("--offscreen", {{"extend", true}, {"open", false}},
@@ -67,18 +98,6 @@ TEST(Options, OfNamesTakeEachNameAndNoOther) {
       [](const Options& o) { return o.model.quality; });
   expect_choices<Imf::PixelType>("--pixel-type", {{"half", Imf::HALF}, {"float", Imf::FLOAT}},
                                  [](const Options& o) { return o.output.pixel_type; });
-  expect_choices<Codec>("--compression",
-                        {{"none", Imf::NO_COMPRESSION},
-                         {"rle", Imf::RLE_COMPRESSION},
-                         {"zips", Imf::ZIPS_COMPRESSION},
-                         {"zip", Imf::ZIP_COMPRESSION},
-                         {"piz", Imf::PIZ_COMPRESSION},
-                         {"pxr24", Imf::PXR24_COMPRESSION},
-                         {"b44", Imf::B44_COMPRESSION},
-                         {"b44a", Imf::B44A_COMPRESSION},
-                         {"dwaa", Imf::DWAA_COMPRESSION},
-                         {"dwab", Imf::DWAB_COMPRESSION}},
-                        [](const Options& o) { return o.output.compression; });
   expect_choices<int>("--bits", {{"8", 8}, {"16", 16}},
                       [](const Options& o) { return o.output.bits; });
   expect_choices<OnError>("--on-error",

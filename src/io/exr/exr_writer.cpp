@@ -17,6 +17,7 @@
 
 #include "error.h"
 #include "io/checked_file.h"
+#include "io/exr/compression.h"
 #include "io/exr/exr_copy.h"
 #include "io/exr/exr_parts.h"
 #include "io/exr/exr_stream.h"
@@ -36,19 +37,6 @@ constexpr float kLargestHalf = 65504.0f;
 
 const ExrPart& part_of(const ExrOutput& output) {
   return output.input->parts()[std::size_t(output.part)];
-}
-
-bool is_lossy(Imf::Compression compression) {
-  switch (compression) {
-    case Imf::PXR24_COMPRESSION:
-    case Imf::B44_COMPRESSION:
-    case Imf::B44A_COMPRESSION:
-    case Imf::DWAA_COMPRESSION:
-    case Imf::DWAB_COMPRESSION:
-      return true;
-    default:
-      return false;
-  }
 }
 
 /// A channel of the input on its way into the output.
@@ -189,6 +177,11 @@ void check_crop(const ExrOutput& output, const ExrPart& part,
   }
 }
 
+/// The level for what is written with `compression`, which may have taken the place of another.
+std::optional<int> level_for(const ExrOutput& output, Imf::Compression compression) {
+  return output.compression == compression ? output.compression_level : std::nullopt;
+}
+
 /// The header of a part whose pixels are written anew, in scanlines.
 Imf::Header scanline_header(const ExrOutput& output, const ExrPart& part) {
   Imf::Header header = part.header;
@@ -219,6 +212,7 @@ Imf::Header header_for(const ExrOutput& output, const std::vector<KeptChannel>& 
   check_crop(output, part_of(output), stored_channels);
   Imf::Header header = scanline_header(output, part_of(output));
   header.compression() = compression_for(output);
+  if (const auto level = level_for(output, header.compression())) set_level(header, *level);
   header.channels() = Imf::ChannelList();
   for (const auto& [name, stored] : kept) {
     header.channels().insert(name, part_of(output).header.channels()[stored.channel.name]);
@@ -314,7 +308,8 @@ std::size_t write_strips(Imf::OutputPart& out, const Window& known,
 /// A file with one part.
 std::size_t write_zip(Imf::OStream& stream, const Imf::Header& header, const ExrOutput& output,
                       const std::vector<KeptChannel>& kept) {
-  ZipOutput out(stream, header);
+  ZipOutput out(stream, header,
+                level_for(output, header.compression()).value_or(ZipOutput::kDefaultLevel));
   const std::size_t clamped = write_strips(
       [&](const Imf::FrameBuffer& frame_buffer, int rows) { out.write(frame_buffer, rows); },
       header.dataWindow(), known_window(output, part_of(output)), output.planes, kept);

@@ -41,7 +41,10 @@ struct ExrOutput {
   bool crop = false;               ///< of every flat part, write the display window only
   Downsampling downsampling = {};  ///< from the input's windows to the output's
   std::vector<ChannelOfPart> geometry;  ///< those that cannot be filtered, whatever their names
-  std::optional<Imf::Compression> compression;                  ///< the input's where not given
+  std::optional<Imf::Compression> compression;  ///< the input's where not given
+  std::optional<int> compression_level;  ///< of `compression`: ZIP and ZIPS 1 (fast) to 12 (small),
+                                         ///< DWAA and DWAB 1 (exact) to 100000 (small), others
+                                         ///< none; its own default where not given
   std::vector<std::pair<std::string, std::string>> attributes;  ///< string attributes to add
 };
 
@@ -52,6 +55,9 @@ struct ExrOutput {
 Imf::Compression compression_for(const ExrOutput& output);
 
 /// Writes `output` to the temporary of `file`; the caller commits it.
+///
+/// Levels are libdeflate's where ZipOutput writes the file. OpenEXR, which writes tiles, files of
+/// several parts and all else, packs levels above 9 as 9.
 ///
 /// The header of the input's part is kept: windows, pixel aspect, view, chromaticities and every
 /// attribute that does not describe the old file's storage. Without `keep_channels` the file has

@@ -143,6 +143,57 @@ TEST_F(Writer, ALossyCompressionIsUsedOnlyWhereItIsAskedFor) {
   EXPECT_EQ(compression_for(output()), Imf::PIZ_COMPRESSION);
 }
 
+/// Files with levels of compression.
+class WriterLevels : public Writer {
+ protected:
+  void make_input(int parts) {
+    Imf::Header header = test_header(Box2i({0, 0}, {199, 99}), {{"id", Imf::UINT}});
+    std::vector<Imf::Header> headers;
+    for (int part = 0; part < parts; ++part) {
+      header.setName("part " + std::to_string(part));
+      headers.push_back(header);
+    }
+    Writer::make_input(headers);
+    for (std::size_t i = 0; i < plane_.size(); ++i)
+      plane_[i] = std::round(64 * std::sin(0.3f * float(i % 200) + 0.01f * float(i / 200))) / 64;
+  }
+  std::uintmax_t size(Imf::Compression compression, std::optional<int> level, bool keep = false) {
+    ExrOutput o = output();
+    o.compression = compression;
+    o.compression_level = level;
+    o.keep_channels = keep;
+    write(o);
+    const bool lossy = compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
+    EXPECT_EQ(written_->parts()[0].header.compression(),
+              lossy && keep ? Imf::ZIP_COMPRESSION : compression);
+    EXPECT_EQ(read("ao.Y").pixels == plane_.pixels, !lossy || keep);
+    return std::filesystem::file_size(dir_ / "out.exr");
+  }
+};
+
+TEST_F(WriterLevels, OfZipChangeTheSizeAlone) {
+  make_input(1);
+  for (const auto compression : {Imf::ZIP_COMPRESSION, Imf::ZIPS_COMPRESSION}) {
+    EXPECT_EQ(size(compression, std::nullopt), size(compression, 1));
+    EXPECT_GT(size(compression, 1), size(compression, 6));
+    EXPECT_GT(size(compression, 6), size(compression, 12));
+  }
+}
+
+TEST_F(WriterLevels, GoToOpenExrWhereItWrites) {
+  make_input(2);
+  EXPECT_GT(size(Imf::ZIP_COMPRESSION, 1, true), size(Imf::ZIP_COMPRESSION, 9, true));
+  EXPECT_EQ(size(Imf::ZIP_COMPRESSION, 9, true), size(Imf::ZIP_COMPRESSION, 12, true));
+  EXPECT_GT(size(Imf::DWAA_COMPRESSION, 1), size(Imf::DWAA_COMPRESSION, 45));
+  EXPECT_EQ(size(Imf::DWAA_COMPRESSION, std::nullopt), size(Imf::DWAA_COMPRESSION, 45));
+  EXPECT_GT(size(Imf::DWAB_COMPRESSION, 45), size(Imf::DWAB_COMPRESSION, 500));
+}
+
+TEST_F(WriterLevels, OfACompressionThatIsReplacedAreDropped) {
+  make_input(1);
+  EXPECT_EQ(size(Imf::DWAA_COMPRESSION, 12, true), size(Imf::ZIP_COMPRESSION, std::nullopt, true));
+}
+
 TEST_F(Writer, KeptChannelsKeepTheirBitsAndMakeRoom) {
   make_input({test_header(kWindow, kChannels)});
   ExrOutput o = output();
