@@ -70,7 +70,7 @@ std::optional<Camera> fit_camera(const GBuffer& g, bool given) {
   if (!fitted) fitted = ssdo::fit_camera(g.position, g.valid, g.window);
   if (given) return fitted;
   const auto miss = [&](const Camera& camera) {
-    return measure_residual(camera, g.position, inner, g.window).median_px;
+    return median_miss_px(camera, g.position, inner, g.window);
   };
   const double by_pinhole = fitted ? miss(*fitted) : INFINITY;
   if (by_pinhole < kPinholeMissPx) return fitted;

@@ -173,6 +173,15 @@ ProjectionModel pose_of_plane(const Samples& samples, const Camera& projection) 
   return model;
 }
 
+double median_miss_px(const Camera& camera, const Samples& samples) {
+  std::vector<double> misses;
+  for (const Sample& s : samples.items) {
+    const glm::dvec3 p = camera.to_camera(samples.centre + samples.scale * s.p);
+    misses.push_back(glm::distance(camera.project(p), s.pixel));
+  }
+  return quantile(misses, 0.5);
+}
+
 }  // namespace
 
 std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
@@ -219,17 +228,15 @@ std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>&
 bool explains(const Camera& camera, const Plane<glm::vec3>& positions,
               const Plane<unsigned char>& valid, const Window& window, double step) {
   const Samples samples = collect_samples(positions, valid, window);
-  const auto in_camera_space = [&](const glm::dvec3& p) {
-    return camera.to_camera(samples.centre + samples.scale * p);
-  };
-  const double depth = -in_camera_space(glm::dvec3(0)).z;
+  const double depth = -camera.to_camera(samples.centre).z;
   if (!camera.orthographic && !(depth > 0)) return false;
-  std::vector<double> misses;
-  for (const Sample& s : samples.items) {
-    const glm::dvec2 at = camera.project(in_camera_space(s.p));
-    misses.push_back(std::hypot(at.x - s.pixel.x, at.y - s.pixel.y));
-  }
-  return quantile(misses, 0.5) < 0.5 + step * camera.fx / (camera.orthographic ? 1.0 : depth);
+  return median_miss_px(camera, samples) <
+         0.5 + step * camera.fx / (camera.orthographic ? 1.0 : depth);
+}
+
+double median_miss_px(const Camera& camera, const Plane<glm::vec3>& positions,
+                      const Plane<unsigned char>& valid, const Window& window) {
+  return median_miss_px(camera, collect_samples(positions, valid, window));
 }
 
 std::optional<Camera> in_own_space(const Camera& projection, const Plane<glm::vec3>& positions,

@@ -40,6 +40,10 @@ bool explains(const Camera& camera, const Plane<glm::vec3>& positions,
 std::optional<Camera> in_own_space(const Camera& projection, const Plane<glm::vec3>& positions,
                                    const Plane<unsigned char>& valid, const Window& window);
 
+/// The median of measure_residual() over a sample of at most some ten thousand pixels.
+double median_miss_px(const Camera& camera, const Plane<glm::vec3>& positions,
+                      const Plane<unsigned char>& valid, const Window& window);
+
 /// How well `camera` explains the positions.
 Residual measure_residual(const Camera& camera, const Plane<glm::vec3>& positions,
                           const Plane<unsigned char>& valid, const Window& window);
