@@ -18,18 +18,13 @@
 // For T = 8 this would be 81 neighbours. But that window is the mean of four windows of T = 4 whose
 // centres are (+-2, +-2) pixels away, so a second pass computes it from the result of the first:
 //
-//   out(p) = m(p) + 1/4 sum_q w(p, q) w_o(p, q) l(p, q) (m(q) - m(p)),   m the result for T = 4
+//   out(p) = m(p) + 1/4 sum_q w(p, q) l(p, q) (m(q) - m(p)),   m the result for T = 4
 //   l = ramp(|b_q - b_p| / (r (b_p + b_q + 1/2))),   b the mean over the channels of m
 //
-// w reduces the share of a q across a geometric edge, and w_o, the w of the one on the other side
-// of p, that of its opposite: alone, this would move the mean away from a contact, where ao has a
-// slope. At 2 slices of 16 steps the error of ao against 24 slices of 96 so fell by 4 %, mean of
-// six frames, by 14 % in a room, with the same noise. w_o = 1 where the other side shows nothing.
-//
-// l reduces the share of a q whose ao or share of the light differs by more than noise, which lies
-// across the edge of a shadow. In a dark pixel, noise is large relative to its own b but small
-// relative to the 1 of an open one, of which 1/4 is added for each of both pixels. Bounce light has
-// more noise and no sharp shadows: l = 1.
+// w reduces the share of a q across a geometric edge, and l that of a q whose ao or share of the
+// light differs by more than noise, which lies across the edge of a shadow. In a dark pixel, noise
+// is large relative to its own b but small relative to the 1 of an open one, of which 1/4 is added
+// for each of both pixels. Bounce light has more noise and no sharp shadows: l = 1.
 //
 // bounce = R (1 - ao), R the mean radiance of what hides. In the second pass ao keeps edges that
 // bounce does not, so that their means would not belong together: a white furnace, ao + bounce = 1,
@@ -242,23 +237,22 @@ class CornerFilter {
              mean(c, x + d, y + d)}};
   }
 
-  /// w w_o / 4 of the four neighbours.
+  /// w / 4 of the four neighbours.
   HWY_INLINE Corners weigh(int x, int y) const {
     const int left = x, right = x + 2 * offset_, above = y - offset_, below = y + offset_;
     const Shown p = rows_.shown(y, x + offset_);
     const Shown q[4] = {rows_.shown(above, left), rows_.shown(above, right),
                         rows_.shown(below, left), rows_.shown(below, right)};
     store(dot(p.normal, p.normal), is_surface() + x);
-    Corners w, weights;
-    for (int k = 0; k < 4; ++k) w.v[k] = similarity(p, q[k], [&]() HWY_ATTR { return q[3 - k]; });
+    Corners weights;
     for (int k = 0; k < 4; ++k) {
-      const M exists = dot(q[3 - k].normal, q[3 - k].normal) > set(0);
-      weights.v[k] = set(0.25f) * w[k] * hn::IfThenElse(exists, w[3 - k], set(1));
+      const V w = similarity(p, q[k], [&]() HWY_ATTR { return q[3 - k]; });
+      weights.v[k] = set(0.25f) * w;
     }
     return weights;
   }
 
-  /// w w_o l / 4 for the components from `c` on that belong together.
+  /// w l / 4 for the components from `c` on that belong together.
   HWY_INLINE Corners weigh_shadowed(int c, int components, int x, int y, Corners weights) const {
     V own = mean(c, x, y);
     Corners around = means_around(c, x, y);

@@ -57,8 +57,6 @@ Value reference(const Plane<T>& in, const Geometry& g, int pattern_size, int x, 
       for (const int qx : {x - 2, x + 2}) {
         if (!surface_at(g, qx, qy)) continue;
         double weight = reference_weight(g, x, y, qx - x, qy - y) / 4;
-        if (surface_at(g, 2 * x - qx, 2 * y - qy))
-          weight *= reference_weight(g, x, y, x - qx, y - qy);
         if (kind.shadowed) {
           const double p = brightness(own), q = brightness(mean(qx, qy)),
                        step = std::abs(q - p) / std::max(p + q + 0.5, 0.25);

@@ -70,30 +70,6 @@ TEST(GeometryFilter, KeepsTheEdgeOfAShadow) {
   EXPECT_GT(out.direct(31, 24).y, 0.3 + 2.7 * 0.86);
 }
 
-TEST(GeometryFilter, ASlopeIsNotMovedAwayFromAContact) {
-  // A floor that ends at the foot of a wall, with ao that rises from the foot. The second pass
-  // looks two pixels away: next to the foot, half of these are on the wall.
-  const Geometry g = geometry_of(
-      all_of({plane({}, {0, 0, 1}), plane({0, 1, 0}, {0, -1, 0})}),
-      look_at(camera_from_fov(40, kWindow, 1), {0, -4, 4}, {0, 1, 0}, {0, 0, 1}), kWindow);
-  const int x = kWindow.width() / 2;
-  int foot = 0;
-  while (g.surfel(x, foot).normal == g.surfel(x, 0).normal) ++foot;
-  ASSERT_GT(foot, 4);
-  ASSERT_LT(foot, kWindow.height() - 8);
-  Products p;
-  p.ao = Plane<float>(kWindow.width(), kWindow.height(), 0.2f);
-  for (int y = foot; y < kWindow.height(); ++y) {
-    for (int column = 0; column < kWindow.width(); ++column)
-      p.ao(column, y) = 0.2f + 0.005f * float(y - foot);
-  }
-  const Products once = filter_geometry(p, g, 4), twice = filter_geometry(p, g, 8);
-  for (int y = foot; y < foot + 2; ++y) EXPECT_NEAR(twice.ao(x, y), once.ao(x, y), 1e-6) << y;
-  // At the border of the frame nothing is on the other side.
-  const int last = kWindow.height() - 1;
-  EXPECT_LT(twice.ao(x, last), once.ao(x, last) - 0.002f);
-}
-
 TEST(GeometryFilter, ABounceBelongsToItsAo) {
   // White surfaces in white light at the edge of a contact shadow: ao + bounce is 1.
   const Geometry g =
