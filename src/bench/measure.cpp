@@ -65,9 +65,7 @@ void blend(ProductChannels& a, const ProductChannels& b, float keep, float take)
 
 Plane<float> copy_of(const ChannelView& channel) {
   Plane<float> plane(channel.width, channel.height);
-  for (int y = 0; y < plane.height; ++y) {
-    for (int x = 0; x < plane.width; ++x) plane(x, y) = *channel.at(x, y);
-  }
+  for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = channel[i];
   return plane;
 }
 

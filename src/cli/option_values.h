@@ -24,7 +24,7 @@ std::string depth_kind_forms();
 /// One of those forms.
 void read_depth_kind(const std::string& text, GBufferOptions& out);
 
-/// The forms of --compression, for help and messages: "none, ..., zip or zip:1 to zip:12, ...".
+/// The forms of --compression, for help and messages: "none, ..., zip[:1..12], ...".
 std::string compression_forms();
 
 /// One of those forms.

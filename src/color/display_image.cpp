@@ -65,8 +65,7 @@ DisplayImage make_display_image(const std::string& name, const Results& results,
     const NamedChannels planes = product_channels(name, results);
     for_each_shown_pixel(display, data, [&](std::size_t to, std::size_t from) {
       for (std::size_t c = 0; c < channels; ++c)
-        image.values[to * channels + c] =
-            scale * planes.channels[c].pixels.at(int(from), 0)[0] + offset;
+        image.values[to * channels + c] = scale * planes.channels[c].pixels[from] + offset;
     });
     return image;
   }

@@ -101,7 +101,7 @@ struct BounceJob {
 struct DirectJob {
   const MarchScene& scene;
   FoundShares found;
-  InterleavedVectors* direct;  ///< may be the shares of the sky
+  InterleavedVectors* direct;
 };
 
 /// How much of the light of a sun arrives.

@@ -176,6 +176,7 @@ TEST(FitCamera, TheResidualIsThatOfAllPixels) {
   EXPECT_NEAR(residual.median_px, 0.5, 1e-3);
   EXPECT_NEAR(residual.p99_px, 0.99, 1e-3);
   EXPECT_NEAR(residual.max_px, 1, 1e-3);
+  EXPECT_NEAR(median_miss_px(camera, positions, valid, kWindow), residual.median_px, 1e-2);
 }
 
 }  // namespace
