@@ -15,7 +15,7 @@ double physical_memory() { return double(sysconf(_SC_PHYS_PAGES)) * double(sysco
 
 }  // namespace
 
-void check_decoded_size(const std::filesystem::path& file, double pixel_bytes, double working_bytes,
+void check_decoded_size(const std::filesystem::path& file, double pixel_bytes, double needed_bytes,
                         double largest_ratio) {
   std::error_code unknown;
   const auto file_bytes = std::filesystem::file_size(file, unknown);
@@ -25,12 +25,11 @@ void check_decoded_size(const std::filesystem::path& file, double pixel_bytes, d
                             "of {} bytes cannot hold; render or copy it again",
                             file.string(), pixel_bytes / kGiB, file_bytes));
   }
-  const double bytes = pixel_bytes + working_bytes;
-  if (bytes > physical_memory()) {
+  if (needed_bytes > physical_memory()) {
     throw Error(ExitCode::input,
                 fmt::format("{}: needs {:.1f} GiB of memory for its pixels, this machine has "
                             "{:.1f} GiB; reduce the image or use a larger machine",
-                            file.string(), bytes / kGiB, physical_memory() / kGiB));
+                            file.string(), needed_bytes / kGiB, physical_memory() / kGiB));
   }
 }
 

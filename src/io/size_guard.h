@@ -9,10 +9,10 @@ namespace ssdo {
 /// block of 64 pixels: no codec goes further than their product, 66048:1 in half, twice in float.
 inline constexpr double kLargestRatio = 1 << 18;
 
-/// Refuses to allocate what a damaged header claims. Throws ExitCode::input if `pixel_bytes`, the
+/// Refuses to allocate what a damaged header claims. Throws ExitCode::input if `pixel_bytes`, all
 /// decoded pixels, are more than a file of the size of `file` can hold at `largest_ratio`, or if
-/// they and `working_bytes` exceed the machine's memory.
-void check_decoded_size(const std::filesystem::path& file, double pixel_bytes,
-                        double working_bytes = 0, double largest_ratio = kLargestRatio);
+/// `needed_bytes`, what is about to be allocated, exceeds the machine's memory.
+void check_decoded_size(const std::filesystem::path& file, double pixel_bytes, double needed_bytes,
+                        double largest_ratio = kLargestRatio);
 
 }  // namespace ssdo

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/downsampling.h"
 
+#include "math/whole_division.h"
+
 namespace ssdo {
-namespace {
-
-int floor_divide(int a, int b) { return a / b - (a % b < 0); }
-int ceil_divide(int a, int b) { return -floor_divide(-a, b); }
-
-}  // namespace
 
 Window Downsampling::small(const Window& large) const {
   const int x = floor_divide(display.x0, factor), y = floor_divide(display.y0, factor);

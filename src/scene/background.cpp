@@ -27,9 +27,9 @@ bool has_normals(const GBuffer& g) {
   return false;
 }
 
-/// The relation between P and the depth; empties a depth that contradicts P.
-std::optional<DepthModel> hold_depth_to_position(GBuffer& g) {
-  if (g.position.empty() || g.depth.empty()) return std::nullopt;
+/// Finds the relation between P and the depth, or that the depth contradicts P.
+void hold_depth_to_position(GBuffer& g) {
+  if (g.position.empty() || g.depth.empty()) return;
   Plane<unsigned char> counts(g.window.width(), g.window.height());
   std::size_t both = 0, without_depth = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -42,22 +42,30 @@ std::optional<DepthModel> hold_depth_to_position(GBuffer& g) {
   }
   // A layer that is 0 or not a number wherever P shows a surface was never written.
   const bool empty = both == 0 && without_depth > 0;
-  if (!empty && both < DepthModel::kFewestPixels) return std::nullopt;
-  const auto model = DepthModel::fit(g.position, g.depth, counts, g.position_step);
+  if (!empty && both < DepthModel::kFewestPixels) return;
+  auto& model = g.encodings.depth_of_position;
+  model = DepthModel::fit(g.position, g.depth, counts, g.position_step);
   if (!model) {
-    g.depth = {};
+    g.encodings.depth_is_wrong = true;
     g.warnings.push_back(
         "depth contradicts P (another unit, remapped, empty, or of another frame) and is left out");
   }
-  return model;
 }
 
 }  // namespace
 
-void find_background(GBuffer& g, std::optional<float> background_depth) {
-  const std::optional<DepthModel> depth_of_position = hold_depth_to_position(g);
+void find_background(GBuffer& g, std::optional<float> background_depth,
+                     const std::optional<Encodings>& known) {
+  Encodings& found = g.encodings;
+  if (known) {
+    found = *known;
+  } else {
+    hold_depth_to_position(g);
+    found.normals_tell = has_normals(g);
+  }
+  if (found.depth_is_wrong) g.depth = {};
+  const std::optional<DepthModel>& depth_of_position = found.depth_of_position;
   const float far = background_depth ? *background_depth * (1 - 1e-6f) : kEmptyDepth;
-  const bool normals_tell = has_normals(g);
   g.valid = Plane<unsigned char>(g.window.width(), g.window.height());
   for (std::size_t i = 0; i < g.valid.size(); ++i) {
     const bool nothing_in_depth = !g.depth.empty() && shows_nothing(g.depth[i], far);
@@ -65,7 +73,7 @@ void find_background(GBuffer& g, std::optional<float> background_depth) {
     bool broken = false;
     if (!g.position.empty()) {
       const glm::vec3& p = g.position[i];
-      const bool suspect = p == glm::vec3(0) || (normals_tell && g.normal[i] == glm::vec3(0));
+      const bool suspect = p == glm::vec3(0) || (found.normals_tell && g.normal[i] == glm::vec3(0));
       background |= suspect && !(depth_of_position && depth_of_position->agrees(p, g.depth[i]));
       broken = is_missing(p);
       background |= broken && !depth_of_position;

@@ -16,8 +16,11 @@ inline constexpr float kEmptyDepth = 1e9f;
 /// `background_depth` or more, not finite, 0 or less. P or N of 0 does not count where the
 /// depth agrees with P there, and N of 0 does not count in a layer that is 0 everywhere.
 ///
+/// Encodings `known` from all of a frame hold for a part of it; else they are found here.
+///
 /// Where there is P, a depth that contradicts it (depth_model.h) is left out with a warning, and
 /// the plane is emptied. A P that is not finite counts as broken where a depth shows a surface.
-void find_background(GBuffer& g, std::optional<float> background_depth);
+void find_background(GBuffer& g, std::optional<float> background_depth,
+                     const std::optional<Encodings>& known = {});
 
 }  // namespace ssdo

@@ -20,13 +20,16 @@ constexpr float kRounding = 1e-6f;
 
 /// Whether the depth is the z of a camera that looks along -z: negative wherever there is a
 /// surface.
-void turn_negative(GBuffer& g) {
+bool is_negative(const Plane<float>& depth) {
   bool negative = false;
-  for (const float z : g.depth.pixels) {
-    if (z > 0 && z < kEmptyDepth) return;
+  for (const float z : depth.pixels) {
+    if (z > 0 && z < kEmptyDepth) return false;
     negative |= z < 0 && z > -kEmptyDepth;
   }
-  if (!negative) return;
+  return negative;
+}
+
+void turn(GBuffer& g) {
   for (float& z : g.depth.pixels) z = -z;
   g.warnings.push_back(
       "depth is negative, as the z of a camera that looks along -z; its sign is turned");
@@ -66,8 +69,10 @@ void undo_depth_encoding(GBuffer& g, const GBufferOptions& options, const std::s
   const DepthKind kind = options.depth_kind.value_or(DepthKind::planar);
   g.depth_kind = kind == DepthKind::ray ? DepthKind::ray : DepthKind::planar;
   for (float& z : g.depth.pixels) z = decoded_depth(z, options);
-  turn_negative(g);
-  if (!options.depth_kind && g.position.empty()) check_has_unit(g, file);
+  const std::optional<Encodings>& known = options.known;
+  g.encodings.depth_is_negative = known ? known->depth_is_negative : is_negative(g.depth);
+  if (g.encodings.depth_is_negative) turn(g);
+  if (!options.depth_kind && g.position.empty() && !known) check_has_unit(g, file);
 }
 
 }  // namespace ssdo

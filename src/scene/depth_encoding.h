@@ -16,7 +16,7 @@ float decoded_depth(float stored, const GBufferOptions& options);
 /// its kind. In a normalized depth what is stored as the farther end, or beyond it, shows nothing:
 /// it becomes infinite. A depth that is negative throughout is a coordinate along the axis: its
 /// sign is turned, with a warning. Errors: ExitCode::layer for a depth within 0..1 of unknown
-/// meaning where there is no P.
+/// meaning where there is no P. With `options.known`, what it says is done.
 void undo_depth_encoding(GBuffer& g, const GBufferOptions& options, const std::string& file);
 
 }  // namespace ssdo

@@ -6,9 +6,11 @@
 #include <optional>
 
 #include "math/plane.h"
-#include "scene/gbuffer.h"
 
 namespace ssdo {
+
+/// What a depth layer measures. Distances are in scene units.
+enum class DepthKind { planar, ray, inverse, normalized };
 
 /// Checks a depth layer against P without knowing the camera: planar depth is an affine
 /// function of P whose gradient is the unit vector along the axis; the square of a distance from

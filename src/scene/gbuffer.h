@@ -3,22 +3,34 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "math/downsampling.h"
+#include "math/pixel_grid.h"
 #include "math/plane.h"
+#include "scene/depth_model.h"
 
 namespace ssdo {
 
-/// What a depth layer measures. Distances are in scene units.
-enum class DepthKind { planar, ray, inverse, normalized };
+/// How the layers of a frame are to be read, as all of its pixels say together.
+struct Encodings {
+  bool depth_is_negative = false;  ///< the z of a camera that looks along -z
+  bool depth_is_wrong = false;     ///< contradicts P, and is left out
+  std::optional<DepthModel> depth_of_position;  ///< where there are both
+  bool normals_tell = false;                    ///< a normal of 0 means that there is no surface
+  bool normals_are_colors = false;              ///< stored as n/2 + 1/2
+};
 
 /// The layers of one frame in the space and units of the file, with encodings undone. Every plane
 /// covers `window`, but those of the beauty, which cover that of the outputs; a role that the frame
 /// does not have is an empty plane.
 struct GBuffer {
-  Window window, display;
+  PixelGrid grid = {};     ///< the pixels of the file that the planes hold
+  Window window, display;  ///< of them
+  Window file_display;     ///< of all, where the grid is coarser
+  Encodings encodings;
   Downsampling downsampling = {};  ///< from these windows to those of the outputs
   float pixel_aspect = 1;
   Plane<glm::vec3> position, normal, albedo, radiance;

@@ -63,7 +63,7 @@ constexpr double kLeastShare = 0.95;
 constexpr std::size_t kFewestSmoothPixels = 16;  ///< below, nothing is known
 
 /// The spaces that N may be in.
-std::vector<NamedRotation> spaces_of_normals(const GBuffer& g, const FoundCamera& found) {
+std::vector<NamedRotation> spaces_of_normals(const GBuffer& g, const Placement& found) {
   const glm::mat3 of_positions(found.of_positions.rotation), world(found.camera.rotation);
   std::vector<NamedRotation> spaces;
   if (!g.position.empty()) spaces.push_back({of_positions, "the space of P"});
@@ -74,11 +74,12 @@ std::vector<NamedRotation> spaces_of_normals(const GBuffer& g, const FoundCamera
 }
 
 /// How the stored normals are to be used; nothing where they are not to be, and why in `report`.
-std::optional<NormalSpace> usable_normal_space(const GBuffer& g, const FoundCamera& found,
-                                               const Geometry& out, GeometryReport& report) {
+std::optional<NormalSpace> usable_normal_space(const GBuffer& g, const Geometry& out,
+                                               GeometryReport& report) {
   if (g.normal.empty()) return std::nullopt;
   NormalSpace space =
-      find_normal_space(g.normal, out.surfel, spaces_of_normals(g, found), out.camera.orthographic);
+      find_normal_space(g.normal, out.surfel, spaces_of_normals(g, report.placement),
+                        out.camera.orthographic);
   report.normal_agreement = space.share;
   const bool from_depth = g.position.empty();
   if (space.smooth_pixels < kFewestSmoothPixels && !from_depth) {
@@ -94,20 +95,16 @@ std::optional<NormalSpace> usable_normal_space(const GBuffer& g, const FoundCame
   return std::nullopt;
 }
 
-void place_normals(const GBuffer& g, const FoundCamera& found, Geometry& out,
+void place_normals(const GBuffer& g, const std::optional<glm::mat3>& to_camera, Geometry& out,
                    GeometryReport& report) {
   const bool orthographic = out.camera.orthographic;
-  const std::optional<NormalSpace> space = usable_normal_space(g, found, out, report);
-  out.normals_to_camera = space ? space->to_camera : glm::mat3(found.of_positions.rotation);
-  report.normal_space = space ? space->name : "rebuilt from P";
-
   Plane<unsigned char> fate(out.surfel.width, out.surfel.height);  // 1 rebuilt, 2 turned
   for_each_row(out.surfel.height, [&](int y) {
     for (int x = 0; x < out.surfel.width; ++x) {
       const std::size_t i = out.surfel.index(x, y);
       if (!out.is_surface(i)) continue;
       const glm::vec3 view = direction_to_viewer(out.surfel[i].position, orthographic);
-      glm::vec3 n = space ? space->to_camera * g.normal[i] : glm::vec3(0);
+      glm::vec3 n = to_camera ? *to_camera * g.normal[i] : glm::vec3(0);
       const float length = glm::length(n);
       if (length > 1e-4f && length < 1e4f) {
         n /= length;
@@ -131,6 +128,32 @@ void place_normals(const GBuffer& g, const FoundCamera& found, Geometry& out,
   }
 }
 
+void find_normals(const GBuffer& g, const Geometry& out, GeometryReport& report) {
+  const std::optional<NormalSpace> space = usable_normal_space(g, out, report);
+  if (space) report.placement.normals_to_camera = space->to_camera;
+  report.normal_space = space ? space->name : "rebuilt from P";
+}
+
+/// Where P is filtered, as edges of the whole frame tell, its averages go back to surfaces.
+void mend(const GBuffer& g, Geometry& out, GeometryReport& report, const Placement* known) {
+  Placement& placement = report.placement;
+  if (known) {
+    if (known->mends_silhouettes) mend_silhouettes(out, placement.residual, true);
+    return;
+  }
+  if (!report.residual || out.camera.panorama) return;
+  const double stride = g.grid.stride;
+  placement.residual = {stride * report.residual->median_px, stride * report.residual->p99_px,
+                        stride * report.residual->max_px};
+  const std::size_t averages = mend_silhouettes(out, *report.residual);
+  placement.mends_silhouettes = averages > 0;
+  if (averages == 0) return;
+  report.warnings.push_back(fmt::format(
+      "P is an average over an edge in {} pixels, which take the surface beside them; export P "
+      "and N without a filter",
+      averages));
+}
+
 float median_depth(const Geometry& geometry) {
   std::vector<float> depths;
   for (const Surfel& s : geometry.surfel.pixels) {
@@ -149,34 +172,41 @@ float Geometry::frame_height_at(float depth) const {
 }
 
 Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const std::string& file,
-                        GeometryReport& report) {
+                        GeometryReport& report, const Placement* known) {
   Geometry out;
   out.window = g.window;
   out.display = g.display;
   out.surfel = Plane<Surfel>(g.window.width(), g.window.height());
-  if (g.background_pixels + g.bad_pixels >= g.valid.size() &&
+  if (!known && g.background_pixels + g.bad_pixels >= g.valid.size() &&
       std::none_of(g.valid.pixels.begin(), g.valid.pixels.end(), [](auto v) { return v != 0; })) {
     report.camera_source = "none: the frame shows no surface";
     report.warnings.push_back("the frame shows no surface");
     return out;
   }
-  const FoundCamera found = find_camera(g, options, file, report);
-  out.camera = found.camera;
-  place_positions(g, found.of_positions, out);
-  if (!out.camera.panorama) drop_pixels_behind_camera(out, report);
-  place_normals(g, found, out, report);
-  if (report.residual && !out.camera.panorama) {
-    const std::size_t averages = mend_silhouettes(out, *report.residual);
-    if (averages > 0) {
-      report.warnings.push_back(fmt::format(
-          "P is an average over an edge in {} pixels, which take the surface beside them; export P "
-          "and N without a filter",
-          averages));
-    }
+  Placement& placement = report.placement;
+  if (known) {
+    placement = *known;
+  } else {
+    const FoundCamera found = find_camera(g, options, file, report);
+    placement.camera = found.camera, placement.of_positions = found.of_positions;
+    placement.by_file = found.by_file;
   }
-  out.median_depth = median_depth(out);
-  out.world_known =
-      found.by_file || (!g.position.empty() && !out.camera.is_camera_space(out.median_depth));
+  out.camera = scaled(placement.camera, 1.0 / g.grid.stride);
+  place_positions(g, scaled(placement.of_positions, 1.0 / g.grid.stride), out);
+  if (!out.camera.panorama) drop_pixels_behind_camera(out, report);
+  if (!known) find_normals(g, out, report);
+  out.normals_to_camera =
+      placement.normals_to_camera.value_or(glm::mat3(placement.of_positions.rotation));
+  place_normals(g, placement.normals_to_camera, out, report);
+  mend(g, out, report, known);
+  if (!known) {
+    placement.median_depth = median_depth(out);
+    placement.world_known =
+        placement.by_file ||
+        (!g.position.empty() && !out.camera.is_camera_space(placement.median_depth));
+  }
+  out.median_depth = placement.median_depth;
+  out.world_known = placement.world_known;
   if (out.world_known) out.world_to_camera = glm::mat3(out.camera.rotation);
   return out;
 }

@@ -38,6 +38,18 @@ struct Geometry {
   float frame_height_at(float depth) const;
 };
 
+/// How a frame lies in camera space, as all of its pixels say together.
+struct Placement {
+  /// The camera of the frame, and the transform from stored P to camera space; see FoundCamera.
+  Camera camera, of_positions;
+  bool by_file = false;
+  std::optional<glm::mat3> normals_to_camera;  ///< nothing: normals are rebuilt from P
+  bool mends_silhouettes = false;
+  Residual residual;       ///< of P, in pixels of the file
+  float median_depth = 0;
+  bool world_known = false;
+};
+
 /// How the geometry came about, for `info` and the log.
 struct GeometryReport {
   std::string camera_source;  ///< "fitted from P", "--camera FILE", "--fov"
@@ -46,13 +58,16 @@ struct GeometryReport {
   double normal_agreement = 0;  ///< share of the smooth pixels where N follows the gradient of P
   std::size_t normals_rebuilt = 0, normals_turned = 0;
   std::vector<std::string> warnings;
+  Placement placement;
 };
 
 /// Finds the camera and brings the frame into camera space, computing in double and rounding once.
 /// P comes from depth where there is none; N from P where it is missing or not usable; normals
-/// that are the back of what P shows are turned to the viewer.
+/// that are the back of what P shows are turned to the viewer. With `known`, the placement of the
+/// frame that the G-buffer is some rows of, nothing is found anew.
 /// Errors: ExitCode::layer where neither P nor the options determine the camera.
 Geometry build_geometry(const GBuffer& gbuffer, const CameraOptions& options,
-                        const std::string& file, GeometryReport& report);
+                        const std::string& file, GeometryReport& report,
+                        const Placement* known = nullptr);
 
 }  // namespace ssdo

@@ -45,8 +45,9 @@ Plane<float> lay_onto(const Window& to, const Window& from, const Plane<float>& 
 class LayerReader {
  public:
   LayerReader(const std::vector<const ExrReader*>& files, const LayerTable& table,
-              const std::vector<Role>& roles, const Window& window, const Plane<float>* deep)
-      : files_(files), window_(window) {
+              const std::vector<Role>& roles, const Window& window, const PixelGrid& grid,
+              const Plane<float>* deep)
+      : files_(files), window_(window), grid_(grid) {
     std::map<Part, std::vector<std::string>> channels;
     for (const Role role : roles) {
       if (!table[role]) continue;
@@ -60,7 +61,7 @@ class LayerReader {
         planes_[part][names[0]] = *deep;
         continue;
       }
-      auto planes = files[std::size_t(part.first)]->read(part.second, names);
+      auto planes = files[std::size_t(part.first)]->read(part.second, names, grid);
       for (std::size_t i = 0; i < names.size(); ++i) planes_[part][names[i]] = std::move(planes[i]);
     }
   }
@@ -102,28 +103,33 @@ class LayerReader {
   /// A channel over `window`: as it was read where that is its own, else in `laid`.
   const Plane<float>& plane(const Window& window, const Layer& layer, std::size_t component,
                             float fill, Plane<float>& laid) const {
-    const ExrPart& part = part_of(files_, layer);
+    const Window own = grid_.of(part_of(files_, layer).data_window);
     const Plane<float>& read = planes_.at({layer.file, layer.part}).at(layer.channels[component]);
-    if (part.data_window == window) return read;
-    return laid = lay_onto(window, part.data_window, read, fill);
+    return own == window ? read : laid = lay_onto(window, own, read, fill);
   }
 
   const std::vector<const ExrReader*>& files_;
   Window window_;
+  PixelGrid grid_;
   std::map<Part, std::map<std::string, Plane<float>>> planes_;
 };
 
 /// Normals stored as n/2 + 1/2 have no negative component, and are of unit length after decoding.
-void undo_normal_encoding(GBuffer& g) {
+bool normals_are_colors(const GBuffer& g) {
   double as_stored = 0, decoded = 0;
   for (std::size_t i = 0; i < g.normal.size(); ++i) {
     const glm::vec3 n = g.normal[i];
     if (!g.valid[i] || !is_finite(n)) continue;
-    if (std::min({n.x, n.y, n.z}) < -1e-3f) return;
+    if (std::min({n.x, n.y, n.z}) < -1e-3f) return false;
     as_stored += std::abs(glm::length(n) - 1);
     decoded += std::abs(glm::length(2.0f * n - 1.0f) - 1);
   }
-  if (!(decoded < as_stored)) return;
+  return decoded < as_stored;
+}
+
+void undo_normal_encoding(GBuffer& g, const std::optional<Encodings>& known) {
+  g.encodings.normals_are_colors = known ? known->normals_are_colors : normals_are_colors(g);
+  if (!g.encodings.normals_are_colors) return;
   for (glm::vec3& n : g.normal.pixels) n = 2.0f * n - 1.0f;
   g.warnings.push_back("normals are encoded as 0..1; decoded with 2n - 1");
 }
@@ -208,8 +214,10 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   const auto& lead = table[Role::position] ? table[Role::position] : table[Role::depth];
   const ExrPart& part = part_of(files, *lead);
   GBuffer g;
-  g.window = part.data_window;
-  g.display = part.display_window;
+  g.grid = options.grid;
+  g.window = g.grid.of(part.data_window);
+  g.file_display = part.display_window;
+  g.display = PixelGrid{.stride = g.grid.stride}.of(part.display_window);
   g.downsampling = make_downsampling(options.downsample, g.display, file);
   g.pixel_aspect = part.header.pixelAspectRatio();
   if (!(g.pixel_aspect > 0) || !std::isfinite(g.pixel_aspect)) g.pixel_aspect = 1;
@@ -220,7 +228,7 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
                              Role::ambient,  Role::specular};
   if (options.beauty) roles.push_back(Role::beauty);
   check_display_windows(files, table, roles, g.downsampling);
-  const LayerReader read(files, table, roles, g.window, deep);
+  const LayerReader read(files, table, roles, g.window, g.grid, deep);
   g.position = read.vector(table[Role::position], NAN);
   g.depth = read.scalar(table[Role::depth], NAN);
   g.normal = read.vector(table[Role::normal], NAN);
@@ -233,8 +241,8 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   for (glm::vec2& to : g.motion.pixels) to = {scale.x * to.x, -scale.y * to.y};
 
   undo_depth_encoding(g, options, file);
-  find_background(g, options.background_depth);
-  undo_normal_encoding(g);
+  find_background(g, options.background_depth, options.known);
+  undo_normal_encoding(g, options.known);
   note_data_windows(files, table, roles, g);
   for (Plane<glm::vec3>* values : {&g.normal, &g.albedo, &g.radiance}) clear_broken(g, *values);
   read_rendered(g, read, files, table, options.beauty);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/exr/exr_reader.h"
+#include "math/pixel_grid.h"
 #include "scene/gbuffer.h"
 #include "scene/layers/layers.h"
 
@@ -18,6 +19,8 @@ struct GBufferOptions {
   std::optional<float> background_depth;  ///< depth from which on a pixel is background
   bool beauty = false;                    ///< whether a composite uses the colours of the beauty
   int downsample = 1;                     ///< how many times as large as the outputs the frame is
+  PixelGrid grid = {};                    ///< the pixels that are read
+  std::optional<Encodings> known;         ///< of all of the frame, where this is a part of it
   std::optional<glm::vec2> motion_scale;  ///< of the motion layer, to what Blender writes: pixels
                                           ///< to the frame before, y up; 1 where not given
 };

@@ -169,7 +169,7 @@ std::size_t count_edges(const Silhouettes& silhouettes, const Geometry& geometry
 
 }  // namespace
 
-std::size_t mend_silhouettes(Geometry& geometry, const Residual& residual) {
+std::size_t mend_silhouettes(Geometry& geometry, const Residual& residual, bool is_filtered) {
   const Silhouettes silhouettes(geometry, residual);
   struct Mended {
     int x;
@@ -184,8 +184,10 @@ std::size_t mend_silhouettes(Geometry& geometry, const Residual& residual) {
   });
   std::size_t count = 0;
   for (const auto& row : rows) count += row.size();
-  if (count == 0 || double(count) < kFewestAverages * double(count_edges(silhouettes, geometry)))
-    return 0;
+  const auto few = [&] {
+    return double(count) < kFewestAverages * double(count_edges(silhouettes, geometry));
+  };
+  if (count == 0 || (!is_filtered && few())) return 0;
   for (int y = 0; y < geometry.surfel.height; ++y) {
     for (const Mended& m : rows[std::size_t(y)]) geometry.surfel(m.x, y) = m.surfel;
   }

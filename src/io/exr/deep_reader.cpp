@@ -38,8 +38,8 @@ class DeepPartReader {
   DeepPartReader(const ExrReader& file, int part)
       : file_(file), part_(file.parts()[std::size_t(part)]) {
     // The table of counts takes four bytes of each pixel.
-    check_decoded_size(file_.path(), 4.0 * double(part_.data_window.area()), 0,
-                       largest_ratio(part_));
+    const double table = 4.0 * double(part_.data_window.area());
+    check_decoded_size(file_.path(), table, table, largest_ratio(part_));
     counts_.resize(part_.data_window.area());
   }
 
@@ -116,10 +116,9 @@ DeepImage read_deep(const ExrReader& file, const DeepChannels& channels) {
     if (!channel.name.empty() && channel.part == part.index)
       targets.push_back({channel.name, member});
   }
-  const double count = double(image.first.back());
-  check_decoded_size(file.path(), 4.0 * double(targets.size()) * count,
-                     double(sizeof(DeepSample)) * count +
-                         double(sizeof(char*) * targets.size()) * double(part.data_window.area()),
+  const double count = double(image.first.back()), values = 4.0 * double(targets.size()) * count,
+               pointers = double(sizeof(char*) * targets.size()) * double(part.data_window.area());
+  check_decoded_size(file.path(), values, values + double(sizeof(DeepSample)) * count + pointers,
                      largest_ratio(part));
   image.samples.resize(image.first.back());
   lead.read_samples(targets, image.first, image.samples);

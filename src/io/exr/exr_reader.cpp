@@ -18,6 +18,7 @@
 #include "io/exr/zip_lines.h"
 #include "io/one_line.h"
 #include "io/size_guard.h"
+#include "parallel/tiles.h"
 
 namespace ssdo {
 namespace {
@@ -58,35 +59,42 @@ std::size_t stored_bytes(const ExrPart& part, const ExrChannel& channel) {
          (channel.type == Imf::HALF ? 2 : 4);
 }
 
-void check_size(const ExrReader& reader, const ExrPart& part, std::size_t channels) {
-  check_decoded_size(reader.path(), double(part.data_window.area()) * 4.0 * double(channels),
-                     decoder_bytes(part), largest_ratio(part));
+/// `grid` is what is read of the part.
+void check_size(const ExrReader& reader, const ExrPart& part, std::size_t channels,
+                const PixelGrid& grid = {}) {
+  const double value_bytes = 4.0 * double(channels);
+  check_decoded_size(reader.path(), double(part.data_window.area()) * value_bytes,
+                     double(grid.of(part.data_window).area()) * value_bytes + decoder_bytes(part),
+                     largest_ratio(part));
 }
 
-void read_pixels(Imf::MultiPartInputFile& file, const ExrPart& part,
+/// `rows` is the data window, or some rows of it.
+void read_pixels(Imf::MultiPartInputFile& file, const ExrPart& part, const Window& rows,
                  const Imf::FrameBuffer& frame_buffer) {
-  if (is_tiled(part)) {
+  if (is_tiled(part) && rows == part.data_window) {
     Imf::TiledInputPart tiles(file, part.index);
     tiles.setFrameBuffer(frame_buffer);
     tiles.readTiles(0, tiles.numXTiles() - 1, 0, tiles.numYTiles() - 1);
   } else {
     Imf::InputPart lines(file, part.index);
     lines.setFrameBuffer(frame_buffer);
-    lines.readPixels(part.data_window.y0, part.data_window.y1 - 1);
+    lines.readPixels(rows.y0, rows.y1 - 1);
   }
 }
 
-void read_or_fail(const ExrReader& reader, const ExrPart& part,
+void read_or_fail(const ExrReader& reader, const ExrPart& part, const Window& rows,
                   std::span<const ChannelRows> channels) {
+  if (rows.area() == 0) return;
   try {
-    if (read_zip_lines(reader.file(), part, channels)) return;
+    if (read_zip_lines(reader.file(), part, rows, channels)) return;
     Imf::FrameBuffer frame_buffer;
+    const Imath::Box2i box({rows.x0, rows.y0}, {rows.x1 - 1, rows.y1 - 1});
     for (const auto& [channel, pixels, as_float] : channels) {
       frame_buffer.insert(channel.name, Imf::Slice::Make(as_float ? Imf::FLOAT : channel.type,
-                                                         pixels, part.header.dataWindow(), 0, 0,
-                                                         channel.x_sampling, channel.y_sampling));
+                                                         pixels, box, 0, 0, channel.x_sampling,
+                                                         channel.y_sampling));
     }
-    read_pixels(reader.file(), part, frame_buffer);
+    read_pixels(reader.file(), part, rows, frame_buffer);
   } catch (const std::exception& error) {
     throw_damaged(reader, part, error);
   }
@@ -101,6 +109,42 @@ void fill_repeated(Names names, std::vector<Pixels>& read) {
     const std::size_t place = std::size_t(names.rend() - last) - 1;
     if (place != i) read[i] = read[place];
   }
+}
+
+/// Some rows of a part's data window, or all, as float.
+std::vector<Plane<float>> read_rows(const ExrReader& reader, const ExrPart& part, Names names,
+                                    const Window& window) {
+  std::vector<Plane<float>> planes;
+  std::vector<ChannelRows> rows;
+  for (const std::string& name : names) {
+    planes.emplace_back(window.width(), window.height());
+    rows.push_back({find_channel(reader, part, name),
+                    reinterpret_cast<std::byte*>(planes.back().pixels.data()), true});
+  }
+  read_or_fail(reader, part, window, rows);
+  fill_repeated(names, planes);
+  return planes;
+}
+
+/// The middle pixels of blocks, from strips of a part that are read one after another.
+std::vector<Plane<float>> read_blocks(const ExrReader& reader, const ExrPart& part, Names names,
+                                      const PixelGrid& grid) {
+  constexpr int kBlocksOfStrip = 64;
+  const Window &from = part.data_window, to = grid.of(from);
+  std::vector<Plane<float>> planes(names.size(), Plane<float>(to.width(), to.height()));
+  for (int block = to.y0; block < to.y1; block += kBlocksOfStrip) {
+    const int end = std::min(block + kBlocksOfStrip, to.y1);
+    const Window strip{from.x0, grid.middle(block), from.x1, grid.middle(end - 1) + 1};
+    const std::vector<Plane<float>> rows = read_rows(reader, part, names, strip);
+    for_each_row(end - block, [&](int row) {
+      for (std::size_t i = 0; i < planes.size(); ++i) {
+        for (int x = to.x0; x < to.x1; ++x)
+          planes[i](x - to.x0, block + row - to.y0) =
+              rows[i](grid.middle(x) - from.x0, row * grid.stride);
+      }
+    });
+  }
+  return planes;
 }
 
 }  // namespace
@@ -119,11 +163,9 @@ ExrReader::ExrReader(std::filesystem::path path) : path_(std::move(path)) {
 ExrReader::~ExrReader() = default;
 ExrReader::ExrReader(ExrReader&&) noexcept = default;
 
-std::vector<Plane<float>> ExrReader::read(int index, Names names) const {
+std::vector<Plane<float>> ExrReader::read(int index, Names names, const PixelGrid& grid) const {
   const ExrPart& part = flat_part(*this, index);
-  check_size(*this, part, names.size());
-  std::vector<Plane<float>> planes;
-  std::vector<ChannelRows> rows;
+  check_size(*this, part, names.size(), grid);
   for (const std::string& name : names) {
     const ExrChannel& channel = find_channel(*this, part, name);
     if (channel.x_sampling != 1 || channel.y_sampling != 1) {
@@ -131,12 +173,9 @@ std::vector<Plane<float>> ExrReader::read(int index, Names names) const {
                               "pixel: resample it first",
                               name, label(part), channel.x_sampling, channel.y_sampling));
     }
-    planes.emplace_back(part.data_window.width(), part.data_window.height());
-    rows.push_back({channel, reinterpret_cast<std::byte*>(planes.back().pixels.data()), true});
   }
-  read_or_fail(*this, part, rows);
-  fill_repeated(names, planes);
-  return planes;
+  return grid.stride == 1 ? read_rows(*this, part, names, grid.rows_of(part.data_window))
+                          : read_blocks(*this, part, names, grid);
 }
 
 std::vector<StoredChannel> ExrReader::read_stored(int index, Names names) const {
@@ -149,7 +188,7 @@ std::vector<StoredChannel> ExrReader::read_stored(int index, Names names) const 
     stored.push_back({channel, std::vector<std::byte>(stored_bytes(part, channel))});
     rows.push_back({channel, stored.back().pixels.data(), false});
   }
-  read_or_fail(*this, part, rows);
+  read_or_fail(*this, part, part.data_window, rows);
   fill_repeated(names, stored);
   return stored;
 }

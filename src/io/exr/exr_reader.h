@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "math/pixel_grid.h"
 #include "math/plane.h"
 
 namespace Imf = OPENEXR_IMF_NAMESPACE;
@@ -70,7 +71,9 @@ class ExrReader {
   /// The named channels of a part as float planes over the part's data window; half and uint
   /// values are converted. Tiled parts give their full-resolution level. A deep part, a channel
   /// that does not exist or one that is subsampled is an error.
-  std::vector<Plane<float>> read(int part, std::span<const std::string> channels) const;
+  /// Of `grid`, what it takes of the data window.
+  std::vector<Plane<float>> read(int part, std::span<const std::string> channels,
+                                 const PixelGrid& grid = {}) const;
 
   /// The named channels of a part, bit for bit as stored. Subsampled channels are allowed.
   std::vector<StoredChannel> read_stored(int part, std::span<const std::string> channels) const;

@@ -63,10 +63,11 @@ struct ChunkBytes {
 
 class ZipLines {
  public:
-  ZipLines(Imf::MultiPartInputFile& file, const ExrPart& part,
+  ZipLines(Imf::MultiPartInputFile& file, const ExrPart& part, const Window& rows,
            std::span<const ChannelRows> channels)
       : lines_(file, part.index),
         window_(part.data_window),
+        wanted_rows_(rows),
         chunk_rows_(rows_of_chunk(part.header.compression())) {
     for (const ExrChannel& channel : part.channels) {
       for (const ChannelRows& wanted : channels) {
@@ -78,9 +79,10 @@ class ZipLines {
 
   bool read() {
     std::atomic<bool> sound = true;
-    const auto chunks = std::size_t((window_.height() + chunk_rows_ - 1) / chunk_rows_);
-    for_each_task(chunks, [&](std::size_t k) {
-      if (sound && !read_chunk(window_.y0 + int(k) * chunk_rows_)) sound = false;
+    const int first = (wanted_rows_.y0 - window_.y0) / chunk_rows_,
+              end = (wanted_rows_.y1 - window_.y0 + chunk_rows_ - 1) / chunk_rows_;
+    for_each_task(std::size_t(end - first), [&](std::size_t k) {
+      if (sound && !read_chunk(window_.y0 + (first + int(k)) * chunk_rows_)) sound = false;
     });
     return sound;
   }
@@ -125,11 +127,12 @@ class ZipLines {
 
   void unpack(const ChunkBytes& chunk, int y, int rows) const {
     std::vector<half> halves(columns());
-    for (int row = 0; row < rows; ++row) {
+    const int first = std::max(y, wanted_rows_.y0), end = std::min(y + rows, wanted_rows_.y1);
+    for (int row = first; row < end; ++row) {
       for (const auto& [to, offset] : wanted_) {
-        const std::size_t begin = std::size_t(row) * line_bytes_ + offset,
+        const std::size_t begin = std::size_t(row - y) * line_bytes_ + offset,
                           stored = bytes_of(to.channel.type) * columns(),
-                          line = std::size_t(y + row - window_.y0);
+                          line = std::size_t(row - wanted_rows_.y0);
         if (to.channel.type == Imf::HALF && to.as_float) {
           chunk.copy(begin, stored, reinterpret_cast<std::byte*>(halves.data()));
           std::copy(halves.begin(), halves.end(),
@@ -142,7 +145,7 @@ class ZipLines {
   }
 
   const Imf::InputPart lines_;
-  const Window window_;
+  const Window window_, wanted_rows_;
   const int chunk_rows_;
   std::size_t line_bytes_ = 0;  ///< of all channels
   std::vector<Wanted> wanted_;
@@ -160,9 +163,9 @@ bool is_readable(const ExrPart& part, std::span<const ChannelRows> channels) {
 
 }  // namespace
 
-bool read_zip_lines(Imf::MultiPartInputFile& file, const ExrPart& part,
+bool read_zip_lines(Imf::MultiPartInputFile& file, const ExrPart& part, const Window& rows,
                     std::span<const ChannelRows> channels) {
-  return is_readable(part, channels) && ZipLines(file, part, channels).read();
+  return is_readable(part, channels) && ZipLines(file, part, rows, channels).read();
 }
 
 }  // namespace ssdo

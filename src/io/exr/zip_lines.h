@@ -8,20 +8,20 @@
 
 namespace ssdo {
 
-/// Where the values of a channel go, row by row over the data window of its part.
+/// Where the values of a channel go, row by row over some rows of its part's data window.
 struct ChannelRows {
   ExrChannel channel;
   std::byte* pixels;
   bool as_float;  ///< half becomes float; else as stored
 };
 
-/// Reads channels of a part whose scanlines are packed with ZIP or ZIPS: libdeflate inflates chunks
+/// Reads rows of channels of a part whose scanlines are packed with ZIP or ZIPS: libdeflate inflates chunks
 /// side by side, and only these channels are unpacked. The bits are those of OpenEXR's own reader,
 /// in less than half of its time.
 ///
-/// Returns false, with some pixels written or none, where that reader has to be asked: a part or a
+/// `rows` is the part's data window, or some rows of it. Returns false, with some pixels written or none, where that reader has to be asked: a part or a
 /// channel of another kind, or a damaged chunk, which it has a message for.
 bool read_zip_lines(Imf::MultiPartInputFile& file, const ExrPart& part,
-                    std::span<const ChannelRows> channels);
+                    const Window& rows, std::span<const ChannelRows> channels);
 
 }  // namespace ssdo

@@ -109,7 +109,8 @@ Image read(const fs::path& path) {
   }
   const int colors = spec.nchannels < 3 ? 1 : 3;
   const int channels = std::max(colors, spec.alpha_channel + 1);
-  check_decoded_size(path, double(spec.width) * spec.height * (sizeof(glm::vec3) + 4.0 * channels));
+  const double bytes = double(spec.width) * spec.height * (sizeof(glm::vec3) + 4.0 * channels);
+  check_decoded_size(path, bytes, bytes);
   std::vector<float> values(std::size_t(spec.width) * spec.height * channels);
   // libjpeg fills up what a file lacks with grey, and OpenImageIO reports that but goes on.
   if (!file->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data()) ||

@@ -133,6 +133,11 @@ bool Camera::is_camera_space(double distance) const {
   return off_axis < 1e-3 && away < 1e-3 * distance;
 }
 
+Camera scaled(Camera camera, double factor) {
+  for (double* in_pixels : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *in_pixels *= factor;
+  return camera;
+}
+
 Camera camera_from_fov(double hfov_degrees, const Window& display, double pixel_aspect) {
   Camera camera;
   camera.fx = 0.5 * display.width() / std::tan(0.5 * glm::radians(hfov_degrees));

@@ -73,6 +73,9 @@ struct Camera {
   bool is_camera_space(double distance) const;
 };
 
+/// The camera of the same picture with pixels that are `factor` times as small along each axis.
+Camera scaled(Camera camera, double factor);
+
 /// How far projected positions land from the centres of their own pixels.
 struct Residual {
   double median_px = 0, p99_px = 0, max_px = 0;

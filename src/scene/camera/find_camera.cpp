@@ -18,17 +18,18 @@ namespace {
 /// The projection that the options give, without a pose unless it stands in a file.
 std::optional<Camera> camera_from_options(const GBuffer& g, const CameraOptions& options,
                                           GeometryReport& report) {
+  const Window& display = g.grid.stride == 1 ? g.display : g.file_display;
   if (!options.file.empty()) {
     report.camera_source = "--camera " + options.file;
-    return read_camera(options.file, g.display, g.pixel_aspect);
+    return read_camera(options.file, display, g.pixel_aspect);
   }
   if (options.fov) {
     report.camera_source = fmt::format("--fov {:g}", *options.fov);
-    return camera_from_fov(*options.fov, g.display, g.pixel_aspect);
+    return camera_from_fov(*options.fov, display, g.pixel_aspect);
   }
   if (options.ortho) {
     report.camera_source = fmt::format("--ortho {:g}", *options.ortho);
-    return camera_from_ortho_width(*options.ortho, g.display, g.pixel_aspect);
+    return camera_from_ortho_width(*options.ortho, display, g.pixel_aspect);
   }
   return std::nullopt;
 }
@@ -107,21 +108,36 @@ std::optional<FoundCamera> pose_by_positions(const GBuffer& g, const Camera& giv
   return posed ? std::optional(FoundCamera{*posed, *posed, false}) : std::nullopt;
 }
 
+/// What was found on a grid in the pixels of the file, with the projection of `given` if any.
+FoundCamera on_file(FoundCamera found, int stride, const Camera* given) {
+  for (Camera* camera : {&found.camera, &found.of_positions}) {
+    const Camera of_file = given ? *given : scaled(*camera, stride);
+    camera->fx = of_file.fx, camera->fy = of_file.fy;
+    camera->cx = of_file.cx, camera->cy = of_file.cy;
+  }
+  return found;
+}
+
 }  // namespace
 
 FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,
                         GeometryReport& report) {
-  const auto given = camera_from_options(g, options, report);
+  const auto given_of_file = camera_from_options(g, options, report);
+  const auto given = given_of_file
+                         ? std::optional(scaled(*given_of_file, 1.0 / g.grid.stride))
+                         : std::nullopt;
   const bool by_file = given && !options.file.empty();
   if (g.position.empty()) {
     if (!given) throw_undetermined(g, file);
-    return {*given, *given, by_file};
+    return {*given_of_file, *given_of_file, by_file};
   }
+  bool is_fitted = false;
   std::optional<FoundCamera> found;
   if (given) found = by_file ? pose_by_file(g, *given, report) : pose_by_positions(g, *given);
   if (!found) {
     if (const auto fitted = fit_camera(g, given.has_value())) {
       found = {*fitted, *fitted, false};
+      is_fitted = true;
       if (given) {
         report.warnings.push_back(
             fmt::format("{} contradicts P, whose own camera has {:.2f} degrees; P wins",
@@ -145,7 +161,7 @@ FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const st
                     "is this P of this camera?",
                     report.camera_source, report.residual->median_px));
   }
-  return *found;
+  return on_file(*found, g.grid.stride, is_fitted || !given ? nullptr : &*given_of_file);
 }
 
 }  // namespace ssdo

@@ -43,7 +43,7 @@ void note_data_window(const Files& files, Role role, const Layer& layer, GBuffer
   const ExrPart& part = part_of(files, layer);
   const Window &all = g.window, own = has_size_of_outputs(part, g.downsampling)
                                           ? g.downsampling.large(part.data_window)
-                                          : part.data_window;
+                                          : g.grid.of(part.data_window);
   std::size_t surfaces = 0, left_out = 0;
   for (std::size_t i = 0; i < g.valid.size(); ++i) {
     const int x = all.x0 + int(i % std::size_t(g.valid.width)),
@@ -113,7 +113,7 @@ void note_data_windows(const Files& files, const LayerTable& table, const std::v
     if (!table[role]) continue;
     const ExrPart& part = part_of(files, *table[role]);
     const bool unused = role == Role::depth && g.depth.empty();  // it contradicts P
-    if (!unused && !(part.data_window == g.window)) note_data_window(files, role, *table[role], g);
+    if (!unused && !(g.grid.of(part.data_window) == g.window)) note_data_window(files, role, *table[role], g);
     const float own = part.header.pixelAspectRatio();
     if (std::abs(own - aspect) <= kSameAspect * aspect || !noted.insert(&part).second) continue;
     g.warnings.push_back(fmt::format(

@@ -110,7 +110,8 @@ void refuse_luminance_chroma(const ExrReader& exr, const PictureLayer& layer) {
 
 Plane<glm::vec3> lay_out(const LayeredPicture& picture, const PictureLayer& layer) {
   const Window data = picture.window(layer), display = picture.display(layer);
-  check_decoded_size(picture.file(), double(display.area()) * sizeof(glm::vec3));
+  const double bytes = double(display.area()) * sizeof(glm::vec3);
+  check_decoded_size(picture.file(), bytes, bytes);
   const std::vector<Plane<float>> planes = picture.read(layer);
   const std::array<const Plane<float>*, 3> rgb = {&planes.front(), &planes[planes.size() / 2],
                                                   &planes.back()};
