@@ -84,6 +84,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   InputOptions input = options.input;
   input.gbuffer.downsample = options.output.downsample;
   input.gbuffer.beauty = choose_compose(options.output, files.aovs) != Compose::relight;
+  input.gbuffer.most_pixels = most_pixels_in(options.memory);
   View view = read_view(std::move(opened), files.aovs, input, options.camera, unused);
   frame.files = std::move(view.files);
   frame.layers = std::move(view.layers);
@@ -138,6 +139,11 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   frame.report.warnings.insert(frame.report.warnings.end(), known.warnings.begin(),
                                known.warnings.end());
   frame.plan = make_plan(model, options.output, scene, frame.gbuffer, frame.input);
+  if (frame.gbuffer.grid.is_coarse()) {
+    const Window& all = frame.part().data_window;
+    frame.bands = plan_bands(frame.input, all, scene, frame.plan, options.output, options.memory);
+    frame.plan.reasons.push_back(describe(*frame.bands, all));
+  }
   const std::vector<std::string> idle =
       idle_for_composite(frame.plan, options.output, frame.gbuffer);
   frame.report.warnings.insert(frame.report.warnings.end(), idle.begin(), idle.end());

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <deque>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "band_plan.h"
 #include "color/color.h"
 #include "io/exr/exr_reader.h"
 #include "lighting.h"
@@ -27,6 +31,7 @@ struct FrameOptions {
   ModelOptions model;
   OutputOptions output;
   ColorOptions color;
+  std::size_t memory = std::numeric_limits<std::size_t>::max();  ///< bytes that a frame may take
 };
 
 /// Milliseconds of wall time per stage; `known` is what --also and --neighbours take, with the
@@ -50,6 +55,9 @@ struct Frame {
   std::string advice;                ///< what to render where much is guessed: see explain_guessed
   std::vector<std::string> history;  ///< what a temporal plan takes from the frame before, and why
   StageTimes times;                  ///< of the stages up to here
+  /// Set for a frame that is larger than memory: the scene and what is left of the G-buffer then
+  /// are an overview of it, one pixel of kOverviewStride x kOverviewStride.
+  std::optional<BandPlan> bands;
 
   /// The layer that the products are made from: position, or depth where there is none.
   const Layer& lead() const;

@@ -4,9 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "color/compose.h"
+#include "bands.h"
 #include "color/display_image.h"
-#include "io/exr/exr_writer.h"
 #include "io/image_file.h"
 #include "io/json_text.h"
 #include "stopwatch.h"
@@ -36,32 +35,6 @@ std::vector<ChannelOfPart> geometry_channels(const Frame& frame) {
   return channels;
 }
 
-/// Returns how many values were clamped.
-std::size_t write_exr_target(const SafeFile& file, const Target& target, const RelightJob& job,
-                             const Plan& plan, const Products& products) {
-  const Frame& frame = job.frame;
-  const Results results = results_of(job, plan, products);
-  std::vector<NamedChannels> products_to_write;
-  for (const std::string& product : target.product ? std::vector{*target.product} : plan.write)
-    products_to_write.push_back(product_channels(product, results));
-  ExrOutput output;
-  output.input = &frame.files[std::size_t(frame.lead().file)];
-  output.part = frame.lead().part;
-  output.keep_channels = job.options.output.keep_channels;
-  output.crop = job.options.output.crop;
-  output.downsampling = frame.gbuffer.downsampling;
-  output.geometry = geometry_channels(frame);
-  output.compression = job.options.output.compression;
-  output.compression_level = job.options.output.compression_level;
-  output.attributes = {{"ssdo/version", SSDO_VERSION},
-                       {"ssdo/plan", json_text(to_json(plan, frame.history))}};
-  for (const NamedChannels& product : products_to_write) {
-    for (const NamedChannel& channel : product.channels)
-      output.planes.push_back({channel.name, job.options.output.pixel_type, channel.pixels});
-  }
-  return write_exr(file, output);
-}
-
 void append(std::vector<std::string>& lines, const std::vector<std::string>& more) {
   lines.insert(lines.end(), more.begin(), more.end());
 }
@@ -78,6 +51,30 @@ std::optional<DisplayTransform> make_display(const RelightJob& job) {
   return std::nullopt;
 }
 
+ExrContents exr_contents(const RelightJob& job, const Plan& plan, const Target& target,
+                         const Results& results) {
+  const Frame& frame = job.frame;
+  ExrContents contents;
+  for (const std::string& product : target.product ? std::vector{*target.product} : plan.write)
+    contents.products.push_back(product_channels(product, results));
+  ExrOutput& output = contents.output;
+  output.input = &frame.files[std::size_t(frame.lead().file)];
+  output.part = frame.lead().part;
+  output.keep_channels = job.options.output.keep_channels;
+  output.crop = job.options.output.crop;
+  output.downsampling = frame.gbuffer.downsampling;
+  output.geometry = geometry_channels(frame);
+  output.compression = job.options.output.compression;
+  output.compression_level = job.options.output.compression_level;
+  output.attributes = {{"ssdo/version", SSDO_VERSION},
+                       {"ssdo/plan", json_text(to_json(plan, frame.history))}};
+  for (const NamedChannels& product : contents.products) {
+    for (const NamedChannel& channel : product.channels)
+      output.planes.push_back({channel.name, job.options.output.pixel_type, channel.pixels});
+  }
+  return contents;
+}
+
 Written write_targets(const RelightJob& job, const Plan& plan, const Products& products,
                       const DisplayTransform* display,
                       const std::function<void(double)>& on_progress) {
@@ -87,7 +84,9 @@ Written write_targets(const RelightJob& job, const Plan& plan, const Products& p
     const SafeFile& file =
         *out.files.emplace_back(std::make_unique<SafeFile>(target.path, job.policy));
     if (has_exr_ending(target.path)) {
-      out.clamped_values += write_exr_target(file, target, job, plan, products);
+      const ExrContents contents =
+          exr_contents(job, plan, target, results_of(job, plan, products));
+      out.clamped_values += write_exr(file, contents.output);
     } else {
       const DisplayImage image =
           make_display_image(product_of_picture(target, plan), results_of(job, plan, products),
@@ -111,17 +110,21 @@ Relit relight(const RelightJob& job, const std::function<void(double)>& on_progr
     if (!relit.display->warning().empty()) relit.warnings.push_back(relit.display->warning());
   }
 
+  relit.plan = job.frame.plan;
+  relit.times = job.frame.times;
+  if (job.frame.bands) {
+    relit.written = relight_in_bands(job, on_progress, relit);
+    return relit;
+  }
   Estimate found = estimate(
       job.frame.scene, job.frame.plan, [&](double done) { on_progress(kEstimateShare * done); },
       past);
-  relit.plan = job.frame.plan;
   relit.plan.request = std::move(found.request);
   relit.products = std::move(found.products);
   relit.history = std::move(found.history);
   relit.error = found.error;
   append(relit.notes, found.notes);
   append(relit.warnings, found.warnings);
-  relit.times = job.frame.times;
   relit.times.estimate = found.estimate_ms;
   relit.times.filter = found.filter_ms;
   return relit;
@@ -129,6 +132,12 @@ Relit relight(const RelightJob& job, const std::function<void(double)>& on_progr
 
 void write_outputs(const RelightJob& job, Relit& relit,
                    const std::function<void(double)>& on_progress) {
+  if (job.frame.bands) {
+    Stopwatch watch;
+    for (const auto& file : relit.written) file->commit();
+    relit.times.write += watch.lap();
+    return;
+  }
   const Written written = write_targets(
       job, relit.plan, relit.products, relit.display ? &*relit.display : nullptr,
       [&](double done) { on_progress(kEstimateShare + (1 - kEstimateShare) * done); });

@@ -8,12 +8,20 @@
 #include <vector>
 
 #include "color/color.h"
+#include "color/compose.h"
 #include "estimate.h"
 #include "frame.h"
+#include "io/exr/exr_writer.h"
 #include "io/safe_file.h"
 #include "outputs.h"
 
 namespace ssdo {
+
+/// What goes into an EXR, and what holds the pixels.
+struct ExrContents {
+  std::vector<NamedChannels> products;
+  ExrOutput output;
+};
 
 /// A frame that has been prepared, and the files to make from it.
 struct RelightJob {
@@ -29,6 +37,7 @@ struct Relit {
   Products products;  ///< after the filter
   std::optional<DisplayTransform> display;  ///< where a target is a picture that shows colours
   StageTimes times;                         ///< of all stages up to here
+  std::vector<std::unique_ptr<SafeFile>> written;  ///< in bands, in place of products
   std::size_t clamped_values = 0;           ///< beyond the range of half
   std::optional<ErrorFound> error;          ///< where the plan asks for it
   History history;                 ///< of a temporal plan, for the next frame; without a geometry
@@ -50,6 +59,10 @@ void write_outputs(const RelightJob& job, Relit& relit,
 /// target is a picture, loads what writes it.
 /// Errors: those of DisplayTransform and load_image_codec().
 std::optional<DisplayTransform> make_display(const RelightJob& job);
+
+/// What an EXR of a job holds of `results`, which have to stay.
+ExrContents exr_contents(const RelightJob& job, const Plan& plan, const Target& target,
+                         const Results& results);
 
 /// Files that have been written but do not have their names yet: the caller commits them.
 struct Written {

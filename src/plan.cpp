@@ -229,8 +229,9 @@ void choose_march(Plan& plan, const ModelOptions& model) {
 /// With --crop, pixels that no output holds gather nothing, where that changes no other pixel: not
 /// where their error counts, or where a later frame may show what they show.
 void choose_receivers(Plan& plan, const OutputOptions& output, const Geometry& geometry,
-                      const Downsampling& downsampling, const std::string& file) {
-  if (!output.crop) return;
+                      const GBuffer& gbuffer, const std::string& file) {
+  // Of an overview, windows are not those of the outputs.
+  if (!output.crop || gbuffer.grid.is_coarse()) return;
   const Window &data = geometry.window, shown = intersection(data, geometry.display);
   if (shown.area() == 0) {
     throw Error(ExitCode::usage,
@@ -244,7 +245,7 @@ void choose_receivers(Plan& plan, const OutputOptions& output, const Geometry& g
                   "sends light, but is not written",
                   shown.width(), shown.height(), data.width(), data.height()));
   if (!plan.method->takes.receivers || plan.temporal || plan.request.products.error) return;
-  const int reach = plan.filter->reach + downsampling.reach();
+  const int reach = plan.filter->reach + gbuffer.downsampling.reach();
   plan.request.receivers =
       intersection(data, {shown.x0 - reach, shown.y0 - reach, shown.x1 + reach, shown.y1 + reach});
 }
@@ -288,7 +289,7 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
   explain_thickness(plan, model);
   explain_measured(plan, scene);
   choose_march(plan, model);
-  choose_receivers(plan, output, scene.geometry, gbuffer.downsampling, file);
+  choose_receivers(plan, output, scene.geometry, gbuffer, file);
   explain_downsampling(plan, gbuffer);
   return plan;
 }

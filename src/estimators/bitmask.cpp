@@ -73,6 +73,9 @@ constexpr int kReflectionRays = 2;
 constexpr int bounce_spacing(int slices) { return slices < 4 ? 2 : 1; }
 constexpr int bounce_slices(int slices) { return slices < 4 ? 5 * slices / 2 : slices; }
 
+/// Rows around a pixel whose light it may send on as its own, and takes from those that gather.
+constexpr int kSendersAround = 4;
+
 /// The method on one frame.
 class Bitmask {
  public:
@@ -83,16 +86,19 @@ class Bitmask {
         march_scene_(make_march_scene(scene.geometry, scene.solids, request.receivers)),
         layout_(march_scene_.layout),
         raster_(march_scene_),
-        pattern_(layout_, scene.geometry.display, request.slices, request.steps, request.seed),
+        far_(far_of(request)),
+        pattern_(layout_, scene.geometry.display, request.slices, request.steps, request.seed, 1,
+                 far_ ? &far_->raster : nullptr),
         bounce_pattern_(layout_, scene.geometry.display, bounce_slices(request.slices),
-                        bounce_steps(request.steps), request.seed, bounce_spacing(request.slices)),
+                        bounce_steps(request.steps), request.seed, bounce_spacing(request.slices),
+                        far_ ? &far_->raster : nullptr),
         further_(scene.further.empty()
                      ? nullptr
                      : std::make_unique<FurtherRays>(scene.further.vertices, scene.further.added)),
-        march_{march_scene_,  pattern_,      request.radius, request.extend_offscreen,
-               may_be_thin(), further_.get()},
+        march_{march_scene_,  pattern_,       request.radius, request.extend_offscreen,
+               may_be_thin(), further_.get(), far_},
         bounce_march_{march_scene_,  bounce_pattern_, request.radius, request.extend_offscreen,
-                      may_be_thin(), further_.get()},
+                      may_be_thin(), further_.get(),  far_},
         ao_(layout_) {}
 
   Products run() {
@@ -113,7 +119,41 @@ class Bitmask {
     return std::move(out_);
   }
 
+  /// What bands of the frame need of this scene, which is an overview of it.
+  FarScene overview(float from_px) {
+    const MarchScene& s = march_scene_;
+    FarRaster raster(layout_.width(), layout_.height(), s.first_x, s.first_y, from_px);
+    kept_light_in_ = &raster;
+    if (request_.products.bounce && request_.bounces > 0) {
+      gather_visibility();
+      gather_bounce();
+    }
+    MarchPlanes planes;
+    for (const MarchLayer& layer : s.layers) {
+      planes.layers.push_back({raster_.in_whole_rows(layer.depth, raster),
+                               raster_.in_whole_rows(layer.thickness, raster)});
+    }
+    planes.normal = raster_.in_whole_rows(s.normal, raster);
+    std::vector<DepthBounds> bounds = depth_bounds(s, scene_.solids);
+    const float ao = mean_ao(s, scene_.geometry.display, request_.radius);
+    return {std::move(march_scene_), raster, std::move(planes), std::move(bounds), scene_.solids,
+            ao, std::move(kept_light_)};
+  }
+
  private:
+  static const FarScene* far_of(const Request& request) {
+    const auto& around = request.surroundings;
+    return around && around->marches_on ? around->far.get() : nullptr;
+  }
+
+  /// A part of the raster with what may send light to it in so many bounces.
+  Window with_senders(const Window& part, int bounces) const {
+    const Window raster = march_scene_.raster();
+    if (!request_.surroundings) return raster;
+    const int rows = bounces * request_.surroundings->reach_rows;
+    return intersection(raster, {raster.x0, part.y0 - rows, raster.x1, part.y1 + rows});
+  }
+
   bool wants_light() const {
     return request_.products.direct || request_.products.bounce || request_.products.error;
   }
@@ -129,7 +169,7 @@ class Bitmask {
   /// The pixels whose own light is found: all of the raster where they send it to others.
   Window lit_part() const {
     const bool sends = request_.products.bounce && request_.bounces > 0 && senders_need_light();
-    return sends ? march_scene_.raster() : march_scene_.receivers;
+    return sends ? with_senders(march_scene_.receivers, request_.bounces) : march_scene_.receivers;
   }
 
   /// Calls `work(part)` for bands of a part of the raster.
@@ -199,7 +239,7 @@ class Bitmask {
                     [](const FurtherView& view) { return view.picture->closed; });
     const float past =
         request_.extend_offscreen && !all_is_shown
-            ? sun_past_beyond(mean_ao(march_scene_, scene_.geometry.display, request_.radius))
+            ? sun_past_beyond(mean_ao_of_frame())
             : 1;
     std::vector<SunPlanes> found, again;
     march_suns(past, found, again);
@@ -211,6 +251,11 @@ class Bitmask {
       out_.shares.draws_again.push_back(draw_of(sun));
       out_.shares.suns_again.push_back(raster_.picture(std::move(sun.share)));
     }
+  }
+
+  float mean_ao_of_frame() const {
+    if (request_.surroundings) return request_.surroundings->far->mean_ao;
+    return mean_ao(march_scene_, scene_.geometry.display, request_.radius);
   }
 
   /// What rays to a sun have found, as SunJob has it.
@@ -294,7 +339,6 @@ class Bitmask {
                        bounce = request_.bounces > 0 ? raster_.make_color() : raster_.black();
     InterleavedPlane weights(layout_);
     if (request_.products.error && request_.bounces > 0) bounce_error_ = InterleavedPlane(layout_);
-    const Window raster = march_scene_.raster();
     std::vector<FurtherLight> sent_further;
     if (further_ && request_.bounces > 0)
       sent_further = light_further_surfaces(scene_, request_.bounces - 1, request_.radius);
@@ -303,7 +347,9 @@ class Bitmask {
         const SenderJob senders{
             march_scene_, found_shares(), scene_.senders.albedo, pass > 1 ? &bounce : nullptr,
             &sent,        two_sided};
-        for_each_band_of(raster, [&](const Window& part) { find_senders(senders, part); }, {});
+        for_each_band_of(
+            with_senders(march_scene_.receivers, request_.bounces - pass + 1),
+            [&](const Window& part) { find_senders(senders, part); }, {});
       }
       BorderValues sent_border[3];
       for (int c = 0; c < 3; ++c) {
@@ -311,6 +357,10 @@ class Bitmask {
           const float both = sent[std::size_t(c)][layout_.index(x, y)];
           return two_sided ? front_side(both) : both;
         });
+      }
+      if (kept_light_in_) {
+        kept_light_.push_back({raster_.in_whole_rows(sent, *kept_light_in_),
+                               {sent_border[0], sent_border[1], sent_border[2]}});
       }
       const bool wants_error = request_.products.error && pass == request_.bounces;
       const BounceJob job{bounce_march_,
@@ -320,11 +370,14 @@ class Bitmask {
                           scene_.solids,
                           sent_border,
                           further_ ? &sent_further[std::size_t(pass - 1)] : nullptr,
+                          far_ ? &far_->light[std::size_t(pass - 1)] : nullptr,
                           &weights,
                           &bounce,
                           wants_error ? &bounce_error_ : nullptr};
       // Light gathered in the last pass is not sent on: only receivers need it.
-      const Window to = pass < request_.bounces && lit ? raster : march_scene_.receivers;
+      const Window to = lit && pass < request_.bounces
+                            ? with_senders(march_scene_.receivers, request_.bounces - pass)
+                            : march_scene_.receivers;
       for_each_band_of(
           grown(to, bounce_pattern_.spacing() - 1),
           [&](const Window& part) { march_bounce(job, part); }, progress_);
@@ -340,17 +393,55 @@ class Bitmask {
   MarchScene march_scene_;
   const Interleaving& layout_;
   const Raster raster_;
+  const FarScene* far_;  ///< where marches of a band go on; null: nowhere
   SlicePattern pattern_, bounce_pattern_;
   std::unique_ptr<FurtherRays> further_;  ///< null: there are no further views
   March march_, bounce_march_;
   InterleavedPlane ao_, error_, bounce_error_;
   InterleavedVectors sky_share_;              ///< empty where that is ao
   std::vector<InterleavedPlane> sun_shares_;  ///< by sun
+  const FarRaster* kept_light_in_ = nullptr;  ///< where bands of the frame need what is sent
+  std::vector<FarLight> kept_light_;          ///< that, by pass
   Products out_;
 };
 
 Products estimate(const Scene& scene, const Request& request, const Progress& progress) {
   return Bitmask(scene, request, progress).run();
+}
+
+std::shared_ptr<const FarScene> overview(const Scene& scene, const Request& request, float from_px,
+                                         const Progress& progress) {
+  return std::make_shared<FarScene>(Bitmask(scene, request, progress).overview(from_px));
+}
+
+/// The farthest away that something within the radius may be in the picture: reach_px() of
+/// lanes-inl.h for the nearest surface, and how far the march to it may look.
+int reach_rows(const Scene& scene, const Request& request) {
+  constexpr float kMargin = 1.01f;  // planes of the march put surfaces onto the middles of pixels
+  const Geometry& g = scene.geometry;
+  const float f = float(std::max(g.camera.fx, g.camera.fy)), r = request.radius;
+  const int most = g.part_of.value_or(g.window).height();
+  float reach = g.camera.orthographic ? r * f : 0;
+  for (const Surfel& s : g.surfel.pixels) {
+    if (!s.is_surface() || g.camera.orthographic) continue;
+    const float depth = -s.position.z, distance = glm::length(glm::vec3(s.position));
+    if (depth <= kMargin * r) return most;
+    reach = std::max(reach, f * r * distance / (depth * (depth - r)));
+  }
+  if (!(kMargin * reach < float(most))) return most;
+  const SlicePattern pattern(Interleaving(g.window.width(), 1, 0), g.display, request.slices,
+                             request.steps, request.seed);
+  float rows = kMargin * reach + 1;
+  for (int member = 0; member < Interleaving::kPeriod * Interleaving::kPeriod; ++member) {
+    for (const Slice& slice : pattern.member(member % Interleaving::kPeriod,
+                                             member / Interleaving::kPeriod)) {
+      for (const SliceSide& side : slice.sides) {
+        for (const SliceStep& step : side.steps)
+          if (step.inner_px <= kMargin * reach) rows = std::max(rows, std::abs(step.dy));
+      }
+    }
+  }
+  return std::min(int(std::ceil(rows)) + kSendersAround, most);
 }
 
 }  // namespace
@@ -376,6 +467,7 @@ Method bitmask_method() {
       .parameters = {kRoughness},
       .samples_per_pixel = [](const Request& r) { return 2 * r.slices * r.steps; },
       .estimate = estimate,
+      .bands = {overview, reach_rows},
       .ladder = {.rungs = {slices_and_steps(1, 6), slices_and_steps(2, 8), slices_and_steps(2, 16),
                            slices_and_steps(2, 24), slices_and_steps(4, 32),
                            slices_and_steps(6, 48), slices_and_steps(12, 64)},

@@ -3,6 +3,8 @@
 
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +36,17 @@ using ParameterValues = std::map<std::string, double, std::less<>>;
 /// A filter of a map of ao. `surfel` has the size of the map: what each of its pixels shows.
 using MapFilter = std::function<Plane<float>(Plane<float> map, Plane<Surfel> surfel)>;
 
+/// What a method keeps of an overview of a frame whose rows come one band after the other: each
+/// method that works on bands has its own.
+struct FarScene;
+
+/// Beside a band, what is known of the frame that it is some rows of.
+struct Surroundings {
+  std::shared_ptr<const FarScene> far;  ///< of the whole frame
+  bool marches_on = false;  ///< in `far`, beyond `reach_rows`; else nothing there is in reach
+  int reach_rows = 0;       ///< above and below a pixel: those that block what it gathers
+};
+
 /// What is asked of a method.
 struct Request {
   ProductSet products;
@@ -52,6 +65,9 @@ struct Request {
   /// Pixels that gather, within the geometry's window: products have its size, and all of the
   /// geometry blocks and sends. Area 0: the whole window.
   Window receivers = {};
+  /// Set where the geometry is a band: its rows reach at least (1 + bounces) x reach_rows beyond
+  /// the receivers, or to the frame's border.
+  std::optional<Surroundings> surroundings = {};
 };
 
 /// The options of the model that a method takes.
@@ -70,6 +86,17 @@ struct SourceFilter {
   bool (*at_half_resolution)(const ParameterValues&) = nullptr;
 };
 
+/// What a method needs to work on the bands of a frame.
+struct BandSupport {
+  /// Of an overview of the frame; marches of bands go on in it `from_px` pixels of the frame away.
+  /// Null: the method works on whole frames only.
+  std::shared_ptr<const FarScene> (*overview)(const Scene&, const Request&, float from_px,
+                                              const Progress&) = nullptr;
+  /// How many rows above and below the pixels of a scene hold what blocks their light within the
+  /// radius, if it is to be found exactly; those of the frame's height at most.
+  int (*reach_rows)(const Scene&, const Request&) = nullptr;
+};
+
 /// A row in the table of methods.
 struct Method {
   std::string_view name, summary;
@@ -80,6 +107,7 @@ struct Method {
   std::vector<Parameter> parameters = {};
   int (*samples_per_pixel)(const Request&) = nullptr;
   Products (*estimate)(const Scene&, const Request&, const Progress&) = nullptr;
+  BandSupport bands = {};
   Ladder ladder;
   double sample_cost = 1;     ///< time of a sample, about, in those of other methods
   bool is_reference = false;  ///< the one that bench holds all others to

@@ -12,9 +12,11 @@ Window PixelGrid::rows_of(const Window& window) const {
 
 Window PixelGrid::of(const Window& window) const {
   const Window rows = rows_of(window);
-  const int half = stride / 2;
-  return {ceil_divide(rows.x0 - half, stride), ceil_divide(rows.y0 - half, stride),
-          ceil_divide(rows.x1 - half, stride), ceil_divide(rows.y1 - half, stride)};
+  const auto first = [&](int pixel, int origin) {
+    return ceil_divide(pixel - origin - stride / 2, stride);
+  };
+  return {first(rows.x0, origin_x), first(rows.y0, origin_y), first(rows.x1, origin_x),
+          first(rows.y1, origin_y)};
 }
 
 }  // namespace ssdo

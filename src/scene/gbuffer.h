@@ -30,6 +30,7 @@ struct GBuffer {
   PixelGrid grid = {};     ///< the pixels of the file that the planes hold
   Window window, display;  ///< of them
   Window file_display;     ///< of all, where the grid is coarser
+  std::optional<Window> part_of;  ///< the window of the frame, where this is some rows of it
   Encodings encodings;
   Downsampling downsampling = {};  ///< from these windows to those of the outputs
   float pixel_aspect = 1;

@@ -176,6 +176,7 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
   Geometry out;
   out.window = g.window;
   out.display = g.display;
+  out.part_of = g.part_of;
   out.surfel = Plane<Surfel>(g.window.width(), g.window.height());
   if (!known && g.background_pixels + g.bad_pixels >= g.valid.size() &&
       std::none_of(g.valid.pixels.begin(), g.valid.pixels.end(), [](auto v) { return v != 0; })) {
@@ -191,8 +192,8 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
     placement.camera = found.camera, placement.of_positions = found.of_positions;
     placement.by_file = found.by_file;
   }
-  out.camera = scaled(placement.camera, 1.0 / g.grid.stride);
-  place_positions(g, scaled(placement.of_positions, 1.0 / g.grid.stride), out);
+  out.camera = to_grid(placement.camera, g.grid);
+  place_positions(g, to_grid(placement.of_positions, g.grid), out);
   if (!out.camera.panorama) drop_pixels_behind_camera(out, report);
   if (!known) find_normals(g, out, report);
   out.normals_to_camera =

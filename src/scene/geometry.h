@@ -25,6 +25,7 @@ struct CameraOptions {
 /// space and one kind of pixel.
 struct Geometry {
   Window window, display;
+  std::optional<Window> part_of;  ///< the window of the frame, where this is some rows of it
   Camera camera;
   Plane<Surfel> surfel;
   float median_depth = 0;             ///< along the axis, over the surfaces

@@ -206,6 +206,14 @@ void clear_negative(Plane<glm::vec3>& colors) {
   for (glm::vec3& color : colors.pixels) color = glm::max(color, glm::vec3(0));
 }
 
+/// What is read of the part that the products are made from.
+PixelGrid grid_of(const GBufferOptions& options, const ExrPart& part) {
+  if (part.data_window.area() <= options.most_pixels) return options.grid;
+  return {.stride = kOverviewStride,
+          .origin_x = part.display_window.x0,
+          .origin_y = part.display_window.y0};
+}
+
 }  // namespace
 
 GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTable& table,
@@ -214,10 +222,11 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   const auto& lead = table[Role::position] ? table[Role::position] : table[Role::depth];
   const ExrPart& part = part_of(files, *lead);
   GBuffer g;
-  g.grid = options.grid;
+  g.grid = grid_of(options, part);
   g.window = g.grid.of(part.data_window);
+  if (!g.grid.is_coarse() && g.window != part.data_window) g.part_of = part.data_window;
   g.file_display = part.display_window;
-  g.display = PixelGrid{.stride = g.grid.stride}.of(part.display_window);
+  g.display = g.grid.is_coarse() ? g.grid.of(part.display_window) : part.display_window;
   g.downsampling = make_downsampling(options.downsample, g.display, file);
   g.pixel_aspect = part.header.pixelAspectRatio();
   if (!(g.pixel_aspect > 0) || !std::isfinite(g.pixel_aspect)) g.pixel_aspect = 1;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,10 @@
 
 namespace ssdo {
 
+/// As wide as the pattern of marches repeats, so that what lies at one distance from the pixels of
+/// a vector is side by side in an overview.
+inline constexpr int kOverviewStride = 8;
+
 /// How to read the layers; all of it has defaults that fit most files.
 struct GBufferOptions {
   std::optional<DepthKind> depth_kind;    ///< planar where not given
@@ -20,6 +25,8 @@ struct GBufferOptions {
   bool beauty = false;                    ///< whether a composite uses the colours of the beauty
   int downsample = 1;                     ///< how many times as large as the outputs the frame is
   PixelGrid grid = {};                    ///< the pixels that are read
+  /// Of a frame with more, an overview is read: one pixel of kOverviewStride x kOverviewStride.
+  std::size_t most_pixels = std::numeric_limits<std::size_t>::max();
   std::optional<Encodings> known;         ///< of all of the frame, where this is a part of it
   std::optional<glm::vec2> motion_scale;  ///< of the motion layer, to what Blender writes: pixels
                                           ///< to the frame before, y up; 1 where not given

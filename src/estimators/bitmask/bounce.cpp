@@ -49,35 +49,42 @@ HWY_INLINE V3 back_of(const V3& sides) {
 /// Whether the surface at `q`, `step` away from the receiver, turns to it the side that the camera
 /// sees.
 template <bool kOrthographic>
-HWY_INLINE M faces(const MarchScene& scene, std::ptrdiff_t q, const SliceStep& step,
-                   const MarchReceiver& p) {
-  const V depth = load(scene.depth(), q);
+HWY_INLINE M faces(const MarchScene& scene, const MarchPlanes& planes, std::ptrdiff_t q,
+                   const SliceStep& step, const MarchReceiver& p) {
+  const V depth = load(planes.depth(), q);
   V x = hn::MulAdd(set(step.dx), set(1 / scene.fx), p.slope_x),
     y = hn::MulAdd(set(step.dy), set(-1 / scene.fy), p.slope_y);
   if constexpr (!kOrthographic) x = x * depth, y = y * depth;
   const V3 from_q{p.position.x - x, p.position.y - y, p.position.z + depth};
-  return dot(load(scene.normal, q), from_q) > set(0);
+  return dot(load(planes.normal, q), from_q) > set(0);
 }
 
 /// What the solids of layer `layer` send that the pixels at `step` from the receivers hold, in the
 /// lanes of `bits`: what the pixels that show them do, if any.
-HWY_INLINE V3 sent_behind(const BounceJob& job, int layer, const Place& place,
+HWY_INLINE V3 sent_behind(const BounceJob& job, bool far, int layer, const Place& place,
                           const SliceStep& step, VU bits) {
   const Interleaving& layout = job.march.scene.layout;
-  const Plane<int>& senders = job.solids.behind[std::size_t(layer - 1)].sender;
-  const int* row = &senders(0, place.y + step.row);
-  const int first =
-      place.column * Interleaving::kPeriod + place.column_phase - layout.phase() + int(step.dx);
+  const FarScene* overview = job.march.far;
+  const Solids& solids = far ? overview->solids : job.solids;
+  const InterleavedVectors& light = far ? job.far->sent : *job.sent;
+  const Plane<int>& senders = solids.behind[std::size_t(layer - 1)].sender;
+  const Sampled at = far ? in_overview(job.march, place) : in_raster(job.march, place);
+  const int lane_step = far ? 1 : Interleaving::kPeriod;
+  const int first = far ? at.column + step.column_shift
+                        : place.column * Interleaving::kPeriod + place.column_phase -
+                              layout.phase() + int(step.dx);
+  const int* row = &senders(0, at.row + step.row);
   alignas(64) std::uint32_t met[kLanes];
   hn::Store(bits, DU(), met);
   alignas(64) float radiance[3][kLanes] = {};
   for (int lane = 0; lane < kLanes; ++lane) {
     if (met[lane] == 0) continue;
-    const int sender = row[first + lane * Interleaving::kPeriod];
+    const int sender = row[first + lane * lane_step];
     if (sender < 0) continue;
-    const std::ptrdiff_t from = layout.index(sender % layout.width(), sender / layout.width());
+    const int x = sender % senders.width, y = sender / senders.width;
+    const std::ptrdiff_t from = far ? overview->raster.index(x, y) : layout.index(x, y);
     for (std::size_t c = 0; c < 3; ++c) {
-      const float sent = (*job.sent)[c][from];
+      const float sent = light[c][from];
       radiance[c][lane] = job.two_sided ? front_side(sent) : sent;
     }
   }
@@ -145,20 +152,22 @@ void gather_light(const BounceJob& job, const Window& part) {
             };
             march_side<kOrthographic>(
                 march, p, side, slice, forward,
-                [&](int layer, std::ptrdiff_t q, const SliceStep& step, VU bits) HWY_ATTR {
+                [&](bool far, int layer, std::ptrdiff_t q, const SliceStep& step, VU bits)
+                    HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {
-                    if (layer > 0) return sent_behind(job, layer, p.place, step, bits);
-                    const V3 sent = load(*job.sent, q);
+                    if (layer > 0) return sent_behind(job, far, layer, p.place, step, bits);
+                    const V3 sent = load(far ? job.far->sent : *job.sent, q);
                     if (!job.two_sided) return sent;
-                    const M seen = faces<kOrthographic>(march.scene, q, step, p);
+                    const MarchPlanes& planes = far ? march.far->planes : march.scene;
+                    const M seen = faces<kOrthographic>(march.scene, planes, q, step, p);
                     return if_then_else(seen, front_of(sent), back_of(sent));
                   });
                 },
                 FromFurther<decltype(receive)>{job.sent_further, receive},
-                [&](const Border& border, VU bits) HWY_ATTR {
+                [&](bool far, const Border& border, VU bits) HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {
-                    return V3{border(job.sent_border[0]), border(job.sent_border[1]),
-                              border(job.sent_border[2])};
+                    const BorderValues* sent = far ? job.far->border : job.sent_border;
+                    return V3{border(sent[0]), border(sent[1]), border(sent[2])};
                   });
                 });
           }

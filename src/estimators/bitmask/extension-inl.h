@@ -20,6 +20,7 @@ namespace ssdo::HWY_NAMESPACE {
 struct Border {
   V dx, dy;  ///< pixels from the receiver to the last pixel inside
   V distance_px;
+  M through_side;        ///< through the first or the last column
   bool in_one_row;       ///< all lanes leave through the first row, or all through the last
   std::ptrdiff_t first;  ///< in one row: index of lane 0 in BorderValues; the others follow
   VI index;              ///< otherwise: index of each lane in BorderValues
@@ -46,7 +47,8 @@ HWY_INLINE Border border_along(const MarchScene& scene, const MarchReceiver& p, 
   const V aside = hn::Round(to_end * dx);
   Border border;
   border.distance_px = hn::Min(to_side, to_end);
-  border.in_one_row = shared && !any(hn::And(through_side, p.valid));
+  border.through_side = hn::And(through_side, p.valid);
+  border.in_one_row = shared && !any(border.through_side);
   if (border.in_one_row) {
     const int column_of_lane_0 = p.place.column_phase + int(hn::GetLane(aside));
     border.dx = aside;
@@ -57,9 +59,10 @@ HWY_INLINE Border border_along(const MarchScene& scene, const MarchReceiver& p, 
   }
   const V beside = set(aside_px);
   const V edge_x = hn::IfThenElse(through_side, hn::IfThenElse(rightwards, right, zero),
-                                  hn::Clamp(p.x + aside + beside, zero, right)),
+                                  hn::Clamp(hn::Round(p.x + aside) + beside, zero, right)),
           edge_y = hn::IfThenElse(through_side,
-                                  hn::Clamp(p.y + hn::Round(to_side * dy) + beside, zero, bottom),
+                                  hn::Clamp(hn::Round(p.y + hn::Round(to_side * dy)) + beside,
+                                            zero, bottom),
                                   hn::IfThenElse(downwards, bottom, zero));
   border.dx = edge_x - p.x, border.dy = edge_y - p.y;
   const VI shifted = hn::ConvertTo(di, edge_x) + set_int(phase);
@@ -116,8 +119,8 @@ HWY_INLINE Extension extend(const March& march, const MarchReceiver& p, const Si
   SlicePoint line{dot(m, p.to_viewer), set(0) - dot(m, side.t)};
   const V scale = reciprocal_sqrt(dot(line, line));
   line = {line.s * scale, line.v * scale};
-  const V frame = set(kExtension * std::hypot(float(scene.layout.width()) / scene.fx,
-                                              float(scene.layout.height()) / scene.fy));
+  const V frame = set(kExtension * std::hypot(float(scene.frame_width) / scene.fx,
+                                              float(scene.frame_height) / scene.fy));
   V length = kOrthographic ? frame : frame * depth;
   const V thickness = border(scene.border_thickness);
   length = hn::Min(length, thickness * set(widths));

@@ -318,6 +318,29 @@ HWY_INLINE SideFrame side_frame(const MarchScene& scene, const MarchReceiver& p,
   return side;
 }
 
+/// The same march over the raster of an overview.
+inline March march_in_overview(const March& march) {
+  return {march.far->scene, march.pattern, march.radius, march.extend};
+}
+
+/// The receiver and the frame of a slice as they are in that raster.
+HWY_INLINE MarchReceiver in_far_pixels(const March& march, MarchReceiver p) {
+  const MarchScene &scene = march.scene, &far = march.far->scene;
+  constexpr float kSide = Interleaving::kPeriod;
+  const auto place = [&](V x, int first, int far_first) HWY_ATTR {
+    return (x + set(float(first) - kSide / 2)) * set(1 / kSide) - set(float(far_first));
+  };
+  p.x = place(p.x, scene.first_x, far.first_x), p.y = place(p.y, scene.first_y, far.first_y);
+  p.rise_x = p.rise_x * set(kSide), p.rise_y = p.rise_y * set(kSide);
+  p.reach_px /= kSide;
+  return p;
+}
+HWY_INLINE SideFrame in_far_pixels(SideFrame side) {
+  const V pixels = set(float(Interleaving::kPeriod));
+  side.across = {side.across.x * pixels, side.across.y * pixels};
+  return side;
+}
+
 /// Calls `work(place)` for each vector of pixels of a part of the raster that shows a surface;
 /// pixels beside the part may be among its lanes.
 template <class Work>

@@ -20,6 +20,23 @@
 
 namespace ssdo {
 
+/// What an overview sends in one pass of bounces.
+struct FarLight {
+  InterleavedVectors sent;  ///< in the order of FarRaster
+  BorderValues border[3];
+};
+
+/// All of a frame as an overview shows it, for rasters that are a part of the frame.
+struct FarScene {
+  MarchScene scene;                  ///< of the overview, which is a raster like any other
+  FarRaster raster;                  ///< the order in which slices read it
+  MarchPlanes planes;                ///< those of `scene` in that order
+  std::vector<DepthBounds> bounds;   ///< by layer
+  const Solids& solids;              ///< of the overview
+  float mean_ao;                     ///< of the frame: see bitmask/beyond.h
+  std::vector<FarLight> light = {};  ///< by pass
+};
+
 /// What all marches share.
 struct March {
   const MarchScene& scene;
@@ -29,6 +46,8 @@ struct March {
   bool may_be_thin = false;  ///< solids may be thinner than neighbours on a surface are apart;
                              ///< guessed ones are as deep as they appear wide
   const FurtherRays* further = nullptr;  ///< what only further views show; null: nothing
+  const FarScene* far = nullptr;  ///< where the raster is a part of a frame without its reach: what
+                                  ///< marches meet beyond far->raster.from_px
 };
 
 /// The visibility of each pixel, and how much of the light reaches it.
@@ -88,6 +107,7 @@ struct BounceJob {
   const Solids& solids;              ///< of the scene: whose light layers 1, 2, ... send
   const BorderValues* sent_border;   ///< three: of surfaces that continue beyond the frame
   const FurtherLight* sent_further;  ///< of what only further views show
+  const FarLight* far;               ///< of what March::far shows
 
   InterleavedPlane* weights;  ///< of the pixels that march, their sum
   /// Of these pixels the sum of weighted radiance, until finish_bounce().

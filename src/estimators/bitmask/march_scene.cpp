@@ -90,7 +90,9 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
   const Interleaving layout(g.surfel.width, g.surfel.height,
                             (g.window.x0 - g.display.x0) & (kPeriod - 1));
   const auto plane = [&] { return InterleavedPlane(layout); };
-  MarchScene scene{layout,
+  const Window frame = g.part_of.value_or(g.window);
+  MarchScene scene{{{}, {plane(), plane(), plane()}},
+                   layout,
                    {receivers.x0 - g.window.x0, receivers.y0 - g.window.y0,
                     receivers.x1 - g.window.x0, receivers.y1 - g.window.y0},
                    g.camera.orthographic,
@@ -100,8 +102,10 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                    float(g.camera.cy - g.display.y0 - 0.5),
                    g.window.x0 - g.display.x0,
                    g.window.y0 - g.display.y0,
-                   {},
-                   {plane(), plane(), plane()},
+                   frame.width(),
+                   frame.height(),
+                   g.window.y0 == frame.y0,
+                   g.window.y1 == frame.y1,
                    g.surfel,
                    BorderLayout(layout),
                    {},

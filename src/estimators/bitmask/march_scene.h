@@ -65,19 +65,27 @@ struct MarchLayer {
   InterleavedPlane thickness;  ///< from the front to the back
 };
 
+/// What a march meets, pixel by pixel. Normals belong to layer 0; the fronts of the layers behind it
+/// face the viewer. Planes are not-a-number where there is nothing.
+struct MarchPlanes {
+  std::vector<MarchLayer> layers;  ///< near to far; layer 0 is what pixels show
+  InterleavedVectors normal;       ///< unit, of layer 0, camera space: that of the surface
+
+  const InterleavedPlane& depth() const { return layers.front().depth; }  ///< of what pixels show
+};
+
 /// A raster of pixels as a march reads it: all of them occlude and send light, those of `receivers`
 /// gather it. A position is given by its depth: the point where the camera's ray through the middle
-/// of a pixel meets the tangent plane of the surface in that pixel. Normals belong to layer 0; the
-/// fronts of the layers behind it face the viewer. Planes are not-a-number where there is nothing.
-struct MarchScene {
+/// of a pixel meets the tangent plane of the surface in that pixel.
+struct MarchScene : MarchPlanes {
   Interleaving layout;
   Window receivers;  ///< pixels of the raster, whose first is (0, 0)
   bool orthographic;
   float fx, fy;                    ///< pixels per unit of slope, or per scene unit
   float axis_x, axis_y;            ///< pixel of the display window that the camera's axis meets
   int first_x, first_y;            ///< pixel (0, 0) in the display window
-  std::vector<MarchLayer> layers;  ///< near to far; layer 0 is what pixels show
-  InterleavedVectors normal;       ///< unit, of layer 0, camera space: that of the surface
+  int frame_width, frame_height;   ///< of the frame that the raster is all of, or some rows of
+  bool begins_frame, ends_frame;   ///< whether its first row is the frame's, and its last one
   /// What only receivers need: the normal that shading sees, by which light is weighed, and the
   /// rounding.
   const Plane<Surfel>& surfel;
@@ -86,7 +94,6 @@ struct MarchScene {
   BorderValues border_thickness;  ///< in scene units
   BorderValues border_beyond;     ///< how far it may go on beyond the frame; empty: without limit
 
-  const InterleavedPlane& depth() const { return layers.front().depth; }  ///< of what pixels show
   bool shows_surface(std::ptrdiff_t i) const { return holds_solid(depth()[i]); }
   Window raster() const { return {0, 0, layout.width(), layout.height()}; }
 };

@@ -46,11 +46,12 @@ HWY_INLINE SlicePoint end_at(const MarchReceiver& p, const SideFrame& side, V sh
 /// mean errors of ao and direct light by less than 0.001.
 constexpr float kMostDeepening = 2;
 
-/// The piece that the pixel at `i` represents. `rise` and `across` are those of its middle.
+/// The piece that a pixel with the normal `m` represents. `rise` and `across` are those of its
+/// middle.
 template <bool kOrthographic>
-HWY_INLINE Piece piece_at(const MarchScene& scene, const MarchReceiver& p, const SideFrame& side,
-                          const SliceStep& step, std::ptrdiff_t i, V depth, V rise, V across) {
-  const V3 m = load(scene.normal, i);
+HWY_INLINE Piece piece_at(const MarchScene& scene, const V3& m, const MarchReceiver& p,
+                          const SideFrame& side, const SliceStep& step, V depth, V rise,
+                          V across) {
   const V ex = set(step.dx / scene.fx), ey = set(-step.dy / scene.fy);
   // M . r, with r the ray through the pixel, and its change from the receiver to the pixel.
   const V one = set(1);
@@ -138,8 +139,9 @@ struct Front {
 /// themselves only if they are thicker than the fronts are apart. `is_above`: the later one is
 /// above the receiver's tangent plane.
 template <bool kOrthographic>
-HWY_INLINE VU sectors_between(const March& march, const MarchReceiver& p, const SideFrame& side,
-                              const Front& before, const Front& here, M is_above) {
+HWY_INLINE VU sectors_between(const March& march, const MarchPlanes& planes,
+                              const MarchReceiver& p, const SideFrame& side, const Front& before,
+                              const Front& here, M is_above) {
   const MarchScene& scene = march.scene;
   const auto point = [&](const Front& f) HWY_ATTR {
     const V dx = set(f.step->dx), dy = set(f.step->dy), across = dot(V2{dx, dy}, side.across),
@@ -155,8 +157,8 @@ HWY_INLINE VU sectors_between(const March& march, const MarchReceiver& p, const 
     return V3{x * f.depth, y * f.depth, z};
   };
   const V3 way = position(before) - position(here);
-  const V gap = hn::Max(hn::Abs(dot(load(scene.normal, here.pixel), way)),
-                        hn::Abs(dot(load(scene.normal, before.pixel), way)));
+  const V gap = hn::Max(hn::Abs(dot(load(planes.normal, here.pixel), way)),
+                        hn::Abs(dot(load(planes.normal, before.pixel), way)));
   V most = set(kSurfaceGap / std::min(scene.fx, scene.fy));
   if constexpr (!kOrthographic) most = most * hn::Min(before.depth, here.depth);
   const SlicePoint end = point(here);

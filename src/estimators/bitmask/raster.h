@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <limits>
 
 #include "estimators/bitmask/march_scene.h"
+#include "estimators/bitmask/slice_pattern.h"
 #include "math/light_range.h"
 #include "math/plane.h"
 #include "parallel/tiles.h"
@@ -68,6 +70,22 @@ class Raster {
       }
     });
     return out;
+  }
+
+  /// The values of an overview in the order of `far`; not-a-number beside it.
+  InterleavedPlane in_whole_rows(const InterleavedPlane& values, const FarRaster& far) const {
+    InterleavedPlane out(far.layout);
+    for_each_row(far.layout.height(), [&](int y) {
+      out.fill_row(far.layout, y, std::numeric_limits<float>::quiet_NaN());
+    });
+    for_each_row(far.height, [&](int y) {
+      for (int x = 0; x < far.width; ++x) out[far.index(x, y)] = values[layout_.index(x, y)];
+    });
+    return out;
+  }
+  InterleavedVectors in_whole_rows(const InterleavedVectors& values, const FarRaster& far) const {
+    return {in_whole_rows(values[0], far), in_whole_rows(values[1], far),
+            in_whole_rows(values[2], far)};
   }
 
   /// Of planes that are not needed any more.

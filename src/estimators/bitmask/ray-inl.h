@@ -13,6 +13,8 @@
 #include "estimators/bitmask/further-inl.h"
 #include "estimators/bitmask/walk-inl.h"
 
+#include <optional>
+
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
@@ -36,13 +38,14 @@ template <bool kOrthographic>
 HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const SideFrame& side,
                          const RayInSlice& ray, M open, float turn, const PassBeyond& pass) {
   const V zero = set(0);
-  const Interleaving& layout = march.scene.layout;
-  const float apart_px =
-      2 * kWitnessReach * std::hypot(float(layout.width()), float(layout.height())) / kWitnesses;
+  const MarchScene& scene = march.scene;
+  const float apart_px = 2 * kWitnessReach *
+                         std::hypot(float(scene.frame_width), float(scene.frame_height)) /
+                         kWitnesses;
   V passed = zero;
   for (int k = 0; k < kWitnesses; ++k) {
     const float aside_px = std::round((float(k) + turn - 0.5f * kWitnesses) * apart_px);
-    const Border border = border_along(march.scene, p, ray.step_x, ray.step_y, false, aside_px);
+    const Border border = border_along(scene, p, ray.step_x, ray.step_y, false, aside_px);
     const Extension e = extend<kOrthographic>(march, p, side, border, kSunWidths);
     // The ray meets the piece where its ends lie on different sides of it, if that is ahead of the
     // receiver.
@@ -60,6 +63,13 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const SideF
                           open, hn::IfThenElse(crosses, set(pass.through / kWitnesses), passes));
   }
   return passed;
+}
+
+HWY_INLINE RayInSlice in_far_pixels(RayInSlice ray) {
+  const V pixels = set(float(Interleaving::kPeriod));
+  ray.end_px = ray.end_px / pixels;
+  ray.nearing = ray.nearing * pixels, ray.per_px = ray.per_px * pixels;
+  return ray;
 }
 
 /// Which open lanes see past what further views show.
@@ -101,6 +111,52 @@ HWY_INLINE Ray make_ray(const MarchScene& scene, const MarchReceiver& p, const V
   return ray;
 }
 
+/// The way of rays over the frame: over the raster, and on over the overview where there is one.
+template <bool kOrthographic>
+class WalkOverFrame {
+ public:
+  /// As Walk.
+  WalkOverFrame(const March& march, const std::vector<DepthBounds>& bounds, int most)
+      : march_(march), near_(march, bounds, most, 0, march.far ? march.far->raster.from_px : 1e9f) {
+    if (!march.far) return;
+    far_march_.emplace(march_in_overview(march));
+    far_.emplace(*far_march_, march.far->bounds, most,
+                 march.far->raster.from_px / float(Interleaving::kPeriod));
+  }
+
+  HWY_INLINE void clear() {
+    near_.clear();
+    if (far_) far_->clear();
+  }
+
+  HWY_INLINE void put(VI places, const MarchReceiver& p, const Ray& ray) {
+    near_.put(places, p, ray.side, ray.in_slice, ray.open);
+    if (far_) {
+      far_->put(places, in_far_pixels(march_, p), in_far_pixels(ray.side),
+                in_far_pixels(ray.in_slice), ray.open);
+    }
+  }
+
+  HWY_INLINE void run() {
+    near_.run();
+    if (far_) far_->run();
+  }
+
+  /// As Walk.
+  HWY_INLINE V blocked_px(VI places) const {
+    const V near = near_.blocked_px(places);
+    if (!far_) return near;
+    const V far = far_->blocked_px(places) * set(float(Interleaving::kPeriod));
+    return hn::IfThenElse(near >= set(0), near, far);
+  }
+
+ private:
+  const March& march_;
+  Walk<kOrthographic> near_;
+  std::optional<March> far_march_;
+  std::optional<Walk<kOrthographic>> far_;
+};
+
 /// What becomes of rays.
 struct Arrival {
   V share;       ///< of the ray, 0..1, that sees past all that is known
@@ -119,9 +175,15 @@ HWY_INLINE Arrival arrival(const March& march, const MarchReceiver& p, const Ray
                      way_along<kOrthographic>(ray.in_slice, p, blocked_px), set(kFarAway));
   M open = hn::AndNot(meets, ray.open);
   if (march.further && any(open)) open = open_past_further(march, p, ray.to, open);
-  a.share = march.extend && any(open)
-                ? open_beyond<kOrthographic>(march, p, ray.side, ray.in_slice, open, turn, pass)
-                : hn::IfThenElseZero(open, set(1));
+  if (!march.extend || !any(open)) {
+    a.share = hn::IfThenElseZero(open, set(1));
+  } else if (march.far) {
+    a.share = open_beyond<kOrthographic>(march_in_overview(march), in_far_pixels(march, p),
+                                         in_far_pixels(ray.side), in_far_pixels(ray.in_slice), open,
+                                         turn, pass);
+  } else {
+    a.share = open_beyond<kOrthographic>(march, p, ray.side, ray.in_slice, open, turn, pass);
+  }
   return a;
 }
 

@@ -41,7 +41,7 @@ template <bool kOrthographic>
 void reflection(const ReflectionJob& job, const Window& part) {
   constexpr int kTogether = 8;  // rays of each pixel on their way at once
   const MarchScene& scene = job.march.scene;
-  Walk<kOrthographic> walk(job.march, job.bounds, kTogether * kLanes);
+  WalkOverFrame<kOrthographic> walk(job.march, job.bounds, kTogether * kLanes);
   const auto places = [](int k) HWY_ATTR { return hn::Iota(DI(), k * kLanes); };
   Ray rays[kTogether];
   V shares[kTogether];
@@ -63,7 +63,7 @@ void reflection(const ReflectionJob& job, const Window& part) {
                                     sobol_point(std::uint32_t(sample), hash_of(job.seed, 0, 0)));
         shares[k] = m.share;
         rays[k] = make_ray(scene, p, m.to, hn::And(p.valid, m.share > set(0)));
-        walk.put(places(k), p, rays[k].side, rays[k].in_slice, rays[k].open);
+        walk.put(places(k), p, rays[k]);
       }
       walk.run();
       for (int k = 0; k < count; ++k) {

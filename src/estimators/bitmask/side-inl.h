@@ -11,6 +11,8 @@
 
 #include <hwy/cache_control.h>
 
+#include <span>
+
 #include "estimators/bitmask/extension-inl.h"
 #include "estimators/bitmask/further-inl.h"
 #include "estimators/bitmask/piece-inl.h"
@@ -33,42 +35,62 @@ HWY_INLINE float error_of_difference(const March& march, const Place& place, int
          std::sqrt(float(first) * float(count - first)) / float(count);
 }
 
-/// Marches one side over the raster, near to far, and returns the sectors that stay open. Calls
-/// `on_met(layer, index, step, sectors)` for every solid that is met, with the sectors in which it
-/// is the first.
-template <bool kOrthographic, class Met>
-HWY_INLINE VU march_raster(const March& march, const MarchReceiver& p, const SideFrame& side,
-                           const std::vector<SliceStep>& steps, const Met& on_met) {
+/// Where the samples of a vector of receivers are: the planes, and the place there of what lies a
+/// step of (0, 0) away.
+struct Sampled {
+  const MarchPlanes& planes;
+  int row, rows, column, columns;
+  std::ptrdiff_t index;
+};
+
+HWY_INLINE Sampled in_raster(const March& march, const Place& place) {
+  const Interleaving& layout = march.scene.layout;
+  return {march.scene, place.y, layout.height(), place.column, layout.columns(), place.index};
+}
+
+HWY_INLINE Sampled in_overview(const March& march, const Place& place) {
   const MarchScene& scene = march.scene;
-  const MarchLayer& seen = scene.layers.front();
-  const int layers = int(scene.layers.size());
-  const int height = scene.layout.height(), columns = scene.layout.columns();
-  VU open = side.open;
+  const FarRaster& far = march.far->raster;
+  const int row = ((place.y + scene.first_y) >> Interleaving::kShift) - far.first_y,
+            column = (scene.first_x >> Interleaving::kShift) + place.column - far.first_x;
+  return {march.far->planes, row, far.height, column, far.width, far.index(column, row)};
+}
+
+/// Marches one side over what is sampled, near to far, and returns which of the `open` sectors stay
+/// open. Calls `on_met(layer, index, step, sectors)` for every solid that is met, with the sectors
+/// in which it is the first.
+template <bool kOrthographic, class Met>
+HWY_INLINE VU march_steps(const March& march, const MarchReceiver& p, const SideFrame& side,
+                          const Sampled& from, std::span<const SliceStep> steps, VU open,
+                          const Met& on_met) {
+  const MarchPlanes& planes = from.planes;
+  const MarchLayer& seen = planes.layers.front();
+  const int layers = int(planes.layers.size());
   Front before{nullptr, 0, set(0)};
   for (const SliceStep& step : steps) {
-    const int row = p.place.y + step.row, first = p.place.column + step.column_shift;
-    if (step.inner_px > p.reach_px || row < 0 || row >= height || first >= columns ||
+    const int row = from.row + step.row, first = from.column + step.column_shift;
+    if (step.inner_px > p.reach_px || row < 0 || row >= from.rows || first >= from.columns ||
         first + kLanes <= 0)
       break;
-    const std::ptrdiff_t i = p.place.index + step.offset;
+    const std::ptrdiff_t i = from.index + step.offset;
     // The next vector of receivers samples the pixels beside these. The processor's own prefetcher
     // cannot follow as many streams.
     const auto prefetch = [&](const InterleavedPlane& plane)
                               HWY_ATTR { hwy::Prefetch(plane.data() + i + 2 * kLanes - 1); };
     prefetch(seen.depth), prefetch(seen.thickness);
-    prefetch(scene.normal[0]), prefetch(scene.normal[1]), prefetch(scene.normal[2]);
+    prefetch(planes.normal[0]), prefetch(planes.normal[1]), prefetch(planes.normal[2]);
     const V dx = set(step.dx), dy = set(step.dy);
     const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise)),
             across = dot(V2{dx, dy}, side.across);
     const auto meet = [&](int layer, V depth, V above, const auto& piece) HWY_ATTR {
       const V s = kOrthographic ? across : depth * across,
-              thickness = load(scene.layers[std::size_t(layer)].thickness, i);
+              thickness = load(planes.layers[std::size_t(layer)].thickness, i);
       VU bits = step.inner == step.outer
                     ? sectors_behind<kOrthographic>(p, side, s, above, thickness, march.radius)
                     : sectors_behind_piece<kOrthographic>(p, side, piece(), s, above, thickness,
                                                           march.radius);
       if (march.may_be_thin && layer == 0 && before.step) {
-        bits = hn::Or(bits, sectors_between<kOrthographic>(march, p, side, before,
+        bits = hn::Or(bits, sectors_between<kOrthographic>(march, planes, p, side, before,
                                                            {&step, i, depth}, above > set(0)));
       }
       on_met(layer, i, step, hn::And(open, bits));
@@ -77,12 +99,12 @@ HWY_INLINE VU march_raster(const March& march, const MarchReceiver& p, const Sid
     const V depth = load(seen.depth, i), above = height_above<kOrthographic>(p, rise, depth);
     if (any(above > set(0))) {
       meet(0, depth, above, [&]() HWY_ATTR {
-        return piece_at<kOrthographic>(scene, p, side, step, i, depth, rise, across);
+        return piece_at<kOrthographic>(march.scene, load(planes.normal, i), p, side, step, depth, rise, across);
       });
     }
     before = {&step, i, depth};
     for (int k = 1; k < layers; ++k) {
-      const InterleavedPlane& fronts = scene.layers[std::size_t(k)].depth;
+      const InterleavedPlane& fronts = planes.layers[std::size_t(k)].depth;
       prefetch(fronts);
       const V front = load(fronts, i), front_above = height_above<kOrthographic>(p, rise, front);
       if (!any(front_above > set(0))) continue;
@@ -94,22 +116,65 @@ HWY_INLINE VU march_raster(const March& march, const MarchReceiver& p, const Sid
   return open;
 }
 
-/// The same over the raster, what further views show, and beyond the raster's border. `on_further`
-/// is told of what rays meet there (further-inl.h); `on_beyond(border, sectors)` is called with the
-/// sectors that are first hidden beyond the border.
+/// The same over the raster and what lies beyond it. `on_met` is told too whether it is the overview
+/// that shows a solid.
+template <bool kOrthographic, class Met>
+HWY_INLINE VU march_frame(const March& march, const MarchReceiver& p, const SideFrame& side,
+                          const SliceSide& way, const Met& on_met) {
+  const std::span<const SliceStep> steps = way.steps;
+  const auto on_met_in = [&](bool far) HWY_ATTR {
+    return [&on_met, far](int layer, std::ptrdiff_t i, const SliceStep& step, VU bits) HWY_ATTR {
+      on_met(far, layer, i, step, bits);
+    };
+  };
+  const VU open =
+      march_steps<kOrthographic>(march, p, side, in_raster(march, p.place),
+                                 steps.first(way.near_steps), side.open, on_met_in(false));
+  if (!march.far || none(open)) return open;
+  return march_steps<kOrthographic>(march, p, side, in_overview(march, p.place),
+                                    steps.subspan(way.near_steps), open, on_met_in(true));
+}
+
+/// The sectors that are hidden beyond the border of the frame. Calls `on_beyond(far, border,
+/// sectors)` with those of them that are open; `far`: the border is that of the overview.
+template <bool kOrthographic, class Beyond>
+HWY_INLINE VU hidden_beyond(const March& march, const MarchReceiver& p, const SideFrame& side,
+                            float dx, float dy, VU open, const Beyond& on_beyond) {
+  const Border border = border_along(march.scene, p, set(dx), set(dy), true);
+  VU bits = extend_side<kOrthographic>(march, p, side, border);
+  if (!march.far) {
+    on_beyond(false, border, hn::And(open, bits));
+    return bits;
+  }
+  const bool ends_frame = dy > 0 ? march.scene.ends_frame : march.scene.begins_frame;
+  const VU here = ends_frame ? set_bits(~0u)
+                             : hn::VecFromMask(DU(), hn::RebindMask(DU(), border.through_side));
+  bits = hn::And(bits, here);
+  on_beyond(false, border, hn::And(open, bits));
+  if (none(hn::Not(here))) return bits;
+  const March far = march_in_overview(march);
+  const MarchReceiver far_p = in_far_pixels(march, p);
+  const Border far_border = border_along(far.scene, far_p, set(dx), set(dy), false);
+  const VU far_bits =
+      hn::AndNot(here, extend_side<kOrthographic>(far, far_p, in_far_pixels(side), far_border));
+  on_beyond(true, far_border, hn::And(open, far_bits));
+  return hn::Or(bits, far_bits);
+}
+
+/// The same over the frame, what further views show, and beyond the frame's border. `on_further`
+/// is told of what rays meet there (further-inl.h); `on_beyond(far, border, sectors)` is called with
+/// the sectors that are first hidden beyond the border, of the raster or of the overview.
 template <bool kOrthographic, class Met, class Further, class Beyond>
 HWY_INLINE VU march_side(const March& march, const MarchReceiver& p, const SideFrame& side,
                          const Slice& slice, bool forward, const Met& on_met,
                          const Further& on_further, const Beyond& on_beyond) {
-  VU open = march_raster<kOrthographic>(march, p, side, slice.sides[forward ? 0 : 1].steps, on_met);
+  VU open = march_frame<kOrthographic>(march, p, side, slice.sides[forward ? 0 : 1], on_met);
   if (march.further && !none(open))
     open = hn::AndNot(sectors_of_further(march, p, side, open, on_further), open);
   if (!march.extend || none(open)) return open;
   const float sign = forward ? 1.0f : -1.0f;
-  const Border border =
-      border_along(march.scene, p, set(sign * slice.dx), set(sign * slice.dy), true);
-  const VU bits = extend_side<kOrthographic>(march, p, side, border);
-  on_beyond(border, hn::And(open, bits));
+  const VU bits = hidden_beyond<kOrthographic>(march, p, side, sign * slice.dx, sign * slice.dy,
+                                               open, on_beyond);
   return hn::AndNot(bits, open);
 }
 

@@ -55,10 +55,11 @@ float phase_in(double t) { return float(0.02 + 0.96 * t); }
 /// Samples that are no farther apart than this, in pixels along the march, are neighbours.
 constexpr float kNeighbours = 1.5f;
 
-/// The whole number nearest to `x` for which place + x is the middle of a block of 4.
-int to_block(double x, int place) {
-  constexpr int kBlock = 4, kMiddle = kBlock / 2;
-  return int(std::lround((x + place - kMiddle) / kBlock)) * kBlock + kMiddle - place;
+/// The whole number nearest to `x` for which place + x is the middle of a block of pixels.
+int to_block(double x, int place, int block) {
+  if (block == 1) return int(std::lround(x));
+  const int middle = block / 2;
+  return int(std::lround((x + place - middle) / block)) * block + middle - place;
 }
 
 /// Gives every step the stretch of the march that it represents; the first begins outside of the
@@ -79,24 +80,32 @@ void share_the_way(std::vector<SliceStep>& steps) {
 
 /// The side that starts at column `column_phase` and row `line` of a block. `start` in 0..1 places
 /// each distance in its stratum.
-SliceSide make_side(const Interleaving& layout, int column_phase, int line, double dx, double dy,
-                    int steps, double diagonal, double start, float phase) {
+SliceSide make_side(const Interleaving& layout, const FarRaster* far, int column_phase, int line,
+                    double dx, double dy, int steps, double diagonal, double start, float phase) {
   SliceSide side;
   side.phase = phase;
   for (int i = 0; i < steps; ++i) {
     const double distance = march_distance((i + start) / steps, diagonal);
-    const bool far = march_distance((i + 1 + start) / steps, diagonal) - distance > kLongStep;
-    const int x = far ? to_block(distance * dx, column_phase) : int(std::lround(distance * dx)),
-              y = far ? to_block(distance * dy, line) : int(std::lround(distance * dy));
+    const bool is_long = march_distance((i + 1 + start) / steps, diagonal) - distance > kLongStep,
+               is_far = far && distance > far->from_px;
+    const int block = is_far ? kPeriod : is_long ? kBlock : 1;
+    const int x = to_block(distance * dx, column_phase, block),
+              y = to_block(distance * dy, line, block);
     const bool repeated =
-        !side.steps.empty() && side.steps.back().dx == float(x) && side.steps.back().row == y;
+        !side.steps.empty() && side.steps.back().dx == float(x) && side.steps.back().dy == float(y);
     if (repeated || (x == 0 && y == 0)) continue;
     SliceStep step;
     step.dx = float(x), step.dy = float(y);
     step.row = y;
     step.column_shift = (column_phase + x) >> Interleaving::kShift;
-    step.offset = layout.index(y, (column_phase + x) & (kPeriod - 1), step.column_shift) -
-                  layout.index(0, column_phase, 0);
+    if (is_far) {
+      step.row = (line + y) >> Interleaving::kShift;
+      step.offset = far->layout.stride() * step.row + step.column_shift;
+    } else {
+      step.offset = layout.index(y, (column_phase + x) & (kPeriod - 1), step.column_shift) -
+                    layout.index(0, column_phase, 0);
+      side.near_steps = side.steps.size() + 1;
+    }
     side.steps.push_back(step);
   }
   share_the_way(side.steps);
@@ -112,7 +121,7 @@ double march_distance(double t, double diagonal) {
 int SlicePattern::rank(int member) { return order_of(member % kPeriod, member / kPeriod, kPeriod); }
 
 SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, int slices, int steps,
-                           unsigned seed, int spacing)
+                           unsigned seed, int spacing, const FarRaster* far)
     : members_(kPeriod * kPeriod), half_signs_(kPeriod * kPeriod, 1.0f), spacing_(spacing) {
   const double diagonal = std::max(2.0, std::hypot(display.width(), display.height()));
   const double turn = start_of(3 * std::uint64_t(seed)),
@@ -131,8 +140,8 @@ SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, in
           const double n = (rank * slices + k) * 2 + s, sign = s == 0 ? 1 : -1;
           // Neighbouring directions, of consecutive ranks, have distances that are far apart.
           const double start = fraction(start1 + rank * kR1 + 0.25 * (2 * k + s));
-          slice.sides[s] = make_side(layout, column, row, sign * slice.dx, sign * slice.dy, steps,
-                                     diagonal, start, phase_in(fraction(start2 + n * kR2Second)));
+          slice.sides[s] = make_side(layout, far, column, row, sign * slice.dx, sign * slice.dy,
+                                     steps, diagonal, start, phase_in(fraction(start2 + n * kR2Second)));
         }
         members_[std::size_t(row * kPeriod + column)].push_back(std::move(slice));
       }

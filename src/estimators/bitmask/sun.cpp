@@ -116,7 +116,7 @@ HWY_INLINE SunRays sun_rays(const SunJob& job, const RayDirections& directions,
 template <bool kOrthographic>
 void sun(const SunJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
-  Walk<kOrthographic> walk(job.march, job.bounds, Block::kPixels);
+  WalkOverFrame<kOrthographic> walk(job.march, job.bounds, Block::kPixels);
   for_each_block(scene, part, [&](const Block& block) HWY_ATTR {
     // First sums: the weights are the cosines of the rays, and their shares those that arrive.
     for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
@@ -127,7 +127,7 @@ void sun(const SunJob& job, const Window& part) {
       walk.clear();
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
         const SunRays rays = sun_rays(job, directions, place);
-        walk.put(block.places(place), rays.p, rays.ray.side, rays.ray.in_slice, rays.ray.open);
+        walk.put(block.places(place), rays.p, rays.ray);
       });
       walk.run();
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {

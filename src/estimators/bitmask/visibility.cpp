@@ -32,7 +32,8 @@ void visibility(const VisibilityJob& job, const Window& part) {
             VU hidden_beyond = set_bits(0);
             const VU open = march_side<kOrthographic>(
                 march, p, side, slice, forward, ignore, IgnoreHits(),
-                [&](const Border&, VU bits) HWY_ATTR { hidden_beyond = bits; });
+                [&](bool, const Border&, VU bits)
+                    HWY_ATTR { hidden_beyond = hn::Or(hidden_beyond, bits); });
             const VU bits = hn::AndNot(open, side.above);
             whole.add(moments_of_first<kOrder + 1>(side.above_count), p.shading_v, side.shading_t,
                       forward);

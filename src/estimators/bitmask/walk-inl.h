@@ -88,11 +88,14 @@ HWY_INLINE V way_along(const RayInSlice& ray, const MarchReceiver& p, V pixels) 
 template <bool kOrthographic>
 class Walk {
  public:
-  /// Room for `most` rays.
-  Walk(const March& march, const std::vector<DepthBounds>& bounds, int most)
+  /// Room for `most` rays, which go from one distance in the picture to another.
+  Walk(const March& march, const std::vector<DepthBounds>& bounds, int most, float from_px = 0,
+       float until_px = 1e9f)
       : march_(march),
         bounds_(bounds),
         most_(most),
+        from_px_(from_px),
+        until_px_(until_px),
         numbers_(hwy::AllocateAligned<float>(std::size_t(kStride * most))) {
     clear();
   }
@@ -111,14 +114,16 @@ class Walk {
     const V right = set(float(layout.width() - 1)), bottom = set(float(layout.height() - 1));
     const V leaves_frame = hn::Min(Axis(ray.step_x).exit(set(0) - p.x, right),
                                    Axis(ray.step_y).exit(set(0) - p.y, bottom));
-    const V end = hn::Min(hn::Min(leaves_frame, ray.end_px), set(p.reach_px));
+    const V end = hn::Min(hn::Min(leaves_frame, ray.end_px), set(std::min(p.reach_px, until_px_)));
     // A ray along the view ray stays in its pixel.
     const M moves = hn::Max(hn::Abs(ray.step_x), hn::Abs(ray.step_y)) > set(0.5f);
     const V a = kOrthographic ? set(1) : p.plane;
     const VI at = places * set_int(kStride);
     const auto write = [&](Number which, V value)
                            HWY_ATTR { hn::ScatterIndex(value, D(), numbers_.get() + which, at); };
-    write(kX, p.x), write(kY, p.y);
+    const V column = hn::Round(p.x), row = hn::Round(p.y);
+    write(kX, column), write(kY, row);
+    write(kAsideX, p.x - column), write(kAsideY, p.y - row);
     write(kStepX, ray.step_x), write(kStepY, ray.step_y);
     write(kA, a), write(kB, kOrthographic ? p.rise + p.plane : p.rise);
     write(kRiseX, p.rise_x), write(kRiseY, p.rise_y);
@@ -138,7 +143,7 @@ class Walk {
              bottom = top + set_int(layout.height() - 1);
     Way w;
     w.place = w.size = w.last_x = w.last_y = set_int(0);
-    w.t = set(0);
+    w.t = w.aside_x = w.aside_y = set(0);
     M looks = set(0) > set(0);
     int next = 0;
     while (true) {
@@ -146,8 +151,8 @@ class Walk {
       if (!any(looks)) return;
       const V at = hn::IfThenElseZero(looks, w.t);
       // Beyond the frame only by rounding.
-      const VI at_x = hn::Clamp(w.x + hn::NearestInt(at * w.step_x), left, right),
-               at_y = hn::Clamp(w.y + hn::NearestInt(at * w.step_y), top, bottom);
+      const VI at_x = hn::Clamp(w.x + hn::NearestInt(hn::MulAdd(at, w.step_x, w.aside_x)), left, right),
+               at_y = hn::Clamp(w.y + hn::NearestInt(hn::MulAdd(at, w.step_y, w.aside_y)), top, bottom);
       // To larger cells where the ray has come into another of them.
       const VI larger = hn::IfThenElse(w.size == set_int(0), set_int(DepthBounds::kSmallest),
                                        hn::Min(w.size + one, set_int(DepthBounds::kLargest)));
@@ -156,8 +161,8 @@ class Walk {
       w.last_x = at_x, w.last_y = at_y;
 
       const VI column = at_x >> w.size, row = at_y >> w.size;
-      const V low_x = hn::ConvertTo(d, (column << w.size) - w.x),
-              low_y = hn::ConvertTo(d, (row << w.size) - w.y),
+      const V low_x = hn::ConvertTo(d, (column << w.size) - w.x) - w.aside_x,
+              low_y = hn::ConvertTo(d, (row << w.size) - w.y) - w.aside_y,
               extent = hn::ConvertTo(d, (one << w.size) - one);
       const V leaves = hn::Min(w.along_x.exit(low_x, extent), w.along_y.exit(low_y, extent));
       const M pixels = hn::RebindMask(d, w.size == set_int(0));
@@ -197,6 +202,8 @@ class Walk {
   enum Number {
     kX,
     kY,  ///< the receiver's pixel
+    kAsideX,
+    kAsideY,  ///< from its middle to the receiver
     kStepX,
     kStepY,
     kA,
@@ -242,6 +249,7 @@ class Walk {
   struct Way {
     VI place;  ///< in the queue
     VI x, y;   ///< the receiver's pixel in the grid of cells
+    V aside_x, aside_y;  ///< from its middle to the receiver
     V step_x, step_y, a, b, rise_x, rise_y, growth, end;
     Axis along_x, along_y;
     V t;                      ///< how far it has come
@@ -265,6 +273,7 @@ class Walk {
     const auto int_starts = hn::Load(di, starts) != set_int(0);
     const M fresh = hn::RebindMask(D(), int_starts);
     const auto read = [&](Number which) HWY_ATTR { return numbers(w.place, which); };
+    w.aside_x = read(kAsideX), w.aside_y = read(kAsideY);
     w.step_x = read(kStepX), w.step_y = read(kStepY);
     w.a = read(kA), w.b = read(kB);
     w.rise_x = read(kRiseX), w.rise_y = read(kRiseY);
@@ -274,7 +283,7 @@ class Walk {
     w.y = hn::ConvertTo(di, read(kY)) + set_int(bounds_[0].first_y());
     // Their own pixels are not in the way.
     const V zero = set(0), leaves = hn::Min(w.along_x.exit(zero, zero), w.along_y.exit(zero, zero));
-    w.t = hn::IfThenElse(fresh, leaves + set(kPastBorder), w.t);
+    w.t = hn::IfThenElse(fresh, hn::Max(leaves + set(kPastBorder), set(from_px_)), w.t);
     w.size = hn::IfThenElse(int_starts, set_int(DepthBounds::kSmallest), w.size);
     w.last_x = hn::IfThenElse(int_starts, w.x, w.last_x);
     w.last_y = hn::IfThenElse(int_starts, w.y, w.last_y);
@@ -379,6 +388,7 @@ class Walk {
   const March& march_;
   const std::vector<DepthBounds>& bounds_;  ///< by layer
   const int most_;
+  const float from_px_, until_px_;
   hwy::AlignedFreeUniquePtr<float[]> numbers_;  ///< those of all rays, one Number after another
 };
 

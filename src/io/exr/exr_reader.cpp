@@ -134,13 +134,13 @@ std::vector<Plane<float>> read_blocks(const ExrReader& reader, const ExrPart& pa
   std::vector<Plane<float>> planes(names.size(), Plane<float>(to.width(), to.height()));
   for (int block = to.y0; block < to.y1; block += kBlocksOfStrip) {
     const int end = std::min(block + kBlocksOfStrip, to.y1);
-    const Window strip{from.x0, grid.middle(block), from.x1, grid.middle(end - 1) + 1};
+    const Window strip{from.x0, grid.middle_y(block), from.x1, grid.middle_y(end - 1) + 1};
     const std::vector<Plane<float>> rows = read_rows(reader, part, names, strip);
     for_each_row(end - block, [&](int row) {
       for (std::size_t i = 0; i < planes.size(); ++i) {
         for (int x = to.x0; x < to.x1; ++x)
           planes[i](x - to.x0, block + row - to.y0) =
-              rows[i](grid.middle(x) - from.x0, row * grid.stride);
+              rows[i](grid.middle_x(x) - from.x0, row * grid.stride);
       }
     });
   }
@@ -174,8 +174,8 @@ std::vector<Plane<float>> ExrReader::read(int index, Names names, const PixelGri
                               name, label(part), channel.x_sampling, channel.y_sampling));
     }
   }
-  return grid.stride == 1 ? read_rows(*this, part, names, grid.rows_of(part.data_window))
-                          : read_blocks(*this, part, names, grid);
+  return grid.is_coarse() ? read_blocks(*this, part, names, grid)
+                          : read_rows(*this, part, names, grid.rows_of(part.data_window));
 }
 
 std::vector<StoredChannel> ExrReader::read_stored(int index, Names names) const {

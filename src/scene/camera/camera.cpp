@@ -133,8 +133,22 @@ bool Camera::is_camera_space(double distance) const {
   return off_axis < 1e-3 && away < 1e-3 * distance;
 }
 
-Camera scaled(Camera camera, double factor) {
-  for (double* in_pixels : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *in_pixels *= factor;
+Camera to_grid(Camera camera, const PixelGrid& grid) {
+  if (!grid.is_coarse()) return camera;
+  const double s = grid.stride;
+  // Middles of pixels are at x + 0.5, of the smaller picture too.
+  camera.cx = (camera.cx - grid.middle_x(0) - 0.5) / s + 0.5;
+  camera.cy = (camera.cy - grid.middle_y(0) - 0.5) / s + 0.5;
+  camera.fx /= s, camera.fy /= s;
+  return camera;
+}
+
+Camera from_grid(Camera camera, const PixelGrid& grid) {
+  if (!grid.is_coarse()) return camera;
+  const double s = grid.stride;
+  camera.cx = (camera.cx - 0.5) * s + grid.middle_x(0) + 0.5;
+  camera.cy = (camera.cy - 0.5) * s + grid.middle_y(0) + 0.5;
+  camera.fx *= s, camera.fy *= s;
   return camera;
 }
 

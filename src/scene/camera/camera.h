@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "math/pixel_grid.h"
 #include "math/plane.h"
 
 namespace ssdo {
@@ -73,8 +74,9 @@ struct Camera {
   bool is_camera_space(double distance) const;
 };
 
-/// The camera of the same picture with pixels that are `factor` times as small along each axis.
-Camera scaled(Camera camera, double factor);
+/// A camera in the pixels of a file as that of the pixels that `grid` takes of it, and back.
+Camera to_grid(Camera camera, const PixelGrid& grid);
+Camera from_grid(Camera camera, const PixelGrid& grid);
 
 /// How far projected positions land from the centres of their own pixels.
 struct Residual {

@@ -18,7 +18,7 @@ namespace {
 /// The projection that the options give, without a pose unless it stands in a file.
 std::optional<Camera> camera_from_options(const GBuffer& g, const CameraOptions& options,
                                           GeometryReport& report) {
-  const Window& display = g.grid.stride == 1 ? g.display : g.file_display;
+  const Window& display = g.grid.is_coarse() ? g.file_display : g.display;
   if (!options.file.empty()) {
     report.camera_source = "--camera " + options.file;
     return read_camera(options.file, display, g.pixel_aspect);
@@ -109,9 +109,9 @@ std::optional<FoundCamera> pose_by_positions(const GBuffer& g, const Camera& giv
 }
 
 /// What was found on a grid in the pixels of the file, with the projection of `given` if any.
-FoundCamera on_file(FoundCamera found, int stride, const Camera* given) {
+FoundCamera on_file(FoundCamera found, const PixelGrid& grid, const Camera* given) {
   for (Camera* camera : {&found.camera, &found.of_positions}) {
-    const Camera of_file = given ? *given : scaled(*camera, stride);
+    const Camera of_file = given ? *given : from_grid(*camera, grid);
     camera->fx = of_file.fx, camera->fy = of_file.fy;
     camera->cx = of_file.cx, camera->cy = of_file.cy;
   }
@@ -123,9 +123,8 @@ FoundCamera on_file(FoundCamera found, int stride, const Camera* given) {
 FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,
                         GeometryReport& report) {
   const auto given_of_file = camera_from_options(g, options, report);
-  const auto given = given_of_file
-                         ? std::optional(scaled(*given_of_file, 1.0 / g.grid.stride))
-                         : std::nullopt;
+  const auto given =
+      given_of_file ? std::optional(to_grid(*given_of_file, g.grid)) : std::nullopt;
   const bool by_file = given && !options.file.empty();
   if (g.position.empty()) {
     if (!given) throw_undetermined(g, file);
@@ -161,7 +160,7 @@ FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const st
                     "is this P of this camera?",
                     report.camera_source, report.residual->median_px));
   }
-  return on_file(*found, g.grid.stride, is_fitted || !given ? nullptr : &*given_of_file);
+  return on_file(*found, g.grid, is_fitted || !given ? nullptr : &*given_of_file);
 }
 
 }  // namespace ssdo

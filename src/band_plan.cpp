@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "band_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "error.h"
+#include "io/image_file.h"
+#include "scene/read_gbuffer.h"
+
+namespace ssdo {
+namespace {
+
+/// Bytes of a process without a frame, and of each pixel at the peak of all products but the error.
+/// An overview keeps as much for each pixel of its own.
+constexpr double kBytes = 60e6, kBytesPerPixel = 200;
+
+/// Bands end where chunks of every compression do.
+constexpr int kRowsAtOnce = 256;
+
+/// Where marches may end in a band if nothing is out of their reach: the farther, the nearer to what
+/// the frame would be in one piece, but rows that are read for several bands cost time.
+constexpr int kMarches[] = {512, 256, 128};
+
+/// Rows beyond the end of a march that samples in blocks of pixels may look at.
+constexpr int kBeside = 8;
+
+class Planner {
+ public:
+  Planner(const Window& frame, const Scene& overview, const Plan& plan, std::size_t memory)
+      : frame_(frame), plan_(plan) {
+    bytes_of_row_ = kBytesPerPixel * frame.width();
+    bytes_ = kBytes + kBytesPerPixel * double(overview.geometry.surfel.size());
+    rows_ = int(std::clamp((double(memory) - bytes_) / bytes_of_row_, 0.0, 1e9));
+    const int reach = plan.method->bands.reach_rows(overview, plan.request);
+    exact_ = reach >= overview.geometry.window.height() ? frame.height()
+                                                        : (reach + 1) * kOverviewStride;
+  }
+
+  /// Without rows where memory is too little.
+  BandPlan choose() const {
+    BandPlan bands = with_reach(exact_, false);
+    for (const int reach : kMarches) {
+      if (bands.rows > 0 && (!bands.marches_on || bands.rows >= bands.halo_rows)) break;
+      bands = with_reach(reach, true);
+    }
+    return bands;
+  }
+
+  double least_bytes() const {
+    const BandPlan least = with_reach(*std::rbegin(kMarches), true);
+    return bytes_ + bytes_of_row_ * (kRowsAtOnce + 2 * least.halo_rows);
+  }
+
+ private:
+  BandPlan with_reach(int px, bool marches_on) const {
+    const int reach = marches_on ? px + kBeside : px;
+    const int halo = plan_.filter->reach + (1 + plan_.request.bounces) * reach,
+              rows = std::max(0, rows_ - 2 * halo) / kRowsAtOnce * kRowsAtOnce;
+    return {rows, reach, px, halo, marches_on};
+  }
+
+  const Window& frame_;
+  const Plan& plan_;
+  double bytes_of_row_, bytes_;
+  int rows_;   ///< that fit into memory beside the overview
+  int exact_;  ///< rows of the reach of the radius
+};
+
+std::string in_gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / double(1 << 30)); }
+
+/// What needs a whole frame; empty: nothing does.
+std::string needs_whole_frame(const Scene& overview, const Plan& plan,
+                              const OutputOptions& output) {
+  if (!plan.method->bands.overview) return fmt::format("method {}", plan.method->name);
+  if (plan.request.products.guessed) return "the product guessed";
+  if (plan.request.products.error || plan.error) return "the error";
+  if (plan.temporal) return "--temporal";
+  if (!overview.views.empty() || !overview.further.empty()) return "--also and --neighbours";
+  if (output.keep_channels) return "--keep-channels";
+  if (output.downsample > 1) return "--downsample";
+  for (const std::string& path : output.files)
+    if (!has_exr_ending(path)) return path;
+  for (const SaveRequest& save : output.saves)
+    if (!has_exr_ending(save.path)) return save.path;
+  return "";
+}
+
+}  // namespace
+
+std::size_t most_pixels_in(std::size_t memory) {
+  return std::size_t(std::max(0.0, double(memory) - kBytes) / kBytesPerPixel);
+}
+
+BandPlan plan_bands(const std::string& file, const Window& frame, const Scene& overview,
+                    const Plan& plan, const OutputOptions& output, std::size_t memory) {
+  const std::string size = fmt::format("{}: {} x {} pixels", file, frame.width(), frame.height());
+  if (const std::string what = needs_whole_frame(overview, plan, output); !what.empty()) {
+    throw Error(ExitCode::usage,
+                fmt::format("{} take {} of memory, and may take {}; {} needs all of the frame at "
+                            "once: leave that out, or raise --mem-limit",
+                            size, in_gigabytes(kBytes + kBytesPerPixel * double(frame.area())),
+                            in_gigabytes(double(memory)), what));
+  }
+  const Planner planner(frame, overview, plan, memory);
+  const BandPlan bands = planner.choose();
+  if (bands.rows > 0) return bands;
+  throw Error(ExitCode::usage, fmt::format("{} take {} of memory in bands of {} rows, and may take "
+                                           "{}; raise --mem-limit",
+                                           size, in_gigabytes(planner.least_bytes()), kRowsAtOnce,
+                                           in_gigabytes(double(memory))));
+}
+
+std::string describe(const BandPlan& bands, const Window& frame) {
+  const int count = (frame.height() + bands.rows - 1) / bands.rows;
+  std::string text =
+      fmt::format("{} bands of {} rows, with {} above and below that their light comes from", count,
+                  bands.rows, bands.halo_rows);
+  if (bands.marches_on)
+    text += fmt::format("; beyond {} pixels marches go on in one pixel of {} x {}",
+                        bands.march_px, kOverviewStride, kOverviewStride);
+  return text;
+}
+
+}  // namespace ssdo
