@@ -111,15 +111,13 @@ json layers_json(const Frame& frame) {
 }  // namespace
 
 std::string describe(const Frame& frame) {
-  const Window& display = frame.scene.geometry.display;
+  const Window &display = frame.part().display_window, &data = frame.part().data_window;
   std::string text =
       fmt::format("{}: {} x {}\n", printable(frame.input), display.width(), display.height());
   const auto line = [&](std::string_view key, const std::string& value) {
     text += fmt::format("  {:<10}{}\n", key, printable(value));
   };
-  if (!(frame.scene.geometry.window == display)) {
-    line("window", "data " + text_of(frame.scene.geometry.window));
-  }
+  if (!(data == display)) line("window", "data " + text_of(data));
   for (std::size_t i = 0; i < kRoleCount; ++i) {
     const auto& layer = frame.layers.layers[i];
     if (Role(i) == Role::normal)
@@ -145,11 +143,12 @@ std::string describe(const Frame& frame) {
 
 nlohmann::json to_json(const Frame& frame) {
   const Geometry& g = frame.scene.geometry;
+  const ExrPart& part = frame.part();
   return {{"file", frame.input},
-          {"width", g.display.width()},
-          {"height", g.display.height()},
-          {"data_window", window_json(g.window)},
-          {"display_window", window_json(g.display)},
+          {"width", part.display_window.width()},
+          {"height", part.display_window.height()},
+          {"data_window", window_json(part.data_window)},
+          {"display_window", window_json(part.display_window)},
           {"parts", parts_json(frame.files.front())},
           {"layers", layers_json(frame)},
           {"camera", camera_json(frame)},

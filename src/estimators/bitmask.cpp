@@ -339,6 +339,7 @@ class Bitmask {
                        bounce = request_.bounces > 0 ? raster_.make_color() : raster_.black();
     InterleavedPlane weights(layout_);
     if (request_.products.error && request_.bounces > 0) bounce_error_ = InterleavedPlane(layout_);
+    const FarScene* overview = request_.surroundings ? request_.surroundings->far.get() : nullptr;
     std::vector<FurtherLight> sent_further;
     if (further_ && request_.bounces > 0)
       sent_further = light_further_surfaces(scene_, request_.bounces - 1, request_.radius);
@@ -370,7 +371,9 @@ class Bitmask {
                           scene_.solids,
                           sent_border,
                           further_ ? &sent_further[std::size_t(pass - 1)] : nullptr,
-                          far_ ? &far_->light[std::size_t(pass - 1)] : nullptr,
+                          with_senders(march_scene_.receivers, request_.bounces - pass + 1),
+                          overview,
+                          overview ? &overview->light[std::size_t(pass - 1)] : nullptr,
                           &weights,
                           &bounce,
                           wants_error ? &bounce_error_ : nullptr};

@@ -9,6 +9,8 @@
 #define HWY_TARGET_INCLUDE "estimators/bitmask/bounce.cpp"
 #include <hwy/foreach_target.h>
 
+#include <algorithm>
+
 #include "estimators/bitmask/moments-inl.h"
 #include "estimators/bitmask/side-inl.h"
 
@@ -59,14 +61,21 @@ HWY_INLINE M faces(const MarchScene& scene, const MarchPlanes& planes, std::ptrd
   return dot(load(planes.normal, q), from_q) > set(0);
 }
 
+/// The pixel of the overview that stands for a pixel of the raster.
+HWY_INLINE std::ptrdiff_t index_in_overview(const BounceJob& job, int x, int y) {
+  const MarchScene& scene = job.march.scene;
+  const FarRaster& far = job.overview->raster;
+  const int column = ((x + scene.first_x) >> Interleaving::kShift) - far.first_x,
+            row = ((y + scene.first_y) >> Interleaving::kShift) - far.first_y;
+  return far.index(std::clamp(column, 0, far.width - 1), std::clamp(row, 0, far.height - 1));
+}
+
 /// What the solids of layer `layer` send that the pixels at `step` from the receivers hold, in the
 /// lanes of `bits`: what the pixels that show them do, if any.
 HWY_INLINE V3 sent_behind(const BounceJob& job, bool far, int layer, const Place& place,
                           const SliceStep& step, VU bits) {
   const Interleaving& layout = job.march.scene.layout;
-  const FarScene* overview = job.march.far;
-  const Solids& solids = far ? overview->solids : job.solids;
-  const InterleavedVectors& light = far ? job.far->sent : *job.sent;
+  const Solids& solids = far ? job.overview->solids : job.solids;
   const Plane<int>& senders = solids.behind[std::size_t(layer - 1)].sender;
   const Sampled at = far ? in_overview(job.march, place) : in_raster(job.march, place);
   const int lane_step = far ? 1 : Interleaving::kPeriod;
@@ -82,9 +91,10 @@ HWY_INLINE V3 sent_behind(const BounceJob& job, bool far, int layer, const Place
     const int sender = row[first + lane * lane_step];
     if (sender < 0) continue;
     const int x = sender % senders.width, y = sender / senders.width;
-    const std::ptrdiff_t from = far ? overview->raster.index(x, y) : layout.index(x, y);
     for (std::size_t c = 0; c < 3; ++c) {
-      const float sent = light[c][from];
+      const float sent = far                    ? job.far->sent[c][job.overview->raster.index(x, y)]
+                         : job.lit.contains(x, y) ? (*job.sent)[c][layout.index(x, y)]
+                                                : job.far->sent[c][index_in_overview(job, x, y)];
       radiance[c][lane] = job.two_sided ? front_side(sent) : sent;
     }
   }

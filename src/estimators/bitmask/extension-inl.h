@@ -20,7 +20,6 @@ namespace ssdo::HWY_NAMESPACE {
 struct Border {
   V dx, dy;  ///< pixels from the receiver to the last pixel inside
   V distance_px;
-  M through_side;        ///< through the first or the last column
   bool in_one_row;       ///< all lanes leave through the first row, or all through the last
   std::ptrdiff_t first;  ///< in one row: index of lane 0 in BorderValues; the others follow
   VI index;              ///< otherwise: index of each lane in BorderValues
@@ -47,8 +46,7 @@ HWY_INLINE Border border_along(const MarchScene& scene, const MarchReceiver& p, 
   const V aside = hn::Round(to_end * dx);
   Border border;
   border.distance_px = hn::Min(to_side, to_end);
-  border.through_side = hn::And(through_side, p.valid);
-  border.in_one_row = shared && !any(border.through_side);
+  border.in_one_row = shared && !any(hn::And(through_side, p.valid));
   if (border.in_one_row) {
     const int column_of_lane_0 = p.place.column_phase + int(hn::GetLane(aside));
     border.dx = aside;

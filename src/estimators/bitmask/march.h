@@ -107,7 +107,9 @@ struct BounceJob {
   const Solids& solids;              ///< of the scene: whose light layers 1, 2, ... send
   const BorderValues* sent_border;   ///< three: of surfaces that continue beyond the frame
   const FurtherLight* sent_further;  ///< of what only further views show
-  const FarLight* far;               ///< of what March::far shows
+  Window lit;                        ///< the pixels of the raster whose `sent` is known
+  const FarScene* overview;          ///< tells that of others; null where all are lit
+  const FarLight* far;               ///< what the overview sends
 
   InterleavedPlane* weights;  ///< of the pixels that march, their sum
   /// Of these pixels the sum of weighted radiance, until finish_bounce().

@@ -104,8 +104,6 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                    g.window.y0 - g.display.y0,
                    frame.width(),
                    frame.height(),
-                   g.window.y0 == frame.y0,
-                   g.window.y1 == frame.y1,
                    g.surfel,
                    BorderLayout(layout),
                    {},

@@ -85,7 +85,6 @@ struct MarchScene : MarchPlanes {
   float axis_x, axis_y;            ///< pixel of the display window that the camera's axis meets
   int first_x, first_y;            ///< pixel (0, 0) in the display window
   int frame_width, frame_height;   ///< of the frame that the raster is all of, or some rows of
-  bool begins_frame, ends_frame;   ///< whether its first row is the frame's, and its last one
   /// What only receivers need: the normal that shading sees, by which light is weighed, and the
   /// rounding.
   const Plane<Surfel>& surfel;

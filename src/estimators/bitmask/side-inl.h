@@ -146,9 +146,9 @@ HWY_INLINE VU hidden_beyond(const March& march, const MarchReceiver& p, const Si
     on_beyond(false, border, hn::And(open, bits));
     return bits;
   }
-  const bool ends_frame = dy > 0 ? march.scene.ends_frame : march.scene.begins_frame;
-  const VU here = ends_frame ? set_bits(~0u)
-                             : hn::VecFromMask(DU(), hn::RebindMask(DU(), border.through_side));
+  // Nearer than that, the border of the raster is the frame's.
+  const M is_near = border.distance_px <= set(march.far->raster.from_px);
+  const VU here = hn::VecFromMask(DU(), hn::RebindMask(DU(), is_near));
   bits = hn::And(bits, here);
   on_beyond(false, border, hn::And(open, bits));
   if (none(hn::Not(here))) return bits;
