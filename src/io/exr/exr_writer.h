@@ -1,60 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <ImfCompression.h>
-#include <ImfPixelType.h>
-
 #include <cstddef>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
+#include <memory>
+#include <span>
 
-#include "io/exr/exr_reader.h"
+#include "io/exr/exr_output.h"
 #include "io/safe_file.h"
-#include "math/channel_view.h"
-#include "math/downsampling.h"
 
 namespace ssdo {
 
-/// A channel to write: float pixels over the data window, rounded to `type` (half or float).
-struct ExrPlane {
-  std::string name;
-  Imf::PixelType type = Imf::HALF;
-  ChannelView pixels;
-};
-
-/// A channel of a part of the input.
-struct ChannelOfPart {
-  int part = 0;
-  std::string channel;
-
-  bool operator==(const ChannelOfPart&) const = default;
-};
-
-/// What goes into an output EXR.
-struct ExrOutput {
-  const ExrReader* input = nullptr;  ///< whose headers are kept
-  int part = 0;                      ///< the part of the input that the planes were made from
-  std::vector<ExrPlane> planes;    ///< all over the data window of that part, at the output's size
-  bool keep_channels = false;      ///< pass the other channels and parts through unchanged
-  bool crop = false;               ///< of every flat part, write the display window only
-  Downsampling downsampling = {};  ///< from the input's windows to the output's
-  std::vector<ChannelOfPart> geometry;  ///< those that cannot be filtered, whatever their names
-  std::optional<Imf::Compression> compression;  ///< the input's where not given
-  std::optional<int> compression_level;  ///< of `compression`: ZIP and ZIPS 1 (fast) to 12 (small),
-                                         ///< DWAA and DWAB 1 (exact) to 100000 (small), others
-                                         ///< none; its own default where not given
-  std::vector<std::pair<std::string, std::string>> attributes;  ///< string attributes to add
-};
-
-/// What the written part is compressed with. A compression that the input brings along is kept if
-/// it is lossless: one that is lossy suits pictures, not positions and visibilities, so ZIP takes
-/// its place. A lossy `output.compression` is used, except where channels of the input are kept:
-/// they keep their bits, ids above all, so ZIP takes its place there too.
-Imf::Compression compression_for(const ExrOutput& output);
-
-/// Writes `output` to the temporary of `file`; the caller commits it.
+/// An output EXR on its way into the temporary of a SafeFile, which the caller commits. Its pixels
+/// are written from the top to the bottom, any number of rows at a time; how many does not change
+/// the file. Between two calls it holds 255 rows of the planes at most, and the kept channels.
 ///
 /// Levels are libdeflate's where ZipOutput writes the file. OpenEXR, which writes tiles, files of
 /// several parts and all else, packs levels above 9 as 9.
@@ -78,11 +36,30 @@ Imf::Compression compression_for(const ExrOutput& output);
 /// already, it is an earlier output of this tool: its "input.NAME" stays, and its NAME, an earlier
 /// product, is dropped.
 ///
-/// Half values beyond ±65504 are clamped. Returns how many were.
-/// Errors: ExitCode::output if the disk is full or the file cannot be written; ExitCode::input if
-/// what is kept of the input cannot be read, or cannot be cropped: a part that lies outside of the
-/// display window, a channel whose subsampling does not divide it; or cannot be downsampled: a deep
-/// part, a channel that is subsampled.
+/// Errors of all: ExitCode::output if the disk is full or the file cannot be written;
+/// ExitCode::input if what is kept of the input cannot be read, or cannot be cropped: a part that
+/// lies outside of the display window, a channel whose subsampling does not divide it; or cannot be
+/// downsampled: a deep part, a channel that is subsampled. After an error the object is of no use.
+class ExrWriter {
+ public:
+  /// Writes the header. Of the planes of `output` names and types count, not the pixels.
+  ExrWriter(const SafeFile& file, const ExrOutput& output);
+  ~ExrWriter();
+
+  /// Writes the next rows: one view for each plane, in their order, all of the same height and as
+  /// wide as the output before it is cropped. Rows that are cropped away are to be given too.
+  /// Half values beyond ±65504 are clamped. Returns how many were.
+  std::size_t write(std::span<const ChannelView> planes);
+
+  /// Completes the file. What goes away unfinished leaves a file that is not to be committed.
+  void finish();
+
+ private:
+  class File;
+  std::unique_ptr<File> file_;
+};
+
+/// Writes all of `output` with an ExrWriter. Returns how many values were clamped.
 std::size_t write_exr(const SafeFile& file, const ExrOutput& output);
 
 }  // namespace ssdo

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/exr/exr_headers.h"
+
+#include <ImfChannelList.h>
+#include <ImfPartType.h>
+#include <ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include "error.h"
+#include "io/exr/compression.h"
+#include "io/exr/exr_parts.h"
+
+namespace ssdo {
+namespace {
+
+[[noreturn]] void fail_to_crop(const ExrOutput& output, const ExrPart& part,
+                               const std::string& reason) {
+  throw Error(ExitCode::input,
+              fmt::format("{}: {} cannot be cropped: {}; leave out --crop or --keep-channels",
+                          output.input->path().string(), label(part), reason));
+}
+
+/// OpenEXR wants windows that the subsampling of every channel divides.
+void check_crop(const ExrOutput& output, const ExrPart& part,
+                const std::vector<ExrChannel>& channels) {
+  const Window window = written_window(output, part);
+  if (window == known_window(output, part)) return;
+  if (window.area() == 0) {
+    fail_to_crop(output, part,
+                 fmt::format("its data window, {}, lies outside of the display window, {}",
+                             text_of(part.data_window), text_of(part.display_window)));
+  }
+  for (const ExrChannel& channel : channels) {
+    const int x = channel.x_sampling, y = channel.y_sampling;
+    if (window.x0 % x || window.width() % x || window.y0 % y || window.height() % y) {
+      fail_to_crop(output, part,
+                   fmt::format("channel '{}' is subsampled {}x{}, which does not divide {}",
+                               channel.name, x, y, text_of(window)));
+    }
+  }
+}
+
+/// The header of a part whose pixels are written anew, in scanlines.
+Imf::Header scanline_header(const ExrOutput& output, const ExrPart& part) {
+  Imf::Header header = part.header;
+  for (const char* storage : {"tiles", "chunkCount", "version", "maxSamplesPerPixel"}) {
+    header.erase(storage);
+  }
+  header.setType(Imf::SCANLINEIMAGE);
+  header.lineOrder() = Imf::INCREASING_Y;
+  const Window window = written_window(output, part);
+  const Window display = output.downsampling.small(part.display_window);
+  header.dataWindow() = {{window.x0, window.y0}, {window.x1 - 1, window.y1 - 1}};
+  header.displayWindow() = {{display.x0, display.y0}, {display.x1 - 1, display.y1 - 1}};
+  return header;
+}
+
+/// That of another part than the one with the planes.
+Imf::Header other_header(const ExrOutput& output, const ExrPart& part) {
+  if (!is_changed(output, part)) return part.header;
+  check_crop(output, part, part.channels);
+  Imf::Header header = scanline_header(output, part);
+  if (is_lossy(header.compression())) header.compression() = Imf::ZIP_COMPRESSION;
+  return header;
+}
+
+Imf::Header header_for(const ExrOutput& output, const std::vector<KeptChannel>& kept) {
+  std::vector<ExrChannel> stored_channels;
+  for (const KeptChannel& channel : kept) stored_channels.push_back(channel.stored.channel);
+  check_crop(output, part_of(output), stored_channels);
+  Imf::Header header = scanline_header(output, part_of(output));
+  header.compression() = compression_for(output);
+  if (const auto level = level_for(output, header.compression())) set_level(header, *level);
+  header.channels() = Imf::ChannelList();
+  for (const auto& [name, stored] : kept) {
+    header.channels().insert(name, part_of(output).header.channels()[stored.channel.name]);
+  }
+  for (const ExrPlane& plane : output.planes) {
+    header.channels().insert(plane.name, Imf::Channel(plane.type));
+  }
+  for (const auto& [name, text] : output.attributes) {
+    header.erase(name);
+    header.insert(name, Imf::StringAttribute(text));
+  }
+  return header;
+}
+
+}  // namespace
+
+std::vector<Imf::Header> headers_for(const ExrOutput& output,
+                                     const std::vector<KeptChannel>& kept) {
+  std::vector<Imf::Header> headers;
+  for (const ExrPart& part : output.input->parts()) {
+    if (part.index == output.part)
+      headers.push_back(header_for(output, kept));
+    else if (output.keep_channels)
+      headers.push_back(other_header(output, part));
+  }
+  return headers;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/exr/kept_channels.h"
+
+#include <ImfChannelList.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "error.h"
+#include "io/exr/exr_parts.h"
+#include "io/pixel_filter.h"
+
+namespace ssdo {
+namespace {
+
+bool has_plane(const ExrOutput& output, const std::string& name) {
+  return std::any_of(output.planes.begin(), output.planes.end(),
+                     [&](const ExrPlane& plane) { return plane.name == name; });
+}
+
+bool has_channel(const ExrPart& part, const std::string& name) {
+  return part.header.channels().findChannel(name) != nullptr;
+}
+
+std::string lower_case(std::string text) {
+  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// Whether the values of a channel have a mean. The ids of a Cryptomatte have not, nor have the
+/// directions, depths and coordinates that layers of X, Y and Z hold.
+bool is_color(const ExrPart& part, const std::string& name) {
+  const std::size_t dot = name.rfind('.') + 1;  // 0 where there is none
+  const std::string lower = lower_case(name), component = lower.substr(dot);
+  if (lower.find("crypto") != std::string::npos) return false;
+  if (component == "y") {
+    const std::string x = name[dot] == 'Y' ? "X" : "x";
+    return !has_channel(part, name.substr(0, dot) + x);
+  }
+  return component == "r" || component == "g" || component == "b" || component == "a";
+}
+
+/// Channels of a part, at the output's size.
+std::vector<StoredChannel> read_channels(const ExrOutput& output, const ExrPart& part,
+                                         const std::vector<std::string>& names) {
+  std::vector<StoredChannel> channels = output.input->read_stored(part.index, names);
+  if (output.downsampling.is_identity()) return channels;
+  for (StoredChannel& stored : channels) {
+    const std::string& name = stored.channel.name;
+    const bool is_geometry = std::find(output.geometry.begin(), output.geometry.end(),
+                                       ChannelOfPart{part.index, name}) != output.geometry.end();
+    stored = filter_stored(stored, part.data_window, output.downsampling,
+                           is_geometry || !is_color(part, name));
+  }
+  return channels;
+}
+
+}  // namespace
+
+std::vector<KeptChannel> kept_channels(const ExrOutput& output) {
+  const ExrPart& part = part_of(output);
+  // Deep samples do not fit into a flat part.
+  if (!output.keep_channels || part.deep) return {};
+  std::vector<std::string> from, to;
+  for (const ExrChannel& channel : part.channels) {
+    const bool taken = has_plane(output, channel.name);
+    if (taken && has_channel(part, "input." + channel.name)) continue;
+    from.push_back(channel.name);
+    to.push_back(taken ? "input." + channel.name : channel.name);
+  }
+  std::vector<StoredChannel> stored = read_channels(output, part, from);
+  std::vector<KeptChannel> kept;
+  for (std::size_t i = 0; i < to.size(); ++i) kept.push_back({to[i], std::move(stored[i])});
+  return kept;
+}
+
+std::vector<KeptChannel> all_channels(const ExrOutput& output, const ExrPart& part) {
+  std::vector<std::string> names;
+  for (const ExrChannel& channel : part.channels) names.push_back(channel.name);
+  std::vector<KeptChannel> kept;
+  for (StoredChannel& channel : read_channels(output, part, names))
+    kept.push_back({channel.channel.name, std::move(channel)});
+  return kept;
+}
+
+Imf::FrameBuffer slices_of(const std::vector<KeptChannel>& channels, const Window& known) {
+  const Imath::Box2i full({known.x0, known.y0}, {known.x1 - 1, known.y1 - 1});
+  Imf::FrameBuffer slices;
+  for (const auto& [name, stored] : channels) {
+    slices.insert(name, Imf::Slice::Make(stored.channel.type, stored.pixels.data(), full, 0, 0,
+                                         stored.channel.x_sampling, stored.channel.y_sampling));
+  }
+  return slices;
+}
+
+void check_downsampling(const ExrOutput& output, const ExrPart& part) {
+  if (!output.keep_channels || output.downsampling.is_identity()) return;
+  const auto fail = [&](const std::string& reason) {
+    throw Error(ExitCode::input, fmt::format("{}: {} {}, and cannot be downsampled; leave out "
+                                             "--downsample or --keep-channels",
+                                             output.input->path().string(), label(part), reason));
+  };
+  if (part.deep && part.index != output.part) fail("is deep");
+  for (const ExrChannel& channel : part.channels) {
+    if (channel.x_sampling != 1 || channel.y_sampling != 1)
+      fail(fmt::format("has a subsampled channel '{}'", channel.name));
+  }
+}
+
+}  // namespace ssdo
