@@ -14,6 +14,7 @@
 #include "cli/threads.h"
 #include "simd/isa.h"
 #include "support/error_matchers.h"
+#include "support/fake_root.h"
 
 namespace ssdo::test {
 namespace {
@@ -79,6 +80,20 @@ TEST_F(Resource, ThreadsAreNoMoreThanTheProcessorsOfTheThread) {
   }).join();
   EXPECT_EQ(chosen, 1);
   EXPECT_LE(choose_thread_count(std::nullopt), CPU_COUNT(&all));
+}
+
+TEST_F(Resource, ThreadsAreNoMoreThanTheLeastQuotaOfTheControlGroups) {
+  for (const auto& [own, above] :
+       {std::pair{"100000 100000", "max 100000"}, {"max 100000", "50000 100000"}}) {
+    const FakeRoot root{{"proc/self/cgroup", "0::/job\n"},
+                        {"sys/fs/cgroup/job/cpu.max", own},
+                        {"sys/fs/cgroup/cpu.max", above}};
+    EXPECT_EQ(choose_thread_count(std::nullopt, root.path()), 1) << own << ", " << above;
+  }
+  const FakeRoot wide{{"sys/fs/cgroup/cpu.max", "100000000 100000"}};
+  EXPECT_EQ(choose_thread_count(std::nullopt, wide.path()),
+            choose_thread_count(std::nullopt, FakeRoot{}.path()))
+      << "a quota is no reason for more threads than processors";
 }
 
 TEST(Quota, IsRoundedUpToProcessors) {
