@@ -84,7 +84,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   InputOptions input = options.input;
   input.gbuffer.downsample = options.output.downsample;
   input.gbuffer.beauty = choose_compose(options.output, files.aovs) != Compose::relight;
-  input.gbuffer.most_pixels = most_pixels_in(std::getenv("SSDO_MEM") ? std::size_t(std::atof(std::getenv("SSDO_MEM")) * 1e6) : options.memory);
+  input.gbuffer.most_pixels = most_pixels_in(options.memory);
   View view = read_view(std::move(opened), files.aovs, input, options.camera, unused);
   frame.files = std::move(view.files);
   frame.layers = std::move(view.layers);
@@ -141,7 +141,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   frame.plan = make_plan(model, options.output, scene, frame.gbuffer, frame.input);
   if (frame.gbuffer.grid.is_coarse()) {
     const Window& all = frame.part().data_window;
-    frame.bands = plan_bands(frame.input, all, scene, frame.plan, options.output, std::getenv("SSDO_MEM") ? std::size_t(std::atof(std::getenv("SSDO_MEM")) * 1e6) : options.memory);
+    frame.bands = plan_bands(frame.input, all, scene, frame.plan, options.output, options.memory);
     frame.plan.reasons.push_back(describe(*frame.bands, all));
   }
   const std::vector<std::string> idle =

@@ -40,7 +40,7 @@ ssdo::ExitCode run(int argc, char** argv) {
     ssdo::print_out(report.text);
     return report.code;
   }
-  const ssdo::Resources resources(parsed.options.threads);
+  const ssdo::Resources resources(parsed.options.threads, parsed.options.mem_limit);
   if (parsed.options.command == ssdo::Command::bench)
     return ssdo::run_bench(parsed.options, resources);
   return ssdo::run_batch(parsed.options, resources);

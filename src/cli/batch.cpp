@@ -55,6 +55,7 @@ class Batch {
         // A temporal frame hands its surfaces to the next one, which therefore waits.
         writes_behind_(overlaps_ && !options.model.temporal),
         progress_(options.batch.progress, options.verbosity.quiet) {
+    options_.memory = resources.memory() / (overlaps_ ? 2 : 1);
     for (const Job& job : jobs_) pictures_.expect(job.files);
   }
 
@@ -302,7 +303,7 @@ class Batch {
     return options_.command == Command::relight && !options_.verbosity.stats.empty();
   }
 
-  const Options& options_;
+  Options options_;
   const Resources& resources_;
   std::vector<Job> jobs_;
   const bool overlaps_;            ///< frames are read and written beside the one that is estimated

@@ -24,8 +24,8 @@ std::vector<std::string> warnings_of(const Frame& frame) {
 }
 
 std::string describe_camera(const Frame& frame) {
-  const Camera& c = frame.scene.geometry.camera;
-  const int width = frame.scene.geometry.display.width();
+  const Camera& c = frame.report.placement.camera;
+  const int width = frame.part().display_window.width();
   std::string text = frame.report.camera_source;
   if (frame.scene.geometry.median_depth <= 0) return text;
   text += c.panorama ? ": lat-long panorama"
@@ -66,7 +66,7 @@ std::string describe_normals(const Frame& frame) {
 }
 
 json camera_json(const Frame& frame) {
-  const Camera& c = frame.scene.geometry.camera;
+  const Camera& c = frame.report.placement.camera;
   json rows = json::array();
   const glm::dvec3 translation = -(c.rotation * c.origin);
   for (int row = 0; row < 3; ++row) {
@@ -79,7 +79,7 @@ json camera_json(const Frame& frame) {
             {"fy", c.fy},
             {"cx", c.cx},
             {"cy", c.cy},
-            {"hfov_deg", c.hfov_degrees(frame.scene.geometry.display.width())},
+            {"hfov_deg", c.hfov_degrees(frame.part().display_window.width())},
             {"world_to_camera", rows},
             {"world_handedness", glm::determinant(c.rotation) < 0 ? "left" : "right"}};
   if (const auto& r = frame.report.residual) {

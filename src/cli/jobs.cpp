@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 
+#include "cli/environment.h"
 #include "error.h"
 #include "io/exr/exr_reader.h"
 #include "io/image_file.h"
@@ -163,12 +163,11 @@ FrameFiles files_named(const Options& options) {
 }
 
 std::vector<RunFile> inputs_of(const Options& options, const FrameFiles& files) {
-  const char* const ocio = std::getenv("OCIO");
   std::vector<RunFile> inputs = {{"INPUT", files.input},
                                  {"--env", parse_picture_name(options.light.env).file},
                                  {"--camera", options.camera.file},
                                  {"--ocio", options.color.ocio},
-                                 {"$OCIO", ocio ? ocio : ""},
+                                 {"$OCIO", std::string(variable("OCIO"))},
                                  {"--config", options.config_file}};
   for (const LayerRequest& request : files.aovs) inputs.push_back({"--aov", request.file});
   for (const std::string& path : files.also) inputs.push_back({"--also", path});

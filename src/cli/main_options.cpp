@@ -281,6 +281,17 @@ void add_batch(CLI::App& app, BatchOptions& o) {
                "auto is a bar on a terminal; others are lines for a scheduler");
 }
 
+void add_resources(CLI::App& app, Options& o) {
+  Group group(app, "Resources");
+  group
+      .value("--threads", "N", o.threads,
+             "over $SSDO_THREADS, $CUE_THREADS, $SLURM_CPUS_PER_TASK; default: all processors")
+      ->check(CLI::Range(1, kMostThreads));
+  group.text(
+      "--mem-limit", "SIZE", [&](const Text& text) { o.mem_limit = read_mem_limit(text); },
+      "memory to use, such as 8G, over $SSDO_MEM_LIMIT; default: three quarters of what there is");
+}
+
 void add_messages(CLI::App& app, Verbosity& o) {
   Group group(app, "Messages");
   CLI::Option* verbose = group.flag("-v,--verbose", o.verbose, "print what was found and decided");
@@ -300,10 +311,7 @@ void add_main_options(CLI::App& app, Options& o) {
   add_output(app, o.output);
   add_color(app, o.color);
   add_batch(app, o.batch);
-  Group(app, "Resources")
-      .value("--threads", "N", o.threads,
-             "over $SSDO_THREADS, $CUE_THREADS, $SLURM_CPUS_PER_TASK; default: all processors")
-      ->check(CLI::Range(1, kMostThreads));
+  add_resources(app, o);
   add_messages(app, o.verbosity);
   Group(app, "Say")
       .value("--config", "FILE.toml", o.config_file,

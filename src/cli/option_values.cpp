@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "cli/memory.h"
 #include "error.h"
 #include "math/number.h"
 
@@ -137,6 +138,11 @@ Neighbours read_neighbours(const std::string& text) {
                     text, kMostNeighbours, kLargestStep));
   }
   return {*count, *step};
+}
+
+std::size_t read_mem_limit(const std::string& text) {
+  if (const auto size = parse_size(text)) return *size;
+  throw_usage(fmt::format("--mem-limit {}: expected {}", text, kSizeForm));
 }
 
 SaveRequest read_save(const std::string& text) {

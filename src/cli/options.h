@@ -38,9 +38,10 @@ struct Options : FrameOptions {
   Verbosity verbosity;
   CompareOptions compare;
   BenchOptions bench;
-  std::optional<int> threads;         ///< not given: see choose_thread_count()
-  std::string config_file;            ///< that was read; empty: none
-  std::vector<std::string> warnings;  ///< options that have no effect beside the others
+  std::optional<int> threads;            ///< not given: see choose_thread_count()
+  std::optional<std::size_t> mem_limit;  ///< in bytes; not given: see choose_memory()
+  std::string config_file;               ///< that was read; empty: none
+  std::vector<std::string> warnings;     ///< options that have no effect beside the others
 };
 
 /// What the command line asks for: work, or a text to print (--help, --version).

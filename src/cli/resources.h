@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -8,19 +9,23 @@
 
 namespace ssdo {
 
-/// The threads and the instruction set of a run, chosen once before any work. The limit on threads
-/// lasts as long as this object.
+/// The threads, the memory and the instruction set of a run, chosen once before any work. The limit
+/// on threads lasts as long as this object.
 class Resources {
  public:
   /// Limits the whole process to the threads of choose_thread_count() and to the instruction set
-  /// that $SSDO_ISA names. Errors: those of choose_thread_count() and choose_isa().
-  explicit Resources(std::optional<int> requested_threads);
+  /// that $SSDO_ISA names. Errors: those of choose_thread_count(), choose_memory() and
+  /// choose_isa().
+  explicit Resources(std::optional<int> requested_threads,
+                     std::optional<std::size_t> requested_memory = std::nullopt);
 
   int threads() const { return threads_; }
+  std::size_t memory() const { return memory_; }   ///< bytes that the run may use
   const std::string& isa() const { return isa_; }  ///< avx512, avx2 or scalar
 
  private:
   int threads_;
+  std::size_t memory_;
   ThreadLimit limit_;
   std::string isa_;
 };

@@ -49,6 +49,7 @@ nlohmann::json statistics_of(const Frame& frame, const Job& job, const Resources
         {"write", t.write},
         {"total", t.read + t.known + t.prepare + t.estimate + t.filter + t.compose + t.write}}},
       {"peak_rss_bytes", peak_rss_bytes()},
+      {"mem_limit_bytes", resources.memory()},
       {"pixels", frame.part().data_window.area()},
       {"background_pixels", frame.gbuffer.background_pixels},
       {"bad_pixels", frame.gbuffer.bad_pixels},

@@ -6,21 +6,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <sstream>
 #include <string_view>
 
+#include "cli/control_groups.h"
+#include "cli/environment.h"
 #include "error.h"
 #include "math/number.h"
 
 namespace ssdo {
 namespace {
-
-std::string_view variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value ? value : "";
-}
 
 /// A whole number from 1 to kMostThreads; nothing for any other text.
 std::optional<int> parse_count(std::string_view text) {
@@ -38,11 +33,11 @@ std::optional<int> from_user() {
                           kMostThreads));
 }
 
-std::optional<int> from_control_group() {
-  std::ifstream in("/sys/fs/cgroup/cpu.max");
-  std::string line;
-  std::getline(in, line);
-  return processors_of_quota(line);
+/// Of `processors`, those that the quotas of the control groups leave.
+int within_quotas(int processors, const std::filesystem::path& root) {
+  for (const std::string& line : lines_of_control_groups("", "cpu.max", root))
+    processors = std::min(processors, processors_of_quota(line).value_or(processors));
+  return processors;
 }
 
 int from_affinity() {
@@ -52,14 +47,13 @@ int from_affinity() {
 
 }  // namespace
 
-int choose_thread_count(std::optional<int> requested) {
+int choose_thread_count(std::optional<int> requested, const std::filesystem::path& root) {
   if (requested) return *requested;
   if (const auto count = from_user()) return *count;
   for (const char* name : {"CUE_THREADS", "SLURM_CPUS_PER_TASK"}) {
     if (const auto count = parse_count(variable(name))) return *count;
   }
-  const int processors = from_affinity();
-  return std::min(processors, from_control_group().value_or(processors));
+  return within_quotas(from_affinity(), root);
 }
 
 std::optional<int> processors_of_quota(const std::string& cpu_max) {

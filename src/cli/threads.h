@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -9,11 +10,11 @@ namespace ssdo {
 inline constexpr int kMostThreads = 4096;
 
 /// How many threads to use: `requested` if given, else $SSDO_THREADS, else $CUE_THREADS, else
-/// $SLURM_CPUS_PER_TASK, else the CPU quota of the control group, else the processors that this
-/// thread may run on; a quota never gives more threads than that. A scheduler's variable that is
-/// not 1 to kMostThreads is ignored, since the user does not set it. Errors: ExitCode::usage for an
-/// $SSDO_THREADS that is not 1 to kMostThreads.
-int choose_thread_count(std::optional<int> requested);
+/// $SLURM_CPUS_PER_TASK, else the least CPU quota of the control groups, else the processors that
+/// this thread may run on; a quota never gives more threads than that. A scheduler's variable that
+/// is not 1 to kMostThreads is ignored, since the user does not set it. `root` is where /proc and
+/// /sys are. Errors: ExitCode::usage for an $SSDO_THREADS that is not 1 to kMostThreads.
+int choose_thread_count(std::optional<int> requested, const std::filesystem::path& root = "/");
 
 /// The processors of a quota of control groups v2, rounded up: "200000 100000" is the time and the
 /// period in microseconds, and gives 2. Nothing for "max" and for any other text.

@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
 
-double physical_memory() { return double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)); }
-
 }  // namespace
+
+double physical_memory() { return double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)); }
 
 void check_decoded_size(const std::filesystem::path& file, double pixel_bytes, double needed_bytes,
                         double largest_ratio) {

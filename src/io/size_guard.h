@@ -9,6 +9,9 @@ namespace ssdo {
 /// block of 64 pixels: no codec goes further than their product, 66048:1 in half, twice in float.
 inline constexpr double kLargestRatio = 1 << 18;
 
+/// Of the machine, in bytes.
+double physical_memory();
+
 /// Refuses to allocate what a damaged header claims. Throws ExitCode::input if `pixel_bytes`, all
 /// decoded pixels, are more than a file of the size of `file` can hold at `largest_ratio`, or if
 /// `needed_bytes`, what is about to be allocated, exceeds the machine's memory.

@@ -120,11 +120,14 @@ TEST_F(Shot, ManyFramesDoNotGoToOneFile) {
 }
 
 TEST_F(Shot, StatisticsHoldWhatTheContractSays) {
-  EXPECT_EQ(run({"--frames", "4", "--stats", dir_ / "stats.json", "--threads", "2"}).code, 0);
+  EXPECT_EQ(
+      run({"--frames", "4", "--stats", dir_ / "stats.json", "--threads", "2", "--mem-limit", "1G"})
+          .code,
+      0);
   const json frame = stats().at(0);
   for (const char* key : {"frame", "input", "output", "width", "height", "threads", "isa", "method",
-                          "samples_per_pixel", "bounces", "stages_ms", "peak_rss_bytes", "pixels",
-                          "background_pixels", "bad_pixels", "plan"}) {
+                          "samples_per_pixel", "bounces", "stages_ms", "peak_rss_bytes",
+                          "mem_limit_bytes", "pixels", "background_pixels", "bad_pixels", "plan"}) {
     EXPECT_TRUE(frame.contains(key)) << key;
   }
   for (const char* stage :
@@ -135,6 +138,7 @@ TEST_F(Shot, StatisticsHoldWhatTheContractSays) {
   EXPECT_EQ(frame["input"], file("in", 4));
   EXPECT_EQ(frame["output"], file("out", 4));
   EXPECT_EQ(frame["threads"], 2);
+  EXPECT_EQ(frame["mem_limit_bytes"], 1 << 30);
   EXPECT_EQ(frame["width"], 64);
   EXPECT_EQ(frame["pixels"], 64 * 48);
 }

@@ -85,7 +85,8 @@ TEST_F(Config, AValueThatTheOptionDoesNotTakeIsRefusedWithItsLine) {
                                  "save = [\"ao\"]",       "method = \"magic\"",
                                  "filter = \"magic\"",    "compression = \"zip:0\"",
                                  "depth-kind = \"near\"", "motion-scale = \"1\"",
-                                 "quality = \"best\"",    "bits = 10"}) {
+                                 "quality = \"best\"",    "bits = 10",
+                                 "mem-limit = 8",         "mem-limit = \"8\""}) {
     write("\n" + line + "\n");
     const Finished done = dry_run();
     EXPECT_EQ(done.code, 2) << line;
@@ -97,7 +98,8 @@ TEST_F(Config, AValueThatTheOptionDoesNotTakeIsRefusedWithItsLine) {
 TEST_F(Config, EveryKindOfValueIsTaken) {
   write(
       "\xef\xbb\xbfslices = 3\r\n# by a Windows editor\r\nradius = 0.25\nbounces = \"0\"\n"
-      "products = [\"ao\", \"bent\"]\nfilter = 'source'\ntemporal = false\nthickness = inf\n");
+      "products = [\"ao\", \"bent\"]\nfilter = 'source'\ntemporal = false\nthickness = inf\n"
+      "mem-limit = \"1G\"\n");
   const json plan = info()["plan"];
   EXPECT_EQ(plan["slices"], 3);
   EXPECT_NEAR(plan["radius"].get<double>(), 0.25, 1e-6);

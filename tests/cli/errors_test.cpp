@@ -98,6 +98,7 @@ TEST(Refusals, OfTheCommandLine) {
       {{"--compression", "piz:3"}, "--compression piz:3: piz has no levels"},
       {{"--bits", "10"}, "--bits"},
       {{"--threads", "0"}, "--threads"},
+      {{"--mem-limit", "8"}, "--mem-limit 8: expected a size such as 8G or 500M"},
       {{"--seed", "-1"}, "--seed"},
       {{"--on-error", "wait"}, "--on-error"},
       {{"--progress", "loud"}, "--progress"},
@@ -113,6 +114,8 @@ TEST(Refusals, OfTheCommandLine) {
     expect_refused(arguments, 2, says);
   }
   expect_refused({in, "-o", out}, 2, "SSDO_THREADS", {.variables = {{"SSDO_THREADS", "many"}}});
+  expect_refused({in, "-o", out}, 2, "$SSDO_MEM_LIMIT is '8'; expected a size such as 8G",
+                 {.variables = {{"SSDO_MEM_LIMIT", "8"}}});
   expect_refused({in, "-o", out}, 2, "$SSDO_ISA is 'nonsense'",
                  {.variables = {{"SSDO_ISA", "nonsense"}}});
   EXPECT_THAT(listing(dir.path()), testing::ElementsAre("in.exr"));

@@ -215,6 +215,8 @@ TEST(Options, LandInTheirFields) {
                            "--skip-existing",
                            "--threads",
                            "3",
+                           "--mem-limit",
+                           "1.5GiB",
                            "-v",
                            "--dry-run",
                            "--stats",
@@ -258,6 +260,7 @@ TEST(Options, LandInTheirFields) {
   EXPECT_THAT(o.batch.frames.value(), ElementsAre(1, 3, 5));
   EXPECT_TRUE(o.batch.skip_existing);
   EXPECT_EQ(o.threads, 3);
+  EXPECT_EQ(o.mem_limit, 3u << 29);
   EXPECT_TRUE(o.verbosity.verbose && o.verbosity.dry_run && !o.verbosity.quiet);
   EXPECT_EQ(o.verbosity.stats, "s.json");
 }
@@ -265,6 +268,7 @@ TEST(Options, LandInTheirFields) {
 TEST(Options, NotGivenKeepTheirDefaults) {
   const Options o = parse({});
   EXPECT_EQ(o.threads, std::nullopt);
+  EXPECT_EQ(o.mem_limit, std::nullopt);
   EXPECT_EQ(o.model.radius, std::nullopt);
   EXPECT_EQ(o.model.method, ModelOptions().method);
   EXPECT_EQ(o.output.compression, std::nullopt);
