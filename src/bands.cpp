@@ -109,7 +109,7 @@ class BandJob {
   Products estimate_band(const Scene& scene, const Window& rows) {
     Plan plan = frame_.plan;
     plan.request.receivers = with_rows_around(rows, plan.filter->reach);
-    plan.request.surroundings = around_;
+    plan.request.around_band = around_;
     const double before = double(rows.y0 - all_.y0) / all_.height(),
                  share = double(rows.height()) / all_.height();
     const auto tell = [&](double done) {
@@ -137,7 +137,7 @@ class BandJob {
   const Window all_;
   const std::function<void(double)>& on_progress_;
   Relit& relit_;
-  Surroundings around_;
+  AroundBand around_;
 };
 
 }  // namespace

@@ -142,15 +142,15 @@ class Bitmask {
 
  private:
   static const FarScene* far_of(const Request& request) {
-    const auto& around = request.surroundings;
+    const auto& around = request.around_band;
     return around && around->marches_on ? around->far.get() : nullptr;
   }
 
   /// A part of the raster with what may send light to it in so many bounces.
   Window with_senders(const Window& part, int bounces) const {
     const Window raster = march_scene_.raster();
-    if (!request_.surroundings) return raster;
-    const int rows = bounces * request_.surroundings->reach_rows;
+    if (!request_.around_band) return raster;
+    const int rows = bounces * request_.around_band->reach_rows;
     return intersection(raster, {raster.x0, part.y0 - rows, raster.x1, part.y1 + rows});
   }
 
@@ -254,7 +254,7 @@ class Bitmask {
   }
 
   float mean_ao_of_frame() const {
-    if (request_.surroundings) return request_.surroundings->far->mean_ao;
+    if (request_.around_band) return request_.around_band->far->mean_ao;
     return mean_ao(march_scene_, scene_.geometry.display, request_.radius);
   }
 
@@ -339,7 +339,7 @@ class Bitmask {
                        bounce = request_.bounces > 0 ? raster_.make_color() : raster_.black();
     InterleavedPlane weights(layout_);
     if (request_.products.error && request_.bounces > 0) bounce_error_ = InterleavedPlane(layout_);
-    const FarScene* overview = request_.surroundings ? request_.surroundings->far.get() : nullptr;
+    const FarScene* overview = request_.around_band ? request_.around_band->far.get() : nullptr;
     std::vector<FurtherLight> sent_further;
     if (further_ && request_.bounces > 0)
       sent_further = light_further_surfaces(scene_, request_.bounces - 1, request_.radius);

@@ -41,7 +41,7 @@ using MapFilter = std::function<Plane<float>(Plane<float> map, Plane<Surfel> sur
 struct FarScene;
 
 /// Beside a band, what is known of the frame that it is some rows of.
-struct Surroundings {
+struct AroundBand {
   std::shared_ptr<const FarScene> far;  ///< of the whole frame
   bool marches_on = false;  ///< in `far`, beyond `reach_rows`; else nothing there is in reach
   int reach_rows = 0;       ///< above and below a pixel: those that block what it gathers
@@ -67,7 +67,7 @@ struct Request {
   Window receivers = {};
   /// Set where the geometry is a band: its rows reach at least (1 + bounces) x reach_rows beyond
   /// the receivers, or to the frame's border.
-  std::optional<Surroundings> surroundings = {};
+  std::optional<AroundBand> around_band = {};
 };
 
 /// The options of the model that a method takes.

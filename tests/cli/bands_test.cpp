@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// --mem-limit: a frame that is larger than memory is processed in bands of rows.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "support/exr_fixture.h"
+#include "support/frame_file.h"
+#include "support/parse_json.h"
+#include "support/run_tool.h"
+
+namespace ssdo::test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+using Words = std::vector<std::string>;
+
+Words operator+(Words a, const Words& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+class Bands : public testing::Test {
+ protected:
+  /// What a frame of kWindow is too large for.
+  inline static const Words kLimit = {"--mem-limit", "128M"};
+  static constexpr Window kWindow{0, 0, 320, 1600};
+
+  static void SetUpTestSuite() {
+    dir_ = std::make_unique<TempDir>();
+    write("in.exr", kWindow, kWindow);
+    const nlohmann::json camera =
+        parse_json(run_tool({"info", path("in.exr"), "--json"}).out)["camera"];
+    std::ofstream(path("camera.json")) << camera.dump();
+  }
+  static void TearDownTestSuite() { dir_.reset(); }
+
+  static std::string path(const std::string& name) { return *dir_ / name; }
+
+  static void write(const std::string& name, const Window& data, const Window& display) {
+    FramePart part = frame_of(small_picture(data, display));
+    part.data = data, part.display = display;
+    write_frame(path(name), part);
+  }
+
+  static Finished run(const std::string& in, const std::string& out, const Words& flags) {
+    return run_tool(Words{path(in), "-o", path(out), "--overwrite"} + flags);
+  }
+
+  /// Runs in one piece and in bands, and gives the names of the channels.
+  static Words make_both(const std::string& in, const Words& flags) {
+    const Finished whole = run(in, "whole.exr", flags + Words{"-v"}),
+                   bands = run(in, "bands.exr", flags + kLimit + Words{"-v"});
+    EXPECT_EQ(whole.code, 0) << whole.err;
+    EXPECT_EQ(bands.code, 0) << bands.err;
+    EXPECT_THAT(whole.err, Not(HasSubstr(" bands of ")));
+    EXPECT_THAT(bands.err, HasSubstr(" bands of "));
+    EXPECT_EQ(channel_names(path("bands.exr")), channel_names(path("whole.exr")));
+    return channel_names(path("whole.exr"));
+  }
+
+  static void expect_same_bits(const std::string& in, const Words& flags) {
+    for (const std::string& name : make_both(in, flags + Words{"--pixel-type", "float"})) {
+      EXPECT_TRUE(channel(path("bands.exr"), name).pixels ==
+                  channel(path("whole.exr"), name).pixels)
+          << name;
+    }
+  }
+
+  /// Root of the mean square of the difference, over the mean of what is made in one piece.
+  static double difference(const std::string& name) {
+    const Plane<float> whole = channel(path("whole.exr"), name),
+                       bands = channel(path("bands.exr"), name);
+    double squares = 0, sum = 0;
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      squares += std::pow(double(bands[i]) - double(whole[i]), 2);
+      sum += double(whole[i]);
+    }
+    return std::sqrt(squares * double(whole.size())) / sum;
+  }
+
+  static std::unique_ptr<TempDir> dir_;
+};
+
+std::unique_ptr<TempDir> Bands::dir_;
+
+TEST_F(Bands, HaveTheSameBitsWithinARadius) {
+  const Words flags = {"--camera", path("camera.json"),          "--thickness", "0.3",
+                       "--env",    data("environments/sky.exr"), "--env-up",    "z"};
+  expect_same_bits("in.exr", flags + Words{"--radius", "0.2"});
+  expect_same_bits("in.exr", flags + Words{"--radius", "0.1", "--bounces", "2", "--products",
+                                           "ao,bent,direct,reflection,bounce", "--compression",
+                                           "piz", "--offscreen", "open"});
+}
+
+TEST_F(Bands, HaveTheSameBitsForAnyNumberOfThreads) {
+  const Words flags = kLimit + Words{"--env", data("environments/sky.exr")};
+  ASSERT_EQ(run("in.exr", "one.exr", flags + Words{"--threads", "1"}).code, 0);
+  ASSERT_EQ(run("in.exr", "two.exr", flags + Words{"--threads", "2"}).code, 0);
+  EXPECT_TRUE(read_file(path("one.exr")) == read_file(path("two.exr")));
+}
+
+/// What is far away is looked at in one pixel of 8 x 8, and the camera is fitted to those.
+TEST_F(Bands, WithoutARadiusAreNearlyWhatTheFrameIsInOnePiece) {
+  make_both("in.exr", {"--env", data("environments/sky.exr"), "--env-up", "z"});
+  EXPECT_LT(difference("ao.Y"), 0.01);
+  for (const char* c : {"R", "G", "B"}) {
+    EXPECT_LT(difference(std::string("direct.") + c), 0.03);
+    EXPECT_LT(difference(std::string("bounce.") + c), 0.10);
+    EXPECT_LT(difference(c), 0.03);
+  }
+}
+
+TEST_F(Bands, AreCroppedAsTheFrameIs) {
+  const Window display{0, 0, 300, 1500}, data{-20, -30, 310, 1570};
+  write("overscan.exr", data, display);
+  expect_same_bits("overscan.exr", {"--crop", "--radius", "0.2", "--thickness", "0.3", "--camera",
+                                    path("camera.json"), "--products", "ao,composite"});
+  EXPECT_EQ(ExrReader(path("bands.exr")).parts()[0].data_window, display);
+}
+
+TEST_F(Bands, KeepToTheLimit) {
+  ASSERT_EQ(run("in.exr", "out.exr", kLimit + Words{"--stats", path("stats.json")}).code, 0);
+  const nlohmann::json stats = parse_json(read_file(path("stats.json")))[0];
+  EXPECT_LT(stats["peak_rss_bytes"], 128 << 20);
+  EXPECT_EQ(stats["width"], kWindow.width());
+  EXPECT_EQ(stats["height"], kWindow.height());
+}
+
+/// Two frames are in memory at a time.
+TEST_F(Bands, OfASequenceHaveHalfOfIt) {
+  const Window window{0, 0, 320, 1000};
+  for (const char* name : {"s.1.exr", "s.2.exr"}) write(name, window, window);
+  const auto lines = [&](const Words& flags) {
+    return run("s.@.exr", "o.@.exr", flags + Words{"--dry-run", "--mem-limit", "192M"}).err;
+  };
+  EXPECT_THAT(lines({"--frames", "1-2", "--threads", "2"}), HasSubstr(" bands of "));
+  EXPECT_THAT(lines({"--frames", "1-2", "--threads", "1"}), Not(HasSubstr(" bands of ")));
+}
+
+TEST_F(Bands, OfAFrameThatIsDescribed) {
+  const Finished done = run_tool(Words{"info", path("in.exr")} + kLimit);
+  EXPECT_EQ(done.code, 0);
+  EXPECT_THAT(done.out, AllOf(HasSubstr("in.exr: 320 x 1600"), HasSubstr(" bands of ")));
+}
+
+TEST_F(Bands, RefuseWhatNeedsTheWholeFrame) {
+  const auto refused = [&](const Words& flags, const std::string& what) {
+    SCOPED_TRACE(what);
+    const Finished done = run("in.exr", "no.exr", kLimit + flags);
+    EXPECT_EQ(done.code, 2);
+    EXPECT_THAT(done.error_line(), AllOf(HasSubstr("in.exr"), HasSubstr(what + " needs all of"),
+                                         HasSubstr("--mem-limit")));
+    EXPECT_FALSE(std::filesystem::exists(path("no.exr")));
+  };
+  refused({"--method", "gtao"}, "method gtao");
+  refused({"--keep-channels"}, "--keep-channels");
+  refused({"--downsample", "2"}, "--downsample");
+  refused({"--products", "ao,guessed"}, "the product guessed");
+  refused({"--error", "0.1"}, "the error");
+  refused({"--save", "ao=" + path("ao.png")}, "ao.png");
+  refused({"--also", path("in.exr")}, "--also and --neighbours");
+}
+
+TEST_F(Bands, NeedSomeMemory) {
+  const Finished done = run("in.exr", "no.exr", {"--mem-limit", "64M"});
+  EXPECT_EQ(done.code, 2);
+  EXPECT_THAT(done.error_line(), AllOf(HasSubstr("in.exr: 320 x 1600 pixels take 0.1"),
+                                       HasSubstr("raise --mem-limit")));
+}
+
+}  // namespace
+}  // namespace ssdo::test
