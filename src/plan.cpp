@@ -205,9 +205,10 @@ void explain_measured(Plan& plan, const Scene& scene) {
 void explain_thickness(Plan& plan, const ModelOptions& model) {
   if (!plan.method->takes.thickness) return;
   plan.reasons.push_back(
-      model.thickness ? fmt::format("thickness {:.4g}: as given", *model.thickness)
-                      : std::string("thickness: solids are as thick as they appear wide, and "
-                                    "surfaces continue behind them"));
+      model.thickness
+          ? fmt::format("thickness {:.4g}: as given", *model.thickness)
+          : std::string("thickness: solids are 0.85 times as thick as they appear wide, "
+                        "and surfaces continue behind them"));
 }
 
 void choose_march(Plan& plan, const ModelOptions& model) {

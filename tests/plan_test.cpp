@@ -297,7 +297,7 @@ TEST(Plan, SaysWhyItDecidedSo) {
       {"given thickness", {thickness}, "thickness 2: as given"},
       {"thickness of rays",
        {of_method("trace")},
-       "thickness: solids are as thick as they appear wide"},
+       "thickness: solids are 0.85 times as thick as they appear wide"},
       {"halves", {one_slice, to({"out.exr"}, {"error"})}, "2 slices: the noise is"},
       {"open", {open}, "surfaces end at the border of the frame: as asked"},
       {"roughness",

@@ -270,7 +270,7 @@ class Bitmask {
   /// Finds where suns are seen, and once more by other rays where the error is wanted. `past` is
   /// sun_past_beyond(). Members of the pattern look at different points of a sun's disc.
   void march_suns(float past, std::vector<SunPlanes>& found, std::vector<SunPlanes>& again) const {
-    const std::vector<DepthBounds> bounds = depth_bounds(march_scene_, scene_.solids);
+    const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
     for (const Sun& sun : scene_.light.suns) {
       const PassBeyond pass = pass_beyond(past, sun.held);
       const auto find = [&](const Window& to, RaySet set) {
@@ -315,7 +315,7 @@ class Bitmask {
       raster_.for_each_pixel(
           y, [&](std::size_t pixel, std::ptrdiff_t i) { roughness[i] = scene_.roughness[pixel]; });
     });
-    const std::vector<DepthBounds> bounds = depth_bounds(march_scene_, scene_.solids);
+    const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
     const ReflectionJob job{march_,        bounds, &roughness, kReflectionRays * request_.slices,
                             request_.seed, &open};
     for_each_band_of(

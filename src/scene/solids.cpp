@@ -4,11 +4,20 @@
 // largest error of all screen-space light: an order above sampling noise. Two guesses, both from
 // runs of pixels along a line of the frame that lie on one surface:
 //
-// - Things are as thick as they are wide. The width at a pixel is the least length, in space, of
-//   the runs through it in four directions (rows, columns, diagonals). A run that ends where
-//   something nearer begins shows only a part of the thing: it counts kPartlySeen times; one with
-//   both ends behind something, or at the frame's border, shows nothing of its width. So walls and
-//   grounds are endless, blades of grass are thin, and a box is as deep as it is wide.
+// - Things are kDepthOfWidth times as thick as they are wide. The width at a pixel is the least
+//   length, in space, of the runs through it in four directions (rows, columns, diagonals). A run
+//   that ends where something nearer begins shows only a part of the thing: it counts kPartlySeen
+//   times; one with both ends behind something, or at the frame's border, shows nothing of its
+//   width. So walls and grounds are endless, blades of grass are thin, and a box is about as deep
+//   as it is wide.
+//
+//   Boxes and posts are as deep as they are wide, a round thing is pi / 4 of that in the mean. With
+//   factors of 1, 0.9, 0.85, 0.8 and 0.7, means of bitmask over five scenes of Cycles: RMSE of ao
+//   0.0641, 0.0645, 0.0648, 0.0653 and 0.0669 at a small radius, 0.0832, 0.0824, 0.0822, 0.0822 and
+//   0.0829 at a large one, 0.1223, 0.1210, 0.1206, 0.1202 and 0.1198 without one; relative error of
+//   direct light 0.288, 0.284, 0.283, 0.281 and 0.279, of bounce 0.540, 0.535, 0.532, 0.530 and
+//   0.525. Of what a ball on the ground lights or leaves dark, 0.7 % of the frame's pixels are
+//   wrong with 1, 2.6 % with 0.85 and 4.7 % with 0.7.
 //
 // - Surfaces go on as a second layer. Where a run ends and something farther begins, the farther
 //   surface continues behind the run as its tangent plane. Each pixel takes the surface that
@@ -193,10 +202,10 @@ Solids guess_solids(const Geometry& geometry) {
   const Runs runs(geometry);
   for (std::size_t k = 0; k < kDirections.size(); ++k) {
     runs.for_each(k, [&](const Run& run) {
-      const float width = width_of(run, geometry, runs);
+      const float depth = kDepthOfWidth * width_of(run, geometry, runs);
       for (int i = 0; i < run.length; ++i) {
         float& least = thickness(run.x_at(i), run.y_at(i));
-        least = std::min(least, width);
+        least = std::min(least, depth);
       }
       continue_behind(run, true, geometry, runs, distance_px, second);
       continue_behind(run, false, geometry, runs, distance_px, second);

@@ -88,11 +88,6 @@ struct Solids {
     return !end.empty() && end[pixel] == Origin::measured;
   }
 
-  /// Whether that is more than a guess.
-  bool end_is_known(std::size_t pixel) const {
-    return !end.empty() && end[pixel] != Origin::guessed;
-  }
-
   /// The solid of a layer at a pixel that shows a surface.
   Solid at(int layer, std::size_t pixel) const {
     if (layer > 0) {
@@ -114,6 +109,9 @@ glm::vec3 point_behind(const Geometry& geometry, std::size_t pixel, float distan
 /// The normal of the solid of a layer at a pixel: that of its sender where it has one.
 glm::vec3 normal_of_solid(const Geometry& geometry, const Solids& solids, int layer,
                           std::size_t pixel);
+
+/// Depth that a thing is guessed to have, over the width that the frame shows.
+inline constexpr float kDepthOfWidth = 0.85f;
 
 /// What a frame alone suggests: how thick things are, and a second layer; see solids.cpp.
 Solids guess_solids(const Geometry& geometry);

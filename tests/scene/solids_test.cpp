@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a frame alone suggests: things are as thick as they are wide, and surfaces go on behind.
+// What a frame alone suggests: things are 0.85 times as thick as they are wide, and surfaces go on
+// behind.
 #include "scene/solids.h"
 
 #include <gtest/gtest.h>
@@ -57,7 +58,7 @@ TEST(Solids, OfAPlaneAreEndlessAndOfOneLayer) {
   }
 }
 
-TEST(Solids, AreAsThickAsTheirLeastWidth) {
+TEST(Solids, AreAsThickAsTheirLeastWidthSuggests) {
   for (const bool orthographic : {false, true}) {
     const Geometry g =
         geometry_of(all_of({leaning_wall(), card(0.3, 0.4, 0.9)}), view(orthographic), kWindow);
@@ -72,9 +73,9 @@ TEST(Solids, AreAsThickAsTheirLeastWidth) {
       // Diagonal runs cut corners off.
       const bool corner = std::abs(g.surfel[i].position.y) > 0.9 - 0.8;
       if (!corner) {
-        EXPECT_NEAR(solids.thickness[i], 0.8, 1.01 * pixel);
+        EXPECT_NEAR(solids.thickness[i], kDepthOfWidth * 0.8, 1.01 * pixel);
       }
-      EXPECT_LE(solids.thickness[i], 0.8 + 1.01 * pixel);
+      EXPECT_LE(solids.thickness[i], kDepthOfWidth * 0.8 + 1.01 * pixel);
       ++pixels;
     }
     EXPECT_NEAR(pixels * pixel * pixel, 0.8 * 1.8, 0.1);
@@ -93,8 +94,8 @@ TEST(Solids, CountThreeTimesWhatIsSeenOfThemBesideSomethingNearer) {
   const double pixel = 1 / g.camera.fx;
   const std::size_t of_post = g.surfel.index(int(g.camera.cx + 0.55 / pixel), 45),
                     of_near_post = g.surfel.index(int(g.camera.cx), 45);
-  EXPECT_NEAR(solids.thickness[of_post], 3 * seen, 3.01 * pixel);
-  EXPECT_NEAR(solids.thickness[of_near_post], 0.6, 1.01 * pixel);
+  EXPECT_NEAR(solids.thickness[of_post], kDepthOfWidth * 3 * seen, 3.01 * pixel);
+  EXPECT_NEAR(solids.thickness[of_near_post], kDepthOfWidth * 0.6, 1.01 * pixel);
 }
 
 TEST(Solids, BehindACardAreTheTangentPlaneThatReachesIt) {
@@ -124,7 +125,7 @@ TEST(Solids, AreOfOneLayerBeforeTheBackground) {
   const Geometry g = geometry_of(card(0, 0.4, 0.9), view(false), kWindow);
   const Solids solids = guess_solids(g);
   const std::size_t middle = g.surfel.index(60, 45);
-  EXPECT_NEAR(solids.thickness[middle], 0.8, 1.01 * 5 / g.camera.fx);
+  EXPECT_NEAR(solids.thickness[middle], kDepthOfWidth * 0.8, 1.01 * 5 / g.camera.fx);
   EXPECT_FALSE(solids.at(1, middle).exists());
 }
 

@@ -21,9 +21,8 @@ class DepthBounds {
   /// Sides of cells are powers of two, from kSmallest to kLargest; their exponents.
   static constexpr int kSmallest = 2, kLargest = 8;
 
-  /// Of a layer of the scene, which the solids have made. What is not known to be as deep as these
-  /// say is taken to be less so: see depth_bounds.cpp.
-  DepthBounds(const MarchScene& scene, const Solids& solids, int layer);
+  /// Of a layer of the scene.
+  DepthBounds(const MarchScene& scene, const MarchLayer& layer);
 
   /// Pixel (0, 0) of the raster in the grid of cells. Cells lie in the display window alike
   /// whatever part of it the raster is.
@@ -55,7 +54,7 @@ class DepthBounds {
   Cell load(int size, int column, int row) const;
   void store(int size, int column, int row, const Cell& cell);
   std::size_t index(int size, int column, int row) const;
-  void gather_pixels(const MarchScene& scene, const Solids& solids, int layer, int row);
+  void gather_pixels(const MarchScene& scene, const MarchLayer& layer, int row);
   void gather_cells(int size, int row);
 
   int first_x_, first_y_, columns_, rows_;
@@ -64,6 +63,6 @@ class DepthBounds {
 };
 
 /// Those of every layer of a scene.
-std::vector<DepthBounds> depth_bounds(const MarchScene& scene, const Solids& solids);
+std::vector<DepthBounds> depth_bounds(const MarchScene& scene);
 
 }  // namespace ssdo

@@ -94,7 +94,8 @@ struct Extension {
 };
 
 /// Extends the surface at the border along its tangent plane, within the radius and by at most
-/// `widths` times its own thickness (things are taken to be as thick as wide, scene/solids.cpp).
+/// `widths` times its own thickness (things are taken to be about as thick as wide,
+/// scene/solids.cpp).
 template <bool kOrthographic>
 HWY_INLINE Extension extend(const March& march, const MarchReceiver& p, const SideFrame& side,
                             const Border& border, float widths) {

@@ -2,8 +2,8 @@
 //
 // Measured solids know where their fronts are, but often neither their backs nor what is behind
 // them. Both are guessed from the frame with what is in front of them taken away: there the same
-// rules hold as in any frame, that things are as thick as they are wide and that surfaces go on
-// behind them (solids.cpp). Layer by layer, k = 1, 2, ...:
+// rules hold as in any frame, that things are about as thick as they are wide and that surfaces go
+// on behind them (solids.cpp). Layer by layer, k = 1, 2, ...:
 //
 // - The frame without what is in front of its measured solids k shows these, and elsewhere what it
 //   showed before. From it come their normals, their guessed thicknesses, and the guess of what is
