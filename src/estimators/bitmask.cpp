@@ -309,7 +309,7 @@ class Bitmask {
       for (int c = 0; c < 3; ++c) {
         sent_border[c] = march_scene_.border.gather([&](int x, int y) {
           const float both = sent[std::size_t(c)][layout_.index(x, y)];
-          return two_sided ? front_side(both) : both;
+          return two_sided ? first_of_two(both) : both;
         });
       }
       const bool wants_error = request_.products.error && pass == request_.bounces;

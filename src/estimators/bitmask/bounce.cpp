@@ -33,55 +33,40 @@ struct Gathered {
 HWY_INLINE Gathered no_light() { return {set(glm::vec3(0)), set(0)}; }
 
 /// Of what both sides send.
-HWY_INLINE V front_of(V sides) {
-  return hn::BitCast(D(), hn::And(hn::BitCast(DU(), sides), set_bits(kFrontSide)));
-}
 HWY_INLINE V3 front_of(const V3& sides) {
-  return {front_of(sides.x), front_of(sides.y), front_of(sides.z)};
+  return {first_of_two(sides.x), first_of_two(sides.y), first_of_two(sides.z)};
 }
 HWY_INLINE V3 back_of(const V3& sides) {
-  const auto back = [](V s) HWY_ATTR {
-    return hn::BitCast(D(), hn::ShiftLeft<16>(hn::BitCast(DU(), s)));
-  };
-  return {back(sides.x), back(sides.y), back(sides.z)};
+  return {second_of_two(sides.x), second_of_two(sides.y), second_of_two(sides.z)};
 }
 
 /// Whether the surface at `q`, `step` away from the receiver, turns to it the side that the camera
-/// sees.
+/// sees: its tangent plane is in front of the receiver in the receiver's pixel.
 template <bool kOrthographic>
 HWY_INLINE M faces(const MarchScene& scene, std::ptrdiff_t q, const SliceStep& step,
                    const MarchReceiver& p) {
-  const V depth = load(scene.depth(), q);
-  V x = hn::MulAdd(set(step.dx), set(1 / scene.fx), p.slope_x),
-    y = hn::MulAdd(set(step.dy), set(-1 / scene.fy), p.slope_y);
-  if constexpr (!kOrthographic) x = x * depth, y = y * depth;
-  const V3 from_q{p.position.x - x, p.position.y - y, p.position.z + depth};
-  return dot(load(scene.normal, q), from_q) > set(0);
+  const V p_depth = set(0) - p.position.z, nearer = nearer_over(scene, q, step);
+  return load(scene.depth(), q) > p_depth - (kOrthographic ? nearer : p_depth * nearer);
 }
 
 /// What the solids of layer `layer` send that the pixels at `step` from the receivers hold, in the
 /// lanes of `bits`: what the pixels that show them do, if any.
 HWY_INLINE V3 sent_behind(const BounceJob& job, int layer, const Place& place,
                           const SliceStep& step, VU bits) {
+  const DI di;
+  const VI zero = set_int(0);
   const Interleaving& layout = job.march.scene.layout;
   const Plane<int>& senders = job.solids.behind[std::size_t(layer - 1)].sender;
-  const int* row = &senders(0, place.y + step.row);
-  const int first =
-      place.column * Interleaving::kPeriod + place.column_phase - layout.phase() + int(step.dx);
-  alignas(64) std::uint32_t met[kLanes];
-  hn::Store(bits, DU(), met);
-  alignas(64) float radiance[3][kLanes] = {};
-  for (int lane = 0; lane < kLanes; ++lane) {
-    if (met[lane] == 0) continue;
-    const int sender = row[first + lane * Interleaving::kPeriod];
-    if (sender < 0) continue;
-    const std::ptrdiff_t from = layout.index(sender % layout.width(), sender / layout.width());
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float sent = (*job.sent)[c][from];
-      radiance[c][lane] = job.two_sided ? front_side(sent) : sent;
-    }
-  }
-  return {load(radiance[0]), load(radiance[1]), load(radiance[2])};
+  const VI column = hn::ConvertTo(di, lane_columns(layout, place.column_phase, place.column)) +
+                    set_int(int(step.dx));
+  const auto met = hn::BitCast(di, bits) != zero;
+  const VI sender =
+      hn::GatherIndex(di, &senders(0, place.y + step.row), hn::IfThenElseZero(met, column));
+  const auto shown = hn::AndNot(sender < zero, met);
+  const VI from = index_of_pixel(layout, hn::IfThenElseZero(shown, sender));
+  const V3 sent{gather((*job.sent)[0].data(), from), gather((*job.sent)[1].data(), from),
+                gather((*job.sent)[2].data(), from)};
+  return if_then_else_zero(hn::RebindMask(D(), shown), job.two_sided ? front_of(sent) : sent);
 }
 
 /// Measure of a set of sectors: the integral of the cosine to the shading normal.
@@ -148,6 +133,7 @@ void gather_light(const BounceJob& job, const Window& part) {
                 [&](int layer, std::ptrdiff_t q, const SliceStep& step, VU bits) HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {
                     if (layer > 0) return sent_behind(job, layer, p.place, step, bits);
+                    for (const InterleavedPlane& channel : *job.sent) prefetch_next(channel, q);
                     const V3 sent = load(*job.sent, q);
                     if (!job.two_sided) return sent;
                     const M seen = faces<kOrthographic>(march.scene, q, step, p);
