@@ -233,8 +233,17 @@ class Bitmask {
                          InterleavedPlane(layout_)};
         const std::vector<RayDirections> directions =
             directions_to(sun, rays_to_sun(request_.slices), request_.seed, set);
-        const SunJob job{march_, bounds,        directions,     &sun,
-                         pass,   &planes.share, &planes.weight, &planes.width_px};
+        const bool one_ray = directions.size() == 1;
+        InterleavedPlane first;
+        if (one_ray) first = raster_.unknown();
+        const SunJob job{march_,        bounds,         directions,
+                         &sun,          pass,           one_ray ? &first : nullptr,
+                         &planes.share, &planes.weight, &planes.width_px};
+        if (one_ray) {
+          for_each_tall_part_of(
+              grown(to, Interleaving::kPeriod),
+              [&](const Window& part) { march_first_rays(job, part); }, progress_);
+        }
         for_each_tall_part_of(
             to, [&](const Window& part) { march_sun(job, part); }, progress_);
         return planes;

@@ -97,6 +97,9 @@ struct SunJob {
   const std::vector<RayDirections>& directions;  ///< of each ray; unit, to points of the sun
   const Sun* sun;
   PassBeyond pass;
+  /// Of the pixels whose rays go first, in pixels, where their ray is blocked; negative: nowhere;
+  /// not-a-number: they have none. Null: all rays go at once.
+  InterleavedPlane* first;
   InterleavedPlane* share;              ///< 0..1, of what a surface of any normal would get
   InterleavedPlane *weight, *width_px;  ///< those of ShadowDraw
 };
@@ -118,6 +121,8 @@ void march_bounce(const BounceJob& job, const Window& part);
 void spread_bounce(const BounceJob& job, const Window& part);
 /// Of the pixels that march, after spread_bounce everywhere.
 void finish_bounce(const BounceJob& job, const Window& part);
+/// Fills SunJob::first. Before march_sun of the pixels around.
+void march_first_rays(const SunJob& job, const Window& part);
 void march_sun(const SunJob& job, const Window& part);
 void march_reflection(const ReflectionJob& job, const Window& part);
 void find_senders(const SenderJob& job, const Window& part);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <limits>
 
 #include "estimators/bitmask/march_scene.h"
 #include "math/light_range.h"
@@ -21,6 +22,15 @@ class Raster {
   /// One colour for each pixel, not initialised.
   InterleavedVectors make_color() const {
     return {InterleavedPlane(layout_), InterleavedPlane(layout_), InterleavedPlane(layout_)};
+  }
+
+  /// Not-a-number everywhere, in the padding too.
+  InterleavedPlane unknown() const {
+    InterleavedPlane plane(layout_);
+    for_each_row(layout_.height(), [&](int y) {
+      plane.fill_row(layout_, y, std::numeric_limits<float>::quiet_NaN());
+    });
+    return plane;
   }
 
   InterleavedVectors black() const {
