@@ -24,8 +24,9 @@ constexpr int kRowsAtOnce = 256;
 /// the frame would be in one piece, but rows that are read for several bands cost time.
 constexpr int kMarches[] = {512, 256, 128};
 
-/// Rows beyond the end of a march that samples in blocks of pixels may look at.
-constexpr int kBeside = 8;
+/// Rows beyond the end of a march that are looked at: samples lie in blocks of pixels, and light
+/// comes from pixels around them.
+constexpr int kBeside = 16;
 
 class Planner {
  public:

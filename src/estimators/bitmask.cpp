@@ -73,8 +73,8 @@ constexpr int kReflectionRays = 2;
 constexpr int bounce_spacing(int slices) { return slices < 4 ? 2 : 1; }
 constexpr int bounce_slices(int slices) { return slices < 4 ? 5 * slices / 2 : slices; }
 
-/// Rows around a pixel whose light it may send on as its own, and takes from those that gather.
-constexpr int kSendersAround = 4;
+/// Rows around a pixel to which it looks for what it sends and for the first rays to suns.
+constexpr int kRowsAround = 12;
 
 /// The method on one frame.
 class Bitmask {
@@ -134,6 +134,10 @@ class Bitmask {
                                raster_.in_whole_rows(layer.thickness, raster)});
     }
     planes.normal = raster_.in_whole_rows(s.normal, raster);
+    planes.tilt = raster_.in_whole_rows(s.tilt, raster, [](float both) {
+      constexpr float kPixels = 1.0f / Interleaving::kPeriod;  // steps are in pixels of the frame
+      return two_in_one(kPixels * first_of_two(both), kPixels * second_of_two(both));
+    });
     std::vector<DepthBounds> bounds = depth_bounds(s, scene_.solids);
     const float ao = mean_ao(s, scene_.geometry.display, request_.radius);
     return {std::move(march_scene_), raster, std::move(planes), std::move(bounds), scene_.solids,
@@ -278,8 +282,17 @@ class Bitmask {
                          InterleavedPlane(layout_)};
         const std::vector<RayDirections> directions =
             directions_to(sun, rays_to_sun(request_.slices), request_.seed, set);
-        const SunJob job{march_, bounds,        directions,     &sun,
-                         pass,   &planes.share, &planes.weight, &planes.width_px};
+        const bool one_ray = directions.size() == 1;
+        InterleavedPlane first;
+        if (one_ray) first = raster_.unknown();
+        const SunJob job{march_,        bounds,         directions,
+                         &sun,          pass,           one_ray ? &first : nullptr,
+                         &planes.share, &planes.weight, &planes.width_px};
+        if (one_ray) {
+          for_each_tall_part_of(
+              grown(to, Interleaving::kPeriod),
+              [&](const Window& part) { march_first_rays(job, part); }, progress_);
+        }
         for_each_tall_part_of(
             to, [&](const Window& part) { march_sun(job, part); }, progress_);
         return planes;
@@ -356,7 +369,7 @@ class Bitmask {
       for (int c = 0; c < 3; ++c) {
         sent_border[c] = march_scene_.border.gather([&](int x, int y) {
           const float both = sent[std::size_t(c)][layout_.index(x, y)];
-          return two_sided ? front_side(both) : both;
+          return two_sided ? first_of_two(both) : both;
         });
       }
       if (kept_light_in_) {
@@ -444,7 +457,7 @@ int reach_rows(const Scene& scene, const Request& request) {
       }
     }
   }
-  return std::min(int(std::ceil(rows)) + kSendersAround, most);
+  return std::min(int(std::ceil(rows)) + kRowsAround, most);
 }
 
 }  // namespace

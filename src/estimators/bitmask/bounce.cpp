@@ -9,8 +9,6 @@
 #define HWY_TARGET_INCLUDE "estimators/bitmask/bounce.cpp"
 #include <hwy/foreach_target.h>
 
-#include <algorithm>
-
 #include "estimators/bitmask/moments-inl.h"
 #include "estimators/bitmask/side-inl.h"
 
@@ -35,70 +33,68 @@ struct Gathered {
 HWY_INLINE Gathered no_light() { return {set(glm::vec3(0)), set(0)}; }
 
 /// Of what both sides send.
-HWY_INLINE V front_of(V sides) {
-  return hn::BitCast(D(), hn::And(hn::BitCast(DU(), sides), set_bits(kFrontSide)));
-}
 HWY_INLINE V3 front_of(const V3& sides) {
-  return {front_of(sides.x), front_of(sides.y), front_of(sides.z)};
+  return {first_of_two(sides.x), first_of_two(sides.y), first_of_two(sides.z)};
 }
 HWY_INLINE V3 back_of(const V3& sides) {
-  const auto back = [](V s) HWY_ATTR {
-    return hn::BitCast(D(), hn::ShiftLeft<16>(hn::BitCast(DU(), s)));
-  };
-  return {back(sides.x), back(sides.y), back(sides.z)};
+  return {second_of_two(sides.x), second_of_two(sides.y), second_of_two(sides.z)};
 }
 
 /// Whether the surface at `q`, `step` away from the receiver, turns to it the side that the camera
-/// sees.
+/// sees: its tangent plane is in front of the receiver in the receiver's pixel.
 template <bool kOrthographic>
-HWY_INLINE M faces(const MarchScene& scene, const MarchPlanes& planes, std::ptrdiff_t q,
-                   const SliceStep& step, const MarchReceiver& p) {
-  const V depth = load(planes.depth(), q);
-  V x = hn::MulAdd(set(step.dx), set(1 / scene.fx), p.slope_x),
-    y = hn::MulAdd(set(step.dy), set(-1 / scene.fy), p.slope_y);
-  if constexpr (!kOrthographic) x = x * depth, y = y * depth;
-  const V3 from_q{p.position.x - x, p.position.y - y, p.position.z + depth};
-  return dot(load(planes.normal, q), from_q) > set(0);
+HWY_INLINE M faces(const MarchPlanes& planes, std::ptrdiff_t q, const SliceStep& step,
+                   const MarchReceiver& p) {
+  const V p_depth = set(0) - p.position.z, nearer = nearer_over(planes, q, step);
+  return load(planes.depth(), q) > p_depth - (kOrthographic ? nearer : p_depth * nearer);
 }
 
-/// The pixel of the overview that stands for a pixel of the raster.
-HWY_INLINE std::ptrdiff_t index_in_overview(const BounceJob& job, int x, int y) {
+/// The pixels of the overview that stand for pixels of the raster.
+HWY_INLINE Pixels in_overview(const BounceJob& job, const Pixels& at) {
   const MarchScene& scene = job.march.scene;
   const FarRaster& far = job.overview->raster;
-  const int column = ((x + scene.first_x) >> Interleaving::kShift) - far.first_x,
-            row = ((y + scene.first_y) >> Interleaving::kShift) - far.first_y;
-  return far.index(std::clamp(column, 0, far.width - 1), std::clamp(row, 0, far.height - 1));
+  const auto block = [](VI pixel, int first, int far_first, int size) HWY_ATTR {
+    const VI of_frame = hn::ShiftRight<Interleaving::kShift>(pixel + set_int(first));
+    return hn::Clamp(of_frame - set_int(far_first), set_int(0), set_int(size - 1));
+  };
+  return {block(at.x, scene.first_x, far.first_x, far.width),
+          block(at.y, scene.first_y, far.first_y, far.height)};
+}
+
+HWY_INLINE V3 gather(const InterleavedVectors& color, VI at) {
+  return {gather(color[0].data(), at), gather(color[1].data(), at), gather(color[2].data(), at)};
 }
 
 /// What the solids of layer `layer` send that the pixels at `step` from the receivers hold, in the
 /// lanes of `bits`: what the pixels that show them do, if any.
 HWY_INLINE V3 sent_behind(const BounceJob& job, bool far, int layer, const Place& place,
                           const SliceStep& step, VU bits) {
+  const DI di;
+  const VI zero = set_int(0);
   const Interleaving& layout = job.march.scene.layout;
-  const Solids& solids = far ? job.overview->solids : job.solids;
-  const Plane<int>& senders = solids.behind[std::size_t(layer - 1)].sender;
+  const Plane<int>& senders =
+      (far ? job.overview->solids : job.solids).behind[std::size_t(layer - 1)].sender;
   const Sampled at = far ? in_overview(job.march, place) : in_raster(job.march, place);
-  const int lane_step = far ? 1 : Interleaving::kPeriod;
-  const int first = far ? at.column + step.column_shift
-                        : place.column * Interleaving::kPeriod + place.column_phase -
-                              layout.phase() + int(step.dx);
-  const int* row = &senders(0, at.row + step.row);
-  alignas(64) std::uint32_t met[kLanes];
-  hn::Store(bits, DU(), met);
-  alignas(64) float radiance[3][kLanes] = {};
-  for (int lane = 0; lane < kLanes; ++lane) {
-    if (met[lane] == 0) continue;
-    const int sender = row[first + lane * lane_step];
-    if (sender < 0) continue;
-    const int x = sender % senders.width, y = sender / senders.width;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float sent = far                    ? job.far->sent[c][job.overview->raster.index(x, y)]
-                         : job.lit.contains(x, y) ? (*job.sent)[c][layout.index(x, y)]
-                                                : job.far->sent[c][index_in_overview(job, x, y)];
-      radiance[c][lane] = job.two_sided ? front_side(sent) : sent;
+  const VI column = far ? hn::Iota(di, at.column + step.column_shift)
+                        : hn::ConvertTo(di, lane_columns(layout, place.column_phase, place.column)) +
+                              set_int(int(step.dx));
+  const auto met = hn::BitCast(di, bits) != zero;
+  const VI sender =
+      hn::GatherIndex(di, &senders(0, at.row + step.row), hn::IfThenElseZero(met, column));
+  const auto shown = hn::AndNot(sender < zero, met);
+  const Pixels from = pixels_of(hn::IfThenElseZero(shown, sender), senders.width);
+  V3 sent;
+  if (far) {
+    sent = gather(job.far->sent, index_of(job.overview->raster, from));
+  } else {
+    sent = gather(*job.sent, index_of(layout, from));
+    if (job.overview) {
+      const auto lit = hn::And(from.y >= set_int(job.lit.y0), from.y < set_int(job.lit.y1));
+      const VI beyond = index_of(job.overview->raster, in_overview(job, from));
+      sent = if_then_else(hn::RebindMask(D(), lit), sent, gather(job.far->sent, beyond));
     }
   }
-  return {load(radiance[0]), load(radiance[1]), load(radiance[2])};
+  return if_then_else_zero(hn::RebindMask(D(), shown), job.two_sided ? front_of(sent) : sent);
 }
 
 /// Measure of a set of sectors: the integral of the cosine to the shading normal.
@@ -166,10 +162,12 @@ void gather_light(const BounceJob& job, const Window& part) {
                     HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {
                     if (layer > 0) return sent_behind(job, far, layer, p.place, step, bits);
-                    const V3 sent = load(far ? job.far->sent : *job.sent, q);
+                    const InterleavedVectors& light = far ? job.far->sent : *job.sent;
+                    for (const InterleavedPlane& channel : light) prefetch_next(channel, q);
+                    const V3 sent = load(light, q);
                     if (!job.two_sided) return sent;
                     const MarchPlanes& planes = far ? march.far->planes : march.scene;
-                    const M seen = faces<kOrthographic>(march.scene, planes, q, step, p);
+                    const M seen = faces<kOrthographic>(planes, q, step, p);
                     return if_then_else(seen, front_of(sent), back_of(sent));
                   });
                 },

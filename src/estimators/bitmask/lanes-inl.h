@@ -37,11 +37,62 @@ HWY_INLINE VU bits_from(VU first) {
 #endif
 }
 
+/// 1 / x, off by a unit or two in the last place: a quarter of the time of a division. Infinite or
+/// not-a-number for 0.
+HWY_INLINE V reciprocal(V x) {
+#if HWY_TARGET == HWY_SCALAR
+  return set(1) / x;
+#else
+  const V near = hn::ApproximateReciprocal(x);
+  return hn::MulAdd(near, hn::NegMulAdd(x, near, set(1)), near);  // a step of Newton's
+#endif
+}
+
 /// Columns of the picture that the lanes stand for.
 HWY_INLINE V lane_columns(const Interleaving& layout, int column_phase, int column) {
   constexpr int kPeriod = Interleaving::kPeriod;
   return hn::ConvertTo(D(), hn::Iota(DI(), 0) * set_int(kPeriod) +
                                 set_int(column * kPeriod + column_phase - layout.phase()));
+}
+
+/// As the functions of the same names in march_scene.h.
+HWY_INLINE V two_in_one(V first, V second) {
+  const auto rounded = [](V v) HWY_ATTR { return hn::BitCast(DU(), v) + set_bits(kHalfOfCut); };
+  return hn::BitCast(D(), hn::Or(hn::And(rounded(first), set_bits(kFirstOfTwo)),
+                                 hn::ShiftRight<16>(rounded(second))));
+}
+HWY_INLINE V first_of_two(V both) {
+  return hn::BitCast(D(), hn::And(hn::BitCast(DU(), both), set_bits(kFirstOfTwo)));
+}
+HWY_INLINE V second_of_two(V both) {
+  return hn::BitCast(D(), hn::ShiftLeft<16>(hn::BitCast(DU(), both)));
+}
+
+/// Pixels of a picture.
+struct Pixels {
+  VI x, y;
+};
+
+/// The pixels with these numbers, row by row.
+HWY_INLINE Pixels pixels_of(VI number, int width) {
+  const DI di;
+  const VI wide = set_int(width), one = set_int(1);
+  VI y = hn::ConvertTo(di, hn::ConvertTo(D(), number) * set(1 / float(width)));
+  // Rounding may have led to the row above or below.
+  y = hn::IfThenElse(number < y * wide, y - one, y);
+  y = hn::IfThenElse(number < (y + one) * wide, y, y + one);
+  return {number - y * wide, y};
+}
+
+HWY_INLINE VI index_of(const Interleaving& layout, const Pixels& at) {
+  const VI x = at.x + set_int(layout.phase());
+  return (hn::ShiftLeft<Interleaving::kShift>(at.y) +
+          hn::And(x, set_int(Interleaving::kPeriod - 1))) *
+             set_int(int(layout.stride())) +
+         hn::ShiftRight<Interleaving::kShift>(x) + set_int(Interleaving::kPad);
+}
+HWY_INLINE VI index_of(const FarRaster& far, const Pixels& at) {
+  return at.y * set_int(int(far.layout.stride())) + at.x + set_int(Interleaving::kPad);
 }
 
 /// Consecutive values in the order of the march, from index `i` on.
@@ -163,6 +214,13 @@ HWY_INLINE MarchReceiver load_receiver(const MarchScene& scene, const Place& pla
 /// Normals of a vector of pixels; (0, 0, 1) in lanes without a surface.
 HWY_INLINE V3 usable(const V3& normals, M valid) {
   return if_then_else(valid, normals, set(glm::vec3(0, 0, 1)));
+}
+
+/// How much nearer the tangent planes of the pixels at index `q` come over a step to them, in the
+/// units of MarchScene::tilt.
+HWY_INLINE V nearer_over(const MarchPlanes& planes, std::ptrdiff_t q, const SliceStep& step) {
+  const V tilt = load(planes.tilt, q);
+  return dot(V2{first_of_two(tilt), second_of_two(tilt)}, V2{set(step.dx), set(step.dy)});
 }
 
 /// Height of the surface at `depth`, (dx, dy) pixels from the receiver.

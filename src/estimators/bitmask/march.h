@@ -2,8 +2,6 @@
 #pragma once
 
 #include <array>
-#include <bit>
-#include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -75,18 +73,6 @@ struct FoundShares {
   const std::vector<InterleavedPlane>& suns;
 };
 
-/// What a surface sends from its front and from its back may stand in the room of one float: the
-/// upper 16 bits of each. They are rounded, so that means are right; an error of 0.4 % at most is
-/// little beside the noise of what arrives.
-inline constexpr std::uint32_t kFrontSide = 0xffff0000u;
-
-/// What is added to the bits of a float before the others are cut off.
-inline constexpr std::uint32_t kHalfOfCut = 0x8000u;
-
-inline float front_side(float both) {
-  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(both) & kFrontSide);
-}
-
 /// The radiance that each pixel sends to others, and that of its back side.
 struct SenderJob {
   const MarchScene& scene;
@@ -94,7 +80,7 @@ struct SenderJob {
   const Plane<glm::vec3>& albedo;
   const InterleavedVectors* bounce;  ///< that has arrived so far; null: none
   InterleavedVectors* sent;
-  bool two_sided;  ///< `sent` holds both sides; else they send the same
+  bool two_sided;  ///< `sent` holds front and back, as two_in_one(); else they send the same
 };
 
 /// The light that each pixel receives from the first surface in every direction: the mean radiance
@@ -133,6 +119,9 @@ struct SunJob {
   const std::vector<RayDirections>& directions;  ///< of each ray; unit, to points of the sun
   const Sun* sun;
   PassBeyond pass;
+  /// Of the pixels whose rays go first, in pixels, where their ray is blocked; negative: nowhere;
+  /// not-a-number: they have none. Null: all rays go at once.
+  InterleavedPlane* first;
   InterleavedPlane* share;              ///< 0..1, of what a surface of any normal would get
   InterleavedPlane *weight, *width_px;  ///< those of ShadowDraw
 };
@@ -154,6 +143,8 @@ void march_bounce(const BounceJob& job, const Window& part);
 void spread_bounce(const BounceJob& job, const Window& part);
 /// Of the pixels that march, after spread_bounce everywhere.
 void finish_bounce(const BounceJob& job, const Window& part);
+/// Fills SunJob::first. Before march_sun of the pixels around.
+void march_first_rays(const SunJob& job, const Window& part);
 void march_sun(const SunJob& job, const Window& part);
 void march_reflection(const ReflectionJob& job, const Window& part);
 void find_senders(const SenderJob& job, const Window& part);

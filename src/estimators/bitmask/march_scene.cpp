@@ -41,12 +41,20 @@ class Cells {
     Cell cell;
     const Surfel& s = g_.surfel(x, y);
     if (!s.is_usable()) return cell;
-    const glm::vec2 slope((float(x + scene_.first_x) - scene_.axis_x) / scene_.fx,
-                          (scene_.axis_y - float(y + scene_.first_y)) / scene_.fy);
+    const glm::vec2 slope = slope_at(x, y);
     if (!scene_.orthographic) cell.ray_length = std::sqrt(1 + glm::dot(slope, slope));
     cell.normal = normal;
     cell.depth = depth_on_ray(s, cell.normal, slope, cell.ray_length);
     return cell;
+  }
+
+  /// As MarchScene has it.
+  float tilt(const Cell& cell, int x, int y) const {
+    const glm::vec2 slope = slope_at(x, y);
+    const glm::vec3 ray(scene_.orthographic ? glm::vec2(0) : slope, -1.0f);
+    // A surface that turns away from the viewer is a line in its pixel.
+    const float per_ray = 1 / std::min(glm::dot(cell.normal, ray), -1e-9f);
+    return two_in_one(cell.normal.x * per_ray / scene_.fx, -cell.normal.y * per_ray / scene_.fy);
   }
 
   Span span(const Cell& cell, const Solid& solid) const {
@@ -61,6 +69,12 @@ class Cells {
   }
 
  private:
+  /// Of the ray through a pixel's middle.
+  glm::vec2 slope_at(int x, int y) const {
+    return {(float(x + scene_.first_x) - scene_.axis_x) / scene_.fx,
+            (scene_.axis_y - float(y + scene_.first_y)) / scene_.fy};
+  }
+
   /// Depth at which the ray through a pixel's middle, which has this slope and length per unit of
   /// depth, meets the tangent plane of what the pixel shows.
   float depth_on_ray(const Surfel& s, const glm::vec3& normal, const glm::vec2& slope,
@@ -91,7 +105,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                             (g.window.x0 - g.display.x0) & (kPeriod - 1));
   const auto plane = [&] { return InterleavedPlane(layout); };
   const Window frame = g.part_of.value_or(g.window);
-  MarchScene scene{{{}, {plane(), plane(), plane()}},
+  MarchScene scene{{{}, {plane(), plane(), plane()}, plane()},
                    layout,
                    {receivers.x0 - g.window.x0, receivers.y0 - g.window.y0,
                     receivers.x1 - g.window.x0, receivers.y1 - g.window.y0},
@@ -130,6 +144,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
         const Cell cell = x >= 0 && x < g.surfel.width ? cells_of_row[std::size_t(x)] : Cell();
         const std::ptrdiff_t i = row + column;
         for (std::size_t c = 0; c < 3; ++c) scene.normal[c][i] = cell.normal[int(c)];
+        scene.tilt[i] = cells.tilt(cell, x, y);
         for (int k = 0; k < solids.layers(); ++k) {
           const Span span =
               cell.is_surface() ? cells.span(cell, solids.at(k, g.surfel.index(x, y))) : Span();

@@ -46,40 +46,24 @@ HWY_INLINE SlicePoint end_at(const MarchReceiver& p, const SideFrame& side, V sh
 /// mean errors of ao and direct light by less than 0.001.
 constexpr float kMostDeepening = 2;
 
-/// The piece that a pixel with the normal `m` represents. `rise` and `across` are those of its
-/// middle.
+/// The piece that the pixel at `i` represents. `rise` and `across` are those of its middle.
 template <bool kOrthographic>
-HWY_INLINE Piece piece_at(const MarchScene& scene, const V3& m, const MarchReceiver& p,
-                          const SideFrame& side, const SliceStep& step, V depth, V rise,
-                          V across) {
-  const V ex = set(step.dx / scene.fx), ey = set(-step.dy / scene.fy);
-  // M . r, with r the ray through the pixel, and its change from the receiver to the pixel.
-  const V one = set(1);
-  V m_ray = set(0) - m.z;
-  if constexpr (!kOrthographic)
-    m_ray = hn::MulAdd(m.x, p.slope_x + ex, hn::MulAdd(m.y, p.slope_y + ey, m_ray));
-  m_ray = hn::Min(m_ray, set(-1e-9f));
-  const V m_way = dot(V2{m.x, m.y}, V2{ex, ey});
+HWY_INLINE Piece piece_at(const MarchPlanes& planes, const MarchReceiver& p,
+                          const SideFrame& side, const SliceStep& step, std::ptrdiff_t i, V depth,
+                          V rise, V across) {
+  const V one = set(1), nearer = nearer_over(planes, i, step);
   const auto end = [&](float of_way, bool inner) HWY_ATTR {
-    V share = set(of_way), end_depth;
-    if constexpr (kOrthographic) {
-      // Depth may be 0 or negative here, so no factor can limit it: it changes by at most the
-      // distance across.
-      const V limit = hn::Abs(across), change = (one - share) * m_way / m_ray;
-      const V limited = hn::Clamp(change, set(0) - limit, limit);
-      share = hn::IfThenElse(limited != change, one - limited * m_ray / m_way, share);
-      end_depth = depth + limited;
-    } else {
-      V end_ray = hn::MulAdd(share - one, m_way, m_ray);
-      const V limited =
-          hn::Clamp(end_ray, set(kMostDeepening) * m_ray, set(1 / kMostDeepening) * m_ray);
-      const M beyond = limited != end_ray;
-      if (any(beyond)) {
-        share = hn::IfThenElse(beyond, one + (limited - m_ray) / m_way, share);
-        end_ray = limited;
-      }
-      end_depth = depth * m_ray / end_ray;
-    }
+    V share = set(of_way);
+    const V change = nearer * (share - one);
+    // A depth may be 0 or negative where the camera is orthographic, so that no factor can limit
+    // it: it changes by at most the distance across.
+    const V most = kOrthographic ? hn::Abs(across) : set(kMostDeepening - 1),
+            least = kOrthographic ? hn::Neg(most) : set(1 / kMostDeepening - 1);
+    const V limited = hn::Clamp(change, least, most);
+    const M beyond = limited != change;
+    if (any(beyond))
+      share = hn::IfThenElse(beyond, hn::MulAdd(limited, reciprocal(nearer), one), share);
+    V end_depth = kOrthographic ? depth - limited : depth * reciprocal(one + limited);
     // On a round silhouette the tangent plane would extend far in front of the surface.
     if (inner) end_depth = hn::Max(end_depth, depth);
     return end_at<kOrthographic>(p, side, share, end_depth, rise, across);

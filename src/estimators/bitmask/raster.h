@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <limits>
 
@@ -23,6 +24,15 @@ class Raster {
   /// One colour for each pixel, not initialised.
   InterleavedVectors make_color() const {
     return {InterleavedPlane(layout_), InterleavedPlane(layout_), InterleavedPlane(layout_)};
+  }
+
+  /// Not-a-number everywhere, in the padding too.
+  InterleavedPlane unknown() const {
+    InterleavedPlane plane(layout_);
+    for_each_row(layout_.height(), [&](int y) {
+      plane.fill_row(layout_, y, std::numeric_limits<float>::quiet_NaN());
+    });
+    return plane;
   }
 
   InterleavedVectors black() const {
@@ -72,14 +82,16 @@ class Raster {
     return out;
   }
 
-  /// The values of an overview in the order of `far`; not-a-number beside it.
-  InterleavedPlane in_whole_rows(const InterleavedPlane& values, const FarRaster& far) const {
+  /// The values of an overview in the order of `far`, `changed` by something; not-a-number beside it.
+  template <class Change = std::identity>
+  InterleavedPlane in_whole_rows(const InterleavedPlane& values, const FarRaster& far,
+                                 const Change& changed = {}) const {
     InterleavedPlane out(far.layout);
     for_each_row(far.layout.height(), [&](int y) {
       out.fill_row(far.layout, y, std::numeric_limits<float>::quiet_NaN());
     });
     for_each_row(far.height, [&](int y) {
-      for (int x = 0; x < far.width; ++x) out[far.index(x, y)] = values[layout_.index(x, y)];
+      for (int x = 0; x < far.width; ++x) out[far.index(x, y)] = changed(values[layout_.index(x, y)]);
     });
     return out;
   }

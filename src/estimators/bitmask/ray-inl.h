@@ -129,12 +129,16 @@ class WalkOverFrame {
     if (far_) far_->clear();
   }
 
-  HWY_INLINE void put(VI places, const MarchReceiver& p, const Ray& ray) {
-    near_.put(places, p, ray.side, ray.in_slice, ray.open);
+  HWY_INLINE void put(VI places, const MarchReceiver& p, const Ray& ray, M looks, V known) {
+    near_.put(places, p, ray.side, ray.in_slice, looks, known);
     if (far_) {
       far_->put(places, in_far_pixels(march_, p), in_far_pixels(ray.side),
-                in_far_pixels(ray.in_slice), ray.open);
+                in_far_pixels(ray.in_slice), looks, set(-1));
     }
+  }
+  HWY_INLINE void put_known(VI places, V blocked_px) {
+    near_.put_known(places, blocked_px);
+    if (far_) far_->put_known(places, set(-1));
   }
 
   HWY_INLINE void run() {
@@ -147,7 +151,7 @@ class WalkOverFrame {
     const V near = near_.blocked_px(places);
     if (!far_) return near;
     const V far = far_->blocked_px(places) * set(float(Interleaving::kPeriod));
-    return hn::IfThenElse(near >= set(0), near, far);
+    return hn::IfThenElse(far > set(0), hn::IfThenElse(near >= set(0), near, far), near);
   }
 
  private:

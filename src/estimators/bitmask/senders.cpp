@@ -76,14 +76,8 @@ HWY_INLINE V3 direct_light(const FoundShares& found, const V3& normal, const Sha
   return sum;
 }
 
-HWY_INLINE V both_sides(V front, V back) {
-  const auto rounded = [](V v) HWY_ATTR { return hn::BitCast(DU(), v) + set_bits(kHalfOfCut); };
-  const VU sides =
-      hn::Or(hn::And(rounded(front), set_bits(kFrontSide)), hn::ShiftRight<16>(rounded(back)));
-  return hn::BitCast(D(), sides);
-}
 HWY_INLINE V3 both_sides(const V3& front, const V3& back) {
-  return {both_sides(front.x, back.x), both_sides(front.y, back.y), both_sides(front.z, back.z)};
+  return {two_in_one(front.x, back.x), two_in_one(front.y, back.y), two_in_one(front.z, back.z)};
 }
 
 HWY_INLINE V3 albedo_at(const SenderJob& job, const Place& place) {

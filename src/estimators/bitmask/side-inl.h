@@ -35,6 +35,13 @@ HWY_INLINE float error_of_difference(const March& march, const Place& place, int
          std::sqrt(float(first) * float(count - first)) / float(count);
 }
 
+/// Fetches what the next vector of receivers reads, beside what these read at index `i`: the
+/// processor's own prefetcher cannot follow as many streams. A lambda would not do, as g++ 12 drops
+/// calls of what does nothing else.
+HWY_INLINE void prefetch_next(const InterleavedPlane& plane, std::ptrdiff_t i) {
+  hwy::Prefetch(plane.data() + i + 2 * kLanes - 1);
+}
+
 /// Where the samples of a vector of receivers are: the planes, and the place there of what lies a
 /// step of (0, 0) away.
 struct Sampled {
@@ -73,18 +80,14 @@ HWY_INLINE VU march_steps(const March& march, const MarchReceiver& p, const Side
         first + kLanes <= 0)
       break;
     const std::ptrdiff_t i = from.index + step.offset;
-    // The next vector of receivers samples the pixels beside these. The processor's own prefetcher
-    // cannot follow as many streams.
-    const auto prefetch = [&](const InterleavedPlane& plane)
-                              HWY_ATTR { hwy::Prefetch(plane.data() + i + 2 * kLanes - 1); };
-    prefetch(seen.depth), prefetch(seen.thickness);
-    prefetch(planes.normal[0]), prefetch(planes.normal[1]), prefetch(planes.normal[2]);
+    prefetch_next(seen.depth, i), prefetch_next(seen.thickness, i), prefetch_next(planes.tilt, i);
     const V dx = set(step.dx), dy = set(step.dy);
     const V rise = hn::MulAdd(dx, p.rise_x, hn::MulAdd(dy, p.rise_y, p.rise)),
             across = dot(V2{dx, dy}, side.across);
     const auto meet = [&](int layer, V depth, V above, const auto& piece) HWY_ATTR {
-      const V s = kOrthographic ? across : depth * across,
-              thickness = load(planes.layers[std::size_t(layer)].thickness, i);
+      const InterleavedPlane& thicknesses = planes.layers[std::size_t(layer)].thickness;
+      if (layer > 0) prefetch_next(thicknesses, i);
+      const V s = kOrthographic ? across : depth * across, thickness = load(thicknesses, i);
       VU bits = step.inner == step.outer
                     ? sectors_behind<kOrthographic>(p, side, s, above, thickness, march.radius)
                     : sectors_behind_piece<kOrthographic>(p, side, piece(), s, above, thickness,
@@ -99,14 +102,15 @@ HWY_INLINE VU march_steps(const March& march, const MarchReceiver& p, const Side
     const V depth = load(seen.depth, i), above = height_above<kOrthographic>(p, rise, depth);
     if (any(above > set(0))) {
       meet(0, depth, above, [&]() HWY_ATTR {
-        return piece_at<kOrthographic>(march.scene, load(planes.normal, i), p, side, step, depth, rise, across);
+        return piece_at<kOrthographic>(planes, p, side, step, i, depth, rise, across);
       });
     }
     before = {&step, i, depth};
     for (int k = 1; k < layers; ++k) {
-      const InterleavedPlane& fronts = planes.layers[std::size_t(k)].depth;
-      prefetch(fronts);
-      const V front = load(fronts, i), front_above = height_above<kOrthographic>(p, rise, front);
+      const MarchLayer& layer = planes.layers[std::size_t(k)];
+      prefetch_next(layer.depth, i);
+      const V front = load(layer.depth, i),
+              front_above = height_above<kOrthographic>(p, rise, front);
       if (!any(front_above > set(0))) continue;
       meet(k, front, front_above, [&]() HWY_ATTR {
         return piece_facing_viewer<kOrthographic>(p, side, step, front, rise, across);

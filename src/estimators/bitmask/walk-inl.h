@@ -102,14 +102,21 @@ class Walk {
 
   /// Forgets all rays.
   HWY_INLINE void clear() {
-    for (int place = 0; place < most_; ++place)
-      number(place, kEnd) = 0, number(place, kBlockedPx) = -1;
+    for (int place = 0; place < most_; ++place) number(place, kEnd) = 0;
   }
 
-  /// Takes the lanes of `open`, into places 0 to `most` - 1 of the queue. Rays that are close to
-  /// each other there should be so in the picture too: they visit the same cells.
+  /// What blocked_px() gives of rays that need not look.
+  HWY_INLINE void put_known(VI places, V blocked_px) {
+    hn::ScatterIndex(blocked_px, D(), numbers_.get() + kBlockedPx, places * set_int(kStride));
+  }
+
+  /// Takes the lanes of `looks`, into places 0 to `most` - 1 of the queue. Rays that are close to
+  /// each other there should be so in the picture too: they visit the same cells. Of the other
+  /// lanes `known` is blocked_px().
   HWY_INLINE void put(VI places, const MarchReceiver& p, const SideFrame& side,
-                      const RayInSlice& ray, M open) {
+                      const RayInSlice& ray, M looks, V known) {
+    put_known(places, hn::IfThenElse(looks, set(-1), known));
+    if (!any(looks)) return;
     const Interleaving& layout = march_.scene.layout;
     const V right = set(float(layout.width() - 1)), bottom = set(float(layout.height() - 1));
     const V leaves_frame = hn::Min(Axis(ray.step_x).exit(set(0) - p.x, right),
@@ -130,7 +137,7 @@ class Walk {
     write(kGrowth,
           hn::MulAdd(a, ray.nearing, hn::MulAdd(p.rise_x, ray.step_x, p.rise_y * ray.step_y)));
     write(kAcrossX, side.across.x), write(kAcrossY, side.across.y), write(kSlope, side.slope);
-    write(kEnd, hn::IfThenElseZero(hn::And(open, moves), end));
+    write(kEnd, hn::IfThenElseZero(hn::And(looks, moves), end));
   }
 
   /// Sends all rays that have been put.
