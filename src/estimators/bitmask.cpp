@@ -96,8 +96,14 @@ class Bitmask {
         ao_(layout_) {}
 
   Products run() {
+    // Suns first: what bounds their rays needs more memory than any other light.
+    if (wants_light() && !scene_.light.suns.empty()) gather_suns();
     gather_visibility();
-    if (request_.products.bounce) out_.bounce = raster_.picture(gather_bounce());
+    InterleavedVectors bounce;
+    if (request_.products.bounce) bounce = gather_bounce();
+    if (request_.products.reflection) gather_reflection();
+    end_marches();
+    if (request_.products.bounce) out_.bounce = raster_.picture(std::move(bounce));
     if (wants_light()) hand_out_light();
     if (request_.products.error) {
       const bool bounces = bounce_error_.data() != nullptr;
@@ -106,7 +112,6 @@ class Bitmask {
       });
     }
     out_.ao = raster_.picture(std::move(ao_), 1.0f);
-    if (request_.products.reflection) gather_reflection();
     if (request_.products.guessed)
       out_.guessed =
           guessed_shares(scene_, march_scene_.receivers, request_.radius, request_.seed, progress_);
@@ -174,7 +179,7 @@ class Bitmask {
     if (wants_light()) {
       out_.shares.are_ao = light.is_constant();
       if (!out_.shares.are_ao) {
-        sky_share_ = raster_.make_color();
+        for (InterleavedShares& channel : sky_share_) channel = InterleavedShares(layout_);
         job.sky_share = &sky_share_;
       }
       if (light.order > 0 || request_.products.error) {
@@ -192,7 +197,9 @@ class Bitmask {
     for_each_band_of(
         lit_part(), [&](const Window& part) { march_visibility(job, part); }, progress_);
     if (request_.products.bent) out_.bent = raster_.picture(std::move(bent));
-    if (!wants_light() || light.suns.empty()) return;
+  }
+
+  void gather_suns() {
     // A panorama shows what stands beyond the border, and rays have asked it.
     const bool all_is_shown =
         std::any_of(scene_.views.begin(), scene_.views.end(),
@@ -201,51 +208,39 @@ class Bitmask {
         request_.extend_offscreen && !all_is_shown
             ? sun_past_beyond(mean_ao(march_scene_, scene_.geometry.display, request_.radius))
             : 1;
-    std::vector<SunPlanes> found, again;
-    march_suns(past, found, again);
-    for (SunPlanes& sun : found) {
-      out_.shares.draws.push_back(draw_of(sun));
-      sun_shares_.push_back(std::move(sun.share));
-    }
-    for (SunPlanes& sun : again) {
-      out_.shares.draws_again.push_back(draw_of(sun));
-      out_.shares.suns_again.push_back(raster_.picture(std::move(sun.share)));
-    }
-  }
-
-  /// What rays to a sun have found, as SunJob has it.
-  struct SunPlanes {
-    InterleavedPlane share, weight, width_px;
-  };
-
-  ShadowDraw draw_of(SunPlanes& sun) const {
-    return {raster_.picture(std::move(sun.weight)), raster_.picture(std::move(sun.width_px))};
+    march_suns(past);
   }
 
   /// Finds where suns are seen, and once more by other rays where the error is wanted. `past` is
   /// sun_past_beyond(). Members of the pattern look at different points of a sun's disc.
-  void march_suns(float past, std::vector<SunPlanes>& found, std::vector<SunPlanes>& again) const {
+  void march_suns(float past) {
     const std::vector<DepthBounds> bounds = depth_bounds(march_scene_, scene_.solids);
     for (const Sun& sun : scene_.light.suns) {
       const PassBeyond pass = pass_beyond(past, sun.held);
       const auto find = [&](const Window& to, RaySet set) {
-        SunPlanes planes{InterleavedPlane(layout_), InterleavedPlane(layout_),
-                         InterleavedPlane(layout_)};
+        SunShares found(layout_);
         const std::vector<RayDirections> directions =
             directions_to(sun, rays_to_sun(request_.slices), request_.seed, set);
-        const SunJob job{march_, bounds,        directions,     &sun,
-                         pass,   &planes.share, &planes.weight, &planes.width_px};
+        const SunJob job{march_, bounds, directions, &sun, pass, &found};
         for_each_tall_part_of(
             to, [&](const Window& part) { march_sun(job, part); }, progress_);
-        return planes;
+        return found;
       };
-      found.push_back(find(lit_part(), RaySet::of_light));
-      if (request_.products.error) again.push_back(find(march_scene_.receivers, RaySet::of_error));
+      suns_.push_back(find(lit_part(), RaySet::of_light));
+      if (request_.products.error)
+        suns_again_.push_back(find(march_scene_.receivers, RaySet::of_error));
     }
   }
 
+  /// Frees what only marches read: products need no more than which pixels show a surface.
+  void end_marches() {
+    march_scene_.normal = {};
+    march_scene_.layers.resize(1);
+    march_scene_.layers.front().thickness = {};
+  }
+
   FoundShares found_shares() const {
-    return {scene_.light, &ao_, out_.shares.are_ao ? nullptr : &sky_share_, sun_shares_};
+    return {scene_.light, &ao_, out_.shares.are_ao ? nullptr : &sky_share_, suns_};
   }
 
   /// Turns what was found of the light into products.
@@ -258,8 +253,16 @@ class Bitmask {
       out_.direct = raster_.picture(std::move(direct));
     }
     if (!out_.shares.are_ao) out_.shares.sky = raster_.picture(std::move(sky_share_));
-    for (InterleavedPlane& share : sun_shares_)
-      out_.shares.suns.push_back(raster_.picture(std::move(share)));
+    const auto hand_out = [&](std::vector<SunShares>& suns, std::vector<Plane<float>>& shares,
+                              std::vector<ShadowDraw>& draws) {
+      for (SunShares& sun : suns) {
+        shares.push_back(raster_.picture(std::move(sun.share), 1));
+        draws.push_back({raster_.picture(std::move(sun.weight), 1),
+                         raster_.picture(std::move(sun.width), kPenumbraUnit)});
+      }
+    };
+    hand_out(suns_, out_.shares.suns, out_.shares.draws);
+    hand_out(suns_again_, out_.shares.suns_again, out_.shares.draws_again);
   }
 
   void gather_reflection() {
@@ -285,51 +288,55 @@ class Bitmask {
             std::min(part.x1 + by, layout_.width()), std::min(part.y1 + by, layout_.height())};
   }
 
+  /// The radiance that pixels send, given the bounce of the pass before; null: there is none.
+  InterleavedVectors sent_light(const InterleavedVectors* bounce, bool two_sided) const {
+    // A layer may say what is sent.
+    if (!senders_need_light()) return raster_.interleaved(scene_.senders.radiance);
+    InterleavedVectors sent = raster_.make_color();
+    const SenderJob senders{march_scene_, found_shares(), scene_.senders.albedo,
+                            bounce,       &sent,          two_sided};
+    for_each_band_of(march_scene_.raster(),
+                     [&](const Window& part) { find_senders(senders, part); }, {});
+    return sent;
+  }
+
   /// Each pass is lit by the one before.
   InterleavedVectors gather_bounce() {
-    const bool lit = senders_need_light();  // else a layer says what is sent
-    const bool two_sided = lit && !scene_.light.is_constant();
-    InterleavedVectors sent = lit ? raster_.make_color()
-                                  : raster_.interleaved(scene_.senders.radiance),
-                       bounce = request_.bounces > 0 ? raster_.make_color() : raster_.black();
-    InterleavedPlane weights(layout_);
-    if (request_.products.error && request_.bounces > 0) bounce_error_ = InterleavedPlane(layout_);
-    const Window raster = march_scene_.raster();
+    if (request_.bounces == 0) return raster_.black();
+    const bool lit = senders_need_light(), two_sided = lit && !scene_.light.is_constant();
+    if (request_.products.error) bounce_error_ = InterleavedPlane(layout_);
     std::vector<FurtherLight> sent_further;
-    if (further_ && request_.bounces > 0)
+    if (further_)
       sent_further = light_further_surfaces(scene_, request_.bounces - 1, request_.radius);
+    InterleavedVectors bounce;
     for (int pass = 1; pass <= request_.bounces; ++pass) {
-      if (lit) {
-        const SenderJob senders{
-            march_scene_, found_shares(), scene_.senders.albedo, pass > 1 ? &bounce : nullptr,
-            &sent,        two_sided};
-        for_each_band_of(raster, [&](const Window& part) { find_senders(senders, part); }, {});
-      }
+      InterleavedVectors light = sent_light(pass > 1 ? &bounce : nullptr, two_sided);
       BorderValues sent_border[3];
       for (int c = 0; c < 3; ++c) {
         sent_border[c] = march_scene_.border.gather([&](int x, int y) {
-          const float both = sent[std::size_t(c)][layout_.index(x, y)];
+          const float both = light[std::size_t(c)][layout_.index(x, y)];
           return two_sided ? front_side(both) : both;
         });
       }
       const bool wants_error = request_.products.error && pass == request_.bounces;
+      GatheredLight gathered(bounce_march_, wants_error);
       const BounceJob job{bounce_march_,
                           &ao_,
-                          &sent,
+                          &light,
                           two_sided,
                           scene_.solids,
                           sent_border,
                           further_ ? &sent_further[std::size_t(pass - 1)] : nullptr,
-                          &weights,
-                          &bounce,
+                          &gathered,
                           wants_error ? &bounce_error_ : nullptr};
       // Light gathered in the last pass is not sent on: only receivers need it.
-      const Window to = pass < request_.bounces && lit ? raster : march_scene_.receivers;
+      const Window to =
+          pass < request_.bounces && lit ? march_scene_.raster() : march_scene_.receivers;
       for_each_band_of(
           grown(to, bounce_pattern_.spacing() - 1),
           [&](const Window& part) { march_bounce(job, part); }, progress_);
       for_each_band_of(to, [&](const Window& part) { spread_bounce(job, part); }, {});
-      for_each_band_of(to, [&](const Window& part) { finish_bounce(job, part); }, {});
+      bounce = std::move(light);
     }
     return bounce;
   }
@@ -344,8 +351,8 @@ class Bitmask {
   std::unique_ptr<FurtherRays> further_;  ///< null: there are no further views
   March march_, bounce_march_;
   InterleavedPlane ao_, error_, bounce_error_;
-  InterleavedVectors sky_share_;              ///< empty where that is ao
-  std::vector<InterleavedPlane> sun_shares_;  ///< by sun
+  InterleavedColorShares sky_share_;          ///< empty where that is ao
+  std::vector<SunShares> suns_, suns_again_;  ///< by sun
   Products out_;
 };
 

@@ -77,7 +77,7 @@ HWY_INLINE V3 sent_behind(const BounceJob& job, int layer, const Place& place,
     if (sender < 0) continue;
     const std::ptrdiff_t from = layout.index(sender % layout.width(), sender / layout.width());
     for (std::size_t c = 0; c < 3; ++c) {
-      const float sent = (*job.sent)[c][from];
+      const float sent = (*job.light)[c][from];
       radiance[c][lane] = job.two_sided ? front_side(sent) : sent;
     }
   }
@@ -123,6 +123,10 @@ struct FromFurther {
   }
 };
 
+HWY_INLINE std::ptrdiff_t index_of_gatherer(const GatheredLight& light, const Place& place) {
+  return light.layout.index(place.y, place.column_phase, place.column);
+}
+
 template <bool kOrthographic>
 void gather_light(const BounceJob& job, const Window& part) {
   const March& march = job.march;
@@ -148,7 +152,7 @@ void gather_light(const BounceJob& job, const Window& part) {
                 [&](int layer, std::ptrdiff_t q, const SliceStep& step, VU bits) HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {
                     if (layer > 0) return sent_behind(job, layer, p.place, step, bits);
-                    const V3 sent = load(*job.sent, q);
+                    const V3 sent = load(*job.light, q);
                     if (!job.two_sided) return sent;
                     const M seen = faces<kOrthographic>(march.scene, q, step, p);
                     return if_then_else(seen, front_of(sent), back_of(sent));
@@ -163,8 +167,9 @@ void gather_light(const BounceJob& job, const Window& part) {
                 });
           }
         }
-        store(light.sum, *job.bounce, p.place.index);
-        store(light.weights, *job.weights, p.place.index);
+        GatheredLight& out = *job.gathered;
+        const std::ptrdiff_t at = index_of_gatherer(out, p.place);
+        store(light.sum, out.sum, at), store(light.weights, out.weights, at);
         if (!job.error) return;
         // Where one half met nothing, there is no difference to tell the error from.
         const Gathered second_half = light.minus(first_half);
@@ -173,7 +178,7 @@ void gather_light(const BounceJob& job, const Window& part) {
         const M both = hn::And(first_half.weights > zero, second_half.weights > zero);
         const V scale =
             light.weights * set(error_of_difference(march, p.place, firsts, count_of_slices));
-        store(hn::IfThenElseZero(both, difference) * scale, *job.error, p.place.index);
+        store(hn::IfThenElseZero(both, difference) * scale, out.error, at);
       });
 }
 
@@ -187,7 +192,7 @@ HWY_INLINE Offset offset_of(const March& march, const Place& place) {
   return {place.column_phase & last, (place.y + march.scene.first_y) & last};
 }
 
-/// Calls `visit(index, dx, dy)` for the pixels around a place that march.
+/// Calls `visit(place, dx, dy)` for the pixels around a place that march, or for itself if it does.
 template <class Visit>
 HWY_INLINE void for_each_gatherer(const March& march, const Place& place, const Visit& visit) {
   const Interleaving& layout = march.scene.layout;
@@ -196,46 +201,47 @@ HWY_INLINE void for_each_gatherer(const March& march, const Place& place, const 
   for (int dy = -off.y; dy <= off.y; dy += spacing) {
     if (place.y + dy < 0 || place.y + dy >= layout.height()) continue;
     for (int dx = -off.x; dx <= off.x; dx += spacing) {
-      visit(index_beside(layout, place, dx, dy), dx, dy);
+      visit(place_beside(layout, place, dx, dy), dx, dy);
     }
   }
 }
 
-/// Gives pixels their bounce from those that have gathered light: these, or the others.
+/// Gives pixels their bounce from those that have gathered light.
 template <bool kOrthographic>
-void spread(const BounceJob& job, const Window& part, bool to_gatherers) {
+void spread(const BounceJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
+  const GatheredLight& from = *job.gathered;
   for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
-    const Offset off = offset_of(job.march, place);
-    if ((off.x == 0 && off.y == 0) != to_gatherers) return;
     const std::ptrdiff_t i = place.index;
     const V zero = set(0);
     const MarchReceiver p = load_receiver(scene, place);
     Gathered of_surface = no_light(), of_all = no_light();
     V difference = zero;
-    for_each_gatherer(job.march, place, [&](std::ptrdiff_t q, int dx, int dy) HWY_ATTR {
-      const V weights = load(*job.weights, q);
-      const M found = hn::And(holds_solid(load(scene.depth(), q)), weights > zero);
+    for_each_gatherer(job.march, place, [&](const Place& q, int dx, int dy) HWY_ATTR {
+      const std::ptrdiff_t at = index_of_gatherer(from, q);
+      const V weights = load(from.weights, at);
+      const M found = hn::And(holds_solid(load(scene.depth(), q.index)), weights > zero);
       if (!any(found)) return;
-      const Gathered light{if_then_else_zero(found, load(*job.bounce, q)),
+      const Gathered light{if_then_else_zero(found, load(from.sum, at)),
                            hn::IfThenElseZero(found, weights)};
-      const V like = dx == 0 && dy == 0 ? set(1) : likeness<kOrthographic>(scene, p, q, dx, dy);
+      const V like =
+          dx == 0 && dy == 0 ? set(1) : likeness<kOrthographic>(scene, p, q.index, dx, dy);
       of_surface = {mul_add(light.sum, like, of_surface.sum),
                     hn::MulAdd(light.weights, like, of_surface.weights)};
       of_all = {of_all.sum + light.sum, of_all.weights + light.weights};
       if (job.error) {
-        const V known = hn::IfThenElseZero(found, load(*job.error, q));
+        const V known = hn::IfThenElseZero(found, load(from.error, at));
         difference = hn::MulAdd(known, like, difference);
       }
     });
     // ao may see an occluder that no march for the bounce met; it is assumed to be close and to
     // send what the receiver sends.
     const M on_surface = of_surface.weights > zero, anywhere = of_all.weights > zero;
-    const V3 sent = load(*job.sent, i), own = job.two_sided ? front_of(sent) : sent;
+    const V3 sent = load(*job.light, i), own = job.two_sided ? front_of(sent) : sent;
     const V3 beside = if_then_else(anywhere, of_all.mean(), own);
     const V3 radiance = if_then_else(on_surface, of_surface.mean(), beside);
     const V hidden = hn::IfThenElseZero(p.valid, set(1) - load(*job.ao, i));
-    store(radiance * hidden, *job.bounce, i);
+    store(radiance * hidden, *job.light, i);
     if (job.error) {
       const V error = hn::IfThenElseZero(on_surface, hidden * difference / of_surface.weights);
       store(error, *job.error, i);
@@ -247,9 +253,8 @@ void gather_in_pixels(const BounceJob& job, const Window& part) {
   job.march.scene.orthographic ? gather_light<true>(job, part) : gather_light<false>(job, part);
 }
 
-void spread_to_pixels(const BounceJob& job, const Window& part, bool to_gatherers) {
-  job.march.scene.orthographic ? spread<true>(job, part, to_gatherers)
-                               : spread<false>(job, part, to_gatherers);
+void spread_to_pixels(const BounceJob& job, const Window& part) {
+  job.march.scene.orthographic ? spread<true>(job, part) : spread<false>(job, part);
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -266,11 +271,7 @@ void march_bounce(const BounceJob& job, const Window& part) {
 }
 
 void spread_bounce(const BounceJob& job, const Window& part) {
-  HWY_DYNAMIC_DISPATCH(spread_to_pixels)(job, part, false);
-}
-
-void finish_bounce(const BounceJob& job, const Window& part) {
-  HWY_DYNAMIC_DISPATCH(spread_to_pixels)(job, part, true);
+  HWY_DYNAMIC_DISPATCH(spread_to_pixels)(job, part);
 }
 
 }  // namespace ssdo

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
+#include <utility>
 
 #include "parallel/tiles.h"
 #include "scene/normals/geometric_normal.h"
@@ -89,7 +90,14 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
   check_layers(solids);
   const Interleaving layout(g.surfel.width, g.surfel.height,
                             (g.window.x0 - g.display.x0) & (kPeriod - 1));
-  const auto plane = [&] { return InterleavedPlane(layout); };
+  const auto plane = [&] {
+    InterleavedPlane values(layout);
+    std::fill_n(values.data() + layout.size() - Interleaving::kPad, Interleaving::kPad, kNothing);
+    return values;
+  };
+  // What products are handed out by comes first: the rest is then freed in one piece.
+  std::vector<MarchLayer> layers;
+  for (int k = 0; k < solids.layers(); ++k) layers.push_back({plane(), plane()});
   MarchScene scene{layout,
                    {receivers.x0 - g.window.x0, receivers.y0 - g.window.y0,
                     receivers.x1 - g.window.x0, receivers.y1 - g.window.y0},
@@ -100,7 +108,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                    float(g.camera.cy - g.display.y0 - 0.5),
                    g.window.x0 - g.display.x0,
                    g.window.y0 - g.display.y0,
-                   {},
+                   std::move(layers),
                    {plane(), plane(), plane()},
                    g.surfel,
                    BorderLayout(layout),
@@ -109,7 +117,6 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                    {},
                    {}};
   if (receivers.area() == 0) scene.receivers = scene.raster();
-  for (int k = 0; k < solids.layers(); ++k) scene.layers.push_back({plane(), plane()});
   const Cells cells(g, scene);
   for_each_row(g.surfel.height, [&](int y) {
     constexpr int kPad = Interleaving::kPad;

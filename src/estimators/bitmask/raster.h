@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <glm/vec3.hpp>
 
@@ -75,7 +76,13 @@ class Raster {
     return of_receivers(background, [&](std::ptrdiff_t i) { return plane[i]; });
   }
 
-  Plane<glm::vec3> picture(InterleavedVectors color) const {
+  /// What `unit` is to be multiplied by.
+  Plane<float> picture(InterleavedShares plane, float unit) const {
+    return of_receivers(0.0f, [&](std::ptrdiff_t i) { return unit * plane[i]; });
+  }
+
+  template <class T>
+  Plane<glm::vec3> picture(std::array<InterleavedValues<T>, 3> color) const {
     return of_receivers(glm::vec3(0), [&](std::ptrdiff_t i) {
       return glm::vec3(color[0][i], color[1][i], color[2][i]);
     });
