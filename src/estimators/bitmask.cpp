@@ -103,15 +103,7 @@ class Bitmask {
     if (request_.products.bounce) bounce = gather_bounce();
     if (request_.products.reflection) gather_reflection();
     end_marches();
-    if (request_.products.bounce) out_.bounce = raster_.picture(std::move(bounce));
-    if (wants_light()) hand_out_light();
-    if (request_.products.error) {
-      const bool bounces = bounce_error_.data() != nullptr;
-      out_.error = raster_.of_receivers(0.0f, [&](std::ptrdiff_t i) {
-        return bounces ? error_[i] + bounce_error_[i] : error_[i];
-      });
-    }
-    out_.ao = raster_.picture(std::move(ao_), 1.0f);
+    hand_out(std::move(bounce));
     if (request_.products.guessed)
       out_.guessed =
           guessed_shares(scene_, march_scene_.receivers, request_.radius, request_.seed, progress_);
@@ -243,26 +235,38 @@ class Bitmask {
     return {scene_.light, &ao_, out_.shares.are_ao ? nullptr : &sky_share_, suns_};
   }
 
-  /// Turns what was found of the light into products.
-  void hand_out_light() {
-    if (!request_.shares_suffice) {
-      InterleavedVectors direct = raster_.make_color();
-      const DirectJob job{march_scene_, found_shares(), &direct};
-      for_each_band_of(march_scene_.receivers, [&](const Window& part) { find_direct(job, part); },
-                       {});
-      out_.direct = raster_.picture(std::move(direct));
+  /// Turns what was found into products: large ones first, and each in the room of others.
+  void hand_out(InterleavedVectors bounce) {
+    if (request_.products.bounce) out_.bounce = raster_.picture(std::move(bounce));
+    if (wants_light() && !request_.shares_suffice) out_.direct = raster_.picture(direct_light());
+    if (request_.products.error) {
+      const bool bounces = bounce_error_.data() != nullptr;
+      out_.error = raster_.of_receivers(0.0f, [&](std::ptrdiff_t i) {
+        return bounces ? error_[i] + bounce_error_[i] : error_[i];
+      });
     }
+    out_.ao = raster_.picture(std::move(ao_), 1.0f);
+    if (!wants_light()) return;
     if (!out_.shares.are_ao) out_.shares.sky = raster_.picture(std::move(sky_share_));
-    const auto hand_out = [&](std::vector<SunShares>& suns, std::vector<Plane<float>>& shares,
-                              std::vector<ShadowDraw>& draws) {
-      for (SunShares& sun : suns) {
-        shares.push_back(raster_.picture(std::move(sun.share), 1));
-        draws.push_back({raster_.picture(std::move(sun.weight), 1),
-                         raster_.picture(std::move(sun.width), kPenumbraUnit)});
-      }
-    };
     hand_out(suns_, out_.shares.suns, out_.shares.draws);
     hand_out(suns_again_, out_.shares.suns_again, out_.shares.draws_again);
+  }
+
+  void hand_out(std::vector<SunShares>& suns, std::vector<Plane<float>>& shares,
+                std::vector<ShadowDraw>& draws) const {
+    for (SunShares& sun : suns) {
+      shares.push_back(raster_.picture(std::move(sun.share), 1));
+      draws.push_back({raster_.picture(std::move(sun.weight), 1),
+                       raster_.picture(std::move(sun.width), kPenumbraUnit)});
+    }
+  }
+
+  InterleavedVectors direct_light() const {
+    InterleavedVectors direct = raster_.make_color();
+    const DirectJob job{march_scene_, found_shares(), &direct};
+    for_each_band_of(march_scene_.receivers, [&](const Window& part) { find_direct(job, part); },
+                     {});
+    return direct;
   }
 
   void gather_reflection() {
