@@ -114,9 +114,14 @@ Plane<float> change_by_steps(const Scene& scene, const Method& method, Request f
 /// Estimates and filters once.
 class Round {
  public:
+  /// `on_estimated` is called between estimate and filter.
   Round(const Scene& scene, const Plan& plan, const Request& request,
-        const std::function<void(double)>& on_progress)
-      : scene_(scene), plan_(plan), request_(request), on_progress_(on_progress) {
+        const std::function<void(double)>& on_progress, const std::function<void()>& on_estimated)
+      : scene_(scene),
+        plan_(plan),
+        request_(request),
+        on_progress_(on_progress),
+        on_estimated_(on_estimated) {
     compares_steps_ = request.products.error && plan.method->takes.march;
     passes_ = (compares_steps_ ? 2.0 : 1.0) * (1.0 + request.bounces);
   }
@@ -132,6 +137,7 @@ class Round {
     Plane<float> change;
     if (compares_steps_)
       change = change_by_steps(scene_, *plan_.method, request_, products, progress);
+    if (on_estimated_) on_estimated_();
     out.estimate_ms = watch.lap();
     scale_to_noise(products.error, *plan_.method);
     products = filtered(std::move(products));
@@ -177,6 +183,7 @@ class Round {
   const Plan& plan_;
   const Request& request_;
   const std::function<void(double)>& on_progress_;
+  const std::function<void()>& on_estimated_;
   bool compares_steps_;
   double passes_, finished_ = 0;
 };
@@ -207,11 +214,15 @@ std::string describe(const ErrorFound& found, const Method& method, const Reques
 }  // namespace
 
 Estimate estimate(const Scene& scene, const Plan& plan,
-                  const std::function<void(double)>& on_progress, const Past& past) {
+                  const std::function<void(double)>& on_progress, const Past& past,
+                  const std::function<void()>& on_estimated) {
+  const std::function<void()> another_round_may_follow;
   Request request = plan.request;
   double estimate_ms = 0, filter_ms = 0;
   for (;;) {
-    Estimate out = Round(scene, plan, request, on_progress).run(past);
+    Estimate out = Round(scene, plan, request, on_progress,
+                         plan.error ? another_round_may_follow : on_estimated)
+                       .run(past);
     out.estimate_ms = estimate_ms += out.estimate_ms;
     out.filter_ms = filter_ms += out.filter_ms;
     if (plan.error && out.error->all > *plan.error) {
@@ -220,6 +231,7 @@ Estimate estimate(const Scene& scene, const Plan& plan,
           fmt::format("--error {:g} is not reached: it is {:.2g} with {} slices and {} steps",
                       *plan.error, out.error->all, request.slices, request.steps));
     }
+    if (plan.error && on_estimated) on_estimated();
     if (out.error) out.notes.push_back(describe(*out.error, *plan.method, request));
     out.request = request;
     return out;

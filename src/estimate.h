@@ -38,8 +38,10 @@ struct Past {
 };
 
 /// Estimates and filters, with more and more slices and steps until the error is what the plan asks
-/// for, if it does. `on_progress` is called with the share that is done, 0..1.
+/// for, if it does. `on_progress` is called with the share that is done, 0..1; `on_estimated`, if
+/// any, once from when on nothing looks at what only methods do: solids, views, further surfaces.
 Estimate estimate(const Scene& scene, const Plan& plan,
-                  const std::function<void(double)>& on_progress, const Past& past);
+                  const std::function<void(double)>& on_progress, const Past& past,
+                  const std::function<void()>& on_estimated = {});
 
 }  // namespace ssdo

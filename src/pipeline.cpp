@@ -118,7 +118,7 @@ Relit relight(const RelightJob& job, const std::function<void(double)>& on_progr
   }
   Estimate found = estimate(
       job.frame.scene, job.frame.plan, [&](double done) { on_progress(kEstimateShare * done); },
-      past);
+      past, job.on_estimated);
   relit.plan.request = std::move(found.request);
   relit.products = std::move(found.products);
   relit.history = std::move(found.history);

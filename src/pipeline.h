@@ -29,6 +29,7 @@ struct RelightJob {
   const Frame& frame;
   const std::vector<Target>& targets;
   OutputPolicy policy;
+  std::function<void()> on_estimated = {};  ///< as estimate() calls it
 };
 
 /// What came of a job.

@@ -183,11 +183,12 @@ class Batch {
         return work.frame.reset();
       }
       if (!behind_) print_lines(work);
-      work.relit = relight(job_of(work), progress_of(work.index), past);
+      RelightJob job = job_of(work);
+      job.on_estimated = [&] { free_occluders(frame.scene); };
+      work.relit = relight(job, progress_of(work.index), past);
       if (options_.verbosity.verbose)
         for (const std::string& note : work.relit.notes) add(work, note);
       add_warnings(work, work.relit.warnings);
-      free_occluders(frame.scene);
     });
   }
 

@@ -102,17 +102,14 @@ class Bitmask {
         ao_(layout_) {}
 
   Products run() {
+    // Suns first: what bounds their rays needs more memory than any other light.
+    if (wants_light() && !scene_.light.suns.empty()) gather_suns();
     gather_visibility();
-    if (request_.products.bounce) out_.bounce = raster_.picture(gather_bounce());
-    if (wants_light()) hand_out_light();
-    if (request_.products.error) {
-      const bool bounces = bounce_error_.data() != nullptr;
-      out_.error = raster_.of_receivers(0.0f, [&](std::ptrdiff_t i) {
-        return bounces ? error_[i] + bounce_error_[i] : error_[i];
-      });
-    }
-    out_.ao = raster_.picture(std::move(ao_), 1.0f);
+    InterleavedVectors bounce;
+    if (request_.products.bounce) bounce = gather_bounce();
     if (request_.products.reflection) gather_reflection();
+    end_marches();
+    hand_out(std::move(bounce));
     if (request_.products.guessed)
       out_.guessed =
           guessed_shares(scene_, march_scene_.receivers, request_.radius, request_.seed, progress_);
@@ -125,20 +122,12 @@ class Bitmask {
     FarRaster raster(layout_.width(), layout_.height(), s.first_x, s.first_y, from_px);
     kept_light_in_ = &raster;
     if (request_.products.bounce && request_.bounces > 0) {
+      if (!scene_.light.suns.empty()) gather_suns();
       gather_visibility();
       gather_bounce();
     }
-    MarchPlanes planes;
-    for (const MarchLayer& layer : s.layers) {
-      planes.layers.push_back({raster_.in_whole_rows(layer.depth, raster),
-                               raster_.in_whole_rows(layer.thickness, raster)});
-    }
-    planes.normal = raster_.in_whole_rows(s.normal, raster);
-    planes.tilt = raster_.in_whole_rows(s.tilt, raster, [](float both) {
-      constexpr float kPixels = 1.0f / Interleaving::kPeriod;  // steps are in pixels of the frame
-      return two_in_one(kPixels * first_of_two(both), kPixels * second_of_two(both));
-    });
-    std::vector<DepthBounds> bounds = depth_bounds(s, scene_.solids);
+    MarchPlanes planes = raster_.in_whole_rows(s, raster);
+    std::vector<DepthBounds> bounds = depth_bounds(s);
     const float ao = mean_ao(s, scene_.geometry.display, request_.radius);
     return {std::move(march_scene_), raster, std::move(planes), std::move(bounds), scene_.solids,
             ao, std::move(kept_light_)};
@@ -218,7 +207,7 @@ class Bitmask {
     if (wants_light()) {
       out_.shares.are_ao = light.is_constant();
       if (!out_.shares.are_ao) {
-        sky_share_ = raster_.make_color();
+        for (InterleavedShares& channel : sky_share_) channel = InterleavedShares(layout_);
         job.sky_share = &sky_share_;
       }
       if (light.order > 0 || request_.products.error) {
@@ -236,7 +225,9 @@ class Bitmask {
     for_each_band_of(
         lit_part(), [&](const Window& part) { march_visibility(job, part); }, progress_);
     if (request_.products.bent) out_.bent = raster_.picture(std::move(bent));
-    if (!wants_light() || light.suns.empty()) return;
+  }
+
+  void gather_suns() {
     // A panorama shows what stands beyond the border, and rays have asked it.
     const bool all_is_shown =
         std::any_of(scene_.views.begin(), scene_.views.end(),
@@ -245,16 +236,7 @@ class Bitmask {
         request_.extend_offscreen && !all_is_shown
             ? sun_past_beyond(mean_ao_of_frame())
             : 1;
-    std::vector<SunPlanes> found, again;
-    march_suns(past, found, again);
-    for (SunPlanes& sun : found) {
-      out_.shares.draws.push_back(draw_of(sun));
-      sun_shares_.push_back(std::move(sun.share));
-    }
-    for (SunPlanes& sun : again) {
-      out_.shares.draws_again.push_back(draw_of(sun));
-      out_.shares.suns_again.push_back(raster_.picture(std::move(sun.share)));
-    }
+    march_suns(past);
   }
 
   float mean_ao_of_frame() const {
@@ -262,32 +244,21 @@ class Bitmask {
     return mean_ao(march_scene_, scene_.geometry.display, request_.radius);
   }
 
-  /// What rays to a sun have found, as SunJob has it.
-  struct SunPlanes {
-    InterleavedPlane share, weight, width_px;
-  };
-
-  ShadowDraw draw_of(SunPlanes& sun) const {
-    return {raster_.picture(std::move(sun.weight)), raster_.picture(std::move(sun.width_px))};
-  }
-
   /// Finds where suns are seen, and once more by other rays where the error is wanted. `past` is
   /// sun_past_beyond(). Members of the pattern look at different points of a sun's disc.
-  void march_suns(float past, std::vector<SunPlanes>& found, std::vector<SunPlanes>& again) const {
+  void march_suns(float past) {
     const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
     for (const Sun& sun : scene_.light.suns) {
       const PassBeyond pass = pass_beyond(past, sun.held);
       const auto find = [&](const Window& to, RaySet set) {
-        SunPlanes planes{InterleavedPlane(layout_), InterleavedPlane(layout_),
-                         InterleavedPlane(layout_)};
+        SunShares found(layout_);
         const std::vector<RayDirections> directions =
             directions_to(sun, rays_to_sun(request_.slices), request_.seed, set);
         const bool one_ray = directions.size() == 1;
         InterleavedPlane first;
         if (one_ray) first = raster_.unknown();
-        const SunJob job{march_,        bounds,         directions,
-                         &sun,          pass,           one_ray ? &first : nullptr,
-                         &planes.share, &planes.weight, &planes.width_px};
+        const SunJob job{march_, bounds, directions, &sun, pass, one_ray ? &first : nullptr,
+                         &found};
         if (one_ray) {
           for_each_tall_part_of(
               grown(to, Interleaving::kPeriod),
@@ -295,29 +266,57 @@ class Bitmask {
         }
         for_each_tall_part_of(
             to, [&](const Window& part) { march_sun(job, part); }, progress_);
-        return planes;
+        return found;
       };
-      found.push_back(find(lit_part(), RaySet::of_light));
-      if (request_.products.error) again.push_back(find(march_scene_.receivers, RaySet::of_error));
+      suns_.push_back(find(lit_part(), RaySet::of_light));
+      if (request_.products.error)
+        suns_again_.push_back(find(march_scene_.receivers, RaySet::of_error));
     }
+  }
+
+  /// Frees what only marches read: products need no more than which pixels show a surface.
+  void end_marches() {
+    march_scene_.normal = {};
+    march_scene_.layers.resize(1);
+    march_scene_.layers.front().thickness = {};
   }
 
   FoundShares found_shares() const {
-    return {scene_.light, &ao_, out_.shares.are_ao ? nullptr : &sky_share_, sun_shares_};
+    return {scene_.light, &ao_, out_.shares.are_ao ? nullptr : &sky_share_, suns_};
   }
 
-  /// Turns what was found of the light into products.
-  void hand_out_light() {
-    if (!request_.shares_suffice) {
-      InterleavedVectors direct = raster_.make_color();
-      const DirectJob job{march_scene_, found_shares(), &direct};
-      for_each_band_of(march_scene_.receivers, [&](const Window& part) { find_direct(job, part); },
-                       {});
-      out_.direct = raster_.picture(std::move(direct));
+  /// Turns what was found into products: large ones first, and each in the room of others.
+  void hand_out(InterleavedVectors bounce) {
+    if (request_.products.bounce) out_.bounce = raster_.picture(std::move(bounce));
+    if (wants_light() && !request_.shares_suffice) out_.direct = raster_.picture(direct_light());
+    if (request_.products.error) {
+      const bool bounces = bounce_error_.data() != nullptr;
+      out_.error = raster_.of_receivers(0.0f, [&](std::ptrdiff_t i) {
+        return bounces ? error_[i] + bounce_error_[i] : error_[i];
+      });
     }
+    out_.ao = raster_.picture(std::move(ao_), 1.0f);
+    if (!wants_light()) return;
     if (!out_.shares.are_ao) out_.shares.sky = raster_.picture(std::move(sky_share_));
-    for (InterleavedPlane& share : sun_shares_)
-      out_.shares.suns.push_back(raster_.picture(std::move(share)));
+    hand_out(suns_, out_.shares.suns, out_.shares.draws);
+    hand_out(suns_again_, out_.shares.suns_again, out_.shares.draws_again);
+  }
+
+  void hand_out(std::vector<SunShares>& suns, std::vector<Plane<float>>& shares,
+                std::vector<ShadowDraw>& draws) const {
+    for (SunShares& sun : suns) {
+      shares.push_back(raster_.picture(std::move(sun.share), 1));
+      draws.push_back({raster_.picture(std::move(sun.weight), 1),
+                       raster_.picture(std::move(sun.width), kPenumbraUnit)});
+    }
+  }
+
+  InterleavedVectors direct_light() const {
+    InterleavedVectors direct = raster_.make_color();
+    const DirectJob job{march_scene_, found_shares(), &direct};
+    for_each_band_of(march_scene_.receivers, [&](const Window& part) { find_direct(job, part); },
+                     {});
+    return direct;
   }
 
   void gather_reflection() {
@@ -343,52 +342,56 @@ class Bitmask {
             std::min(part.x1 + by, layout_.width()), std::min(part.y1 + by, layout_.height())};
   }
 
+  /// The radiance that pixels send, given the bounce of the pass before; null: there is none.
+  InterleavedVectors sent_light(const Window& part, const InterleavedVectors* bounce,
+                                bool two_sided) const {
+    // A layer may say what is sent.
+    if (!senders_need_light()) return raster_.interleaved(scene_.senders.radiance);
+    InterleavedVectors sent = raster_.make_color();
+    const SenderJob senders{march_scene_, found_shares(), scene_.senders.albedo,
+                            bounce,       &sent,          two_sided};
+    for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
+    return sent;
+  }
+
   /// Each pass is lit by the one before.
   InterleavedVectors gather_bounce() {
-    const bool lit = senders_need_light();  // else a layer says what is sent
-    const bool two_sided = lit && !scene_.light.is_constant();
-    InterleavedVectors sent = lit ? raster_.make_color()
-                                  : raster_.interleaved(scene_.senders.radiance),
-                       bounce = request_.bounces > 0 ? raster_.make_color() : raster_.black();
-    InterleavedPlane weights(layout_);
-    if (request_.products.error && request_.bounces > 0) bounce_error_ = InterleavedPlane(layout_);
+    if (request_.bounces == 0) return raster_.black();
+    const bool lit = senders_need_light(), two_sided = lit && !scene_.light.is_constant();
     const FarScene* overview = request_.around_band ? request_.around_band->far.get() : nullptr;
+    if (request_.products.error) bounce_error_ = InterleavedPlane(layout_);
     std::vector<FurtherLight> sent_further;
-    if (further_ && request_.bounces > 0)
+    if (further_)
       sent_further = light_further_surfaces(scene_, request_.bounces - 1, request_.radius);
+    InterleavedVectors bounce;
     for (int pass = 1; pass <= request_.bounces; ++pass) {
-      if (lit) {
-        const SenderJob senders{
-            march_scene_, found_shares(), scene_.senders.albedo, pass > 1 ? &bounce : nullptr,
-            &sent,        two_sided};
-        for_each_band_of(
-            with_senders(march_scene_.receivers, request_.bounces - pass + 1),
-            [&](const Window& part) { find_senders(senders, part); }, {});
-      }
+      // What is lit reaches as far as the bounces that follow.
+      const Window lit_part = with_senders(march_scene_.receivers, request_.bounces - pass + 1);
+      InterleavedVectors light = sent_light(lit_part, pass > 1 ? &bounce : nullptr, two_sided);
       BorderValues sent_border[3];
       for (int c = 0; c < 3; ++c) {
         sent_border[c] = march_scene_.border.gather([&](int x, int y) {
-          const float both = sent[std::size_t(c)][layout_.index(x, y)];
+          const float both = light[std::size_t(c)][layout_.index(x, y)];
           return two_sided ? first_of_two(both) : both;
         });
       }
       if (kept_light_in_) {
-        kept_light_.push_back({raster_.in_whole_rows(sent, *kept_light_in_),
+        kept_light_.push_back({raster_.in_whole_rows(light, *kept_light_in_),
                                {sent_border[0], sent_border[1], sent_border[2]}});
       }
       const bool wants_error = request_.products.error && pass == request_.bounces;
+      GatheredLight gathered(bounce_march_, wants_error);
       const BounceJob job{bounce_march_,
                           &ao_,
-                          &sent,
+                          &light,
                           two_sided,
                           scene_.solids,
                           sent_border,
                           further_ ? &sent_further[std::size_t(pass - 1)] : nullptr,
-                          with_senders(march_scene_.receivers, request_.bounces - pass + 1),
+                          lit_part,
                           overview,
                           overview ? &overview->light[std::size_t(pass - 1)] : nullptr,
-                          &weights,
-                          &bounce,
+                          &gathered,
                           wants_error ? &bounce_error_ : nullptr};
       // Light gathered in the last pass is not sent on: only receivers need it.
       const Window to = lit && pass < request_.bounces
@@ -398,7 +401,7 @@ class Bitmask {
           grown(to, bounce_pattern_.spacing() - 1),
           [&](const Window& part) { march_bounce(job, part); }, progress_);
       for_each_band_of(to, [&](const Window& part) { spread_bounce(job, part); }, {});
-      for_each_band_of(to, [&](const Window& part) { finish_bounce(job, part); }, {});
+      bounce = std::move(light);
     }
     return bounce;
   }
@@ -414,8 +417,8 @@ class Bitmask {
   std::unique_ptr<FurtherRays> further_;  ///< null: there are no further views
   March march_, bounce_march_;
   InterleavedPlane ao_, error_, bounce_error_;
-  InterleavedVectors sky_share_;              ///< empty where that is ao
-  std::vector<InterleavedPlane> sun_shares_;  ///< by sun
+  InterleavedColorShares sky_share_;          ///< empty where that is ao
+  std::vector<SunShares> suns_, suns_again_;  ///< by sun
   const FarRaster* kept_light_in_ = nullptr;  ///< where bands of the frame need what is sent
   std::vector<FarLight> kept_light_;          ///< that, by pass
   Products out_;
@@ -430,34 +433,17 @@ std::shared_ptr<const FarScene> overview(const Scene& scene, const Request& requ
   return std::make_shared<FarScene>(Bitmask(scene, request, progress).overview(from_px));
 }
 
-/// The farthest away that something within the radius may be in the picture: reach_px() of
-/// lanes-inl.h for the nearest surface, and how far the march to it may look.
 int reach_rows(const Scene& scene, const Request& request) {
-  constexpr float kMargin = 1.01f;  // planes of the march put surfaces onto the middles of pixels
   const Geometry& g = scene.geometry;
-  const float f = float(std::max(g.camera.fx, g.camera.fy)), r = request.radius;
   const int most = g.part_of.value_or(g.window).height();
-  float reach = g.camera.orthographic ? r * f : 0;
-  for (const Surfel& s : g.surfel.pixels) {
-    if (!s.is_surface() || g.camera.orthographic) continue;
-    const float depth = -s.position.z, distance = glm::length(glm::vec3(s.position));
-    if (depth <= kMargin * r) return most;
-    reach = std::max(reach, f * r * distance / (depth * (depth - r)));
-  }
-  if (!(kMargin * reach < float(most))) return most;
-  const SlicePattern pattern(Interleaving(g.window.width(), 1, 0), g.display, request.slices,
-                             request.steps, request.seed);
-  float rows = kMargin * reach + 1;
-  for (int member = 0; member < Interleaving::kPeriod * Interleaving::kPeriod; ++member) {
-    for (const Slice& slice : pattern.member(member % Interleaving::kPeriod,
-                                             member / Interleaving::kPeriod)) {
-      for (const SliceSide& side : slice.sides) {
-        for (const SliceStep& step : side.steps)
-          if (step.inner_px <= kMargin * reach) rows = std::max(rows, std::abs(step.dy));
-      }
-    }
-  }
-  return std::min(int(std::ceil(rows)) + kRowsAround, most);
+  const float reach = reach_px(g, request.radius) + 1;
+  if (!(reach < float(most))) return most;
+  const Interleaving layout(g.window.width(), 1, 0);
+  const SlicePattern pattern(layout, g.display, request.slices, request.steps, request.seed),
+      bounce(layout, g.display, bounce_slices(request.slices), bounce_steps(request.steps),
+             request.seed, bounce_spacing(request.slices));
+  const int rows = std::max(pattern.rows_within(reach), bounce.rows_within(reach));
+  return std::min(rows + kRowsAround, most);
 }
 
 }  // namespace

@@ -55,10 +55,11 @@ View read_view(std::deque<ExrReader> opened, const std::vector<LayerRequest>& ao
 
   view.geometry =
       build_geometry(view.gbuffer, camera, view.files.front().path().string(), view.report);
-  // From here on there is one position and one normal: those of the geometry.
+  // From here on there is one position, one normal and one kind of pixel: those of the geometry.
   view.gbuffer.position = {};  // on their own lines: an assignment of a plane keeps memory
   view.gbuffer.normal = {};
   view.gbuffer.depth = {};
+  view.gbuffer.valid = {};
   return view;
 }
 

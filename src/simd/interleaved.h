@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <memory>
 
+#include "math/share16.h"
 #include "simd/width.h"
 
 namespace ssdo {
@@ -14,9 +15,9 @@ namespace ssdo {
 /// Pixels that are eight apart then are neighbours in memory, and the same offset from each of them
 /// leads to neighbours again: a whole vector of pixels reads its samples with one load.
 ///
-/// Rows are padded by kPad entries on both sides, so that a vector of which one lane lies in the
-/// picture may be read whole. The length of a row is an odd number of cache lines: at a power of
-/// two, pixels below each other would share a few places of the cache.
+/// Before each row and after the last one there are kPad entries, so that a vector of which one
+/// lane lies in the picture may be read whole. The length of a row is an odd number of cache lines:
+/// at a power of two, pixels below each other would share a few places of the cache.
 class Interleaving {
  public:
   static constexpr int kPeriod = 8;
@@ -29,14 +30,14 @@ class Interleaving {
         height_(height),
         phase_(phase),
         columns_((width + phase + kPeriod - 1) / kPeriod),
-        stride_((((columns_ + kPad - 1) / kPad + 2) | 1) * kPad) {}
+        stride_((((columns_ + kPad - 1) / kPad + 1) | 1) * kPad) {}
 
   int width() const { return width_; }
   int height() const { return height_; }
   int phase() const { return phase_; }
   int columns() const { return columns_; }  ///< entries of each of the eight rows
   std::ptrdiff_t stride() const { return stride_; }
-  std::size_t size() const { return std::size_t(stride_) * std::size_t(height_) * kPeriod; }
+  std::size_t size() const { return std::size_t(stride_) * std::size_t(height_) * kPeriod + kPad; }
 
   /// Index of entry `column` of the row that holds every eighth pixel of row `y` from
   /// `column_phase` on.
@@ -54,29 +55,60 @@ class Interleaving {
   std::ptrdiff_t stride_;
 };
 
-/// Values of a picture in that order, not initialised.
-class InterleavedPlane {
+/// Where one pixel of every `spacing` x `spacing` lies, in the same order: those whose row has a
+/// quotient of its own, and whose column in the display window is a multiple of `spacing`.
+class SparseInterleaving {
  public:
-  InterleavedPlane() = default;
-  explicit InterleavedPlane(const Interleaving& layout)
-      : values_(std::make_unique_for_overwrite<float[]>(layout.size())) {}
+  /// `spacing` divides Interleaving::kPeriod.
+  SparseInterleaving(const Interleaving& all, int spacing)
+      : spacing_(spacing), height_(all.height()), stride_(all.stride()) {}
 
-  float* data() { return values_.get(); }
-  const float* data() const { return values_.get(); }
-  float& operator[](std::ptrdiff_t i) { return values_[std::size_t(i)]; }
-  float operator[](std::ptrdiff_t i) const { return values_[std::size_t(i)]; }
+  std::size_t size() const {
+    return std::size_t((height_ + spacing_ - 1) / spacing_ * rows()) * std::size_t(stride_) +
+           Interleaving::kPad;
+  }
+
+  /// Of the entry that Interleaving::index() has for these.
+  std::ptrdiff_t index(int y, int column_phase, int column) const {
+    return (std::ptrdiff_t(y / spacing_) * rows() + column_phase / spacing_) * stride_ +
+           Interleaving::kPad + column;
+  }
+
+ private:
+  int rows() const { return Interleaving::kPeriod / spacing_; }
+
+  int spacing_, height_;
+  std::ptrdiff_t stride_;
+};
+
+/// Values of a picture in the order of a layout, not initialised.
+template <class T>
+class InterleavedValues {
+ public:
+  InterleavedValues() = default;
+  explicit InterleavedValues(const auto& layout)
+      : values_(std::make_unique_for_overwrite<T[]>(layout.size())) {}
+
+  T* data() { return values_.get(); }
+  const T* data() const { return values_.get(); }
+  T& operator[](std::ptrdiff_t i) { return values_[std::size_t(i)]; }
+  T operator[](std::ptrdiff_t i) const { return values_[std::size_t(i)]; }
 
   /// Sets a whole row, with what is outside the picture.
-  void fill_row(const Interleaving& layout, int y, float value) {
-    float* first = data() + layout.index(y, 0, -Interleaving::kPad);
+  void fill_row(const Interleaving& layout, int y, T value) {
+    T* first = data() + layout.index(y, 0, -Interleaving::kPad);
     std::fill(first, first + Interleaving::kPeriod * layout.stride(), value);
   }
 
  private:
-  std::unique_ptr<float[]> values_;
+  std::unique_ptr<T[]> values_;
 };
+
+using InterleavedPlane = InterleavedValues<float>;
+using InterleavedShares = InterleavedValues<Share16>;
 
 /// Vectors or colours of a picture in that order, coordinate by coordinate.
 using InterleavedVectors = std::array<InterleavedPlane, 3>;
+using InterleavedColorShares = std::array<InterleavedShares, 3>;
 
 }  // namespace ssdo

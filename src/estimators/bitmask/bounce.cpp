@@ -87,7 +87,7 @@ HWY_INLINE V3 sent_behind(const BounceJob& job, bool far, int layer, const Place
   if (far) {
     sent = gather(job.far->sent, index_of(job.overview->raster, from));
   } else {
-    sent = gather(*job.sent, index_of(layout, from));
+    sent = gather(*job.light, index_of(layout, from));
     if (job.overview) {
       const auto lit = hn::And(from.y >= set_int(job.lit.y0), from.y < set_int(job.lit.y1));
       const VI beyond = index_of(job.overview->raster, in_overview(job, from));
@@ -136,6 +136,10 @@ struct FromFurther {
   }
 };
 
+HWY_INLINE std::ptrdiff_t index_of_gatherer(const GatheredLight& light, const Place& place) {
+  return light.layout.index(place.y, place.column_phase, place.column);
+}
+
 template <bool kOrthographic>
 void gather_light(const BounceJob& job, const Window& part) {
   const March& march = job.march;
@@ -162,9 +166,9 @@ void gather_light(const BounceJob& job, const Window& part) {
                     HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {
                     if (layer > 0) return sent_behind(job, far, layer, p.place, step, bits);
-                    const InterleavedVectors& light = far ? job.far->sent : *job.sent;
-                    for (const InterleavedPlane& channel : light) prefetch_next(channel, q);
-                    const V3 sent = load(light, q);
+                    const InterleavedVectors& sending = far ? job.far->sent : *job.light;
+                    for (const InterleavedPlane& channel : sending) prefetch_next(channel, q);
+                    const V3 sent = load(sending, q);
                     if (!job.two_sided) return sent;
                     const MarchPlanes& planes = far ? march.far->planes : march.scene;
                     const M seen = faces<kOrthographic>(planes, q, step, p);
@@ -180,8 +184,9 @@ void gather_light(const BounceJob& job, const Window& part) {
                 });
           }
         }
-        store(light.sum, *job.bounce, p.place.index);
-        store(light.weights, *job.weights, p.place.index);
+        GatheredLight& out = *job.gathered;
+        const std::ptrdiff_t at = index_of_gatherer(out, p.place);
+        store(light.sum, out.sum, at), store(light.weights, out.weights, at);
         if (!job.error) return;
         // Where one half met nothing, there is no difference to tell the error from.
         const Gathered second_half = light.minus(first_half);
@@ -190,7 +195,7 @@ void gather_light(const BounceJob& job, const Window& part) {
         const M both = hn::And(first_half.weights > zero, second_half.weights > zero);
         const V scale =
             light.weights * set(error_of_difference(march, p.place, firsts, count_of_slices));
-        store(hn::IfThenElseZero(both, difference) * scale, *job.error, p.place.index);
+        store(hn::IfThenElseZero(both, difference) * scale, out.error, at);
       });
 }
 
@@ -204,7 +209,7 @@ HWY_INLINE Offset offset_of(const March& march, const Place& place) {
   return {place.column_phase & last, (place.y + march.scene.first_y) & last};
 }
 
-/// Calls `visit(index, dx, dy)` for the pixels around a place that march.
+/// Calls `visit(place, dx, dy)` for the pixels around a place that march, or for itself if it does.
 template <class Visit>
 HWY_INLINE void for_each_gatherer(const March& march, const Place& place, const Visit& visit) {
   const Interleaving& layout = march.scene.layout;
@@ -213,46 +218,47 @@ HWY_INLINE void for_each_gatherer(const March& march, const Place& place, const 
   for (int dy = -off.y; dy <= off.y; dy += spacing) {
     if (place.y + dy < 0 || place.y + dy >= layout.height()) continue;
     for (int dx = -off.x; dx <= off.x; dx += spacing) {
-      visit(index_beside(layout, place, dx, dy), dx, dy);
+      visit(place_beside(layout, place, dx, dy), dx, dy);
     }
   }
 }
 
-/// Gives pixels their bounce from those that have gathered light: these, or the others.
+/// Gives pixels their bounce from those that have gathered light.
 template <bool kOrthographic>
-void spread(const BounceJob& job, const Window& part, bool to_gatherers) {
+void spread(const BounceJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
+  const GatheredLight& from = *job.gathered;
   for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
-    const Offset off = offset_of(job.march, place);
-    if ((off.x == 0 && off.y == 0) != to_gatherers) return;
     const std::ptrdiff_t i = place.index;
     const V zero = set(0);
     const MarchReceiver p = load_receiver(scene, place);
     Gathered of_surface = no_light(), of_all = no_light();
     V difference = zero;
-    for_each_gatherer(job.march, place, [&](std::ptrdiff_t q, int dx, int dy) HWY_ATTR {
-      const V weights = load(*job.weights, q);
-      const M found = hn::And(holds_solid(load(scene.depth(), q)), weights > zero);
+    for_each_gatherer(job.march, place, [&](const Place& q, int dx, int dy) HWY_ATTR {
+      const std::ptrdiff_t at = index_of_gatherer(from, q);
+      const V weights = load(from.weights, at);
+      const M found = hn::And(holds_solid(load(scene.depth(), q.index)), weights > zero);
       if (!any(found)) return;
-      const Gathered light{if_then_else_zero(found, load(*job.bounce, q)),
+      const Gathered light{if_then_else_zero(found, load(from.sum, at)),
                            hn::IfThenElseZero(found, weights)};
-      const V like = dx == 0 && dy == 0 ? set(1) : likeness<kOrthographic>(scene, p, q, dx, dy);
+      const V like =
+          dx == 0 && dy == 0 ? set(1) : likeness<kOrthographic>(scene, p, q.index, dx, dy);
       of_surface = {mul_add(light.sum, like, of_surface.sum),
                     hn::MulAdd(light.weights, like, of_surface.weights)};
       of_all = {of_all.sum + light.sum, of_all.weights + light.weights};
       if (job.error) {
-        const V known = hn::IfThenElseZero(found, load(*job.error, q));
+        const V known = hn::IfThenElseZero(found, load(from.error, at));
         difference = hn::MulAdd(known, like, difference);
       }
     });
     // ao may see an occluder that no march for the bounce met; it is assumed to be close and to
     // send what the receiver sends.
     const M on_surface = of_surface.weights > zero, anywhere = of_all.weights > zero;
-    const V3 sent = load(*job.sent, i), own = job.two_sided ? front_of(sent) : sent;
+    const V3 sent = load(*job.light, i), own = job.two_sided ? front_of(sent) : sent;
     const V3 beside = if_then_else(anywhere, of_all.mean(), own);
     const V3 radiance = if_then_else(on_surface, of_surface.mean(), beside);
     const V hidden = hn::IfThenElseZero(p.valid, set(1) - load(*job.ao, i));
-    store(radiance * hidden, *job.bounce, i);
+    store(radiance * hidden, *job.light, i);
     if (job.error) {
       const V error = hn::IfThenElseZero(on_surface, hidden * difference / of_surface.weights);
       store(error, *job.error, i);
@@ -264,9 +270,8 @@ void gather_in_pixels(const BounceJob& job, const Window& part) {
   job.march.scene.orthographic ? gather_light<true>(job, part) : gather_light<false>(job, part);
 }
 
-void spread_to_pixels(const BounceJob& job, const Window& part, bool to_gatherers) {
-  job.march.scene.orthographic ? spread<true>(job, part, to_gatherers)
-                               : spread<false>(job, part, to_gatherers);
+void spread_to_pixels(const BounceJob& job, const Window& part) {
+  job.march.scene.orthographic ? spread<true>(job, part) : spread<false>(job, part);
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -283,11 +288,7 @@ void march_bounce(const BounceJob& job, const Window& part) {
 }
 
 void spread_bounce(const BounceJob& job, const Window& part) {
-  HWY_DYNAMIC_DISPATCH(spread_to_pixels)(job, part, false);
-}
-
-void finish_bounce(const BounceJob& job, const Window& part) {
-  HWY_DYNAMIC_DISPATCH(spread_to_pixels)(job, part, true);
+  HWY_DYNAMIC_DISPATCH(spread_to_pixels)(job, part);
 }
 
 }  // namespace ssdo

@@ -95,8 +95,9 @@ DepthBounds::DepthBounds(const MarchScene& scene, const MarchLayer& layer) {
   columns_ += columns_ & 1;
   const std::size_t count = 2 * std::size_t(rows_) * std::size_t(columns_);
   cells_.assign(count, {-kInfinity, 0, kInfinity});
-  pixels_.resize(count / 2 << (2 * kSmallest));
-  for_each_row(rows_, [&](int row) { gather_pixels(scene, layer, row); });
+  const int used_rows = ((first_y_ + scene.layout.height() - 1) >> kSmallest) + 1;
+  pixels_.resize(std::size_t(used_rows) * std::size_t(columns_) << (2 * kSmallest));
+  for_each_row(used_rows, [&](int row) { gather_pixels(scene, layer, row); });
   for (int size = kSmallest + 1; size <= kLargest; ++size)
     for_each_row(rows_ >> (size - kSmallest), [&](int row) { gather_cells(size, row); });
 }

@@ -10,6 +10,7 @@
 #define SSDO_BITMASK_LANES_INL_H_
 #endif
 
+#include <array>
 #include <cmath>
 
 #include "estimators/bitmask/march.h"
@@ -17,6 +18,7 @@
 #include "estimators/receiver-inl.h"
 #include "scene/same_surface-inl.h"
 #include "simd/lanes-inl.h"
+#include "simd/share16-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -96,16 +98,21 @@ HWY_INLINE VI index_of(const FarRaster& far, const Pixels& at) {
 }
 
 /// Consecutive values in the order of the march, from index `i` on.
-HWY_INLINE V load(const InterleavedPlane& plane, std::ptrdiff_t i) {
+template <class T>
+HWY_INLINE V load(const InterleavedValues<T>& plane, std::ptrdiff_t i) {
   return load(plane.data() + i);
 }
-HWY_INLINE V3 load(const InterleavedVectors& color, std::ptrdiff_t i) {
+template <class T>
+HWY_INLINE V3 load(const std::array<InterleavedValues<T>, 3>& color, std::ptrdiff_t i) {
   return {load(color[0], i), load(color[1], i), load(color[2], i)};
 }
-HWY_INLINE void store(V value, InterleavedPlane& plane, std::ptrdiff_t i) {
+template <class T>
+HWY_INLINE void store(V value, InterleavedValues<T>& plane, std::ptrdiff_t i) {
   store(value, plane.data() + i);
 }
-HWY_INLINE void store(const V3& value, InterleavedVectors& color, std::ptrdiff_t i) {
+template <class T>
+HWY_INLINE void store(const V3& value, std::array<InterleavedValues<T>, 3>& color,
+                      std::ptrdiff_t i) {
   store(value.x, color[0], i), store(value.y, color[1], i), store(value.z, color[2], i);
 }
 
@@ -119,12 +126,12 @@ struct Place {
   int y, column_phase, column;
 };
 
-/// Index of the pixels (dx, dy) away, no more than kPeriod.
-HWY_INLINE std::ptrdiff_t index_beside(const Interleaving& layout, const Place& place, int dx,
-                                       int dy) {
-  const int column_phase = place.column_phase + dx;
-  return layout.index(place.y + dy, column_phase & (Interleaving::kPeriod - 1),
-                      place.column + (column_phase >> Interleaving::kShift));
+/// The pixels (dx, dy) away, no more than kPeriod.
+HWY_INLINE Place place_beside(const Interleaving& layout, const Place& place, int dx, int dy) {
+  const int y = place.y + dy, shifted = place.column_phase + dx,
+            column_phase = shifted & (Interleaving::kPeriod - 1),
+            column = place.column + (shifted >> Interleaving::kShift);
+  return {layout.index(y, column_phase, column), y, column_phase, column};
 }
 
 /// The columns of a vector of pixels in the raster; of lanes beside it, the first or the last.

@@ -59,18 +59,29 @@ struct VisibilityJob {
   float through_beyond = 0;  ///< share of it that comes through what may go on beyond the frame
 
   InterleavedPlane* ao = nullptr;
-  InterleavedVectors* bent = nullptr;       ///< unit; null: not wanted
-  InterleavedVectors* sky_share = nullptr;  ///< what of the light arrives; null: not wanted
+  InterleavedVectors* bent = nullptr;           ///< unit; null: not wanted
+  InterleavedColorShares* sky_share = nullptr;  ///< what of the light arrives; null: not wanted
   InterleavedPlane* difference =
       nullptr;  ///< standard error of its luminance, signed; null: not wanted
+};
+
+/// Pixels that widths of penumbras are stored as shares of.
+inline constexpr float kPenumbraUnit = 8;
+
+/// What rays to a sun have found: about 0..1, of what a surface of any normal would get, and
+/// ShadowDraw, with widths over kPenumbraUnit.
+struct SunShares {
+  explicit SunShares(const Interleaving& layout) : share(layout), weight(layout), width(layout) {}
+
+  InterleavedShares share, weight, width;
 };
 
 /// How much of the light arrives at each pixel, as LightShares has it.
 struct FoundShares {
   const Light& light;
   const InterleavedPlane* ao;
-  const InterleavedVectors* sky;  ///< null: ao is the share of all light
-  const std::vector<InterleavedPlane>& suns;
+  const InterleavedColorShares* sky;  ///< null: ao is the share of all light
+  const std::vector<SunShares>& suns;
 };
 
 /// The radiance that each pixel sends to others, and that of its back side.
@@ -83,12 +94,28 @@ struct SenderJob {
   bool two_sided;  ///< `sent` holds front and back, as two_in_one(); else they send the same
 };
 
+/// What the pixels that march have gathered.
+struct GatheredLight {
+  GatheredLight(const March& march, bool with_error)
+      : layout(march.scene.layout, march.pattern.spacing()),
+        sum{InterleavedPlane(layout), InterleavedPlane(layout), InterleavedPlane(layout)},
+        weights(layout) {
+    if (with_error) error = InterleavedPlane(layout);
+  }
+
+  SparseInterleaving layout;
+  InterleavedVectors sum;    ///< of weighted radiance
+  InterleavedPlane weights;  ///< their sum
+  InterleavedPlane error;    ///< of the luminance of the mean radiance, times the weights
+};
+
 /// The light that each pixel receives from the first surface in every direction: the mean radiance
 /// of what hides the environment, times 1 - ao.
 struct BounceJob {
   March march;
   const InterleavedPlane* ao;
-  const InterleavedVectors* sent;    ///< radiance of layer 0
+  /// The radiance that layer 0 sends; spread_bounce() replaces it by the light that arrives.
+  InterleavedVectors* light;
   bool two_sided;                    ///< as SenderJob has it
   const Solids& solids;              ///< of the scene: whose light layers 1, 2, ... send
   const BorderValues* sent_border;   ///< three: of surfaces that continue beyond the frame
@@ -97,12 +124,9 @@ struct BounceJob {
   const FarScene* overview;          ///< tells that of others; null where all are lit
   const FarLight* far;               ///< what the overview sends
 
-  InterleavedPlane* weights;  ///< of the pixels that march, their sum
-  /// Of these pixels the sum of weighted radiance, until finish_bounce().
-  InterleavedVectors* bounce;
-  /// Standard error of the luminance of `bounce`, signed; until finish_bounce() of the mean
-  /// radiance of these pixels, times the weights. Null: not wanted.
-  InterleavedPlane* error;
+  GatheredLight* gathered;
+  InterleavedPlane* error;  ///< standard error of the luminance of what arrives, signed; null: not
+                            ///< wanted
 };
 
 /// The direct light of each pixel.
@@ -122,8 +146,7 @@ struct SunJob {
   /// Of the pixels whose rays go first, in pixels, where their ray is blocked; negative: nowhere;
   /// not-a-number: they have none. Null: all rays go at once.
   InterleavedPlane* first;
-  InterleavedPlane* share;              ///< 0..1, of what a surface of any normal would get
-  InterleavedPlane *weight, *width_px;  ///< those of ShadowDraw
+  SunShares* found;
 };
 
 /// How much of what rough surfaces mirror is not blocked.
@@ -139,10 +162,8 @@ struct ReflectionJob {
 /// All of these work on a part of the raster, and may write to pixels beside it in the same rows.
 void march_visibility(const VisibilityJob& job, const Window& part);
 void march_bounce(const BounceJob& job, const Window& part);
-/// To the pixels that do not march, after march_bounce of those around them.
+/// After march_bounce everywhere.
 void spread_bounce(const BounceJob& job, const Window& part);
-/// Of the pixels that march, after spread_bounce everywhere.
-void finish_bounce(const BounceJob& job, const Window& part);
 /// Fills SunJob::first. Before march_sun of the pixels around.
 void march_first_rays(const SunJob& job, const Window& part);
 void march_sun(const SunJob& job, const Window& part);

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
+#include <utility>
 
 #include "parallel/tiles.h"
 #include "scene/normals/geometric_normal.h"
@@ -99,13 +100,34 @@ class Cells {
 
 }  // namespace
 
+float reach_px(const Geometry& g, float radius) {
+  constexpr float kMargin = 1.01f;  // a march puts surfaces onto the middles of their pixels
+  const float f = kMargin * float(std::max(g.camera.fx, g.camera.fy)), r = radius;
+  if (g.camera.orthographic) return r * f;
+  float reach = 0;
+  for (const Surfel& s : g.surfel.pixels) {
+    if (!s.is_surface()) continue;
+    const float depth = -s.position.z, distance = glm::length(glm::vec3(s.position));
+    if (depth <= kMargin * r) return std::numeric_limits<float>::infinity();
+    reach = std::max(reach, f * r * distance / (depth * (depth - r)));
+  }
+  return reach;
+}
+
 MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Window& receivers) {
   check_layers(solids);
   const Interleaving layout(g.surfel.width, g.surfel.height,
                             (g.window.x0 - g.display.x0) & (kPeriod - 1));
-  const auto plane = [&] { return InterleavedPlane(layout); };
+  const auto plane = [&] {
+    InterleavedPlane values(layout);
+    std::fill_n(values.data() + layout.size() - Interleaving::kPad, Interleaving::kPad, kNothing);
+    return values;
+  };
+  // What products are handed out by comes first: the rest is then freed in one piece.
+  std::vector<MarchLayer> layers;
+  for (int k = 0; k < solids.layers(); ++k) layers.push_back({plane(), plane()});
   const Window frame = g.part_of.value_or(g.window);
-  MarchScene scene{{{}, {plane(), plane(), plane()}, plane()},
+  MarchScene scene{{std::move(layers), {plane(), plane(), plane()}, plane()},
                    layout,
                    {receivers.x0 - g.window.x0, receivers.y0 - g.window.y0,
                     receivers.x1 - g.window.x0, receivers.y1 - g.window.y0},
@@ -125,7 +147,6 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                    {},
                    {}};
   if (receivers.area() == 0) scene.receivers = scene.raster();
-  for (int k = 0; k < solids.layers(); ++k) scene.layers.push_back({plane(), plane()});
   const Cells cells(g, scene);
   for_each_row(g.surfel.height, [&](int y) {
     constexpr int kPad = Interleaving::kPad;

@@ -121,6 +121,10 @@ struct MarchScene : MarchPlanes {
   Window raster() const { return {0, 0, layout.width(), layout.height()}; }
 };
 
+/// How far away in the picture something within the radius of any surface may be, in pixels: as
+/// reach_px() of lanes-inl.h for the nearest. Infinite where that is within the radius itself.
+float reach_px(const Geometry& geometry, float radius);
+
 /// `receivers` as Request has them: in the coordinates of the geometry's window, and within it;
 /// area 0: all of it.
 MarchScene make_march_scene(const Geometry& geometry, const Solids& solids,

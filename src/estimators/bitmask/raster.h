@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <glm/vec3.hpp>
@@ -95,6 +96,18 @@ class Raster {
     });
     return out;
   }
+  /// Of the planes of an overview.
+  MarchPlanes in_whole_rows(const MarchPlanes& from, const FarRaster& far) const {
+    MarchPlanes planes;
+    for (const MarchLayer& layer : from.layers)
+      planes.layers.push_back({in_whole_rows(layer.depth, far), in_whole_rows(layer.thickness, far)});
+    planes.normal = in_whole_rows(from.normal, far);
+    planes.tilt = in_whole_rows(from.tilt, far, [](float both) {
+      constexpr float kPixels = 1.0f / kPeriod;  // steps are in pixels of the frame
+      return two_in_one(kPixels * first_of_two(both), kPixels * second_of_two(both));
+    });
+    return planes;
+  }
   InterleavedVectors in_whole_rows(const InterleavedVectors& values, const FarRaster& far) const {
     return {in_whole_rows(values[0], far), in_whole_rows(values[1], far),
             in_whole_rows(values[2], far)};
@@ -105,7 +118,13 @@ class Raster {
     return of_receivers(background, [&](std::ptrdiff_t i) { return plane[i]; });
   }
 
-  Plane<glm::vec3> picture(InterleavedVectors color) const {
+  /// What `unit` is to be multiplied by.
+  Plane<float> picture(InterleavedShares plane, float unit) const {
+    return of_receivers(0.0f, [&](std::ptrdiff_t i) { return unit * plane[i]; });
+  }
+
+  template <class T>
+  Plane<glm::vec3> picture(std::array<InterleavedValues<T>, 3> color) const {
     return of_receivers(glm::vec3(0), [&](std::ptrdiff_t i) {
       return glm::vec3(color[0][i], color[1][i], color[2][i]);
     });

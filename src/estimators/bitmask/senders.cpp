@@ -56,7 +56,7 @@ HWY_INLINE Around around(const MarchScene& scene, const Place& place) {
   for (int dy = -kWindow / 2; dy < kWindow / 2; ++dy) {
     if (place.y + dy < 0 || place.y + dy >= scene.layout.height()) continue;
     for (int dx = -kWindow / 2; dx < kWindow / 2; ++dx) {
-      const std::ptrdiff_t q = index_beside(scene.layout, place, dx, dy);
+      const std::ptrdiff_t q = place_beside(scene.layout, place, dx, dy).index;
       const V weight = dx == 0 && dy == 0 ? set(1) : likeness<kOrthographic>(scene, p, q, dx, dy);
       if (any(weight > set(0))) pixels.add(q, weight);
     }
@@ -69,10 +69,10 @@ template <class Share>
 HWY_INLINE V3 direct_light(const FoundShares& found, const V3& normal, const Share& share) {
   const V3 sky = look_up(found.light.irradiance, normal);
   if (!found.sky) return sky * share(*found.ao);
-  const InterleavedVectors& of_sky = *found.sky;
+  const InterleavedColorShares& of_sky = *found.sky;
   V3 sum = sky * V3{share(of_sky[0]), share(of_sky[1]), share(of_sky[2])};
   for (std::size_t k = 0; k < found.suns.size(); ++k)
-    sum = mul_add(unoccluded(found.light.suns[k], normal), share(found.suns[k]), sum);
+    sum = mul_add(unoccluded(found.light.suns[k], normal), share(found.suns[k].share), sum);
   return sum;
 }
 
@@ -101,7 +101,7 @@ void send_light(const SenderJob& job, const Window& part) {
     const auto mean = [&](const InterleavedPlane& plane) HWY_ATTR {
       return pixels.mean([&](std::ptrdiff_t q) HWY_ATTR { return load(plane, q); });
     };
-    const auto mean_share = [&](const InterleavedPlane& plane) HWY_ATTR {
+    const auto mean_share = [&](const auto& plane) HWY_ATTR {
       return pixels.mean([&](std::ptrdiff_t q) HWY_ATTR { return saturate(load(plane, q)); });
     };
     V3 light = direct_light(job.found, shading_normals(scene, place), mean_share);
@@ -122,8 +122,7 @@ void send_light(const SenderJob& job, const Window& part) {
 
 void direct_of_pixels(const DirectJob& job, const Window& part) {
   for_each_vector(job.scene, part, [&](const Place& place) HWY_ATTR {
-    const auto own = [&](const InterleavedPlane& plane)
-                         HWY_ATTR { return saturate(load(plane, place.index)); };
+    const auto own = [&](const auto& plane) HWY_ATTR { return saturate(load(plane, place.index)); };
     store(direct_light(job.found, shading_normals(job.scene, place), own), *job.direct,
           place.index);
   });

@@ -118,6 +118,19 @@ double march_distance(double t, double diagonal) {
   return std::pow(diagonal, std::pow(t, kFarther));
 }
 
+int SlicePattern::rows_within(float reach_px) const {
+  float rows = reach_px;
+  for (const std::vector<Slice>& slices : members_) {
+    for (const Slice& slice : slices) {
+      for (const SliceSide& side : slice.sides) {
+        for (const SliceStep& step : side.steps)
+          if (step.inner_px <= reach_px) rows = std::max(rows, std::abs(step.dy));
+      }
+    }
+  }
+  return int(std::ceil(rows));
+}
+
 int SlicePattern::rank(int member) { return order_of(member % kPeriod, member / kPeriod, kPeriod); }
 
 SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, int slices, int steps,

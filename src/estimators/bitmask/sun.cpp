@@ -90,12 +90,35 @@ struct Block {
 
   Window part;
 
+  /// The first of the numbers that the pixels of a vector have in their order in memory.
+  HWY_INLINE int first_of(const Place& at) const {
+    return ((at.y - part.y0) * Interleaving::kPeriod + at.column_phase) * kLanes;
+  }
+
   /// Numbers for the pixels of a vector; those of a square follow on each other.
   HWY_INLINE VI places(const Place& at) const {
     constexpr int kOfRow = kSquare / kSpacing;
     const int in_lane = at.column_phase / kSquare * kRows * kOfRow + (at.y - part.y0) * kOfRow +
                         at.column_phase % kSquare / kSpacing;
     return hn::Iota(DI(), 0) * set_int(kPixels / kLanes) + set_int(in_lane);
+  }
+};
+
+/// What the rays of the pixels of a block have found, by Block::first_of().
+struct BlockSums {
+  using Block = ssdo::HWY_NAMESPACE::Block<1>;
+  alignas(64) float weight[Block::kPixels];    ///< the cosines of the rays
+  alignas(64) float share[Block::kPixels];     ///< those of the rays that arrive
+  alignas(64) float width_px[Block::kPixels];  ///< of penumbras, by the cosines of the others
+
+  HWY_INLINE void clear(int i) {
+    for (float* sum : {weight, share, width_px}) store(set(0), sum + i);
+  }
+  HWY_INLINE void add(int i, V cosine, V arrives, V penumbra_px) {
+    const V lost = cosine * (set(1) - arrives);
+    store(load(weight + i) + cosine, weight + i);
+    store(hn::MulAdd(cosine, arrives, load(share + i)), share + i);
+    store(hn::MulAdd(lost, penumbra_px, load(width_px + i)), width_px + i);
   }
 };
 
@@ -188,15 +211,13 @@ void first_rays(const SunJob& job, const Window& part) {
 
 template <bool kOrthographic>
 void sun(const SunJob& job, const Window& part) {
-  using Block = Block<1>;
+  using Block = ssdo::HWY_NAMESPACE::Block<1>;
   const MarchScene& scene = job.march.scene;
   WalkOverFrame<kOrthographic> walk(job.march, job.bounds, Block::kPixels);
+  BlockSums sums;
   for_each_block<Block>(scene, part, [&](const Block& block) HWY_ATTR {
-    // First sums: the weights are the cosines of the rays, and their shares those that arrive.
-    for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
-      for (InterleavedPlane* sum : {job.weight, job.share, job.width_px})
-        store(set(0), *sum, place.index);
-    });
+    for_each_vector(scene, block.part,
+                    [&](const Place& place) HWY_ATTR { sums.clear(block.first_of(place)); });
     for (const RayDirections& directions : job.directions) {
       walk.clear();
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
@@ -208,27 +229,23 @@ void sun(const SunJob& job, const Window& part) {
       });
       walk.run();
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
-        const std::ptrdiff_t i = place.index;
         const auto [p, cosine, ray] = sun_rays(job, directions, place);
         const Arrival a =
             arrival<kOrthographic>(job.march, p, ray, walk.blocked_px(block.places(place)),
                                    turn_of_member(member_at(scene, place)), job.pass);
-        const V lost = cosine * (set(1) - a.share);
-        store(load(*job.weight, i) + cosine, *job.weight, i);
-        store(hn::MulAdd(cosine, a.share, load(*job.share, i)), *job.share, i);
-        store(hn::MulAdd(lost, penumbra_px<kOrthographic>(job, p, a.blocked_at),
-                         load(*job.width_px, i)),
-              *job.width_px, i);
+        sums.add(block.first_of(place), cosine, a.share,
+                 penumbra_px<kOrthographic>(job, p, a.blocked_at));
       });
     }
     for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
       const std::ptrdiff_t i = place.index;
-      const V zero = set(0), weight = load(*job.weight, i), arrives = load(*job.share, i),
-              blocked = weight - arrives, widths = load(*job.width_px, i);
-      const V share = hn::IfThenElseZero(weight > zero, arrives / weight);
-      store(share, *job.share, i);
-      store(weight / set(float(job.directions.size())), *job.weight, i);
-      store(hn::IfThenElseZero(blocked > zero, widths / blocked), *job.width_px, i);
+      const int from = block.first_of(place);
+      const V zero = set(0), weight = load(sums.weight + from), arrives = load(sums.share + from),
+              blocked = weight - arrives,
+              widths = load(sums.width_px + from) * set(1 / kPenumbraUnit);
+      store(hn::IfThenElseZero(weight > zero, arrives / weight), job.found->share, i);
+      store(weight / set(float(job.directions.size())), job.found->weight, i);
+      store(hn::IfThenElseZero(blocked > zero, widths / blocked), job.found->width, i);
     });
   });
 }
