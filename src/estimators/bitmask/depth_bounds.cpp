@@ -68,8 +68,8 @@ Cell joined(std::span<const Member<Cell>> members) {
   // for empty ones.
   glm::vec2 mean_way(0);
   float mean = 0;
-  const float count = float(members.size());
-  for (const auto& m : members) mean_way += m.way / count, mean += m.cell.nearest / count;
+  const float share = 1 / float(members.size());
+  for (const auto& m : members) mean_way += m.way * share, mean += m.cell.nearest * share;
   glm::vec2 products(0), squares(1e-20f);
   for (const auto& m : members) {
     const glm::vec2 way = m.way - mean_way;

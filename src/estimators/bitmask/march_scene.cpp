@@ -21,6 +21,7 @@ constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 /// What a pixel shows, in the planes of MarchScene.
 struct Cell {
   float depth = kNothing, ray_length = 1;  ///< the ray's per unit of depth
+  glm::vec2 slope{0};                      ///< of the ray
   glm::vec3 normal{kNothing};
 
   bool is_surface() const { return holds_solid(depth); }
@@ -35,14 +36,19 @@ struct Span {
 class Cells {
  public:
   Cells(const Geometry& g, const MarchScene& scene)
-      : g_(g), scene_(scene), endless_(scene.orthographic ? kEndlessLength : kEndlessShare) {}
+      : g_(g),
+        scene_(scene),
+        endless_(scene.orthographic ? kEndlessLength : kEndlessShare),
+        per_px_(1 / scene.fx, -1 / scene.fy) {}
 
   /// `normal` is that of the surface.
   Cell at(int x, int y, const glm::vec3& normal) const {
     Cell cell;
     const Surfel& s = g_.surfel(x, y);
     if (!s.is_usable()) return cell;
-    const glm::vec2 slope = slope_at(x, y);
+    const glm::vec2 slope((float(x + scene_.first_x) - scene_.axis_x) / scene_.fx,
+                          (scene_.axis_y - float(y + scene_.first_y)) / scene_.fy);
+    cell.slope = slope;
     if (!scene_.orthographic) cell.ray_length = std::sqrt(1 + glm::dot(slope, slope));
     cell.normal = normal;
     cell.depth = depth_on_ray(s, cell.normal, slope, cell.ray_length);
@@ -50,12 +56,12 @@ class Cells {
   }
 
   /// As MarchScene has it.
-  float tilt(const Cell& cell, int x, int y) const {
-    const glm::vec2 slope = slope_at(x, y);
-    const glm::vec3 ray(scene_.orthographic ? glm::vec2(0) : slope, -1.0f);
+  float tilt(const Cell& cell) const {
+    if (!cell.is_surface()) return kNothing;
+    const glm::vec3 ray(scene_.orthographic ? glm::vec2(0) : cell.slope, -1.0f);
     // A surface that turns away from the viewer is a line in its pixel.
     const float per_ray = 1 / std::min(glm::dot(cell.normal, ray), -1e-9f);
-    return two_in_one(cell.normal.x * per_ray / scene_.fx, -cell.normal.y * per_ray / scene_.fy);
+    return two_in_one(cell.normal.x * per_ray * per_px_.x, cell.normal.y * per_ray * per_px_.y);
   }
 
   Span span(const Cell& cell, const Solid& solid) const {
@@ -70,12 +76,6 @@ class Cells {
   }
 
  private:
-  /// Of the ray through a pixel's middle.
-  glm::vec2 slope_at(int x, int y) const {
-    return {(float(x + scene_.first_x) - scene_.axis_x) / scene_.fx,
-            (scene_.axis_y - float(y + scene_.first_y)) / scene_.fy};
-  }
-
   /// Depth at which the ray through a pixel's middle, which has this slope and length per unit of
   /// depth, meets the tangent plane of what the pixel shows.
   float depth_on_ray(const Surfel& s, const glm::vec3& normal, const glm::vec2& slope,
@@ -96,6 +96,7 @@ class Cells {
   const Geometry& g_;
   const MarchScene& scene_;
   const float endless_;
+  const glm::vec2 per_px_;  ///< change of a ray's slope from a pixel to the next
 };
 
 }  // namespace
@@ -165,7 +166,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
         const Cell cell = x >= 0 && x < g.surfel.width ? cells_of_row[std::size_t(x)] : Cell();
         const std::ptrdiff_t i = row + column;
         for (std::size_t c = 0; c < 3; ++c) scene.normal[c][i] = cell.normal[int(c)];
-        scene.tilt[i] = cells.tilt(cell, x, y);
+        scene.tilt[i] = cells.tilt(cell);
         for (int k = 0; k < solids.layers(); ++k) {
           const Span span =
               cell.is_surface() ? cells.span(cell, solids.at(k, g.surfel.index(x, y))) : Span();
