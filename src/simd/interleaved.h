@@ -55,8 +55,8 @@ class Interleaving {
   std::ptrdiff_t stride_;
 };
 
-/// Where one pixel of every `spacing` x `spacing` lies, in the same order: those whose row has a
-/// quotient of its own, and whose column in the display window is a multiple of `spacing`.
+/// Where pixels lie, in the same order, of which there is one in every `spacing` x `spacing`: no
+/// two have both the same row and the same column of the display window, divided by `spacing`.
 class SparseInterleaving {
  public:
   /// `spacing` divides Interleaving::kPeriod.

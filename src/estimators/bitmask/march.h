@@ -65,7 +65,7 @@ struct VisibilityJob {
       nullptr;  ///< standard error of its luminance, signed; null: not wanted
 };
 
-/// Pixels that widths of penumbras are stored as shares of.
+/// Pixels that widths of penumbras, 32 at most, are stored as shares of.
 inline constexpr float kPenumbraUnit = 8;
 
 /// What rays to a sun have found: about 0..1, of what a surface of any normal would get, and
