@@ -186,7 +186,11 @@ void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geomet
 /// What is known of what lies behind surfaces.
 void explain_measured(Plan& plan, const Scene& scene) {
   const Solids& solids = scene.solids;
-  if (solids.behind.empty()) return;
+  const auto is_measured = [](const SolidLayer& layer) {
+    const auto& origins = layer.origin.pixels;
+    return std::find(origins.begin(), origins.end(), Origin::measured) != origins.end();
+  };
+  if (std::none_of(solids.behind.begin(), solids.behind.end(), is_measured)) return;
   std::size_t surfaces = 0, pixels = 0;
   int most = 0;
   for (std::size_t i = 0; i < scene.geometry.surfel.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "estimators/bitmask/slice_pattern.h"
 #include "estimators/further/further_rays.h"
@@ -66,7 +67,6 @@ class Guesses {
   Guesses(const Scene& scene, float radius)
       : scene_(scene),
         surfel_(scene.geometry.surfel),
-        depth_(surfel_.width, surfel_.height, kInfinity),
         footprint_(scene.geometry.camera),
         radius_(radius),
         further_(scene.further.empty()
@@ -75,17 +75,18 @@ class Guesses {
     const Camera& camera = scene.geometry.camera;
     f_ = {float(camera.fx), float(camera.fy)};
     c_ = {float(camera.cx - scene.geometry.window.x0), float(camera.cy - scene.geometry.window.y0)};
-    float farthest = 0;
-    for (std::size_t i = 0; i < depth_.size(); ++i) {
-      if (!surfel_[i].is_usable()) continue;
-      depth_[i] = -surfel_[i].position.z;
-      farthest = std::max(farthest, glm::length(surfel_[i].position));
-    }
-    far_ = std::min(radius, kFarthest * farthest);
+    far_ = scene.views.empty() ? radius : std::min(radius, kFarthest * farthest_surface());
     const float diagonal = std::hypot(float(surfel_.width), float(surfel_.height));
     for (std::size_t i = 0; i < distances_.size(); ++i)
       distances_[i] =
           std::pow(diagonal, std::pow((float(i) + 0.5f) / float(distances_.size()), kCloser));
+  }
+
+  /// Puts all depths side by side, which pays for many rays.
+  void gather_depths() {
+    Plane<float> depth = Plane<float>::like(surfel_);
+    for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = depth_at(i);
+    depth_ = std::move(depth);
   }
 
   /// Of one sequence, the points that the rays of a pixel are.
@@ -126,6 +127,21 @@ class Guesses {
   static constexpr float kCloser = 0.7f;
   static constexpr int kSets = 16, kSpread = 5;
 
+  /// Along the axis; infinite where nothing is shown.
+  float depth_at(std::size_t pixel) const {
+    if (!depth_.empty()) return depth_[pixel];
+    const Surfel& s = surfel_[pixel];
+    return s.is_usable() ? -s.position.z : kInfinity;
+  }
+
+  /// Distance to the viewer of the farthest surface.
+  float farthest_surface() const {
+    float farthest = 0;
+    for (const Surfel& s : surfel_.pixels)
+      if (s.is_usable()) farthest = std::max(farthest, glm::length(s.position));
+    return farthest;
+  }
+
   PicturedRay pictured(const glm::vec3& origin, const glm::vec3& to) const {
     const bool orthographic = scene_.geometry.camera.orthographic;
     PicturedRay line{origin, to,     {}, {}, orthographic ? 1 : -origin.z, orthographic ? 0 : -to.z,
@@ -162,7 +178,7 @@ class Guesses {
   /// front of it. What lies below the receiver's tangent plane cannot be passed behind.
   float behind_front(const PicturedRay& line, float r, const glm::vec3& normal) const {
     const std::size_t pixel = pixel_at(line, r);
-    const float behind = -line.origin.z - line.length_at(r) * line.to.z - depth_[pixel];
+    const float behind = -line.origin.z - line.length_at(r) * line.to.z - depth_at(pixel);
     if (!(behind > 0)) return 0;
     return glm::dot(surfel_[pixel].position - line.origin, normal) > 0 ? behind : 0;
   }
@@ -257,7 +273,7 @@ class Guesses {
 
   const Scene& scene_;
   const Plane<Surfel>& surfel_;
-  Plane<float> depth_;  ///< along the axis; infinite where nothing is shown
+  Plane<float> depth_;  ///< depth_at() of all pixels; empty: not gathered
   PixelFootprint footprint_;
   float radius_, far_;
   std::unique_ptr<FurtherRays> further_;  ///< null: there are no further views
@@ -269,7 +285,8 @@ class Guesses {
 
 Plane<float> guessed_shares(const Scene& scene, const Window& part, float radius, unsigned seed,
                             const Progress& progress) {
-  const Guesses guesses(scene, radius);
+  Guesses guesses(scene, radius);
+  guesses.gather_depths();
   Plane<float> shares(part.width(), part.height(), 0.0f);
   for_each_tile(
       shares.width, shares.height,

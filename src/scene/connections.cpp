@@ -32,7 +32,7 @@ void connect_row(const Geometry& geometry, int y, Plane<unsigned char>& out) {
   const PixelFootprint footprint(geometry.camera);
   for (int x = 0; x < surfels.width; x += kLanes) {
     const Surfels p = surfels_at(surfels, x, y);
-    VU bits = set_bits(0);
+    VU bits = hn::IfThenElseZero(hn::RebindMask(DU(), p.surface), set_bits(kShowsSurface));
     for (std::size_t k = 0; k < kDirections.size(); ++k) {
       const auto [dx, dy] = kDirections[k];
       const M connected = are_connected(p, surfels_at(surfels, x + dx, y + dy), footprint);

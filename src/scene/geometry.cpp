@@ -7,7 +7,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <numeric>
 
+#include "math/order_statistics.h"
 #include "parallel/tiles.h"
 #include "scene/camera/find_camera.h"
 #include "scene/normals/normal_space.h"
@@ -17,8 +19,10 @@
 namespace ssdo {
 namespace {
 
-/// Camera-space positions, and the radius by which rounding may have moved each of them.
-void place_positions(const GBuffer& g, const Camera& camera, Geometry& out) {
+/// Camera-space positions, and the radius by which rounding may have moved each of them. Returns
+/// how many were left out because they lie behind the camera.
+std::size_t place_positions(const GBuffer& g, const Camera& camera, Geometry& out) {
+  std::vector<std::size_t> behind(std::size_t(out.surfel.height));
   for_each_row(out.surfel.height, [&](int y) {
     for (int x = 0; x < out.surfel.width; ++x) {
       const std::size_t i = out.surfel.index(x, y);
@@ -37,24 +41,16 @@ void place_positions(const GBuffer& g, const Camera& camera, Geometry& out) {
         magnitude = std::max(
             {std::abs(g.position[i].x), std::abs(g.position[i].y), std::abs(g.position[i].z)});
       }
+      if (!camera.panorama && !(float(p.z) < 0)) {
+        ++behind[std::size_t(y)];
+        continue;
+      }
       out.surfel[i].position = glm::vec3(p);
       out.surfel[i].valid = 1;
       out.surfel[i].rounding = float(magnitude) * g.position_step;
     }
   });
-}
-
-void drop_pixels_behind_camera(Geometry& out, GeometryReport& report) {
-  std::size_t behind = 0;
-  for (Surfel& s : out.surfel.pixels) {
-    if (!s.is_surface() || s.position.z < 0) continue;
-    s = {};
-    ++behind;
-  }
-  if (behind > 0) {
-    report.warnings.push_back(
-        fmt::format("{} positions lie behind the camera and are left out", behind));
-  }
+  return std::accumulate(behind.begin(), behind.end(), std::size_t(0));
 }
 
 /// Least share of the smooth pixels where N follows the gradient of P; normals.cpp has what right
@@ -103,20 +99,24 @@ void place_normals(const GBuffer& g, const std::optional<glm::mat3>& to_camera, 
     for (int x = 0; x < out.surfel.width; ++x) {
       const std::size_t i = out.surfel.index(x, y);
       if (!out.is_surface(i)) continue;
-      const glm::vec3 view = direction_to_viewer(out.surfel[i].position, orthographic);
+      const glm::vec3& p = out.surfel[i].position;
+      const auto gradient = [&] {
+        return gradient_normal(out.surfel, x, y, direction_to_viewer(p, orthographic));
+      };
       glm::vec3 n = to_camera ? *to_camera * g.normal[i] : glm::vec3(0);
       const float length = glm::length(n);
       if (length > 1e-4f && length < 1e4f) {
         n /= length;
         // A smooth normal may lean away from the viewer at a silhouette; one that is opposite to
         // what P shows is the back of the surface.
-        if (glm::dot(n, view) < 0 && glm::dot(n, gradient_normal(out.surfel, x, y, view)) < 0) {
+        const bool leans_away = orthographic ? n.z < 0 : glm::dot(n, p) > 0;
+        if (leans_away && glm::dot(n, gradient()) < 0) {
           n = -n;
           fate[i] = 2;
         }
       } else {
-        n = gradient_normal(out.surfel, x, y, view);
-        if (n == glm::vec3(0)) n = view;
+        n = gradient();
+        if (n == glm::vec3(0)) n = direction_to_viewer(p, orthographic);
         fate[i] = 1;
       }
       out.surfel[i].normal = n;
@@ -155,14 +155,16 @@ void mend(const GBuffer& g, Geometry& out, GeometryReport& report, const Placeme
 }
 
 float median_depth(const Geometry& geometry) {
-  std::vector<float> depths;
-  for (const Surfel& s : geometry.surfel.pixels) {
-    if (s.is_surface()) depths.push_back(float(geometry.camera.depth_of(s.position)));
-  }
-  if (depths.empty()) return 0;
-  const auto middle = depths.begin() + std::ptrdiff_t(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  constexpr float kLeftOut = -1;
+  Plane<float> depths = Plane<float>::like(geometry.surfel);
+  for_each_row(depths.height, [&](int y) {
+    for (int x = 0; x < depths.width; ++x) {
+      const Surfel& s = geometry.surfel(x, y);
+      depths(x, y) = s.is_surface() ? float(geometry.camera.depth_of(s.position)) : kLeftOut;
+    }
+  });
+  const OrderStatistics in_order(depths.pixels);
+  return in_order.count() == 0 ? 0 : in_order.at(in_order.count() / 2);
 }
 
 }  // namespace
@@ -193,8 +195,11 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
     placement.by_file = found.by_file;
   }
   out.camera = to_grid(placement.camera, g.grid);
-  place_positions(g, to_grid(placement.of_positions, g.grid), out);
-  if (!out.camera.panorama) drop_pixels_behind_camera(out, report);
+  if (const std::size_t behind =
+          place_positions(g, to_grid(placement.of_positions, g.grid), out)) {
+    report.warnings.push_back(
+        fmt::format("{} positions lie behind the camera and are left out", behind));
+  }
   if (!known) find_normals(g, out, report);
   out.normals_to_camera =
       placement.normals_to_camera.value_or(glm::mat3(placement.of_positions.rotation));

@@ -50,118 +50,173 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// little: no value is the best for all of them, and 3 is for occluders nearby.
 constexpr float kPartlySeen = 3;
 
-/// How the surface of a pixel meets a neighbour.
+/// How the surface of a pixel meets the next pixel of its line that shows another one, or none.
 enum class Meets : unsigned char {
   ends,         ///< before something farther, or nothing
   goes_behind,  ///< something nearer
   border,
 };
 
-/// Pixels (x, y), (x + dx, y + dy), ... of one surface, and what is before and after them.
+/// A run of pixels of one surface, where a walk along its line has come to.
 struct Run {
-  int x, y, length;
-  Direction direction;
-  Meets before, after;
+  bool goes_on = false;   ///< to the next pixel of the walk
+  std::size_t first = 0;  ///< pixel
+  Meets meets_before = Meets::border;
+  float depth = kInfinity;  ///< guessed, of what the run shows
 
-  int x_at(int i) const { return x + i * direction.dx; }
-  int y_at(int i) const { return y + i * direction.dy; }
-  float step_px() const { return direction.dx != 0 && direction.dy != 0 ? 1.41421356f : 1.0f; }
+  // The surface that continues behind the run, from where the walk entered it.
+  int sender = -1;  ///< pixel that shows it; -1: none does
+  int away = 0;     ///< pixels from there
+  glm::vec3 point{0}, normal{0};
 };
 
-class Runs {
- public:
-  explicit Runs(const Geometry& geometry)
-      : geometry_(geometry),
-        connections_(find_connections(geometry)),
-        footprint_(geometry.camera) {}
+/// A line of pixels, and the depths of its runs that were met on the way forward: the last on top.
+struct Line {
+  Run run;
+  std::vector<float> depths;
+};
 
-  /// Calls `work(run)` for all runs of kDirections[k]. Runs do not overlap.
-  template <class Work>
-  void for_each(std::size_t k, const Work& work) const {
-    const Direction& direction = kDirections[k];
+/// Guesses along the lines of one direction: forward to measure the runs and to continue what is
+/// before them, then back to use their lengths and to continue what is after them. Lines side by
+/// side are walked together, so that memory is read in its order.
+class Walk {
+ public:
+  Walk(const Geometry& geometry, const Plane<unsigned char>& connections, std::size_t k,
+       Plane<float>& thickness, Plane<float>& distance_px, SolidLayer& second)
+      : geometry_(geometry),
+        connections_(connections),
+        k_(k),
+        direction_(kDirections[k]),
+        step_px_(direction_.dx != 0 && direction_.dy != 0 ? 1.41421356f : 1.0f),
+        footprint_(geometry.camera),
+        thickness_(thickness),
+        distance_px_(distance_px),
+        second_(second) {}
+
+  /// All lines, which share no pixels.
+  void run() const {
     const int w = geometry_.surfel.width, h = geometry_.surfel.height;
-    // Every line begins in the first row, or in the column that it comes from.
-    const int in_first_row = direction.dy == 0 ? 0 : w;
-    const int in_first_column = direction.dx == 0 ? 0 : direction.dy == 0 ? h : h - 1;
-    for_each_row(in_first_row + in_first_column, [&](int line) {
-      if (line < in_first_row) return walk(line, 0, k, work);
-      const int row = line - in_first_row + (direction.dy == 0 ? 0 : 1);
-      walk(direction.dx > 0 ? 0 : w - 1, row, k, work);
+    if (direction_.dy == 0) return for_each_row(h, [&](int y) { walk_row(y); });
+    // Lines that begin in the first row, and in the column that the others come from.
+    const int lines = w + (direction_.dx == 0 ? 0 : h - 1);
+    for_each_task(std::size_t((lines + kTogether - 1) / kTogether), [&](std::size_t strip) {
+      walk_down(int(strip) * kTogether - (direction_.dx > 0 ? h - 1 : 0));
     });
   }
 
-  float footprint(const Surfel& s) const { return footprint_.at(-s.position.z); }
-
-  bool contains(int x, int y) const {
-    return x >= 0 && y >= 0 && x < geometry_.surfel.width && y < geometry_.surfel.height;
-  }
-
  private:
-  template <class Work>
-  void walk(int x, int y, std::size_t k, const Work& work) const {
-    const Direction& d = kDirections[k];
-    Meets before = Meets::border;
-    while (contains(x, y)) {
-      if (!geometry_.surfel(x, y).is_surface()) {
-        before = Meets::ends;
-        x += d.dx, y += d.dy;
-        continue;
-      }
-      Run run{x, y, 1, d, before, Meets::border};
-      for (; connections_(x, y) >> k & 1; ++run.length) x += d.dx, y += d.dy;
-      const Surfel& last = geometry_.surfel(x, y);
-      x += d.dx, y += d.dy;
-      if (contains(x, y)) run.after = meet(last, geometry_.surfel(x, y));
-      work(run);
-      before = run.after == Meets::ends ? Meets::goes_behind : Meets::ends;
-    }
+  /// Lines that are walked together: their connections in a row fill a cache line.
+  static constexpr int kTogether = 64;
+
+  void walk_row(int y) const {
+    const int w = geometry_.surfel.width;
+    Line line;
+    for (int x = 0; x < w; ++x) go_forward(line, x, y);
+    for (int x = w - 1; x >= 0; --x) go_back(line, x, y);
   }
 
-  /// How `a` meets `b`, which is on another surface or on none.
-  static Meets meet(const Surfel& a, const Surfel& b) {
-    return !b.is_surface() || a.position.z > b.position.z ? Meets::ends : Meets::goes_behind;
+  /// Lines that are side by side, of which the first would be at column `left` in the first row.
+  void walk_down(int left) const {
+    const int w = geometry_.surfel.width, h = geometry_.surfel.height;
+    std::vector<Line> lines(kTogether);
+    const auto in_row = [&](int y, const auto& visit) {
+      const int first = left + direction_.dx * y;
+      for (int x = std::max(0, first); x < std::min(w, first + kTogether); ++x)
+        visit(lines[std::size_t(x - first)], x);
+    };
+    for (int y = 0; y < h; ++y) in_row(y, [&](Line& line, int x) { go_forward(line, x, y); });
+    for (int y = h - 1; y >= 0; --y) in_row(y, [&](Line& line, int x) { go_back(line, x, y); });
+  }
+
+  void go_forward(Line& line, int x, int y) const {
+    const std::size_t pixel = connections_.index(x, y);
+    const unsigned char here = connections_[pixel];
+    if (!(here & kShowsSurface)) return;
+    Run& run = line.run;
+    if (!run.goes_on) {
+      run.first = pixel;
+      run.meets_before = enter(run, pixel, x - direction_.dx, y - direction_.dy, false);
+    }
+    continue_behind(run, pixel);
+    run.goes_on = here >> k_ & 1;
+    if (run.goes_on) return;
+    const Meets after = meet(pixel, x + direction_.dx, y + direction_.dy, true);
+    line.depths.push_back(kDepthOfWidth * width_of(run, pixel, after));
+  }
+
+  void go_back(Line& line, int x, int y) const {
+    const std::size_t pixel = connections_.index(x, y);
+    const unsigned char here = connections_[pixel];
+    if (!(here & kShowsSurface)) return;
+    Run& run = line.run;
+    const bool is_last = !(here >> k_ & 1);
+    if (is_last) {
+      enter(run, pixel, x + direction_.dx, y + direction_.dy, true);
+      run.depth = line.depths.back();
+      line.depths.pop_back();
+    }
+    if (run.depth < kInfinity) thickness_[pixel] = std::min(thickness_[pixel], run.depth);
+    continue_behind(run, pixel);
+  }
+
+  /// How the surface of a pixel meets a neighbour, which is on another surface or on none. Of two
+  /// at the same depth, the one before goes on behind.
+  Meets meet(std::size_t pixel, int x, int y, bool is_after) const {
+    const Plane<Surfel>& surfel = geometry_.surfel;
+    if (x < 0 || y < 0 || x >= surfel.width || y >= surfel.height) return Meets::border;
+    const Surfel &here = surfel[pixel], &other = surfel(x, y);
+    if (!other.is_surface()) return Meets::ends;
+    const bool before_other =
+        is_after ? here.position.z > other.position.z : here.position.z >= other.position.z;
+    return before_other ? Meets::ends : Meets::goes_behind;
+  }
+
+  /// Enters a run at `pixel`, coming from (x, y).
+  Meets enter(Run& run, std::size_t pixel, int x, int y, bool is_after) const {
+    const Meets meets = meet(pixel, x, y, is_after);
+    run.away = 0;
+    run.sender = -1;
+    if (meets != Meets::ends || !geometry_.surfel(x, y).is_surface()) return meets;
+    const Surfel& beyond = geometry_.surfel(x, y);
+    run.sender = int(geometry_.surfel.index(x, y));
+    run.point = beyond.position, run.normal = beyond.normal;
+    return meets;
+  }
+
+  float width_of(const Run& run, std::size_t last_pixel, Meets after) const {
+    const int unknown_ends = (run.meets_before != Meets::ends) + (after != Meets::ends);
+    if (unknown_ends == 2) return kInfinity;
+    const Surfel &first = geometry_.surfel[run.first], &last = geometry_.surfel[last_pixel];
+    const float between = glm::distance(first.position, last.position);
+    const float ends =
+        0.5f * step_px_ * (footprint_.at(-first.position.z) + footprint_.at(-last.position.z));
+    return (between + ends) * (unknown_ends == 1 ? kPartlySeen : 1.0f);
+  }
+
+  /// Continues the surface from which the walk came behind the next pixel of the run, unless
+  /// another one is nearer by.
+  void continue_behind(Run& run, std::size_t pixel) const {
+    if (run.sender < 0) return;
+    const float away_px = float(++run.away) * step_px_;
+    if (away_px >= distance_px_[pixel]) return;
+    const glm::vec3 front = geometry_.surfel[pixel].position;
+    const glm::vec3 along = -direction_to_viewer(front, geometry_.camera.orthographic);
+    const float distance = glm::dot(run.normal, run.point - front) / glm::dot(run.normal, along);
+    if (!(distance > 0 && distance < kInfinity)) return;
+    distance_px_[pixel] = away_px;
+    second_.distance[pixel] = distance;
+    second_.sender[pixel] = run.sender;
   }
 
   const Geometry& geometry_;
-  const Plane<unsigned char> connections_;
-  const PixelFootprint footprint_;
+  const Plane<unsigned char>& connections_;
+  std::size_t k_;
+  Direction direction_;
+  float step_px_;
+  PixelFootprint footprint_;
+  Plane<float>&thickness_, &distance_px_;  ///< least so far, how far the surface behind has come
+  SolidLayer& second_;
 };
-
-float width_of(const Run& run, const Geometry& geometry, const Runs& runs) {
-  const int unknown_ends = (run.before != Meets::ends) + (run.after != Meets::ends);
-  if (unknown_ends == 2) return kInfinity;
-  const Surfel& first = geometry.surfel(run.x, run.y);
-  const Surfel& last = geometry.surfel(run.x_at(run.length - 1), run.y_at(run.length - 1));
-  const float between = glm::distance(first.position, last.position);
-  const float ends = 0.5f * run.step_px() * (runs.footprint(first) + runs.footprint(last));
-  return (between + ends) * (unknown_ends == 1 ? kPartlySeen : 1.0f);
-}
-
-/// Continues the surface beyond one end of a run behind it, in `out`. `distance_px` holds how far
-/// away the surface is that each pixel has so far.
-void continue_behind(const Run& run, bool at_start, const Geometry& geometry, const Runs& runs,
-                     Plane<float>& distance_px, SolidLayer& out) {
-  if ((at_start ? run.before : run.after) != Meets::ends) return;
-  const int beyond = at_start ? -1 : run.length;
-  const int source_x = run.x_at(beyond), source_y = run.y_at(beyond);
-  if (!runs.contains(source_x, source_y)) return;
-  const std::size_t source = geometry.surfel.index(source_x, source_y);
-  if (!geometry.is_surface(source)) return;
-  const glm::vec3 point(geometry.surfel[source].position), normal(geometry.surfel[source].normal);
-  for (int k = 0; k < run.length; ++k) {
-    const int i = at_start ? k : run.length - 1 - k;
-    const std::size_t pixel = geometry.surfel.index(run.x_at(i), run.y_at(i));
-    const float away_px = float(k + 1) * run.step_px();
-    if (away_px >= distance_px[pixel]) continue;
-    const glm::vec3 front(geometry.surfel[pixel].position);
-    const glm::vec3 along = -direction_to_viewer(front, geometry.camera.orthographic);
-    const float distance = glm::dot(normal, point - front) / glm::dot(normal, along);
-    if (!(distance > 0 && distance < kInfinity)) continue;
-    distance_px[pixel] = away_px;
-    out.distance[pixel] = distance;
-    out.sender[pixel] = int(source);
-  }
-}
 
 }  // namespace
 
@@ -199,18 +254,9 @@ Solids guess_solids(const Geometry& geometry) {
   const int w = geometry.surfel.width, h = geometry.surfel.height;
   Plane<float> thickness(w, h, kInfinity), distance_px(w, h, kInfinity);
   SolidLayer second(w, h, Origin::guessed);
-  const Runs runs(geometry);
-  for (std::size_t k = 0; k < kDirections.size(); ++k) {
-    runs.for_each(k, [&](const Run& run) {
-      const float depth = kDepthOfWidth * width_of(run, geometry, runs);
-      for (int i = 0; i < run.length; ++i) {
-        float& least = thickness(run.x_at(i), run.y_at(i));
-        least = std::min(least, depth);
-      }
-      continue_behind(run, true, geometry, runs, distance_px, second);
-      continue_behind(run, false, geometry, runs, distance_px, second);
-    });
-  }
+  const Plane<unsigned char> connections = find_connections(geometry);
+  for (std::size_t k = 0; k < kDirections.size(); ++k)
+    Walk(geometry, connections, k, thickness, distance_px, second).run();
   // A surface is as thick behind something as at the pixel that shows it.
   for_each_row(h, [&](int y) {
     for (int x = 0; x < w; ++x) {

@@ -26,6 +26,7 @@ TEST(Connections, AreThoseOfTheRule) {
     int connected = 0, apart = 0;
     for (int y = 0; y < kWindow.height(); ++y) {
       for (int x = 0; x < kWindow.width(); ++x) {
+        EXPECT_EQ(bool(connections(x, y) & kShowsSurface), g.surfel(x, y).is_surface());
         for (std::size_t k = 0; k < kDirections.size(); ++k) {
           const int other_x = x + kDirections[k].dx, other_y = y + kDirections[k].dy;
           const bool has_other = other_x >= 0 && other_x < kWindow.width() &&

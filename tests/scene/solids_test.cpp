@@ -6,9 +6,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <stdexcept>
 
+#include "scene/connections.h"
+#include "scene/normals/normals.h"
+#include "scene/pixel_footprint.h"
 #include "support/analytic_scene.h"
 
 namespace ssdo::test {
@@ -117,6 +122,82 @@ TEST(Solids, BehindACardAreTheTangentPlaneThatReachesIt) {
       const glm::vec3 found = point_behind(g, i, second.distance);
       EXPECT_LT(glm::distance(found, wall.surfel[i].position), 1e-4);
     }
+  }
+}
+
+/// What the runs through one pixel say, run by run and end by end, each looked for anew.
+struct PlainGuess {
+  float thickness = INFINITY, distance = INFINITY;
+  int sender = -1;
+};
+
+PlainGuess plain_guess(const Geometry& g, const Plane<unsigned char>& connections, int x, int y) {
+  const PixelFootprint footprint(g.camera);
+  const Surfel& here = g.surfel(x, y);
+  PlainGuess guess;
+  float nearest_px = INFINITY;
+  for (std::size_t k = 0; k < kDirections.size(); ++k) {
+    const auto [dx, dy] = kDirections[k];
+    const float step_px = dx != 0 && dy != 0 ? 1.41421356f : 1.0f;
+    const auto at = [&, dx = dx, dy = dy](int i) {
+      return surface_at(g.surfel, x + i * dx, y + i * dy);
+    };
+    const auto joined = [&, dx = dx, dy = dy](int i) {
+      return connections(x + i * dx, y + i * dy) >> k & 1;
+    };
+    int first = 0, last = 0;
+    while (at(first - 1) && joined(first - 1)) --first;
+    while (joined(last)) ++last;
+    int unknown_ends = 0;
+    for (const int beyond : {first - 1, last + 1}) {
+      const int bx = x + beyond * dx, by = y + beyond * dy;
+      const Surfel *end = at(beyond < 0 ? first : last), *other = at(beyond);
+      const bool outside = bx < 0 || by < 0 || bx >= g.surfel.width || by >= g.surfel.height;
+      if (outside || (other && other->position.z > end->position.z)) ++unknown_ends;
+      if (!other || other->position.z > end->position.z) continue;
+      const float away_px = float(beyond < 0 ? -beyond : beyond) * step_px;
+      const glm::vec3 along = -direction_to_viewer(here.position, g.camera.orthographic);
+      const float distance =
+          glm::dot(other->normal, other->position - here.position) / glm::dot(other->normal, along);
+      if (!(distance > 0 && distance < INFINITY) || away_px >= nearest_px) continue;
+      nearest_px = away_px;
+      guess.distance = distance, guess.sender = int(g.surfel.index(bx, by));
+    }
+    if (unknown_ends == 2) continue;
+    const Surfel &a = *at(first), &b = *at(last);
+    const float width =
+        glm::distance(a.position, b.position) +
+        0.5f * step_px * (footprint.at(-a.position.z) + footprint.at(-b.position.z));
+    guess.thickness =
+        std::min(guess.thickness, kDepthOfWidth * (width * (unknown_ends == 1 ? 3.0f : 1.0f)));
+  }
+  return guess;
+}
+
+TEST(Solids, AreThoseOfTheRunsThroughEachPixel) {
+  // Lines beside each other are walked together, 64 at a time.
+  const Window window{0, 0, 150, 97};
+  const Surface scene = all_of({leaning_wall(), card(-0.9, 0.3, 0.9), card(1.4, 0.5, 0.4),
+                                sphere({0.2, 0.3, 1.5}, 0.5), sphere({1.2, -0.6, 2}, 0.3)});
+  for (const bool orthographic : {false, true}) {
+    Geometry g = geometry_of(scene, view(orthographic), window);
+    for (int i = 0; i < 40; ++i) g.surfel(20 + i, 70 + i % 7) = {};  // nothing
+    const Solids solids = guess_solids(g);
+    const Plane<unsigned char> connections = find_connections(g);
+    int behind = 0, thin = 0;
+    for (int y = 0; y < window.height(); ++y) {
+      for (int x = 0; x < window.width(); ++x) {
+        if (!g.surfel(x, y).is_surface()) continue;
+        const PlainGuess expected = plain_guess(g, connections, x, y);
+        const std::size_t i = g.surfel.index(x, y);
+        ASSERT_EQ(solids.thickness[i], expected.thickness) << x << ", " << y;
+        ASSERT_EQ(solids.at(1, i).distance, expected.distance) << x << ", " << y;
+        ASSERT_EQ(solids.at(1, i).sender, expected.sender) << x << ", " << y;
+        behind += expected.sender >= 0, thin += expected.thickness < INFINITY;
+      }
+    }
+    EXPECT_GT(behind, 500);
+    EXPECT_GT(thin, 500);
   }
 }
 

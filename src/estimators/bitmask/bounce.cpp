@@ -89,7 +89,7 @@ HWY_INLINE V3 sent_behind(const BounceJob& job, bool far, int layer, const Place
   } else {
     sent = gather(*job.light, index_of(layout, from));
     if (job.overview) {
-      const auto lit = hn::And(from.y >= set_int(job.lit.y0), from.y < set_int(job.lit.y1));
+      const auto lit = hn::And(from.y > set_int(job.lit.y0 - 1), from.y < set_int(job.lit.y1));
       const VI beyond = index_of(job.overview->raster, in_overview(job, from));
       sent = if_then_else(hn::RebindMask(D(), lit), sent, gather(job.far->sent, beyond));
     }

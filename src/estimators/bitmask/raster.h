@@ -88,9 +88,7 @@ class Raster {
   InterleavedPlane in_whole_rows(const InterleavedPlane& values, const FarRaster& far,
                                  const Change& changed = {}) const {
     InterleavedPlane out(far.layout);
-    for_each_row(far.layout.height(), [&](int y) {
-      out.fill_row(far.layout, y, std::numeric_limits<float>::quiet_NaN());
-    });
+    std::fill_n(out.data(), far.layout.size(), std::numeric_limits<float>::quiet_NaN());
     for_each_row(far.height, [&](int y) {
       for (int x = 0; x < far.width; ++x) out[far.index(x, y)] = changed(values[layout_.index(x, y)]);
     });

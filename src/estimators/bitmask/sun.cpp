@@ -165,7 +165,7 @@ HWY_INLINE void for_each_first(const SunJob& job, const Place& place, const Visi
     if (y < 0 || y >= scene.layout.height()) continue;
     for (int column = -kSquare; column <= kSquare; column += kSquare) {
       const int dx = left + column + kGoesFirst[row & (kSquare - 1)];
-      const std::ptrdiff_t i = index_beside(scene.layout, place, dx, row - (place.y - top));
+      const std::ptrdiff_t i = place_beside(scene.layout, place, dx, row - (place.y - top)).index;
       visit(load(*job.first, i), column == 0 && row >= 0 && row < kSquare);
     }
   }

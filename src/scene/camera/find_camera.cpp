@@ -54,7 +54,7 @@ Plane<unsigned char> inner_pixels(const Plane<unsigned char>& valid) {
   for (int y = 1; y + 1 < valid.height; ++y) {
     for (int x = 1; x + 1 < valid.width; ++x) {
       inner(x, y) =
-          valid(x, y) && valid(x - 1, y) && valid(x + 1, y) && valid(x, y - 1) && valid(x, y + 1);
+          valid(x, y) & valid(x - 1, y) & valid(x + 1, y) & valid(x, y - 1) & valid(x, y + 1);
     }
   }
   return inner;

@@ -7,6 +7,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <vector>
 
+#include "math/order_statistics.h"
 #include "parallel/tiles.h"
 #include "scene/camera/null_vector.h"
 #include "scene/camera/projection_model.h"
@@ -264,29 +265,22 @@ std::optional<Camera> in_own_space(const Camera& projection, const Plane<glm::ve
 Residual measure_residual(const Camera& camera, const Plane<glm::vec3>& positions,
                           const Plane<unsigned char>& valid, const Window& window) {
   constexpr float kLeftOut = -1, kMost = 1e38f;
-  std::vector<float> squares(positions.size(), kLeftOut);
+  Plane<float> squares = Plane<float>::like(positions);
   for_each_row(positions.height, [&](int y) {
     for (int x = 0; x < positions.width; ++x) {
+      squares(x, y) = kLeftOut;
       if (!valid(x, y)) continue;
       const glm::dvec2 at = camera.project(camera.to_camera(glm::dvec3(positions(x, y)))),
                        off = at - glm::dvec2(window.x0 + x + 0.5, window.y0 + y + 0.5);
       const auto square = float(glm::dot(off, off));
-      squares[positions.index(x, y)] = square < kMost ? square : kMost;
+      squares(x, y) = square < kMost ? square : kMost;
     }
   });
-  std::erase(squares, kLeftOut);
-  if (squares.empty()) return {};
-  // Each is looked for above the one before.
-  auto from = squares.begin();
-  const auto above = [&](std::size_t place) {
-    const auto wanted = squares.begin() + std::ptrdiff_t(place);
-    std::nth_element(from, wanted, squares.end());
-    from = wanted;
-    return std::sqrt(double(*wanted));
-  };
-  const auto count = double(squares.size());
-  const double median = above(std::size_t(0.5 * count)), most = above(std::size_t(0.99 * count));
-  return {median, most, above(squares.size() - 1)};
+  const OrderStatistics in_order(squares.pixels);
+  if (in_order.count() == 0) return {};
+  const auto at = [&](std::size_t place) { return std::sqrt(double(in_order.at(place))); };
+  const auto count = double(in_order.count());
+  return {at(std::size_t(0.5 * count)), at(std::size_t(0.99 * count)), at(in_order.count() - 1)};
 }
 
 }  // namespace ssdo

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
 namespace ssdo {
@@ -53,7 +54,8 @@ NormalEquations linearise(const ProjectionModel& model, const Samples& samples) 
     j.leftCols<3>() = by_point * by_rotation;
     j.middleCols<3>(3) = by_point;
     j.rightCols<4>() << x, 0, 1, 0, 0, y, 0, 1;
-    eq.jtj += j.transpose() * j;
+    // Eigen takes a product of this size for one of large matrices.
+    eq.jtj += j.transpose().lazyProduct(j);
     const glm::dvec2 miss = s.pixel - model.project(s.p);
     eq.jtr += j.transpose() * Eigen::Vector2d(miss.x, miss.y);
   }
@@ -63,9 +65,9 @@ NormalEquations linearise(const ProjectionModel& model, const Samples& samples) 
 }  // namespace
 
 glm::dvec2 ProjectionModel::project(const glm::dvec3& p) const {
-  const Vector3d q = eigen(rotation) * eigen(p) + eigen(translation);
-  const double w = orthographic ? 1.0 : 1.0 / q.z();
-  return {cx + fx * q.x() * w, cy + fy * q.y() * w};
+  const glm::dvec3 q = rotation * p + translation;
+  const double w = orthographic ? 1.0 : 1.0 / q.z;
+  return {cx + fx * q.x * w, cy + fy * q.y * w};
 }
 
 Samples collect_samples(const Plane<glm::vec3>& positions, const Plane<unsigned char>& valid,
@@ -76,10 +78,15 @@ Samples collect_samples(const Plane<glm::vec3>& positions, const Plane<unsigned 
   const std::size_t stride = (count / kMaxSamples) | 1;
 
   Samples samples;
-  std::size_t seen = 0;
+  std::size_t to_skip = 0;
   for (int y = 0; y < positions.height; ++y) {
     for (int x = 0; x < positions.width; ++x) {
-      if (!valid(x, y) || seen++ % stride != 0) continue;
+      if (!valid(x, y)) continue;
+      if (to_skip > 0) {
+        --to_skip;
+        continue;
+      }
+      to_skip = stride - 1;
       const glm::vec3 p = positions(x, y);
       samples.items.push_back({{p.x, p.y, p.z}, {window.x0 + x + 0.5, window.y0 + y + 0.5}});
     }
@@ -123,12 +130,16 @@ Samples inliers(const ProjectionModel& model, const Samples& samples) {
 
 double reprojection_rms(const ProjectionModel& model, const Samples& samples) {
   double sum = 0;
-  for (double d : distances(model, samples)) sum += d * d;
+  for (const Sample& s : samples.items) {
+    const glm::dvec2 miss = model.project(s.p) - s.pixel;
+    sum += glm::dot(miss, miss);
+  }
   return std::sqrt(sum / double(std::max<std::size_t>(1, samples.items.size())));
 }
 
 void refine(ProjectionModel& model, const Samples& samples, bool pose_only) {
   const int n = pose_only ? 6 : kParameters;
+  double rms = reprojection_rms(model, samples);
   for (int iteration = 0; iteration < 8; ++iteration) {
     const NormalEquations eq = linearise(model, samples);
     const Eigen::VectorXd step = eq.jtj.topLeftCorner(n, n).ldlt().solve(eq.jtr.head(n));
@@ -144,8 +155,9 @@ void refine(ProjectionModel& model, const Samples& samples, bool pose_only) {
     if (!pose_only) {
       next.fx += step(6), next.fy += step(7), next.cx += step(8), next.cy += step(9);
     }
-    if (!(reprojection_rms(next, samples) < reprojection_rms(model, samples))) return;
-    model = next;
+    const double next_rms = reprojection_rms(next, samples);
+    if (!(next_rms < rms)) return;
+    model = next, rms = next_rms;
   }
 }
 

@@ -32,10 +32,6 @@ const Surfel* surface_at(const Plane<Surfel>& surfels, int x, int y) {
   return s.is_surface() ? &s : nullptr;
 }
 
-glm::vec3 direction_to_viewer(const glm::vec3& p, bool orthographic) {
-  return orthographic ? glm::vec3(0, 0, 1) : -glm::normalize(p);
-}
-
 glm::vec3 gradient_normal(const Plane<Surfel>& surfels, int x, int y, const glm::vec3& view) {
   const glm::vec3 right = shorter_step(surfels, x, y, 1, 0);
   const glm::vec3 down = shorter_step(surfels, x, y, 0, 1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "math/plane.h"
@@ -18,6 +19,8 @@ const Surfel* surface_at(const Plane<Surfel>& surfels, int x, int y);
 glm::vec3 gradient_normal(const Plane<Surfel>& surfels, int x, int y, const glm::vec3& view);
 
 /// Unit direction from a camera-space point to the viewer.
-glm::vec3 direction_to_viewer(const glm::vec3& p, bool orthographic);
+inline glm::vec3 direction_to_viewer(const glm::vec3& p, bool orthographic) {
+  return orthographic ? glm::vec3(0, 0, 1) : -glm::normalize(p);
+}
 
 }  // namespace ssdo
