@@ -8,14 +8,19 @@
 
 #include "error.h"
 #include "io/image_file.h"
-#include "scene/read_gbuffer.h"
+#include "math/pixel_grid.h"
 
 namespace ssdo {
 namespace {
 
-/// Bytes of a process without a frame, and of each pixel at the peak of all products but the error.
-/// An overview keeps as much for each pixel of its own.
-constexpr double kBytes = 60e6, kBytesPerPixel = 200;
+/// Bytes of a process without a frame, of each pixel at the peak of ao, direct, bounce and
+/// composite under a sun, and what bent and reflection add, each. Measured, with a margin. An
+/// overview keeps as much for each pixel of its own.
+constexpr double kBytes = 60e6, kBytesPerPixel = 160, kBytesOfMore = 18;
+
+double bytes_per_pixel(const ProductSet& products) {
+  return kBytesPerPixel + kBytesOfMore * (int(products.bent) + int(products.reflection));
+}
 
 /// Bands end where chunks of every compression do.
 constexpr int kRowsAtOnce = 256;
@@ -32,8 +37,9 @@ class Planner {
  public:
   Planner(const Window& frame, const Scene& overview, const Plan& plan, std::size_t memory)
       : frame_(frame), plan_(plan) {
-    bytes_of_row_ = kBytesPerPixel * frame.width();
-    bytes_ = kBytes + kBytesPerPixel * double(overview.geometry.surfel.size());
+    const double of_pixel = bytes_per_pixel(plan.request.products);
+    bytes_of_row_ = of_pixel * frame.width();
+    bytes_ = kBytes + of_pixel * double(overview.geometry.surfel.size());
     rows_ = int(std::clamp((double(memory) - bytes_) / bytes_of_row_, 0.0, 1e9));
     const int reach = plan.method->bands.reach_rows(overview, plan.request);
     exact_ = reach >= overview.geometry.window.height() ? frame.height()
@@ -92,7 +98,8 @@ std::string needs_whole_frame(const Scene& overview, const Plan& plan,
 }  // namespace
 
 std::size_t most_pixels_in(std::size_t memory) {
-  return std::size_t(std::max(0.0, double(memory) - kBytes) / kBytesPerPixel);
+  const double most = kBytesPerPixel + 2 * kBytesOfMore;
+  return std::size_t(std::max(0.0, double(memory) - kBytes) / most);
 }
 
 BandPlan plan_bands(const std::string& file, const Window& frame, const Scene& overview,
@@ -102,7 +109,8 @@ BandPlan plan_bands(const std::string& file, const Window& frame, const Scene& o
     throw Error(ExitCode::usage,
                 fmt::format("{} take {} of memory, and may take {}; {} needs all of the frame at "
                             "once: leave that out, or raise --mem-limit",
-                            size, in_gigabytes(kBytes + kBytesPerPixel * double(frame.area())),
+                            size, in_gigabytes(kBytes + bytes_per_pixel(plan.request.products) *
+                                                        double(frame.area())),
                             in_gigabytes(double(memory)), what));
   }
   const Planner planner(frame, overview, plan, memory);

@@ -13,10 +13,10 @@ namespace {
 /// The share of the time that the overview takes, for progress.
 constexpr double kOverviewShare = 0.02;
 
-/// The solids of a band, whose runs its first and last rows cut.
-Solids solids_of(const Geometry& geometry, const ModelOptions& model) {
+Solids solids_of(const Geometry& geometry, const ModelOptions& model, const Scene& overview) {
   if (model.thickness) return constant_thickness(geometry, float(*model.thickness));
-  return guess_solids(geometry);
+  return guess_solids(geometry,
+                      SolidsOfOverview{overview.geometry, overview.solids.thickness});
 }
 
 /// Some rows of a frame, read and placed as the whole frame is.
@@ -44,7 +44,7 @@ Band read_band(const RelightJob& job, const Window& rows, StageTimes& times) {
   band.gbuffer.position = {};
   band.gbuffer.normal = {};
   band.gbuffer.depth = {};
-  scene.solids = solids_of(scene.geometry, job.options.model);
+  scene.solids = solids_of(scene.geometry, job.options.model, frame.scene);
   scene.senders = {std::move(band.gbuffer.albedo), std::move(band.gbuffer.radiance)};
   scene.roughness = std::move(band.gbuffer.roughness);
   scene.light = frame.scene.light;

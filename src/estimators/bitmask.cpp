@@ -56,6 +56,7 @@
 #include "estimators/bitmask/march.h"
 #include "estimators/bitmask/raster.h"
 #include "estimators/guessed.h"
+#include "math/pixel_grid.h"
 #include "scene/light/light.h"
 
 namespace ssdo {
@@ -75,6 +76,8 @@ constexpr int bounce_slices(int slices) { return slices < 4 ? 5 * slices / 2 : s
 
 /// Rows around a pixel to which it looks for what it sends and for the first rays to suns.
 constexpr int kRowsAround = 12;
+
+static_assert(kOverviewStride == Interleaving::kPeriod);
 
 /// The method on one frame.
 class Bitmask {

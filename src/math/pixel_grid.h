@@ -7,6 +7,10 @@
 
 namespace ssdo {
 
+/// As wide as the pattern of marches repeats, so that what lies at one distance from the pixels of
+/// a vector is side by side in an overview.
+inline constexpr int kOverviewStride = 8;
+
 /// Which pixels of a picture are read: some of its rows, or one in the middle of every block of
 /// `stride` x `stride` pixels, which make a smaller picture by the same camera.
 struct PixelGrid {

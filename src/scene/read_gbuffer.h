@@ -13,10 +13,6 @@
 
 namespace ssdo {
 
-/// As wide as the pattern of marches repeats, so that what lies at one distance from the pixels of
-/// a vector is side by side in an overview.
-inline constexpr int kOverviewStride = 8;
-
 /// How to read the layers; all of it has defaults that fit most files.
 struct GBufferOptions {
   std::optional<DepthKind> depth_kind;    ///< planar where not given

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "math/plane.h"
@@ -113,8 +114,17 @@ glm::vec3 normal_of_solid(const Geometry& geometry, const Solids& solids, int la
 /// Depth that a thing is guessed to have, over the width that the frame shows.
 inline constexpr float kDepthOfWidth = 0.85f;
 
-/// What a frame alone suggests: how thick things are, and a second layer; see solids.cpp.
-Solids guess_solids(const Geometry& geometry);
+/// A smaller picture of the frame that a geometry is some rows of, one pixel of every
+/// kOverviewStride x kOverviewStride, and what it suggests of how thick things are.
+struct SolidsOfOverview {
+  const Geometry& geometry;
+  const Plane<float>& thickness;
+};
+
+/// What a frame alone suggests: how thick things are, and a second layer; see solids.cpp. Of some
+/// rows of a frame, an overview tells of the things that they cut.
+Solids guess_solids(const Geometry& geometry,
+                    const std::optional<SolidsOfOverview>& overview = std::nullopt);
 
 /// Everything that is seen is as thick as `thickness`, which may be infinite; one layer.
 Solids constant_thickness(const Geometry& geometry, float thickness);

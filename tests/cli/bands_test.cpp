@@ -37,9 +37,6 @@ class Bands : public testing::Test {
   static void SetUpTestSuite() {
     dir_ = std::make_unique<TempDir>();
     write("in.exr", kWindow, kWindow);
-    const nlohmann::json camera =
-        parse_json(run_tool({"info", path("in.exr"), "--json"}).out)["camera"];
-    std::ofstream(path("camera.json")) << camera.dump();
   }
   static void TearDownTestSuite() { dir_.reset(); }
 
@@ -51,24 +48,36 @@ class Bands : public testing::Test {
     write_frame(path(name), part);
   }
 
+  /// What says how a frame lies, so that nothing is left to find out of a part of it.
+  static Words placed(const std::string& in) {
+    const nlohmann::json info = parse_json(run_tool({"info", path(in), "--json"}).out);
+    std::ofstream(path("camera.json")) << info["camera"].dump();
+    return {"--camera", path("camera.json"), "--thickness", "0.3"};
+  }
+
   static Finished run(const std::string& in, const std::string& out, const Words& flags) {
     return run_tool(Words{path(in), "-o", path(out), "--overwrite"} + flags);
   }
 
   /// Runs in one piece and in bands, and gives the names of the channels.
-  static Words make_both(const std::string& in, const Words& flags) {
+  static Words make_both(const std::string& in, const Words& flags, const Words& limit = kLimit) {
     const Finished whole = run(in, "whole.exr", flags + Words{"-v"}),
-                   bands = run(in, "bands.exr", flags + kLimit + Words{"-v"});
+                   bands = run(in, "bands.exr", flags + limit + Words{"-v"});
     EXPECT_EQ(whole.code, 0) << whole.err;
     EXPECT_EQ(bands.code, 0) << bands.err;
     EXPECT_THAT(whole.err, Not(HasSubstr(" bands of ")));
     EXPECT_THAT(bands.err, HasSubstr(" bands of "));
+    bands_ = bands.err;
+    if (bands.code != 0) return {};
     EXPECT_EQ(channel_names(path("bands.exr")), channel_names(path("whole.exr")));
     return channel_names(path("whole.exr"));
   }
 
-  static void expect_same_bits(const std::string& in, const Words& flags) {
-    for (const std::string& name : make_both(in, flags + Words{"--pixel-type", "float"})) {
+  static void expect_same_bits(const std::string& in, const Words& flags,
+                               const Words& limit = kLimit) {
+    const Words names = make_both(in, flags + Words{"--pixel-type", "float"}, limit);
+    EXPECT_THAT(bands_, Not(HasSubstr("marches go on")));
+    for (const std::string& name : names) {
       EXPECT_TRUE(channel(path("bands.exr"), name).pixels ==
                   channel(path("whole.exr"), name).pixels)
           << name;
@@ -88,17 +97,21 @@ class Bands : public testing::Test {
   }
 
   static std::unique_ptr<TempDir> dir_;
+  static std::string bands_;  ///< what the last run in bands said
 };
 
 std::unique_ptr<TempDir> Bands::dir_;
+std::string Bands::bands_;
 
 TEST_F(Bands, HaveTheSameBitsWithinARadius) {
-  const Words flags = {"--camera", path("camera.json"),          "--thickness", "0.3",
-                       "--env",    data("environments/sky.exr"), "--env-up",    "z"};
+  const Words flags =
+      placed("in.exr") + Words{"--env", data("environments/sky.exr"), "--env-up", "z"};
   expect_same_bits("in.exr", flags + Words{"--radius", "0.2"});
-  expect_same_bits("in.exr", flags + Words{"--radius", "0.1", "--bounces", "2", "--products",
-                                           "ao,bent,direct,reflection,bounce", "--compression",
-                                           "piz", "--offscreen", "open"});
+  expect_same_bits("in.exr",
+                   flags + Words{"--radius", "0.1", "--bounces", "2", "--products",
+                                 "ao,bent,direct,reflection,bounce", "--compression", "piz",
+                                 "--offscreen", "open"},
+                   {"--mem-limit", "140M"});
 }
 
 TEST_F(Bands, HaveTheSameBitsForAnyNumberOfThreads) {
@@ -114,7 +127,7 @@ TEST_F(Bands, WithoutARadiusAreNearlyWhatTheFrameIsInOnePiece) {
   EXPECT_LT(difference("ao.Y"), 0.01);
   for (const char* c : {"R", "G", "B"}) {
     EXPECT_LT(difference(std::string("direct.") + c), 0.03);
-    EXPECT_LT(difference(std::string("bounce.") + c), 0.10);
+    EXPECT_LT(difference(std::string("bounce.") + c), 0.12);
     EXPECT_LT(difference(c), 0.03);
   }
 }
@@ -122,8 +135,8 @@ TEST_F(Bands, WithoutARadiusAreNearlyWhatTheFrameIsInOnePiece) {
 TEST_F(Bands, AreCroppedAsTheFrameIs) {
   const Window display{0, 0, 300, 1500}, data{-20, -30, 310, 1570};
   write("overscan.exr", data, display);
-  expect_same_bits("overscan.exr", {"--crop", "--radius", "0.2", "--thickness", "0.3", "--camera",
-                                    path("camera.json"), "--products", "ao,composite"});
+  expect_same_bits("overscan.exr", placed("overscan.exr") + Words{"--crop", "--radius", "0.2",
+                                                                  "--products", "ao,composite"});
   EXPECT_EQ(ExrReader(path("bands.exr")).parts()[0].data_window, display);
 }
 

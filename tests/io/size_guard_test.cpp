@@ -18,7 +18,7 @@ TEST(SizeGuard, RefusesMorePixelsThanTheFileCanHold) {
   EXPECT_NO_THROW(check_decoded_size(file, 1000, 0, 10));
   EXPECT_THAT(error_of([&] { check_decoded_size(file, 1001, 0, 10); }),
               IsError(ExitCode::input, "cannot hold"));
-  EXPECT_NO_THROW(check_decoded_size(file, 100 * kLargestRatio));
+  EXPECT_NO_THROW(check_decoded_size(file, 100 * kLargestRatio, 0));
 }
 
 TEST(SizeGuard, RefusesMoreThanTheMemoryOfTheMachine) {

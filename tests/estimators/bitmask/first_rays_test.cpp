@@ -46,15 +46,15 @@ Found find(const Geometry& g, const Solids& solids, const Sun& sun, bool some_go
   const MarchScene scene = make_march_scene(g, solids);
   const Raster raster(scene);
   const SlicePattern pattern(scene.layout, g.display, 2, 16, 0);
-  const std::vector<DepthBounds> bounds = depth_bounds(scene, solids);
+  const std::vector<DepthBounds> bounds = depth_bounds(scene);
   const std::vector<RayDirections> directions = directions_to(sun, 1, 0);
-  InterleavedPlane first = raster.unknown(), share(scene.layout), weight(scene.layout),
-                   width_px(scene.layout);
-  const SunJob job{{scene, pattern, kNoLimit, false}, bounds, directions, &sun,     {},
-                   some_go_first ? &first : nullptr,  &share, &weight,    &width_px};
+  InterleavedPlane first = raster.unknown();
+  SunShares found(scene.layout);
+  const SunJob job{{scene, pattern, kNoLimit, false}, bounds, directions, &sun, {},
+                   some_go_first ? &first : nullptr,  &found};
   if (some_go_first) march_first_rays(job, scene.raster());
   march_sun(job, scene.raster());
-  return {raster.picture(std::move(share)), raster.picture(std::move(weight))};
+  return {raster.picture(std::move(found.share), 1), raster.picture(std::move(found.weight), 1)};
 }
 
 struct Difference {
