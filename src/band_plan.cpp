@@ -25,8 +25,8 @@ double bytes_per_pixel(const ProductSet& products) {
 /// Bands end where chunks of every compression do.
 constexpr int kRowsAtOnce = 256;
 
-/// Where marches may end in a band if nothing is out of their reach: the farther, the nearer to what
-/// the frame would be in one piece, but rows that are read for several bands cost time.
+/// Where marches may end in a band if nothing is out of their reach: the farther, the nearer to
+/// what the frame would be in one piece, but rows that are read for several bands cost time.
 constexpr int kMarches[] = {512, 256, 128};
 
 /// Rows beyond the end of a march that are looked at: samples lie in blocks of pixels, and light
@@ -35,15 +35,15 @@ constexpr int kBeside = 16;
 
 class Planner {
  public:
-  Planner(const Window& frame, const Scene& overview, const Plan& plan, std::size_t memory)
+  Planner(const Window& frame, const Window& display, const Scene& overview, const Plan& plan,
+          std::size_t memory)
       : frame_(frame), plan_(plan) {
     const double of_pixel = bytes_per_pixel(plan.request.products);
     bytes_of_row_ = of_pixel * frame.width();
     bytes_ = kBytes + of_pixel * double(overview.geometry.surfel.size());
     rows_ = int(std::clamp((double(memory) - bytes_) / bytes_of_row_, 0.0, 1e9));
-    const int reach = plan.method->bands.reach_rows(overview, plan.request);
-    exact_ = reach >= overview.geometry.window.height() ? frame.height()
-                                                        : (reach + 1) * kOverviewStride;
+    exact_ = plan.method->bands.reach_rows(overview.geometry, kOverviewStride, frame, display,
+                                           plan.request);
   }
 
   /// Without rows where memory is too little.
@@ -64,7 +64,7 @@ class Planner {
  private:
   BandPlan with_reach(int px, bool marches_on) const {
     const int reach = marches_on ? px + kBeside : px;
-    const int halo = plan_.filter->reach + (1 + plan_.request.bounces) * reach,
+    const int halo = halo_rows(plan_, reach),
               rows = std::max(0, rows_ - 2 * halo) / kRowsAtOnce * kRowsAtOnce;
     return {rows, reach, px, halo, marches_on};
   }
@@ -102,18 +102,20 @@ std::size_t most_pixels_in(std::size_t memory) {
   return std::size_t(std::max(0.0, double(memory) - kBytes) / most);
 }
 
-BandPlan plan_bands(const std::string& file, const Window& frame, const Scene& overview,
-                    const Plan& plan, const OutputOptions& output, std::size_t memory) {
+BandPlan plan_bands(const std::string& file, const Window& frame, const Window& display,
+                    const Scene& overview, const Plan& plan, const OutputOptions& output,
+                    std::size_t memory) {
   const std::string size = fmt::format("{}: {} x {} pixels", file, frame.width(), frame.height());
   if (const std::string what = needs_whole_frame(overview, plan, output); !what.empty()) {
     throw Error(ExitCode::usage,
                 fmt::format("{} take {} of memory, and may take {}; {} needs all of the frame at "
                             "once: leave that out, or raise --mem-limit",
-                            size, in_gigabytes(kBytes + bytes_per_pixel(plan.request.products) *
-                                                        double(frame.area())),
+                            size,
+                            in_gigabytes(kBytes + bytes_per_pixel(plan.request.products) *
+                                                      double(frame.area())),
                             in_gigabytes(double(memory)), what));
   }
-  const Planner planner(frame, overview, plan, memory);
+  const Planner planner(frame, display, overview, plan, memory);
   const BandPlan bands = planner.choose();
   if (bands.rows > 0) return bands;
   throw Error(ExitCode::usage, fmt::format("{} take {} of memory in bands of {} rows, and may take "
@@ -122,14 +124,18 @@ BandPlan plan_bands(const std::string& file, const Window& frame, const Scene& o
                                            in_gigabytes(double(memory))));
 }
 
+int halo_rows(const Plan& plan, int reach_rows) {
+  return plan.filter->reach + (1 + plan.request.bounces) * reach_rows;
+}
+
 std::string describe(const BandPlan& bands, const Window& frame) {
   const int count = (frame.height() + bands.rows - 1) / bands.rows;
   std::string text =
       fmt::format("{} bands of {} rows, with {} above and below that their light comes from", count,
                   bands.rows, bands.halo_rows);
   if (bands.marches_on)
-    text += fmt::format("; beyond {} pixels marches go on in one pixel of {} x {}",
-                        bands.march_px, kOverviewStride, kOverviewStride);
+    text += fmt::format("; beyond {} pixels marches go on in one pixel of {} x {}", bands.march_px,
+                        kOverviewStride, kOverviewStride);
   return text;
 }
 

@@ -22,14 +22,18 @@ struct BandPlan {
 /// How many pixels a frame may have that is computed as a whole in so many bytes of memory.
 std::size_t most_pixels_in(std::size_t memory);
 
-/// The bands of a frame of the given size, or of more rows that do not matter here. `overview` is
-/// what was read of it, and `plan` that of the overview.
+/// The bands of a frame with these data and display windows. `overview` is what was read of it, and
+/// `plan` that of the overview.
 /// Errors: ExitCode::usage, where what is wanted looks at a whole frame at once, with what to leave
 /// out; where `memory` is too little for any bands, with how much would do.
-BandPlan plan_bands(const std::string& file, const Window& frame, const Scene& overview,
-                    const Plan& plan, const OutputOptions& output, std::size_t memory);
+BandPlan plan_bands(const std::string& file, const Window& frame, const Window& display,
+                    const Scene& overview, const Plan& plan, const OutputOptions& output,
+                    std::size_t memory);
 
-/// For people, of a frame of so many rows.
+/// The rows around those of a band, where marches reach so far.
+int halo_rows(const Plan& plan, int reach_rows);
+
+/// For people.
 std::string describe(const BandPlan& bands, const Window& frame);
 
 }  // namespace ssdo

@@ -15,8 +15,7 @@ constexpr double kOverviewShare = 0.02;
 
 Solids solids_of(const Geometry& geometry, const ModelOptions& model, const Scene& overview) {
   if (model.thickness) return constant_thickness(geometry, float(*model.thickness));
-  return guess_solids(geometry,
-                      SolidsOfOverview{overview.geometry, overview.solids.thickness});
+  return guess_solids(geometry, SolidsOfOverview{overview.geometry, overview.solids.thickness});
 }
 
 /// Some rows of a frame, read and placed as the whole frame is.
@@ -77,7 +76,7 @@ class BandJob {
     std::vector<std::unique_ptr<ExrWriter>> writers(files.size());
     for (int y = all_.y0; y < all_.y1; y += bands_.rows) {
       const Window rows{all_.x0, y, all_.x1, std::min(y + bands_.rows, all_.y1)};
-      const Band band = read_band(job_, with_rows_around(rows, bands_.halo_rows), relit_.times);
+      const Band band = read(rows);
       const Products products = estimate_band(band.scene, rows);
       Stopwatch watch;
       for (std::size_t i = 0; i < files.size(); ++i) {
@@ -102,6 +101,22 @@ class BandJob {
     on_progress_(kOverviewShare);
   }
 
+  /// A band with the rows around it that it needs. How near surfaces come, the overview may not
+  /// have shown.
+  Band read(const Window& rows) {
+    Band band = read_band(job_, with_rows_around(rows, bands_.halo_rows), relit_.times);
+    around_.reach_rows = bands_.reach_rows;
+    while (!bands_.marches_on) {
+      const int needed = frame_.plan.method->bands.reach_rows(
+          band.scene.geometry, 1, all_, frame_.part().display_window, frame_.plan.request);
+      if (needed <= around_.reach_rows) break;
+      around_.reach_rows = needed;
+      band = {};
+      band = read_band(job_, with_rows_around(rows, halo_rows(frame_.plan, needed)), relit_.times);
+    }
+    return band;
+  }
+
   Window with_rows_around(const Window& rows, int around) const {
     return intersection(all_, {all_.x0, rows.y0 - around, all_.x1, rows.y1 + around});
   }
@@ -121,8 +136,8 @@ class BandJob {
     return std::move(found.products);
   }
 
-  void write(const SafeFile& file, const Target& target, const Results& results,
-             const Window& rows, std::unique_ptr<ExrWriter>& writer) {
+  void write(const SafeFile& file, const Target& target, const Results& results, const Window& rows,
+             std::unique_ptr<ExrWriter>& writer) {
     const ExrContents contents = exr_contents(job_, frame_.plan, target, results);
     if (!writer) writer = std::make_unique<ExrWriter>(file, contents.output);
     std::vector<ChannelView> views;

@@ -141,7 +141,8 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   frame.plan = make_plan(model, options.output, scene, frame.gbuffer, frame.input);
   if (frame.gbuffer.grid.is_coarse()) {
     const Window& all = frame.part().data_window;
-    frame.bands = plan_bands(frame.input, all, scene, frame.plan, options.output, options.memory);
+    frame.bands = plan_bands(frame.input, all, frame.part().display_window, scene, frame.plan,
+                             options.output, options.memory);
     frame.plan.reasons.push_back(describe(*frame.bands, all));
   }
   const std::vector<std::string> idle =

@@ -84,8 +84,7 @@ Written write_targets(const RelightJob& job, const Plan& plan, const Products& p
     const SafeFile& file =
         *out.files.emplace_back(std::make_unique<SafeFile>(target.path, job.policy));
     if (has_exr_ending(target.path)) {
-      const ExrContents contents =
-          exr_contents(job, plan, target, results_of(job, plan, products));
+      const ExrContents contents = exr_contents(job, plan, target, results_of(job, plan, products));
       out.clamped_values += write_exr(file, contents.output);
     } else {
       const DisplayImage image =

@@ -39,8 +39,8 @@ struct Relit {
   std::optional<DisplayTransform> display;  ///< where a target is a picture that shows colours
   StageTimes times;                         ///< of all stages up to here
   std::vector<std::unique_ptr<SafeFile>> written;  ///< in bands, in place of products
-  std::size_t clamped_values = 0;           ///< beyond the range of half
-  std::optional<ErrorFound> error;          ///< where the plan asks for it
+  std::size_t clamped_values = 0;                  ///< beyond the range of half
+  std::optional<ErrorFound> error;                 ///< where the plan asks for it
   History history;                 ///< of a temporal plan, for the next frame; without a geometry
   std::vector<std::string> notes;  ///< how colours were transformed, and what the error is
   std::vector<std::string> warnings;

@@ -30,8 +30,8 @@
 //   a gentle curve would show the sectors as bands.
 // - direct is a ratio to the exact unoccluded irradiance E(N): the noise of a few directions
 //   cancels. L is taken in spherical harmonics, of the environment without its suns; each sun is a
-//   direction of its own, tested along the slice that holds it (bitmask/sun.cpp). So is what
-//   facets mirror (bitmask/reflection.cpp).
+//   direction of its own, tested along the slice that holds it (bitmask/rays/sun.cpp). So is what
+//   facets mirror (bitmask/rays/reflection.cpp).
 // - bounce takes the radiance of the first surface in each sector; no 1/d^2, so no singularity
 //   (bitmask/bounce.cpp, and bitmask/senders.cpp for what is sent).
 // - A sampled pixel represents the stretch of the march up to halfway to the samples before and
@@ -54,30 +54,18 @@
 #include "estimators/bitmask/basis_weights.h"
 #include "estimators/bitmask/beyond.h"
 #include "estimators/bitmask/march.h"
+#include "estimators/bitmask/parts.h"
+#include "estimators/bitmask/patterns.h"
 #include "estimators/bitmask/raster.h"
+#include "estimators/bitmask/rays/find_sun.h"
 #include "estimators/guessed.h"
-#include "math/pixel_grid.h"
 #include "scene/light/light.h"
 
 namespace ssdo {
 namespace {
 
-/// Bounce light is a small part of all light on most surfaces: with two thirds of the steps it adds
-/// less noise than direct light has. Measured on seven frames.
-constexpr int bounce_steps(int steps) { return (2 * steps + 2) / 3; }
-
 /// Rays into what is mirrored, for every slice.
 constexpr int kReflectionRays = 2;
-
-/// With few slices, one pixel of 2 x 2 gathers bounce light, in 2.5 times as many slices. In place
-/// of 1.5 times as many, noise falls by 20 to 30 % for 2 % of a job.
-constexpr int bounce_spacing(int slices) { return slices < 4 ? 2 : 1; }
-constexpr int bounce_slices(int slices) { return slices < 4 ? 5 * slices / 2 : slices; }
-
-/// Rows around a pixel to which it looks for what it sends and for the first rays to suns.
-constexpr int kRowsAround = 12;
-
-static_assert(kOverviewStride == Interleaving::kPeriod);
 
 /// The method on one frame.
 class Bitmask {
@@ -89,19 +77,22 @@ class Bitmask {
         march_scene_(make_march_scene(scene.geometry, scene.solids, request.receivers)),
         layout_(march_scene_.layout),
         raster_(march_scene_),
-        far_(far_of(request)),
-        pattern_(layout_, scene.geometry.display, request.slices, request.steps, request.seed, 1,
-                 far_ ? &far_->raster : nullptr),
-        bounce_pattern_(layout_, scene.geometry.display, bounce_slices(request.slices),
-                        bounce_steps(request.steps), request.seed, bounce_spacing(request.slices),
-                        far_ ? &far_->raster : nullptr),
+        far_(request.around_band && request.around_band->marches_on ? request.around_band->far.get()
+                                                                    : nullptr),
+        pattern_(pattern_of(request, layout_, scene.geometry.display, far_raster())),
+        bounce_pattern_(bounce_pattern_of(request, layout_, scene.geometry.display, far_raster())),
         further_(scene.further.empty()
                      ? nullptr
                      : std::make_unique<FurtherRays>(scene.further.vertices, scene.further.added)),
-        march_{march_scene_,  pattern_,       request.radius, request.extend_offscreen,
-               may_be_thin(), further_.get(), far_},
-        bounce_march_{march_scene_,  bounce_pattern_, request.radius, request.extend_offscreen,
-                      may_be_thin(), further_.get(),  far_},
+        march_{march_scene_,   pattern_, request.radius, request.extend_offscreen, may_be_thin(),
+               further_.get(), far_},
+        bounce_march_{march_scene_,
+                      bounce_pattern_,
+                      request.radius,
+                      request.extend_offscreen,
+                      may_be_thin(),
+                      further_.get(),
+                      far_},
         ao_(layout_) {}
 
   Products run() {
@@ -132,15 +123,12 @@ class Bitmask {
     MarchPlanes planes = raster_.in_whole_rows(s, raster);
     std::vector<DepthBounds> bounds = depth_bounds(s);
     const float ao = mean_ao(s, scene_.geometry.display, request_.radius);
-    return {std::move(march_scene_), raster, std::move(planes), std::move(bounds), scene_.solids,
-            ao, std::move(kept_light_)};
+    return {std::move(march_scene_), raster, std::move(planes),     std::move(bounds),
+            scene_.solids,           ao,     std::move(kept_light_)};
   }
 
  private:
-  static const FarScene* far_of(const Request& request) {
-    const auto& around = request.around_band;
-    return around && around->marches_on ? around->far.get() : nullptr;
-  }
+  const FarRaster* far_raster() const { return far_ ? &far_->raster : nullptr; }
 
   /// A part of the raster with what may send light to it in so many bounces.
   Window with_senders(const Window& part, int bounces) const {
@@ -166,35 +154,6 @@ class Bitmask {
   Window lit_part() const {
     const bool sends = request_.products.bounce && request_.bounces > 0 && senders_need_light();
     return sends ? with_senders(march_scene_.receivers, request_.bounces) : march_scene_.receivers;
-  }
-
-  /// Calls `work(part)` for bands of a part of the raster.
-  template <class Work>
-  static void for_each_band_of(const Window& part, const Work& work, const Progress& progress) {
-    for_each_band(
-        part.height(),
-        [&](int y0, int y1) {
-          work(Window{part.x0, part.y0 + y0, part.x1, part.y0 + y1});
-        },
-        progress);
-  }
-
-  /// The same for parts as wide as a vector and taller than bands: rays of pixels above each other
-  /// visit the same cells, which are to stay in the cache.
-  template <class Work>
-  void for_each_tall_part_of(const Window& part, const Work& work, const Progress& progress) const {
-    constexpr int kWidth = kMostLanes * Interleaving::kPeriod, kHeight = 64;
-    const int first = ((part.x0 + layout_.phase()) & -kWidth) - layout_.phase(),
-              columns = (part.x1 - first + kWidth - 1) / kWidth,
-              rows = (part.height() + kHeight - 1) / kHeight;
-    for_each_task(
-        std::size_t(columns) * std::size_t(rows),
-        [&](std::size_t i) {
-          const int x = first + int(i) % columns * kWidth, y = part.y0 + int(i) / columns * kHeight;
-          work(Window{std::max(x, part.x0), y, std::min(x + kWidth, part.x1),
-                      std::min(y + kHeight, part.y1)});
-        },
-        progress);
   }
 
   void gather_visibility() {
@@ -236,9 +195,7 @@ class Bitmask {
         std::any_of(scene_.views.begin(), scene_.views.end(),
                     [](const FurtherView& view) { return view.picture->closed; });
     const float past =
-        request_.extend_offscreen && !all_is_shown
-            ? sun_past_beyond(mean_ao_of_frame())
-            : 1;
+        request_.extend_offscreen && !all_is_shown ? sun_past_beyond(mean_ao_of_frame()) : 1;
     march_suns(past);
   }
 
@@ -254,22 +211,9 @@ class Bitmask {
     for (const Sun& sun : scene_.light.suns) {
       const PassBeyond pass = pass_beyond(past, sun.held);
       const auto find = [&](const Window& to, RaySet set) {
-        SunShares found(layout_);
         const std::vector<RayDirections> directions =
             directions_to(sun, rays_to_sun(request_.slices), request_.seed, set);
-        const bool one_ray = directions.size() == 1;
-        InterleavedPlane first;
-        if (one_ray) first = raster_.unknown();
-        const SunJob job{march_, bounds, directions, &sun, pass, one_ray ? &first : nullptr,
-                         &found};
-        if (one_ray) {
-          for_each_tall_part_of(
-              grown(to, Interleaving::kPeriod),
-              [&](const Window& part) { march_first_rays(job, part); }, progress_);
-        }
-        for_each_tall_part_of(
-            to, [&](const Window& part) { march_sun(job, part); }, progress_);
-        return found;
+        return find_sun({march_, bounds, directions, &sun, pass}, raster_, to, progress_);
       };
       suns_.push_back(find(lit_part(), RaySet::of_light));
       if (request_.products.error)
@@ -280,6 +224,7 @@ class Bitmask {
   /// Frees what only marches read: products need no more than which pixels show a surface.
   void end_marches() {
     march_scene_.normal = {};
+    march_scene_.tilt = {};
     march_scene_.layers.resize(1);
     march_scene_.layers.front().thickness = {};
   }
@@ -301,17 +246,8 @@ class Bitmask {
     out_.ao = raster_.picture(std::move(ao_), 1.0f);
     if (!wants_light()) return;
     if (!out_.shares.are_ao) out_.shares.sky = raster_.picture(std::move(sky_share_));
-    hand_out(suns_, out_.shares.suns, out_.shares.draws);
-    hand_out(suns_again_, out_.shares.suns_again, out_.shares.draws_again);
-  }
-
-  void hand_out(std::vector<SunShares>& suns, std::vector<Plane<float>>& shares,
-                std::vector<ShadowDraw>& draws) const {
-    for (SunShares& sun : suns) {
-      shares.push_back(raster_.picture(std::move(sun.share), 1));
-      draws.push_back({raster_.picture(std::move(sun.weight), 1),
-                       raster_.picture(std::move(sun.width), kPenumbraUnit)});
-    }
+    hand_out_suns(suns_, raster_, out_.shares.suns, out_.shares.draws);
+    hand_out_suns(suns_again_, raster_, out_.shares.suns_again, out_.shares.draws_again);
   }
 
   InterleavedVectors direct_light() const {
@@ -337,12 +273,6 @@ class Bitmask {
         march_scene_.receivers, [&](const Window& part) { march_reflection(job, part); },
         progress_);
     out_.reflection = raster_.picture(std::move(open), 1.0f);
-  }
-
-  /// A part of the raster with so many pixels around it.
-  Window grown(const Window& part, int by) const {
-    return {std::max(part.x0 - by, 0), std::max(part.y0 - by, 0),
-            std::min(part.x1 + by, layout_.width()), std::min(part.y1 + by, layout_.height())};
   }
 
   /// The radiance that pixels send, given the bounce of the pass before; null: there is none.
@@ -401,7 +331,7 @@ class Bitmask {
                             ? with_senders(march_scene_.receivers, request_.bounces - pass)
                             : march_scene_.receivers;
       for_each_band_of(
-          grown(to, bounce_pattern_.spacing() - 1),
+          grown(layout_, to, bounce_pattern_.spacing() - 1),
           [&](const Window& part) { march_bounce(job, part); }, progress_);
       for_each_band_of(to, [&](const Window& part) { spread_bounce(job, part); }, {});
       bounce = std::move(light);
@@ -434,19 +364,6 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
 std::shared_ptr<const FarScene> overview(const Scene& scene, const Request& request, float from_px,
                                          const Progress& progress) {
   return std::make_shared<FarScene>(Bitmask(scene, request, progress).overview(from_px));
-}
-
-int reach_rows(const Scene& scene, const Request& request) {
-  const Geometry& g = scene.geometry;
-  const int most = g.part_of.value_or(g.window).height();
-  const float reach = reach_px(g, request.radius) + 1;
-  if (!(reach < float(most))) return most;
-  const Interleaving layout(g.window.width(), 1, 0);
-  const SlicePattern pattern(layout, g.display, request.slices, request.steps, request.seed),
-      bounce(layout, g.display, bounce_slices(request.slices), bounce_steps(request.steps),
-             request.seed, bounce_spacing(request.slices));
-  const int rows = std::max(pattern.rows_within(reach), bounce.rows_within(reach));
-  return std::min(rows + kRowsAround, most);
 }
 
 }  // namespace

@@ -92,9 +92,11 @@ struct BandSupport {
   /// Null: the method works on whole frames only.
   std::shared_ptr<const FarScene> (*overview)(const Scene&, const Request&, float from_px,
                                               const Progress&) = nullptr;
-  /// How many rows above and below the pixels of a scene hold what blocks their light within the
-  /// radius, if it is to be found exactly; those of the frame's height at most.
-  int (*reach_rows)(const Scene&, const Request&) = nullptr;
+  /// How many rows above and below the pixels of a frame hold what blocks their light within the
+  /// radius, those of its height at most. `some` of its pixels tell how near it comes: rows, or one
+  /// of every `stride` x `stride`.
+  int (*reach_rows)(const Geometry& some, int stride, const Window& frame, const Window& display,
+                    const Request&) = nullptr;
 };
 
 /// A row in the table of methods.

@@ -16,8 +16,8 @@ namespace ssdo {
 
 /// How the layers of a frame are to be read, as all of its pixels say together.
 struct Encodings {
-  bool depth_is_negative = false;  ///< the z of a camera that looks along -z
-  bool depth_is_wrong = false;     ///< contradicts P, and is left out
+  bool depth_is_negative = false;               ///< the z of a camera that looks along -z
+  bool depth_is_wrong = false;                  ///< contradicts P, and is left out
   std::optional<DepthModel> depth_of_position;  ///< where there are both
   bool normals_tell = false;                    ///< a normal of 0 means that there is no surface
   bool normals_are_colors = false;              ///< stored as n/2 + 1/2
@@ -27,9 +27,9 @@ struct Encodings {
 /// covers `window`, but those of the beauty, which cover that of the outputs; a role that the frame
 /// does not have is an empty plane.
 struct GBuffer {
-  PixelGrid grid = {};     ///< the pixels of the file that the planes hold
-  Window window, display;  ///< of them
-  Window file_display;     ///< of all, where the grid is coarser
+  PixelGrid grid = {};            ///< the pixels of the file that the planes hold
+  Window window, display;         ///< of them
+  Window file_display;            ///< of all, where the grid is coarser
   std::optional<Window> part_of;  ///< the window of the frame, where this is some rows of it
   Encodings encodings;
   Downsampling downsampling = {};  ///< from these windows to those of the outputs

@@ -73,9 +73,8 @@ std::vector<NamedRotation> spaces_of_normals(const GBuffer& g, const Placement& 
 std::optional<NormalSpace> usable_normal_space(const GBuffer& g, const Geometry& out,
                                                GeometryReport& report) {
   if (g.normal.empty()) return std::nullopt;
-  NormalSpace space =
-      find_normal_space(g.normal, out.surfel, spaces_of_normals(g, report.placement),
-                        out.camera.orthographic);
+  NormalSpace space = find_normal_space(
+      g.normal, out.surfel, spaces_of_normals(g, report.placement), out.camera.orthographic);
   report.normal_agreement = space.share;
   const bool from_depth = g.position.empty();
   if (space.smooth_pixels < kFewestSmoothPixels && !from_depth) {
@@ -195,8 +194,7 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
     placement.by_file = found.by_file;
   }
   out.camera = to_grid(placement.camera, g.grid);
-  if (const std::size_t behind =
-          place_positions(g, to_grid(placement.of_positions, g.grid), out)) {
+  if (const std::size_t behind = place_positions(g, to_grid(placement.of_positions, g.grid), out)) {
     report.warnings.push_back(
         fmt::format("{} positions lie behind the camera and are left out", behind));
   }

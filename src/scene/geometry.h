@@ -46,7 +46,7 @@ struct Placement {
   bool by_file = false;
   std::optional<glm::mat3> normals_to_camera;  ///< nothing: normals are rebuilt from P
   bool mends_silhouettes = false;
-  Residual residual;       ///< of P, in pixels of the file
+  Residual residual;  ///< of P, in pixels of the file
   float median_depth = 0;
   bool world_known = false;
 };

@@ -186,7 +186,7 @@ TEST_F(Bands, RefuseWhatNeedsTheWholeFrame) {
 TEST_F(Bands, NeedSomeMemory) {
   const Finished done = run("in.exr", "no.exr", {"--mem-limit", "64M"});
   EXPECT_EQ(done.code, 2);
-  EXPECT_THAT(done.error_line(), AllOf(HasSubstr("in.exr: 320 x 1600 pixels take 0.1"),
+  EXPECT_THAT(done.error_line(), AllOf(HasSubstr("in.exr: 320 x 1600 pixels take 0.098 GB"),
                                        HasSubstr("raise --mem-limit")));
 }
 

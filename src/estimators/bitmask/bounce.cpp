@@ -75,9 +75,10 @@ HWY_INLINE V3 sent_behind(const BounceJob& job, bool far, int layer, const Place
   const Plane<int>& senders =
       (far ? job.overview->solids : job.solids).behind[std::size_t(layer - 1)].sender;
   const Sampled at = far ? in_overview(job.march, place) : in_raster(job.march, place);
-  const VI column = far ? hn::Iota(di, at.column + step.column_shift)
-                        : hn::ConvertTo(di, lane_columns(layout, place.column_phase, place.column)) +
-                              set_int(int(step.dx));
+  const VI column =
+      far ? hn::Iota(di, at.column + step.column_shift)
+          : hn::ConvertTo(di, lane_columns(layout, place.column_phase, place.column)) +
+                set_int(int(step.dx));
   const auto met = hn::BitCast(di, bits) != zero;
   const VI sender =
       hn::GatherIndex(di, &senders(0, at.row + step.row), hn::IfThenElseZero(met, column));
@@ -164,17 +165,17 @@ void gather_light(const BounceJob& job, const Window& part) {
                 march, p, side, slice, forward,
                 [&](bool far, int layer, std::ptrdiff_t q, const SliceStep& step, VU bits)
                     HWY_ATTR {
-                  receive(bits, [&]() HWY_ATTR {
-                    if (layer > 0) return sent_behind(job, far, layer, p.place, step, bits);
-                    const InterleavedVectors& sending = far ? job.far->sent : *job.light;
-                    for (const InterleavedPlane& channel : sending) prefetch_next(channel, q);
-                    const V3 sent = load(sending, q);
-                    if (!job.two_sided) return sent;
-                    const MarchPlanes& planes = far ? march.far->planes : march.scene;
-                    const M seen = faces<kOrthographic>(planes, q, step, p);
-                    return if_then_else(seen, front_of(sent), back_of(sent));
-                  });
-                },
+                      receive(bits, [&]() HWY_ATTR {
+                        if (layer > 0) return sent_behind(job, far, layer, p.place, step, bits);
+                        const InterleavedVectors& sending = far ? job.far->sent : *job.light;
+                        for (const InterleavedPlane& channel : sending) prefetch_next(channel, q);
+                        const V3 sent = load(sending, q);
+                        if (!job.two_sided) return sent;
+                        const MarchPlanes& planes = far ? march.far->planes : march.scene;
+                        const M seen = faces<kOrthographic>(planes, q, step, p);
+                        return if_then_else(seen, front_of(sent), back_of(sent));
+                      });
+                    },
                 FromFurther<decltype(receive)>{job.sent_further, receive},
                 [&](bool far, const Border& border, VU bits) HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {

@@ -58,10 +58,10 @@ HWY_INLINE Border border_along(const MarchScene& scene, const MarchReceiver& p, 
   const V beside = set(aside_px);
   const V edge_x = hn::IfThenElse(through_side, hn::IfThenElse(rightwards, right, zero),
                                   hn::Clamp(hn::Round(p.x + aside) + beside, zero, right)),
-          edge_y = hn::IfThenElse(through_side,
-                                  hn::Clamp(hn::Round(p.y + hn::Round(to_side * dy)) + beside,
-                                            zero, bottom),
-                                  hn::IfThenElse(downwards, bottom, zero));
+          edge_y = hn::IfThenElse(
+              through_side,
+              hn::Clamp(hn::Round(p.y + hn::Round(to_side * dy)) + beside, zero, bottom),
+              hn::IfThenElse(downwards, bottom, zero));
   border.dx = edge_x - p.x, border.dy = edge_y - p.y;
   const VI shifted = hn::ConvertTo(di, edge_x) + set_int(phase);
   const auto offset = [&](M later, std::ptrdiff_t first, std::ptrdiff_t second) HWY_ATTR {

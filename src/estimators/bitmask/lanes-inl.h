@@ -70,33 +70,6 @@ HWY_INLINE V second_of_two(V both) {
   return hn::BitCast(D(), hn::ShiftLeft<16>(hn::BitCast(DU(), both)));
 }
 
-/// Pixels of a picture.
-struct Pixels {
-  VI x, y;
-};
-
-/// The pixels with these numbers, row by row.
-HWY_INLINE Pixels pixels_of(VI number, int width) {
-  const DI di;
-  const VI wide = set_int(width), one = set_int(1);
-  VI y = hn::ConvertTo(di, hn::ConvertTo(D(), number) * set(1 / float(width)));
-  // Rounding may have led to the row above or below.
-  y = hn::IfThenElse(number < y * wide, y - one, y);
-  y = hn::IfThenElse(number < (y + one) * wide, y, y + one);
-  return {number - y * wide, y};
-}
-
-HWY_INLINE VI index_of(const Interleaving& layout, const Pixels& at) {
-  const VI x = at.x + set_int(layout.phase());
-  return (hn::ShiftLeft<Interleaving::kShift>(at.y) +
-          hn::And(x, set_int(Interleaving::kPeriod - 1))) *
-             set_int(int(layout.stride())) +
-         hn::ShiftRight<Interleaving::kShift>(x) + set_int(Interleaving::kPad);
-}
-HWY_INLINE VI index_of(const FarRaster& far, const Pixels& at) {
-  return at.y * set_int(int(far.layout.stride())) + at.x + set_int(Interleaving::kPad);
-}
-
 /// Consecutive values in the order of the march, from index `i` on.
 template <class T>
 HWY_INLINE V load(const InterleavedValues<T>& plane, std::ptrdiff_t i) {
@@ -380,29 +353,6 @@ HWY_INLINE SideFrame side_frame(const MarchScene& scene, const MarchReceiver& p,
   side.above_count = count_above(p.shading_v, side.shading_t, phase);
   side.above = hn::Not(bits_from(side.above_count));
   side.open = hn::And(side.above, hn::Not(bits_from(count_above(p.facing, side.n_t, phase))));
-  return side;
-}
-
-/// The same march over the raster of an overview.
-inline March march_in_overview(const March& march) {
-  return {march.far->scene, march.pattern, march.radius, march.extend};
-}
-
-/// The receiver and the frame of a slice as they are in that raster.
-HWY_INLINE MarchReceiver in_far_pixels(const March& march, MarchReceiver p) {
-  const MarchScene &scene = march.scene, &far = march.far->scene;
-  constexpr float kSide = Interleaving::kPeriod;
-  const auto place = [&](V x, int first, int far_first) HWY_ATTR {
-    return (x + set(float(first) - kSide / 2)) * set(1 / kSide) - set(float(far_first));
-  };
-  p.x = place(p.x, scene.first_x, far.first_x), p.y = place(p.y, scene.first_y, far.first_y);
-  p.rise_x = p.rise_x * set(kSide), p.rise_y = p.rise_y * set(kSide);
-  p.reach_px /= kSide;
-  return p;
-}
-HWY_INLINE SideFrame in_far_pixels(SideFrame side) {
-  const V pixels = set(float(Interleaving::kPeriod));
-  side.across = {side.across.x * pixels, side.across.y * pixels};
   return side;
 }
 

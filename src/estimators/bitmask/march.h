@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "estimators/bitmask/beyond.h"
-#include "estimators/bitmask/depth_bounds.h"
 #include "estimators/bitmask/march_scene.h"
-#include "estimators/bitmask/ray_pattern.h"
+#include "estimators/bitmask/rays/depth_bounds.h"
+#include "estimators/bitmask/rays/ray_pattern.h"
 #include "estimators/bitmask/slice_pattern.h"
 #include "estimators/further/further_light.h"
 #include "estimators/further/further_rays.h"
@@ -145,8 +145,8 @@ struct SunJob {
   PassBeyond pass;
   /// Of the pixels whose rays go first, in pixels, where their ray is blocked; negative: nowhere;
   /// not-a-number: they have none. Null: all rays go at once.
-  InterleavedPlane* first;
-  SunShares* found;
+  InterleavedPlane* first = nullptr;
+  SunShares* found = nullptr;
 };
 
 /// How much of what rough surfaces mirror is not blocked.

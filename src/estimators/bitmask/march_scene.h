@@ -85,8 +85,8 @@ struct MarchLayer {
   InterleavedPlane thickness;  ///< from the front to the back
 };
 
-/// What a march meets, pixel by pixel. Normals belong to layer 0; the fronts of the layers behind it
-/// face the viewer. Planes are not-a-number where there is nothing.
+/// What a march meets, pixel by pixel. Normals belong to layer 0; the fronts of the layers behind
+/// it face the viewer. Planes are not-a-number where there is nothing.
 struct MarchPlanes {
   std::vector<MarchLayer> layers;  ///< near to far; layer 0 is what pixels show
   InterleavedVectors normal;       ///< unit, of layer 0, camera space: that of the surface
@@ -105,10 +105,10 @@ struct MarchScene : MarchPlanes {
   Interleaving layout;
   Window receivers;  ///< pixels of the raster, whose first is (0, 0)
   bool orthographic;
-  float fx, fy;                    ///< pixels per unit of slope, or per scene unit
-  float axis_x, axis_y;            ///< pixel of the display window that the camera's axis meets
-  int first_x, first_y;            ///< pixel (0, 0) in the display window
-  int frame_width, frame_height;   ///< of the frame that the raster is all of, or some rows of
+  float fx, fy;                   ///< pixels per unit of slope, or per scene unit
+  float axis_x, axis_y;           ///< pixel of the display window that the camera's axis meets
+  int first_x, first_y;           ///< pixel (0, 0) in the display window
+  int frame_width, frame_height;  ///< of the frame that the raster is all of, or some rows of
   /// What only receivers need: the normal that shading sees, by which light is weighed, and the
   /// rounding.
   const Plane<Surfel>& surfel;

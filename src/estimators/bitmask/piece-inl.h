@@ -48,9 +48,8 @@ constexpr float kMostDeepening = 2;
 
 /// The piece that the pixel at `i` represents. `rise` and `across` are those of its middle.
 template <bool kOrthographic>
-HWY_INLINE Piece piece_at(const MarchPlanes& planes, const MarchReceiver& p,
-                          const SideFrame& side, const SliceStep& step, std::ptrdiff_t i, V depth,
-                          V rise, V across) {
+HWY_INLINE Piece piece_at(const MarchPlanes& planes, const MarchReceiver& p, const SideFrame& side,
+                          const SliceStep& step, std::ptrdiff_t i, V depth, V rise, V across) {
   const V one = set(1), nearer = nearer_over(planes, i, step);
   const auto end = [&](float of_way, bool inner) HWY_ATTR {
     V share = set(of_way);
@@ -123,9 +122,9 @@ struct Front {
 /// themselves only if they are thicker than the fronts are apart. `is_above`: the later one is
 /// above the receiver's tangent plane.
 template <bool kOrthographic>
-HWY_INLINE VU sectors_between(const March& march, const MarchPlanes& planes,
-                              const MarchReceiver& p, const SideFrame& side, const Front& before,
-                              const Front& here, M is_above) {
+HWY_INLINE VU sectors_between(const March& march, const MarchPlanes& planes, const MarchReceiver& p,
+                              const SideFrame& side, const Front& before, const Front& here,
+                              M is_above) {
   const MarchScene& scene = march.scene;
   const auto point = [&](const Front& f) HWY_ATTR {
     const V dx = set(f.step->dx), dy = set(f.step->dy), across = dot(V2{dx, dy}, side.across),

@@ -83,14 +83,16 @@ class Raster {
     return out;
   }
 
-  /// The values of an overview in the order of `far`, `changed` by something; not-a-number beside it.
+  /// The values of an overview in the order of `far`, `changed` by something; not-a-number beside
+  /// it.
   template <class Change = std::identity>
   InterleavedPlane in_whole_rows(const InterleavedPlane& values, const FarRaster& far,
                                  const Change& changed = {}) const {
     InterleavedPlane out(far.layout);
     std::fill_n(out.data(), far.layout.size(), std::numeric_limits<float>::quiet_NaN());
     for_each_row(far.height, [&](int y) {
-      for (int x = 0; x < far.width; ++x) out[far.index(x, y)] = changed(values[layout_.index(x, y)]);
+      for (int x = 0; x < far.width; ++x)
+        out[far.index(x, y)] = changed(values[layout_.index(x, y)]);
     });
     return out;
   }
@@ -98,7 +100,8 @@ class Raster {
   MarchPlanes in_whole_rows(const MarchPlanes& from, const FarRaster& far) const {
     MarchPlanes planes;
     for (const MarchLayer& layer : from.layers)
-      planes.layers.push_back({in_whole_rows(layer.depth, far), in_whole_rows(layer.thickness, far)});
+      planes.layers.push_back(
+          {in_whole_rows(layer.depth, far), in_whole_rows(layer.thickness, far)});
     planes.normal = in_whole_rows(from.normal, far);
     planes.tilt = in_whole_rows(from.tilt, far, [](float both) {
       constexpr float kPixels = 1.0f / kPeriod;  // steps are in pixels of the frame

@@ -15,6 +15,7 @@
 
 #include "estimators/bitmask/extension-inl.h"
 #include "estimators/bitmask/further-inl.h"
+#include "estimators/bitmask/overview-inl.h"
 #include "estimators/bitmask/piece-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -40,27 +41,6 @@ HWY_INLINE float error_of_difference(const March& march, const Place& place, int
 /// calls of what does nothing else.
 HWY_INLINE void prefetch_next(const InterleavedPlane& plane, std::ptrdiff_t i) {
   hwy::Prefetch(plane.data() + i + 2 * kLanes - 1);
-}
-
-/// Where the samples of a vector of receivers are: the planes, and the place there of what lies a
-/// step of (0, 0) away.
-struct Sampled {
-  const MarchPlanes& planes;
-  int row, rows, column, columns;
-  std::ptrdiff_t index;
-};
-
-HWY_INLINE Sampled in_raster(const March& march, const Place& place) {
-  const Interleaving& layout = march.scene.layout;
-  return {march.scene, place.y, layout.height(), place.column, layout.columns(), place.index};
-}
-
-HWY_INLINE Sampled in_overview(const March& march, const Place& place) {
-  const MarchScene& scene = march.scene;
-  const FarRaster& far = march.far->raster;
-  const int row = ((place.y + scene.first_y) >> Interleaving::kShift) - far.first_y,
-            column = (scene.first_x >> Interleaving::kShift) + place.column - far.first_x;
-  return {march.far->planes, row, far.height, column, far.width, far.index(column, row)};
 }
 
 /// Marches one side over what is sampled, near to far, and returns which of the `open` sectors stay
@@ -120,16 +100,15 @@ HWY_INLINE VU march_steps(const March& march, const MarchReceiver& p, const Side
   return open;
 }
 
-/// The same over the raster and what lies beyond it. `on_met` is told too whether it is the overview
-/// that shows a solid.
+/// The same over the raster and what lies beyond it. `on_met` is told too whether it is the
+/// overview that shows a solid.
 template <bool kOrthographic, class Met>
 HWY_INLINE VU march_frame(const March& march, const MarchReceiver& p, const SideFrame& side,
                           const SliceSide& way, const Met& on_met) {
   const std::span<const SliceStep> steps = way.steps;
   const auto on_met_in = [&](bool far) HWY_ATTR {
-    return [&on_met, far](int layer, std::ptrdiff_t i, const SliceStep& step, VU bits) HWY_ATTR {
-      on_met(far, layer, i, step, bits);
-    };
+    return [&on_met, far](int layer, std::ptrdiff_t i, const SliceStep& step, VU bits)
+               HWY_ATTR { on_met(far, layer, i, step, bits); };
   };
   const VU open =
       march_steps<kOrthographic>(march, p, side, in_raster(march, p.place),
@@ -166,8 +145,8 @@ HWY_INLINE VU hidden_beyond(const March& march, const MarchReceiver& p, const Si
 }
 
 /// The same over the frame, what further views show, and beyond the frame's border. `on_further`
-/// is told of what rays meet there (further-inl.h); `on_beyond(far, border, sectors)` is called with
-/// the sectors that are first hidden beyond the border, of the raster or of the overview.
+/// is told of what rays meet there (further-inl.h); `on_beyond(far, border, sectors)` is called
+/// with the sectors that are first hidden beyond the border, of the raster or of the overview.
 template <bool kOrthographic, class Met, class Further, class Beyond>
 HWY_INLINE VU march_side(const March& march, const MarchReceiver& p, const SideFrame& side,
                          const Slice& slice, bool forward, const Met& on_met,

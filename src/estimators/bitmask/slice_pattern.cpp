@@ -153,8 +153,9 @@ SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, in
           const double n = (rank * slices + k) * 2 + s, sign = s == 0 ? 1 : -1;
           // Neighbouring directions, of consecutive ranks, have distances that are far apart.
           const double start = fraction(start1 + rank * kR1 + 0.25 * (2 * k + s));
-          slice.sides[s] = make_side(layout, far, column, row, sign * slice.dx, sign * slice.dy,
-                                     steps, diagonal, start, phase_in(fraction(start2 + n * kR2Second)));
+          slice.sides[s] =
+              make_side(layout, far, column, row, sign * slice.dx, sign * slice.dy, steps, diagonal,
+                        start, phase_in(fraction(start2 + n * kR2Second)));
         }
         members_[std::size_t(row * kPeriod + column)].push_back(std::move(slice));
       }

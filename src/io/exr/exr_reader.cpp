@@ -90,9 +90,9 @@ void read_or_fail(const ExrReader& reader, const ExrPart& part, const Window& ro
     Imf::FrameBuffer frame_buffer;
     const Imath::Box2i box({rows.x0, rows.y0}, {rows.x1 - 1, rows.y1 - 1});
     for (const auto& [channel, pixels, as_float] : channels) {
-      frame_buffer.insert(channel.name, Imf::Slice::Make(as_float ? Imf::FLOAT : channel.type,
-                                                         pixels, box, 0, 0, channel.x_sampling,
-                                                         channel.y_sampling));
+      frame_buffer.insert(channel.name,
+                          Imf::Slice::Make(as_float ? Imf::FLOAT : channel.type, pixels, box, 0, 0,
+                                           channel.x_sampling, channel.y_sampling));
     }
     read_pixels(reader.file(), part, rows, frame_buffer);
   } catch (const std::exception& error) {

@@ -15,13 +15,14 @@ struct ChannelRows {
   bool as_float;  ///< half becomes float; else as stored
 };
 
-/// Reads rows of channels of a part whose scanlines are packed with ZIP or ZIPS: libdeflate inflates chunks
-/// side by side, and only these channels are unpacked. The bits are those of OpenEXR's own reader,
-/// in less than half of its time.
+/// Reads rows of channels of a part whose scanlines are packed with ZIP or ZIPS: libdeflate
+/// inflates chunks side by side, and only these channels are unpacked. The bits are those of
+/// OpenEXR's own reader, in less than half of its time.
 ///
-/// `rows` is the part's data window, or some rows of it. Returns false, with some pixels written or none, where that reader has to be asked: a part or a
-/// channel of another kind, or a damaged chunk, which it has a message for.
-bool read_zip_lines(Imf::MultiPartInputFile& file, const ExrPart& part,
-                    const Window& rows, std::span<const ChannelRows> channels);
+/// `rows` is the part's data window, or some rows of it. Returns false, with some pixels written or
+/// none, where that reader has to be asked: a part or a channel of another kind, or a damaged
+/// chunk, which it has a message for.
+bool read_zip_lines(Imf::MultiPartInputFile& file, const ExrPart& part, const Window& rows,
+                    std::span<const ChannelRows> channels);
 
 }  // namespace ssdo

@@ -123,8 +123,7 @@ FoundCamera on_file(FoundCamera found, const PixelGrid& grid, const Camera* give
 FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,
                         GeometryReport& report) {
   const auto given_of_file = camera_from_options(g, options, report);
-  const auto given =
-      given_of_file ? std::optional(to_grid(*given_of_file, g.grid)) : std::nullopt;
+  const auto given = given_of_file ? std::optional(to_grid(*given_of_file, g.grid)) : std::nullopt;
   const bool by_file = given && !options.file.empty();
   if (g.position.empty()) {
     if (!given) throw_undetermined(g, file);

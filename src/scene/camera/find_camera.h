@@ -10,8 +10,8 @@
 namespace ssdo {
 
 /// The camera of the frame, and the transform from stored P to camera space. They are the same
-/// unless P is stored in camera space and a file gives the pose. Both are in the pixels of the file,
-/// whatever the grid of the G-buffer.
+/// unless P is stored in camera space and a file gives the pose. Both are in the pixels of the
+/// file, whatever the grid of the G-buffer.
 struct FoundCamera {
   Camera camera, of_positions;
   bool by_file = false;  ///< --camera gave the pose, and so the world

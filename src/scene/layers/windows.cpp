@@ -113,7 +113,8 @@ void note_data_windows(const Files& files, const LayerTable& table, const std::v
     if (!table[role]) continue;
     const ExrPart& part = part_of(files, *table[role]);
     const bool unused = role == Role::depth && g.depth.empty();  // it contradicts P
-    if (!unused && !(g.grid.of(part.data_window) == g.window)) note_data_window(files, role, *table[role], g);
+    if (!unused && !(g.grid.of(part.data_window) == g.window))
+      note_data_window(files, role, *table[role], g);
     const float own = part.header.pixelAspectRatio();
     if (std::abs(own - aspect) <= kSameAspect * aspect || !noted.insert(&part).second) continue;
     g.warnings.push_back(fmt::format(

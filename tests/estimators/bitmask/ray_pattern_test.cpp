@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The points of a source that the rays of a pixel and of its neighbours go to.
-#include "estimators/bitmask/ray_pattern.h"
+#include "estimators/bitmask/rays/ray_pattern.h"
 
 #include <gtest/gtest.h>
 

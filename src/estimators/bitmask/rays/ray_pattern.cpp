@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "estimators/bitmask/ray_pattern.h"
+#include "estimators/bitmask/rays/ray_pattern.h"
 
 #include <algorithm>
 #include <bit>

@@ -11,7 +11,7 @@
 
 #include "estimators/bitmask/extension-inl.h"
 #include "estimators/bitmask/further-inl.h"
-#include "estimators/bitmask/walk-inl.h"
+#include "estimators/bitmask/rays/walk-inl.h"
 
 #include <optional>
 
@@ -63,13 +63,6 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const SideF
                           open, hn::IfThenElse(crosses, set(pass.through / kWitnesses), passes));
   }
   return passed;
-}
-
-HWY_INLINE RayInSlice in_far_pixels(RayInSlice ray) {
-  const V pixels = set(float(Interleaving::kPeriod));
-  ray.end_px = ray.end_px / pixels;
-  ray.nearing = ray.nearing * pixels, ray.per_px = ray.per_px * pixels;
-  return ray;
 }
 
 /// Which open lanes see past what further views show.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "estimators/bitmask/depth_bounds.h"
+#include "estimators/bitmask/rays/depth_bounds.h"
 
 #include <algorithm>
 #include <array>

@@ -5,13 +5,13 @@
 // in 4 x 4 pixels and in the eight such squares around see the sun, or none does, so do or do not
 // the others of the square. Compiled once for every instruction set.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "estimators/bitmask/sun.cpp"
+#define HWY_TARGET_INCLUDE "estimators/bitmask/rays/sun.cpp"
 #include <hwy/foreach_target.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "estimators/bitmask/ray-inl.h"
+#include "estimators/bitmask/rays/ray-inl.h"
 #include "scene/light/light-inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -3,13 +3,13 @@
 // How much of what a rough surface mirrors is not blocked: rays to what the facets show that the
 // viewer sees. Compiled once for every instruction set.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "estimators/bitmask/reflection.cpp"
+#define HWY_TARGET_INCLUDE "estimators/bitmask/rays/reflection.cpp"
 #include <hwy/foreach_target.h>
 
 #include <algorithm>
 #include <glm/matrix.hpp>
 
-#include "estimators/bitmask/ray-inl.h"
+#include "estimators/bitmask/rays/ray-inl.h"
 #include "math/frame.h"
 #include "math/microfacets.h"
 #include "math/sobol.h"

@@ -2,9 +2,9 @@
 //
 // The way of a ray over the frame, for a vector of pixels, each with a direction of its own. No
 // solid of a pixel or more is missed: rays visit every pixel that they cross, but for those of
-// cells (bitmask/depth_bounds.h) whose solids all lie behind the ray, in front of it or below the
-// receiver's tangent plane. Where a cell may hold something in the way they look at smaller ones
-// (hierarchical depth: Greene, Kass and Miller, 1993).
+// cells (bitmask/rays/depth_bounds.h) whose solids all lie behind the ray, in front of it or below
+// the receiver's tangent plane. Where a cell may hold something in the way they look at smaller
+// ones (hierarchical depth: Greene, Kass and Miller, 1993).
 //
 // With t the distance in the picture, everything here is linear. e is the height above the
 // receiver's tangent plane, measured along the view ray of the place and divided by its depth (by 1
@@ -25,62 +25,11 @@
 
 #include <algorithm>
 
-#include "estimators/bitmask/depth_bounds.h"
-#include "estimators/bitmask/lanes-inl.h"
+#include "estimators/bitmask/rays/depth_bounds.h"
+#include "estimators/bitmask/rays/ray_in_slice-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
-
-/// A ray from a receiver.
-struct RayInSlice {
-  SlicePoint along;  ///< its direction in the slice
-  V step_x, step_y;  ///< its direction in the picture, unit, pixels
-  V end_px;          ///< how far away in the picture it reaches the horizon
-  V nearing;         ///< by how much its nearness grows per pixel
-  V per_px;          ///< way along it per pixel, at a depth of 1
-};
-
-/// Sets `side` to that of the slice which contains the direction `l`, a unit vector.
-HWY_INLINE RayInSlice ray_in_slice(const MarchScene& scene, const MarchReceiver& p, const V3& l,
-                                   SideFrame& side) {
-  RayInSlice ray;
-  ray.along.v = dot(l, p.to_viewer);
-  const V3 t{hn::NegMulAdd(ray.along.v, p.to_viewer.x, l.x),
-             hn::NegMulAdd(ray.along.v, p.to_viewer.y, l.y),
-             hn::NegMulAdd(ray.along.v, p.to_viewer.z, l.z)};
-  ray.along.s = hn::Sqrt(dot(t, t));
-  side.t = t * (set(1) / hn::Max(ray.along.s, set(1e-6f)));
-  side.n_t = dot(p.normal, side.t);
-  side.slope = side.n_t / p.facing;
-  side.across = {side.t.x * set(1 / scene.fx), side.t.y * set(-1 / scene.fy)};
-
-  const V depth = set(0) - p.position.z;
-  V2 way{set(scene.fx) * l.x, set(-scene.fy) * l.y};
-  ray.end_px = set(1e9f);
-  if (!scene.orthographic) {
-    // The derivative of the projection, times the square of the depth.
-    way = {set(scene.fx) * hn::MulAdd(l.x, depth, l.z * p.position.x),
-           set(-scene.fy) * hn::MulAdd(l.y, depth, l.z * p.position.y)};
-  }
-  const V length = hn::Sqrt(dot(way, way));
-  if (!scene.orthographic) {
-    const M recedes = l.z < set(0);
-    ray.end_px = hn::IfThenElse(recedes, length / (depth * hn::Abs(l.z)), ray.end_px);
-  }
-  const V unit = set(1) / hn::Max(length, set(1e-20f));
-  ray.step_x = way.x * unit, ray.step_y = way.y * unit;
-  ray.nearing = l.z * unit;
-  ray.per_px = unit;
-  return ray;
-}
-
-/// How far a ray has come after so many pixels of the picture.
-template <bool kOrthographic>
-HWY_INLINE V way_along(const RayInSlice& ray, const MarchReceiver& p, V pixels) {
-  if constexpr (kOrthographic) return pixels * ray.per_px;
-  const V depth = set(0) - p.position.z;
-  return pixels * depth * depth * ray.per_px / hn::MulAdd(ray.nearing * depth, pixels, set(1));
-}
 
 /// Rays on their way over the frame, one in each lane. A ray that has met something or has left the
 /// frame gives its lane to the next that waits: rays differ in length, and lanes that wait for the
@@ -158,8 +107,10 @@ class Walk {
       if (!any(looks)) return;
       const V at = hn::IfThenElseZero(looks, w.t);
       // Beyond the frame only by rounding.
-      const VI at_x = hn::Clamp(w.x + hn::NearestInt(hn::MulAdd(at, w.step_x, w.aside_x)), left, right),
-               at_y = hn::Clamp(w.y + hn::NearestInt(hn::MulAdd(at, w.step_y, w.aside_y)), top, bottom);
+      const VI at_x = hn::Clamp(w.x + hn::NearestInt(hn::MulAdd(at, w.step_x, w.aside_x)), left,
+                                right),
+               at_y = hn::Clamp(w.y + hn::NearestInt(hn::MulAdd(at, w.step_y, w.aside_y)), top,
+                                bottom);
       // To larger cells where the ray has come into another of them.
       const VI larger = hn::IfThenElse(w.size == set_int(0), set_int(DepthBounds::kSmallest),
                                        hn::Min(w.size + one, set_int(DepthBounds::kLargest)));
@@ -254,8 +205,8 @@ class Walk {
 
   /// A ray in each lane.
   struct Way {
-    VI place;  ///< in the queue
-    VI x, y;   ///< the receiver's pixel in the grid of cells
+    VI place;            ///< in the queue
+    VI x, y;             ///< the receiver's pixel in the grid of cells
     V aside_x, aside_y;  ///< from its middle to the receiver
     V step_x, step_y, a, b, rise_x, rise_y, growth, end;
     Axis along_x, along_y;

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/bitmask/patterns.h"
+
+#include <algorithm>
+
+#include "estimators/bitmask/march_scene.h"
+#include "math/pixel_grid.h"
+
+namespace ssdo {
+namespace {
+
+/// Bounce light is a small part of all light on most surfaces: with two thirds of the steps it adds
+/// less noise than direct light has. Measured on seven frames.
+constexpr int bounce_steps(int steps) { return (2 * steps + 2) / 3; }
+
+/// With few slices, one pixel of 2 x 2 gathers bounce light, in 2.5 times as many slices. In place
+/// of 1.5 times as many, noise falls by 20 to 30 % for 2 % of a job.
+constexpr int bounce_spacing(int slices) { return slices < 4 ? 2 : 1; }
+constexpr int bounce_slices(int slices) { return slices < 4 ? 5 * slices / 2 : slices; }
+
+/// Rows around a pixel to which it looks for what it sends and for the first rays to suns.
+constexpr int kRowsAround = 12;
+
+static_assert(kOverviewStride == Interleaving::kPeriod);
+
+}  // namespace
+
+SlicePattern pattern_of(const Request& request, const Interleaving& layout, const Window& display,
+                        const FarRaster* far) {
+  return {layout, display, request.slices, request.steps, request.seed, 1, far};
+}
+
+SlicePattern bounce_pattern_of(const Request& request, const Interleaving& layout,
+                               const Window& display, const FarRaster* far) {
+  const int slices = request.slices;
+  return {layout,
+          display,
+          bounce_slices(slices),
+          bounce_steps(request.steps),
+          request.seed,
+          bounce_spacing(slices),
+          far};
+}
+
+int reach_rows(const Geometry& some, int stride, const Window& frame, const Window& display,
+               const Request& request) {
+  const float reach = float(stride) * reach_px(some, request.radius) + 1;
+  if (!(reach < float(frame.height()))) return frame.height();
+  const Interleaving layout(frame.width(), 1, 0);
+  const int rows = std::max(pattern_of(request, layout, display).rows_within(reach),
+                            bounce_pattern_of(request, layout, display).rows_within(reach));
+  return std::min(rows + kRowsAround, frame.height());
+}
+
+}  // namespace ssdo

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "estimators/bitmask/march.h"
+#include "estimators/bitmask/raster.h"
+#include "estimators/products.h"
+#include "parallel/tiles.h"
+
+namespace ssdo {
+
+/// How much of a sun arrives at the pixels `to` of a raster. What the job leaves open, which rays
+/// go first and where the result goes, is set here.
+SunShares find_sun(SunJob job, const Raster& raster, const Window& to, const Progress& progress);
+
+/// Turns what was found of suns into pictures, as LightShares has them, and frees it.
+void hand_out_suns(std::vector<SunShares>& found, const Raster& raster,
+                   std::vector<Plane<float>>& shares, std::vector<ShadowDraw>& draws);
+
+}  // namespace ssdo
