@@ -243,9 +243,9 @@ class Bitmask {
         return bounces ? error_[i] + bounce_error_[i] : error_[i];
       });
     }
+    if (wants_light() && !out_.shares.are_ao)
+      out_.shares.sky = raster_.picture(std::move(sky_share_), ao_);
     out_.ao = raster_.picture(std::move(ao_), 1.0f);
-    if (!wants_light()) return;
-    if (!out_.shares.are_ao) out_.shares.sky = raster_.picture(std::move(sky_share_));
     hand_out_suns(suns_, raster_, out_.shares.suns, out_.shares.draws);
     hand_out_suns(suns_again_, raster_, out_.shares.suns_again, out_.shares.draws_again);
   }

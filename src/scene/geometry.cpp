@@ -179,6 +179,8 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
   out.display = g.display;
   out.part_of = g.part_of;
   out.surfel = Plane<Surfel>(g.window.width(), g.window.height());
+  // Nor is the camera known where the overview of a frame shows none.
+  if (known && known->median_depth <= 0) return out;
   if (!known && g.background_pixels + g.bad_pixels >= g.valid.size() &&
       std::none_of(g.valid.pixels.begin(), g.valid.pixels.end(), [](auto v) { return v != 0; })) {
     report.camera_source = "none: the frame shows no surface";

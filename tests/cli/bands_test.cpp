@@ -3,6 +3,7 @@
 // --mem-limit: a frame that is larger than memory is processed in bands of rows.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -163,6 +164,21 @@ TEST_F(Bands, OfAFrameThatIsDescribed) {
   const Finished done = run_tool(Words{"info", path("in.exr")} + kLimit);
   EXPECT_EQ(done.code, 0);
   EXPECT_THAT(done.out, AllOf(HasSubstr("in.exr: 320 x 1600"), HasSubstr(" bands of ")));
+}
+
+/// What is smaller than a pixel of the overview does not make a frame.
+TEST_F(Bands, OfAFrameWithoutSurfacesAreEmpty) {
+  FramePart part = frame_of(small_picture(kWindow, kWindow));
+  for (auto& [name, values] : part.channels)
+    std::fill(values.pixels.begin(), values.pixels.end(), 0.0f);
+  for (const char* c : {"X", "Y", "Z"})
+    part.channels.at(std::string("ViewLayer.Position.") + c)(97, 97) = 1;
+  part.channels.at("ViewLayer.Depth.Z")(97, 97) = 1;
+  part.data = part.display = kWindow;
+  write_frame(path("empty.exr"), part);
+  const Finished done = run("empty.exr", "out.exr", kLimit);
+  EXPECT_EQ(done.code, 0) << done.err;
+  for (const float ao : channel(path("out.exr"), "ao.Y").pixels) ASSERT_EQ(ao, 1);
 }
 
 TEST_F(Bands, RefuseWhatNeedsTheWholeFrame) {

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
+#include "math/pixel_grid.h"
 #include "scene/connections.h"
 #include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
@@ -199,6 +200,29 @@ TEST(Solids, AreThoseOfTheRunsThroughEachPixel) {
     EXPECT_GT(behind, 500);
     EXPECT_GT(thin, 500);
   }
+}
+
+/// Two cards, of which some rows of the frame cut one: the overview knows how tall that is.
+TEST(Solids, OfSomeRowsOfAFrameAreThoseOfTheFrame) {
+  const Window frame{0, 0, 960, 720}, rows{0, 0, 960, 360};
+  const Surface scene = all_of(
+      {leaning_wall(), card(0, 1.4, 0.4), cut(plane({0, 0, 1}, {0, 0, 1}), [](const glm::dvec3& p) {
+         return std::abs(p.x) < 0.3 && std::abs(p.y - 1.2) < 0.3;
+       })});
+  const Camera camera = look_at(camera_from_fov(53, frame, 1), {0, 0, 6}, {0, 0, 0}, {0, 1, 0});
+  const PixelGrid grid{.stride = kOverviewStride};
+  const Geometry small = geometry_of(scene, to_grid(camera, grid), grid.of(frame)),
+                 whole = geometry_of(scene, camera, frame);
+  Geometry band = geometry_of(scene, camera, rows);
+  band.display = frame, band.part_of = frame;
+  const Solids of_small = guess_solids(small), of_whole = guess_solids(whole),
+               of_band = guess_solids(band, SolidsOfOverview{small, of_small.thickness});
+  const std::size_t on_cut = band.surfel.index(480, 345), on_other = band.surfel.index(480, 130);
+  EXPECT_NEAR(of_whole.thickness[on_cut], kDepthOfWidth * 0.8, 0.02);
+  EXPECT_NEAR(of_band.thickness[on_cut], of_whole.thickness[on_cut], 0.1);
+  EXPECT_GT(guess_solids(band).thickness[on_cut], 1.1 * of_whole.thickness[on_cut]);
+  EXPECT_NEAR(of_whole.thickness[on_other], kDepthOfWidth * 0.6, 0.02);
+  EXPECT_EQ(of_band.thickness[on_other], of_whole.thickness[on_other]);
 }
 
 TEST(Solids, AreOfOneLayerBeforeTheBackground) {

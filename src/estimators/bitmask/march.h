@@ -59,8 +59,10 @@ struct VisibilityJob {
   float through_beyond = 0;  ///< share of it that comes through what may go on beyond the frame
 
   InterleavedPlane* ao = nullptr;
-  InterleavedVectors* bent = nullptr;           ///< unit; null: not wanted
-  InterleavedColorShares* sky_share = nullptr;  ///< what of the light arrives; null: not wanted
+  InterleavedVectors* bent = nullptr;  ///< unit; null: not wanted
+  /// What of the light arrives, less ao: in one colour from everywhere, nothing, without rounding.
+  /// Null: not wanted.
+  InterleavedColorShares* sky_share = nullptr;
   InterleavedPlane* difference =
       nullptr;  ///< standard error of its luminance, signed; null: not wanted
 };
@@ -80,7 +82,8 @@ struct SunShares {
 struct FoundShares {
   const Light& light;
   const InterleavedPlane* ao;
-  const InterleavedColorShares* sky;  ///< null: ao is the share of all light
+  const InterleavedColorShares* sky;  ///< as VisibilityJob has it; null: ao is the share of all
+                                      ///< light
   const std::vector<SunShares>& suns;
 };
 

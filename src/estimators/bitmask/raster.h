@@ -124,6 +124,13 @@ class Raster {
     return of_receivers(0.0f, [&](std::ptrdiff_t i) { return unit * plane[i]; });
   }
 
+  /// What is to be added to `base`.
+  Plane<glm::vec3> picture(InterleavedColorShares color, const InterleavedPlane& base) const {
+    return of_receivers(glm::vec3(0), [&](std::ptrdiff_t i) {
+      return base[i] + glm::vec3(color[0][i], color[1][i], color[2][i]);
+    });
+  }
+
   template <class T>
   Plane<glm::vec3> picture(std::array<InterleavedValues<T>, 3> color) const {
     return of_receivers(glm::vec3(0), [&](std::ptrdiff_t i) {

@@ -64,13 +64,15 @@ HWY_INLINE Around around(const MarchScene& scene, const Place& place) {
   return pixels;
 }
 
-/// The direct light on surfaces with these normals; `share(plane)` of some light arrives.
+/// The direct light on surfaces with these normals; `share(planes)`, their sum, of some light
+/// arrives.
 template <class Share>
 HWY_INLINE V3 direct_light(const FoundShares& found, const V3& normal, const Share& share) {
   const V3 sky = look_up(found.light.irradiance, normal);
   if (!found.sky) return sky * share(*found.ao);
-  const InterleavedColorShares& of_sky = *found.sky;
-  V3 sum = sky * V3{share(of_sky[0]), share(of_sky[1]), share(of_sky[2])};
+  const InterleavedPlane& ao = *found.ao;
+  const InterleavedColorShares& more = *found.sky;
+  V3 sum = sky * V3{share(ao, more[0]), share(ao, more[1]), share(ao, more[2])};
   for (std::size_t k = 0; k < found.suns.size(); ++k)
     sum = mul_add(unoccluded(found.light.suns[k], normal), share(found.suns[k].share), sum);
   return sum;
@@ -101,8 +103,9 @@ void send_light(const SenderJob& job, const Window& part) {
     const auto mean = [&](const InterleavedPlane& plane) HWY_ATTR {
       return pixels.mean([&](std::ptrdiff_t q) HWY_ATTR { return load(plane, q); });
     };
-    const auto mean_share = [&](const auto& plane) HWY_ATTR {
-      return pixels.mean([&](std::ptrdiff_t q) HWY_ATTR { return saturate(load(plane, q)); });
+    const auto mean_share = [&](const auto&... planes) HWY_ATTR {
+      return pixels.mean([&](std::ptrdiff_t q)
+                             HWY_ATTR { return saturate((load(planes, q) + ...)); });
     };
     V3 light = direct_light(job.found, shading_normals(scene, place), mean_share);
     if (job.bounce) {
@@ -122,7 +125,8 @@ void send_light(const SenderJob& job, const Window& part) {
 
 void direct_of_pixels(const DirectJob& job, const Window& part) {
   for_each_vector(job.scene, part, [&](const Place& place) HWY_ATTR {
-    const auto own = [&](const auto& plane) HWY_ATTR { return saturate(load(plane, place.index)); };
+    const auto own = [&](const auto&... planes)
+                         HWY_ATTR { return saturate((load(planes, place.index) + ...)); };
     store(direct_light(job.found, shading_normals(job.scene, place), own), *job.direct,
           place.index);
   });

@@ -62,7 +62,7 @@ void visibility(const VisibilityJob& job, const Window& part) {
           };
           return V3{share(0), share(1), share(2)};
         };
-        if (job.sky_share) store(share_of(sum), *job.sky_share, i);
+        if (job.sky_share) store(share_of(sum) - V3{ao, ao, ao}, *job.sky_share, i);
         if (job.difference) {
           const V3 unoccluded = look_up(*job.irradiance, normals);
           const auto brightness = [&](const Moments<kOrder>& moments) HWY_ATTR {
