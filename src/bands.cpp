@@ -44,7 +44,8 @@ Band read_band(const RelightJob& job, const Window& rows, StageTimes& times) {
   band.gbuffer.normal = {};
   band.gbuffer.depth = {};
   scene.solids = solids_of(scene.geometry, job.options.model, frame.scene);
-  scene.senders = {std::move(band.gbuffer.albedo), std::move(band.gbuffer.radiance)};
+  scene.senders = {in_half(band.gbuffer.albedo), std::move(band.gbuffer.radiance)};
+  band.gbuffer.albedo = {};
   scene.roughness = std::move(band.gbuffer.roughness);
   scene.light = frame.scene.light;
   times.prepare += watch.lap();

@@ -94,7 +94,8 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
 
   Scene& scene = frame.scene;
   scene.geometry = std::move(view.geometry);
-  scene.senders = {std::move(frame.gbuffer.albedo), std::move(frame.gbuffer.radiance)};
+  scene.senders = {in_half(frame.gbuffer.albedo), std::move(frame.gbuffer.radiance)};
+  frame.gbuffer.albedo = {};
   scene.roughness = std::move(frame.gbuffer.roughness);
   if (scene.geometry.camera.panorama) {
     throw Error(ExitCode::layer,

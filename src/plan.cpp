@@ -120,7 +120,7 @@ void choose_bounces(Plan& plan, int wanted, const Scene& scene) {
   plan.request.bounces = plan.request.products.bounce ? wanted : 0;
   if (plan.request.bounces == 0 || !scene.senders.radiance.empty()) return;
   float brightest = 0;
-  for (const glm::vec3& c : scene.senders.albedo.pixels) {
+  for (const glm::vec3 c : scene.senders.albedo.pixels) {
     brightest = std::max({brightest, c.x, c.y, c.z});
     if (brightest >= kDarkAlbedo) return;
   }

@@ -48,7 +48,7 @@ Plane<glm::vec3> in_input_space(Plane<glm::vec3> directions, const glm::mat3& no
 glm::vec3 light_of(const Results& r, std::size_t i) {
   glm::vec3 light = r.products.direct[i];
   if (!r.products.bounce.empty()) light += r.products.bounce[i];
-  return within_range(light * r.scene.senders.albedo[i]);
+  return within_range(r.scene.senders.albedo[i] * light);
 }
 
 /// What surfaces send of the light that was found, premultiplied.

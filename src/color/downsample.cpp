@@ -75,9 +75,9 @@ Plane<float> weights_by_coverage(const Results& r) {
 
 Plane<glm::vec3> weights_by_albedo(const Results& r) {
   Plane<glm::vec3> weights = as_colors(weights_by_coverage(r));
-  const Plane<glm::vec3>& albedo = r.scene.senders.albedo;
+  const Plane<HalfColor>& albedo = r.scene.senders.albedo;
   if (r.gbuffer.downsampling.is_identity() || albedo.empty()) return weights;
-  for (std::size_t i = 0; i < weights.size(); ++i) weights[i] *= albedo[i] + kBlack;
+  for (std::size_t i = 0; i < weights.size(); ++i) weights[i] *= glm::vec3(albedo[i]) + kBlack;
   return weights;
 }
 

@@ -30,11 +30,11 @@ constexpr double kLeastKept = 0.5, kLeastPixels = 16;
 // Motion against cameras: ignore camera motion below 0.1 px; flag a median ratio off by 30 %.
 constexpr double kLeastMove = 0.1, kMostDifference = 0.3;
 
-bool is_like(const glm::vec3& now, const Plane<glm::vec3>& before, const PixelsBefore& at) {
+bool is_like(const glm::vec3& now, const Plane<HalfColor>& before, const PixelsBefore& at) {
   glm::vec3 low(INFINITY), high(-INFINITY);
   for (int k = 0; k < at.count; ++k) {
-    low = glm::min(low, before[at.pixel[k]]);
-    high = glm::max(high, before[at.pixel[k]]);
+    const glm::vec3 beside = before[at.pixel[k]];
+    low = glm::min(low, beside), high = glm::max(high, beside);
   }
   for (int c = 0; c < 3; ++c) {
     const float margin = 0.05f + high[c] / 8;

@@ -4,6 +4,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "math/half_color.h"
 #include "math/plane.h"
 #include "scene/geometry.h"
 
@@ -12,7 +13,7 @@ namespace ssdo {
 /// A frame of a sequence as the next one remembers it.
 struct FrameSurfaces {
   const Geometry& geometry;        ///< must know the world
-  const Plane<glm::vec3>& albedo;  ///< empty where there is none
+  const Plane<HalfColor>& albedo;  ///< empty where there is none
 };
 
 /// How much of what one frame shows is there in the other.

@@ -4,6 +4,7 @@
 #include <glm/vec2.hpp>
 
 #include "estimators/estimator.h"
+#include "math/half_color.h"
 #include "scene/geometry.h"
 
 namespace ssdo {
@@ -13,7 +14,7 @@ struct History {
   Geometry geometry;    ///< of the latest frame; it must know the world
   Products mean;        ///< over frames; bent in the latest camera's space, not made unit
   Plane<float> frames;  ///< how many frames each pixel's mean counts; 0 where there is no surface
-  Plane<glm::vec3> albedo;  ///< of the latest frame, to recognise a cut by; may be empty
+  Plane<HalfColor> albedo;  ///< of the latest frame, to recognise a cut by; may be empty
 };
 
 /// The means after the frame that `geometry` and `now` show, for the frame after it; the caller

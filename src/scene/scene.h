@@ -4,6 +4,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "math/half_color.h"
 #include "math/plane.h"
 #include "scene/further/further_surfaces.h"
 #include "scene/further/further_view.h"
@@ -15,7 +16,7 @@ namespace ssdo {
 
 /// What the visible surfaces do with light, by pixel: what the sender of a solid indexes.
 struct Senders {
-  Plane<glm::vec3> albedo;    ///< needed for a bounce; else may be empty
+  Plane<HalfColor> albedo;    ///< needed for a bounce; else may be empty
   Plane<glm::vec3> radiance;  ///< what they send, where a layer says so; else empty
 };
 

@@ -269,6 +269,19 @@ void check_layers(const Solids& solids) {
     throw std::logic_error("more layers of solids than kMostLayers of scene/solids.h");
 }
 
+void Solids::separate_thicknesses() {
+  for (std::size_t k = 0; k < behind.size(); ++k) {
+    SolidLayer& layer = behind[k];
+    if (!layer.thickness.empty()) continue;
+    auto own = Plane<float>::like(layer.sender);
+    for_each_row(own.height, [&](int y) {
+      for (std::size_t i = own.index(0, y); i < own.index(0, y + 1); ++i)
+        own[i] = thickness_seen(layer.sender[i]);
+    });
+    layer.thickness = std::move(own);
+  }
+}
+
 glm::vec3 point_behind(const Geometry& geometry, std::size_t pixel, float distance) {
   const glm::vec3 p(geometry.surfel[pixel].position);
   return p - distance * direction_to_viewer(p, geometry.camera.orthographic);
@@ -292,16 +305,10 @@ Solids guess_solids(const Geometry& geometry, const std::optional<SolidsOfOvervi
   const int w = geometry.surfel.width, h = geometry.surfel.height;
   Plane<float> thickness(w, h, kInfinity), distance_px(w, h, kInfinity);
   SolidLayer second(w, h, Origin::guessed);
+  second.thickness = {};  // a surface is as thick behind something as where it is seen
   const Plane<unsigned char> connections = find_connections(geometry);
   for (std::size_t k = 0; k < kDirections.size(); ++k)
     Walk(geometry, connections, k, overview, thickness, distance_px, second).run();
-  // A surface is as thick behind something as at the pixel that shows it.
-  for_each_row(h, [&](int y) {
-    for (int x = 0; x < w; ++x) {
-      const int sender = second.sender(x, y);
-      if (sender >= 0) second.thickness(x, y) = thickness[std::size_t(sender)];
-    }
-  });
   Solids solids{std::move(thickness), {}, {}, {}};
   solids.behind.push_back(std::move(second));
   return solids;

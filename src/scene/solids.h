@@ -41,7 +41,8 @@ struct SolidLayer {
   SolidLayer(int width, int height, Origin of_all);
 
   Plane<Origin> origin;
-  Plane<float> distance, thickness;
+  Plane<float> distance;
+  Plane<float> thickness;  ///< empty: that of each sender where it is seen
   Plane<int> sender;
   Plane<glm::vec3> normal;  ///< unit, camera space, of solids without a sender, on the viewer's
                             ///< side; empty: they face the viewer
@@ -93,11 +94,21 @@ struct Solids {
   Solid at(int layer, std::size_t pixel) const {
     if (layer > 0) {
       const SolidLayer& of = behind[std::size_t(layer - 1)];
-      return {of.distance[pixel], of.thickness[pixel], of.sender[pixel]};
+      const int sender = of.sender[pixel];
+      return {of.distance[pixel],
+              of.thickness.empty() ? thickness_seen(sender) : of.thickness[pixel], sender};
     }
-    constexpr float kEndless = std::numeric_limits<float>::infinity();
-    return {0, thickness.empty() ? kEndless : thickness[pixel], int(pixel)};
+    return {0, thickness_seen(int(pixel)), int(pixel)};
   }
+
+  /// Of layer 0 at a pixel; infinite where there is none, or `pixel` is -1.
+  float thickness_seen(int pixel) const {
+    return thickness.empty() || pixel < 0 ? std::numeric_limits<float>::infinity()
+                                          : thickness[std::size_t(pixel)];
+  }
+
+  /// Gives every layer thicknesses of its own, which do not change with those of its senders.
+  void separate_thicknesses();
 };
 
 /// Throws std::logic_error where there are more than kMostLayers: whoever reads solids has room for

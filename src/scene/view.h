@@ -44,7 +44,7 @@ struct View {
   std::deque<ExrReader> files;  ///< the frame, then the files that --aov names
   LayerTable layers;
   std::optional<DeepImage> deep;  ///< what the depth was taken from, where there is no other
-  GBuffer gbuffer;                ///< without position, normal and depth: the geometry has them
+  GBuffer gbuffer;  ///< without position, normal, depth and valid: the geometry has them
   Geometry geometry;
   GeometryReport report;
   double read_ms = 0;  ///< wall time of what was read, without the geometry

@@ -84,7 +84,7 @@ class Downsample : public testing::TestWithParam<int> {
   Plane<glm::vec3> rendered(const std::function<glm::vec3(std::size_t)>& light) const {
     Plane<glm::vec3> colors(large_.width, large_.height);
     for (std::size_t i = 0; i < colors.size(); ++i) {
-      if (is_surface(i)) colors[i] = gbuffer_.alpha[i] * scene_.senders.albedo[i] * light(i);
+      if (is_surface(i)) colors[i] = gbuffer_.alpha[i] * (scene_.senders.albedo[i] * light(i));
     }
     return filter_pixels(colors, gbuffer_.window, gbuffer_.downsampling);
   }
@@ -174,7 +174,7 @@ TEST_P(Downsample, LightTimesFilteredAlbedoIsWhatSurfacesSend) {
 }
 
 TEST_P(Downsample, BlackSurfacesHaveLight) {
-  scene_.senders.albedo = Plane<glm::vec3>(large_.width, large_.height, glm::vec3(0));
+  scene_.senders.albedo = Plane<HalfColor>(large_.width, large_.height, glm::vec3(0));
   for (glm::vec3& light : products_.direct.pixels) light = glm::vec3(0.75f);
   const Plane<glm::vec3> found =
       product_at_output_size(find_product("direct"), products_.direct, results());

@@ -47,7 +47,7 @@ Geometry averaged_still_life(Plane<unsigned char>& averaged) {
 }
 
 Plane<float> ao_of(const Method& method, const Geometry& g) {
-  const HardFrame frame{g, Plane<glm::vec3>(g.surfel.width, g.surfel.height, glm::vec3(0.5f)),
+  const HardFrame frame{g, Plane<HalfColor>(g.surfel.width, g.surfel.height, glm::vec3(0.5f)),
                         Environment::constant(glm::vec3(1)), kRadius, 0};
   return apply_filter(find_filter("geometry"), run_method(method, frame), g, method.pattern_size)
       .ao;

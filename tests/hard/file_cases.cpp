@@ -123,7 +123,7 @@ Writing rough(Imf::PixelType type, const glm::dvec3& moved, float position_error
 
 }  // namespace
 
-Geometry read_through_file(const FramePart& part, double fov, Plane<glm::vec3>* albedo) {
+Geometry read_through_file(const FramePart& part, double fov, Plane<HalfColor>* albedo) {
   const TempDir dir;
   write_frame(dir / "frame.exr", part);
   FrameOptions options;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "math/half_color.h"
 #include "scene/light/environment.h"
 #include "support/analytic_scene.h"
 #include "support/frame_file.h"
@@ -17,7 +18,7 @@ namespace ssdo::test {
 /// What a method is given, and what is asked of the default one.
 struct HardFrame {
   Geometry geometry;
-  Plane<glm::vec3> albedo;
+  Plane<HalfColor> albedo;
   Environment environment;
   float radius = 0.5f;
   int bounces = 1;
@@ -61,7 +62,7 @@ Camera usual_camera(const Window& display);
 HardFrame hard_frame(const Surface& scene, const Camera& camera, const Window& window);
 
 /// What reading `part` from a file gives. `fov` stands for --fov, 0: the camera is fitted.
-Geometry read_through_file(const FramePart& part, double fov = 0, Plane<glm::vec3>* albedo = {});
+Geometry read_through_file(const FramePart& part, double fov = 0, Plane<HalfColor>* albedo = {});
 
 /// P and N as renderers that average them make a picture: the mean over n x n samples of a pixel,
 /// background among them as 0. Pixels whose samples differ in surface are marked in `averaged`.

@@ -132,7 +132,7 @@ HardFrame lit_by(const std::function<void(Plane<glm::vec3>&)>& change) {
 
 HardFrame with_albedo(float albedo, int bounces) {
   HardFrame frame = still_life(camera_from_fov(30, kWindow, 1));
-  frame.albedo = Plane<glm::vec3>(kWindow.width(), kWindow.height(), glm::vec3(albedo));
+  frame.albedo = Plane<HalfColor>(kWindow.width(), kWindow.height(), glm::vec3(albedo));
   frame.bounces = bounces;
   return frame;
 }
@@ -203,7 +203,7 @@ Camera usual_camera(const Window& display) { return leaning(camera_from_fov(30, 
 
 HardFrame hard_frame(const Surface& scene, const Camera& camera, const Window& window) {
   HardFrame frame{geometry_of(scene, camera, window),
-                  Plane<glm::vec3>(window.width(), window.height(), glm::vec3(0.6f, 0.5f, 0.4f)),
+                  Plane<HalfColor>(window.width(), window.height(), glm::vec3(0.6f, 0.5f, 0.4f)),
                   plain_sky()};
   return frame;
 }

@@ -225,6 +225,20 @@ TEST(Solids, OfSomeRowsOfAFrameAreThoseOfTheFrame) {
   EXPECT_EQ(of_band.thickness[on_other], of_whole.thickness[on_other]);
 }
 
+TEST(Solids, BehindThingsAreAsThickAsWhereTheyAreSeen) {
+  const Geometry g =
+      geometry_of(all_of({leaning_wall(), card(0.3, 0.4, 0.9)}), view(false), kWindow);
+  Solids solids = guess_solids(g);
+  std::size_t hidden = 0;
+  while (!solids.at(1, hidden).exists()) ++hidden;
+  float& seen = solids.thickness[std::size_t(solids.at(1, hidden).sender)];
+  seen = 0.5f;
+  EXPECT_EQ(solids.at(1, hidden).thickness, 0.5f);
+  solids.separate_thicknesses();
+  seen = 0.25f;
+  EXPECT_EQ(solids.at(1, hidden).thickness, 0.5f) << "one of its own";
+}
+
 TEST(Solids, AreOfOneLayerBeforeTheBackground) {
   // Nothing is farther than the card: where it ends is background.
   const Geometry g = geometry_of(card(0, 0.4, 0.9), view(false), kWindow);

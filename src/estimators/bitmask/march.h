@@ -12,6 +12,7 @@
 #include "estimators/bitmask/slice_pattern.h"
 #include "estimators/further/further_light.h"
 #include "estimators/further/further_rays.h"
+#include "math/half_color.h"
 #include "math/octahedral_map.h"
 #include "scene/light/light.h"
 #include "simd/interleaved.h"
@@ -91,7 +92,7 @@ struct FoundShares {
 struct SenderJob {
   const MarchScene& scene;
   FoundShares found;
-  const Plane<glm::vec3>& albedo;
+  const Plane<HalfColor>& albedo;
   const InterleavedVectors* bounce;  ///< that has arrived so far; null: none
   InterleavedVectors* sent;
   bool two_sided;  ///< `sent` holds front and back, as two_in_one(); else they send the same

@@ -83,9 +83,21 @@ HWY_INLINE V3 both_sides(const V3& front, const V3& back) {
 }
 
 HWY_INLINE V3 albedo_at(const SenderJob& job, const Place& place) {
-  const float* from = &job.albedo(0, place.y).x;
-  const VI at = columns_of(job.scene, place) * set_int(3);
-  return within_range(V3{gather(from, at), gather(from + 1, at), gather(from + 2, at)});
+  const HalfColor* row = &job.albedo(0, place.y);
+#if HWY_TARGET == HWY_SCALAR
+  return set(glm::vec3(row[columns_of(job.scene, place).raw]));
+#else
+  const VI bytes = columns_of(job.scene, place) * set_int(sizeof(HalfColor));
+  const auto pair = [&](const std::uint16_t& first) HWY_ATTR {
+    return hn::BitCast(DU(), hn::GatherOffset(DI(), reinterpret_cast<const int*>(&first), bytes));
+  };
+  const auto value = [](VU half) HWY_ATTR {
+    return hn::BitCast(D(), hn::ShiftLeft<HalfColor::kShift>(half)) * set(HalfColor::kScale);
+  };
+  const VU red_green = pair(row->r), green_blue = pair(row->g), low = set_bits(0xffff);
+  return {value(hn::And(red_green, low)), value(hn::And(green_blue, low)),
+          value(hn::ShiftRight<16>(green_blue))};
+#endif
 }
 
 /// The normals by which light is weighed.

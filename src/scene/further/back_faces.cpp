@@ -149,6 +149,7 @@ void end_at_back_faces(Solids& solids, const std::vector<Plane<float>>& distance
   });
   // Where a surface is guessed to go on behind something it is as thick as where it is seen.
   for (SolidLayer& layer : solids.behind) {
+    if (layer.thickness.empty()) continue;
     for_each_row(h, [&](int y) {
       for (std::size_t i = layer.origin.index(0, y), end = i + std::size_t(w); i < end; ++i) {
         const int sender = layer.sender[i];

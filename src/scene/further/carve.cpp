@@ -90,6 +90,7 @@ class Carver {
   }
 
   void carve() {
+    solids_.separate_thicknesses();
     if (solids_.end.empty())
       solids_.end = Plane<Origin>(frame_.surfel.width, frame_.surfel.height, Origin::guessed);
     const int w = frame_.surfel.width, h = frame_.surfel.height;

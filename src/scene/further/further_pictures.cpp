@@ -62,7 +62,7 @@ FurtherPictures::Picture picture_of(View view, const std::string& file) {
       if (s.is_surface()) out.depth(x, y) = float(out.camera.depth_of(glm::dvec3(s.position)));
     }
   });
-  out.albedo = std::move(view.gbuffer.albedo);
+  out.albedo = in_half(view.gbuffer.albedo);
   for (const std::string& warning : view.gbuffer.warnings)
     out.warnings.push_back(file + ": " + warning);
   for (const std::string& warning : view.report.warnings)

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "math/half_color.h"
 #include "math/plane.h"
 #include "scene/camera/camera.h"
 #include "scene/geometry.h"
@@ -23,7 +24,7 @@ struct FurtherPicture {
   bool closed = false;      ///< a panorama whose last column lies beside its first
   Plane<Surfel> surfel;     ///< normals are on the side of its own camera
   Plane<float> depth;       ///< Camera::depth_of; infinite where there is no surface
-  Plane<glm::vec3> albedo;  ///< empty where the file has none
+  Plane<HalfColor> albedo;  ///< empty where the file has none
   std::vector<std::string> warnings;
 };
 

@@ -152,7 +152,7 @@ void leave_out_repeated(const std::vector<Rival>& rivals, std::size_t k,
 /// The pixels of a view, or every so many of them.
 struct Grid {
   const Plane<Surfel>& surfel;
-  const Plane<glm::vec3>& albedo;
+  const Plane<HalfColor>& albedo;
   Camera camera;  ///< from the frame's camera space
   Window window;
   bool closed;  ///< the last column lies beside the first
@@ -193,8 +193,8 @@ class Mesher {
     const auto own = std::uint32_t(out_.vertices.size());
     index_(x, y) = own;
     out_.vertices.push_back({s.position, s.normal,
-                             grid_.albedo.empty() ? glm::vec3(0) : grid_.albedo[from], float(width),
-                             own});
+                             grid_.albedo.empty() ? glm::vec3(0) : glm::vec3(grid_.albedo[from]),
+                             float(width), own});
     // One pixel of 2 x 2 is lit for all that are on its surface: a bounce averages over many.
     const int lit_x = x & ~1, lit_y = y & ~1;
     const std::uint32_t lit = index_(lit_x, lit_y);
@@ -309,7 +309,7 @@ bool MergeCounts::is_of_another_scene() const {
 }
 
 FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometry& frame,
-                            const Plane<glm::vec3>& albedo, std::vector<MergeCounts>& counts) {
+                            const Plane<HalfColor>& albedo, std::vector<MergeCounts>& counts) {
   FurtherSurfaces out;
   const Merger merger(frame);
   counts.assign(views.size(), {});

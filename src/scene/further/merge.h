@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "math/half_color.h"
 #include "scene/further/further_surfaces.h"
 #include "scene/further/further_view.h"
 #include "scene/geometry.h"
@@ -33,6 +34,6 @@ struct MergeCounts {
 /// `counts` has a row for each view, in their order. Neighbours of another scene, as they are
 /// before and after a cut, are left out. Errors: ExitCode::layer for another view of such a scene.
 FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometry& frame,
-                            const Plane<glm::vec3>& albedo, std::vector<MergeCounts>& counts);
+                            const Plane<HalfColor>& albedo, std::vector<MergeCounts>& counts);
 
 }  // namespace ssdo

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+#include "math/plane.h"
+
+namespace ssdo {
+
+/// A colour in EXR's half numbers: 11 bits of each channel. None is below 0 or above 65504.
+struct HalfColor {
+  static constexpr float kMost = 65504;
+  /// What the bits of a half, as those of a float, are short of in value.
+  static constexpr float kScale = 0x1p112f;
+  static constexpr int kShift = 13;  ///< from the bits of a half to those of a float
+
+  std::uint16_t r = 0, g = 0, b = 0;
+
+  HalfColor() = default;
+  /// The nearest; not-a-number is 0.
+  HalfColor(const glm::vec3& color) : r(bits(color.x)), g(bits(color.y)), b(bits(color.z)) {}
+
+  operator glm::vec3() const { return {value(r), value(g), value(b)}; }
+
+ private:
+  static std::uint16_t bits(float channel) {
+    const float held = channel > 0 ? std::min(channel, kMost) : 0;
+    const auto whole = std::bit_cast<std::uint32_t>(held * (1 / kScale));
+    const std::uint32_t below_half = (1u << (kShift - 1)) - 1, odd = whole >> kShift & 1;
+    return std::uint16_t((whole + below_half + odd) >> kShift);
+  }
+  static float value(std::uint16_t bits) {
+    return std::bit_cast<float>(std::uint32_t(bits) << kShift) * kScale;
+  }
+};
+
+inline glm::vec3 operator*(const HalfColor& a, const glm::vec3& b) { return glm::vec3(a) * b; }
+
+inline Plane<HalfColor> in_half(const Plane<glm::vec3>& colors) {
+  auto out = Plane<HalfColor>::like(colors);
+  std::copy(colors.pixels.begin(), colors.pixels.end(), out.pixels.begin());
+  return out;
+}
+
+}  // namespace ssdo
