@@ -14,12 +14,16 @@ namespace ssdo {
 namespace {
 
 /// Bytes of a process without a frame, of each pixel at the peak of ao, direct, bounce and
-/// composite under a sun, and what bent and reflection add, each. Measured, with a margin. An
+/// composite, and what a sun adds, and bent and reflection, each. Measured, with a margin. An
 /// overview keeps as much for each pixel of its own.
-constexpr double kBytes = 60e6, kBytesPerPixel = 160, kBytesOfMore = 18;
+constexpr double kBytes = 60e6, kBytesPerPixel = 120, kBytesOfSun = 11, kBytesOfMore = 18;
 
-double bytes_per_pixel(const ProductSet& products) {
-  return kBytesPerPixel + kBytesOfMore * (int(products.bent) + int(products.reflection));
+/// Suns of a map that are allowed for before it is known.
+constexpr int kUsualSuns = 3;
+
+double bytes_per_pixel(const ProductSet& products, std::size_t suns) {
+  return kBytesPerPixel + kBytesOfSun * double(suns) +
+         kBytesOfMore * (int(products.bent) + int(products.reflection));
 }
 
 /// Bands end where chunks of every compression do.
@@ -38,7 +42,7 @@ class Planner {
   Planner(const Window& frame, const Window& display, const Scene& overview, const Plan& plan,
           std::size_t memory)
       : frame_(frame), plan_(plan) {
-    const double of_pixel = bytes_per_pixel(plan.request.products);
+    const double of_pixel = bytes_per_pixel(plan.request.products, overview.light.suns.size());
     bytes_of_row_ = of_pixel * frame.width();
     bytes_ = kBytes + of_pixel * double(overview.geometry.surfel.size());
     rows_ = int(std::clamp((double(memory) - bytes_) / bytes_of_row_, 0.0, 1e9));
@@ -48,6 +52,8 @@ class Planner {
 
   /// Without rows where memory is too little.
   BandPlan choose() const {
+    const int height = frame_.height();
+    if (rows_ >= height) return {height, height, height, 0, false};
     BandPlan bands = with_reach(exact_, false);
     for (const int reach : kMarches) {
       if (bands.rows > 0 && (!bands.marches_on || bands.rows >= bands.halo_rows)) break;
@@ -98,7 +104,7 @@ std::string needs_whole_frame(const Scene& overview, const Plan& plan,
 }  // namespace
 
 std::size_t most_pixels_in(std::size_t memory) {
-  const double most = kBytesPerPixel + 2 * kBytesOfMore;
+  const double most = kBytesPerPixel + kUsualSuns * kBytesOfSun + 2 * kBytesOfMore;
   return std::size_t(std::max(0.0, double(memory) - kBytes) / most);
 }
 
@@ -111,7 +117,8 @@ BandPlan plan_bands(const std::string& file, const Window& frame, const Window& 
                 fmt::format("{} take {} of memory, and may take {}; {} needs all of the frame at "
                             "once: leave that out, or raise --mem-limit",
                             size,
-                            in_gigabytes(kBytes + bytes_per_pixel(plan.request.products) *
+                            in_gigabytes(kBytes + bytes_per_pixel(plan.request.products,
+                                                                  overview.light.suns.size()) *
                                                       double(frame.area())),
                             in_gigabytes(double(memory)), what));
   }
@@ -130,6 +137,7 @@ int halo_rows(const Plan& plan, int reach_rows) {
 
 std::string describe(const BandPlan& bands, const Window& frame) {
   const int count = (frame.height() + bands.rows - 1) / bands.rows;
+  if (count == 1) return "1 band of all rows";
   std::string text =
       fmt::format("{} bands of {} rows, with {} above and below that their light comes from", count,
                   bands.rows, bands.halo_rows);

@@ -84,16 +84,8 @@ class Bitmask {
         further_(scene.further.empty()
                      ? nullptr
                      : std::make_unique<FurtherRays>(scene.further.vertices, scene.further.added)),
-        march_{march_scene_,   pattern_, request.radius, request.extend_offscreen, may_be_thin(),
-               further_.get(), far_},
-        bounce_march_{march_scene_,
-                      bounce_pattern_,
-                      request.radius,
-                      request.extend_offscreen,
-                      may_be_thin(),
-                      further_.get(),
-                      far_},
-        ao_(layout_) {}
+        march_(march_with(pattern_)),
+        bounce_march_(march_with(bounce_pattern_)) {}
 
   Products run() {
     // Suns first: what bounds their rays needs more memory than any other light.
@@ -130,6 +122,11 @@ class Bitmask {
  private:
   const FarRaster* far_raster() const { return far_ ? &far_->raster : nullptr; }
 
+  March march_with(const SlicePattern& pattern) const {
+    return {march_scene_,   pattern, request_.radius, request_.extend_offscreen, may_be_thin(),
+            further_.get(), far_};
+  }
+
   /// A part of the raster with what may send light to it in so many bounces.
   Window with_senders(const Window& part, int bounces) const {
     const Window raster = march_scene_.raster();
@@ -157,6 +154,7 @@ class Bitmask {
   }
 
   void gather_visibility() {
+    ao_ = InterleavedPlane(layout_);
     const Light& light = scene_.light;
     VisibilityJob job{.march = march_, .irradiance = &light.irradiance, .ao = &ao_};
     InterleavedVectors bent;
@@ -223,8 +221,8 @@ class Bitmask {
 
   /// Frees what only marches read: products need no more than which pixels show a surface.
   void end_marches() {
-    march_scene_.normal = {};
     march_scene_.tilt = {};
+    march_scene_.tilt_rest = {};
     march_scene_.layers.resize(1);
     march_scene_.layers.front().thickness = {};
   }
@@ -233,7 +231,8 @@ class Bitmask {
     return {scene_.light, &ao_, out_.shares.are_ao ? nullptr : &sky_share_, suns_};
   }
 
-  /// Turns what was found into products: large ones first, and each in the room of others.
+  /// Turns what was found into products, each in room that others have left. Suns go before the
+  /// sky, whose planes are the largest: theirs lay between those of the bounce.
   void hand_out(InterleavedVectors bounce) {
     if (request_.products.bounce) out_.bounce = raster_.picture(std::move(bounce));
     if (wants_light() && !request_.shares_suffice) out_.direct = raster_.picture(direct_light());
@@ -243,11 +242,11 @@ class Bitmask {
         return bounces ? error_[i] + bounce_error_[i] : error_[i];
       });
     }
+    hand_out_suns(suns_, raster_, out_.shares.suns, out_.shares.draws);
+    hand_out_suns(suns_again_, raster_, out_.shares.suns_again, out_.shares.draws_again);
     if (wants_light() && !out_.shares.are_ao)
       out_.shares.sky = raster_.picture(std::move(sky_share_), ao_);
     out_.ao = raster_.picture(std::move(ao_), 1.0f);
-    hand_out_suns(suns_, raster_, out_.shares.suns, out_.shares.draws);
-    hand_out_suns(suns_again_, raster_, out_.shares.suns_again, out_.shares.draws_again);
   }
 
   InterleavedVectors direct_light() const {

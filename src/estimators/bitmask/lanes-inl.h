@@ -19,6 +19,7 @@
 #include "scene/same_surface-inl.h"
 #include "simd/lanes-inl.h"
 #include "simd/share16-inl.h"
+#include "simd/two_in_one-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -55,19 +56,6 @@ HWY_INLINE V lane_columns(const Interleaving& layout, int column_phase, int colu
   constexpr int kPeriod = Interleaving::kPeriod;
   return hn::ConvertTo(D(), hn::Iota(DI(), 0) * set_int(kPeriod) +
                                 set_int(column * kPeriod + column_phase - layout.phase()));
-}
-
-/// As the functions of the same names in march_scene.h.
-HWY_INLINE V two_in_one(V first, V second) {
-  const auto rounded = [](V v) HWY_ATTR { return hn::BitCast(DU(), v) + set_bits(kHalfOfCut); };
-  return hn::BitCast(D(), hn::Or(hn::And(rounded(first), set_bits(kFirstOfTwo)),
-                                 hn::ShiftRight<16>(rounded(second))));
-}
-HWY_INLINE V first_of_two(V both) {
-  return hn::BitCast(D(), hn::And(hn::BitCast(DU(), both), set_bits(kFirstOfTwo)));
-}
-HWY_INLINE V second_of_two(V both) {
-  return hn::BitCast(D(), hn::ShiftLeft<16>(hn::BitCast(DU(), both)));
 }
 
 /// Consecutive values in the order of the march, from index `i` on.
@@ -145,6 +133,22 @@ struct MarchReceiver : Receiver {
   V rise, rise_x, rise_y, plane;
 };
 
+/// The normals, of some length, of tangent planes with a `tilt` as MarchPlanes has it, in pixels
+/// whose rays have this slope.
+HWY_INLINE V3 normal_of_tilt(const MarchScene& scene, const V2& tilt, const V2& slope) {
+  const V2 aside{tilt.x * set(-scene.fx), tilt.y * set(scene.fy)};
+  const V one = set(1);
+  return {aside.x, aside.y, scene.orthographic ? one : one + dot(aside, slope)};
+}
+
+/// The unit normals of the tangent planes at index `q`.
+HWY_INLINE V3 load_normal(const MarchScene& scene, const MarchPlanes& planes, std::ptrdiff_t q,
+                          const V2& slope) {
+  const V2 tilt = whole_of_two(load(planes.tilt, q), load(planes.tilt_rest, q));
+  const V3 normal = normal_of_tilt(scene, tilt, slope);
+  return normal * (set(1) / hn::Sqrt(dot(normal, normal)));
+}
+
 /// Bends unit normals to face the viewer, and returns their cosines to V.
 HWY_INLINE V bend_to_viewer(V3& normal, const V3& to_viewer) {
   const V least = set(kLeastFacing), facing = dot(normal, to_viewer);
@@ -160,11 +164,11 @@ HWY_INLINE MarchReceiver load_receiver(const MarchScene& scene, const Place& pla
   p.place = place;
   const V depth = load(scene.depth(), i);
   p.x = lane_columns(scene.layout, column_phase, column), p.y = set(float(y));
-  p.normal = load(scene.normal, i);
   p.valid = holds_solid(depth);
   const V one = set(1), zero = set(0);
   p.slope_x = (p.x + set(float(scene.first_x)) - set(scene.axis_x)) * set(1 / scene.fx);
   p.slope_y = (set(scene.axis_y) - set(float(y + scene.first_y))) * set(1 / scene.fy);
+  p.normal = load_normal(scene, scene, i, {p.slope_x, p.slope_y});
   if (scene.orthographic) {
     p.position = {p.slope_x, p.slope_y, zero - depth};
     p.to_viewer = {zero, zero, one};
@@ -217,11 +221,14 @@ HWY_INLINE V likeness(const MarchScene& scene, const MarchReceiver& p, std::ptrd
                       int dy) {
   const V depth = load(scene.depth(), q);
   const M valid = hn::And(p.valid, holds_solid(depth));
-  V x = p.slope_x + set(float(dx) / scene.fx), y = p.slope_y - set(float(dy) / scene.fy);
+  const V2 slope{p.slope_x + set(float(dx) / scene.fx), p.slope_y - set(float(dy) / scene.fy)};
+  V x = slope.x, y = slope.y;
   if constexpr (!kOrthographic) x = x * depth, y = y * depth;
   const V3 to_q = V3{x, y, set(0) - depth} - p.position;
   const M near = within_sine(dot(to_q, p.normal), dot(to_q, to_q), kPlaneSine);
-  const V cosine = dot(p.normal, load(scene.normal, q));
+  const V both = load(scene.tilt, q);
+  const V3 normal = normal_of_tilt(scene, {first_of_two(both), second_of_two(both)}, slope);
+  const V cosine = dot(p.normal, normal) * reciprocal_sqrt(dot(normal, normal));
   return hn::IfThenElseZero(hn::And(valid, near), normal_weight(cosine));
 }
 

@@ -32,6 +32,21 @@ struct Span {
   float depth = kNothing, thickness = kNothing;
 };
 
+/// Of the ray through a pixel, or its place where the camera is orthographic.
+glm::vec2 slope_of(const MarchScene& scene, int x, int y) {
+  return {(float(x + scene.first_x) - scene.axis_x) / scene.fx,
+          (scene.axis_y - float(y + scene.first_y)) / scene.fy};
+}
+
+/// Of the tangent plane of layer 0.
+glm::vec3 normal_of(const MarchScene& scene, int x, int y) {
+  const std::ptrdiff_t i = scene.layout.index(x, y);
+  const glm::vec2 tilt = whole_of_two(scene.tilt[i], scene.tilt_rest[i]),
+                  aside = tilt * glm::vec2(-scene.fx, scene.fy),
+                  slope = scene.orthographic ? glm::vec2(0) : slope_of(scene, x, y);
+  return glm::normalize(glm::vec3(aside, 1 + glm::dot(aside, slope)));
+}
+
 /// The cells of a raster.
 class Cells {
  public:
@@ -46,22 +61,20 @@ class Cells {
     Cell cell;
     const Surfel& s = g_.surfel(x, y);
     if (!s.is_usable()) return cell;
-    const glm::vec2 slope((float(x + scene_.first_x) - scene_.axis_x) / scene_.fx,
-                          (scene_.axis_y - float(y + scene_.first_y)) / scene_.fy);
-    cell.slope = slope;
+    const glm::vec2 slope = cell.slope = slope_of(scene_, x, y);
     if (!scene_.orthographic) cell.ray_length = std::sqrt(1 + glm::dot(slope, slope));
     cell.normal = normal;
     cell.depth = depth_on_ray(s, cell.normal, slope, cell.ray_length);
     return cell;
   }
 
-  /// As MarchScene has it.
-  float tilt(const Cell& cell) const {
-    if (!cell.is_surface()) return kNothing;
+  /// As MarchPlanes has it.
+  glm::vec2 tilt(const Cell& cell) const {
+    if (!cell.is_surface()) return glm::vec2(kNothing);
     const glm::vec3 ray(scene_.orthographic ? glm::vec2(0) : cell.slope, -1.0f);
     // A surface that turns away from the viewer is a line in its pixel.
     const float per_ray = 1 / std::min(glm::dot(cell.normal, ray), -1e-9f);
-    return two_in_one(cell.normal.x * per_ray * per_px_.x, cell.normal.y * per_ray * per_px_.y);
+    return per_ray * glm::vec2(cell.normal) * per_px_;
   }
 
   Span span(const Cell& cell, const Solid& solid) const {
@@ -128,7 +141,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
   std::vector<MarchLayer> layers;
   for (int k = 0; k < solids.layers(); ++k) layers.push_back({plane(), plane()});
   const Window frame = g.part_of.value_or(g.window);
-  MarchScene scene{{std::move(layers), {plane(), plane(), plane()}, plane()},
+  MarchScene scene{{std::move(layers), plane(), plane()},
                    layout,
                    {receivers.x0 - g.window.x0, receivers.y0 - g.window.y0,
                     receivers.x1 - g.window.x0, receivers.y1 - g.window.y0},
@@ -165,8 +178,9 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
         const int x = column * kPeriod + column_phase - layout.phase();
         const Cell cell = x >= 0 && x < g.surfel.width ? cells_of_row[std::size_t(x)] : Cell();
         const std::ptrdiff_t i = row + column;
-        for (std::size_t c = 0; c < 3; ++c) scene.normal[c][i] = cell.normal[int(c)];
-        scene.tilt[i] = cells.tilt(cell);
+        const glm::vec2 tilt = cells.tilt(cell);
+        scene.tilt[i] = two_in_one(tilt.x, tilt.y),
+        scene.tilt_rest[i] = rest_of_two(tilt.x, tilt.y);
         for (int k = 0; k < solids.layers(); ++k) {
           const Span span =
               cell.is_surface() ? cells.span(cell, solids.at(k, g.surfel.index(x, y))) : Span();
@@ -179,8 +193,8 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
   scene.border_depth =
       scene.border.gather([&](int x, int y) { return scene.depth()[layout.index(x, y)]; });
   for (int c = 0; c < 3; ++c) {
-    scene.border_normal[c] = scene.border.gather(
-        [&](int x, int y) { return scene.normal[std::size_t(c)][layout.index(x, y)]; });
+    scene.border_normal[c] =
+        scene.border.gather([&](int x, int y) { return normal_of(scene, x, y)[c]; });
   }
   scene.border_thickness = scene.border.gather([&](int x, int y) {
     return std::min(solids.at(0, g.surfel.index(x, y)).thickness, kEndlessLength);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <vector>
 
+#include "math/two_in_one.h"
 #include "scene/geometry.h"
 #include "scene/solids.h"
 #include "scene/surfel.h"
@@ -56,24 +55,6 @@ class BorderLayout {
 
 using BorderValues = std::vector<float>;
 
-/// Two numbers may stand in the room of one float: the upper 16 bits of each. They are rounded, so
-/// that means are right, and off by 0.2 % at most.
-inline constexpr std::uint32_t kFirstOfTwo = 0xffff0000u;
-
-/// What is added to the bits of a float before the lower ones are cut off.
-inline constexpr std::uint32_t kHalfOfCut = 0x8000u;
-
-inline float two_in_one(float first, float second) {
-  const auto rounded = [](float x) { return std::bit_cast<std::uint32_t>(x) + kHalfOfCut; };
-  return std::bit_cast<float>((rounded(first) & kFirstOfTwo) | rounded(second) >> 16);
-}
-inline float first_of_two(float both) {
-  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(both) & kFirstOfTwo);
-}
-inline float second_of_two(float both) {
-  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(both) << 16);
-}
-
 /// Whether a depth of MarchLayer is that of a solid. Where there is none, it is not-a-number: no
 /// comparison with that holds, so that a march passes by without a mask.
 inline bool holds_solid(float depth) { return !std::isnan(depth); }
@@ -85,15 +66,15 @@ struct MarchLayer {
   InterleavedPlane thickness;  ///< from the front to the back
 };
 
-/// What a march meets, pixel by pixel. Normals belong to layer 0; the fronts of the layers behind
-/// it face the viewer. Planes are not-a-number where there is nothing.
+/// What a march meets, pixel by pixel. Tangent planes belong to layer 0; the fronts of the layers
+/// behind it face the viewer. Planes are not-a-number where there is nothing.
 struct MarchPlanes {
   std::vector<MarchLayer> layers;  ///< near to far; layer 0 is what pixels show
-  InterleavedVectors normal;       ///< unit, of layer 0, camera space: that of the surface
-  /// The tangent plane of layer 0 as a march reads it: how much nearer it comes from a pixel to the
-  /// next, to the right and to the bottom, as two_in_one(). Nearness is 1 / depth here, in units of
-  /// that of the pixel, or -depth where the camera is orthographic: it changes linearly.
-  InterleavedPlane tilt;
+  /// The tangent plane of layer 0: how much nearer it comes from a pixel to the next, to the right
+  /// and to the bottom. Nearness is 1 / depth here, in units of that of the pixel, or -depth where
+  /// the camera is orthographic: it changes linearly. Marches read two_in_one(); with rest_of_two()
+  /// beside it the normal is known to the bit or two.
+  InterleavedPlane tilt, tilt_rest;
 
   const InterleavedPlane& depth() const { return layers.front().depth; }  ///< of what pixels show
 };

@@ -140,8 +140,11 @@ HWY_INLINE VU sectors_between(const March& march, const MarchPlanes& planes, con
     return V3{x * f.depth, y * f.depth, z};
   };
   const V3 way = position(before) - position(here);
-  const V gap = hn::Max(hn::Abs(dot(load(planes.normal, here.pixel), way)),
-                        hn::Abs(dot(load(planes.normal, before.pixel), way)));
+  const auto from_plane_of = [&](const Front& f) HWY_ATTR {
+    const V2 slope{p.slope_x + set(f.step->dx / scene.fx), p.slope_y - set(f.step->dy / scene.fy)};
+    return hn::Abs(dot(load_normal(scene, planes, f.pixel, slope), way));
+  };
+  const V gap = hn::Max(from_plane_of(here), from_plane_of(before));
   V most = set(kSurfaceGap / std::min(scene.fx, scene.fy));
   if constexpr (!kOrthographic) most = most * hn::Min(before.depth, here.depth);
   const SlicePoint end = point(here);

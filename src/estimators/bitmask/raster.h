@@ -102,11 +102,11 @@ class Raster {
     for (const MarchLayer& layer : from.layers)
       planes.layers.push_back(
           {in_whole_rows(layer.depth, far), in_whole_rows(layer.thickness, far)});
-    planes.normal = in_whole_rows(from.normal, far);
     planes.tilt = in_whole_rows(from.tilt, far, [](float both) {
       constexpr float kPixels = 1.0f / kPeriod;  // steps are in pixels of the frame
       return two_in_one(kPixels * first_of_two(both), kPixels * second_of_two(both));
     });
+    planes.tilt_rest = in_whole_rows(from.tilt_rest, far);  // a power of two changes no more
     return planes;
   }
   InterleavedVectors in_whole_rows(const InterleavedVectors& values, const FarRaster& far) const {

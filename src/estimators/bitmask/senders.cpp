@@ -26,6 +26,7 @@ constexpr int kWindow = 4;
 
 /// The pixels around each of a vector, and what they count in a mean over its surface.
 struct Around {
+  V3 normal;  ///< of that surface
   std::ptrdiff_t index[kWindow * kWindow];
   V weight[kWindow * kWindow];
   int count = 0;
@@ -52,7 +53,7 @@ template <bool kOrthographic>
 HWY_INLINE Around around(const MarchScene& scene, const Place& place) {
   const MarchReceiver p = load_receiver(scene, place);
   Around pixels;
-  pixels.all = set(0);
+  pixels.normal = p.normal, pixels.all = set(0);
   for (int dy = -kWindow / 2; dy < kWindow / 2; ++dy) {
     if (place.y + dy < 0 || place.y + dy >= scene.layout.height()) continue;
     for (int dx = -kWindow / 2; dx < kWindow / 2; ++dx) {
@@ -128,7 +129,7 @@ void send_light(const SenderJob& job, const Window& part) {
     const V3 front = within_range(albedo * light);
     if (!job.two_sided) return store(front, *job.sent, i);
     const M valid = holds_solid(load(scene.depth(), i));
-    const V3 behind = set(glm::vec3(0)) - usable(load(scene.normal, i), valid);
+    const V3 behind = set(glm::vec3(0)) - usable(pixels.normal, valid);
     const V3 bounce = job.bounce ? load(*job.bounce, i) : set(glm::vec3(0));
     const V3 at_back = mul_add(unoccluded(job.found.light, behind), mean(*job.found.ao), bounce);
     store(both_sides(front, within_range(albedo * at_back)), *job.sent, i);

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "math/two_in_one.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/random_frame.h"
+
+namespace ssdo::test {
+namespace {
+
+TEST(TwoInOne, NumbersAreWholeWithTheRest) {
+  Random random(7);
+  for (int i = 0; i < 100000; ++i) {
+    const float first = std::ldexp(between(random, -1, 1), int(between(random, -60, 60))),
+                second = i % 10 == 0 ? 0 : between(random, -1e3f, 1e3f);
+    const float both = two_in_one(first, second), rest = rest_of_two(first, second);
+    ASSERT_EQ(whole_of_two(both, rest), glm::vec2(first, second));
+    ASSERT_NEAR(first_of_two(both), first, 0.004 * std::abs(first));
+    ASSERT_NEAR(second_of_two(both), second, 0.004 * std::abs(second));
+  }
+}
+
+}  // namespace
+}  // namespace ssdo::test
