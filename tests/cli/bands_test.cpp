@@ -18,6 +18,7 @@ namespace ssdo::test {
 namespace {
 
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -34,6 +35,7 @@ class Bands : public testing::Test {
   /// What a frame of kWindow is too large for.
   inline static const Words kLimit = {"--mem-limit", "112M"};
   static constexpr Window kWindow{0, 0, 320, 1600};
+  static constexpr char kBands[] = "[0-9] bands? of (all|[0-9]+) rows";
 
   static void SetUpTestSuite() {
     dir_ = std::make_unique<TempDir>();
@@ -66,8 +68,8 @@ class Bands : public testing::Test {
                    bands = run(in, "bands.exr", flags + limit + Words{"-v"});
     EXPECT_EQ(whole.code, 0) << whole.err;
     EXPECT_EQ(bands.code, 0) << bands.err;
-    EXPECT_THAT(whole.err, Not(HasSubstr(" band")));
-    EXPECT_THAT(bands.err, HasSubstr(" band"));
+    EXPECT_THAT(whole.err, Not(ContainsRegex(kBands)));
+    EXPECT_THAT(bands.err, ContainsRegex(kBands));
     bands_ = bands.err;
     if (bands.code != 0) return {};
     EXPECT_EQ(channel_names(path("bands.exr")), channel_names(path("whole.exr")));
