@@ -7,7 +7,7 @@
 FRAME.exr, of Blender, is enlarged: every pixel becomes n x n, whose P lie on its tangent plane under
 the frame's own camera, so that the large frame is a frame of the same scene. Frames stay in
 $LARGE_FRAMES (a temporary folder if not set; 16384 x 16384 takes about 3 GB). $SIZES picks some, as
-in SIZES=1920x1080,3840x2160. Every size runs once: as it is, and those up to 4K once more under
+in SIZES=1920x1080,3840x2160. Every size runs once: as it is, and those up to 8K once more under
 half of the memory that they took.
 """
 import json

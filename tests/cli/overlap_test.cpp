@@ -152,7 +152,8 @@ TEST(OverlapMemory, DoesNotGrowWithTheSequence) {
               0);
     return parse_json(read_file(log)).back()["peak_rss_bytes"].get<double>();
   };
-  EXPECT_LT(peak("1-8"), 1.2 * peak("1-3"));
+  // Holes between planes of two frames are found within the first few.
+  EXPECT_LT(peak("1-8"), 1.2 * peak("1-5"));
 }
 
 }  // namespace
