@@ -130,8 +130,9 @@ def main():
         if width * height <= 40e6:
             found = run(ssdo, path, options)
             show(size, "", found)
-            half = f"{int(found['peak_rss_bytes'] / 2 / 2**20)}M"
-            show(size, half, run(ssdo, path, [*options, "--mem-limit", half]))
+            if height >= 2160:
+                half = f"{int(found['peak_rss_bytes'] / 2 / 2**20)}M"
+                show(size, half, run(ssdo, path, [*options, "--mem-limit", half]))
         else:
             show(size, "7.4G", run(ssdo, path, [*options, "--mem-limit", "7.4G"]))
 
