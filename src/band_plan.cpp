@@ -64,7 +64,7 @@ class Planner {
 
   double least_bytes() const {
     const BandPlan least = with_reach(*std::rbegin(kMarches), true);
-    return bytes_ + bytes_of_row_ * (kRowsAtOnce + 2 * least.halo_rows);
+    return bytes_ + bytes_of_row_ * std::min(kRowsAtOnce + 2 * least.halo_rows, frame_.height());
   }
 
  private:

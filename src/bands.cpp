@@ -10,8 +10,8 @@
 namespace ssdo {
 namespace {
 
-/// The share of the time that the overview takes, for progress.
-constexpr double kOverviewShare = 0.02;
+/// Shares of the time that the overview takes, and the mean ao of the frame, for progress.
+constexpr double kOverviewShare = 0.02, kMeanShare = 0.3;
 
 Solids solids_of(const Geometry& geometry, const ModelOptions& model, const Scene& overview) {
   if (model.thickness) return constant_thickness(geometry, float(*model.thickness));
@@ -71,12 +71,12 @@ class BandJob {
 
   std::vector<std::unique_ptr<SafeFile>> run() {
     look_around();
+    if (needs_mean_ao()) find_mean_ao();
     std::vector<std::unique_ptr<SafeFile>> files;
     for (const Target& target : job_.targets)
       files.push_back(std::make_unique<SafeFile>(target.path, job_.policy));
     std::vector<std::unique_ptr<ExrWriter>> writers(files.size());
-    for (int y = all_.y0; y < all_.y1; y += bands_.rows) {
-      const Window rows{all_.x0, y, all_.x1, std::min(y + bands_.rows, all_.y1)};
+    for_each_band([&](const Window& rows) {
       const Band band = read(rows);
       const Products products = estimate_band(band.scene, rows);
       Stopwatch watch;
@@ -85,7 +85,7 @@ class BandJob {
         write(*files[i], job_.targets[i], results, rows, writers[i]);
       }
       relit_.times.write += watch.lap();
-    }
+    });
     for (const auto& writer : writers) writer->finish();
     return files;
   }
@@ -99,7 +99,36 @@ class BandJob {
                                            [&](std::size_t, std::size_t) {}),
                bands_.marches_on, bands_.reach_rows};
     relit_.times.estimate += watch.lap();
-    on_progress_(kOverviewShare);
+    on_progress_(begun_);
+  }
+
+  bool needs_mean_ao() const {
+    Request request = frame_.plan.request;
+    request.around_band = around_;
+    return !bands_.marches_on && frame_.plan.method->bands.needs_mean_ao(frame_.scene, request);
+  }
+
+  /// The overview does not show it to the bit: bands are read once more for it.
+  void find_mean_ao() {
+    AoSum sum;
+    for_each_band([&](const Window& rows) {
+      const Band band = read(rows);
+      Stopwatch watch;
+      Request request = frame_.plan.request;
+      request.receivers = rows;
+      frame_.plan.method->bands.add_ao(band.scene, request, sum);
+      relit_.times.estimate += watch.lap();
+      on_progress_(kOverviewShare + kMeanShare * double(rows.y1 - all_.y0) / all_.height());
+    });
+    around_.mean_ao = sum.mean();
+    begun_ += kMeanShare;
+  }
+
+  /// Calls `work(rows)` for the rows of each band.
+  template <class Work>
+  void for_each_band(const Work& work) const {
+    for (int y = all_.y0; y < all_.y1; y += bands_.rows)
+      work(Window{all_.x0, y, all_.x1, std::min(y + bands_.rows, all_.y1)});
   }
 
   /// A band with the rows around it that it needs. How near surfaces come, the overview may not
@@ -129,7 +158,7 @@ class BandJob {
     const double before = double(rows.y0 - all_.y0) / all_.height(),
                  share = double(rows.height()) / all_.height();
     const auto tell = [&](double done) {
-      on_progress_(kOverviewShare + (1 - kOverviewShare) * (before + share * done));
+      on_progress_(begun_ + (1 - begun_) * (before + share * done));
     };
     Estimate found = estimate(scene, plan, tell, {});
     relit_.times.estimate += found.estimate_ms;
@@ -154,6 +183,7 @@ class BandJob {
   const std::function<void(double)>& on_progress_;
   Relit& relit_;
   AroundBand around_;
+  double begun_ = kOverviewShare;  ///< share of the time before bands are written
 };
 
 }  // namespace

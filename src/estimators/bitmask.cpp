@@ -188,17 +188,11 @@ class Bitmask {
   }
 
   void gather_suns() {
-    // A panorama shows what stands beyond the border, and rays have asked it.
-    const bool all_is_shown =
-        std::any_of(scene_.views.begin(), scene_.views.end(),
-                    [](const FurtherView& view) { return view.picture->closed; });
-    const float past =
-        request_.extend_offscreen && !all_is_shown ? sun_past_beyond(mean_ao_of_frame()) : 1;
-    march_suns(past);
+    march_suns(needs_mean_ao(scene_, request_) ? sun_past_beyond(mean_ao_of_frame()) : 1);
   }
 
   float mean_ao_of_frame() const {
-    if (request_.around_band) return request_.around_band->far->mean_ao;
+    if (const auto& band = request_.around_band) return band->mean_ao.value_or(band->far->mean_ao);
     return mean_ao(march_scene_, scene_.geometry.display, request_.radius);
   }
 
@@ -388,7 +382,7 @@ Method bitmask_method() {
       .parameters = {kRoughness},
       .samples_per_pixel = [](const Request& r) { return 2 * r.slices * r.steps; },
       .estimate = estimate,
-      .bands = {overview, reach_rows},
+      .bands = {overview, reach_rows, band_needs_mean_ao, add_ao},
       .ladder = {.rungs = {slices_and_steps(1, 6), slices_and_steps(2, 8), slices_and_steps(2, 16),
                            slices_and_steps(2, 24), slices_and_steps(4, 32),
                            slices_and_steps(6, 48), slices_and_steps(12, 64)},

@@ -45,6 +45,15 @@ struct AroundBand {
   std::shared_ptr<const FarScene> far;  ///< of the whole frame
   bool marches_on = false;  ///< in `far`, beyond `reach_rows`; else nothing there is in reach
   int reach_rows = 0;       ///< above and below a pixel: those that block what it gathers
+  std::optional<float> mean_ao = {};  ///< of the frame's surfaces; not known: that of `far`
+};
+
+/// The ao of surfaces, added up.
+struct AoSum {
+  double ao = 0, surfaces = 0;
+
+  /// 1 without surfaces.
+  float mean() const { return surfaces > 0 ? float(ao / surfaces) : 1.0f; }
 };
 
 /// What is asked of a method.
@@ -97,6 +106,11 @@ struct BandSupport {
   /// of every `stride` x `stride`.
   int (*reach_rows)(const Geometry& some, int stride, const Window& frame, const Window& display,
                     const Request&) = nullptr;
+  /// Whether light depends on the mean ao of the frame, more than Request::around_band tells.
+  bool (*needs_mean_ao)(const Scene& overview, const Request&) = nullptr;
+  /// Adds the ao of the receivers in a band, to the bits of the frame in one piece if bands come
+  /// from top to bottom.
+  void (*add_ao)(const Scene& band, const Request&, AoSum&) = nullptr;
 };
 
 /// A row in the table of methods.

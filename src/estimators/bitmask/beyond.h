@@ -32,14 +32,33 @@
 #pragma once
 
 #include "estimators/bitmask/march_scene.h"
+#include "estimators/bitmask/slice_pattern.h"
+#include "estimators/estimator.h"
 
 namespace ssdo {
 
 /// Share of the light of a map that comes through surfaces that may go on beyond the frame.
 inline constexpr float kLightThroughBeyond = 0.5f;
 
-/// The mean ao of the frame's surfaces, 0..1, where surfaces go on beyond it; 1 without surfaces.
-/// It is of the whole raster, whatever its receivers are. `radius` in scene units, or infinity.
+/// The slices in which one pixel of each pattern looks for the mean ao of a frame: the same for
+/// every quality and seed.
+SlicePattern mean_ao_pattern(const Interleaving& layout, const Window& display);
+
+/// Adds the ao of surfaces in some rows of a raster, 0..1 each, where surfaces go on beyond the
+/// frame. `radius` in scene units, or infinity.
+void add_ao(const MarchScene& scene, const Window& display, float radius, const Window& rows,
+            AoSum& sum);
+
+/// That of the receivers of a band.
+void add_ao(const Scene& band, const Request& request, AoSum& sum);
+
+/// Whether the mean counts for the light that is asked for.
+bool needs_mean_ao(const Scene& scene, const Request& request);
+
+/// Whether the overview around a band does not tell it well enough.
+bool band_needs_mean_ao(const Scene& overview, const Request& request);
+
+/// The mean of the whole raster, whatever its receivers are; 1 without surfaces.
 float mean_ao(const MarchScene& scene, const Window& display, float radius);
 
 /// Share of a sun's light, 0..1, that reaches a receiver past the frame's border where no surface

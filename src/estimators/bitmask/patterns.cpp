@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "estimators/bitmask/beyond.h"
 #include "estimators/bitmask/march_scene.h"
 #include "math/pixel_grid.h"
 
@@ -47,8 +48,9 @@ int reach_rows(const Geometry& some, int stride, const Window& frame, const Wind
   const float reach = float(stride) * reach_px(some, request.radius) + 1;
   if (!(reach < float(frame.height()))) return frame.height();
   const Interleaving layout(frame.width(), 1, 0);
-  const int rows = std::max(pattern_of(request, layout, display).rows_within(reach),
-                            bounce_pattern_of(request, layout, display).rows_within(reach));
+  const int rows = std::max({pattern_of(request, layout, display).rows_within(reach),
+                             bounce_pattern_of(request, layout, display).rows_within(reach),
+                             mean_ao_pattern(layout, display).rows_within(reach)});
   return std::min(rows + kRowsAround, frame.height());
 }
 
