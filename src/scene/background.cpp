@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/background.h"
 
+#include <atomic>
 #include <glm/geometric.hpp>
 
+#include "parallel/tiles.h"
 #include "scene/depth_model.h"
 
 namespace ssdo {
@@ -31,15 +33,19 @@ bool has_normals(const GBuffer& g) {
 void hold_depth_to_position(GBuffer& g) {
   if (g.position.empty() || g.depth.empty()) return;
   Plane<unsigned char> counts(g.window.width(), g.window.height());
-  std::size_t both = 0, without_depth = 0;
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    const bool covered = g.alpha.empty() || g.alpha[i] > kLeastAlpha;
-    if (!covered || is_missing(g.position[i]) || g.position[i] == glm::vec3(0)) continue;
-    const bool in_depth = !shows_nothing(g.depth[i], kEmptyDepth);
-    counts[i] = in_depth;
-    both += in_depth;
-    without_depth += !(g.depth[i] > 0);
-  }
+  std::atomic<std::size_t> both = 0, without_depth = 0;
+  for_each_row(counts.height, [&](int y) {
+    std::size_t both_in_row = 0, without_in_row = 0;
+    for (std::size_t i = counts.index(0, y), end = counts.index(0, y + 1); i < end; ++i) {
+      const bool covered = g.alpha.empty() || g.alpha[i] > kLeastAlpha;
+      if (!covered || is_missing(g.position[i]) || g.position[i] == glm::vec3(0)) continue;
+      const bool in_depth = !shows_nothing(g.depth[i], kEmptyDepth);
+      counts[i] = in_depth;
+      both_in_row += in_depth;
+      without_in_row += !(g.depth[i] > 0);
+    }
+    both += both_in_row, without_depth += without_in_row;
+  });
   // A layer that is 0 or not a number wherever P shows a surface was never written.
   const bool empty = both == 0 && without_depth > 0;
   if (!empty && both < DepthModel::kFewestPixels) return;
@@ -67,21 +73,29 @@ void find_background(GBuffer& g, std::optional<float> background_depth,
   const std::optional<DepthModel>& depth_of_position = found.depth_of_position;
   const float far = background_depth ? *background_depth * (1 - 1e-6f) : kEmptyDepth;
   g.valid = Plane<unsigned char>(g.window.width(), g.window.height());
-  for (std::size_t i = 0; i < g.valid.size(); ++i) {
-    const bool nothing_in_depth = !g.depth.empty() && shows_nothing(g.depth[i], far);
-    bool background = nothing_in_depth || (!g.alpha.empty() && g.alpha[i] <= kLeastAlpha);
-    bool broken = false;
-    if (!g.position.empty()) {
-      const glm::vec3& p = g.position[i];
-      const bool suspect = p == glm::vec3(0) || (found.normals_tell && g.normal[i] == glm::vec3(0));
-      background |= suspect && !(depth_of_position && depth_of_position->agrees(p, g.depth[i]));
-      broken = is_missing(p);
-      background |= broken && !depth_of_position;
+  std::atomic<std::size_t> background_pixels = 0, bad_pixels = 0;
+  for_each_row(g.valid.height, [&](int y) {
+    std::size_t background_in_row = 0, bad_in_row = 0;
+    for (std::size_t i = g.valid.index(0, y), end = g.valid.index(0, y + 1); i < end; ++i) {
+      const bool nothing_in_depth = !g.depth.empty() && shows_nothing(g.depth[i], far);
+      bool background = nothing_in_depth || (!g.alpha.empty() && g.alpha[i] <= kLeastAlpha);
+      bool broken = false;
+      if (!g.position.empty()) {
+        const glm::vec3& p = g.position[i];
+        const bool suspect =
+            p == glm::vec3(0) || (found.normals_tell && g.normal[i] == glm::vec3(0));
+        background |= suspect && !(depth_of_position && depth_of_position->agrees(p, g.depth[i]));
+        broken = is_missing(p);
+        background |= broken && !depth_of_position;
+      }
+      background_in_row += background;
+      bad_in_row += !background && broken;
+      g.valid[i] = !background && !broken;
     }
-    g.background_pixels += background;
-    g.bad_pixels += !background && broken;
-    g.valid[i] = !background && !broken;
-  }
+    background_pixels += background_in_row, bad_pixels += bad_in_row;
+  });
+  g.background_pixels += background_pixels;
+  g.bad_pixels += bad_pixels;
 }
 
 }  // namespace ssdo

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
@@ -11,6 +12,7 @@
 #include "error.h"
 #include "io/pixel_filter.h"
 #include "math/light_range.h"
+#include "parallel/tiles.h"
 #include "scene/background.h"
 #include "scene/depth_encoding.h"
 #include "scene/layers/windows.h"
@@ -83,7 +85,10 @@ class LayerReader {
           &y = plane(window, *layer, 1, fill, laid[1]),
           &z = plane(window, *layer, 2, fill, laid[2]);
     auto out = Plane<glm::vec3>::like(x);
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {x[i], y[i], z[i]};
+    for_each_row(out.height, [&](int row) {
+      for (std::size_t i = out.index(0, row), end = out.index(0, row + 1); i < end; ++i)
+        out[i] = {x[i], y[i], z[i]};
+    });
     return out;
   }
 
@@ -138,11 +143,15 @@ void undo_normal_encoding(GBuffer& g, const std::optional<Encodings>& known) {
 /// The pixel counts as broken.
 template <class T>
 void clear_broken(GBuffer& g, Plane<T>& values) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (is_sane(values[i])) continue;
-    g.bad_pixels += g.valid[i];
-    values[i] = T(0);
-  }
+  std::atomic<std::size_t> bad = 0;
+  for_each_row(values.height, [&](int y) {
+    for (std::size_t i = values.index(0, y), end = values.index(0, y + 1); i < end; ++i) {
+      if (is_sane(values[i])) continue;
+      bad += g.valid[i];
+      values[i] = T(0);
+    }
+  });
+  g.bad_pixels += bad;
 }
 
 /// Reads beauty, ambient and specular, and brings them to the size of the outputs.
@@ -203,7 +212,10 @@ void note_precision(GBuffer& g, const Layer& lead, const ExrPart& part, bool is_
 }
 
 void clear_negative(Plane<glm::vec3>& colors) {
-  for (glm::vec3& color : colors.pixels) color = glm::max(color, glm::vec3(0));
+  for_each_row(colors.height, [&](int y) {
+    for (std::size_t i = colors.index(0, y), end = colors.index(0, y + 1); i < end; ++i)
+      colors[i] = glm::max(colors[i], glm::vec3(0));
+  });
 }
 
 /// What is read of the part that the products are made from.
