@@ -16,13 +16,11 @@
 namespace ssdo {
 namespace {
 
-/// Blender's world has z up; it marks its files, and Nuke keeps the mark under a prefix.
-UpAxis up_axis_of(const Imf::Header& header) {
-  for (auto it = header.begin(); it != header.end(); ++it) {
-    if (std::string(it.name()).find("BlenderMultiChannel") != std::string::npos) return UpAxis::z;
-  }
-  const bool blender = string_attribute(header, "Software").find("Blender") != std::string::npos;
-  return blender ? UpAxis::z : UpAxis::y;
+/// The worlds of Blender and Unreal have z up.
+UpAxis up_axis_of(const GBuffer& g) {
+  const auto unreal = g.header.lower_bound("unreal/");
+  const bool by_unreal = unreal != g.header.end() && unreal->first.starts_with("unreal/");
+  return g.by_blender || by_unreal ? UpAxis::z : UpAxis::y;
 }
 
 bool wants_reflection(const OutputOptions& output, const std::vector<LayerRequest>& aovs) {
@@ -110,7 +108,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   const bool world = scene.geometry.world_known;
   const Imf::Header& header = frame.part().header;
   const FrameEnvironment around =
-      light.around(world ? up_axis_of(header) : UpAxis::y, chromaticities_of(header));
+      light.around(world ? up_axis_of(frame.gbuffer) : UpAxis::y, chromaticities_of(header));
   scene.light = model_light(around.environment, scene.geometry.world_to_camera);
   frame.light = around.description;
   frame.report.warnings.insert(frame.report.warnings.end(), around.warnings.begin(),

@@ -3,6 +3,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ struct GBuffer {
   Encodings encodings;
   Downsampling downsampling = {};  ///< from these windows to those of the outputs
   float pixel_aspect = 1;
+  /// What the header says in numbers, by the names of attributes; the camera may be among it.
+  std::map<std::string, std::vector<double>> header = {};
+  bool by_blender = false;
   Plane<glm::vec3> position, normal, albedo, radiance;
   Plane<glm::vec3> beauty;    ///< as rendered; empty where no composite uses it
   Plane<glm::vec3> ambient;   ///< the part of `beauty` that ambient light gave
@@ -47,6 +51,9 @@ struct GBuffer {
   std::size_t background_pixels = 0;
   std::size_t bad_pixels = 0;  ///< pixels with a NaN or infinity in a role that is used
   std::vector<std::string> warnings;
+
+  /// The display window in pixels of the file, whatever the grid.
+  const Window& display_of_file() const { return grid.is_coarse() ? file_display : display; }
 };
 
 }  // namespace ssdo

@@ -14,6 +14,7 @@
 #include "scene/camera/find_camera.h"
 #include "scene/normals/normal_space.h"
 #include "scene/normals/normals.h"
+#include "scene/normals/world_of_normals.h"
 #include "scene/silhouettes.h"
 
 namespace ssdo {
@@ -53,19 +54,15 @@ std::size_t place_positions(const GBuffer& g, const Camera& camera, Geometry& ou
   return std::accumulate(behind.begin(), behind.end(), std::size_t(0));
 }
 
-/// Least share of the smooth pixels where N follows the gradient of P; normals.cpp has what right
-/// and wrong normals reach.
-constexpr double kLeastShare = 0.95;
-constexpr std::size_t kFewestSmoothPixels = 16;  ///< below, nothing is known
-
 /// The spaces that N may be in.
-std::vector<NamedRotation> spaces_of_normals(const GBuffer& g, const Placement& found) {
+std::vector<NamedRotation> spaces_of_normals(const GBuffer& g, const Placement& found,
+                                             bool by_header) {
   const glm::mat3 of_positions(found.of_positions.rotation), world(found.camera.rotation);
   std::vector<NamedRotation> spaces;
   if (!g.position.empty()) spaces.push_back({of_positions, "the space of P"});
   spaces.push_back({glm::mat3(1), "camera space"});
-  if (found.by_file && (g.position.empty() || of_positions != world))
-    spaces.push_back({world, "the world of --camera"});
+  if (found.world_given && (g.position.empty() || of_positions != world))
+    spaces.push_back({world, by_header ? "the world of the header" : "the world of --camera"});
   return spaces;
 }
 
@@ -74,14 +71,15 @@ std::optional<NormalSpace> usable_normal_space(const GBuffer& g, const Geometry&
                                                GeometryReport& report) {
   if (g.normal.empty()) return std::nullopt;
   NormalSpace space = find_normal_space(
-      g.normal, out.surfel, spaces_of_normals(g, report.placement), out.camera.orthographic);
+      g.normal, out.surfel, spaces_of_normals(g, report.placement, report.header.has_value()),
+      out.camera.orthographic);
   report.normal_agreement = space.share;
   const bool from_depth = g.position.empty();
-  if (space.smooth_pixels < kFewestSmoothPixels && !from_depth) {
+  if (space.smooth_pixels < NormalSpace::kFewestSmoothPixels && !from_depth) {
     space.name += ", unchecked: P is nowhere smooth";
     return space;
   }
-  if (space.share >= kLeastShare) return space;
+  if (space.share >= NormalSpace::kLeastShare) return space;
   report.warnings.push_back(
       fmt::format("normals do not belong to {0}: whatever their space and axes, they agree with it "
                   "in {1:.0f} % "
@@ -188,17 +186,23 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
     return out;
   }
   Placement& placement = report.placement;
+  std::vector<HeaderCamera> readings;
   if (known) {
     placement = *known;
   } else {
     const FoundCamera found = find_camera(g, options, file, report);
     placement.camera = found.camera, placement.of_positions = found.of_positions;
-    placement.by_file = found.by_file;
+    placement.world_given = found.world_given;
+    readings = found.readings;
   }
   out.camera = to_grid(placement.camera, g.grid);
   if (const std::size_t behind = place_positions(g, to_grid(placement.of_positions, g.grid), out)) {
     report.warnings.push_back(
         fmt::format("{} positions lie behind the camera and are left out", behind));
+  }
+  if (!readings.empty()) {
+    settle_world(g, out.surfel, readings, report);
+    out.camera = to_grid(placement.camera, g.grid);
   }
   if (!known) find_normals(g, out, report);
   out.normals_to_camera =
@@ -208,7 +212,7 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
   if (!known) {
     placement.median_depth = median_depth(out);
     placement.world_known =
-        placement.by_file ||
+        placement.world_given ||
         (!g.position.empty() && !out.camera.is_camera_space(placement.median_depth));
   }
   out.median_depth = placement.median_depth;

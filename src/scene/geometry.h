@@ -43,7 +43,7 @@ struct Geometry {
 struct Placement {
   /// The camera of the frame, and the transform from stored P to camera space; see FoundCamera.
   Camera camera, of_positions;
-  bool by_file = false;
+  bool world_given = false;
   std::optional<glm::mat3> normals_to_camera;  ///< nothing: normals are rebuilt from P
   bool mends_silhouettes = false;
   Residual residual;  ///< of P, in pixels of the file
@@ -51,9 +51,21 @@ struct Placement {
   bool world_known = false;
 };
 
+/// What proves the camera of a header for a frame, the strongest last.
+enum class HeaderProof { nothing, consistency, lens, normals, positions };
+
+/// What the header of a frame says of its camera, where that is used or agrees with P.
+struct HeaderFinding {
+  std::string source;   ///< the attributes
+  std::string reading;  ///< "" as their writer means them, else "transposed", "inverse", ...
+  HeaderProof proof = HeaderProof::nothing;
+  std::optional<double> miss_px;  ///< of P from its pixels under it (median), where P proves it
+};
+
 /// How the geometry came about, for `info` and the log.
 struct GeometryReport {
-  std::string camera_source;  ///< "fitted from P", "--camera FILE", "--fov"
+  std::string camera_source;  ///< "fitted from P", "--camera FILE", "--fov", "header ..."
+  std::optional<HeaderFinding> header;
   std::optional<Residual> residual;
   std::string normal_space;     ///< "the space of P", "camera space", "rebuilt from P"
   double normal_agreement = 0;  ///< share of the smooth pixels where N follows the gradient of P
@@ -66,7 +78,7 @@ struct GeometryReport {
 /// P comes from depth where there is none; N from P where it is missing or not usable; normals
 /// that are the back of what P shows are turned to the viewer. With `known`, the placement of the
 /// frame that the G-buffer is some rows of, nothing is found anew.
-/// Errors: ExitCode::layer where neither P nor the options determine the camera.
+/// Errors: ExitCode::layer where neither P nor the options nor the header determine the camera.
 Geometry build_geometry(const GBuffer& gbuffer, const CameraOptions& options,
                         const std::string& file, GeometryReport& report,
                         const Placement* known = nullptr);

@@ -10,6 +10,7 @@
 #include <map>
 
 #include "error.h"
+#include "io/exr/header_numbers.h"
 #include "io/pixel_filter.h"
 #include "math/light_range.h"
 #include "parallel/tiles.h"
@@ -242,6 +243,8 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   g.downsampling = make_downsampling(options.downsample, g.display, file);
   g.pixel_aspect = part.header.pixelAspectRatio();
   if (!(g.pixel_aspect > 0) || !std::isfinite(g.pixel_aspect)) g.pixel_aspect = 1;
+  g.header = header_numbers(*files[std::size_t(lead->file)], lead->part);
+  g.by_blender = is_by_blender(part.header);
   note_precision(g, *lead, part, table[Role::position].has_value());
 
   std::vector<Role> roles = {Role::position, Role::depth,   Role::normal,    Role::albedo,

@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "scene/camera/fit.h"
+#include "scene/camera/metadata/check.h"
 #include "scene/camera/panorama.h"
 
 namespace ssdo {
@@ -18,7 +19,7 @@ namespace {
 /// The projection that the options give, without a pose unless it stands in a file.
 std::optional<Camera> camera_from_options(const GBuffer& g, const CameraOptions& options,
                                           GeometryReport& report) {
-  const Window& display = g.grid.is_coarse() ? g.file_display : g.display;
+  const Window& display = g.display_of_file();
   if (!options.file.empty()) {
     report.camera_source = "--camera " + options.file;
     return read_camera(options.file, display, g.pixel_aspect);
@@ -34,17 +35,27 @@ std::optional<Camera> camera_from_options(const GBuffer& g, const CameraOptions&
   return std::nullopt;
 }
 
-[[noreturn]] void throw_undetermined(const GBuffer& g, const std::string& file) {
-  throw Error(
-      ExitCode::layer,
-      g.position.empty()
-          ? fmt::format("{}: has depth but no position, which leaves the camera open; give "
-                        "--fov DEGREES, --ortho WIDTH or --camera FILE.json",
-                        file)
-          : fmt::format("{}: the camera cannot be fitted from P, whose pixels lie in one "
-                        "plane or are too few; give --fov DEGREES, --ortho WIDTH or --camera "
-                        "FILE.json",
-                        file));
+/// What the header says where it does not determine the camera, for messages.
+std::string said_by(const std::vector<HeaderCamera>& header, const GBuffer& g) {
+  if (g.by_blender) return " (Blender writes no camera; data/blender/export.py writes one)";
+  if (header.empty()) return "";
+  const HeaderCamera& first = header.front();
+  if (!first.contradiction.empty()) return fmt::format(" ({})", first.contradiction);
+  return fmt::format(" ({} {})", describe(first),
+                     !first.has_lens      ? "says nothing of the lens"
+                     : g.position.empty() ? "does not fit the window and the shape of its pixels"
+                                          : "does not put P on its own pixels");
+}
+
+[[noreturn]] void throw_undetermined(const GBuffer& g, const std::vector<HeaderCamera>& header,
+                                     const std::string& file) {
+  throw Error(ExitCode::layer,
+              fmt::format("{}: {}; give --fov DEGREES, --ortho WIDTH or --camera FILE.json{}", file,
+                          g.position.empty()
+                              ? "has depth but no position, which leaves the camera open"
+                              : "the camera cannot be fitted from P, whose pixels lie in one plane "
+                                "or are too few",
+                          said_by(header, g)));
 }
 
 /// Pixels whose neighbours all show surfaces. Beside background, P may be an average with the
@@ -79,17 +90,6 @@ std::optional<Camera> fit_camera(const GBuffer& g, bool given) {
   return panorama && miss(*panorama) < by_pinhole ? panorama : fitted;
 }
 
-/// The most by which storing P may have moved it along one axis, in scene units.
-double rounding_of_positions(const GBuffer& g) {
-  float largest = 0;
-  for (std::size_t i = 0; i < g.position.size(); ++i) {
-    if (!g.valid[i]) continue;
-    const glm::vec3 p = glm::abs(g.position[i]);
-    largest = std::max({largest, p.x, p.y, p.z});
-  }
-  return double(largest) * g.position_step;
-}
-
 /// The camera of --camera, if P projects to its own pixels under it, taken as world space with the
 /// pose of the file, or as camera space.
 std::optional<FoundCamera> pose_by_file(const GBuffer& g, const Camera& given,
@@ -118,48 +118,72 @@ FoundCamera on_file(FoundCamera found, const PixelGrid& grid, const Camera* give
   return found;
 }
 
+/// The camera where options give a projection. `given` is it on the grid of the G-buffer.
+FoundCamera find_under_options(const GBuffer& g, const Camera& given, const CameraOptions& options,
+                               const std::string& file, GeometryReport& report, bool& is_fitted) {
+  const bool by_file = !options.file.empty();
+  const auto posed = by_file ? pose_by_file(g, given, report) : pose_by_positions(g, given);
+  if (posed) return *posed;
+  if (const auto fitted = fit_camera(g, true)) {
+    report.warnings.push_back(
+        fmt::format("{} contradicts P, whose own camera has {:.2f} degrees; P wins",
+                    report.camera_source, fitted->hfov_degrees(g.display.width())));
+    report.camera_source = "fitted from P";
+    is_fitted = true;
+    return {*fitted, *fitted, false};
+  }
+  if (by_file) return {given, given, true};
+  throw Error(ExitCode::layer, fmt::format("{}: P does not project to its own pixels under {}; "
+                                           "give --camera FILE.json",
+                                           file, report.camera_source));
+}
+
+/// The camera that P and the header tell.
+FoundCamera find_without_options(const GBuffer& g, const std::vector<HeaderCamera>& header,
+                                 const std::string& file, GeometryReport& report) {
+  if (const auto fitted = fit_camera(g, false)) {
+    report.camera_source = "fitted from P";
+    return check_against_fit(*fitted, g, header, report);
+  }
+  if (const auto found = find_by_positions(g, header, report)) return *found;
+  throw_undetermined(g, header, file);
+}
+
 }  // namespace
+
+double rounding_of_positions(const GBuffer& g) {
+  float largest = 0;
+  for (std::size_t i = 0; i < g.position.size(); ++i) {
+    if (!g.valid[i]) continue;
+    const glm::vec3 p = glm::abs(g.position[i]);
+    largest = std::max({largest, p.x, p.y, p.z});
+  }
+  return double(largest) * g.position_step;
+}
 
 FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,
                         GeometryReport& report) {
-  const auto given_of_file = camera_from_options(g, options, report);
-  const auto given = given_of_file ? std::optional(to_grid(*given_of_file, g.grid)) : std::nullopt;
-  const bool by_file = given && !options.file.empty();
+  const auto given = camera_from_options(g, options, report);
+  std::vector<HeaderCamera> header;
+  if (!given) header = header_cameras(g.header, g.display_of_file(), g.pixel_aspect);
   if (g.position.empty()) {
-    if (!given) throw_undetermined(g, file);
-    return {*given_of_file, *given_of_file, by_file};
+    if (given) return {*given, *given, !options.file.empty()};
+    const auto found = find_for_depth(g, header, report);
+    if (!found) throw_undetermined(g, header, file);
+    return on_file(*found, g.grid, nullptr);
   }
-  bool is_fitted = false;
-  std::optional<FoundCamera> found;
-  if (given) found = by_file ? pose_by_file(g, *given, report) : pose_by_positions(g, *given);
-  if (!found) {
-    if (const auto fitted = fit_camera(g, given.has_value())) {
-      found = {*fitted, *fitted, false};
-      is_fitted = true;
-      if (given) {
-        report.warnings.push_back(
-            fmt::format("{} contradicts P, whose own camera has {:.2f} degrees; P wins",
-                        report.camera_source, fitted->hfov_degrees(g.display.width())));
-      }
-      report.camera_source = "fitted from P";
-    } else if (by_file) {
-      found = {*given, *given, true};
-    } else if (given) {
-      throw Error(ExitCode::layer, fmt::format("{}: P does not project to its own pixels under {}; "
-                                               "give --camera FILE.json",
-                                               file, report.camera_source));
-    } else {
-      throw_undetermined(g, file);
-    }
-  }
-  report.residual = measure_residual(found->of_positions, g.position, g.valid, g.window);
+  bool is_fitted = !given;
+  const FoundCamera found =
+      given ? find_under_options(g, to_grid(*given, g.grid), options, file, report, is_fitted)
+            : find_without_options(g, header, file, report);
+  report.residual = measure_residual(found.of_positions, g.position, g.valid, g.window);
   if (report.residual->median_px > 0.5) {
     report.warnings.push_back(
         fmt::format("camera ({}): half of the positions miss their pixels by {:.2g} px or more; "
                     "is this P of this camera?",
                     report.camera_source, report.residual->median_px));
   }
-  return on_file(*found, g.grid, is_fitted || !given ? nullptr : &*given_of_file);
+  return on_file(found, g.grid, is_fitted ? nullptr : &*given);
 }
 
 }  // namespace ssdo

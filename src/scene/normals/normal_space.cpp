@@ -144,6 +144,7 @@ struct Candidate {
   glm::mat3 to_camera;
   std::string name;
   std::vector<float> cosines;  ///< of the witnesses, signed
+  bool is_own = false;
 
   Candidate(const glm::mat3& map, std::string called, const std::vector<Witness>& witnesses)
       : to_camera(map), name(std::move(called)) {
@@ -224,6 +225,7 @@ Candidate turned_to_gradients(Candidate candidate, const std::vector<Witness>& w
                   glm::degrees(std::acos(std::clamp(cosine, -1.0f, 1.0f))), candidate.name),
       witnesses);
   const bool halves_the_angle = 1 - median_size(turned) < 0.25f * miss;
+  turned.is_own = true;
   return cosine < kLeastTurn && halves_the_angle ? turned : candidate;
 }
 
@@ -233,7 +235,7 @@ NormalSpace described(const Candidate& found) {
   const auto within = std::count_if(found.cosines.begin(), found.cosines.end(),
                                     [](float c) { return std::abs(c) > kWithin; });
   const std::size_t count = found.cosines.size();
-  NormalSpace space{found.to_camera, found.name, count, 0};
+  NormalSpace space{found.to_camera, found.name, count, 0, found.is_own};
   if (2 * std::size_t(positive) < count) {
     space.to_camera = -space.to_camera;
     space.name += ", turned round";

@@ -17,6 +17,13 @@ struct NormalSpace {
   std::string name;
   std::size_t smooth_pixels = 0;  ///< around which P is smooth: N is compared with P there
   double share = 0;               ///< of them, where N and the gradient are within 53 degrees
+  bool is_own = false;            ///< of none of the spaces that were given
+
+  bool is_known() const { return smooth_pixels >= kFewestSmoothPixels && share >= kLeastShare; }
+
+  /// normal_space.cpp has what right and wrong normals reach.
+  static constexpr double kLeastShare = 0.95;
+  static constexpr std::size_t kFewestSmoothPixels = 16;  ///< below, nothing is known
 };
 
 /// A space that normals may be stored in, and the rotation from it to camera space.

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/camera/metadata/candidates.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/trigonometric.hpp>
+#include <optional>
+#include <string_view>
+
+#include "scene/camera/metadata/matrices.h"
+#include "scene/camera/metadata/unreal.h"
+
+namespace ssdo {
+namespace {
+
+using Header = std::map<std::string, std::vector<double>>;
+
+/// The attributes of one renderer. The aperture is that of the film's width, in the unit of the
+/// focal length; the field of view is horizontal, in degrees.
+struct RendererRow {
+  std::string_view pose;
+  PoseConvention convention;
+  std::string_view fov, focal_length, aperture;
+};
+
+constexpr RendererRow kStandard = {"worldToCamera",
+                                   {Direction::to_camera, CameraAxes::along_z},
+                                   "",
+                                   "CameraFocalLength",
+                                   "CameraFilmApertureHorizontal"};
+constexpr RendererRow kVRay = {"cameraTransform",
+                               {Direction::to_world, CameraAxes::along_minus_y_z_down},
+                               "cameraFov",
+                               "cameraFocalLength",
+                               "cameraAperture"};
+constexpr RendererRow kRedshift = {"rs/camera/transform",
+                                   {Direction::to_world, CameraAxes::along_z_x_left},
+                                   "rs/camera/fov",
+                                   "",
+                                   "rs/camera/aperture"};
+
+std::optional<double> number(const Header& header, std::string_view name) {
+  const auto found = header.find(std::string(name));
+  if (found == header.end() || found->second.size() == 16) return std::nullopt;
+  return found->second.front();
+}
+
+std::optional<StoredMatrix> matrix(const Header& header, std::string_view name) {
+  const auto found = header.find(std::string(name));
+  if (found == header.end() || found->second.size() != 16) return std::nullopt;
+  StoredMatrix stored;
+  std::copy(found->second.begin(), found->second.end(), stored.begin());
+  return stored;
+}
+
+/// What single numbers say of the lens.
+struct Lens {
+  std::string source, doubt;
+  double fov = 0;  ///< degrees; 0: nothing
+  bool agrees = false;
+};
+
+/// Fields of view closer than this are the same: apertures are stored with few digits.
+constexpr double kSameFov = 0.005;
+
+Lens lens_of(const Header& header, const RendererRow& row) {
+  const auto fov = number(header, row.fov), focal = number(header, row.focal_length),
+             aperture = number(header, row.aperture);
+  Lens lens;
+  if (fov && *fov > 0 && *fov < 180) lens = {std::string(row.fov), "", *fov};
+  if (!focal || !aperture || !(*focal > 0) || !(*aperture > 0)) return lens;
+  const double of_film = glm::degrees(2 * std::atan(0.5 * *aperture / *focal));
+  const std::string film = fmt::format("{} + {}", row.focal_length, row.aperture);
+  if (lens.fov == 0) return {film, "", of_film};
+  lens.agrees = std::abs(of_film - lens.fov) < kSameFov * lens.fov;
+  if (!lens.agrees)
+    lens.doubt =
+        fmt::format("{} is {:.4g} degrees, {} mean {:.4g}", row.fov, lens.fov, film, of_film);
+  return lens;
+}
+
+void set_lens(HeaderCamera& out, const Lens& lens, const Window& display, double pixel_aspect) {
+  if (lens.fov == 0) return;
+  const Camera projection = camera_from_fov(lens.fov, display, pixel_aspect);
+  out.camera.fx = projection.fx, out.camera.fy = projection.fy;
+  out.camera.cx = projection.cx, out.camera.cy = projection.cy;
+  out.has_lens = true, out.lens_agrees = lens.agrees, out.doubt = lens.doubt;
+  out.source += (out.source.empty() ? "" : " + ") + lens.source;
+}
+
+std::string joined(const std::string& a, std::string_view b) {
+  return a + (a.empty() || b.empty() ? "" : ", ") + std::string(b);
+}
+
+/// The readings of worldToCamera and worldToNDC under which they are one camera.
+std::vector<HeaderCamera> of_pair(const std::vector<PoseReading>& poses, const StoredMatrix& to_ndc,
+                                  const Window& display) {
+  std::vector<HeaderCamera> all;
+  for (const PoseReading& pose : poses) {
+    for (const NdcWindow ndc : kNdcWindows) {
+      auto camera = read_perspective(to_ndc, pose.transposed, ndc, display);
+      if (camera && !same_pose(*camera, pose)) continue;
+      if (!camera) camera = read_orthographic(to_ndc, pose, ndc, display);
+      if (!camera) continue;
+      camera->rotation = pose.rotation, camera->origin = pose.origin;
+      all.push_back({"worldToCamera + worldToNDC", joined(pose.how, name_of(ndc)), *camera, true,
+                     true, true, true});
+    }
+  }
+  return all;
+}
+
+std::vector<HeaderCamera> of_ndc_alone(const StoredMatrix& to_ndc, const Window& display) {
+  std::vector<HeaderCamera> all;
+  for (const bool transposed : {false, true}) {
+    for (const NdcWindow ndc : kNdcWindows) {
+      if (const auto camera = read_perspective(to_ndc, transposed, ndc, display))
+        all.push_back({"worldToNDC", joined(transposed ? "transposed" : "", name_of(ndc)), *camera,
+                       true, true, true, true});
+    }
+  }
+  return all;
+}
+
+/// The readings of a matrix, each with the lens of single numbers; of a header without the matrix,
+/// the lens alone.
+std::vector<HeaderCamera> of_renderer(const Header& header, const RendererRow& row,
+                                      const Window& display, double pixel_aspect) {
+  const Lens lens = lens_of(header, row);
+  const auto stored = matrix(header, row.pose);
+  std::vector<HeaderCamera> all;
+  for (const PoseReading& pose :
+       stored ? read_pose(*stored, row.convention) : std::vector<PoseReading>()) {
+    HeaderCamera& out = all.emplace_back();
+    out.source = row.pose, out.reading = pose.how, out.has_pose = true;
+    out.camera.rotation = pose.rotation, out.camera.origin = pose.origin;
+    set_lens(out, lens, display, pixel_aspect);
+  }
+  if (all.empty() && lens.fov > 0) set_lens(all.emplace_back(), lens, display, pixel_aspect);
+  return all;
+}
+
+void append(std::vector<HeaderCamera>& all, const std::vector<HeaderCamera>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+std::vector<HeaderCamera> of_standard(const Header& header, const Window& display,
+                                      double pixel_aspect) {
+  const auto to_camera = matrix(header, kStandard.pose), to_ndc = matrix(header, "worldToNDC");
+  std::vector<HeaderCamera> all;
+  if (to_camera && to_ndc)
+    all = of_pair(read_pose(*to_camera, kStandard.convention), *to_ndc, display);
+  const bool contradict = to_camera && to_ndc && all.empty();
+  if (to_ndc && all.empty()) append(all, of_ndc_alone(*to_ndc, display));
+  append(all, of_renderer(header, kStandard, display, pixel_aspect));
+  if (contradict) {
+    for (HeaderCamera& camera : all)
+      camera.contradiction = "worldToCamera and worldToNDC are not of one camera";
+  }
+  return all;
+}
+
+/// V-Ray's other attributes beside a worldToCamera that has no worldToNDC: OpenImageIO reads
+/// cameraTransform, which leads to the world, under this name, and writes it under it.
+bool is_renamed_by_oiio(const Header& header) {
+  return header.contains("worldToCamera") && !header.contains("worldToNDC") &&
+         !header.contains("cameraTransform") && header.contains("cameraFov");
+}
+
+std::vector<HeaderCamera> of_vray(const Header& header, const Window& display,
+                                  double pixel_aspect) {
+  // Other projections than that of a pinhole have other numbers.
+  Header pinhole = header;
+  if (number(header, "cameraProjection").value_or(0) != 0) {
+    for (const std::string_view name : {kVRay.fov, kVRay.focal_length, kVRay.aperture})
+      pinhole.erase(std::string(name));
+  }
+  if (!is_renamed_by_oiio(header)) return of_renderer(pinhole, kVRay, display, pixel_aspect);
+  RendererRow renamed = kVRay;
+  renamed.pose = "worldToCamera";
+  std::vector<HeaderCamera> all = of_renderer(pinhole, renamed, display, pixel_aspect);
+  for (HeaderCamera& camera : all)
+    camera.reading = joined("V-Ray's cameraTransform, renamed by OpenImageIO", camera.reading);
+  return all;
+}
+
+/// The first number of Unreal's under `prefix` whose name ends so.
+std::optional<double> number_of_unreal(const Header& header, const std::string& prefix,
+                                       std::string_view ending) {
+  for (auto it = header.lower_bound(prefix); it != header.end() && it->first.starts_with(prefix);
+       ++it) {
+    if (it->first.ends_with(ending)) return number(header, it->first);
+  }
+  return std::nullopt;
+}
+
+/// Unreal writes strings, under unreal/camera/ or, newer, under a folder for each layer or camera.
+std::vector<HeaderCamera> of_unreal(const Header& header, const Window& display,
+                                    double pixel_aspect) {
+  constexpr std::string_view kX = "curPos/x";
+  std::vector<HeaderCamera> all;
+  for (const auto& [name, value] : header) {
+    if (!name.starts_with("unreal/") || !name.ends_with(kX)) continue;
+    const std::string prefix = name.substr(0, name.size() - kX.size());
+    const auto at = [&](const char* of) { return number(header, prefix + of); };
+    const auto x = at("curPos/x"), y = at("curPos/y"), z = at("curPos/z"),
+               pitch = at("curRot/pitch"), yaw = at("curRot/yaw"), roll = at("curRot/roll");
+    if (!x || !y || !z || !pitch || !yaw || !roll) continue;
+    HeaderCamera& out = all.emplace_back();
+    out.source = prefix + "curPos + curRot", out.has_pose = true;
+    out.camera.rotation = rotation_of(UnrealRotation{*pitch, *yaw, *roll});
+    out.camera.origin = {*x, *y, *z};
+    Header numbers;
+    for (const char* of : {"fov", "focalLength", "sensorWidth"}) {
+      const auto found = number_of_unreal(header, prefix, "/" + std::string(of));
+      if (found) numbers[of] = {*found};
+    }
+    const RendererRow row{"", {}, "fov", "focalLength", "sensorWidth"};
+    set_lens(out, lens_of(numbers, row), display, pixel_aspect);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<HeaderCamera> header_cameras(const Header& header, const Window& display,
+                                         double pixel_aspect) {
+  std::vector<HeaderCamera> all;
+  if (!is_renamed_by_oiio(header)) append(all, of_standard(header, display, pixel_aspect));
+  append(all, of_vray(header, display, pixel_aspect));
+  append(all, of_renderer(header, kRedshift, display, pixel_aspect));
+  append(all, of_unreal(header, display, pixel_aspect));
+  return all;
+}
+
+}  // namespace ssdo

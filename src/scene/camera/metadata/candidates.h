@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "math/plane.h"
+#include "scene/camera/camera.h"
+
+namespace ssdo {
+
+/// What attributes of a header say of the camera, by one reading of them. Nothing of it is proved.
+struct HeaderCamera {
+  std::string source;   ///< the attributes: "worldToCamera + worldToNDC"
+  std::string reading;  ///< "" as their writer means them, else "transposed", "inverse", ...
+  Camera camera;
+  bool has_pose = false, has_lens = false;
+  /// Whether the header confirms it: a second attribute says the same, or one matrix holds both
+  /// and would come out with shear where it is misread.
+  bool pose_agrees = false, lens_agrees = false;
+  std::string doubt = {};          ///< where numbers differ on the lens: how, for messages
+  std::string contradiction = {};  ///< where matrices cannot be of one camera: P alone decides
+};
+
+/// The cameras that the numbers of a header may mean, those of one source after each other, the
+/// reading of its writer first:
+///
+///   worldToCamera, worldToNDC    OpenEXR's standard: Arnold, RenderMan; pbrt-v4, transposed
+///   cameraTransform, cameraFov, cameraAperture, cameraFocalLength      V-Ray
+///   rs/camera/transform, rs/camera/fov, rs/camera/aperture             Redshift
+///   unreal/.../curPos/x, curRot/yaw, fov, focalLength, sensorWidth     Unreal
+///
+/// OpenImageIO renames V-Ray's cameraTransform to worldToCamera; beside V-Ray's other attributes
+/// that is read as V-Ray's. `display` and `pixel_aspect` are those of the file.
+std::vector<HeaderCamera> header_cameras(const std::map<std::string, std::vector<double>>& header,
+                                         const Window& display, double pixel_aspect);
+
+}  // namespace ssdo

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <glm/mat4x4.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "math/plane.h"
+#include "scene/camera/camera.h"
+
+namespace ssdo {
+
+/// A matrix of a header: 16 numbers, row by row as stored.
+using StoredMatrix = std::array<double, 16>;
+
+enum class Direction { to_camera, to_world };
+
+/// The axes that a renderer gives camera space.
+enum class CameraAxes {
+  along_z,               ///< x right, y up, z the view, as OpenEXR defines worldToCamera
+  along_minus_z,         ///< x right, y up, -z the view, as Camera has them
+  along_z_x_left,        ///< x left, y up, z the view: Redshift's
+  along_z_y_down,        ///< x right, y down, z the view: those of computer vision
+  along_minus_y_z_down,  ///< x right, z down, -y the view: V-Ray's
+  along_y_z_up           ///< x right, z up, y the view
+};
+
+/// What a renderer says a matrix is.
+struct PoseConvention {
+  Direction direction;
+  CameraAxes axes;
+};
+
+/// A pose, and how the matrix has to be read for it.
+struct PoseReading {
+  glm::dmat3 rotation;  ///< as of Camera
+  glm::dvec3 origin;
+  bool transposed = false;  ///< stored for column vectors
+  std::string how;          ///< "" as the convention says; else "transposed, inverse"
+};
+
+/// All readings of a matrix as the pose of a camera: that of the convention, then the inverse, with
+/// all the axes that renderers use. Imath's matrices are for row vectors, their translation in the
+/// last row; where that is 0 0 0 1, the matrix is transposed, and may be either if its last column
+/// is too. Nothing for a matrix that is no rotation and translation.
+std::vector<PoseReading> read_pose(const StoredMatrix& stored, const PoseConvention& convention);
+
+/// The pictures that worldToNDC may lie on.
+enum class NdcWindow {
+  y_down,          ///< OpenEXR: from the upper left corner of the display window to the lower right
+  y_up,            ///< from the lower left to the upper right
+  y_up_on_shorter  ///< pbrt-v4: the shorter side of the window is 0..1, about its middle
+};
+inline constexpr std::array kNdcWindows = {NdcWindow::y_down, NdcWindow::y_up,
+                                           NdcWindow::y_up_on_shorter};
+
+/// How messages name one: "" for OpenEXR's.
+std::string_view name_of(NdcWindow window);
+
+/// The camera whose worldToNDC this is: projection and pose of a perspective one. Nothing for a
+/// matrix that shears.
+std::optional<Camera> read_perspective(const StoredMatrix& stored, bool transposed, NdcWindow ndc,
+                                       const Window& display);
+
+/// The orthographic camera at `pose` whose worldToNDC this is. Nothing where they differ.
+std::optional<Camera> read_orthographic(const StoredMatrix& stored, const PoseReading& pose,
+                                        NdcWindow ndc, const Window& display);
+
+/// Whether two poses are the same, to the precision of matrices of floats.
+bool same_pose(const Camera& camera, const PoseReading& pose);
+
+}  // namespace ssdo
