@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 
@@ -38,6 +39,27 @@ std::string describe_camera(const Frame& frame) {
     text += fmt::format("; P lands {:.2g} px from its pixel (median), {:.2g} px (99 %)",
                         r->median_px, r->p99_px);
   }
+  return text;
+}
+
+/// What proves the camera of the header, for people and for programs.
+struct ProofRow {
+  HeaderProof proof;
+  std::string_view text, name;
+};
+constexpr std::array<ProofRow, 5> kProofs = {{
+    {HeaderProof::nothing, "nothing proves it", "nothing"},
+    {HeaderProof::consistency, "it agrees with itself", "consistency"},
+    {HeaderProof::lens, "proved by the lens of P", "lens"},
+    {HeaderProof::normals, "proved by N, which is of its world", "normals"},
+    {HeaderProof::positions, "proved by P", "positions"},
+}};
+
+std::string describe(const HeaderFinding& found) {
+  std::string text = found.source;
+  if (!found.reading.empty()) text += fmt::format(" ({})", found.reading);
+  text += fmt::format("; {}", kProofs[std::size_t(found.proof)].text);
+  if (found.miss_px) text += fmt::format(", which lands {:.2g} px from its pixel", *found.miss_px);
   return text;
 }
 
@@ -82,6 +104,12 @@ json camera_json(const Frame& frame) {
             {"hfov_deg", c.hfov_degrees(frame.part().display_window.width())},
             {"world_to_camera", rows},
             {"world_handedness", glm::determinant(c.rotation) < 0 ? "left" : "right"}};
+  if (const auto& found = frame.report.header) {
+    j["header"] = {{"source", found->source},
+                   {"reading", found->reading},
+                   {"proved_by", kProofs[std::size_t(found->proof)].name}};
+    if (found->miss_px) j["header"]["miss_px"] = *found->miss_px;
+  }
   if (const auto& r = frame.report.residual) {
     j["residual_px"] = {{"median", r->median_px}, {"p99", r->p99_px}, {"max", r->max_px}};
   }
@@ -126,6 +154,7 @@ std::string describe(const Frame& frame) {
       line(role_name(Role(i)), describe_layer(frame, *layer));
   }
   line("camera", describe_camera(frame));
+  if (frame.report.header) line("header", describe(*frame.report.header));
   line("surfaces", fmt::format("{} of {} pixels ({} background, {} broken), median depth {:.4g}",
                                surface_pixels(frame), frame.scene.geometry.surfel.size(),
                                frame.gbuffer.background_pixels, frame.gbuffer.bad_pixels,

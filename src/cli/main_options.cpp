@@ -122,7 +122,8 @@ void add_input(CLI::App& app, InputOptions& o) {
 void add_camera(CLI::App& app, CameraOptions& o) {
   Group group(app, "Camera");
   CLI::Option* file =
-      group.value("--camera", "FILE.json", o.file, "camera as JSON; without it, fitted from P");
+      group.value("--camera", "FILE.json", o.file,
+                  "camera as JSON; without it, fitted from P or read from the header");
   CLI::Option* fov =
       group.value("--fov", "DEG", o.fov, "horizontal field of view, where P does not tell")
           ->check(between(0.01, 179))
@@ -141,7 +142,7 @@ void add_light(CLI::App& app, LightOptions& o) {
              "turn the map about the up axis, counter-clockwise from above")
       ->check(between(-1e6, 1e6));
   group.choice("--env-up", o.up, {{"auto", std::nullopt}, {"y", UpAxis::y}, {"z", UpAxis::z}},
-               "axis that points up; auto is z for Blender's files, else y");
+               "axis that points up; auto is z for files of Blender and Unreal, else y");
   group.value("--env-exposure", "STOPS", o.exposure_stops, "brighten the environment")
       ->check(between(-100, 100));
 }
