@@ -26,15 +26,14 @@ Verdict judge(const GBuffer& g, const Plane<Surfel>& surfels, const HeaderCamera
   return space.is_own ? Verdict::refuted : Verdict::none;
 }
 
-/// Depth alone has no space of its own: its positions are those of the camera.
-void set_pose(const Camera& pose, bool has_positions, Placement& placement) {
+void set_pose(const Camera& pose, Placement& placement) {
   placement.camera.rotation = pose.rotation, placement.camera.origin = pose.origin;
-  if (!has_positions) placement.of_positions = placement.camera;
 }
 
+/// The frame stays in the space of P, or of the camera where there is depth alone.
 void refuse(const HeaderCamera& reading, bool has_positions, GeometryReport& report) {
   Placement& placement = report.placement;
-  set_pose(has_positions ? placement.of_positions : Camera(), has_positions, placement);
+  set_pose(has_positions ? placement.of_positions : Camera(), placement);
   placement.world_given = false;
   report.header.reset();
   report.warnings.push_back(
@@ -43,8 +42,8 @@ void refuse(const HeaderCamera& reading, bool has_positions, GeometryReport& rep
                   describe(reading)));
 }
 
-void use(const HeaderCamera& reading, bool has_positions, GeometryReport& report) {
-  set_pose(reading.camera, has_positions, report.placement);
+void use(const HeaderCamera& reading, GeometryReport& report) {
+  set_pose(reading.camera, report.placement);
   report.header->reading = reading.reading;
   report.header->proof = HeaderProof::normals;
 }
@@ -54,13 +53,12 @@ void use(const HeaderCamera& reading, bool has_positions, GeometryReport& report
 void settle_world(const GBuffer& g, const Plane<Surfel>& surfels,
                   const std::vector<HeaderCamera>& readings, GeometryReport& report) {
   const HeaderCamera& first = readings.front();
-  const bool has_positions = !g.position.empty();
   if (!g.normal.empty()) {
     for (const HeaderCamera& reading : readings) {
       const Verdict verdict = judge(g, surfels, reading, report.placement);
       if (verdict == Verdict::none) break;
-      if (verdict == Verdict::proved) return use(reading, has_positions, report);
-      if (&reading == &readings.back()) return refuse(first, has_positions, report);
+      if (verdict == Verdict::proved) return use(reading, report);
+      if (&reading == &readings.back()) return refuse(first, !g.position.empty(), report);
     }
   }
   if (first.pose_agrees) return;

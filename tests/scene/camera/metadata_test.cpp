@@ -112,6 +112,16 @@ void expect_of(const Picture& picture, const Built& built) {
   EXPECT_LT(worst, 2e-5) << "of the distance";
 }
 
+/// The message with which a camera cannot be found.
+std::string refusal_of(const GBuffer& g) {
+  try {
+    build(g);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "a camera was found";
+}
+
 /// What a renderer writes, and what its header proves of itself.
 struct Renderer {
   std::string name;
@@ -316,12 +326,7 @@ TEST(HeaderCamera, IsThatOfPInAPlaneOnlyIfPAgrees) {
   other.fx *= 1.2, other.fy *= 1.2;
   const GBuffer wrong =
       with_header(gbuffer_of(floor), standard_header(other, kPlain.display), kPlain);
-  try {
-    build(wrong);
-    ADD_FAILURE() << "a camera was found";
-  } catch (const Error& e) {
-    EXPECT_THAT(e.what(), HasSubstr("worldToNDC does not put P on its own pixels"));
-  }
+  EXPECT_THAT(refusal_of(wrong), HasSubstr("worldToNDC does not put P on its own pixels"));
 }
 
 TEST(HeaderCamera, WithMatricesThatContradictEachOtherIsNoneForADepth) {
@@ -330,12 +335,31 @@ TEST(HeaderCamera, WithMatricesThatContradictEachOtherIsNoneForADepth) {
   other.origin += glm::dvec3(0.1, 0, 0);
   HeaderNumbers header = standard_header(camera, kPlain.display);
   header["worldToNDC"] = standard_header(other, kPlain.display).at("worldToNDC");
-  try {
-    build(with_header(depth_of(take_picture(still_life(), camera, kPlain.data)), header, kPlain));
-    ADD_FAILURE() << "a camera was found";
-  } catch (const Error& e) {
-    EXPECT_THAT(e.what(), HasSubstr("worldToCamera and worldToNDC are not of one camera"));
+  const Picture picture = take_picture(still_life(), camera, kPlain.data);
+  EXPECT_THAT(refusal_of(with_header(depth_of(picture), header, kPlain)),
+              HasSubstr("worldToCamera and worldToNDC are not of one camera"));
+}
+
+TEST(HeaderCamera, OfAnUnlikelyLensIsNoneForADepth) {
+  const Camera camera = turned_camera(kPlain);
+  const GBuffer depth = depth_of(take_picture(still_life(), camera, kPlain.data));
+  Camera wide = camera, aside = camera;
+  wide.fx *= 1.05;
+  aside.cx = 130;
+  HeaderNumbers sheared = standard_header(camera, kPlain.display);
+  sheared.erase("worldToCamera");
+  std::vector<double>& to_ndc = sheared["worldToNDC"];
+  for (std::size_t row = 0; row < 4; ++row) to_ndc[4 * row] += 0.02 * to_ndc[4 * row + 1];
+  for (const HeaderNumbers& header :
+       {standard_header(wide, kPlain.display), standard_header(aside, kPlain.display), sheared}) {
+    EXPECT_THAT(refusal_of(with_header(depth, header, kPlain)), HasSubstr("give --fov DEGREES"));
   }
+}
+
+TEST(HeaderCamera, OfBlenderIsWrittenByItsScript) {
+  GBuffer depth = depth_of(take_picture(still_life(), turned_camera(kPlain), kPlain.data));
+  depth.by_blender = true;
+  EXPECT_THAT(refusal_of(depth), HasSubstr("data/blender/export.py"));
 }
 
 TEST(HeaderCamera, OfALensThatNothingConfirmsIsUsedWithAWarning) {
