@@ -118,6 +118,12 @@ FoundCamera on_file(FoundCamera found, const PixelGrid& grid, const Camera* give
   return found;
 }
 
+/// The data window of a frame that is too large to be read at once is not known here.
+PictureWindows windows_of(const GBuffer& g) {
+  const Window& display = g.display_of_file();
+  return {display, g.grid.is_coarse() ? display : g.window, double(g.pixel_aspect)};
+}
+
 /// The camera where options give a projection. `given` is it on the grid of the G-buffer.
 FoundCamera find_under_options(const GBuffer& g, const Camera& given, const CameraOptions& options,
                                const std::string& file, GeometryReport& report, bool& is_fitted) {
@@ -165,7 +171,7 @@ FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const st
                         GeometryReport& report) {
   const auto given = camera_from_options(g, options, report);
   std::vector<HeaderCamera> header;
-  if (!given) header = header_cameras(g.header, g.display_of_file(), g.pixel_aspect);
+  if (!given) header = header_cameras(g.header, windows_of(g));
   if (g.position.empty()) {
     if (given) return {*given, *given, !options.file.empty()};
     const auto found = find_for_depth(g, header, report);

@@ -149,7 +149,8 @@ TEST(HeaderCamera, GivesADepthItsLensAndItsWorld) {
       ASSERT_TRUE(built.report.header);
       EXPECT_EQ(built.report.header->reading, renderer.reading);
       if (renderer.has_matrices) {
-        EXPECT_THAT(built.report.warnings, IsEmpty());
+        const bool overscan = windows.data.x0 < windows.display.x0;
+        EXPECT_THAT(built.report.warnings, SizeIs(overscan ? 1 : 0));
         EXPECT_EQ(built.report.header->proof, HeaderProof::consistency);
       } else {
         EXPECT_THAT(built.report.warnings, testing::Contains(HasSubstr("proves the pose")));
@@ -298,6 +299,24 @@ TEST(HeaderCamera, OfADepthFollowsTheNormals) {
   EXPECT_EQ(refused.geometry.camera.rotation, glm::dmat3(1));
   EXPECT_EQ(refused.geometry.camera.origin, glm::dvec3(0));
   EXPECT_THAT(refused.report.warnings, ElementsAre(HasSubstr("of another world")));
+}
+
+/// As with oiiotool --fullsize: the header is of the larger picture.
+TEST(HeaderCamera, OfOverscanThatAToolMadeIsThatOfTheDataWindow) {
+  const Windows windows{{0, 0, 96, 72}, {-24, -18, 120, 90}};
+  const Camera camera = turned_camera(windows);
+  const Picture picture = take_picture(still_life(), camera, windows.data);
+  const HeaderNumbers header = standard_header(camera, windows.data);
+  const Built in_space = build(with_header(in_camera_space(picture, false), header, windows)),
+              in_world = build(with_header(gbuffer_of(picture), header, windows)),
+              of_depth = build(with_header(depth_of(picture), header, windows));
+  expect_of(picture, in_space);
+  EXPECT_EQ(in_space.report.header->reading, "NDC of the data window");
+  EXPECT_THAT(in_space.report.warnings, IsEmpty());
+  EXPECT_EQ(in_world.report.header->proof, HeaderProof::positions);
+  EXPECT_THAT(in_world.report.warnings, IsEmpty());
+  EXPECT_THAT(of_depth.report.warnings,
+              ElementsAre(HasSubstr("unless the windows were changed after the render")));
 }
 
 TEST(HeaderCamera, OfNdcAloneIsWhole) {

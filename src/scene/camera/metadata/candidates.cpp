@@ -39,7 +39,7 @@ constexpr RendererRow kRedshift = {"rs/camera/transform",
                                    {Direction::to_world, CameraAxes::along_z_x_left},
                                    "rs/camera/fov",
                                    "",
-                                   "rs/camera/aperture"};
+                                   ""};
 
 std::optional<double> number(const Header& header, std::string_view name) {
   const auto found = header.find(std::string(name));
@@ -81,9 +81,9 @@ Lens lens_of(const Header& header, const RendererRow& row) {
   return lens;
 }
 
-void set_lens(HeaderCamera& out, const Lens& lens, const Window& display, double pixel_aspect) {
+void set_lens(HeaderCamera& out, const Lens& lens, const PictureWindows& windows) {
   if (lens.fov == 0) return;
-  const Camera projection = camera_from_fov(lens.fov, display, pixel_aspect);
+  const Camera projection = camera_from_fov(lens.fov, windows.display, windows.pixel_aspect);
   out.camera.fx = projection.fx, out.camera.fy = projection.fy;
   out.camera.cx = projection.cx, out.camera.cy = projection.cy;
   out.has_lens = true, out.lens_agrees = lens.agrees, out.doubt = lens.doubt;
@@ -96,13 +96,13 @@ std::string joined(const std::string& a, std::string_view b) {
 
 /// The readings of worldToCamera and worldToNDC under which they are one camera.
 std::vector<HeaderCamera> of_pair(const std::vector<PoseReading>& poses, const StoredMatrix& to_ndc,
-                                  const Window& display) {
+                                  const PictureWindows& windows) {
   std::vector<HeaderCamera> all;
   for (const PoseReading& pose : poses) {
     for (const NdcWindow ndc : kNdcWindows) {
-      auto camera = read_perspective(to_ndc, pose.transposed, ndc, display);
+      auto camera = read_perspective(to_ndc, pose.transposed, ndc, windows);
       if (camera && !same_pose(*camera, pose)) continue;
-      if (!camera) camera = read_orthographic(to_ndc, pose, ndc, display);
+      if (!camera) camera = read_orthographic(to_ndc, pose, ndc, windows);
       if (!camera) continue;
       camera->rotation = pose.rotation, camera->origin = pose.origin;
       all.push_back({"worldToCamera + worldToNDC", joined(pose.how, name_of(ndc)), *camera, true,
@@ -112,11 +112,11 @@ std::vector<HeaderCamera> of_pair(const std::vector<PoseReading>& poses, const S
   return all;
 }
 
-std::vector<HeaderCamera> of_ndc_alone(const StoredMatrix& to_ndc, const Window& display) {
+std::vector<HeaderCamera> of_ndc_alone(const StoredMatrix& to_ndc, const PictureWindows& windows) {
   std::vector<HeaderCamera> all;
   for (const bool transposed : {false, true}) {
     for (const NdcWindow ndc : kNdcWindows) {
-      if (const auto camera = read_perspective(to_ndc, transposed, ndc, display))
+      if (const auto camera = read_perspective(to_ndc, transposed, ndc, windows))
         all.push_back({"worldToNDC", joined(transposed ? "transposed" : "", name_of(ndc)), *camera,
                        true, true, true, true});
     }
@@ -127,7 +127,7 @@ std::vector<HeaderCamera> of_ndc_alone(const StoredMatrix& to_ndc, const Window&
 /// The readings of a matrix, each with the lens of single numbers; of a header without the matrix,
 /// the lens alone.
 std::vector<HeaderCamera> of_renderer(const Header& header, const RendererRow& row,
-                                      const Window& display, double pixel_aspect) {
+                                      const PictureWindows& windows) {
   const Lens lens = lens_of(header, row);
   const auto stored = matrix(header, row.pose);
   std::vector<HeaderCamera> all;
@@ -136,9 +136,9 @@ std::vector<HeaderCamera> of_renderer(const Header& header, const RendererRow& r
     HeaderCamera& out = all.emplace_back();
     out.source = row.pose, out.reading = pose.how, out.has_pose = true;
     out.camera.rotation = pose.rotation, out.camera.origin = pose.origin;
-    set_lens(out, lens, display, pixel_aspect);
+    set_lens(out, lens, windows);
   }
-  if (all.empty() && lens.fov > 0) set_lens(all.emplace_back(), lens, display, pixel_aspect);
+  if (all.empty() && lens.fov > 0) set_lens(all.emplace_back(), lens, windows);
   return all;
 }
 
@@ -146,15 +146,14 @@ void append(std::vector<HeaderCamera>& all, const std::vector<HeaderCamera>& mor
   all.insert(all.end(), more.begin(), more.end());
 }
 
-std::vector<HeaderCamera> of_standard(const Header& header, const Window& display,
-                                      double pixel_aspect) {
+std::vector<HeaderCamera> of_standard(const Header& header, const PictureWindows& windows) {
   const auto to_camera = matrix(header, kStandard.pose), to_ndc = matrix(header, "worldToNDC");
   std::vector<HeaderCamera> all;
   if (to_camera && to_ndc)
-    all = of_pair(read_pose(*to_camera, kStandard.convention), *to_ndc, display);
+    all = of_pair(read_pose(*to_camera, kStandard.convention), *to_ndc, windows);
   const bool contradict = to_camera && to_ndc && all.empty();
-  if (to_ndc && all.empty()) append(all, of_ndc_alone(*to_ndc, display));
-  append(all, of_renderer(header, kStandard, display, pixel_aspect));
+  if (to_ndc && all.empty()) append(all, of_ndc_alone(*to_ndc, windows));
+  append(all, of_renderer(header, kStandard, windows));
   if (contradict) {
     for (HeaderCamera& camera : all)
       camera.contradiction = "worldToCamera and worldToNDC are not of one camera";
@@ -169,18 +168,17 @@ bool is_renamed_by_oiio(const Header& header) {
          !header.contains("cameraTransform") && header.contains("cameraFov");
 }
 
-std::vector<HeaderCamera> of_vray(const Header& header, const Window& display,
-                                  double pixel_aspect) {
+std::vector<HeaderCamera> of_vray(const Header& header, const PictureWindows& windows) {
   // Other projections than that of a pinhole have other numbers.
   Header pinhole = header;
   if (number(header, "cameraProjection").value_or(0) != 0) {
     for (const std::string_view name : {kVRay.fov, kVRay.focal_length, kVRay.aperture})
       pinhole.erase(std::string(name));
   }
-  if (!is_renamed_by_oiio(header)) return of_renderer(pinhole, kVRay, display, pixel_aspect);
+  if (!is_renamed_by_oiio(header)) return of_renderer(pinhole, kVRay, windows);
   RendererRow renamed = kVRay;
   renamed.pose = "worldToCamera";
-  std::vector<HeaderCamera> all = of_renderer(pinhole, renamed, display, pixel_aspect);
+  std::vector<HeaderCamera> all = of_renderer(pinhole, renamed, windows);
   for (HeaderCamera& camera : all)
     camera.reading = joined("V-Ray's cameraTransform, renamed by OpenImageIO", camera.reading);
   return all;
@@ -197,8 +195,7 @@ std::optional<double> number_of_unreal(const Header& header, const std::string& 
 }
 
 /// Unreal writes strings, under unreal/camera/ or, newer, under a folder for each layer or camera.
-std::vector<HeaderCamera> of_unreal(const Header& header, const Window& display,
-                                    double pixel_aspect) {
+std::vector<HeaderCamera> of_unreal(const Header& header, const PictureWindows& windows) {
   constexpr std::string_view kX = "curPos/x";
   std::vector<HeaderCamera> all;
   for (const auto& [name, value] : header) {
@@ -218,20 +215,19 @@ std::vector<HeaderCamera> of_unreal(const Header& header, const Window& display,
       if (found) numbers[of] = {*found};
     }
     const RendererRow row{"", {}, "fov", "focalLength", "sensorWidth"};
-    set_lens(out, lens_of(numbers, row), display, pixel_aspect);
+    set_lens(out, lens_of(numbers, row), windows);
   }
   return all;
 }
 
 }  // namespace
 
-std::vector<HeaderCamera> header_cameras(const Header& header, const Window& display,
-                                         double pixel_aspect) {
+std::vector<HeaderCamera> header_cameras(const Header& header, const PictureWindows& windows) {
   std::vector<HeaderCamera> all;
-  if (!is_renamed_by_oiio(header)) append(all, of_standard(header, display, pixel_aspect));
-  append(all, of_vray(header, display, pixel_aspect));
-  append(all, of_renderer(header, kRedshift, display, pixel_aspect));
-  append(all, of_unreal(header, display, pixel_aspect));
+  if (!is_renamed_by_oiio(header)) append(all, of_standard(header, windows));
+  append(all, of_vray(header, windows));
+  append(all, of_renderer(header, kRedshift, windows));
+  append(all, of_unreal(header, windows));
   return all;
 }
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "math/plane.h"
 #include "scene/camera/camera.h"
+#include "scene/camera/metadata/matrices.h"
 
 namespace ssdo {
 
@@ -28,12 +28,12 @@ struct HeaderCamera {
 ///
 ///   worldToCamera, worldToNDC    OpenEXR's standard: Arnold, RenderMan; pbrt-v4, transposed
 ///   cameraTransform, cameraFov, cameraAperture, cameraFocalLength      V-Ray
-///   rs/camera/transform, rs/camera/fov, rs/camera/aperture             Redshift
+///   rs/camera/transform, rs/camera/fov                                 Redshift
 ///   unreal/.../curPos/x, curRot/yaw, fov, focalLength, sensorWidth     Unreal
 ///
 /// OpenImageIO renames V-Ray's cameraTransform to worldToCamera; beside V-Ray's other attributes
-/// that is read as V-Ray's. `display` and `pixel_aspect` are those of the file.
+/// that is read as V-Ray's.
 std::vector<HeaderCamera> header_cameras(const std::map<std::string, std::vector<double>>& header,
-                                         const Window& display, double pixel_aspect);
+                                         const PictureWindows& windows);
 
 }  // namespace ssdo

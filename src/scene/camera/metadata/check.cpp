@@ -89,6 +89,13 @@ bool is_plausible(const Camera& camera, const GBuffer& g) {
   return centred && std::abs(camera.fy / camera.fx / double(g.pixel_aspect) - 1) < 0.01;
 }
 
+/// Overscan: renders have it, or tools that widen the data window and leave the header as it was.
+bool exceeds_display(const GBuffer& g) {
+  const Window &data = g.window, &display = g.display;
+  return data.x0 < display.x0 || data.y0 < display.y0 || data.x1 > display.x1 ||
+         data.y1 > display.y1;
+}
+
 /// The camera of P in camera space, in the pose of a reading that has one.
 FoundCamera posed(const HeaderCamera& h, const Camera& of_positions,
                   const std::vector<HeaderCamera>& header) {
@@ -182,6 +189,12 @@ std::optional<FoundCamera> find_for_depth(const GBuffer& g, const std::vector<He
                     "--camera FILE.json to be sure",
                     describe(*h), h->camera.hfov_degrees(g.display_of_file().width()),
                     h->doubt.empty() ? "" : " (" + h->doubt + ")"));
+  }
+  if (exceeds_display(g)) {
+    report.warnings.push_back(
+        fmt::format("{}: its lens is that of the display window, unless the windows were changed "
+                    "after the render: then give --fov DEGREES or --camera FILE.json",
+                    describe(*h)));
   }
   return posed(*h, to_grid(h->camera, g.grid), header);
 }

@@ -94,12 +94,13 @@ struct PixelRows {
 };
 
 PixelRows pixel_rows(const StoredMatrix& stored, bool transposed, NdcWindow ndc,
-                     const Window& display) {
+                     const PictureWindows& windows) {
   const glm::dmat4 m = glm::transpose(matrix_of(stored, transposed));
   const glm::dvec4 x = m[0], y = m[1], w = m[3];
-  const double width = display.width(), height = display.height(), left = display.x0,
-               top = display.y0;
-  if (ndc == NdcWindow::y_down) return {width * x + left * w, height * y + top * w, w};
+  const Window& on = ndc == NdcWindow::data_y_down ? windows.data : windows.display;
+  const double width = on.width(), height = on.height(), left = on.x0, top = on.y0;
+  if (ndc == NdcWindow::y_down || ndc == NdcWindow::data_y_down)
+    return {width * x + left * w, height * y + top * w, w};
   if (ndc == NdcWindow::y_up) return {width * x + left * w, height * (w - y) + top * w, w};
   const double shorter = std::min(width, height);
   return {shorter * (x - 0.5 * w) + (left + 0.5 * width) * w,
@@ -141,13 +142,15 @@ std::string_view name_of(NdcWindow window) {
       return "NDC with y up";
     case NdcWindow::y_up_on_shorter:
       return "NDC of the shorter side with y up";
+    case NdcWindow::data_y_down:
+      return "NDC of the data window";
   }
   return "";
 }
 
 std::optional<Camera> read_perspective(const StoredMatrix& stored, bool transposed, NdcWindow ndc,
-                                       const Window& display) {
-  PixelRows picture = pixel_rows(stored, transposed, ndc, display);
+                                       const PictureWindows& windows) {
+  PixelRows picture = pixel_rows(stored, transposed, ndc, windows);
   if (is_parallel(picture)) return std::nullopt;
   const double scale = glm::length(glm::dvec3(picture.w));
   const glm::dvec4 x = picture.x / scale, y = picture.y / scale, w = picture.w / scale;
@@ -165,8 +168,8 @@ std::optional<Camera> read_perspective(const StoredMatrix& stored, bool transpos
 }
 
 std::optional<Camera> read_orthographic(const StoredMatrix& stored, const PoseReading& pose,
-                                        NdcWindow ndc, const Window& display) {
-  const PixelRows picture = pixel_rows(stored, pose.transposed, ndc, display);
+                                        NdcWindow ndc, const PictureWindows& windows) {
+  const PixelRows picture = pixel_rows(stored, pose.transposed, ndc, windows);
   if (!is_parallel(picture) || !(std::abs(picture.w.w) > 0)) return std::nullopt;
   const glm::dvec4 x = picture.x / picture.w.w, y = picture.y / picture.w.w;
   Camera camera;

@@ -50,12 +50,20 @@ std::vector<PoseReading> read_pose(const StoredMatrix& stored, const PoseConvent
 
 /// The pictures that worldToNDC may lie on.
 enum class NdcWindow {
-  y_down,          ///< OpenEXR: from the upper left corner of the display window to the lower right
-  y_up,            ///< from the lower left to the upper right
-  y_up_on_shorter  ///< pbrt-v4: the shorter side of the window is 0..1, about its middle
+  y_down,  ///< OpenEXR: from the upper left corner of the display window to the lower right
+  y_up,    ///< from the lower left to the upper right
+  y_up_on_shorter,  ///< pbrt-v4: the shorter side of the window is 0..1, about its middle
+  data_y_down       ///< OpenEXR's, of a display window that became the data window, for overscan
 };
+
 inline constexpr std::array kNdcWindows = {NdcWindow::y_down, NdcWindow::y_up,
-                                           NdcWindow::y_up_on_shorter};
+                                           NdcWindow::y_up_on_shorter, NdcWindow::data_y_down};
+
+/// The windows of a file, in its pixels, and their shape.
+struct PictureWindows {
+  Window display, data;
+  double pixel_aspect = 1;
+};
 
 /// How messages name one: "" for OpenEXR's.
 std::string_view name_of(NdcWindow window);
@@ -63,11 +71,11 @@ std::string_view name_of(NdcWindow window);
 /// The camera whose worldToNDC this is: projection and pose of a perspective one. Nothing for a
 /// matrix that shears.
 std::optional<Camera> read_perspective(const StoredMatrix& stored, bool transposed, NdcWindow ndc,
-                                       const Window& display);
+                                       const PictureWindows& windows);
 
 /// The orthographic camera at `pose` whose worldToNDC this is. Nothing where they differ.
 std::optional<Camera> read_orthographic(const StoredMatrix& stored, const PoseReading& pose,
-                                        NdcWindow ndc, const Window& display);
+                                        NdcWindow ndc, const PictureWindows& windows);
 
 /// Whether two poses are the same, to the precision of matrices of floats.
 bool same_pose(const Camera& camera, const PoseReading& pose);
