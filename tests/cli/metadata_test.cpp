@@ -149,17 +149,27 @@ TEST_F(HeaderCameraFiles, PlacesFurtherPicturesBesidePInCameraSpace) {
   EXPECT_EQ(lost.code, 4) << lost.err;
 }
 
-TEST_F(HeaderCameraFiles, GivePInCameraSpaceAHistory) {
-  const auto says = [&](const HeaderNumbers& header) {
+TEST_F(HeaderCameraFiles, GivePInCameraSpaceAHistoryAndNeighbours) {
+  const auto run = [&](const HeaderNumbers& header, const std::vector<std::string>& options) {
     for (const char* name : {"f.0001.exr", "f.0002.exr"}) write(name, in_camera_space(), header);
-    const Finished run =
-        run_tool({folder_ / "f.####.exr", "-o", folder_ / "out.####.exr", "--frames", "1-2",
-                  "--products", "ao", "--temporal", "--overwrite", "-v"});
-    EXPECT_EQ(run.code, 0) << run.err;
-    return run.err;
+    std::vector<std::string> words = {folder_ / "f.####.exr",
+                                      "-o",
+                                      folder_ / "out.####.exr",
+                                      "--frames",
+                                      "1-2",
+                                      "--products",
+                                      "ao",
+                                      "--overwrite",
+                                      "-v"};
+    words.insert(words.end(), options.begin(), options.end());
+    return run_tool(words);
   };
-  EXPECT_THAT(says(standard()), Not(HasSubstr("knows no world space")));
-  EXPECT_THAT(says({}), HasSubstr("knows no world space"));
+  EXPECT_THAT(run(standard(), {"--temporal"}).err, Not(HasSubstr("knows no world space")));
+  EXPECT_THAT(run({}, {"--temporal"}).err, HasSubstr("knows no world space"));
+  const Finished beside = run(standard(), {"--neighbours", "1"});
+  EXPECT_EQ(beside.code, 0) << beside.err;
+  EXPECT_THAT(beside.err, Not(HasSubstr("left out as a neighbour")));
+  EXPECT_EQ(run({}, {"--neighbours", "1"}).code, 4);
 }
 
 TEST_F(HeaderCameraFiles, AreThoseOfNukeAndOfAnotherPartToo) {

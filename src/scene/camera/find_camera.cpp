@@ -170,8 +170,7 @@ double rounding_of_positions(const GBuffer& g) {
 FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,
                         GeometryReport& report) {
   const auto given = camera_from_options(g, options, report);
-  std::vector<HeaderCamera> header;
-  if (!given) header = header_cameras(g.header, windows_of(g));
+  const std::vector<HeaderCamera> header = header_cameras(g.header, windows_of(g));
   if (g.position.empty()) {
     if (given) return {*given, *given, !options.file.empty()};
     const auto found = find_for_depth(g, header, report);

@@ -348,6 +348,17 @@ TEST(HeaderCamera, IsThatOfPInAPlaneOnlyIfPAgrees) {
   EXPECT_THAT(refusal_of(wrong), HasSubstr("worldToNDC does not put P on its own pixels"));
 }
 
+TEST(HeaderCamera, OfALensAloneGetsItsPoseFromPInAPlane) {
+  const Camera camera = turned_camera(kPlain);
+  const Picture floor = take_picture(plane({}, {0, 0, 1}), camera, kPlain.data);
+  HeaderNumbers header = vray_header(camera, kPlain.display);
+  header.erase("cameraTransform");
+  const Built built = build(with_header(gbuffer_of(floor), header, kPlain));
+  expect_of(floor, built);
+  EXPECT_EQ(built.report.header->proof, HeaderProof::lens);
+  EXPECT_LT(built.report.residual->median_px, 0.01);
+}
+
 TEST(HeaderCamera, WithMatricesThatContradictEachOtherIsNoneForADepth) {
   const Camera camera = turned_camera(kPlain);
   Camera other = camera;
@@ -423,6 +434,17 @@ TEST(HeaderCamera, OfUnrealIsARotatorInALeftHandedWorld) {
     EXPECT_EQ(in_world.report.header->proof, HeaderProof::positions);
     EXPECT_THAT(in_world.report.warnings, IsEmpty());
   }
+}
+
+/// Camera space and the world are then one, which P alone cannot tell.
+TEST(HeaderCamera, AtTheOriginMakesTheWorldKnown) {
+  const Camera camera =
+      look_at(shifted(camera_from_fov(40, kPlain.display, 1)), {0, 0, 0}, {0, 0, -1}, {0, 1, 0});
+  const Surface scene = all_of({plane({0, 0, -6}, {0.3, 0, 1}), sphere({0.2, 0, -4}, 0.6)});
+  const Picture picture = take_picture(scene, camera, kPlain.data);
+  const HeaderNumbers header = standard_header(camera, kPlain.display);
+  EXPECT_TRUE(build(with_header(gbuffer_of(picture), header, kPlain)).geometry.world_known);
+  EXPECT_FALSE(build(with_header(gbuffer_of(picture), {}, kPlain)).geometry.world_known);
 }
 
 TEST(HeaderCamera, GivesWayToOptions) {
