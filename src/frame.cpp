@@ -16,10 +16,12 @@
 namespace ssdo {
 namespace {
 
-/// Blender's world has z up; it marks its files, and Nuke keeps the mark under a prefix.
+/// Blender's world has z up; it marks its files, and Nuke keeps the marks under a prefix. Those of
+/// several views have those of Cycles alone.
 UpAxis up_axis_of(const Imf::Header& header) {
   for (auto it = header.begin(); it != header.end(); ++it) {
-    if (std::string(it.name()).find("BlenderMultiChannel") != std::string::npos) return UpAxis::z;
+    for (const char* mark : {"BlenderMultiChannel", "cycles."})
+      if (std::string(it.name()).find(mark) != std::string::npos) return UpAxis::z;
   }
   const bool blender = string_attribute(header, "Software").find("Blender") != std::string::npos;
   return blender ? UpAxis::z : UpAxis::y;
@@ -74,6 +76,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
                     const FrameFiles& files, int number) {
   Frame frame;
   frame.input = files.input;
+  frame.view = files.view;
   Stopwatch watch;
   // Names that nothing asks for are no reason to refuse a frame.
   std::vector<Role> unused;
@@ -81,7 +84,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   if (!options.model.temporal) unused.push_back(Role::motion);
   std::deque<ExrReader> opened = open_view(files.input, files.aovs);
   const double opening = watch.lap();
-  InputOptions input = options.input;
+  InputOptions input = for_view(options.input, files);
   input.gbuffer.downsample = options.output.downsample;
   input.gbuffer.beauty = choose_compose(options.output, files.aovs) != Compose::relight;
   input.gbuffer.most_pixels = most_pixels_in(options.memory);

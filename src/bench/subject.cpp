@@ -100,8 +100,9 @@ Subject read_subject(const BenchJob& job, std::vector<RunFile> inputs) {
   prepared.output.compose.reset();  // no composite is measured
   const Lighting light(prepared.light);
   FurtherPictures pictures;
-  subject.frame = prepare_frame(prepared, light, pictures,
-                                {job.input, prepared.input.aovs, prepared.input.also});
+  FrameFiles files{job.input, prepared.input.aovs, prepared.input.also};
+  if (!prepared.input.views.empty()) files.view = prepared.input.views.front();
+  subject.frame = prepare_frame(prepared, light, pictures, files);
   subject.products = choose_products(job, subject);
   subject.surface_pixels = count_surfaces(subject.frame);
   for (const auto& [product, truth] : subject.truths) check_truth(truth, subject);

@@ -117,6 +117,7 @@ std::string describe(const Frame& frame) {
   const auto line = [&](std::string_view key, const std::string& value) {
     text += fmt::format("  {:<10}{}\n", key, printable(value));
   };
+  if (!frame.view.empty()) line("view", frame.view);
   if (!(data == display)) line("window", "data " + text_of(data));
   for (std::size_t i = 0; i < kRoleCount; ++i) {
     const auto& layer = frame.layers.layers[i];
@@ -145,6 +146,7 @@ nlohmann::json to_json(const Frame& frame) {
   const Geometry& g = frame.scene.geometry;
   const ExrPart& part = frame.part();
   return {{"file", frame.input},
+          {"view", frame.view},
           {"width", part.display_window.width()},
           {"height", part.display_window.height()},
           {"data_window", window_json(part.data_window)},

@@ -102,8 +102,13 @@ void add_input(CLI::App& app, InputOptions& o) {
   group.text(
       "--neighbours", "K[xSTEP]", [&](const Text& text) { o.neighbours = read_neighbours(text); },
       "K frames before and after in the same sequence, every STEP, as further G-buffers");
-  group.value("--part", "NAME|N", o.part,
-              "look for layers in this part or view, and what completes it");
+  CLI::Option* part = group.value("--part", "NAME|N", o.part,
+                                  "look for layers in this part or view, and what completes it");
+  group
+      .text(
+          "--stereo", "left|right|all", [&](const Text& text) { o.views = read_stereo(text); },
+          "relight this view of a stereo file, or both, with the other as a further G-buffer")
+      ->excludes(part);
   group.text(
       "--depth-kind", "KIND", [&](const Text& text) { read_depth_kind(text, o.gbuffer); },
       "what a depth layer measures: " + depth_kind_forms());

@@ -2,8 +2,10 @@
 #include "cli/option_values.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -13,6 +15,7 @@
 #include "cli/memory.h"
 #include "error.h"
 #include "math/number.h"
+#include "scene/layers/groups.h"
 
 namespace ssdo {
 namespace {
@@ -124,6 +127,12 @@ glm::vec2 read_motion_scale(const std::string& text) {
   if (!scale || !usable(scale->first) || !usable(scale->second))
     throw_usage(fmt::format("--motion-scale {}: expected two factors X,Y, such as -1,-1", text));
   return {float(scale->first), float(scale->second)};
+}
+
+std::vector<std::string> read_stereo(const std::string& text) {
+  if (text == "all") return {kEyes.begin(), kEyes.end()};
+  if (std::ranges::find(kEyes, text) != kEyes.end()) return {text};
+  throw_usage(fmt::format("--stereo {}: expected one of {}, all", text, fmt::join(kEyes, ", ")));
 }
 
 Neighbours read_neighbours(const std::string& text) {

@@ -33,6 +33,9 @@ void read_compression(const std::string& text, OutputOptions& out);
 /// X,Y: two factors.
 glm::vec2 read_motion_scale(const std::string& text);
 
+/// The views to relight: left, right or all.
+std::vector<std::string> read_stereo(const std::string& text);
+
 /// K or KxSTEP: whole numbers from 1 on.
 Neighbours read_neighbours(const std::string& text);
 

@@ -5,6 +5,7 @@
 
 #include "scene/deep/channels.h"
 #include "scene/deep/deep_frame.h"
+#include "scene/layers/groups.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -28,6 +29,21 @@ Plane<float> take_depth_from_samples(View& view, const std::string& part, GBuffe
 }
 
 }  // namespace
+
+FrameFiles in_view(FrameFiles files, std::string_view view) {
+  files.view = view;
+  for (FrameFiles& neighbour : files.neighbours) neighbour.view = view;
+  return files;
+}
+
+FrameFiles other_eye(const FrameFiles& files) {
+  return in_view(files, files.view == kEyes[0] ? kEyes[1] : kEyes[0]);
+}
+
+InputOptions for_view(InputOptions options, const FrameFiles& files) {
+  if (!files.view.empty()) options.part = files.view;
+  return options;
+}
 
 std::deque<ExrReader> open_view(const std::string& input, const std::vector<LayerRequest>& aovs) {
   std::deque<ExrReader> files;

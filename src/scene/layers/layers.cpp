@@ -48,6 +48,15 @@ std::vector<LayerGroup> parts_beside(const std::vector<LayerGroup>& part,
   return those_of(all, is_beside);
 }
 
+/// How one of several views is chosen.
+std::string choice_of(const std::vector<std::string>& views) {
+  std::vector<std::string> names;
+  for (const std::string& view : views) names.push_back(lower(view));
+  const bool stereo = std::ranges::is_permutation(names, kEyes);
+  return stereo ? "--stereo left, right or all"
+                : fmt::format("a view with --part {}", fmt::join(views, " or --part "));
+}
+
 /// No layer has the requested name. The request was meant as FILE:LAYER if the text before the last
 /// colon can only be a file.
 void refuse_missing_file(const LayerRequest& request) {
@@ -141,8 +150,7 @@ class LayerFinder {
     }
     const bool of_views = views.size() == best.size() && !views_of(groups_[0]).empty() &&
                           std::find(views.begin(), views.end(), "") == views.end();
-    const std::string by_view =
-        of_views ? fmt::format("a view with --part {}, or ", fmt::join(views, " or --part ")) : "";
+    const std::string by_view = of_views ? choice_of(views) + ", or " : "";
     throw Error(
         ExitCode::layer,
         fmt::format("{}: {} layers could be {}: {}; choose {}one with --aov {}=LAYER", frame(),
