@@ -14,6 +14,7 @@
 #include "estimators/registry.h"
 #include "filters/registry.h"
 #include "io/sequence.h"
+#include "nearest_name.h"
 
 namespace ssdo {
 namespace {
@@ -73,8 +74,8 @@ class Group {
         field = value;
         return;
       }
-      throw Error(ExitCode::usage,
-                  fmt::format("{} {}: expected one of {}", flag, text, fmt::join(names, ", ")));
+      throw Error(ExitCode::usage, fmt::format("{} {}: {}expected one of {}", flag, text,
+                                               did_you_mean(text, names), fmt::join(names, ", ")));
     };
     CLI::Option* option = text(flag, fmt::format("{{{}}}", fmt::join(names, ",")), set, help);
     for (const auto& [name, value] : choices) {
