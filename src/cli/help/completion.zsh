@@ -1,0 +1,39 @@
+# WORD=FILE, for each of the words.
+_ssdo_keys() {
+  if compset -P '*='; then _files; else compadd -q -S = -- "$@"; fi
+}
+
+# NAME= of the parameters of the method that the line names, and NAME=WORD.
+_ssdo_parameters() {
+  local at=${words[(I)--method]} method=${${words[(R)--method=*]}#*=}
+  ((at)) && method=$words[at+1]
+  local -a settings=(${=$(_ssdo_settings "$method")})
+  compadd -S '' -- ${(M)settings:#*=}
+  compadd -- ${settings:#*=}
+}
+
+_ssdo_input() {
+  local -a names
+  _ssdo_commands
+  _alternative 'frames:frame:_files -g "*.exr(-.)"' 'commands:command:{_describe command names}'
+}
+
+_ssdo() {
+  local command=''
+  local -a names specs
+  _ssdo_commands
+  if ((CURRENT > 2)) && ((${names[(I)$words[2]:*]})); then
+    command=$words[2]
+    shift words
+    ((CURRENT--))
+  fi
+  _ssdo_specs "$command"
+  case $command in
+    '') specs+=('1:INPUT:_ssdo_input') ;;
+    compare) specs+=('*:FILE\:LAYER:_files -g "*.exr(-.)"') ;;
+    *) specs+=('1:INPUT:_files -g "*.exr(-.)"') ;;
+  esac
+  _arguments -S $specs
+}
+
+if [[ $funcstack[1] == _ssdo ]]; then _ssdo "$@"; else compdef _ssdo ssdo; fi
