@@ -8,6 +8,7 @@
 #include <regex>
 #include <sstream>
 
+#include "support/frame_file.h"
 #include "support/help_flags.h"
 #include "support/run_tool.h"
 
@@ -42,7 +43,10 @@ class Completions : public testing::TestWithParam<std::string> {
     const std::string driver = std::string(SSDO_SOURCE_DIR) + "/tests/cli/complete." + GetParam();
     std::vector<std::string> words = {GetParam(), driver, script()};
     words.insert(words.end(), lines.begin(), lines.end());
-    const Finished done = run_tool(words, {.binary = "/usr/bin/env", .folder = dir_ / "work"});
+    const std::string path =
+        std::filesystem::path(SSDO_BINARY).parent_path().string() + ":" + getenv("PATH");
+    const Finished done = run_tool(
+        words, {.variables = {{"PATH", path}}, .binary = "/usr/bin/env", .folder = dir_ / "work"});
     std::map<std::string, Completed> all;
     std::istringstream in(done.out);
     std::size_t next = 0;
@@ -126,6 +130,21 @@ TEST_P(Completions, OfferTheOptionsOfTheCommand) {
   EXPECT_THAT(bench, IsSupersetOf({"--env", "--radius"}));
   for (const char* refused : {"--method", "--output", "--frames"})
     EXPECT_THAT(bench, testing::Not(Contains(refused)));
+}
+
+TEST_P(Completions, OfferTheLayersOfTheFrame) {
+  write_frame(dir_ / "work/frame.exr", frame_of(small_picture()));
+  const Names layers = {"ViewLayer.DiffCol", "ViewLayer.Normal", "ViewLayer.Position"};
+  EXPECT_THAT(offers("ssdo frame.exr --aov normal="), IsSupersetOf(layers));
+  EXPECT_THAT(offers("ssdo frame.exr --aov normal="),
+              testing::AllOf(Contains("shot.exr"), testing::Not(Contains("ViewLayer.Depth"))));
+  EXPECT_THAT(offers("ssdo frame.exr --aov depth="), Contains("ViewLayer.Depth"));
+  EXPECT_THAT(offers("ssdo --aov normal="), testing::Not(Contains("ViewLayer.Normal")));
+  for (const std::string start :
+       {"ssdo frame.exr --aov normal=", "ssdo info frame.exr --aov=normal="}) {
+    const std::string line = start + "ViewLayer.N";
+    EXPECT_EQ(complete({line})[line].line, start + "ViewLayer.Normal");
+  }
 }
 
 /// The choices that the help shows as --flag {A,B}.

@@ -20,6 +20,18 @@ _ssdo_method() {
   done
 }
 
+# Offers the layers that can have this role, of the frame on the line.
+_ssdo_offer_layers() {
+  local word layer
+  for word in "${line[@]:1}"; do
+    [[ $word == *.exr && -f $word ]] || continue
+    while read -r layer; do
+      [[ $layer == "$typed"* ]] && COMPREPLY+=("$layer")
+    done < <(_ssdo_layers "${line[0]}" "$word" "$1")
+    return
+  done
+}
+
 _ssdo() {
   # Readline divides words at "=" and ":" too.
   local -a line=()
@@ -49,10 +61,12 @@ _ssdo() {
       head+=${typed%"${typed##*,}"} typed=${typed##*,}
       _ssdo_offer "$words"
       ;;
-    keys)
+    keys | layers)
       if [[ $typed == *=* ]]; then
-        head+=${typed%%=*}= typed=${typed#*=}
+        local key=${typed%%=*}
+        head+=$key= typed=${typed#*=}
         _ssdo_files
+        [[ $kind == layers ]] && _ssdo_offer_layers "$key"
       else
         _ssdo_offer "${words// /= }="
       fi

@@ -3,6 +3,17 @@ _ssdo_keys() {
   if compset -P '*='; then _files; else compadd -q -S = -- "$@"; fi
 }
 
+# WORD=LAYER of the frame on the line, or WORD=FILE.
+_ssdo_role() {
+  if ! compset -P '*='; then
+    compadd -q -S = -- "$@"
+    return
+  fi
+  local role=${${IPREFIX%=}##*=} frame=${words[(R)*.exr]}
+  [[ -f $frame ]] && compadd -- ${(f)"$(_ssdo_layers $tool $frame $role)"}
+  _files
+}
+
 # NAME= of the parameters of the method that the line names, and NAME=WORD.
 _ssdo_parameters() {
   local at=${words[(I)--method]} method=${${words[(R)--method=*]}#*=}
@@ -19,7 +30,7 @@ _ssdo_input() {
 }
 
 _ssdo() {
-  local command=''
+  local command='' tool=$words[1]
   local -a names specs
   _ssdo_commands
   if ((CURRENT > 2)) && ((${names[(I)$words[2]:*]})); then

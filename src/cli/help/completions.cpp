@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Each script is tables that are made here, and functions that read them: completion.bash and
-// completion.zsh beside this file.
+// Each script is tables that are made here, and functions that read them: completion.sh, .bash and
+// .zsh beside this file.
 #include "cli/help/completions.h"
 
 #include <fmt/format.h>
@@ -18,6 +18,9 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
+constexpr std::string_view kSharedFunctions =
+#include "completion_sh.inc"
+    ;
 constexpr std::string_view kBashFunctions =
 #include "completion_bash.inc"
     ;
@@ -92,7 +95,8 @@ std::string bash_values(const CLI::App& app) {
 std::string bash_script(const CLI::App& app) {
   return "# Completion of bash for ssdo, from: ssdo --completions bash\n\n" +
          lookup("_ssdo_commands", {{"*", commands_of(app)}}) + bash_options(app) +
-         bash_values(app) + settings_table() + std::string(kBashFunctions);
+         bash_values(app) + settings_table() + std::string(kSharedFunctions) +
+         std::string(kBashFunctions);
 }
 
 // ---- zsh
@@ -113,6 +117,7 @@ std::string zsh_action(const Completion& value) {
   if (value.kind == "words") return fmt::format("({})", words);
   if (value.kind == "list") return fmt::format("_values -s , name {}", words);
   if (value.kind == "keys") return fmt::format(" _ssdo_keys {}", words);
+  if (value.kind == "layers") return fmt::format(" _ssdo_role {}", words);
   if (value.kind == "parameters") return " _ssdo_parameters";
   if (value.kind == "files")
     return words.empty() ? "_files" : fmt::format("_files -g \"*.{}(-.)\"", words);
@@ -163,7 +168,8 @@ std::string zsh_commands(const CLI::App& app) {
 
 std::string zsh_script(const CLI::App& app) {
   return "#compdef ssdo\n# Completion of zsh for ssdo, from: ssdo --completions zsh\n\n" +
-         zsh_commands(app) + zsh_options(app) + settings_table() + std::string(kZshFunctions);
+         zsh_commands(app) + zsh_options(app) + settings_table() + std::string(kSharedFunctions) +
+         std::string(kZshFunctions);
 }
 
 }  // namespace

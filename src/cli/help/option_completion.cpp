@@ -39,7 +39,7 @@ const std::map<std::string, Completion>& named_values() {
       {"--filter", {"words", names_of(filters(), kSourceFilter)}},
       {"--products", {"list", names_of(kProducts, kAllProducts)}},
       {"--save", {"keys", names_of(kProducts)}},
-      {"--aov", {"keys", roles()}},
+      {"--aov", {"layers", roles()}},
       {"--compression", {"words", compression_names()}},
       {"--depth-kind", {"words", depth_kind_names()}},
   };

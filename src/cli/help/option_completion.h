@@ -14,12 +14,13 @@ namespace ssdo {
 
 // What can be completed, whatever the shell.
 
-/// How the value of an option is completed. The scripts know the kinds by these names.
+/// How the value of an option is completed. `kind` is what the scripts call it:
+/// none: there is no value; text: only the user knows it; words: one of the words; list: some of
+/// them, by commas; keys: WORD=FILE; layers: the same, or WORD=LAYER of INPUT; parameters: of the
+/// method; files: with the ending that `words` holds, or all.
 struct Completion {
-  std::string_view
-      kind;  ///< none: takes no value; words; list: of words, by commas; keys: WORD=FILE;
-             ///< parameters: of the method; files; text: only the user knows it
-  std::vector<std::string> words;  ///< of files: their ending, or nothing for any file
+  std::string_view kind;
+  std::vector<std::string> words;
 };
 
 /// Of the value of this option.
