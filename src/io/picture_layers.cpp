@@ -133,11 +133,11 @@ PictureLayer LayeredPicture::find(const std::string& name) const {
   if (found.empty()) found = layers_with(by_last_words);
   if (found.empty()) found = channels_with(by_last_words);
   if (found.size() == 1) return found[0];
-  std::vector<std::string> near;
-  for (const PictureLayer& layer : layers_) near.push_back(shown_name(layer));
+  std::vector<std::string> shown;
+  for (const PictureLayer& layer : layers_) shown.push_back(shown_name(layer));
   throw Error(ExitCode::layer, found.empty()
                                    ? fmt::format("{}: has no layer '{}'; {}there is {}", file_,
-                                                 name, did_you_mean(name, near), names())
+                                                 name, did_you_mean(name, shown), names())
                                    : fmt::format("{}: {} layers are called '{}'; name one of {}",
                                                  file_, found.size(), name, names()));
 }

@@ -113,6 +113,7 @@ TEST_P(Completions, OfferWhatFits) {
   EXPECT_THAT(offers("ssdo "), IsSupersetOf({"info", "bench", "compare", "shot.exr", "renders"}));
   EXPECT_THAT(offers("ssdo "), testing::Not(Contains("notes.txt")));
   EXPECT_THAT(offers("ssdo -o "), Contains("notes.txt"));
+  EXPECT_THAT(offers("ssdo compare shot.exr "), Contains("notes.txt"));
   EXPECT_THAT(offers("ssdo --method ssdo --set "), IsSupersetOf({"samples=", "bias="}));
   EXPECT_THAT(offers("ssdo --method msvo --set "), testing::Not(Contains("samples=")));
   EXPECT_EQ(offers("ssdo --seed "), Names());

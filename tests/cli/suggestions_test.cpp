@@ -76,7 +76,9 @@ TEST_F(Suggestions, OfCommands) {
   EXPECT_EQ(refusal_of_line({"inof", in_, "--json"}), info);
   EXPECT_THAT(refusal_of_line({"comprae", in_, in_}), HasSubstr("did you mean ssdo compare?"));
   EXPECT_THAT(refusal_of_line({"shot.exr"}), HasSubstr("shot.exr: no output given"));
-  EXPECT_THAT(refusal_of_line({in_, in_}), HasSubstr("in.exr' is not expected"));
+  EXPECT_THAT(refusal_of_line({in_, in_}), HasSubstr("in.exr' is not expected after INPUT"));
+  EXPECT_THAT(refusal_of_line({"compare", in_, in_, in_}),
+              HasSubstr("in.exr' is not expected after A and B; see ssdo compare --help"));
   EXPECT_EQ(run_tool({"inof", "-o", dir_ / "out.exr"}).code, 3) << "the name of a file";
 }
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Offers those of the words that begin with $typed.
 _ssdo_offer() {
   mapfile -t COMPREPLY < <(compgen -W "$*" -- "$typed")
@@ -78,7 +79,8 @@ _ssdo() {
       if [[ $whole == -* ]]; then
         _ssdo_offer "$(_ssdo_options "$command")"
       else
-        _ssdo_files exr
+        # compare takes pictures of all kinds
+        if [[ $command == compare ]]; then _ssdo_files; else _ssdo_files exr; fi
         ((${#line[@]} > 2)) || COMPREPLY+=($(compgen -W "$(_ssdo_commands)" -- "$typed"))
       fi
       ;;

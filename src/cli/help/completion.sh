@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The layers of a frame that can have a role, a line each: a name that no layer has ends ssdo after the
 # header of the file, with a list of them.
 _ssdo_layers() {  # TOOL FRAME ROLE

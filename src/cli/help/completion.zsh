@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # WORD=FILE, for each of the words.
 _ssdo_keys() {
   if compset -P '*='; then _files; else compadd -q -S = -- "$@"; fi
@@ -41,7 +42,7 @@ _ssdo() {
   _ssdo_specs "$command"
   case $command in
     '') specs+=('1:INPUT:_ssdo_input') ;;
-    compare) specs+=('*:FILE\:LAYER:_files -g "*.exr(-.)"') ;;
+    compare) specs+=('*:FILE\:LAYER:_files') ;;
     *) specs+=('1:INPUT:_files -g "*.exr(-.)"') ;;
   esac
   _arguments -S $specs

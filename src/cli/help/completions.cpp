@@ -45,6 +45,13 @@ std::string lookup(const std::string& function,
   return text + "  esac\n}\n\n";
 }
 
+/// Calls visit(pattern of its name, command) for every command, and last for the main job.
+template <class Visit>
+void for_each_command(const CLI::App& app, const Visit& visit) {
+  for (const CLI::App* command : app.get_subcommands({})) visit(command->get_name(), *command);
+  visit("*", app);
+}
+
 Texts commands_of(const CLI::App& app) {
   Texts names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
@@ -63,22 +70,20 @@ std::string settings_table() {
 /// The options of each command, and of the main job.
 std::string bash_options(const CLI::App& app) {
   std::vector<std::pair<std::string, Texts>> rows;
-  const auto add = [&](const std::string& pattern, const CLI::App& command) {
+  for_each_command(app, [&](const std::string& pattern, const CLI::App& command) {
     Texts flags;
     for (const CLI::Option* option : options_with(app, command)) {
       for (const std::string& name : spellings(*option)) flags.push_back(name);
     }
     rows.push_back({pattern, flags});
-  };
-  for (const CLI::App* command : app.get_subcommands({})) add(command->get_name(), *command);
-  add("*", app);
+  });
   return lookup("_ssdo_options", rows);
 }
 
 /// Kind and words of the value of each option that takes one.
 std::string bash_values(const CLI::App& app) {
   std::vector<std::pair<std::string, Texts>> rows;
-  const auto add = [&](const CLI::App& command) {
+  for_each_command(app, [&](const std::string&, const CLI::App& command) {
     for (const CLI::Option* option : command.get_options()) {
       const Completion value = completion_of(*option);
       if (!option->nonpositional() || value.kind == "none") continue;
@@ -86,9 +91,7 @@ std::string bash_values(const CLI::App& app) {
       row.insert(row.end(), value.words.begin(), value.words.end());
       rows.push_back({fmt::format("{}", fmt::join(spellings(*option), "|")), row});
     }
-  };
-  add(app);
-  for (const CLI::App* command : app.get_subcommands({})) add(*command);
+  });
   return lookup("_ssdo_value", rows);
 }
 
@@ -146,13 +149,11 @@ std::string zsh_specs(const CLI::Option& option) {
 /// A function that sets the array `specs` to what _arguments takes for each command.
 std::string zsh_options(const CLI::App& app) {
   std::string text = "_ssdo_specs() {\n  case $1 in\n";
-  const auto add = [&](const std::string& pattern, const CLI::App& command) {
+  for_each_command(app, [&](const std::string& pattern, const CLI::App& command) {
     text += fmt::format("    {})\n      specs=(\n", pattern);
     for (const CLI::Option* option : options_with(app, command)) text += zsh_specs(*option);
     text += "      ) ;;\n";
-  };
-  for (const CLI::App* command : app.get_subcommands({})) add(command->get_name(), *command);
-  add("*", app);
+  });
   return text + "  esac\n}\n\n";
 }
 

@@ -22,6 +22,11 @@ const CLI::App* command_of(const CLI::App& app) {
   return parsed.empty() ? nullptr : parsed.front();
 }
 
+/// The command that prints the options which go with `command`.
+std::string help_of(const CLI::App* command) {
+  return command ? fmt::format("ssdo {} --help", command->get_name()) : "ssdo --help";
+}
+
 /// Long names, without dashes: as many letters as a user has to spell.
 Names option_names(const CLI::App& app) {
   Names names;
@@ -44,19 +49,19 @@ Names options_of(const CLI::App& app, const CLI::App* command) {
 Error unknown_option(const CLI::App& app, const std::string& word) {
   const CLI::App* const command = command_of(app);
   const std::string flag = word.substr(0, word.find('='));
-  const std::string help =
-      command ? fmt::format("ssdo {} --help", command->get_name()) : "ssdo --help";
   for (const CLI::App* other : app.get_subcommands({})) {
     if (!command && other->get_option_no_throw(flag))
       return usage(fmt::format("{0}: is an option of ssdo {1}; see ssdo {1} --help", flag,
                                other->get_name()));
   }
   if (command && app.get_option_no_throw(flag))
-    return usage(fmt::format("{} takes no {}; see {}", command->get_name(), flag, help));
+    return usage(
+        fmt::format("{} takes no {}; see {}", command->get_name(), flag, help_of(command)));
   const std::string name = flag.substr(std::min(flag.find_first_not_of('-'), flag.size()));
   const auto meant = nearest_name(name, options_of(app, command));
   return usage(fmt::format("{}: no such option; {}see {}", flag,
-                           meant ? fmt::format("did you mean --{}? ", *meant) : "", help));
+                           meant ? fmt::format("did you mean --{}? ", *meant) : "",
+                           help_of(command)));
 }
 
 }  // namespace
@@ -78,9 +83,11 @@ Error unknown_words(const CLI::App& app) {
   const auto option = std::find_if(words.begin(), words.end(),
                                    [](const std::string& word) { return word.starts_with("-"); });
   if (option != words.end()) return unknown_option(app, *option);
-  return usage(
-      fmt::format("'{}' is not expected: there are words before it in its place; see ssdo --help",
-                  words.empty() ? "" : words.front()));
+  const CLI::App* const command = command_of(app);
+  const bool reads_a_frame = !command || command->get_fallthrough();
+  return usage(fmt::format("'{}' is not expected after {}; see {}",
+                           words.empty() ? "" : words.front(), reads_a_frame ? "INPUT" : "A and B",
+                           help_of(command)));
 }
 
 }  // namespace ssdo
