@@ -106,6 +106,13 @@ TEST_F(Suggestions, OfValues) {
     EXPECT_THAT(refusal({flag, value}), HasSubstr(says)) << flag;
 }
 
+TEST_F(Suggestions, OfProductsThatBenchMeasures) {
+  EXPECT_THAT(refusal_of_line({"bench", in_, "--products", "bonce"}),
+              HasSubstr("'bonce': did you mean bounce? bench measures ao"));
+  EXPECT_THAT(refusal_of_line({"bench", in_, "--want", "bonce=0.1"}),
+              HasSubstr("bonce is not measured; did you mean bounce? there is ao"));
+}
+
 TEST_F(Suggestions, AreNotMadeWhereNothingIsNear) {
   const std::vector<std::pair<std::string, std::string>> far = {
       {"--method", "magic"},     {"--filter", "median"},    {"--products", "glow"},
