@@ -21,7 +21,7 @@ install_packages() {
 build_packages=(g++ cmake ninja-build pkg-config libopenexr-dev libopenimageio-dev openimageio-tools
   libopencolorio-dev libeigen3-dev libglm-dev libtbb-dev libembree-dev libhwy-dev libdeflate-dev libcli11-dev libfmt-dev nlohmann-json3-dev
   libtomlplusplus-dev)
-test_packages=(libgtest-dev libgmock-dev groff chromium)
+test_packages=(libgtest-dev libgmock-dev groff chromium zsh)
 
 # build FOLDER TARGET [cmake options]: configures FOLDER and builds TARGET in it.
 build() {

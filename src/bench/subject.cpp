@@ -10,6 +10,7 @@
 #include "bench/report_files.h"
 #include "error.h"
 #include "estimators/registry.h"
+#include "nearest_name.h"
 
 namespace ssdo {
 namespace {
@@ -32,7 +33,8 @@ std::vector<std::string> choose_products(const BenchJob& job, const Subject& sub
   const std::vector<std::string>& asked = job.frame.output.products;
   for (const std::string& name : asked) {
     if (!contains(measured_products(), name)) {
-      throw Error(ExitCode::usage, fmt::format("product '{}': bench measures {}", name,
+      throw Error(ExitCode::usage, fmt::format("product '{}': {}bench measures {}", name,
+                                               did_you_mean(name, measured_products()),
                                                fmt::join(measured_products(), ", ")));
     }
   }
@@ -47,8 +49,9 @@ std::vector<std::string> choose_products(const BenchJob& job, const Subject& sub
   for (const WantedError& want : job.options.wants) {
     if (!want.product.empty() && !contains(products, want.product)) {
       throw Error(ExitCode::usage,
-                  fmt::format("--want {}={:g}: {} is not measured; there is {}", want.product,
-                              want.error, want.product, fmt::join(products, ", ")));
+                  fmt::format("--want {}={:g}: {} is not measured; {}there is {}", want.product,
+                              want.error, want.product, did_you_mean(want.product, products),
+                              fmt::join(products, ", ")));
     }
   }
   return products;

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "support/help_flags.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -24,22 +25,8 @@ std::string page(const std::string& path) {
   return std::regex_replace(read_file(path), std::regex(R"(\\-)"), "-");
 }
 
-/// The flags that a help text declares: those that begin a line, not those that a text mentions.
-Flags flags_of_help(const std::vector<std::string>& arguments) {
-  const Finished done = run_tool(arguments);
-  EXPECT_EQ(done.code, 0) << done.err;
-  static const std::regex declared(R"(^  (?:-\w,)?(--[a-z][a-z-]*))");
-  Flags flags;
-  std::istringstream lines(done.out);
-  for (std::string line; std::getline(lines, line);) {
-    std::smatch found;
-    if (std::regex_search(line, found, declared)) flags.insert(found[1]);
-  }
-  return flags;
-}
-
 Flags flags_of_binary() {
-  Flags flags = flags_of_help({"--help"});
+  Flags flags = flags_of_help({"--help-all"});
   flags.merge(flags_of_help({"info", "--help"}));
   flags.merge(flags_of_help({"compare", "--help"}));
   flags.merge(flags_of_help({"bench", "--help"}));

@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "io/sequence.h"
+#include "nearest_name.h"
 #include "scene/layers/candidates.h"
 #include "scene/layers/groups.h"
 #include "scene/layers/names.h"
@@ -68,11 +69,14 @@ void refuse_missing_file(const LayerRequest& request) {
 }
 
 [[noreturn]] void throw_no_part(const ExrReader& frame, const std::string& wanted) {
-  std::vector<std::string> names;
-  for (const ExrPart& part : frame.parts())
-    names.push_back(fmt::format("{} '{}'{}", part.index, part.name, part.deep ? " (deep)" : ""));
-  throw Error(ExitCode::layer, fmt::format("{}: no part or view '{}'; the file has {}",
-                                           frame.path().string(), wanted, fmt::join(names, ", ")));
+  std::vector<std::string> names, forms;
+  for (const ExrPart& part : frame.parts()) {
+    names.insert(names.end(), {part.name, part.view});
+    forms.push_back(fmt::format("{} '{}'{}", part.index, part.name, part.deep ? " (deep)" : ""));
+  }
+  throw Error(ExitCode::layer,
+              fmt::format("{}: no part or view '{}'; {}the file has {}", frame.path().string(),
+                          wanted, did_you_mean(wanted, names), fmt::join(forms, ", ")));
 }
 
 /// The groups of the frame that --part selects: a part by name or number, completed by the other
@@ -177,9 +181,10 @@ class LayerFinder {
       if (as_layer(group, request.role)) names.push_back(group.name);
     }
     throw Error(ExitCode::layer,
-                fmt::format("{}: {} layer '{}' with channels for {}; the file has {}",
+                fmt::format("{}: {} layer '{}' with channels for {}; {}the file has {}",
                             files_[file]->path().string(), found.empty() ? "no" : "more than one",
                             request.layer, role_name(request.role),
+                            found.empty() ? did_you_mean(request.layer, names) : "",
                             names.empty() ? "none that fits" : quoted(names)));
   }
 
@@ -195,9 +200,12 @@ LayerRequest parse_layer_request(const std::string& text) {
   const auto equals = text.find('=');
   const auto role = role_from_name(text.substr(0, equals));
   if (equals == std::string::npos || !role || equals + 1 == text.size()) {
-    throw Error(ExitCode::usage,
-                fmt::format("--aov {}: expected ROLE=LAYER or ROLE=FILE:LAYER with ROLE one of {}",
-                            text, fmt::join(role_names(), ", ")));
+    const auto roles = role_names();
+    throw Error(
+        ExitCode::usage,
+        fmt::format("--aov {}: {}expected ROLE=LAYER or ROLE=FILE:LAYER with ROLE one of {}", text,
+                    role ? "" : did_you_mean(text.substr(0, equals), {roles.begin(), roles.end()}),
+                    fmt::join(roles, ", ")));
   }
   LayerRequest request{*role, "", text.substr(equals + 1)};
   // A layer name may contain a colon: it separates a file only where that file or sequence exists.
