@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace ssdo {
 
@@ -16,5 +17,10 @@ std::filesystem::path follow_links(std::filesystem::path path);
 /// A name for a temporary beside `target`: hidden, unlike any other, with the target's extension
 /// (libraries choose the format by it), and short enough for the file system.
 std::filesystem::path temporary_beside(const std::filesystem::path& target);
+
+/// What stands in the names of all temporaries that were made on this machine since it started, and
+/// in no others: ".ssdo-" and eight digits of the id that Linux draws for each start. Empty where
+/// the system tells no such id.
+std::string mark_of_machine();
 
 }  // namespace ssdo

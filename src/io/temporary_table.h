@@ -9,7 +9,11 @@ namespace ssdo {
 /// Enters `path` and returns its slot, or -1 if the path is too long or every slot is taken.
 int enter_temporary(const char* path);
 
-/// Frees the slot of a temporary that has been renamed or removed.
+/// Gives the slot the descriptor of its file, which holds the lock that says that its process
+/// lives.
+void hold_temporary(int slot, int descriptor);
+
+/// Frees the slot of a temporary that has been renamed or removed, and closes its descriptor.
 void leave_temporary(int slot);
 
 }  // namespace ssdo
