@@ -47,6 +47,12 @@ struct Work {
   std::optional<Error> error = {};
 };
 
+/// Not in a folder that may not be looked into: that is for the reader to say.
+bool is_missing(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::status(path, ignored).type() == std::filesystem::file_type::not_found;
+}
+
 class Batch {
  public:
   Batch(const Options& options, const Resources& resources)
@@ -154,8 +160,9 @@ class Batch {
     attempt(work, [&] {
       if (may_skip(work)) return;
       const Job& job = jobs_[i];
-      if (job.frame && !std::filesystem::exists(job.files.input)) {
-        throw Error(ExitCode::input, fmt::format("{}: frame {} of the range is missing",
+      if (job.frame && is_missing(job.files.input)) {
+        throw Error(ExitCode::input, fmt::format("{}: frame {} of the range is missing; render it "
+                                                 "or leave it out of --frames",
                                                  job.files.input, *job.frame));
       }
       work.frame = prepare_frame(options_, *light_, pictures_, job.files, job.frame.value_or(0));
