@@ -2,6 +2,7 @@
 #include "io/output_path.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <climits>
@@ -50,7 +51,9 @@ fs::path temporary_beside(const fs::path& target) {
 std::string mark_of_machine() {
   std::string id;
   std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), id);
-  return id.size() < 8 ? "" : ".ssdo-" + id.substr(0, 8);
+  struct stat processes = {};
+  if (id.size() < 8 || stat("/proc/self/ns/pid", &processes) != 0) return "";
+  return fmt::format(".ssdo-{}{:08x}", id.substr(0, 8), processes.st_ino);
 }
 
 }  // namespace ssdo

@@ -18,9 +18,10 @@ std::filesystem::path follow_links(std::filesystem::path path);
 /// (libraries choose the format by it), and short enough for the file system.
 std::filesystem::path temporary_beside(const std::filesystem::path& target);
 
-/// What stands in the names of all temporaries that were made on this machine since it started, and
-/// in no others: ".ssdo-" and eight digits of the id that Linux draws for each start. Empty where
-/// the system tells no such id.
+/// What the names of all temporaries have in common whose process ids can be compared, and no
+/// others:
+/// ".ssdo-" and 16 digits of the id that Linux draws at each start and of the processes' namespace.
+/// Empty where the system does not tell them.
 std::string mark_of_machine();
 
 }  // namespace ssdo

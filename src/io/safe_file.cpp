@@ -3,8 +3,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -77,20 +75,6 @@ void create_folder(const fs::path& path) {
   }
 }
 
-// Opens a new file, locked so that remove_stale_temporaries() knows that its process lives; without
-// a lock where the file system has none. Returns -1 and errno on errors.
-int open_locked(const fs::path& file) {
-  const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor >= 0) flock(descriptor, LOCK_EX);
-  return descriptor;
-}
-
-// Between the opening and the lock, another run can have taken the file for a dead one's.
-bool is_removed(int descriptor) {
-  struct stat status = {};
-  return fstat(descriptor, &status) == 0 && status.st_nlink == 0;
-}
-
 // To the disk before the rename: after a power cut, the name must not stand for an empty file.
 void flush_to_disk(const fs::path& file, const fs::path& target) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
@@ -136,21 +120,17 @@ SafeFile::SafeFile(fs::path target, const OutputPolicy& policy)
     : target_(std::move(target)), policy_(policy) {
   check_output(target_, policy_);
   if (policy_.create_dirs) create_folder(target_);
-  int descriptor = -1;
-  do {
+  temporary_ = temporary_beside(follow_links(target_));
+  slot_ = enter_temporary(temporary_.c_str());
+  if (slot_ < 0)
+    fail(target_, "cannot be opened: too many outputs are open, or its path is too long");
+  const int descriptor = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) {
+    const int error = errno;
     leave_temporary(slot_);
-    temporary_ = temporary_beside(follow_links(target_));
-    slot_ = enter_temporary(temporary_.c_str());
-    if (slot_ < 0)
-      fail(target_, "cannot be opened: too many outputs are open, or its path is too long");
-    descriptor = open_locked(temporary_);
-    if (descriptor < 0) {
-      const int error = errno;
-      leave_temporary(slot_);
-      fail(target_, fmt::format("cannot be written: {}; write elsewhere", reason(error)));
-    }
-    hold_temporary(slot_, descriptor);
-  } while (is_removed(descriptor));
+    fail(target_, fmt::format("cannot be written: {}; write elsewhere", reason(error)));
+  }
+  close(descriptor);
 }
 
 SafeFile::~SafeFile() {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/stale_temporaries.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <optional>
 #include <string>
 #include <system_error>
 
@@ -15,21 +17,19 @@ namespace fs = std::filesystem;
 namespace ssdo {
 namespace {
 
-bool is_temporary(const fs::path& file, const std::string& mark) {
+/// The process that made a temporary with the mark of this machine; none for other files.
+std::optional<pid_t> owner_of(const fs::path& file, const std::string& mark) {
   const std::string name = file.filename().string();
-  return name.starts_with('.') && name.find(mark + '-') != std::string::npos &&
-         file.stem().extension() == ".tmp";
+  const std::size_t place = name.find(mark + '-');
+  if (!name.starts_with('.') || place == std::string::npos || file.stem().extension() != ".tmp")
+    return std::nullopt;
+  pid_t owner = 0;
+  const char* digits = name.data() + place + mark.size() + 1;
+  const auto [end, error] = std::from_chars(digits, name.data() + name.size(), owner);
+  return error == std::errc() && *end == '-' && owner > 0 ? std::optional(owner) : std::nullopt;
 }
 
-/// Removes a file that can be locked: whoever made it no longer lives.
-bool remove_unlocked(const fs::path& file) {
-  // Network file systems lock only what is open for writing; a pipe of that name must not block.
-  const int descriptor = open(file.c_str(), O_RDWR | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
-  if (descriptor < 0) return false;
-  const bool removed = flock(descriptor, LOCK_EX | LOCK_NB) == 0 && unlink(file.c_str()) == 0;
-  close(descriptor);
-  return removed;
-}
+bool is_gone(pid_t process) { return kill(process, 0) != 0 && errno == ESRCH; }
 
 }  // namespace
 
@@ -40,8 +40,8 @@ std::vector<fs::path> remove_stale_temporaries(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator it(folder.empty() ? "." : folder, error), end; !error && it != end;
        it.increment(error)) {
-    if (is_temporary(it->path(), mark) && remove_unlocked(it->path()))
-      removed.push_back(it->path());
+    const auto owner = owner_of(it->path(), mark);
+    if (owner && is_gone(*owner) && unlink(it->path().c_str()) == 0) removed.push_back(it->path());
   }
   return removed;
 }

@@ -8,7 +8,6 @@
 #include <climits>
 #include <csignal>
 #include <cstring>
-#include <utility>
 
 #include "io/safe_file.h"
 
@@ -20,7 +19,6 @@ enum class State { free, filling, armed };
 struct Slot {
   std::atomic<State> state = State::free;
   char path[PATH_MAX] = {};
-  int descriptor = -1;
 };
 static_assert(std::atomic<State>::is_always_lock_free);
 
@@ -49,15 +47,8 @@ int enter_temporary(const char* path) {
   return -1;
 }
 
-void hold_temporary(int slot, int descriptor) {
-  g_slots[std::size_t(slot)].descriptor = descriptor;
-}
-
 void leave_temporary(int slot) {
-  if (slot < 0) return;
-  Slot& left = g_slots[std::size_t(slot)];
-  if (left.descriptor >= 0) close(std::exchange(left.descriptor, -1));
-  left.state = State::free;
+  if (slot >= 0) g_slots[std::size_t(slot)].state = State::free;
 }
 
 void remove_temporaries_on_signals() {

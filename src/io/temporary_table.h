@@ -9,11 +9,7 @@ namespace ssdo {
 /// Enters `path` and returns its slot, or -1 if the path is too long or every slot is taken.
 int enter_temporary(const char* path);
 
-/// Gives the slot the descriptor of its file, which holds the lock that says that its process
-/// lives.
-void hold_temporary(int slot, int descriptor);
-
-/// Frees the slot of a temporary that has been renamed or removed, and closes its descriptor.
+/// Frees the slot of a temporary that has been renamed or removed.
 void leave_temporary(int slot);
 
 }  // namespace ssdo

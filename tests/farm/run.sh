@@ -7,6 +7,7 @@ set -euo pipefail
 
 farm=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$farm/../.." && pwd)
+export PATH=$PATH:/usr/sbin:/sbin
 source "$farm/cluster.sh"
 source "$farm/checks.sh"
 
@@ -142,7 +143,7 @@ test_leftovers_of_other_machines() {
 
 end() {
   local code=$?
-  [ "$code" -eq 0 ] || [ ${#daemons[@]} -eq 0 ] || show_cluster_logs
+  [ "$code" -eq 0 ] || [ ${#daemons[@]} -eq 0 ] || show_cluster_logs || true
   stop_cluster
   cd /
   rm -rf "$work"

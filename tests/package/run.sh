@@ -6,6 +6,7 @@
 set -euo pipefail
 
 folder=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+export PATH=$PATH:/usr/sbin:/sbin
 data=$folder/../../data
 build=$(realpath -m "${1:-$folder/../../build/release}")
 
