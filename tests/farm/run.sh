@@ -49,14 +49,16 @@ example() {
 
 run_example() { bash -euo pipefail -c "$(example "$1")"; }
 
-# catch_writer [PID]: stops a task while it writes a frame, other than PID, and prints its process id,
-# which is in the name of the temporary. Once it is stopped the temporary must still be there.
+# The process that writes a temporary, by its name.
+writer_of() { sed 's/.*\.ssdo-[^-]*-\([0-9]*\)-.*/\1/' <<<"$1"; }
+
+# catch_writer [PID]: stops a task while it writes a frame, other than PID, and prints its process id.
+# Once it is stopped the temporary must still be there.
 catch_writer() {
-  local tries temporary name pid
+  local tries temporary pid
   for ((tries = 0; tries < 6000; tries++)); do
     for temporary in relit/.*.tmp.*; do
-      name=${temporary##*.ssdo-}
-      pid=$(cut -d- -f2 <<<"$name")
+      pid=$(writer_of "$temporary")
       [ -e "$temporary" ] && [ "$pid" != "${1:-}" ] && kill -STOP "$pid" 2>/dev/null || continue
       [ ! -e "$temporary" ] || { echo "$pid"; return; }
       kill -CONT "$pid"
@@ -119,15 +121,23 @@ test_parallel() {
 
 test_make() {
   rm -r relit
-  example Makefile | sed '/^\t/!s/^        /\t/' >Makefile
+  mkdir relit
+  example Makefile | sed 's/^        /\t/' >Makefile
   run_example make >make.log 2>&1 &
-  local runner=$! killed
-  mkdir -p relit
-  killed=$(catch_writer)
-  kill -KILL "$killed"
+  local runner=$! caught
+  caught=$(catch_writer)
+  kill -KILL "$caught"
   ! wait "$runner" || fail "make: a killed task is no failure"
-  say "make: killed process $killed; $(frames_done) of 48 frames; the same command again"
-  run_example make >make.log 2>&1 || { cat make.log; fail "make: the second run failed"; }
+  say "make: killed process $caught; $(frames_done) of 48 frames; the same command again"
+  setsid make -j 2 >make.log 2>&1 &
+  runner=$!
+  caught=$(catch_writer)
+  kill -TERM -- "-$runner"
+  kill -CONT "$caught"
+  ! wait "$runner" || fail "make: an interrupted run is no failure"
+  [ -z "$(find relit -name '.*')" ] || fail "make: an interrupted run has left a temporary"
+  say "make: interrupted; $(frames_done) of 48 frames; the same command again"
+  run_example make >make.log 2>&1 || { cat make.log; fail "make: the last run failed"; }
   check_shot "make"
 }
 
@@ -141,10 +151,15 @@ test_leftovers_of_other_machines() {
   check_shot "leftovers"
 }
 
+# Tasks that were stopped and not yet killed would stay.
 end() {
-  local code=$?
+  local code=$? temporary
   [ "$code" -eq 0 ] || [ ${#daemons[@]} -eq 0 ] || show_cluster_logs || true
   stop_cluster
+  for temporary in "$work"/relit/.*.tmp.*; do
+    [ ! -e "$temporary" ] || kill -KILL "$(writer_of "$temporary")" 2>/dev/null || true
+  done
+  kill $(jobs -p) 2>/dev/null || true
   cd /
   rm -rf "$work"
 }
