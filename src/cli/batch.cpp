@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "cli/describe.h"
@@ -27,6 +28,7 @@
 #include "frame.h"
 #include "io/json_text.h"
 #include "io/one_line.h"
+#include "io/stale_temporaries.h"
 #include "io/standard_output.h"
 #include "parallel/background.h"
 #include "pipeline.h"
@@ -49,6 +51,12 @@ struct Work {
   nlohmann::json statistics = {};      ///< of its views; null unless the outputs were made
   std::optional<Error> error = {};
 };
+
+/// Not in a folder that may not be looked into: that is for the reader to say.
+bool is_missing(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::status(path, ignored).type() == std::filesystem::file_type::not_found;
+}
 
 class Batch {
  public:
@@ -86,6 +94,7 @@ class Batch {
   ExitCode run_jobs() {
     if (has_statistics())
       check_output(options_.verbosity.stats, policy_of_statistics(options_.output.policy));
+    if (options_.command == Command::relight && !options_.verbosity.dry_run) clean_folders();
     for (std::size_t i = 0; i < jobs_.size() && !stopped_; ++i) {
       if (options_.command == Command::info) list(jobs_[i]);
       if (!light_) light_.emplace(options_.light);
@@ -96,6 +105,21 @@ class Batch {
       conclude(*behind_);
     }
     return code_;
+  }
+
+  /// Removes what killed runs have left in the folders of the outputs.
+  void clean_folders() {
+    std::set<std::filesystem::path> folders;
+    for (const Job& job : jobs_) {
+      for (const Target& target : job.targets)
+        folders.insert(std::filesystem::path(target.path).parent_path());
+    }
+    for (const std::filesystem::path& folder : folders) {
+      for (const std::filesystem::path& file : remove_stale_temporaries(folder)) {
+        if (options_.verbosity.verbose)
+          print(line_of(file.string() + ": removed; the run that wrote it was killed"));
+      }
+    }
   }
 
   void run_job(std::size_t i) {
@@ -143,9 +167,10 @@ class Batch {
     attempt(work, [&] {
       if (may_skip(work)) return;
       const Job& job = jobs_[i];
-      if (job.frame && !std::filesystem::exists(job.input())) {
-        throw Error(ExitCode::input,
-                    fmt::format("{}: frame {} of the range is missing", job.input(), *job.frame));
+      if (job.frame && is_missing(job.input())) {
+        throw Error(ExitCode::input, fmt::format("{}: frame {} of the range is missing; render it "
+                                                 "or leave it out of --frames",
+                                                 job.input(), *job.frame));
       }
       for (const FrameFiles& files : job.views) {
         Frame frame = prepare_frame(options_, *light_, pictures_, files, job.frame.value_or(0));

@@ -181,7 +181,8 @@ std::vector<Job> plan_jobs(const Options& options) {
 
 bool is_done(const Job& job) {
   for (const Target& target : job.targets) {
-    if (!std::filesystem::exists(target.path) || !is_readable(target.path)) return false;
+    std::error_code ignored;
+    if (!std::filesystem::exists(target.path, ignored) || !is_readable(target.path)) return false;
   }
   return !job.targets.empty();
 }

@@ -18,7 +18,8 @@ namespace {
 using Flags = std::set<std::string>;
 
 const std::string kManual = std::string(SSDO_SOURCE_DIR) + "/man/ssdo.1",
-                  kMethods = std::string(SSDO_SOURCE_DIR) + "/man/ssdo-methods.7";
+                  kMethods = std::string(SSDO_SOURCE_DIR) + "/man/ssdo-methods.7",
+                  kFarm = std::string(SSDO_SOURCE_DIR) + "/man/ssdo-farm.7";
 
 /// A page as groff reads it, with \- for a dash turned into one.
 std::string page(const std::string& path) {
@@ -72,10 +73,15 @@ TEST(ManPage, HasTheFlagsOfTheHelpAndNoOthers) {
   EXPECT_EQ(flags_of_headings(), binary);
 }
 
+/// Those in ssdo-farm(7) that are not ours, but of sbatch, parallel and make.
+const Flags kOfSchedulers = {"--array",  "--cpus-per-task", "--mem",
+                             "--joblog", "--resume-failed", "--keep-going"};
+
 TEST(ManPage, MentionsNoFlagThatDoesNotExist) {
-  const Flags binary = flags_of_binary();
+  Flags binary = flags_of_binary();
+  binary.insert(kOfSchedulers.begin(), kOfSchedulers.end());
   static const std::regex flag("(?:^|[^-\\w])(--[a-z][a-z-]*)");
-  const std::string text = page(kManual) + page(kMethods);
+  const std::string text = page(kManual) + page(kMethods) + page(kFarm);
   for (std::sregex_iterator it(text.begin(), text.end(), flag), end; it != end; ++it) {
     EXPECT_THAT(binary, testing::Contains((*it)[1].str()));
   }
@@ -125,7 +131,7 @@ TEST(ManPage, ItsCommandsForTheSystemsOfTheSourcesRun) {
 }
 
 TEST(ManPage, RendersWithoutWarnings) {
-  for (const std::string& path : {kManual, kMethods}) {
+  for (const std::string& path : {kManual, kMethods, kFarm}) {
     const Rendered rendered = render(path);
     EXPECT_EQ(rendered.status, 0) << rendered.warnings;
     EXPECT_EQ(rendered.warnings, "") << path;
