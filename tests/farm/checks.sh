@@ -72,5 +72,5 @@ oldest_frame() { find relit -name 'relit.*' -printf '%T@ %i %p\n' | sort | head 
 check_shot() {
   diff -r local relit || fail "$1: not the files of the local run"
   [ -z "$(find "$work" -name '*.ssdo-*')" ] || fail "$1: temporaries are left"
-  say "$1: $(frames_done) frames and as many pictures, each with the bits of the local run; nothing else is left"
+  say "$1: $(frames_done) frames and as many pictures with the bits of the local run; no leftovers"
 }
