@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <glm/matrix.hpp>
 #include <string_view>
 #include <utility>
 
@@ -119,6 +120,10 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
     frame.report.warnings.push_back(
         "the frame knows no world space; the environment is taken in "
         "camera space: give --camera FILE.json to place it");
+  }
+  if (!scene.light.is_constant() && world && glm::determinant(scene.geometry.world_to_camera) < 0) {
+    frame.report.warnings.push_back(
+        "the world of P is left-handed: the map lies in its axes, and appears mirrored");
   }
   warn_of_idle_light_options(frame, options.light);
   ModelOptions model = options.model;

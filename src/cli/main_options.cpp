@@ -104,6 +104,8 @@ void add_input(CLI::App& app, InputOptions& o) {
       "K frames before and after in the same sequence, every STEP, as further G-buffers");
   group.value("--part", "NAME|N", o.part,
               "look for layers in this part or view, and what completes it");
+  group.choice("--space", o.gbuffer.space, {{"world", Space::world}, {"camera", Space::camera}},
+               "that P and N are stored in; default: as they agree with each other and the camera");
   group.text(
       "--depth-kind", "KIND", [&](const Text& text) { read_depth_kind(text, o.gbuffer); },
       "what a depth layer measures: " + depth_kind_forms());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/background.h"
 
+#include <fmt/format.h>
+
 #include <atomic>
 #include <glm/geometric.hpp>
 
@@ -29,6 +31,20 @@ bool has_normals(const GBuffer& g) {
   return false;
 }
 
+/// How a depth that contradicts P relates to it, as far as that can be told.
+std::string relation_to_position(const GBuffer& g, const Plane<unsigned char>& counts) {
+  auto inverse = Plane<float>::like(g.depth);
+  for (std::size_t i = 0; i < inverse.size(); ++i) inverse[i] = 1 / g.depth[i];
+  if (DepthModel::fit(g.position, inverse, counts, g.position_step))
+    return "it is 1 / Z: give --depth-kind inverse";
+  const auto model = DepthModel::fit_in_any_unit(g.position, g.depth, counts, g.position_step);
+  if (!model) return "remapped, or of another frame";
+  return fmt::format(
+      "it changes by {:.3g} per unit of P: of another unit, or remapped, for which "
+      "there is --depth-kind normalized:NEAR,FAR",
+      model->length_of_unit());
+}
+
 /// Finds the relation between P and the depth, or that the depth contradicts P.
 void hold_depth_to_position(GBuffer& g) {
   if (g.position.empty() || g.depth.empty()) return;
@@ -51,11 +67,14 @@ void hold_depth_to_position(GBuffer& g) {
   if (!empty && both < DepthModel::kFewestPixels) return;
   auto& model = g.encodings.depth_of_position;
   model = DepthModel::fit(g.position, g.depth, counts, g.position_step);
-  if (!model) {
-    g.encodings.depth_is_wrong = true;
-    g.warnings.push_back(
-        "depth contradicts P (another unit, remapped, empty, or of another frame) and is left out");
+  if (model) {
+    g.depth_kind = model->kind();
+    g.depth_source = "P";
+    return;
   }
+  g.encodings.depth_is_wrong = true;
+  g.warnings.push_back(fmt::format("depth contradicts P ({}) and is left out",
+                                   empty ? "it is empty" : relation_to_position(g, counts)));
 }
 
 }  // namespace

@@ -261,7 +261,8 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   const glm::vec2 scale = options.motion_scale.value_or(glm::vec2(1));
   for (glm::vec2& to : g.motion.pixels) to = {scale.x * to.x, -scale.y * to.y};
 
-  undo_depth_encoding(g, options, file);
+  g.space = options.space;
+  undo_depth_encoding(g, options, file, table[Role::depth] ? &*table[Role::depth] : nullptr);
   find_background(g, options.background_depth, options.known);
   undo_normal_encoding(g, options.known);
   note_data_windows(files, table, roles, g);

@@ -33,4 +33,8 @@ struct NamedRotation {
 NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
                               const std::vector<NamedRotation>& spaces, bool orthographic);
 
+/// How far the stored normals agree with the gradient of P if they are in `space`, with its axes.
+NormalSpace measure_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
+                                 const NamedRotation& space, bool orthographic);
+
 }  // namespace ssdo

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/layers/groups.h"
+
+namespace ssdo {
+
+/// Which option names the position, if the name of one layer suggests that it holds it; else empty.
+std::string hint_of_position(const std::vector<LayerGroup>& groups);
+
+/// What to say for a file that has no position and no depth by name: the option that names one,
+/// with the layers whose channels would fit.
+std::string advice_on_position(const std::vector<LayerGroup>& groups);
+
+}  // namespace ssdo
