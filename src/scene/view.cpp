@@ -44,7 +44,7 @@ void read_layers(View& view, const std::vector<const ExrReader*>& files,
   } catch (const Error& error) {
     const std::string hint = view.layers[Role::position] || error.code != ExitCode::layer
                                  ? ""
-                                 : hint_of_position(group_channels(frame, 0));
+                                 : hint_at(Role::position, group_channels(frame, 0));
     if (hint.empty()) throw;
     throw Error(error.code, fmt::format("{}; {}", error.what(), hint));
   }

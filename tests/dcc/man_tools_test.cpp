@@ -25,7 +25,8 @@ constexpr const char *kBegin = ".\\\" The list of tools begins: SSDO_WRITE_TABLE
                      *kEnd = ".\\\" The list of tools ends.\n";
 
 std::string in_groff(const std::string& text) {
-  return std::regex_replace(text, std::regex("-"), "\\-");
+  return std::regex_replace(std::regex_replace(text, std::regex("-"), "\\-"), std::regex("\""),
+                            "\\(dq");
 }
 
 /// A layer as the man page names it: a depth, or what has no name, by its channels.
@@ -39,7 +40,7 @@ std::string name_of(const json& layer) {
 std::string item(const json& info, Role role, const std::string& name, const std::string& remark) {
   const auto layer = info["layers"].find(std::string(role_name(role)));
   if (layer == info["layers"].end()) return "";
-  return fmt::format("{} {}{},\n", name, in_groff(name_of(*layer)),
+  return fmt::format("{} \\fI{}\\fR{},\n", name, in_groff(name_of(*layer)),
                      remark.empty() ? "" : " (" + in_groff(remark) + ")");
 }
 
@@ -85,7 +86,7 @@ std::string entry(const Tool& tool) {
                      item(info, Role::albedo, "albedo", "") +
                      item(info, Role::depth, "depth", remark_on_depth(info["depth"]));
   text.replace(text.size() - 2, 1, ".");
-  if (!tool.flags.empty()) text += "Give\n.RB \" " + options_of(tool) + "\" .\n";
+  if (!tool.flags.empty()) text += "Give\n.BR \"" + options_of(tool) + "\" .\n";
   if (!tool.note.empty()) text += in_groff(tool.note) + "\n";
   return head + text;
 }

@@ -213,7 +213,9 @@ std::vector<Tool> film_renderers() {
                  normal("N", "xyz", world_normal(kYUp)),
                  {Role::albedo, channels("diffuse_color_noshading", "rgb"), grey()},
                  depth({"Pz"}, planar_depth())}},
-       .flags = {"--aov", "albedo=diffuse_color_noshading"}},
+       .flags = {"--aov", "albedo=diffuse_color_noshading"},
+       .hints = {"no layer for albedo found by name; if 'diffuse_color_noshading' is the albedo, "
+                 "say --aov \"albedo=diffuse_color_noshading\""}},
       {.name = "MoonRay",
        .shot = in_half({{beauty("", "RGBA"), position("WP", "xyz", world_position(kYUp)),
                          normal("N", "xyz", world_normal(kYUp)), albedo("albedo", "rgb")}}),
@@ -255,7 +257,10 @@ std::vector<Tool> gpu_renderers() {
                  depth(channels("Z depth", "RGB"), remapped_depth())}},
        .found = {.depth = "left out"},
        .warnings = {"depth contradicts P (it changes by 0.125 per unit of P"},
-       .flags = {"--aov", "normal=Shading normal"}},
+       .flags = {"--aov", "normal=Shading normal"},
+       .hints = {"depth contradicts P",
+                 "no layer for normal found by name; if 'Shading normal' is "
+                 "the normal, say --aov \"normal=Shading normal\""}},
       {.name = "Corona",
        .shot = {{beauty("", "RGBA"), position("CGeometry_WorldPosition", "RGB"),
                  normal("CGeometry_NormalsShading", "RGB"), albedo("CShading_Albedo"),

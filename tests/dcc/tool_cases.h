@@ -25,6 +25,7 @@ struct Tool {
   std::vector<std::string> warnings = {};  ///< a part of each, in any order
   std::vector<std::string> flags = {};     ///< that the user has to give; DIR: the file's folder
   std::vector<std::string> refusal = {};   ///< parts of the error without the flags; empty: none
+  std::vector<std::string> hints = {};     ///< parts of warnings without the flags
   std::string note = {};                   ///< what the man page adds
   double bound = 1e-3;  ///< most by which ao may differ (RMSE) from that of the plain shot
 };

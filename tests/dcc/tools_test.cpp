@@ -47,15 +47,22 @@ std::string depth_of(const json& info) {
   return depth["kind"].get<std::string>() + " " + depth["source"].get<std::string>();
 }
 
-TEST_P(Tools, AreRefusedWithTheOptionsThatDecide) {
-  const Finished done = run_tool({"info", input_});
-  if (GetParam().refusal.empty()) {
-    EXPECT_EQ(done.code, 0) << done.err;
-    return;
-  }
-  EXPECT_EQ(done.code, 4);
-  for (const std::string& part : GetParam().refusal)
-    EXPECT_THAT(done.error_line(), HasSubstr(part));
+std::vector<testing::Matcher<std::string>> with_parts(const std::vector<std::string>& parts) {
+  std::vector<testing::Matcher<std::string>> all;
+  for (const std::string& part : parts) all.push_back(HasSubstr(part));
+  return all;
+}
+
+/// Without the flags, a file is refused, or hinted at what it may hold.
+TEST_P(Tools, NameTheOptionsThatDecide) {
+  const Tool& tool = GetParam();
+  const Finished done = run_tool({"info", input_, "--json"});
+  EXPECT_EQ(done.code, tool.refusal.empty() ? 0 : 4) << done.err;
+  for (const std::string& part : tool.refusal) EXPECT_THAT(done.error_line(), HasSubstr(part));
+  if (done.code != 0) return;
+  EXPECT_THAT(warnings_of(parse_json(done.out)),
+              testing::UnorderedElementsAreArray(
+                  with_parts(tool.flags.empty() ? tool.warnings : tool.hints)));
 }
 
 /// Whether the options make a frame of the file.
@@ -82,9 +89,7 @@ TEST_P(Tools, AreRecognised) {
   }
   EXPECT_EQ(found["normals"]["space"], expected.normals);
   EXPECT_EQ(depth_of(found), expected.depth);
-  std::vector<testing::Matcher<std::string>> parts;
-  for (const std::string& warning : tool.warnings) parts.push_back(HasSubstr(warning));
-  EXPECT_THAT(warnings_of(found), testing::UnorderedElementsAreArray(parts));
+  EXPECT_THAT(warnings_of(found), testing::UnorderedElementsAreArray(with_parts(tool.warnings)));
 }
 
 Plane<float> ao_of(const std::string& input, const std::vector<std::string>& flags) {
