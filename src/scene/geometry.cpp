@@ -136,8 +136,7 @@ std::optional<NormalSpace> usable_normal_space(const GBuffer& g, const Geometry&
   if (space.share >= kLeastShare) return space;
   report.warnings.push_back(fmt::format(
       "normals do not belong to {0}: whatever their space and axes, they agree with it "
-      "in {1:.0f} % "
-      "of the smooth pixels; rebuilt from {0}{2}",
+      "in {1:.0f} % of the smooth pixels; rebuilt from {0}{2}",
       from_depth ? "the depth" : "P", 100 * space.share,
       from_depth && g.depth_source.empty() ? ", taken as planar: give --depth-kind where it is not"
                                            : ""));

@@ -20,8 +20,8 @@
 namespace ssdo {
 namespace {
 
-/// Relative rounding: half and float keep 11 and 24 bits, PXR24 keeps 16 of a float.
-constexpr float kStepHalf = 1.0f / 2048, kStepFloat = 1.0f / 16777216, kStepPxr24 = 1.0f / 65536;
+/// Relative rounding: float keeps 24 bits, PXR24 16 of them.
+constexpr float kStepFloat = 1.0f / 16777216, kStepPxr24 = 1.0f / 65536;
 
 bool is_finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);

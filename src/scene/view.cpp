@@ -31,23 +31,11 @@ Plane<float> take_depth_from_samples(View& view, const std::string& part, GBuffe
   return nearest_surfaces(*view.deep, far);
 }
 
-/// What read_view() makes of the layers. Errors of a frame without P end with the layer that may
-/// hold it.
-void read_layers(View& view, const std::vector<const ExrReader*>& files,
-                 const GBufferOptions& reading, const CameraOptions& camera,
-                 const Plane<float>& deep, Stopwatch& watch) {
-  const ExrReader& frame = *files.front();
-  try {
-    view.gbuffer = read_gbuffer(files, view.layers, reading, &deep);
-    view.read_ms = watch.lap();
-    view.geometry = build_geometry(view.gbuffer, camera, frame.path().string(), view.report);
-  } catch (const Error& error) {
-    const std::string hint = view.layers[Role::position] || error.code != ExitCode::layer
-                                 ? ""
-                                 : hint_at(Role::position, group_channels(frame, 0));
-    if (hint.empty()) throw;
-    throw Error(error.code, fmt::format("{}; {}", error.what(), hint));
-  }
+/// An error of a frame without P, with the layer that may hold it.
+Error with_hint(const Error& error, const View& view) {
+  if (view.layers[Role::position] || error.code != ExitCode::layer) return error;
+  const std::string hint = hint_at(Role::position, group_channels(view.files.front(), 0));
+  return hint.empty() ? error : Error(error.code, fmt::format("{}; {}", error.what(), hint));
 }
 
 }  // namespace
@@ -72,7 +60,14 @@ View read_view(std::deque<ExrReader> opened, const std::vector<LayerRequest>& ao
   const Plane<float> deep = take_depth_from_samples(view, options.part, reading, warnings);
   require_position(view.layers, view.files.front(),
                    options.listed ? "" : " ('ssdo info' lists the layers)");
-  read_layers(view, files, reading, camera, deep, watch);
+  try {
+    view.gbuffer = read_gbuffer(files, view.layers, reading, &deep);
+    view.read_ms = watch.lap();
+    view.geometry =
+        build_geometry(view.gbuffer, camera, view.files.front().path().string(), view.report);
+  } catch (const Error& error) {
+    throw with_hint(error, view);
+  }
   view.gbuffer.warnings.insert(view.gbuffer.warnings.begin(), warnings.begin(), warnings.end());
   // From here on there is one position, one normal and one kind of pixel: those of the geometry.
   view.gbuffer.position = {};  // on their own lines: an assignment of a plane keeps memory

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <fstream>
 #include <glm/gtc/constants.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -152,10 +153,33 @@ TEST_F(DataChecks, BackgroundOfAnyValueIsBackground) {
   }
 }
 
+TEST_F(DataChecks, BackgroundOfADepthAloneIsBackground) {
+  const auto surfaces = [&](float empty, Imf::PixelType type) {
+    StoredShot shot = with(Role::depth, planar_depth(empty), type);
+    drop(shot, Role::position);
+    drop(shot, Role::normal);
+    return info(shot, {"--fov", "40"})["surface_pixels"];
+  };
+  const json expected = info(plain_shot())["surface_pixels"];
+  for (const float empty : {0.0f, 1e10f, kInfinity, NAN})
+    EXPECT_EQ(surfaces(empty, Imf::FLOAT), expected) << empty;
+  EXPECT_EQ(surfaces(65504, Imf::HALF), expected) << "the largest half";
+}
+
 TEST_F(DataChecks, PInHalfIsWarnedOf) {
   const StoredShot shot = with(Role::position, world_position(), Imf::HALF);
   EXPECT_LT(off(shot), 0.02);
   EXPECT_THAT(said_, HasSubstr("position is stored in 16 bits"));
+  // Far is the largest half, with no depth that says so.
+  StoredShot alone = with(Role::position, world_position(glm::mat3(1), 65504), Imf::HALF);
+  drop(alone, Role::depth);
+  for (StoredLayer& layer : alone.layers)
+    if (layer.role == Role::normal)
+      layer.content = [](const ShotPixel& p) {
+        return glm::vec4(p.surface ? p.normal : glm::vec3(0, 0, 1), 1);
+      };
+  EXPECT_LT(off(alone), 0.02);
+  EXPECT_EQ(info(alone)["surface_pixels"], info(plain_shot())["surface_pixels"]);
 }
 
 /// A map no two columns of which are alike, or its mirror image; with or without a sun.
@@ -246,6 +270,18 @@ TEST_F(DataChecks, SpaceWorldOfADepthNeedsAPose) {
   const Finished done = run_tool({"info", input_, "--fov", "40", "--space", "world"});
   EXPECT_EQ(done.code, 4);
   EXPECT_THAT(done.error_line(), HasSubstr("--space world: without P, the pose"));
+
+  const std::string camera = dir_ / "camera.json";
+  const std::string found = info(plain_shot())["camera"].dump();
+  std::ofstream(camera) << found;
+  EXPECT_LT(off(shot, {"--camera", camera, "--space", "world"}), 1e-3);
+  EXPECT_EQ(said_, "");
+  EXPECT_EQ(info(shot, {"--camera", camera, "--space", "world"})["normals"]["space"],
+            "the world of --camera, by --space");
+
+  drop(shot, Role::normal);
+  EXPECT_THAT(warnings_of(info(shot, {"--fov", "40", "--space", "camera"})),
+              ElementsAre(HasSubstr("--space has no effect")));
 }
 
 }  // namespace
