@@ -22,7 +22,7 @@ namespace {
 
 /// Camera-space positions, and the radius by which rounding may have moved each of them. Returns
 /// how many were left out because they lie behind the camera.
-std::size_t place_positions(const GBuffer& g, const Camera& camera, Geometry& out) {
+std::size_t place_positions(const GBuffer& g, const Camera& camera, DepthKind kind, Geometry& out) {
   std::vector<std::size_t> behind(std::size_t(out.surfel.height));
   for_each_row(out.surfel.height, [&](int y) {
     for (int x = 0; x < out.surfel.width; ++x) {
@@ -33,7 +33,7 @@ std::size_t place_positions(const GBuffer& g, const Camera& camera, Geometry& ou
       if (g.position.empty()) {
         const glm::dvec2 centre(g.window.x0 + x + 0.5, g.window.y0 + y + 0.5);
         p = camera.unproject(centre, g.depth[i]);
-        if (g.depth_kind == DepthKind::ray && !camera.orthographic) {
+        if (kind == DepthKind::ray && !camera.orthographic) {
           p *= g.depth[i] / glm::length(p);
         }
         magnitude = g.depth[i];
@@ -71,6 +71,9 @@ float median_depth(const Geometry& geometry) {
 /// and wrong normals reach.
 constexpr double kLeastShare = 0.95;
 constexpr std::size_t kFewestSmoothPixels = 16;  ///< below, nothing is known
+
+/// A kind of depth fits normals clearly better if 1 - cosine is by this factor smaller on average.
+constexpr double kClearlyBetter = 0.5;
 
 /// The spaces that N may be in.
 std::vector<NamedRotation> spaces_of_normals(const GBuffer& g, const Placement& found) {
@@ -120,6 +123,23 @@ NormalSpace given_normal_space(const GBuffer& g, const Geometry& out, const std:
   return space;
 }
 
+/// Of a depth that is taken as planar because nothing tells its kind, the normals tell it: surfaces
+/// made from a distance along the rays are bent. Warns where those of the other kind fit better.
+void check_depth_is_planar(const GBuffer& g, const Geometry& planar, const NormalSpace& of_planar,
+                           GeometryReport& report) {
+  if (planar.camera.orthographic) return;
+  Geometry by_rays;
+  by_rays.surfel = Plane<Surfel>::like(planar.surfel);
+  place_positions(g, to_grid(report.placement.of_positions, g.grid), DepthKind::ray, by_rays);
+  const NormalSpace of_rays =
+      find_normal_space(g.normal, by_rays.surfel, spaces_of_normals(g, report.placement), false);
+  const bool clearly = 1 - of_rays.mean_cosine < kClearlyBetter * (1 - of_planar.mean_cosine);
+  if (!clearly || of_rays.smooth_pixels < kFewestSmoothPixels) return;
+  report.warnings.push_back(
+      "the depth is taken as planar, and by the normals it is the distance along the rays: give "
+      "--depth-kind ray, or --depth-kind planar where it is not");
+}
+
 /// How the stored normals are to be used; nothing where they are not to be, and why in `report`.
 std::optional<NormalSpace> usable_normal_space(const GBuffer& g, const Geometry& out,
                                                const std::string& file, GeometryReport& report) {
@@ -129,17 +149,16 @@ std::optional<NormalSpace> usable_normal_space(const GBuffer& g, const Geometry&
       g.normal, out.surfel, spaces_of_normals(g, report.placement), out.camera.orthographic);
   report.normal_agreement = space.share;
   const bool from_depth = g.position.empty();
+  if (from_depth && g.depth_source.empty()) check_depth_is_planar(g, out, space, report);
   if (space.smooth_pixels < kFewestSmoothPixels && !from_depth) {
     space.name += ", unchecked: P is nowhere smooth";
     return space;
   }
   if (space.share >= kLeastShare) return space;
-  report.warnings.push_back(fmt::format(
-      "normals do not belong to {0}: whatever their space and axes, they agree with it "
-      "in {1:.0f} % of the smooth pixels; rebuilt from {0}{2}",
-      from_depth ? "the depth" : "P", 100 * space.share,
-      from_depth && g.depth_source.empty() ? ", taken as planar: give --depth-kind where it is not"
-                                           : ""));
+  report.warnings.push_back(
+      fmt::format("normals do not belong to {0}: whatever their space and axes, they agree with it "
+                  "in {1:.0f} % of the smooth pixels; rebuilt from {0}",
+                  from_depth ? "the depth" : "P", 100 * space.share));
   return std::nullopt;
 }
 
@@ -252,7 +271,8 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
     placement.by_file = found.by_file;
   }
   out.camera = to_grid(placement.camera, g.grid);
-  if (const std::size_t behind = place_positions(g, to_grid(placement.of_positions, g.grid), out)) {
+  const Camera of_positions = to_grid(placement.of_positions, g.grid);
+  if (const std::size_t behind = place_positions(g, of_positions, g.depth_kind, out)) {
     report.warnings.push_back(
         fmt::format("{} positions lie behind the camera and are left out", behind));
   }

@@ -120,6 +120,21 @@ TEST_F(DataChecks, TheKindOfDepthIsThatOfP) {
   }
 }
 
+TEST_F(DataChecks, TheKindOfADepthAloneIsHeldToTheNormals) {
+  for (const Content& normal : {world_normal(kTurn), camera_normal()}) {
+    StoredShot shot = with(Role::depth, ray_depth());
+    drop(shot, Role::position);
+    for (StoredLayer& layer : shot.layers)
+      if (layer.role == Role::normal) layer.content = normal;
+    EXPECT_THAT(warnings_of(info(shot, {"--fov", "40"})),
+                ElementsAre(HasSubstr("by the normals it is the distance along the rays")));
+    EXPECT_THAT(warnings_of(info(shot, {"--fov", "40", "--depth-kind", "ray"})), IsEmpty());
+    for (StoredLayer& layer : shot.layers)
+      if (layer.role == Role::depth) layer.content = planar_depth();
+    EXPECT_THAT(warnings_of(info(shot, {"--fov", "40"})), IsEmpty());
+  }
+}
+
 TEST_F(DataChecks, ADepthOfAnotherMeaningIsLeftOutWithWhatItIs) {
   const std::vector<std::pair<Content, std::string>> wrong = {
       {remapped_depth(), "it changes by 0.125 per unit of P: of another unit, or remapped"},

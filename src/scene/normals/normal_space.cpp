@@ -239,7 +239,7 @@ NormalSpace described(const Candidate& found) {
   const auto within = std::count_if(found.cosines.begin(), found.cosines.end(),
                                     [](float c) { return std::abs(c) > kWithin; });
   const std::size_t count = found.cosines.size();
-  NormalSpace space{found.to_camera, found.name(), count, 0};
+  NormalSpace space{found.to_camera, found.name(), count, 0, found.mean()};
   if (2 * std::size_t(positive) < count) {
     space.to_camera = -space.to_camera;
     const bool as_they_are = found.axes.text().empty();
