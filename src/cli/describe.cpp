@@ -52,6 +52,44 @@ std::string describe_layer(const Frame& frame, const Layer& layer) {
   return text;
 }
 
+/// Whether P is in camera space: as --space says, or as its own camera stands.
+bool is_in_camera_space(const Frame& frame) {
+  if (frame.gbuffer.space) return *frame.gbuffer.space == Space::camera;
+  const Placement& placement = frame.report.placement;
+  return placement.of_positions.is_camera_space(placement.median_depth);
+}
+
+std::string_view space_of_positions(const Frame& frame) {
+  return is_in_camera_space(frame) ? "camera" : "world";
+}
+
+std::string_view handedness(const Frame& frame) {
+  return glm::determinant(frame.report.placement.of_positions.rotation) < 0 ? "left" : "right";
+}
+
+std::string describe_positions(const Frame& frame) {
+  std::string text = describe_layer(frame, *frame.layers[Role::position]);
+  if (frame.report.placement.median_depth <= 0) return text;
+  return text + fmt::format("; {} space{}, {}-handed", space_of_positions(frame),
+                            frame.gbuffer.space ? ", by --space" : "", handedness(frame));
+}
+
+std::string_view kind_of_depth(const Frame& frame) {
+  return frame.gbuffer.depth_kind == DepthKind::ray ? "ray" : "planar";
+}
+
+/// "by P", "by its name"; "assumed" where nothing tells.
+std::string source_of_depth_kind(const Frame& frame) {
+  const std::string& source = frame.gbuffer.depth_source;
+  return source.empty() ? "assumed" : "by " + source;
+}
+
+std::string describe_depth(const Frame& frame) {
+  const std::string text = describe_layer(frame, *frame.layers[Role::depth]);
+  if (frame.gbuffer.encodings.depth_is_wrong) return text + "; left out: it contradicts P";
+  return text + fmt::format("; {}, {}", kind_of_depth(frame), source_of_depth_kind(frame));
+}
+
 std::string describe_normals(const Frame& frame) {
   const GeometryReport& report = frame.report;
   const auto& layer = frame.layers[Role::normal];
@@ -95,6 +133,18 @@ std::size_t surface_pixels(const Frame& frame) {
   return count;
 }
 
+json position_json(const Frame& frame) {
+  if (!frame.layers[Role::position]) return nullptr;
+  return {{"space", space_of_positions(frame)}, {"handedness", handedness(frame)}};
+}
+
+json depth_json(const Frame& frame) {
+  if (!frame.layers[Role::depth]) return nullptr;
+  return {{"kind", kind_of_depth(frame)},
+          {"source", source_of_depth_kind(frame)},
+          {"used", !frame.gbuffer.encodings.depth_is_wrong}};
+}
+
 json layers_json(const Frame& frame) {
   json layers = json::object();
   for (std::size_t i = 0; i < kRoleCount; ++i) {
@@ -124,7 +174,9 @@ std::string describe(const Frame& frame) {
     if (Role(i) == Role::normal)
       line("normal", describe_normals(frame));
     else if (layer)
-      line(role_name(Role(i)), describe_layer(frame, *layer));
+      line(role_name(Role(i)), Role(i) == Role::position ? describe_positions(frame)
+                               : Role(i) == Role::depth  ? describe_depth(frame)
+                                                         : describe_layer(frame, *layer));
   }
   line("camera", describe_camera(frame));
   line("surfaces", fmt::format("{} of {} pixels ({} background, {} broken), median depth {:.4g}",
@@ -154,6 +206,8 @@ nlohmann::json to_json(const Frame& frame) {
           {"parts", parts_json(frame.files.front())},
           {"layers", layers_json(frame)},
           {"camera", camera_json(frame)},
+          {"position", position_json(frame)},
+          {"depth", depth_json(frame)},
           {"normals",
            {{"space", frame.report.normal_space},
             {"agreement", frame.report.normal_agreement},

@@ -110,6 +110,8 @@ void add_input(CLI::App& app, InputOptions& o) {
   group.choice("--stereo", o.views, {{left, {left}}, {right, {right}}, {"all", {left, right}}},
                "relight this view of a stereo file, or both, with the other as a further G-buffer");
   app.get_option("--stereo")->excludes(part);
+  group.choice("--space", o.gbuffer.space, {{"world", Space::world}, {"camera", Space::camera}},
+               "that P and N are stored in; default: as they agree with each other and the camera");
   group.text(
       "--depth-kind", "KIND", [&](const Text& text) { read_depth_kind(text, o.gbuffer); },
       "what a depth layer measures: " + depth_kind_forms());

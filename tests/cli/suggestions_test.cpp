@@ -39,10 +39,10 @@ class Suggestions : public testing::Test {
 };
 
 TEST_F(Suggestions, OfOptionsNameTheWrongOneAlone) {
-  EXPECT_EQ(refusal({"--sauce", "3"}),
-            "ssdo: --sauce: no such option; did you mean --save? see ssdo --help");
-  EXPECT_EQ(refusal({"--sauce=3"}),
-            "ssdo: --sauce: no such option; did you mean --save? see ssdo --help");
+  EXPECT_EQ(refusal({"--svae", "3"}),
+            "ssdo: --svae: no such option; did you mean --save? see ssdo --help");
+  EXPECT_EQ(refusal({"--svae=3"}),
+            "ssdo: --svae: no such option; did you mean --save? see ssdo --help");
   EXPECT_EQ(refusal({"--methd", "ssao", "--nonsense"}),
             "ssdo: --methd: no such option; did you mean --method? see ssdo --help");
   EXPECT_EQ(refusal({"-radius", "2"}),

@@ -11,6 +11,7 @@
 #include "error.h"
 #include "io/sequence.h"
 #include "nearest_name.h"
+#include "scene/layers/advice.h"
 #include "scene/layers/candidates.h"
 #include "scene/layers/groups.h"
 #include "scene/layers/names.h"
@@ -123,6 +124,10 @@ class LayerFinder {
     return found || !by_name ? found : find_by_name(role);
   }
 
+  /// Of layers with an equal claim, those beside `lead` are taken from here on:
+  /// "ViewLayer.Combined" beside "ViewLayer.Position", not "Composite.Combined".
+  void prefer_beside(const Layer& lead) { prefix_ = split_channel(lead.name).first; }
+
   /// Restricts the search to the view of this layer, so that no frame is made of two.
   void keep_view_of(const Layer& lead) {
     if (lead.file != 0 || views_of(groups_[0]).empty()) return;
@@ -139,11 +144,20 @@ class LayerFinder {
 
   std::optional<Layer> find_by_name(Role role) const {
     for (const auto& groups : tiers_) {
-      const std::vector<Candidate> best = best_candidates(role, groups);
+      std::vector<Candidate> best = best_candidates(role, groups);
+      if (best.size() > 1) keep_those_beside_lead(best);
       if (best.size() > 1) throw_ambiguous(role, best);
       if (!best.empty()) return best[0].layer;
     }
     return std::nullopt;
+  }
+
+  void keep_those_beside_lead(std::vector<Candidate>& best) const {
+    const auto is_elsewhere = [&](const Candidate& c) {
+      return split_channel(c.layer.name).first != prefix_;
+    };
+    if (prefix_.empty() || std::all_of(best.begin(), best.end(), is_elsewhere)) return;
+    std::erase_if(best, is_elsewhere);
   }
 
   [[noreturn]] void throw_ambiguous(Role role, const std::vector<Candidate>& best) const {
@@ -192,6 +206,7 @@ class LayerFinder {
   const std::vector<LayerRequest>& requests_;
   std::vector<std::vector<LayerGroup>> groups_;  ///< by file
   Tiers tiers_;                                  ///< of the frame
+  std::string prefix_;                           ///< of layers that are preferred; may be empty
 };
 
 }  // namespace
@@ -223,15 +238,9 @@ LayerRequest parse_layer_request(const std::string& text) {
 
 void require_position(const LayerTable& table, const ExrReader& frame, const std::string& advice) {
   if (table[Role::position] || table[Role::depth]) return;
-  std::string text = "name one with --aov position=LAYER or --aov depth=LAYER";
-  for (const LayerGroup& group : group_channels(frame, 0)) {
-    if (normalise(group.path).find("samplerinfo") == std::string::npos) continue;
-    if (!as_layer(group, Role::position)) continue;
-    text = fmt::format("if '{0}' was rendered with type Point, say --aov \"position={0}\"",
-                       group.name);
-  }
   throw Error(ExitCode::layer, fmt::format("{}: no layer for position or depth found by name; {}{}",
-                                           frame.path().string(), text, advice));
+                                           frame.path().string(),
+                                           advice_on_position(group_channels(frame, 0)), advice));
 }
 
 LayerTable find_layers(const std::vector<const ExrReader*>& files,
@@ -247,6 +256,7 @@ LayerTable find_layers(const std::vector<const ExrReader*>& files,
     find(role);
     if (!table[role]) continue;
     finder.keep_view_of(*table[role]);
+    finder.prefer_beside(*table[role]);
     break;
   }
   for (std::size_t i = 0; i < kRoleCount; ++i) find(Role(i));
