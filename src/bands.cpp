@@ -169,7 +169,7 @@ class BandJob {
   void write(const SafeFile& file, const Target& target, const Results& results, const Window& rows,
              std::unique_ptr<ExrWriter>& writer) {
     const ExrContents contents = exr_contents(job_, frame_.plan, target, results);
-    if (!writer) writer = std::make_unique<ExrWriter>(file, contents.output);
+    if (!writer) writer = std::make_unique<ExrWriter>(file, std::vector{contents.output});
     std::vector<ChannelView> views;
     for (const ExrPlane& plane : contents.output.planes)
       views.push_back(rows_of(plane.pixels, results.gbuffer.window, rows));

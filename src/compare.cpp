@@ -164,7 +164,7 @@ void write_difference(const std::string& path, const OutputPolicy& policy, const
       output.planes.push_back({names[k], Imf::FLOAT, &planes[k]});
   }
   SafeFile file(path, policy);
-  write_exr(file, output);
+  write_exr(file, {output});
   file.commit();
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <glm/matrix.hpp>
 #include <string_view>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "error.h"
 #include "estimators/registry.h"
 #include "known_geometry.h"
+#include "scene/layers/advice.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -30,6 +32,17 @@ bool wants_reflection(const OutputOptions& output, const std::vector<LayerReques
          (choose_compose(output, aovs) == Compose::occlude &&
           std::any_of(aovs.begin(), aovs.end(),
                       [](const LayerRequest& aov) { return aov.role == Role::specular; }));
+}
+
+/// Names the layers that may be meant for what the frame lacks.
+void hint_at_missing_layers(Frame& frame) {
+  for (const Role role : {Role::normal, Role::albedo}) {
+    if (frame.layers[role]) continue;
+    const std::string hint = hint_at(role, group_channels(frame.files.front(), 0));
+    if (hint.empty()) continue;
+    frame.report.warnings.push_back(
+        fmt::format("no layer for {} found by name; {}", role_name(role), hint));
+  }
 }
 
 void warn_of_idle_depth_options(Frame& frame, const GBufferOptions& options) {
@@ -72,6 +85,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
                     const FrameFiles& files, int number) {
   Frame frame;
   frame.input = files.input;
+  frame.view = files.view;
   Stopwatch watch;
   // Names that nothing asks for are no reason to refuse a frame.
   std::vector<Role> unused;
@@ -79,7 +93,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   if (!options.model.temporal) unused.push_back(Role::motion);
   std::deque<ExrReader> opened = open_view(files.input, files.aovs);
   const double opening = watch.lap();
-  InputOptions input = options.input;
+  InputOptions input = for_view(options.input, files);
   input.gbuffer.downsample = options.output.downsample;
   input.gbuffer.beauty = choose_compose(options.output, files.aovs) != Compose::relight;
   input.gbuffer.most_pixels = most_pixels_in(options.memory);
@@ -89,6 +103,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   frame.gbuffer = std::move(view.gbuffer);
   frame.report = std::move(view.report);
   frame.times.read = opening + view.read_ms;
+  hint_at_missing_layers(frame);
 
   Scene& scene = frame.scene;
   scene.geometry = std::move(view.geometry);
@@ -117,6 +132,10 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
     frame.report.warnings.push_back(
         "the frame knows no world space; the environment is taken in "
         "camera space: give --camera FILE.json to place it");
+  }
+  if (!scene.light.is_constant() && world && glm::determinant(scene.geometry.world_to_camera) < 0) {
+    frame.report.warnings.push_back(
+        "the world of P is left-handed: the map lies in its axes, and appears mirrored");
   }
   warn_of_idle_light_options(frame, options.light);
   ModelOptions model = options.model;

@@ -43,6 +43,7 @@ struct StageTimes {
 /// A frame that has been read and understood: all that stands before the first estimate.
 struct Frame {
   std::string input;
+  std::string view;             ///< of a stereo file; empty: it shows one
   std::deque<ExrReader> files;  ///< the frame, then the files that --aov names
   LayerTable layers;
   Scene scene;

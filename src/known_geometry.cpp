@@ -107,21 +107,40 @@ class ViewReader {
                            picture->warnings.end());
   }
 
-  /// Without the warnings of reading it: they are those of the frame.
   void add_neighbour(const FrameFiles& files) {
     std::error_code ignored;
     if (!fs::exists(files.input, ignored) || !knows_place("--neighbours")) return;
-    try {
-      FurtherView view =
-          place(pictures_.neighbour(files, options_.input, options_.camera), frame_.scene.geometry);
-      view.is_neighbour = true;
-      known_.views.push_back(std::move(view));
-    } catch (const Error& e) {
-      known_.warnings.push_back(fmt::format("left out as a neighbour: {}", e.what()));
+    add_alike(files, options_.camera, "a neighbour");
+  }
+
+  /// Nobody has asked for it: where it is of no use, it is left out.
+  void add_other_eye(const FrameFiles& files) {
+    const Geometry& geometry = frame_.scene.geometry;
+    if (geometry.median_depth <= 0 || frame_.gbuffer.grid.is_coarse()) return;
+    if (!geometry.world_known) {
+      known_.warnings.push_back(
+          "the other eye shows nothing more: no world space is known to place "
+          "it in; render P in world space");
+      return;
     }
+    CameraOptions camera = options_.camera;
+    camera.file.clear();  // has the pose of one eye
+    add_alike(other_eye(files), camera, "the other eye");
   }
 
  private:
+  /// Without the warnings of reading it: they are those of the frame.
+  void add_alike(const FrameFiles& files, const CameraOptions& camera, std::string_view role) {
+    try {
+      FurtherView view =
+          place(pictures_.alike(files, options_.input, camera), frame_.scene.geometry);
+      view.is_neighbour = true;
+      known_.views.push_back(std::move(view));
+    } catch (const Error& e) {
+      known_.warnings.push_back(fmt::format("left out as {}: {}", role, e.what()));
+    }
+  }
+
   /// False for a frame without surfaces, to which no view can add anything.
   bool knows_place(const std::string& option) const {
     const Geometry& geometry = frame_.scene.geometry;
@@ -153,6 +172,7 @@ KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
                     [&](const std::string& path) { return is_same_file(path, neighbour.input); });
     if (uses_views && !is_given) reader.add_neighbour(neighbour);
   }
+  if (uses_views && !files.view.empty()) reader.add_other_eye(files);
   if (own) known.deep.push_back(*own);
   return known;
 }

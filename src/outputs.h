@@ -35,6 +35,9 @@ struct OutputOptions {
 struct Target {
   std::string path;
   std::optional<std::string> product;  ///< --save
+  std::string view = {};               ///< that it shows; empty: all that are relit
+
+  bool shows(const std::string& a_view) const { return view.empty() || view == a_view; }
 };
 
 }  // namespace ssdo

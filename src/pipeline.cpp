@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "color/display_image.h"
 #include "io/image_file.h"
 #include "io/json_text.h"
+#include "scene/layers/groups.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -20,8 +22,9 @@ const std::string& product_of_picture(const Target& target, const Plan& plan) {
   return target.product ? *target.product : plan.show;
 }
 
-Results results_of(const RelightJob& job, const Plan& plan, const Products& products) {
-  return {job.frame.scene, job.frame.gbuffer, products, plan.composition};
+Results results_of(const Shown& view) {
+  const Frame& frame = view.job.frame;
+  return {frame.scene, frame.gbuffer, view.products, view.plan.composition};
 }
 
 /// The channels of the input that say where surfaces are and how they move.
@@ -35,6 +38,24 @@ std::vector<ChannelOfPart> geometry_channels(const Frame& frame) {
   return channels;
 }
 
+/// What goes into the parts of a file: views that share a part stand side by side in it.
+std::vector<ExrOutput> by_part(const std::vector<ExrContents>& views) {
+  std::vector<ExrOutput> parts;
+  for (const ExrContents& view : views) {
+    const ExrOutput& own = view.output;
+    const auto same = std::ranges::find(parts, own.part, &ExrOutput::part);
+    if (same == parts.end()) {
+      parts.push_back(own);
+      continue;
+    }
+    same->planes.insert(same->planes.end(), own.planes.begin(), own.planes.end());
+    same->geometry.insert(same->geometry.end(), own.geometry.begin(), own.geometry.end());
+    same->attributes.insert(same->attributes.end(), own.attributes.begin(), own.attributes.end());
+  }
+  std::ranges::sort(parts, {}, &ExrOutput::part);
+  return parts;
+}
+
 void append(std::vector<std::string>& lines, const std::vector<std::string>& more) {
   lines.insert(lines.end(), more.begin(), more.end());
 }
@@ -43,7 +64,7 @@ void append(std::vector<std::string>& lines, const std::vector<std::string>& mor
 
 std::optional<DisplayTransform> make_display(const RelightJob& job) {
   for (const Target& target : job.targets) {
-    if (has_exr_ending(target.path)) continue;
+    if (has_exr_ending(target.path) || !target.shows(job.frame.view)) continue;
     load_image_codec();
     if (needs_display(product_of_picture(target, job.frame.plan)))
       return DisplayTransform(job.options.color, color_tags(job.frame));
@@ -66,35 +87,46 @@ ExrContents exr_contents(const RelightJob& job, const Plan& plan, const Target& 
   output.geometry = geometry_channels(frame);
   output.compression = job.options.output.compression;
   output.compression_level = job.options.output.compression_level;
+  const auto name = [&](const std::string& channel) {
+    return frame.lead().file == 0
+               ? in_view_of(*output.input, frame.part(), frame.lead().channels[0], channel)
+               : channel;
+  };
   output.attributes = {{"ssdo/version", SSDO_VERSION},
-                       {"ssdo/plan", json_text(to_json(plan, frame.history))}};
+                       {"ssdo/" + name("plan"), json_text(to_json(plan, frame.history))}};
   for (const NamedChannels& product : contents.products) {
     for (const NamedChannel& channel : product.channels)
-      output.planes.push_back({channel.name, job.options.output.pixel_type, channel.pixels});
+      output.planes.push_back({name(channel.name), job.options.output.pixel_type, channel.pixels});
   }
   return contents;
 }
 
-Written write_targets(const RelightJob& job, const Plan& plan, const Products& products,
-                      const DisplayTransform* display,
+Written write_targets(const std::vector<Shown>& views,
                       const std::function<void(double)>& on_progress) {
   Stopwatch watch;
   Written out;
-  for (const Target& target : job.targets) {
+  const RelightJob& any = views.front().job;
+  for (const Target& target : any.targets) {
     const SafeFile& file =
-        *out.files.emplace_back(std::make_unique<SafeFile>(target.path, job.policy));
+        *out.files.emplace_back(std::make_unique<SafeFile>(target.path, any.policy));
+    std::vector<Shown> shown;
+    for (const Shown& view : views)
+      if (target.shows(view.job.frame.view)) shown.push_back(view);
     if (has_exr_ending(target.path)) {
-      const ExrContents contents = exr_contents(job, plan, target, results_of(job, plan, products));
-      out.clamped_values += write_exr(file, contents.output);
+      std::vector<ExrContents> contents;
+      for (const Shown& view : shown)
+        contents.push_back(exr_contents(view.job, view.plan, target, results_of(view)));
+      out.clamped_values += write_exr(file, by_part(contents));
     } else {
+      const Shown& view = shown.front();
       const DisplayImage image =
-          make_display_image(product_of_picture(target, plan), results_of(job, plan, products),
-                             {display, keeps_alpha(target.path)});
+          make_display_image(product_of_picture(target, view.plan), results_of(view),
+                             {view.display, keeps_alpha(target.path)});
       out.compose_ms += watch.lap();
-      write_image(file, image.spec(job.options.output.bits), image.values);
+      write_image(file, image.spec(any.options.output.bits), image.values);
     }
     out.write_ms += watch.lap();
-    on_progress(double(out.files.size()) / double(job.targets.size()));
+    on_progress(double(out.files.size()) / double(any.targets.size()));
   }
   return out;
 }
@@ -129,17 +161,22 @@ Relit relight(const RelightJob& job, const std::function<void(double)>& on_progr
   return relit;
 }
 
-void write_outputs(const RelightJob& job, Relit& relit,
+void write_outputs(const std::vector<RelitFrame>& views,
                    const std::function<void(double)>& on_progress) {
-  if (job.frame.bands) {
+  Relit& relit = *views.front().relit;
+  if (views.front().job.frame.bands) {
     Stopwatch watch;
     for (const auto& file : relit.written) file->commit();
     relit.times.write += watch.lap();
     return;
   }
+  std::vector<Shown> shown;
+  for (const auto& [job, of_view] : views) {
+    const auto& display = of_view->display;
+    shown.push_back({job, of_view->plan, of_view->products, display ? &*display : nullptr});
+  }
   const Written written = write_targets(
-      job, relit.plan, relit.products, relit.display ? &*relit.display : nullptr,
-      [&](double done) { on_progress(kEstimateShare + (1 - kEstimateShare) * done); });
+      shown, [&](double done) { on_progress(kEstimateShare + (1 - kEstimateShare) * done); });
   relit.clamped_values = written.clamped_values;
   Stopwatch watch;
   for (const auto& file : written.files) file->commit();

@@ -23,7 +23,8 @@ struct ExrContents {
   ExrOutput output;
 };
 
-/// A frame that has been prepared, and the files to make from it.
+/// A frame that has been prepared, and the files to make from it. Views of a stereo file are frames
+/// with the same files.
 struct RelightJob {
   const FrameOptions& options;
   const Frame& frame;
@@ -51,9 +52,15 @@ struct Relit {
 Relit relight(const RelightJob& job, const std::function<void(double)>& on_progress,
               const Past& past);
 
-/// The rest of it: compose, colour, write. All targets appear, or none. Adds to the times and
-/// clamped values of `relit`. Errors: those of the stages.
-void write_outputs(const RelightJob& job, Relit& relit,
+/// A frame that has been relit.
+struct RelitFrame {
+  RelightJob job;
+  Relit* relit;
+};
+
+/// The rest of it: compose, colour, write. `views` are those of one frame, usually one. All targets
+/// appear, or none. Adds to the times and clamped values of the first. Errors: those of the stages.
+void write_outputs(const std::vector<RelitFrame>& views,
                    const std::function<void(double)>& on_progress);
 
 /// How colours become those of a display, where a target is a picture that shows colours. Where a
@@ -61,7 +68,8 @@ void write_outputs(const RelightJob& job, Relit& relit,
 /// Errors: those of DisplayTransform and load_image_codec().
 std::optional<DisplayTransform> make_display(const RelightJob& job);
 
-/// What an EXR of a job holds of `results`, which have to stay.
+/// What an EXR of a job holds of `results`, which have to stay. Channels are named as those of the
+/// frame's view are.
 ExrContents exr_contents(const RelightJob& job, const Plan& plan, const Target& target,
                          const Results& results);
 
@@ -72,10 +80,16 @@ struct Written {
   double compose_ms = 0, write_ms = 0;
 };
 
-/// Writes what the targets of a job show of `products`. `display` may be null where no target is a
-/// picture of a colour.
-Written write_targets(const RelightJob& job, const Plan& plan, const Products& products,
-                      const DisplayTransform* display,
+/// What targets show of a frame. `display` may be null where no target is a picture of a colour.
+struct Shown {
+  const RelightJob& job;
+  const Plan& plan;
+  const Products& products;
+  const DisplayTransform* display;
+};
+
+/// Writes the targets of the jobs, which are the same for all `views`.
+Written write_targets(const std::vector<Shown>& views,
                       const std::function<void(double)>& on_progress);
 
 }  // namespace ssdo

@@ -169,7 +169,7 @@ TEST(Plan, RefusesProductsThatCannotBeMade) {
   const auto refused = [](const Case& c) { return error_of([&] { plan_of(c); }); };
   const OutputOptions exr = to({"out.exr"});
   EXPECT_THAT(refused({{}, to({"out.exr"}, {"normals"})}),
-              IsError(ExitCode::usage, "product 'normals': there are ao, bent"));
+              IsError(ExitCode::usage, "product 'normals': no such product; there are ao, bent"));
   EXPECT_THAT(refused({of_method("ssao"), to({"out.exr"}, {"bent"})}),
               IsError(ExitCode::usage, "ssao makes no bent; these do: bitmask, trace, gtao"));
   EXPECT_THAT(refused({.output = to({"out.exr"}, {"bounce"}), .albedo = false}),

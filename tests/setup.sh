@@ -4,6 +4,8 @@
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
+as_root() { if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi; }
+
 # Installs those of the named packages that are missing; asks nothing, and is quick when none is.
 install_packages() {
   local missing=() package
@@ -11,17 +13,16 @@ install_packages() {
     dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
   done
   [ ${#missing[@]} -eq 0 ] && return
-  local as_root=()
-  [ "$(id -u)" -eq 0 ] || as_root=(sudo)
   echo "Installing ${missing[*]}"
-  "${as_root[@]}" apt-get update -qq
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+  as_root apt-get update -qq
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
 build_packages=(g++ cmake ninja-build pkg-config libopenexr-dev libopenimageio-dev openimageio-tools
   libopencolorio-dev libeigen3-dev libglm-dev libtbb-dev libembree-dev libhwy-dev libdeflate-dev libcli11-dev libfmt-dev nlohmann-json3-dev
   libtomlplusplus-dev)
-test_packages=(libgtest-dev libgmock-dev groff chromium)
+test_packages=(libgtest-dev libgmock-dev groff chromium zsh)
+farm_packages=(slurm-wlm munge parallel make debootstrap dpkg-dev)  # of tests/farm and tests/package
 
 # build FOLDER TARGET [cmake options]: configures FOLDER and builds TARGET in it.
 build() {

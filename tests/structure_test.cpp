@@ -42,7 +42,7 @@ const std::map<std::string, std::set<std::string>> kBelow = {
 };
 
 /// What every folder may include.
-const std::set<std::string> kEverywhere = {"error.h", "stopwatch.h"};
+const std::set<std::string> kEverywhere = {"error.h", "nearest_name.h", "stopwatch.h"};
 
 /// Libraries whose headers stay in some folders.
 const std::vector<std::pair<std::regex, std::set<std::string>>> kLibraries = {

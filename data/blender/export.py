@@ -96,6 +96,17 @@ def set_up_output(scene, size, path, passes, margin=(0, 0)):
         setattr(scene.view_layers[0], f"use_pass_{name}", True)
 
 
+def set_up_stereo(scene, distance):
+    """The camera is the left eye, and the right one looks the same way from `distance` beside it.
+    One file holds both views."""
+    stereo = scene.camera.data.stereo
+    stereo.interocular_distance, stereo.pivot = distance, "LEFT"
+    stereo.convergence_mode = "PARALLEL"
+    scene.render.use_multiview = True
+    scene.render.views_format = "STEREO_3D"
+    scene.render.image_settings.views_format = "MULTIVIEW"
+
+
 def camera_json(name, picture, views):
     main, *further = views
     camera = main.camera.data
@@ -138,9 +149,12 @@ def views_of(args, scene, picture):
     return [widened(view, args.overscan) if args.overscan else view, *further]
 
 
-def render(scene, view, passes):
+def render(scene, view, passes, stereo=None):
     scene.camera = view.camera
     set_up_output(scene, view.size, view.path, passes, view.margin)
+    scene.render.use_multiview = False
+    if stereo:
+        set_up_stereo(scene, stereo)
     bpy.ops.render.render(write_still=True)
     set_windows(view)
 
@@ -159,6 +173,8 @@ def parse_arguments():
     more.add_argument("--also", type=read_also, action="append", default=[],
                       metavar="FILE:DEGREES|top",
                       help="the camera turned about its target, or a view from above; repeatable")
+    more.add_argument("--stereo", type=float, metavar="DISTANCE",
+                      help="both eyes in one file, the right one so far beside the camera")
     light = parser.add_argument_group("path-traced light passes")
     light.add_argument("--samples", type=int, help="write light passes, so many samples per pixel")
     light.add_argument("--world", choices=["white", "environment"], default="white")
@@ -186,7 +202,7 @@ def main():
     else:
         passes = ["z", "position", "normal", "diffuse_color"]
     views = views_of(args, scene, picture)
-    render(scene, views[0], ["combined", *passes])
+    render(scene, views[0], ["combined", *passes], args.stereo)
     for view in views[1:]:
         render(scene, view, passes)
     if args.camera:

@@ -10,6 +10,7 @@
 #include "bench/report_files.h"
 #include "error.h"
 #include "estimators/registry.h"
+#include "nearest_name.h"
 
 namespace ssdo {
 namespace {
@@ -32,7 +33,8 @@ std::vector<std::string> choose_products(const BenchJob& job, const Subject& sub
   const std::vector<std::string>& asked = job.frame.output.products;
   for (const std::string& name : asked) {
     if (!contains(measured_products(), name)) {
-      throw Error(ExitCode::usage, fmt::format("product '{}': bench measures {}", name,
+      throw Error(ExitCode::usage, fmt::format("product '{}': {}bench measures {}", name,
+                                               did_you_mean(name, measured_products()),
                                                fmt::join(measured_products(), ", ")));
     }
   }
@@ -47,8 +49,9 @@ std::vector<std::string> choose_products(const BenchJob& job, const Subject& sub
   for (const WantedError& want : job.options.wants) {
     if (!want.product.empty() && !contains(products, want.product)) {
       throw Error(ExitCode::usage,
-                  fmt::format("--want {}={:g}: {} is not measured; there is {}", want.product,
-                              want.error, want.product, fmt::join(products, ", ")));
+                  fmt::format("--want {}={:g}: {} is not measured; {}there is {}", want.product,
+                              want.error, want.product, did_you_mean(want.product, products),
+                              fmt::join(products, ", ")));
     }
   }
   return products;
@@ -100,8 +103,9 @@ Subject read_subject(const BenchJob& job, std::vector<RunFile> inputs) {
   prepared.output.compose.reset();  // no composite is measured
   const Lighting light(prepared.light);
   FurtherPictures pictures;
-  subject.frame = prepare_frame(prepared, light, pictures,
-                                {job.input, prepared.input.aovs, prepared.input.also});
+  FrameFiles files{job.input, prepared.input.aovs, prepared.input.also};
+  if (!prepared.input.views.empty()) files.view = prepared.input.views.front();
+  subject.frame = prepare_frame(prepared, light, pictures, files);
   subject.products = choose_products(job, subject);
   subject.surface_pixels = count_surfaces(subject.frame);
   for (const auto& [product, truth] : subject.truths) check_truth(truth, subject);

@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "cli/describe.h"
@@ -27,6 +28,7 @@
 #include "frame.h"
 #include "io/json_text.h"
 #include "io/one_line.h"
+#include "io/stale_temporaries.h"
 #include "io/standard_output.h"
 #include "parallel/background.h"
 #include "pipeline.h"
@@ -34,16 +36,27 @@
 namespace ssdo {
 namespace {
 
+/// A view of a job on its way.
+struct WorkOnView {
+  Frame frame;
+  Relit relit = {};
+};
+
 /// A job on its way from its files to its outputs.
 struct Work {
-  std::size_t index = 0;            ///< of the job
-  OutputPolicy policy = {};         ///< of its outputs
-  std::optional<Frame> frame = {};  ///< while there is something left to do with it
-  Relit relit = {};
-  std::string lines = {};          ///< to be printed
-  nlohmann::json statistics = {};  ///< null unless its outputs were made
+  std::size_t index = 0;               ///< of the job
+  OutputPolicy policy = {};            ///< of its outputs
+  std::vector<WorkOnView> views = {};  ///< while there is something left to do with them
+  std::string lines = {};              ///< to be printed
+  nlohmann::json statistics = {};      ///< of its views; null unless the outputs were made
   std::optional<Error> error = {};
 };
+
+/// Not in a folder that may not be looked into: that is for the reader to say.
+bool is_missing(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::status(path, ignored).type() == std::filesystem::file_type::not_found;
+}
 
 class Batch {
  public:
@@ -55,8 +68,10 @@ class Batch {
         // A temporal frame hands its surfaces to the next one, which therefore waits.
         writes_behind_(overlaps_ && !options.model.temporal),
         progress_(options.batch.progress, options.verbosity.quiet) {
-    options_.memory = resources.memory() / (overlaps_ ? 2 : 1);
-    for (const Job& job : jobs_) pictures_.expect(job.files);
+    const std::size_t views = std::max(std::size_t(1), options.input.views.size());
+    options_.memory = resources.memory() / ((overlaps_ ? 2 : 1) * views);
+    for (const Job& job : jobs_)
+      for (const FrameFiles& files : job.views) pictures_.expect(files);
   }
 
   ExitCode run() {
@@ -79,6 +94,7 @@ class Batch {
   ExitCode run_jobs() {
     if (has_statistics())
       check_output(options_.verbosity.stats, policy_of_statistics(options_.output.policy));
+    if (options_.command == Command::relight && !options_.verbosity.dry_run) clean_folders();
     for (std::size_t i = 0; i < jobs_.size() && !stopped_; ++i) {
       if (options_.command == Command::info) list(jobs_[i]);
       if (!light_) light_.emplace(options_.light);
@@ -89,6 +105,21 @@ class Batch {
       conclude(*behind_);
     }
     return code_;
+  }
+
+  /// Removes what killed runs have left in the folders of the outputs.
+  void clean_folders() {
+    std::set<std::filesystem::path> folders;
+    for (const Job& job : jobs_) {
+      for (const Target& target : job.targets)
+        folders.insert(std::filesystem::path(target.path).parent_path());
+    }
+    for (const std::filesystem::path& folder : folders) {
+      for (const std::filesystem::path& file : remove_stale_temporaries(folder)) {
+        if (options_.verbosity.verbose)
+          print(line_of(file.string() + ": removed; the run that wrote it was killed"));
+      }
+    }
   }
 
   void run_job(std::size_t i) {
@@ -106,16 +137,16 @@ class Batch {
     if (behind_) conclude(*behind_);
     behind_.reset();
     if (stopped_) return;
-    if (now.frame)
-      behind_ = std::move(now);
-    else
+    if (now.views.empty())
       conclude(now);
+    else
+      behind_ = std::move(now);
   }
 
   /// Calls `step`; what it throws becomes the error of the job.
   template <class Step>
   void attempt(Work& work, const Step& step) {
-    const std::string& input = jobs_[work.index].files.input;
+    const std::string& input = jobs_[work.index].input();
     try {
       step();
       return;
@@ -127,22 +158,32 @@ class Batch {
     } catch (const std::exception& e) {
       work.error = Error(ExitCode::failed, fmt::format("{}: {}", input, e.what()));
     }
-    work.frame.reset();
+    work.views.clear();
   }
 
-  /// Up to the plan; there is no frame where the job is skipped.
+  /// Up to the plan; there are no views where the job is skipped.
   Work prepare(std::size_t i) {
     Work work{.index = i, .policy = options_.output.policy};
     attempt(work, [&] {
       if (may_skip(work)) return;
       const Job& job = jobs_[i];
-      if (job.frame && !std::filesystem::exists(job.files.input)) {
-        throw Error(ExitCode::input, fmt::format("{}: frame {} of the range is missing",
-                                                 job.files.input, *job.frame));
+      if (job.frame && is_missing(job.input())) {
+        throw Error(ExitCode::input, fmt::format("{}: frame {} of the range is missing; render it "
+                                                 "or leave it out of --frames",
+                                                 job.input(), *job.frame));
       }
-      work.frame = prepare_frame(options_, *light_, pictures_, job.files, job.frame.value_or(0));
+      for (const FrameFiles& files : job.views) {
+        Frame frame = prepare_frame(options_, *light_, pictures_, files, job.frame.value_or(0));
+        if (frame.bands && job.views.size() > 1) {
+          throw Error(ExitCode::usage,
+                      fmt::format("{}: two views of this size need more memory than "
+                                  "there is; give --stereo left, then right",
+                                  files.input));
+        }
+        work.views.push_back({std::move(frame)});
+      }
     });
-    pictures_.release(jobs_[i].files);
+    for (const FrameFiles& files : jobs_[i].views) pictures_.release(files);
     return work;
   }
 
@@ -153,7 +194,7 @@ class Batch {
     if (options_.batch.skip_existing) {
       if (is_done(job)) {
         if (options_.verbosity.verbose || options_.verbosity.dry_run)
-          add(work, fmt::format("{}: skipped, its outputs exist", job.files.input));
+          add(work, fmt::format("{}: skipped, its outputs exist", job.input()));
         return true;
       }
       work.policy.overwrite = true;  // some of its files are missing or incomplete
@@ -164,32 +205,37 @@ class Batch {
 
   /// Estimates and filters, or shows what would be done.
   void compute(Work& work) {
-    Past past{std::exchange(history_, std::nullopt), {}};
-    if (!work.frame) return;
+    std::vector<std::optional<History>> before = std::exchange(histories_, {});
+    before.resize(work.views.size());
     attempt(work, [&] {
-      Frame& frame = *work.frame;
-      if (options_.model.temporal) place_in_sequence(frame, past, before(work.index));
-      if (options_.command == Command::info) {
-        show(frame);
-        return work.frame.reset();
-      }
-      if (options_.verbosity.dry_run || options_.verbosity.verbose)
-        work.lines += describe(frame);
-      else
-        add_warnings(work, frame.warnings());
-      if (options_.verbosity.dry_run) {
-        // The last checks that come before the work of a real run.
-        if (const auto display = make_display(job_of(work))) add(work, display->description());
-        return work.frame.reset();
-      }
-      if (!behind_) print_lines(work);
-      RelightJob job = job_of(work);
-      job.on_estimated = [&] { free_occluders(frame.scene); };
-      work.relit = relight(job, progress_of(work.index), past);
-      if (options_.verbosity.verbose)
-        for (const std::string& note : work.relit.notes) add(work, note);
-      add_warnings(work, work.relit.warnings);
+      for (std::size_t v = 0; v < work.views.size(); ++v)
+        compute(work, work.views[v], before[v], share_of(work, v));
+      if (options_.command == Command::info || options_.verbosity.dry_run) work.views.clear();
     });
+  }
+
+  void compute(Work& work, WorkOnView& view, std::optional<History>& before,
+               const std::function<void(double)>& on_progress) {
+    Frame& frame = view.frame;
+    Past past{std::move(before), {}};
+    if (options_.model.temporal) place_in_sequence(frame, past, before_of(work.index));
+    if (options_.command == Command::info) return show(frame);
+    if (options_.verbosity.dry_run || options_.verbosity.verbose)
+      work.lines += describe(frame);
+    else
+      add_warnings(work, frame.warnings());
+    RelightJob job = job_of(work, view);
+    if (options_.verbosity.dry_run) {
+      // The last checks that come before the work of a real run.
+      if (const auto display = make_display(job)) add(work, display->description());
+      return;
+    }
+    if (!behind_) print_lines(work);
+    job.on_estimated = [&] { free_occluders(frame.scene); };
+    view.relit = relight(job, on_progress, past);
+    if (options_.verbosity.verbose)
+      for (const std::string& note : view.relit.notes) add(work, note);
+    add_warnings(work, view.relit.warnings);
   }
 
   /// What only estimators look at.
@@ -201,29 +247,32 @@ class Batch {
 
   /// Makes the outputs of a frame that was computed, and frees it.
   void write(Work& work, const std::function<void(double)>& on_progress) {
-    if (!work.frame) return;
+    if (work.views.empty()) return;
     attempt(work, [&] {
-      write_outputs(job_of(work), work.relit, on_progress);
-      if (work.relit.clamped_values > 0) {
+      std::vector<RelitFrame> relit;
+      for (WorkOnView& view : work.views) relit.push_back({job_of(work, view), &view.relit});
+      write_outputs(relit, on_progress);
+      if (const std::size_t clamped = work.views.front().relit.clamped_values) {
         add_warnings(work, {fmt::format("{} values were beyond the range of half and clamped to "
                                         "65504; keep them with --pixel-type float",
-                                        work.relit.clamped_values)});
+                                        clamped)});
       }
-      work.statistics = statistics_of(*work.frame, jobs_[work.index], resources_, work.relit);
-      if (options_.model.temporal) {
-        history_ = std::move(work.relit.history);
-        history_->geometry = std::move(work.frame->scene.geometry);
-        history_->albedo = std::move(work.frame->scene.senders.albedo);
+      for (WorkOnView& view : work.views) {
+        work.statistics.push_back(
+            statistics_of(view.frame, jobs_[work.index], resources_, view.relit));
+        if (!options_.model.temporal) continue;
+        History& history = *histories_.emplace_back(std::move(view.relit.history));
+        history.geometry = std::move(view.frame.scene.geometry);
+        history.albedo = std::move(view.frame.scene.senders.albedo);
       }
     });
-    work.frame.reset();
-    work.relit = {};
+    work.views.clear();
   }
 
   /// Says what became of a job, once all those before it are concluded.
   void conclude(Work& work) {
     print_lines(work);
-    if (!work.statistics.is_null()) statistics_.push_back(std::move(work.statistics));
+    for (nlohmann::json& view : work.statistics) statistics_.push_back(std::move(view));
     if (work.error) {
       // A job of one frame fails if that frame fails.
       if (jobs_.size() == 1) throw *work.error;
@@ -236,29 +285,39 @@ class Batch {
     progress_of(work.index)(1);
   }
 
-  RelightJob job_of(const Work& work) const {
-    return {options_, *work.frame, jobs_[work.index].targets, work.policy};
+  RelightJob job_of(const Work& work, const WorkOnView& view) const {
+    return {options_, view.frame, jobs_[work.index].targets, work.policy};
   }
 
-  FrameBefore before(std::size_t i) const {
+  FrameBefore before_of(std::size_t i) const {
     return {i > 0 && std::int64_t(*jobs_[i - 1].frame) + 1 == *jobs_[i].frame,
             options_.input.gbuffer.motion_scale.value_or(glm::vec2(1))};
   }
 
   std::function<void(double)> progress_of(std::size_t i) {
     return [this, i](double done) {
-      progress_.tell((double(i) + done) / double(jobs_.size()), jobs_[i].files.input);
+      progress_.tell((double(i) + done) / double(jobs_.size()), jobs_[i].input());
+    };
+  }
+
+  /// The share of a job's time that one of its views takes.
+  std::function<void(double)> share_of(const Work& work, std::size_t view) {
+    return [tell = progress_of(work.index), view, count = double(work.views.size())](double done) {
+      tell((double(view) + done) / count);
     };
   }
 
   /// Called before anything that can fail, so that `info` lists the layers of every file.
   void list(const Job& job) {
-    const std::deque<ExrReader> files = open_files(job.files);
-    infos_.push_back(listing_json(job.files.input, files));
+    const std::deque<ExrReader> files = open_files(job.views.front());
+    infos_.push_back(listing_json(job.input(), files));
     print_info(list_layers(files));
   }
 
+  /// Of several views, each has an entry of its own.
   void show(const Frame& frame) {
+    if (infos_.back().contains("view") && infos_.back()["view"] != frame.view)
+      infos_.push_back(infos_.back());
     infos_.back().update(to_json(frame));
     print_info(describe(frame));
   }
@@ -286,7 +345,7 @@ class Batch {
   void add_warnings(Work& work, const std::vector<std::string>& warnings) const {
     if (options_.verbosity.quiet) return;
     for (const std::string& warning : warnings)
-      add(work, fmt::format("{}: warning: {}", jobs_[work.index].files.input, warning));
+      add(work, fmt::format("{}: warning: {}", jobs_[work.index].input(), warning));
   }
 
   /// Prints on standard error; if that is closed, the work goes on.
@@ -315,10 +374,10 @@ class Batch {
   nlohmann::json statistics_ = nlohmann::json::array(), infos_ = nlohmann::json::array();
   ExitCode code_ = ExitCode::done;
   bool stopped_ = false;
-  std::optional<History> history_;  ///< of the frame before, where --temporal asks for it
-  std::optional<Work> ahead_;       ///< the next job, prepared
-  std::optional<Work> behind_;      ///< the last one, computed and not concluded
-  Background beside_;               ///< is waited for before any of the above goes
+  std::vector<std::optional<History>> histories_;  ///< of the frame before's views, for --temporal
+  std::optional<Work> ahead_;                      ///< the next job, prepared
+  std::optional<Work> behind_;                     ///< the last one, computed and not concluded
+  Background beside_;                              ///< is waited for before any of the above goes
 };
 
 }  // namespace

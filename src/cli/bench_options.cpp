@@ -53,6 +53,8 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& o) {
                                        "speed against error of methods and settings on "
                                        "this frame, and the setting for a wanted error")
                         ->fallthrough();
+  bench->footer(
+      "It takes INPUT and options of the main job that say what is measured: ssdo --help-all");
   bench
       ->add_option("--report", o.reports,
                    "write .html (a page with charts and maps), .csv or .json; repeatable")
@@ -83,11 +85,13 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& o) {
   return bench;
 }
 
+bool is_refused_by_bench(const std::string& flag) { return kRefused.contains(flag); }
+
 void finish_bench(const CLI::App& app, BenchOptions& o) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0) continue;
     const std::string name = option->get_name();
-    if (kRefused.contains(name)) {
+    if (is_refused_by_bench(name)) {
       throw Error(ExitCode::usage,
                   fmt::format("bench takes no {}: {}", name,
                               name == "--method" ? "name methods with --methods"

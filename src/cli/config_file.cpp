@@ -11,6 +11,7 @@
 
 #include "error.h"
 #include "io/one_line.h"
+#include "nearest_name.h"
 
 namespace ssdo {
 namespace {
@@ -93,6 +94,16 @@ class ConfigFile {
     }
   }
 
+  /// Those that a file may have.
+  std::vector<std::string> keys() const {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app_.get_options()) {
+      if (option->get_configurable())
+        names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
+    }
+    return names;
+  }
+
   CLI::Option& find(const std::string& key, std::uint32_t line) const {
     const std::string flag = "--" + key;
     CLI::Option* option = app_.get_option_no_throw(flag);
@@ -104,9 +115,9 @@ class ConfigFile {
                                command->get_name()));
       }
     }
-    fail(line, fmt::format("'{}' is no option; keys are the long names of the main job's options "
-                           "without dashes in front, see ssdo --help",
-                           key));
+    fail(line, fmt::format("'{}' is no option; {}keys are the long names of the main job's options "
+                           "without dashes in front, see ssdo --help-all",
+                           key, did_you_mean(key, keys())));
   }
 
   /// The value as text of the command line; nothing for a flag that is false.

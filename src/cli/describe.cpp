@@ -74,6 +74,44 @@ std::string describe_layer(const Frame& frame, const Layer& layer) {
   return text;
 }
 
+/// Whether P is in camera space: as --space says, or as its own camera stands.
+bool is_in_camera_space(const Frame& frame) {
+  if (frame.gbuffer.space) return *frame.gbuffer.space == Space::camera;
+  const Placement& placement = frame.report.placement;
+  return placement.of_positions.is_camera_space(placement.median_depth);
+}
+
+std::string_view space_of_positions(const Frame& frame) {
+  return is_in_camera_space(frame) ? "camera" : "world";
+}
+
+std::string_view handedness(const Frame& frame) {
+  return glm::determinant(frame.report.placement.of_positions.rotation) < 0 ? "left" : "right";
+}
+
+std::string describe_positions(const Frame& frame) {
+  std::string text = describe_layer(frame, *frame.layers[Role::position]);
+  if (frame.report.placement.median_depth <= 0) return text;
+  return text + fmt::format("; {} space{}, {}-handed", space_of_positions(frame),
+                            frame.gbuffer.space ? ", by --space" : "", handedness(frame));
+}
+
+std::string_view kind_of_depth(const Frame& frame) {
+  return frame.gbuffer.depth_kind == DepthKind::ray ? "ray" : "planar";
+}
+
+/// "by P", "by its name"; "assumed" where nothing tells.
+std::string source_of_depth_kind(const Frame& frame) {
+  const std::string& source = frame.gbuffer.depth_source;
+  return source.empty() ? "assumed" : "by " + source;
+}
+
+std::string describe_depth(const Frame& frame) {
+  const std::string text = describe_layer(frame, *frame.layers[Role::depth]);
+  if (frame.gbuffer.encodings.depth_is_wrong) return text + "; left out: it contradicts P";
+  return text + fmt::format("; {}, {}", kind_of_depth(frame), source_of_depth_kind(frame));
+}
+
 std::string describe_normals(const Frame& frame) {
   const GeometryReport& report = frame.report;
   const auto& layer = frame.layers[Role::normal];
@@ -123,6 +161,18 @@ std::size_t surface_pixels(const Frame& frame) {
   return count;
 }
 
+json position_json(const Frame& frame) {
+  if (!frame.layers[Role::position]) return nullptr;
+  return {{"space", space_of_positions(frame)}, {"handedness", handedness(frame)}};
+}
+
+json depth_json(const Frame& frame) {
+  if (!frame.layers[Role::depth]) return nullptr;
+  return {{"kind", kind_of_depth(frame)},
+          {"source", source_of_depth_kind(frame)},
+          {"used", !frame.gbuffer.encodings.depth_is_wrong}};
+}
+
 json layers_json(const Frame& frame) {
   json layers = json::object();
   for (std::size_t i = 0; i < kRoleCount; ++i) {
@@ -145,13 +195,16 @@ std::string describe(const Frame& frame) {
   const auto line = [&](std::string_view key, const std::string& value) {
     text += fmt::format("  {:<10}{}\n", key, printable(value));
   };
+  if (!frame.view.empty()) line("view", frame.view);
   if (!(data == display)) line("window", "data " + text_of(data));
   for (std::size_t i = 0; i < kRoleCount; ++i) {
     const auto& layer = frame.layers.layers[i];
     if (Role(i) == Role::normal)
       line("normal", describe_normals(frame));
     else if (layer)
-      line(role_name(Role(i)), describe_layer(frame, *layer));
+      line(role_name(Role(i)), Role(i) == Role::position ? describe_positions(frame)
+                               : Role(i) == Role::depth  ? describe_depth(frame)
+                                                         : describe_layer(frame, *layer));
   }
   line("camera", describe_camera(frame));
   if (frame.report.header) line("header", describe(*frame.report.header));
@@ -174,6 +227,7 @@ nlohmann::json to_json(const Frame& frame) {
   const Geometry& g = frame.scene.geometry;
   const ExrPart& part = frame.part();
   return {{"file", frame.input},
+          {"view", frame.view},
           {"width", part.display_window.width()},
           {"height", part.display_window.height()},
           {"data_window", window_json(part.data_window)},
@@ -181,6 +235,8 @@ nlohmann::json to_json(const Frame& frame) {
           {"parts", parts_json(frame.files.front())},
           {"layers", layers_json(frame)},
           {"camera", camera_json(frame)},
+          {"position", position_json(frame)},
+          {"depth", depth_json(frame)},
           {"normals",
            {{"space", frame.report.normal_space},
             {"agreement", frame.report.normal_agreement},

@@ -16,11 +16,44 @@
 namespace ssdo {
 namespace {
 
-std::vector<Target> targets_of(const OutputOptions& output) {
+/// `text` with `sign` replaced by `word`.
+std::string replaced(std::string text, std::string_view sign, std::string_view word) {
+  for (auto at = text.find(sign); at != text.npos; at = text.find(sign, at + word.size()))
+    text.replace(at, sign.size(), word);
+  return text;
+}
+
+/// Adds a target; one for each view where the path has the signs %V or %v of Nuke for their names
+/// and initials.
+void add_target(const Target& target, const std::vector<std::string>& views,
+                std::vector<Target>& targets) {
+  const std::size_t before = targets.size();
+  for (const std::string& view : views) {
+    const std::string path = replaced(replaced(target.path, "%V", view), "%v", view.substr(0, 1));
+    if (path != target.path) targets.push_back({path, target.product, view});
+  }
+  if (targets.size() > before) return;
+  if (views.size() > 1 && !has_exr_ending(target.path)) {
+    throw Error(ExitCode::usage, fmt::format("{}: shows one view; put %V into its name for that of "
+                                             "the view, or give --stereo left or right",
+                                             target.path));
+  }
+  targets.push_back(target);
+}
+
+std::vector<Target> targets_of(const OutputOptions& output, const std::vector<std::string>& views) {
   std::vector<Target> targets;
-  for (const std::string& path : output.files) targets.push_back({path, std::nullopt});
-  for (const SaveRequest& save : output.saves) targets.push_back({save.path, save.product});
+  for (const std::string& path : output.files) add_target({path, std::nullopt}, views, targets);
+  for (const SaveRequest& save : output.saves)
+    add_target({save.path, save.product}, views, targets);
   return targets;
+}
+
+/// Those to relight.
+std::vector<FrameFiles> views_of(const FrameFiles& files, const std::vector<std::string>& names) {
+  std::vector<FrameFiles> views;
+  for (const std::string& name : names) views.push_back(in_view(files, name));
+  return views.empty() ? std::vector{files} : views;
 }
 
 void check_kinds(const std::vector<Target>& targets) {
@@ -70,14 +103,15 @@ Job single_job(const Options& options, std::vector<Target> targets) {
                                                target.path, options.input_file));
     }
   }
-  return {std::nullopt, files_named(options), std::move(targets)};
+  return {std::nullopt, views_of(files_named(options), options.input.views), std::move(targets)};
 }
 
 Job job_of_frame(const Options& options, const std::vector<Target>& targets, int frame) {
-  Job job{frame, files_at(options, frame), targets};
+  FrameFiles files = files_at(options, frame);
   for (const std::string& path : options.input.also)
-    job.files.also.push_back(expand_pattern(path, frame));
-  job.files.neighbours = neighbours_of(options, frame);
+    files.also.push_back(expand_pattern(path, frame));
+  files.neighbours = neighbours_of(options, frame);
+  Job job{frame, views_of(files, options.input.views), targets};
   for (Target& target : job.targets) target.path = expand_pattern(target.path, frame);
   return job;
 }
@@ -105,7 +139,7 @@ std::vector<Job> jobs_of_sequence(const Options& options, const std::vector<Targ
 RunFiles files_of(const Options& options, const std::vector<Job>& jobs) {
   RunFiles files;
   for (const Job& job : jobs) {
-    const auto inputs = inputs_of(options, job.files);
+    const auto inputs = inputs_of(options, job.views.front());
     files.inputs.insert(files.inputs.end(), inputs.begin(), inputs.end());
     for (const Target& target : job.targets)
       files.outputs.push_back({target.product ? "--save" : "-o", target.path});
@@ -136,7 +170,7 @@ bool is_readable(const std::string& path) {
 }  // namespace
 
 std::vector<Job> plan_jobs(const Options& options) {
-  std::vector<Target> targets = targets_of(options.output);
+  std::vector<Target> targets = targets_of(options.output, options.input.views);
   check_kinds(targets);
   std::vector<Job> jobs = is_pattern(options.input_file)
                               ? jobs_of_sequence(options, targets)
@@ -147,7 +181,8 @@ std::vector<Job> plan_jobs(const Options& options) {
 
 bool is_done(const Job& job) {
   for (const Target& target : job.targets) {
-    if (!std::filesystem::exists(target.path) || !is_readable(target.path)) return false;
+    std::error_code ignored;
+    if (!std::filesystem::exists(target.path, ignored) || !is_readable(target.path)) return false;
   }
   return !job.targets.empty();
 }

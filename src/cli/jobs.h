@@ -14,8 +14,10 @@ namespace ssdo {
 /// One frame of a run, with the patterns of its files replaced.
 struct Job {
   std::optional<int> frame;
-  FrameFiles files;
+  std::vector<FrameFiles> views;  ///< those to relight, of one file; usually one
   std::vector<Target> targets;
+
+  const std::string& input() const { return views.front().input; }
 };
 
 /// The frames of a run in their order.

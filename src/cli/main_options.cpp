@@ -14,6 +14,8 @@
 #include "estimators/registry.h"
 #include "filters/registry.h"
 #include "io/sequence.h"
+#include "nearest_name.h"
+#include "scene/layers/groups.h"
 
 namespace ssdo {
 namespace {
@@ -73,8 +75,8 @@ class Group {
         field = value;
         return;
       }
-      throw Error(ExitCode::usage,
-                  fmt::format("{} {}: expected one of {}", flag, text, fmt::join(names, ", ")));
+      throw Error(ExitCode::usage, fmt::format("{} {}: {}expected one of {}", flag, text,
+                                               did_you_mean(text, names), fmt::join(names, ", ")));
     };
     CLI::Option* option = text(flag, fmt::format("{{{}}}", fmt::join(names, ",")), set, help);
     for (const auto& [name, value] : choices) {
@@ -102,8 +104,14 @@ void add_input(CLI::App& app, InputOptions& o) {
   group.text(
       "--neighbours", "K[xSTEP]", [&](const Text& text) { o.neighbours = read_neighbours(text); },
       "K frames before and after in the same sequence, every STEP, as further G-buffers");
-  group.value("--part", "NAME|N", o.part,
-              "look for layers in this part or view, and what completes it");
+  CLI::Option* part = group.value("--part", "NAME|N", o.part,
+                                  "look for layers in this part or view, and what completes it");
+  const Text left(kEyes[0]), right(kEyes[1]);
+  group.choice("--stereo", o.views, {{left, {left}}, {right, {right}}, {"all", {left, right}}},
+               "relight this view of a stereo file, or both, with the other as a further G-buffer");
+  app.get_option("--stereo")->excludes(part);
+  group.choice("--space", o.gbuffer.space, {{"world", Space::world}, {"camera", Space::camera}},
+               "that P and N are stored in; default: as they agree with each other and the camera");
   group.text(
       "--depth-kind", "KIND", [&](const Text& text) { read_depth_kind(text, o.gbuffer); },
       "what a depth layer measures: " + depth_kind_forms());

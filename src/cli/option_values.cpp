@@ -2,6 +2,7 @@
 #include "cli/option_values.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
@@ -13,6 +14,7 @@
 #include "cli/memory.h"
 #include "error.h"
 #include "math/number.h"
+#include "nearest_name.h"
 
 namespace ssdo {
 namespace {
@@ -67,11 +69,14 @@ std::optional<double> read_length(const std::string& option, std::string_view te
   return value;
 }
 
+std::vector<std::string> depth_kind_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, kind] : kDepthKinds) names.emplace_back(name);
+  return names;
+}
+
 std::string depth_kind_forms() {
-  std::string names;
-  for (const auto& [name, kind] : kDepthKinds)
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
-  return fmt::format("{} or {}NEAR,FAR", names, kNormalized);
+  return fmt::format("{} or {}NEAR,FAR", fmt::join(depth_kind_names(), ", "), kNormalized);
 }
 
 void read_depth_kind(const std::string& text, GBufferOptions& out) {
@@ -83,12 +88,18 @@ void read_depth_kind(const std::string& text, GBufferOptions& out) {
   const bool normalized = text.starts_with(kNormalized);
   const auto range = read_pair(normalized ? text.substr(kNormalized.size()) : "");
   if (!range || range->first == range->second) {
-    throw_usage(
-        fmt::format("--depth-kind {}: expected {} in scene units", text, depth_kind_forms()));
+    throw_usage(fmt::format("--depth-kind {}: {}expected {} in scene units", text,
+                            did_you_mean(text, depth_kind_names()), depth_kind_forms()));
   }
   out.depth_kind = DepthKind::normalized;
   out.depth_near = float(range->first);
   out.depth_far = float(range->second);
+}
+
+std::vector<std::string> compression_names() {
+  std::vector<std::string> names;
+  for (const CompressionRow& row : kCompressions) names.emplace_back(row.name);
+  return names;
 }
 
 std::string compression_forms() {
@@ -115,7 +126,9 @@ void read_compression(const std::string& text, OutputOptions& out) {
     throw_usage(fmt::format("--compression {0}: {1} has no levels; give --compression {1}", text,
                             row.name));
   }
-  throw_usage(fmt::format("--compression {}: expected one of {}", text, compression_forms()));
+  throw_usage(fmt::format("--compression {}: {}expected one of {}", text,
+                          did_you_mean(text.substr(0, colon), compression_names()),
+                          compression_forms()));
 }
 
 glm::vec2 read_motion_scale(const std::string& text) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "cli/options.h"
 
@@ -18,11 +19,17 @@ namespace ssdo {
 /// A length in scene units: a positive number or inf; nothing for auto.
 std::optional<double> read_length(const std::string& option, std::string_view text);
 
+/// The kinds of --depth-kind that are one word.
+std::vector<std::string> depth_kind_names();
+
 /// The forms of --depth-kind, for help and messages: "planar, ray, inverse or ...".
 std::string depth_kind_forms();
 
 /// One of those forms.
 void read_depth_kind(const std::string& text, GBufferOptions& out);
+
+/// The compressions, without levels.
+std::vector<std::string> compression_names();
 
 /// The forms of --compression, for help and messages: "none, ..., zip[:1..12], ...".
 std::string compression_forms();

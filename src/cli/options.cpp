@@ -8,6 +8,9 @@
 
 #include "cli/bench_options.h"
 #include "cli/config_file.h"
+#include "cli/help/completions.h"
+#include "cli/help/short_help.h"
+#include "cli/help/unknown_words.h"
 #include "cli/idle_options.h"
 #include "cli/main_options.h"
 #include "cli/option_values.h"
@@ -44,6 +47,7 @@ CLI::App* add_info(CLI::App& app, Options& o) {
   CLI::App* info =
       app.add_subcommand("info", "say what was found, what would be done and why; write nothing")
           ->fallthrough();
+  info->footer("It takes INPUT and the options of the main job: ssdo --help-all");
   info->add_flag("--json", o.verbosity.json, "as JSON");
   return info;
 }
@@ -79,11 +83,12 @@ void refuse_options_of_the_main_job(const CLI::App& app) {
   }
 }
 
-/// Refuses options that exclude each other.
-void check(const Options& o) {
+/// Refuses a main job without input or output.
+void check(const Options& o, const CLI::App& app) {
   if (o.input_file.empty()) throw Error(ExitCode::usage, "no INPUT given; see ssdo --help");
   if (o.command == Command::relight && o.output.files.empty() && o.output.saves.empty() &&
       !o.verbosity.dry_run) {
+    if (misspelt_command(app)) throw unknown_words(app);
     throw Error(ExitCode::usage,
                 fmt::format("{}: no output given; name one with -o OUTPUT", o.input_file));
   }
@@ -98,7 +103,15 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
       "Puts light back into a rendered frame: occlusion, environment light and bounces from a "
       "G-buffer.",
       "ssdo"};
-  app.set_version_flag("--version", std::string("ssdo ") + SSDO_VERSION)->configurable(false);
+  app.set_help_flag("-h,--help", "print the most needed options, and exit");
+  app.set_help_all_flag("--help-all", "print all options, and exit");
+  app.set_version_flag("--version", std::string("ssdo ") + SSDO_VERSION,
+                       "print the version, and exit")
+      ->configurable(false);
+  std::string shell;
+  app.add_option("--completions", shell, "print the completion script of this shell, and exit")
+      ->type_name(kShells)
+      ->configurable(false);
   app.add_option("INPUT", o.input_file, "multilayer EXR, or a sequence: shot.####.exr")
       ->type_name("");
   bool list = false;
@@ -112,17 +125,26 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   const CLI::App* const compare = add_compare(app, o.compare);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::CallForAllHelp&) {
+    parsed.print = app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::All);
+    return parsed;
   } catch (const CLI::CallForHelp&) {
-    parsed.print = app.help();
+    parsed.print = app.get_subcommands().empty() ? std::string(kShortHelp) : app.help();
     return parsed;
   } catch (const CLI::CallForVersion&) {
     parsed.print = std::string("ssdo ") + SSDO_VERSION + "\n";
     return parsed;
+  } catch (const CLI::ExtrasError&) {
+    throw unknown_words(app);
   } catch (const CLI::ParseError& e) {
     throw Error(ExitCode::usage, one_line(e.what()) + "; see ssdo --help");
   }
   refuse_empty_values(app);
   for (const CLI::App* command : app.get_subcommands()) refuse_empty_values(*command);
+  if (!shell.empty()) {
+    parsed.print = completions(app, shell);
+    return parsed;
+  }
   if (list) {
     o.command = Command::list_methods;
     return parsed;
@@ -140,7 +162,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   const std::set<std::string> given = names_given(app);
   if (!o.config_file.empty()) read_config_file(o.config_file, app);
   if (o.command == Command::bench) finish_bench(app, o.bench);
-  check(o);
+  check(o, app);
   o.warnings = idle_options(given, o);
   return parsed;
 }

@@ -44,7 +44,7 @@ struct Options : FrameOptions {
   std::vector<std::string> warnings;     ///< options that have no effect beside the others
 };
 
-/// What the command line asks for: work, or a text to print (--help, --version).
+/// What the command line asks for: work, or a text to print (--help, --completions).
 struct ParsedOptions {
   Options options;
   std::optional<std::string> print;

@@ -36,6 +36,10 @@ ExitCode run_bench(const Options& options, const Resources& resources) {
                 fmt::format("{}: is a sequence, and bench measures one frame; name the file of one",
                             input));
   }
+  if (options.input.views.size() > 1) {
+    throw Error(ExitCode::usage,
+                fmt::format("{}: bench measures one view; give --stereo left or right", input));
+  }
   const BenchJob job{input, options, options.bench};
   const Subject subject = read_subject(job, inputs_of(options, files_named(options)));
   print_findings(subject.frame, options.verbosity);

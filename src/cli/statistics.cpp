@@ -31,6 +31,7 @@ nlohmann::json statistics_of(const Frame& frame, const Job& job, const Resources
   nlohmann::json out = {
       {"frame", job.frame ? nlohmann::json(*job.frame) : nlohmann::json()},
       {"input", frame.input},
+      {"view", frame.view},
       {"output", outputs.size() == 1 ? outputs[0] : outputs},
       {"width", frame.part().data_window.width()},
       {"height", frame.part().data_window.height()},

@@ -17,6 +17,7 @@
 #include "color/color_space.h"
 #include "error.h"
 #include "io/one_line.h"
+#include "nearest_name.h"
 
 namespace ssdo {
 namespace {
@@ -103,7 +104,8 @@ std::string pick(const std::string& option, const std::string& wanted, const Nam
   });
   if (found != names.end()) return *found;
   throw Error(ExitCode::usage,
-              fmt::format("{} {}: not in {}, which has: {}", option, wanted, owner,
+              fmt::format("{} {}: not in {}; {}it has: {}", option, wanted, owner,
+                          did_you_mean(wanted, names),
                           names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
 }
 

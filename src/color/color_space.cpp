@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "io/one_line.h"
+#include "nearest_name.h"
 
 namespace ssdo {
 namespace {
@@ -135,12 +136,12 @@ std::optional<InputSpace> convert(const OCIO::Config& config, const Claim& claim
   return std::nullopt;
 }
 
-std::string list_spaces(const OCIO::Config& config) {
+Names spaces_of(const OCIO::Config& config) {
   Names names;
   for (int i = 0; i < config.getNumColorSpaces(); ++i) {
     names.emplace_back(config.getColorSpaceNameByIndex(i));
   }
-  return fmt::format("{}", fmt::join(names, ", "));
+  return names;
 }
 
 }  // namespace
@@ -157,9 +158,11 @@ InputSpace choose_input_space(const OCIO::Config& config, const std::string& con
     if (const auto space = find_space(config, {colorspace})) {
       return {space->getName(), "--colorspace", {}};
     }
-    throw Error(ExitCode::usage,
-                fmt::format("--colorspace {}: {} has no such colour space; it has: {}", colorspace,
-                            config_label, list_spaces(config)));
+    const Names names = spaces_of(config);
+    throw Error(
+        ExitCode::usage,
+        fmt::format("--colorspace {}: {} has no such colour space; {}it has: {}", colorspace,
+                    config_label, did_you_mean(colorspace, names), fmt::join(names, ", ")));
   }
   Names passed_over;
   bool claims_colors = false;
@@ -187,7 +190,7 @@ InputSpace choose_input_space(const OCIO::Config& config, const std::string& con
       ExitCode::usage,
       fmt::format("{} has no role scene_linear to take the input's colours by; name their space "
                   "with --colorspace, one of: {}",
-                  config_label, list_spaces(config)));
+                  config_label, fmt::join(spaces_of(config), ", ")));
 }
 
 }  // namespace ssdo

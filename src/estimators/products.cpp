@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "error.h"
+#include "nearest_name.h"
 
 namespace ssdo {
 namespace {
@@ -23,11 +24,14 @@ ProductSet set_of(const Has& has) {
 }  // namespace
 
 const Product& find_product(std::string_view name) {
+  std::vector<std::string> names;
   for (const Product& product : kProducts) {
     if (product.name == name) return product;
+    names.emplace_back(product.name);
   }
-  throw Error(ExitCode::usage, fmt::format("product '{}': there are {}, and {}", name,
-                                           product_names(), kAllProducts));
+  throw Error(ExitCode::usage,
+              fmt::format("product '{}': no such product; {}there are {}, and {}", name,
+                          did_you_mean(name, names), product_names(), kAllProducts));
 }
 
 std::string product_names() {

@@ -2,6 +2,7 @@
 #include "estimators/registry.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -20,14 +21,14 @@
 #include "estimators/ssdo.h"
 #include "estimators/trace.h"
 #include "math/number.h"
+#include "nearest_name.h"
 
 namespace ssdo {
 namespace {
 
-std::string parameter_names(const Method& method) {
-  std::string names;
-  for (const Parameter& p : method.parameters)
-    names += (names.empty() ? "" : ", ") + std::string(p.name);
+std::vector<std::string> parameter_names(const Method& method) {
+  std::vector<std::string> names;
+  for (const Parameter& p : method.parameters) names.emplace_back(p.name);
   return names;
 }
 
@@ -65,13 +66,13 @@ std::span<const Method> methods() {
 }
 
 const Method& find_method(std::string_view name) {
-  std::string names;
+  std::vector<std::string> names;
   for (const Method& method : methods()) {
     if (method.name == name) return method;
-    names += (names.empty() ? "" : ", ") + std::string(method.name);
+    names.emplace_back(method.name);
   }
-  throw Error(ExitCode::usage,
-              fmt::format("--method {}: no such method; there is {}", name, names));
+  throw Error(ExitCode::usage, fmt::format("--method {}: no such method; {}there is {}", name,
+                                           did_you_mean(name, names), fmt::join(names, ", ")));
 }
 
 const Method& reference_method() {
@@ -109,8 +110,11 @@ ParameterValues resolve_parameters(const Method& method, const std::vector<std::
     const std::string name = setting.substr(0, equals);
     const Parameter* parameter = find_parameter(method, name);
     if (equals == std::string::npos || !parameter) {
-      throw Error(ExitCode::usage, fmt::format("--set {}: method {} has the parameters {}", setting,
-                                               method.name, parameter_names(method)));
+      const std::vector<std::string> names = parameter_names(method);
+      throw Error(ExitCode::usage,
+                  fmt::format("--set {}: {}method {} has the parameters {}", setting,
+                              parameter ? "expected NAME=VALUE; " : did_you_mean(name, names),
+                              method.name, fmt::join(names, ", ")));
     }
     const double value = value_of(*parameter, std::string_view(setting).substr(equals + 1));
     check_value(*parameter, value, "--set " + setting);

@@ -2,6 +2,7 @@
 #include "filters/registry.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 
@@ -11,6 +12,7 @@
 #include "filters/gaussian_filter.h"
 #include "filters/geometry_filter.h"
 #include "filters/normal_filter.h"
+#include "nearest_name.h"
 
 namespace ssdo {
 
@@ -27,13 +29,14 @@ std::span<const Filter> filters() {
 }
 
 const Filter& find_filter(std::string_view name) {
-  std::string names;
+  std::vector<std::string> names;
   for (const Filter& filter : filters()) {
     if (filter.name == name) return filter;
-    names += std::string(filter.name) + ", ";
+    names.emplace_back(filter.name);
   }
-  throw Error(ExitCode::usage, fmt::format("--filter {}: no such filter; there is {}{}", name,
-                                           names, kSourceFilter));
+  names.emplace_back(kSourceFilter);
+  throw Error(ExitCode::usage, fmt::format("--filter {}: no such filter; {}there is {}", name,
+                                           did_you_mean(name, names), fmt::join(names, ", ")));
 }
 
 const Filter& find_filter(std::string_view name, const Method& method) {

@@ -2,9 +2,11 @@
 #include "io/output_path.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <climits>
+#include <fstream>
 #include <random>
 
 #include "error.h"
@@ -39,10 +41,19 @@ fs::path follow_links(fs::path path) {
 fs::path temporary_beside(const fs::path& target) {
   // The random part keeps apart the machines of a farm, whose process ids may be equal.
   const std::string extension = shortened(target.extension().string(), 16);
-  const std::string ending =
-      fmt::format(".ssdo-{}-{:08x}.tmp{}", getpid(), std::random_device{}(), extension);
+  const std::string mark = mark_of_machine();
+  const std::string ending = fmt::format("{}-{}-{:08x}.tmp{}", mark.empty() ? ".ssdo" : mark,
+                                         getpid(), std::random_device{}(), extension);
   const std::string stem = shortened(target.stem().string(), NAME_MAX - 1 - ending.size());
   return target.parent_path() / fmt::format(".{}{}", stem, ending);
+}
+
+std::string mark_of_machine() {
+  std::string id;
+  std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), id);
+  struct stat processes = {};
+  if (id.size() < 8 || stat("/proc/self/ns/pid", &processes) != 0) return "";
+  return fmt::format(".ssdo-{}{:08x}", id.substr(0, 8), processes.st_ino);
 }
 
 }  // namespace ssdo

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace ssdo {
 
@@ -16,5 +17,11 @@ std::filesystem::path follow_links(std::filesystem::path path);
 /// A name for a temporary beside `target`: hidden, unlike any other, with the target's extension
 /// (libraries choose the format by it), and short enough for the file system.
 std::filesystem::path temporary_beside(const std::filesystem::path& target);
+
+/// What the names of all temporaries have in common whose process ids can be compared, and no
+/// others:
+/// ".ssdo-" and 16 digits of the id that Linux draws at each start and of the processes' namespace.
+/// Empty where the system does not tell them.
+std::string mark_of_machine();
 
 }  // namespace ssdo

@@ -11,6 +11,7 @@
 #include "error.h"
 #include "io/exr/exr_parts.h"
 #include "io/image_file.h"
+#include "nearest_name.h"
 
 namespace ssdo {
 namespace {
@@ -132,11 +133,13 @@ PictureLayer LayeredPicture::find(const std::string& name) const {
   if (found.empty()) found = layers_with(by_last_words);
   if (found.empty()) found = channels_with(by_last_words);
   if (found.size() == 1) return found[0];
-  throw Error(ExitCode::layer,
-              found.empty()
-                  ? fmt::format("{}: has no layer '{}'; there is {}", file_, name, names())
-                  : fmt::format("{}: {} layers are called '{}'; name one of {}", file_,
-                                found.size(), name, names()));
+  std::vector<std::string> shown;
+  for (const PictureLayer& layer : layers_) shown.push_back(shown_name(layer));
+  throw Error(ExitCode::layer, found.empty()
+                                   ? fmt::format("{}: has no layer '{}'; {}there is {}", file_,
+                                                 name, did_you_mean(name, shown), names())
+                                   : fmt::format("{}: {} layers are called '{}'; name one of {}",
+                                                 file_, found.size(), name, names()));
 }
 
 Window LayeredPicture::window(const PictureLayer& layer) const {

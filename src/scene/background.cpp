@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/background.h"
 
+#include <fmt/format.h>
+
 #include <atomic>
 #include <glm/geometric.hpp>
 
@@ -13,8 +15,16 @@ namespace {
 /// Alpha up to this is no coverage.
 constexpr float kLeastAlpha = 1e-4f;
 
+/// Where half floats end: what is stored in 16 bits and is this or more had no room.
+constexpr float kLargestHalf = 65504;
+
+/// From where on coordinates, or the depth that they are made from, show nothing.
+float empty_from(const GBuffer& g) {
+  return g.position_step < kStepHalf ? kEmptyDepth : kLargestHalf;
+}
+
 /// False for not-a-number.
-bool is_missing(const glm::vec3& p) { return !(glm::length(p) < kEmptyDepth); }
+bool is_missing(const glm::vec3& p, float empty) { return !(glm::length(p) < empty); }
 
 bool shows_nothing(float depth, float background_depth) {
   return !(depth < background_depth && depth > 0);
@@ -29,16 +39,31 @@ bool has_normals(const GBuffer& g) {
   return false;
 }
 
+/// How a depth that contradicts P relates to it, as far as that can be told.
+std::string relation_to_position(const GBuffer& g, const Plane<unsigned char>& counts) {
+  auto inverse = Plane<float>::like(g.depth);
+  for (std::size_t i = 0; i < inverse.size(); ++i) inverse[i] = 1 / g.depth[i];
+  if (DepthModel::fit(g.position, inverse, counts, g.position_step))
+    return "it is 1 / Z: give --depth-kind inverse";
+  const auto model = DepthModel::fit_in_any_unit(g.position, g.depth, counts, g.position_step);
+  if (!model) return "remapped, or of another frame";
+  return fmt::format(
+      "it changes by {:.3g} per unit of P: of another unit, or remapped, for which "
+      "there is --depth-kind normalized:NEAR,FAR",
+      model->length_of_unit());
+}
+
 /// Finds the relation between P and the depth, or that the depth contradicts P.
 void hold_depth_to_position(GBuffer& g) {
   if (g.position.empty() || g.depth.empty()) return;
   Plane<unsigned char> counts(g.window.width(), g.window.height());
+  const float empty = empty_from(g);
   std::atomic<std::size_t> both = 0, without_depth = 0;
   for_each_row(counts.height, [&](int y) {
     std::size_t both_in_row = 0, without_in_row = 0;
     for (std::size_t i = counts.index(0, y), end = counts.index(0, y + 1); i < end; ++i) {
       const bool covered = g.alpha.empty() || g.alpha[i] > kLeastAlpha;
-      if (!covered || is_missing(g.position[i]) || g.position[i] == glm::vec3(0)) continue;
+      if (!covered || is_missing(g.position[i], empty) || g.position[i] == glm::vec3(0)) continue;
       const bool in_depth = !shows_nothing(g.depth[i], kEmptyDepth);
       counts[i] = in_depth;
       both_in_row += in_depth;
@@ -47,15 +72,18 @@ void hold_depth_to_position(GBuffer& g) {
     both += both_in_row, without_depth += without_in_row;
   });
   // A layer that is 0 or not a number wherever P shows a surface was never written.
-  const bool empty = both == 0 && without_depth > 0;
-  if (!empty && both < DepthModel::kFewestPixels) return;
+  const bool unwritten = both == 0 && without_depth > 0;
+  if (!unwritten && both < DepthModel::kFewestPixels) return;
   auto& model = g.encodings.depth_of_position;
   model = DepthModel::fit(g.position, g.depth, counts, g.position_step);
-  if (!model) {
-    g.encodings.depth_is_wrong = true;
-    g.warnings.push_back(
-        "depth contradicts P (another unit, remapped, empty, or of another frame) and is left out");
+  if (model) {
+    g.depth_kind = model->kind();
+    g.depth_source = "P";
+    return;
   }
+  g.encodings.depth_is_wrong = true;
+  g.warnings.push_back(fmt::format("depth contradicts P ({}) and is left out",
+                                   unwritten ? "it is empty" : relation_to_position(g, counts)));
 }
 
 }  // namespace
@@ -71,7 +99,8 @@ void find_background(GBuffer& g, std::optional<float> background_depth,
   }
   if (found.depth_is_wrong) g.depth = {};
   const std::optional<DepthModel>& depth_of_position = found.depth_of_position;
-  const float far = background_depth ? *background_depth * (1 - 1e-6f) : kEmptyDepth;
+  const float empty = empty_from(g), empty_depth = g.position.empty() ? empty : kEmptyDepth,
+              far = background_depth ? *background_depth * (1 - 1e-6f) : empty_depth;
   g.valid = Plane<unsigned char>(g.window.width(), g.window.height());
   std::atomic<std::size_t> background_pixels = 0, bad_pixels = 0;
   for_each_row(g.valid.height, [&](int y) {
@@ -85,7 +114,7 @@ void find_background(GBuffer& g, std::optional<float> background_depth,
         const bool suspect =
             p == glm::vec3(0) || (found.normals_tell && g.normal[i] == glm::vec3(0));
         background |= suspect && !(depth_of_position && depth_of_position->agrees(p, g.depth[i]));
-        broken = is_missing(p);
+        broken = is_missing(p, empty);
         background |= broken && !depth_of_position;
       }
       background_in_row += background;

@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t kMostSamples = 20000;
 constexpr int kRounds = 4;  ///< of leaving out outliers
 constexpr double kTolerance = 0.05;
+constexpr double kExact =
+    1e-5;  ///< a smaller median miss leaves nothing for another kind to explain
 
 /// Share of the pixels with a depth that has to agree: averaged silhouettes do not, and in grass
 /// they may be a third of the frame.
@@ -96,45 +98,89 @@ bool DepthModel::agrees(const glm::vec3& position, float depth) const {
          kTolerance * depth + rounding;
 }
 
-std::optional<DepthModel> DepthModel::fit(const Plane<glm::vec3>& positions,
-                                          const Plane<float>& depth,
-                                          const Plane<unsigned char>& counts, float position_step) {
-  std::vector<Pixel> pixels = collect(positions, depth, counts);
-  if (pixels.size() < kFewestPixels) return std::nullopt;
-  glm::dvec3 centre(0);
-  for (const Pixel& pixel : pixels) centre += pixel.p / double(pixels.size());
-  for (Pixel& pixel : pixels) pixel.p -= centre;
-  const bool flat = is_flat(pixels);
+/// The pixels that models are fitted to.
+class DepthModel::Fit {
+ public:
+  Fit(const Plane<glm::vec3>& positions, const Plane<float>& depth,
+      const Plane<unsigned char>& counts, float position_step)
+      : pixels_(collect(positions, depth, counts)), position_step_(position_step) {
+    for (const Pixel& pixel : pixels_) centre_ += pixel.p / double(pixels_.size());
+    for (Pixel& pixel : pixels_) pixel.p -= centre_;
+  }
 
-  for (const DepthKind kind : {DepthKind::planar, DepthKind::ray}) {
+  /// The model of a kind, if most pixels agree with it.
+  std::optional<DepthModel> of_kind(DepthKind kind) const {
+    if (pixels_.size() < kFewestPixels) return std::nullopt;
     DepthModel model;
     model.kind_ = kind;
-    model.centre_ = centre;
-    model.position_step_ = position_step;
+    model.centre_ = centre_;
+    model.position_step_ = position_step_;
+    fit_affine_part(model);
+    std::size_t agreeing = 0;
+    for (const Pixel& pixel : pixels_)
+      agreeing += model.agrees(glm::vec3(pixel.p + centre_), float(pixel.depth));
+    const bool right = double(agreeing) >= kLeastShare * double(pixels_.size());
+    return right ? std::optional(model) : std::nullopt;
+  }
+
+  /// Whether a unit of depth is one of P.
+  bool has_unit_of_positions(const DepthModel& model) const {
+    const double length = model.length_of_unit();
+    return length < 1 + kUnitLength && (is_flat(pixels_) || length > 1 - kUnitLength);
+  }
+
+  /// Median over the pixels, relative to their depth.
+  double miss_of(const DepthModel& model) const { return quantile(misses_of(model), 0.5); }
+
+ private:
+  std::vector<double> misses_of(const DepthModel& model) const {
+    std::vector<double> misses;
+    for (const Pixel& pixel : pixels_)
+      misses.push_back(std::abs(model.depth_of(pixel.p) - pixel.depth) / pixel.depth);
+    return misses;
+  }
+
+  void fit_affine_part(DepthModel& model) const {
     std::vector<double> values, sizes;
-    for (const Pixel& pixel : pixels) {
-      const bool planar = kind == DepthKind::planar;
+    for (const Pixel& pixel : pixels_) {
+      const bool planar = model.kind_ == DepthKind::planar;
       sizes.push_back(planar ? pixel.depth : pixel.depth * pixel.depth);
       values.push_back(planar ? pixel.depth : sizes.back() - glm::dot(pixel.p, pixel.p));
     }
-    std::vector<bool> used(pixels.size(), true);
+    std::vector<bool> used(pixels_.size(), true);
     for (int round = 0; round < kRounds; ++round) {
-      model.affine_ = fit_affine(pixels, values, sizes, used);
-      std::vector<double> misses;
-      for (const Pixel& pixel : pixels)
-        misses.push_back(std::abs(model.depth_of(pixel.p) - pixel.depth) / pixel.depth);
+      model.affine_ = fit_affine(pixels_, values, sizes, used);
+      const std::vector<double> misses = misses_of(model);
       // A miss of more than three times the median is another surface, or an average over an edge.
       const double limit = std::max(3 * quantile(misses, 0.5), kTolerance);
-      for (std::size_t i = 0; i < pixels.size(); ++i) used[i] = misses[i] <= limit;
+      for (std::size_t i = 0; i < pixels_.size(); ++i) used[i] = misses[i] <= limit;
     }
-    std::size_t agreeing = 0;
-    for (const Pixel& pixel : pixels)
-      agreeing += model.agrees(glm::vec3(pixel.p + centre), float(pixel.depth));
-    if (double(agreeing) < kLeastShare * double(pixels.size())) continue;
-    const double length = model.length_of_unit();
-    if (length < 1 + kUnitLength && (flat || length > 1 - kUnitLength)) return model;
   }
-  return std::nullopt;
+
+  std::vector<Pixel> pixels_;
+  glm::dvec3 centre_{0};
+  double position_step_;
+};
+
+std::optional<DepthModel> DepthModel::fit(const Plane<glm::vec3>& positions,
+                                          const Plane<float>& depth,
+                                          const Plane<unsigned char>& counts, float position_step) {
+  const Fit fit(positions, depth, counts, position_step);
+  std::optional<DepthModel> best;
+  for (const DepthKind kind : {DepthKind::planar, DepthKind::ray}) {
+    const auto model = fit.of_kind(kind);
+    if (!model || !fit.has_unit_of_positions(*model)) continue;
+    if (!best || fit.miss_of(*model) < fit.miss_of(*best)) best = model;
+    if (fit.miss_of(*best) < kExact) break;
+  }
+  return best;
+}
+
+std::optional<DepthModel> DepthModel::fit_in_any_unit(const Plane<glm::vec3>& positions,
+                                                      const Plane<float>& depth,
+                                                      const Plane<unsigned char>& counts,
+                                                      float position_step) {
+  return Fit(positions, depth, counts, position_step).of_kind(DepthKind::planar);
 }
 
 }  // namespace ssdo

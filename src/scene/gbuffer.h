@@ -15,6 +15,9 @@
 
 namespace ssdo {
 
+/// A space that P and N are stored in.
+enum class Space { world, camera };
+
 /// How the layers of a frame are to be read, as all of its pixels say together.
 struct Encodings {
   bool depth_is_negative = false;               ///< the z of a camera that looks along -z
@@ -46,6 +49,8 @@ struct GBuffer {
   Plane<float> roughness;     ///< of what mirrors, 0..1
   Plane<glm::vec2> motion;    ///< pixels, x right and y down, to where it was in the frame before
   DepthKind depth_kind = DepthKind::planar;  ///< planar or ray: the others are undone
+  std::string depth_source = {};             ///< what tells its kind, "P"; empty: it is assumed
+  std::optional<Space> space = {};           ///< of P and N, where the user says it
   Plane<unsigned char> valid;                ///< 1 geometry, 0 background or broken
   float position_step = 0;                   ///< relative rounding step of P (or depth) as stored
   std::size_t background_pixels = 0;

@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 #include <numeric>
 
+#include "error.h"
 #include "math/order_statistics.h"
 #include "parallel/tiles.h"
 #include "scene/camera/find_camera.h"
@@ -22,7 +23,7 @@ namespace {
 
 /// Camera-space positions, and the radius by which rounding may have moved each of them. Returns
 /// how many were left out because they lie behind the camera.
-std::size_t place_positions(const GBuffer& g, const Camera& camera, Geometry& out) {
+std::size_t place_positions(const GBuffer& g, const Camera& camera, DepthKind kind, Geometry& out) {
   std::vector<std::size_t> behind(std::size_t(out.surfel.height));
   for_each_row(out.surfel.height, [&](int y) {
     for (int x = 0; x < out.surfel.width; ++x) {
@@ -33,7 +34,7 @@ std::size_t place_positions(const GBuffer& g, const Camera& camera, Geometry& ou
       if (g.position.empty()) {
         const glm::dvec2 centre(g.window.x0 + x + 0.5, g.window.y0 + y + 0.5);
         p = camera.unproject(centre, g.depth[i]);
-        if (g.depth_kind == DepthKind::ray && !camera.orthographic) {
+        if (kind == DepthKind::ray && !camera.orthographic) {
           p *= g.depth[i] / glm::length(p);
         }
         magnitude = g.depth[i];
@@ -54,27 +55,104 @@ std::size_t place_positions(const GBuffer& g, const Camera& camera, Geometry& ou
   return std::accumulate(behind.begin(), behind.end(), std::size_t(0));
 }
 
+float median_depth(const Geometry& geometry) {
+  constexpr float kLeftOut = -1;
+  Plane<float> depths = Plane<float>::like(geometry.surfel);
+  for_each_row(depths.height, [&](int y) {
+    for (int x = 0; x < depths.width; ++x) {
+      const Surfel& s = geometry.surfel(x, y);
+      depths(x, y) = s.is_surface() ? float(geometry.camera.depth_of(s.position)) : kLeftOut;
+    }
+  });
+  const OrderStatistics in_order(depths.pixels);
+  return in_order.count() == 0 ? 0 : in_order.at(in_order.count() / 2);
+}
+
+/// A kind of depth fits normals clearly better if 1 - cosine is by this factor smaller on average.
+constexpr double kClearlyBetter = 0.5;
+
+/// The world whose pose is given.
+std::string name_of_world(const GeometryReport& report) {
+  return report.header ? "the world of the header" : "the world of --camera";
+}
+
 /// The spaces that N may be in.
-std::vector<NamedRotation> spaces_of_normals(const GBuffer& g, const Placement& found,
-                                             bool by_header) {
+std::vector<NamedRotation> spaces_of_normals(const GBuffer& g, const GeometryReport& report) {
+  const Placement& found = report.placement;
   const glm::mat3 of_positions(found.of_positions.rotation), world(found.camera.rotation);
   std::vector<NamedRotation> spaces;
   if (!g.position.empty()) spaces.push_back({of_positions, "the space of P"});
   spaces.push_back({glm::mat3(1), "camera space"});
   if (found.world_given && (g.position.empty() || of_positions != world))
-    spaces.push_back({world, by_header ? "the world of the header" : "the world of --camera"});
+    spaces.push_back({world, name_of_world(report)});
   return spaces;
+}
+
+std::string_view name_of(Space space) { return space == Space::world ? "world" : "camera"; }
+
+/// The space that --space says N is in. Errors: ExitCode::layer for a world that nothing places.
+NamedRotation given_space_of_normals(const GBuffer& g, const Geometry& out,
+                                     const GeometryReport& report, const std::string& file) {
+  const Placement& found = report.placement;
+  const NamedRotation of_positions{glm::mat3(found.of_positions.rotation), "the space of P"},
+      of_camera{glm::mat3(1), "camera space"};
+  if (*g.space == Space::camera) {
+    const bool same = !g.position.empty() && found.of_positions.is_camera_space(median_depth(out));
+    return same ? of_positions : of_camera;
+  }
+  if (!g.position.empty()) return of_positions;
+  if (found.world_given) return {glm::mat3(found.camera.rotation), name_of_world(report)};
+  throw Error(ExitCode::layer,
+              fmt::format("{}: --space world: without P, the pose of the camera is not known; give "
+                          "--camera FILE.json",
+                          file));
+}
+
+/// The normals as --space says, whether or not they agree with P.
+NormalSpace given_normal_space(const GBuffer& g, const Geometry& out, const std::string& file,
+                               GeometryReport& report) {
+  NormalSpace space = measure_normal_space(
+      g.normal, out.surfel, given_space_of_normals(g, out, report, file), out.camera.orthographic);
+  report.normal_agreement = space.share;
+  space.name += ", by --space";
+  if (space.smooth_pixels >= NormalSpace::kFewestSmoothPixels &&
+      space.share < NormalSpace::kLeastShare) {
+    report.warnings.push_back(
+        fmt::format("--space {}: taken as {}, normals agree with {} in {:.0f} % of the smooth "
+                    "pixels only",
+                    name_of(*g.space), space.name.substr(0, space.name.find(',')),
+                    g.position.empty() ? "the depth" : "P", 100 * space.share));
+  }
+  return space;
+}
+
+/// Of a depth that is taken as planar because nothing tells its kind, the normals tell it: surfaces
+/// made from a distance along the rays are bent. Warns where those of the other kind fit better.
+void check_depth_is_planar(const GBuffer& g, const Geometry& planar, const NormalSpace& of_planar,
+                           GeometryReport& report) {
+  if (planar.camera.orthographic) return;
+  Geometry by_rays;
+  by_rays.surfel = Plane<Surfel>::like(planar.surfel);
+  place_positions(g, to_grid(report.placement.of_positions, g.grid), DepthKind::ray, by_rays);
+  const NormalSpace of_rays =
+      find_normal_space(g.normal, by_rays.surfel, spaces_of_normals(g, report), false);
+  const bool clearly = 1 - of_rays.mean_cosine < kClearlyBetter * (1 - of_planar.mean_cosine);
+  if (!clearly || of_rays.smooth_pixels < NormalSpace::kFewestSmoothPixels) return;
+  report.warnings.push_back(
+      "the depth is taken as planar, and by the normals it is the distance along the rays: give "
+      "--depth-kind ray, or --depth-kind planar where it is not");
 }
 
 /// How the stored normals are to be used; nothing where they are not to be, and why in `report`.
 std::optional<NormalSpace> usable_normal_space(const GBuffer& g, const Geometry& out,
-                                               GeometryReport& report) {
+                                               const std::string& file, GeometryReport& report) {
   if (g.normal.empty()) return std::nullopt;
-  NormalSpace space = find_normal_space(
-      g.normal, out.surfel, spaces_of_normals(g, report.placement, report.header.has_value()),
-      out.camera.orthographic);
+  if (g.space) return given_normal_space(g, out, file, report);
+  NormalSpace space = find_normal_space(g.normal, out.surfel, spaces_of_normals(g, report),
+                                        out.camera.orthographic);
   report.normal_agreement = space.share;
   const bool from_depth = g.position.empty();
+  if (from_depth && g.depth_source.empty()) check_depth_is_planar(g, out, space, report);
   if (space.smooth_pixels < NormalSpace::kFewestSmoothPixels && !from_depth) {
     space.name += ", unchecked: P is nowhere smooth";
     return space;
@@ -82,8 +160,7 @@ std::optional<NormalSpace> usable_normal_space(const GBuffer& g, const Geometry&
   if (space.share >= NormalSpace::kLeastShare) return space;
   report.warnings.push_back(
       fmt::format("normals do not belong to {0}: whatever their space and axes, they agree with it "
-                  "in {1:.0f} % "
-                  "of the smooth pixels; rebuilt from {0}",
+                  "in {1:.0f} % of the smooth pixels; rebuilt from {0}",
                   from_depth ? "the depth" : "P", 100 * space.share));
   return std::nullopt;
 }
@@ -125,8 +202,11 @@ void place_normals(const GBuffer& g, const std::optional<glm::mat3>& to_camera, 
   }
 }
 
-void find_normals(const GBuffer& g, const Geometry& out, GeometryReport& report) {
-  const std::optional<NormalSpace> space = usable_normal_space(g, out, report);
+void find_normals(const GBuffer& g, const Geometry& out, const std::string& file,
+                  GeometryReport& report) {
+  if (g.space && g.position.empty() && g.normal.empty())
+    report.warnings.push_back("--space has no effect: the frame has neither P nor N");
+  const std::optional<NormalSpace> space = usable_normal_space(g, out, file, report);
   if (space) report.placement.normals_to_camera = space->to_camera;
   report.normal_space = space ? space->name : "rebuilt from P";
 }
@@ -151,17 +231,17 @@ void mend(const GBuffer& g, Geometry& out, GeometryReport& report, const Placeme
       averages));
 }
 
-float median_depth(const Geometry& geometry) {
-  constexpr float kLeftOut = -1;
-  Plane<float> depths = Plane<float>::like(geometry.surfel);
-  for_each_row(depths.height, [&](int y) {
-    for (int x = 0; x < depths.width; ++x) {
-      const Surfel& s = geometry.surfel(x, y);
-      depths(x, y) = s.is_surface() ? float(geometry.camera.depth_of(s.position)) : kLeftOut;
-    }
-  });
-  const OrderStatistics in_order(depths.pixels);
-  return in_order.count() == 0 ? 0 : in_order.at(in_order.count() / 2);
+/// Whether P is in world space: not where its own camera stands at the origin and looks along an
+/// axis. --space decides first.
+bool is_in_world_space(const GBuffer& g, const Placement& found, GeometryReport& report) {
+  if (g.position.empty()) return false;
+  const bool in_camera_space = found.of_positions.is_camera_space(found.median_depth);
+  if (g.space == Space::camera && !in_camera_space) {
+    report.warnings.push_back(
+        "--space camera: the camera of P stands elsewhere than at its origin, or is turned; the "
+        "environment is taken in camera space");
+  }
+  return g.space ? *g.space == Space::world : !in_camera_space;
 }
 
 }  // namespace
@@ -196,7 +276,8 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
     readings = found.readings;
   }
   out.camera = to_grid(placement.camera, g.grid);
-  if (const std::size_t behind = place_positions(g, to_grid(placement.of_positions, g.grid), out)) {
+  const Camera of_positions = to_grid(placement.of_positions, g.grid);
+  if (const std::size_t behind = place_positions(g, of_positions, g.depth_kind, out)) {
     report.warnings.push_back(
         fmt::format("{} positions lie behind the camera and are left out", behind));
   }
@@ -204,16 +285,14 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
     settle_world(g, out.surfel, readings, report);
     out.camera = to_grid(placement.camera, g.grid);
   }
-  if (!known) find_normals(g, out, report);
+  if (!known) find_normals(g, out, file, report);
   out.normals_to_camera =
       placement.normals_to_camera.value_or(glm::mat3(placement.of_positions.rotation));
   place_normals(g, placement.normals_to_camera, out, report);
   mend(g, out, report, known);
   if (!known) {
     placement.median_depth = median_depth(out);
-    placement.world_known =
-        placement.world_given ||
-        (!g.position.empty() && !out.camera.is_camera_space(placement.median_depth));
+    placement.world_known = placement.world_given || is_in_world_space(g, placement, report);
   }
   out.median_depth = placement.median_depth;
   out.world_known = placement.world_known;

@@ -21,8 +21,8 @@
 namespace ssdo {
 namespace {
 
-/// Relative rounding: half and float keep 11 and 24 bits, PXR24 keeps 16 of a float.
-constexpr float kStepHalf = 1.0f / 2048, kStepFloat = 1.0f / 16777216, kStepPxr24 = 1.0f / 65536;
+/// Relative rounding: float keeps 24 bits, PXR24 16 of them.
+constexpr float kStepFloat = 1.0f / 16777216, kStepPxr24 = 1.0f / 65536;
 
 bool is_finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -264,7 +264,8 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   const glm::vec2 scale = options.motion_scale.value_or(glm::vec2(1));
   for (glm::vec2& to : g.motion.pixels) to = {scale.x * to.x, -scale.y * to.y};
 
-  undo_depth_encoding(g, options, file);
+  g.space = options.space;
+  undo_depth_encoding(g, options, file, table[Role::depth] ? &*table[Role::depth] : nullptr);
   find_background(g, options.background_depth, options.known);
   undo_normal_encoding(g, options.known);
   note_data_windows(files, table, roles, g);

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/view.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
+#include "error.h"
 #include "scene/deep/channels.h"
 #include "scene/deep/deep_frame.h"
+#include "scene/layers/advice.h"
+#include "scene/layers/groups.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -27,7 +32,29 @@ Plane<float> take_depth_from_samples(View& view, const std::string& part, GBuffe
   return nearest_surfaces(*view.deep, far);
 }
 
+/// An error of a frame without P, with the layer that may hold it.
+Error with_hint(const Error& error, const View& view) {
+  if (view.layers[Role::position] || error.code != ExitCode::layer) return error;
+  const std::string hint = hint_at(Role::position, group_channels(view.files.front(), 0));
+  return hint.empty() ? error : Error(error.code, fmt::format("{}; {}", error.what(), hint));
+}
+
 }  // namespace
+
+FrameFiles in_view(FrameFiles files, std::string_view view) {
+  files.view = view;
+  for (FrameFiles& neighbour : files.neighbours) neighbour.view = view;
+  return files;
+}
+
+FrameFiles other_eye(const FrameFiles& files) {
+  return in_view(files, files.view == kEyes[0] ? kEyes[1] : kEyes[0]);
+}
+
+InputOptions for_view(InputOptions options, const FrameFiles& files) {
+  if (!files.view.empty()) options.part = files.view;
+  return options;
+}
 
 std::deque<ExrReader> open_view(const std::string& input, const std::vector<LayerRequest>& aovs) {
   std::deque<ExrReader> files;
@@ -49,12 +76,15 @@ View read_view(std::deque<ExrReader> opened, const std::vector<LayerRequest>& ao
   const Plane<float> deep = take_depth_from_samples(view, options.part, reading, warnings);
   require_position(view.layers, view.files.front(),
                    options.listed ? "" : " ('ssdo info' lists the layers)");
-  view.gbuffer = read_gbuffer(files, view.layers, reading, &deep);
+  try {
+    view.gbuffer = read_gbuffer(files, view.layers, reading, &deep);
+    view.read_ms = watch.lap();
+    view.geometry =
+        build_geometry(view.gbuffer, camera, view.files.front().path().string(), view.report);
+  } catch (const Error& error) {
+    throw with_hint(error, view);
+  }
   view.gbuffer.warnings.insert(view.gbuffer.warnings.begin(), warnings.begin(), warnings.end());
-  view.read_ms = watch.lap();
-
-  view.geometry =
-      build_geometry(view.gbuffer, camera, view.files.front().path().string(), view.report);
   // From here on there is one position, one normal and one kind of pixel: those of the geometry.
   view.gbuffer.position = {};  // on their own lines: an assignment of a plane keeps memory
   view.gbuffer.normal = {};

@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/exr/deep_reader.h"
@@ -26,7 +27,8 @@ struct InputOptions {
   std::vector<LayerRequest> aovs;
   std::vector<std::string> also;  ///< further pictures of the same scene, or their patterns
   Neighbours neighbours;
-  std::string part;  ///< name or number; empty: all
+  std::string part;                ///< name or number; empty: all
+  std::vector<std::string> views;  ///< those to relight of a stereo file; empty: its only one
   GBufferOptions gbuffer;
   bool listed = false;  ///< the user has seen the list of layers: errors need not say where it is
 };
@@ -37,7 +39,17 @@ struct FrameFiles {
   std::vector<LayerRequest> aovs;
   std::vector<std::string> also;  ///< further pictures of the same scene, in the order of --also
   std::vector<FrameFiles> neighbours = {};  ///< frames of the same sequence; need not exist
+  std::string view = {};                    ///< of a stereo file; empty: --part chooses
 };
+
+/// The frame with a view of its files and those of its neighbours.
+FrameFiles in_view(FrameFiles files, std::string_view view);
+
+/// The frame as its other eye sees it. `files` have a view.
+FrameFiles other_eye(const FrameFiles& files);
+
+/// `options` for these files: with their view in place of --part.
+InputOptions for_view(InputOptions options, const FrameFiles& files);
 
 /// What one camera shows: a G-buffer, from its files to its surfaces in camera space.
 struct View {

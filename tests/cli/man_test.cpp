@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "support/help_flags.h"
 #include "support/run_tool.h"
 
 namespace ssdo::test {
@@ -17,29 +18,16 @@ namespace {
 using Flags = std::set<std::string>;
 
 const std::string kManual = std::string(SSDO_SOURCE_DIR) + "/man/ssdo.1",
-                  kMethods = std::string(SSDO_SOURCE_DIR) + "/man/ssdo-methods.7";
+                  kMethods = std::string(SSDO_SOURCE_DIR) + "/man/ssdo-methods.7",
+                  kFarm = std::string(SSDO_SOURCE_DIR) + "/man/ssdo-farm.7";
 
 /// A page as groff reads it, with \- for a dash turned into one.
 std::string page(const std::string& path) {
   return std::regex_replace(read_file(path), std::regex(R"(\\-)"), "-");
 }
 
-/// The flags that a help text declares: those that begin a line, not those that a text mentions.
-Flags flags_of_help(const std::vector<std::string>& arguments) {
-  const Finished done = run_tool(arguments);
-  EXPECT_EQ(done.code, 0) << done.err;
-  static const std::regex declared(R"(^  (?:-\w,)?(--[a-z][a-z-]*))");
-  Flags flags;
-  std::istringstream lines(done.out);
-  for (std::string line; std::getline(lines, line);) {
-    std::smatch found;
-    if (std::regex_search(line, found, declared)) flags.insert(found[1]);
-  }
-  return flags;
-}
-
 Flags flags_of_binary() {
-  Flags flags = flags_of_help({"--help"});
+  Flags flags = flags_of_help({"--help-all"});
   flags.merge(flags_of_help({"info", "--help"}));
   flags.merge(flags_of_help({"compare", "--help"}));
   flags.merge(flags_of_help({"bench", "--help"}));
@@ -85,10 +73,15 @@ TEST(ManPage, HasTheFlagsOfTheHelpAndNoOthers) {
   EXPECT_EQ(flags_of_headings(), binary);
 }
 
+/// Those in ssdo-farm(7) that are not ours, but of sbatch, parallel and make.
+const Flags kOfSchedulers = {"--array",  "--cpus-per-task", "--mem",
+                             "--joblog", "--resume-failed", "--keep-going"};
+
 TEST(ManPage, MentionsNoFlagThatDoesNotExist) {
-  const Flags binary = flags_of_binary();
+  Flags binary = flags_of_binary();
+  binary.insert(kOfSchedulers.begin(), kOfSchedulers.end());
   static const std::regex flag("(?:^|[^-\\w])(--[a-z][a-z-]*)");
-  const std::string text = page(kManual) + page(kMethods);
+  const std::string text = page(kManual) + page(kMethods) + page(kFarm);
   for (std::sregex_iterator it(text.begin(), text.end(), flag), end; it != end; ++it) {
     EXPECT_THAT(binary, testing::Contains((*it)[1].str()));
   }
@@ -138,7 +131,7 @@ TEST(ManPage, ItsCommandsForTheSystemsOfTheSourcesRun) {
 }
 
 TEST(ManPage, RendersWithoutWarnings) {
-  for (const std::string& path : {kManual, kMethods}) {
+  for (const std::string& path : {kManual, kMethods, kFarm}) {
     const Rendered rendered = render(path);
     EXPECT_EQ(rendered.status, 0) << rendered.warnings;
     EXPECT_EQ(rendered.warnings, "") << path;

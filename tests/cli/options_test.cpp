@@ -37,7 +37,7 @@ std::string refusal(const std::vector<std::string>& words) {
   }
 }
 
-std::string help() { return parse_words({"--help"}).print.value_or(""); }
+std::string help() { return parse_words({"--help-all"}).print.value_or(""); }
 
 /// Every name sets its value; another is refused with a list of the names, which the help has too.
 template <class T, class Field>

@@ -135,10 +135,10 @@ TEST_F(Color, LookTakesThePlaceOfTheViewsOwn) {
 // ---- What cannot be.
 
 TEST_F(Color, NamesThatDoNotExistAreAnsweredByThoseThatDo) {
-  EXPECT_THAT(
-      refusal({.colorspace = "ACEScc"}),
-      IsError(ExitCode::usage,
-              "--colorspace ACEScc: the built-in config has no such colour space; it has: "));
+  EXPECT_THAT(refusal({.colorspace = "ACEScc"}),
+              IsError(ExitCode::usage,
+                      "--colorspace ACEScc: the built-in config has no such colour space; did you "
+                      "mean ACEScg? it has: "));
   EXPECT_THAT(refusal({.colorspace = "ACEScc"}),
               IsError(ExitCode::usage, "lin_rec709, ACEScg, ACEScct"));
   EXPECT_THAT(refusal({.display = "P3"}), IsError(ExitCode::usage, "--display P3: "));
@@ -148,7 +148,7 @@ TEST_F(Color, NamesThatDoNotExistAreAnsweredByThoseThatDo) {
               IsError(ExitCode::usage, "has: ACES SDR Video, Un-tone-mapped, Raw"));
   EXPECT_THAT(
       refusal({.ocio = gains(), .display = "Projector", .view = "Plain"}),
-      IsError(ExitCode::usage, "display Projector of --ocio " + gains() + ", which has: Bright"));
+      IsError(ExitCode::usage, "display Projector of --ocio " + gains() + "; it has: Bright"));
   EXPECT_THAT(refusal({.look = "Punchy"}), IsError(ExitCode::usage, "--look Punchy: "));
   EXPECT_THAT(refusal({.look = "Punchy"}), IsError(ExitCode::usage, "has: ACES Gamut Compression"));
 }

@@ -49,7 +49,8 @@ TEST(Products, EachRowHasItsOwnNameAndPlane) {
 
 TEST(Products, AreFoundByNameOrListed) {
   const Error error = error_of([] { find_product("normals"); });
-  EXPECT_THAT(error, IsError(ExitCode::usage, "product 'normals': there are ao, bent"));
+  EXPECT_THAT(error,
+              IsError(ExitCode::usage, "product 'normals': no such product; there are ao, bent"));
   EXPECT_THAT(error, IsError(ExitCode::usage, "composite, and all"));
   EXPECT_EQ(product_names(), "ao, bent, reflection, direct, bounce, error, guessed, composite");
 }

@@ -6,6 +6,8 @@
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "error.h"
 #include "io/exr/compression.h"
 #include "io/exr/exr_parts.h"
@@ -87,14 +89,15 @@ Imf::Header header_for(const ExrOutput& output, const std::vector<KeptChannel>& 
 
 }  // namespace
 
-std::vector<Imf::Header> headers_for(const ExrOutput& output,
-                                     const std::vector<KeptChannel>& kept) {
+std::vector<Imf::Header> headers_for(const std::vector<ExrOutput>& parts,
+                                     const std::vector<std::vector<KeptChannel>>& kept) {
   std::vector<Imf::Header> headers;
-  for (const ExrPart& part : output.input->parts()) {
-    if (part.index == output.part)
-      headers.push_back(header_for(output, kept));
-    else if (output.keep_channels)
-      headers.push_back(other_header(output, part));
+  for (const ExrPart& part : parts.front().input->parts()) {
+    const auto with_planes = std::ranges::find(parts, part.index, &ExrOutput::part);
+    if (with_planes != parts.end())
+      headers.push_back(header_for(*with_planes, kept[std::size_t(with_planes - parts.begin())]));
+    else if (parts.front().keep_channels)
+      headers.push_back(other_header(parts.front(), part));
   }
   return headers;
 }

@@ -10,10 +10,11 @@
 
 namespace ssdo {
 
-/// The headers of an output's parts: that with the planes and the channels `kept` beside them, and
-/// with `keep_channels` those of the input's other parts, in their order. What is written anew is
-/// in scanlines; the header of a part whose chunks are copied is the input's.
+/// The headers of an output's parts: those with planes, each with the channels `kept` beside them,
+/// and with `keep_channels` the input's other parts, in their order. What is written anew is in
+/// scanlines; the header of a part whose chunks are copied is the input's.
 /// Errors: ExitCode::input for a part that cannot be cropped.
-std::vector<Imf::Header> headers_for(const ExrOutput& output, const std::vector<KeptChannel>& kept);
+std::vector<Imf::Header> headers_for(const std::vector<ExrOutput>& parts,
+                                     const std::vector<std::vector<KeptChannel>>& kept);
 
 }  // namespace ssdo

@@ -70,7 +70,7 @@ std::size_t ExrStrips::write(std::span<const ChannelView> planes) {
 }
 
 void ExrStrips::finish() const {
-  if (y_ != known_.y1)
+  if (!is_complete())
     fail_by_defect(output_, fmt::format("{} rows of the output are missing", known_.y1 - y_));
 }
 

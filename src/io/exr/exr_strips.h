@@ -27,6 +27,9 @@ class ExrStrips {
   /// clamped. Errors: ExitCode::failed for views of other sizes; those of `write_rows`.
   std::size_t write(std::span<const ChannelView> planes);
 
+  /// Whether all rows have come.
+  bool is_complete() const { return y_ == known_.y1; }
+
   /// Errors: ExitCode::failed if rows are missing.
   void finish() const;
 

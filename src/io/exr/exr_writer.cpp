@@ -24,18 +24,20 @@
 namespace ssdo {
 namespace {
 
-std::vector<KeptChannel> check_and_keep(const ExrOutput& output) {
-  for (const ExrPart& part : output.input->parts()) check_downsampling(output, part);
-  return kept_channels(output);
+std::vector<std::vector<KeptChannel>> check_and_keep(const std::vector<ExrOutput>& parts) {
+  for (const ExrPart& part : parts.front().input->parts()) check_downsampling(parts.front(), part);
+  std::vector<std::vector<KeptChannel>> kept;
+  for (const ExrOutput& part : parts) kept.push_back(kept_channels(part));
+  return kept;
 }
 
 }  // namespace
 
 class ExrWriter::File {
  public:
-  File(const SafeFile& file, const ExrOutput& output)
-      : output_(output),
-        kept_(check_and_keep(output)),
+  File(const SafeFile& file, std::vector<ExrOutput> parts)
+      : parts_(std::move(parts)),
+        kept_(check_and_keep(parts_)),
         target_(file.target().string()),
         checked_(file),
         stream_(checked_, file.temporary().string()) {
@@ -44,7 +46,10 @@ class ExrWriter::File {
 
   std::size_t write(std::span<const ChannelView> planes) {
     std::size_t clamped = 0;
-    attempt([&] { clamped = strips_->write(planes); });
+    attempt([&] {
+      clamped = strips_->write(planes);
+      if (strips_->is_complete() && current_ + 1 < parts_.size()) begin_part(current_ + 1);
+    });
     return clamped;
   }
 
@@ -54,7 +59,7 @@ class ExrWriter::File {
       if (zip_)
         zip_->finish();
       else
-        copy_parts(std::size_t(output_.part) + 1, output_.input->parts().size());
+        copy_parts(std::size_t(parts_.back().part) + 1, input().parts().size());
       part_.reset();
       exr_.reset();
     });
@@ -63,6 +68,8 @@ class ExrWriter::File {
   }
 
  private:
+  const ExrReader& input() const { return *parts_.front().input; }
+
   /// Takes a step; what OpenEXR says becomes an error of ours.
   void attempt(const std::function<void()>& step) {
     try {
@@ -77,24 +84,25 @@ class ExrWriter::File {
   }
 
   void open() {
-    const std::vector<Imf::Header> headers = headers_for(output_, kept_);
-    if (headers.size() == 1 && ZipOutput::takes(headers.front()))
-      open_zip(headers.front());
-    else
-      open_parts(headers);
+    const std::vector<Imf::Header> headers = headers_for(parts_, kept_);
+    if (headers.size() == 1 && ZipOutput::takes(headers.front())) return open_zip(headers.front());
+    exr_ = std::make_unique<Imf::MultiPartOutputFile>(stream_, headers.data(), int(headers.size()));
+    begin_part(0);
   }
 
   void open_zip(const Imf::Header& header) {
-    const auto level = level_for(output_, header.compression());
+    const auto level = level_for(parts_.front(), header.compression());
     zip_.emplace(stream_, header, level.value_or(ZipOutput::kDefaultLevel));
     take_strips([this](const Imf::FrameBuffer& rows, int count) { zip_->write(rows, count); });
   }
 
-  /// Has OpenEXR write the file. It holds the parts in their order.
-  void open_parts(const std::vector<Imf::Header>& headers) {
-    exr_ = std::make_unique<Imf::MultiPartOutputFile>(stream_, headers.data(), int(headers.size()));
-    copy_parts(0, std::size_t(output_.part));
-    part_.emplace(*exr_, output_.keep_channels ? output_.part : 0);
+  /// Has OpenEXR write the next part with planes, after those of the input before it.
+  void begin_part(std::size_t next) {
+    const bool keeps = parts_[next].keep_channels;
+    const std::size_t first = next == 0 ? 0 : std::size_t(parts_[next - 1].part) + 1;
+    current_ = next;
+    copy_parts(first, std::size_t(parts_[next].part));
+    part_.emplace(*exr_, keeps ? parts_[next].part : int(next));
     take_strips([this](const Imf::FrameBuffer& rows, int count) {
       part_->setFrameBuffer(rows);
       part_->writePixels(count);
@@ -102,41 +110,44 @@ class ExrWriter::File {
   }
 
   void take_strips(ExrStrips::WriteRows write_rows) {
-    const Window known = known_window(output_, part_of(output_));
-    strips_.emplace(output_, slices_of(kept_, known), std::move(write_rows));
+    const ExrOutput& part = parts_[current_];
+    strips_.emplace(part, slices_of(kept_[current_], known_window(part, part_of(part))),
+                    std::move(write_rows));
   }
 
-  /// Parts of the input that are kept beside the one with the planes, from `first` to `last`.
+  /// Parts of the input that are kept beside those with planes, from `first` to `last`.
   void copy_parts(std::size_t first, std::size_t last) {
-    for (std::size_t i = first; output_.keep_channels && i < last; ++i) {
-      const ExrPart& part = output_.input->parts()[i];
-      if (is_changed(output_, part))
+    for (std::size_t i = first; parts_.front().keep_channels && i < last; ++i) {
+      const ExrPart& part = input().parts()[i];
+      if (is_changed(parts_.front(), part))
         write_anew(part);
       else
-        copy_part(*output_.input, part, *exr_);
+        copy_part(input(), part, *exr_);
     }
   }
 
   void write_anew(const ExrPart& part) {
-    const std::vector<KeptChannel> channels = all_channels(output_, part);
+    const ExrOutput& how = parts_.front();
+    const std::vector<KeptChannel> channels = all_channels(how, part);
     Imf::OutputPart out(*exr_, part.index);
-    out.setFrameBuffer(slices_of(channels, known_window(output_, part)));
-    out.writePixels(written_window(output_, part).height());
+    out.setFrameBuffer(slices_of(channels, known_window(how, part)));
+    out.writePixels(written_window(how, part).height());
   }
 
-  const ExrOutput output_;
-  const std::vector<KeptChannel> kept_;
+  const std::vector<ExrOutput> parts_;  ///< those with planes
+  const std::vector<std::vector<KeptChannel>> kept_;
   const std::string target_;
   CheckedFile checked_;
   ExrStream stream_;
   std::optional<ZipOutput> zip_;                   ///< writes the files that it takes
   std::unique_ptr<Imf::MultiPartOutputFile> exr_;  ///< writes all others
-  std::optional<Imf::OutputPart> part_;            ///< of them, that with the planes
+  std::size_t current_ = 0;                        ///< of `parts_`, the one being written
+  std::optional<Imf::OutputPart> part_;            ///< of `exr_`, the same
   std::optional<ExrStrips> strips_;
 };
 
-ExrWriter::ExrWriter(const SafeFile& file, const ExrOutput& output)
-    : file_(std::make_unique<File>(file, output)) {}
+ExrWriter::ExrWriter(const SafeFile& file, std::vector<ExrOutput> parts)
+    : file_(std::make_unique<File>(file, std::move(parts))) {}
 
 ExrWriter::~ExrWriter() = default;
 
@@ -144,11 +155,14 @@ std::size_t ExrWriter::write(std::span<const ChannelView> planes) { return file_
 
 void ExrWriter::finish() { file_->finish(); }
 
-std::size_t write_exr(const SafeFile& file, const ExrOutput& output) {
-  std::vector<ChannelView> pixels;
-  for (const ExrPlane& plane : output.planes) pixels.push_back(plane.pixels);
-  ExrWriter writer(file, output);
-  const std::size_t clamped = writer.write(pixels);
+std::size_t write_exr(const SafeFile& file, const std::vector<ExrOutput>& parts) {
+  ExrWriter writer(file, parts);
+  std::size_t clamped = 0;
+  for (const ExrOutput& part : parts) {
+    std::vector<ChannelView> pixels;
+    for (const ExrPlane& plane : part.planes) pixels.push_back(plane.pixels);
+    clamped += writer.write(pixels);
+  }
   writer.finish();
   return clamped;
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "io/exr/exr_output.h"
 #include "io/safe_file.h"
@@ -17,11 +18,12 @@ namespace ssdo {
 /// Levels are libdeflate's where ZipOutput writes the file. OpenEXR, which writes tiles, files of
 /// several parts and all else, packs levels above 9 as 9.
 ///
-/// The header of the input's part is kept: windows, pixel aspect, view, chromaticities and every
-/// attribute that does not describe the old file's storage. Without `keep_channels` the file has
-/// that one part, in scanlines and flat. With it, the part's other channels keep type and bits (of
-/// a tiled part, its full-resolution level; those of a deep one are dropped), and the other parts
-/// are copied without being decoded.
+/// Planes go into one part of an input, or into several, such as those of its views. The header of
+/// such a part is kept: windows, pixel aspect, view, chromaticities and every attribute that does
+/// not describe the old file's storage. Without `keep_channels` the file has these parts alone, in
+/// scanlines and flat. With it, their other channels keep type and bits (of a tiled part, its
+/// full-resolution level; those of a deep one are dropped), and the other parts are copied without
+/// being decoded.
 ///
 /// With `crop` the data window of a part is what the display window shows of it. Other flat parts
 /// that reach beyond are decoded and come in scanlines, with the same bits in the pixels that stay.
@@ -42,13 +44,15 @@ namespace ssdo {
 /// downsampled: a deep part, a channel that is subsampled. After an error the object is of no use.
 class ExrWriter {
  public:
-  /// Writes the header. Of the planes of `output` names and types count, not the pixels.
-  ExrWriter(const SafeFile& file, const ExrOutput& output);
+  /// Writes the headers. `parts` are different parts of one input in its order, and agree in all
+  /// but planes, geometry and attributes. Of the planes names and types count, not the pixels.
+  ExrWriter(const SafeFile& file, std::vector<ExrOutput> parts);
   ~ExrWriter();
 
-  /// Writes the next rows: one view for each plane, in their order, all of the same height and as
-  /// wide as the output before it is cropped. Rows that are cropped away are to be given too.
-  /// Half values beyond ±65504 are clamped. Returns how many were.
+  /// Writes the next rows: one view for each plane of a part, in their order, all of the same
+  /// height and as wide as the part before it is cropped. Rows that are cropped away are to be
+  /// given too. After the last row of a part come those of the next. Half values beyond ±65504 are
+  /// clamped. Returns how many were.
   std::size_t write(std::span<const ChannelView> planes);
 
   /// Completes the file. What goes away unfinished leaves a file that is not to be committed.
@@ -59,7 +63,7 @@ class ExrWriter {
   std::unique_ptr<File> file_;
 };
 
-/// Writes all of `output` with an ExrWriter. Returns how many values were clamped.
-std::size_t write_exr(const SafeFile& file, const ExrOutput& output);
+/// Writes all of `parts` with an ExrWriter. Returns how many values were clamped.
+std::size_t write_exr(const SafeFile& file, const std::vector<ExrOutput>& parts);
 
 }  // namespace ssdo

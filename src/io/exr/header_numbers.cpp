@@ -98,7 +98,8 @@ std::map<std::string, std::vector<double>> header_numbers(const ExrReader& file,
 
 bool is_by_blender(const Imf::Header& header) {
   for (auto it = header.begin(); it != header.end(); ++it) {
-    if (std::string(it.name()).find("BlenderMultiChannel") != std::string::npos) return true;
+    for (const char* mark : {"BlenderMultiChannel", "cycles."})
+      if (std::string(it.name()).find(mark) != std::string::npos) return true;
   }
   return string_attribute(header, "Software").find("Blender") != std::string::npos;
 }

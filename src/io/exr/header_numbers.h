@@ -15,7 +15,8 @@ namespace ssdo {
 /// "nuke/exr/"; an attribute without a prefix goes before one with it.
 std::map<std::string, std::vector<double>> header_numbers(const ExrReader& file, int part);
 
-/// Whether Blender has written the file, or Nuke one that it has read of Blender.
+/// Whether Blender has written the file, or Nuke one that it has read of Blender. Files of several
+/// views have the marks of Cycles alone.
 bool is_by_blender(const Imf::Header& header);
 
 }  // namespace ssdo

@@ -24,7 +24,12 @@ const std::vector<Role> kUnused = {Role::motion,  Role::roughness, Role::radianc
                                    Role::ambient, Role::specular,  Role::beauty};
 
 /// How a file is read.
-constexpr std::string_view kByNames = "--also", kAsInput = "--neighbours";
+constexpr std::string_view kByNames = "--also", kAsInput = "INPUT";
+
+/// A file, with the view that is read of it.
+std::string name_of(const FrameFiles& frame) {
+  return frame.view.empty() ? frame.input : fmt::format("{} ({})", frame.input, frame.view);
+}
 
 void check(const View& view, const std::string& file) {
   if (!view.layers[Role::position]) {
@@ -75,7 +80,8 @@ FurtherPictures::Picture picture_of(View view, const std::string& file) {
 std::vector<FurtherPictures::Key> FurtherPictures::keys_of(const FrameFiles& frame) {
   std::vector<Key> keys;
   for (const std::string& file : frame.also) keys.emplace_back(kByNames, file);
-  for (const FrameFiles& other : frame.neighbours) keys.emplace_back(kAsInput, other.input);
+  for (const FrameFiles& other : frame.neighbours) keys.emplace_back(kAsInput, name_of(other));
+  if (!frame.view.empty()) keys.emplace_back(kAsInput, name_of(other_eye(frame)));
   return keys;
 }
 
@@ -100,16 +106,16 @@ FurtherPictures::Picture FurtherPictures::also(const std::string& file) {
   });
 }
 
-FurtherPictures::Picture FurtherPictures::neighbour(const FrameFiles& frame,
-                                                    const InputOptions& input,
-                                                    const CameraOptions& camera) {
-  return get({kAsInput, frame.input}, [&] {
+FurtherPictures::Picture FurtherPictures::alike(const FrameFiles& frame, const InputOptions& input,
+                                                const CameraOptions& camera) {
+  return get({kAsInput, name_of(frame)}, [&] {
     std::vector<LayerRequest> aovs = frame.aovs;
     std::erase_if(aovs, [](const LayerRequest& request) {
       return std::find(kUnused.begin(), kUnused.end(), request.role) != kUnused.end();
     });
-    return picture_of(read_view(open_view(frame.input, aovs), aovs, input, camera, kUnused),
-                      frame.input);
+    return picture_of(
+        read_view(open_view(frame.input, aovs), aovs, for_view(input, frame), camera, kUnused),
+        name_of(frame));
   });
 }
 

@@ -32,9 +32,9 @@ class FurtherPictures {
   /// and where no camera explains it.
   Picture also(const std::string& file);
 
-  /// Another frame of INPUT's sequence, read as INPUT is. Errors: as also().
-  Picture neighbour(const FrameFiles& frame, const InputOptions& input,
-                    const CameraOptions& camera);
+  /// Another frame of INPUT's sequence, or another view of INPUT, read as INPUT is.
+  /// Errors: as also().
+  Picture alike(const FrameFiles& frame, const InputOptions& input, const CameraOptions& camera);
 
  private:
   /// How a file is read, and its path.

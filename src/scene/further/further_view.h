@@ -34,7 +34,7 @@ struct FurtherView {
 
   Picture picture;
   Camera camera;              ///< from the frame's camera space to its own
-  bool is_neighbour = false;  ///< of the frame's own sequence
+  bool is_neighbour = false;  ///< of the frame's own sequence or stereo pair
 
   /// Its surfels in the camera space of the frame.
   Plane<Surfel> surfels_in_frame() const;

@@ -20,7 +20,7 @@ struct MergeCounts {
   std::size_t added = 0;          ///< the frame does not show what they show
   std::size_t seen = 0;           ///< the frame shows it as well
   std::size_t contradictory = 0;  ///< it would lie before what the frame shows: something moved
-  bool is_neighbour = false;      ///< of the frame's own sequence, where things may move
+  bool is_neighbour = false;      ///< of its own sequence, where things may move, or pair
   std::size_t backs = 0;          ///< pixels of the frame whose thickness it shows
 
   /// Pixels that show what the frame should see too.

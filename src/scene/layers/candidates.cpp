@@ -120,7 +120,8 @@ std::vector<Layer> layers_named(const std::string& wanted, Role role,
   };
   for (const LayerGroup& group : groups) {
     const auto layer = as_layer(group, role);
-    if (layer) note({group.name, group.layer, group.path, group.own_path}, *layer);
+    const std::string plain = group.name.empty() ? "rgba" : group.name;
+    if (layer) note({group.name, group.layer, group.path, group.own_path, plain}, *layer);
     if (!is_scalar(role)) continue;
     for (const auto& [component, channel] : group.components) {
       const Layer scalar = scalar_layer(group, channel);

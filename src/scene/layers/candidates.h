@@ -23,7 +23,8 @@ std::optional<Layer> as_layer(const LayerGroup& group, Role role);
 /// The layers with the best name for the role: several where they have an equal claim.
 std::vector<Candidate> best_candidates(Role role, const std::vector<LayerGroup>& groups);
 
-/// The layers whose name is `wanted`: exactly, else with the case ignored.
+/// The layers whose name is `wanted`: exactly, else with the case ignored. Channels without a layer
+/// are "rgba".
 std::vector<Layer> layers_named(const std::string& wanted, Role role,
                                 const std::vector<LayerGroup>& groups);
 

@@ -28,6 +28,7 @@ Words view_words(const ExrReader& file) {
 
 struct ViewedName {
   std::string view, rest;
+  bool in_front = false;  ///< of the rest
 };
 
 /// Takes the view off the end or the start of a name whose words are separated by one of
@@ -36,11 +37,11 @@ ViewedName split_view(const std::string& name, std::string_view separators, cons
   const auto is_view = [&](const std::string& word) {
     return std::find(views.begin(), views.end(), lower(word)) != views.end();
   };
-  if (is_view(name)) return {name, ""};
+  if (is_view(name)) return {name, "", true};
   const auto last = name.find_last_of(separators), first = name.find_first_of(separators);
   if (last == std::string::npos) return {"", name};
   if (is_view(name.substr(last + 1))) return {name.substr(last + 1), name.substr(0, last)};
-  if (is_view(name.substr(0, first))) return {name.substr(0, first), name.substr(first + 1)};
+  if (is_view(name.substr(0, first))) return {name.substr(0, first), name.substr(first + 1), true};
   return {"", name};
 }
 
@@ -98,6 +99,17 @@ std::vector<LayerGroup> group_channels(const ExrReader& file, int file_index) {
     }
   }
   return groups;
+}
+
+std::string in_view_of(const ExrReader& file, const ExrPart& part, const std::string& beside,
+                       const std::string& channel) {
+  if (views_of(group_channels(file, 0)).empty()) return channel;
+  const ViewedName like = split_view(split_channel(beside).first, ".", view_words(file));
+  const auto [layer, component] = split_channel(channel);
+  const bool is_default = same_view(like.view, default_view(part));
+  if (like.view.empty() || (layer.empty() && is_default)) return channel;
+  if (layer.empty()) return like.view + "." + component;
+  return like.in_front ? like.view + "." + channel : layer + "." + like.view + "." + component;
 }
 
 bool same_view(const std::string& a, const std::string& b) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <string_view>
@@ -10,6 +11,9 @@
 #include "io/exr/exr_reader.h"
 
 namespace ssdo {
+
+/// The two views of a stereo file.
+inline constexpr std::array<std::string_view, 2> kEyes = {"left", "right"};
 
 /// A channel's name at its last dot: layer and component. No dot: no layer.
 std::pair<std::string, std::string> split_channel(const std::string& channel);
@@ -36,6 +40,13 @@ struct LayerGroup {
 /// "P_main") or of the layer ("P.left.X", "left.P.X") that is left, right, main or a view of the
 /// file; else, in a part with the attribute `multiView`, the first view of that.
 std::vector<LayerGroup> group_channels(const ExrReader& file, int file_index);
+
+/// What a channel is called in the view of another: as `channel` where parts tell views apart, or
+/// where the view is the default one and goes without its name; else "ao.right.Y" beside
+/// "P.right.X", "right.ao.Y" beside "right.P.X", and "right.R" beside both.
+/// `beside` is a channel of `part`, a part of `file`.
+std::string in_view_of(const ExrReader& file, const ExrPart& part, const std::string& beside,
+                       const std::string& channel);
 
 /// Whether two views are the same. "main" is Nuke's name for the only view, as good as none.
 bool same_view(const std::string& a, const std::string& b);

@@ -10,6 +10,8 @@
 
 #include "error.h"
 #include "io/sequence.h"
+#include "nearest_name.h"
+#include "scene/layers/advice.h"
 #include "scene/layers/candidates.h"
 #include "scene/layers/groups.h"
 #include "scene/layers/names.h"
@@ -48,6 +50,15 @@ std::vector<LayerGroup> parts_beside(const std::vector<LayerGroup>& part,
   return those_of(all, is_beside);
 }
 
+/// How one of several views is chosen.
+std::string choice_of(const std::vector<std::string>& views) {
+  std::vector<std::string> names;
+  for (const std::string& view : views) names.push_back(lower(view));
+  const bool stereo = std::ranges::is_permutation(names, kEyes);
+  return stereo ? "--stereo left, right or all"
+                : fmt::format("a view with --part {}", fmt::join(views, " or --part "));
+}
+
 /// No layer has the requested name. The request was meant as FILE:LAYER if the text before the last
 /// colon can only be a file.
 void refuse_missing_file(const LayerRequest& request) {
@@ -59,11 +70,14 @@ void refuse_missing_file(const LayerRequest& request) {
 }
 
 [[noreturn]] void throw_no_part(const ExrReader& frame, const std::string& wanted) {
-  std::vector<std::string> names;
-  for (const ExrPart& part : frame.parts())
-    names.push_back(fmt::format("{} '{}'{}", part.index, part.name, part.deep ? " (deep)" : ""));
-  throw Error(ExitCode::layer, fmt::format("{}: no part or view '{}'; the file has {}",
-                                           frame.path().string(), wanted, fmt::join(names, ", ")));
+  std::vector<std::string> names, forms;
+  for (const ExrPart& part : frame.parts()) {
+    names.insert(names.end(), {part.name, part.view});
+    forms.push_back(fmt::format("{} '{}'{}", part.index, part.name, part.deep ? " (deep)" : ""));
+  }
+  throw Error(ExitCode::layer,
+              fmt::format("{}: no part or view '{}'; {}the file has {}", frame.path().string(),
+                          wanted, did_you_mean(wanted, names), fmt::join(forms, ", ")));
 }
 
 /// The groups of the frame that --part selects: a part by name or number, completed by the other
@@ -110,6 +124,10 @@ class LayerFinder {
     return found || !by_name ? found : find_by_name(role);
   }
 
+  /// Of layers with an equal claim, those beside `lead` are taken from here on:
+  /// "ViewLayer.Combined" beside "ViewLayer.Position", not "Composite.Combined".
+  void prefer_beside(const Layer& lead) { prefix_ = split_channel(lead.name).first; }
+
   /// Restricts the search to the view of this layer, so that no frame is made of two.
   void keep_view_of(const Layer& lead) {
     if (lead.file != 0 || views_of(groups_[0]).empty()) return;
@@ -126,11 +144,20 @@ class LayerFinder {
 
   std::optional<Layer> find_by_name(Role role) const {
     for (const auto& groups : tiers_) {
-      const std::vector<Candidate> best = best_candidates(role, groups);
+      std::vector<Candidate> best = best_candidates(role, groups);
+      if (best.size() > 1) keep_those_beside_lead(best);
       if (best.size() > 1) throw_ambiguous(role, best);
       if (!best.empty()) return best[0].layer;
     }
     return std::nullopt;
+  }
+
+  void keep_those_beside_lead(std::vector<Candidate>& best) const {
+    const auto is_elsewhere = [&](const Candidate& c) {
+      return split_channel(c.layer.name).first != prefix_;
+    };
+    if (prefix_.empty() || std::all_of(best.begin(), best.end(), is_elsewhere)) return;
+    std::erase_if(best, is_elsewhere);
   }
 
   [[noreturn]] void throw_ambiguous(Role role, const std::vector<Candidate>& best) const {
@@ -141,8 +168,7 @@ class LayerFinder {
     }
     const bool of_views = views.size() == best.size() && !views_of(groups_[0]).empty() &&
                           std::find(views.begin(), views.end(), "") == views.end();
-    const std::string by_view =
-        of_views ? fmt::format("a view with --part {}, or ", fmt::join(views, " or --part ")) : "";
+    const std::string by_view = of_views ? choice_of(views) + ", or " : "";
     throw Error(
         ExitCode::layer,
         fmt::format("{}: {} layers could be {}: {}; choose {}one with --aov {}=LAYER", frame(),
@@ -169,9 +195,10 @@ class LayerFinder {
       if (as_layer(group, request.role)) names.push_back(group.name);
     }
     throw Error(ExitCode::layer,
-                fmt::format("{}: {} layer '{}' with channels for {}; the file has {}",
+                fmt::format("{}: {} layer '{}' with channels for {}; {}the file has {}",
                             files_[file]->path().string(), found.empty() ? "no" : "more than one",
                             request.layer, role_name(request.role),
+                            found.empty() ? did_you_mean(request.layer, names) : "",
                             names.empty() ? "none that fits" : quoted(names)));
   }
 
@@ -179,6 +206,7 @@ class LayerFinder {
   const std::vector<LayerRequest>& requests_;
   std::vector<std::vector<LayerGroup>> groups_;  ///< by file
   Tiers tiers_;                                  ///< of the frame
+  std::string prefix_;                           ///< of layers that are preferred; may be empty
 };
 
 }  // namespace
@@ -187,9 +215,12 @@ LayerRequest parse_layer_request(const std::string& text) {
   const auto equals = text.find('=');
   const auto role = role_from_name(text.substr(0, equals));
   if (equals == std::string::npos || !role || equals + 1 == text.size()) {
-    throw Error(ExitCode::usage,
-                fmt::format("--aov {}: expected ROLE=LAYER or ROLE=FILE:LAYER with ROLE one of {}",
-                            text, fmt::join(role_names(), ", ")));
+    const auto roles = role_names();
+    throw Error(
+        ExitCode::usage,
+        fmt::format("--aov {}: {}expected ROLE=LAYER or ROLE=FILE:LAYER with ROLE one of {}", text,
+                    role ? "" : did_you_mean(text.substr(0, equals), {roles.begin(), roles.end()}),
+                    fmt::join(roles, ", ")));
   }
   LayerRequest request{*role, "", text.substr(equals + 1)};
   // A layer name may contain a colon: it separates a file only where that file or sequence exists.
@@ -207,15 +238,9 @@ LayerRequest parse_layer_request(const std::string& text) {
 
 void require_position(const LayerTable& table, const ExrReader& frame, const std::string& advice) {
   if (table[Role::position] || table[Role::depth]) return;
-  std::string text = "name one with --aov position=LAYER or --aov depth=LAYER";
-  for (const LayerGroup& group : group_channels(frame, 0)) {
-    if (normalise(group.path).find("samplerinfo") == std::string::npos) continue;
-    if (!as_layer(group, Role::position)) continue;
-    text = fmt::format("if '{0}' was rendered with type Point, say --aov \"position={0}\"",
-                       group.name);
-  }
   throw Error(ExitCode::layer, fmt::format("{}: no layer for position or depth found by name; {}{}",
-                                           frame.path().string(), text, advice));
+                                           frame.path().string(),
+                                           advice_on_position(group_channels(frame, 0)), advice));
 }
 
 LayerTable find_layers(const std::vector<const ExrReader*>& files,
@@ -231,6 +256,7 @@ LayerTable find_layers(const std::vector<const ExrReader*>& files,
     find(role);
     if (!table[role]) continue;
     finder.keep_view_of(*table[role]);
+    finder.prefer_beside(*table[role]);
     break;
   }
   for (std::size_t i = 0; i < kRoleCount; ++i) find(Role(i));

@@ -117,6 +117,8 @@ struct Axes {
     return m;
   }
 
+  Axes turned() const { return {source, {-sign[0], -sign[1], -sign[2]}}; }
+
   /// "" for the axes as they are, else ", axes (x, -z, y)".
   std::string text() const {
     if (matrix() == glm::mat3(1)) return "";
@@ -141,15 +143,20 @@ std::vector<Axes> maps_of_axes() {
 
 /// A map of stored normals to camera space.
 struct Candidate {
+  std::string space;
+  Axes axes;
   glm::mat3 to_camera;
-  std::string name;
   std::vector<float> cosines;  ///< of the witnesses, signed
   bool is_own = false;
 
-  Candidate(const glm::mat3& map, std::string called, const std::vector<Witness>& witnesses)
-      : to_camera(map), name(std::move(called)) {
-    for (const Witness& w : witnesses) cosines.push_back(glm::dot(w.gradient, map * w.stored));
+  Candidate(const NamedRotation& in_space, const Axes& by_axes,
+            const std::vector<Witness>& witnesses)
+      : space(in_space.name), axes(by_axes), to_camera(in_space.to_camera * by_axes.matrix()) {
+    for (const Witness& w : witnesses)
+      cosines.push_back(glm::dot(w.gradient, to_camera * w.stored));
   }
+
+  std::string name() const { return space + axes.text(); }
 
   double mean() const {
     double sum = 0;
@@ -219,11 +226,10 @@ Candidate turned_to_gradients(Candidate candidate, const std::vector<Witness>& w
   if (witnesses.empty() || miss < 1 - kLeastTurn) return candidate;
   const glm::mat3 turn = rotation_to_gradients(candidate, witnesses);
   const float cosine = 0.5f * (turn[0][0] + turn[1][1] + turn[2][2] - 1);
-  Candidate turned(
-      turn * candidate.to_camera,
+  const std::string name =
       fmt::format("a space of its own, {:.0f} degrees from {}",
-                  glm::degrees(std::acos(std::clamp(cosine, -1.0f, 1.0f))), candidate.name),
-      witnesses);
+                  glm::degrees(std::acos(std::clamp(cosine, -1.0f, 1.0f))), candidate.name());
+  Candidate turned({turn * candidate.to_camera, name}, {}, witnesses);
   const bool halves_the_angle = 1 - median_size(turned) < 0.25f * miss;
   turned.is_own = true;
   return cosine < kLeastTurn && halves_the_angle ? turned : candidate;
@@ -235,10 +241,11 @@ NormalSpace described(const Candidate& found) {
   const auto within = std::count_if(found.cosines.begin(), found.cosines.end(),
                                     [](float c) { return std::abs(c) > kWithin; });
   const std::size_t count = found.cosines.size();
-  NormalSpace space{found.to_camera, found.name, count, 0, found.is_own};
+  NormalSpace space{found.to_camera, found.name(), count, 0, found.mean(), found.is_own};
   if (2 * std::size_t(positive) < count) {
     space.to_camera = -space.to_camera;
-    space.name += ", turned round";
+    const bool as_they_are = found.axes.text().empty();
+    space.name = found.space + (as_they_are ? ", turned round" : found.axes.turned().text());
   }
   if (count > 0) space.share = double(within) / double(count);
   return space;
@@ -249,15 +256,24 @@ NormalSpace described(const Candidate& found) {
 NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
                               const std::vector<NamedRotation>& spaces, bool orthographic) {
   const std::vector<Witness> witnesses = collect_witnesses(stored, surfels, orthographic);
-  const Candidate rule(spaces[0].to_camera, spaces[0].name, witnesses);
+  const Candidate rule(spaces[0], {}, witnesses);
   Candidate best = rule;
   for (const NamedRotation& space : spaces) {
     for (const Axes& axes : maps_of_axes()) {
-      Candidate candidate(space.to_camera * axes.matrix(), space.name + axes.text(), witnesses);
+      Candidate candidate(space, axes, witnesses);
       if (candidate.mean() > best.mean()) best = std::move(candidate);
     }
   }
   return described(turned_to_gradients(is_clearly_better(best, rule) ? best : rule, witnesses));
+}
+
+NormalSpace measure_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
+                                 const NamedRotation& space, bool orthographic) {
+  NormalSpace measured =
+      described(Candidate(space, {}, collect_witnesses(stored, surfels, orthographic)));
+  measured.to_camera = space.to_camera;
+  measured.name = space.name;
+  return measured;
 }
 
 }  // namespace ssdo

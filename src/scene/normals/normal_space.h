@@ -17,6 +17,7 @@ struct NormalSpace {
   std::string name;
   std::size_t smooth_pixels = 0;  ///< around which P is smooth: N is compared with P there
   double share = 0;               ///< of them, where N and the gradient are within 53 degrees
+  double mean_cosine = 0;         ///< between N and the gradient, over them, without their signs
   bool is_own = false;            ///< of none of the spaces that were given
 
   bool is_known() const { return smooth_pixels >= kFewestSmoothPixels && share >= kLeastShare; }
@@ -39,5 +40,9 @@ struct NamedRotation {
 /// own.
 NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
                               const std::vector<NamedRotation>& spaces, bool orthographic);
+
+/// How far the stored normals agree with the gradient of P if they are in `space`, with its axes.
+NormalSpace measure_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
+                                 const NamedRotation& space, bool orthographic);
 
 }  // namespace ssdo

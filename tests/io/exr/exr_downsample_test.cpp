@@ -24,7 +24,7 @@ void write_half(const std::vector<Imf::Header>& headers, bool keep_channels) {
   output.planes = {{"new", Imf::HALF, &plane}};
   output.keep_channels = keep_channels;
   output.downsampling = {2, input.parts()[0].display_window};
-  write_exr(SafeFile(dir / "out.exr", {}), output);
+  write_exr(SafeFile(dir / "out.exr", {}), {output});
 }
 
 const Box2i kWindow({0, 0}, {15, 7});

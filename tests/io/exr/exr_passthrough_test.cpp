@@ -51,7 +51,7 @@ void pass_through(const ExrReader& input, const fs::path& output, Imf::PixelType
   out.planes = {{"new", type, &plane}};
   out.keep_channels = true;
   SafeFile file(output, {.overwrite = true});
-  write_exr(file, out);
+  write_exr(file, {out});
   file.commit();
 }
 
@@ -197,7 +197,7 @@ TEST(PassThrough, NaNStaysAndIsNotCounted) {
   out.planes = {{"new", Imf::HALF, &plane}};
   {
     SafeFile file(dir / "out.exr", {});
-    EXPECT_EQ(write_exr(file, out), 0u);
+    EXPECT_EQ(write_exr(file, {out}), 0u);
     file.commit();
   }
   const std::vector<std::string> names = {"new"};

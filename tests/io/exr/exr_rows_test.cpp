@@ -74,7 +74,7 @@ class Rows : public testing::Test {
     ExrOutput without_pixels = wanted;
     for (ExrPlane& plane : without_pixels.planes) plane.pixels = {};
     SafeFile file(dir_ / "rows.exr", {.overwrite = true});
-    ExrWriter writer(file, without_pixels);
+    ExrWriter writer(file, {without_pixels});
     std::size_t clamped = 0;
     for (int y = 0; y < plane_.height; y += rows) clamped += write_rows(writer, wanted, y, rows);
     writer.finish();
@@ -89,7 +89,7 @@ class Rows : public testing::Test {
 
   std::string bytes_at_once(const ExrOutput& o) {
     SafeFile file(dir_ / "whole.exr", {.overwrite = true});
-    write_exr(file, o);
+    write_exr(file, {o});
     file.commit();
     return read_file(dir_ / "whole.exr");
   }
@@ -184,7 +184,7 @@ TEST_F(Rows, OfOtherSizesAreADefect) {
   const ExrOutput o = output();
   const auto expect_defect = [&](const std::vector<ChannelView>& planes, const std::string& text) {
     SafeFile file(dir_ / "rows.exr", {});
-    ExrWriter writer(file, o);
+    ExrWriter writer(file, {o});
     write_rows(writer, o, 0, 512);
     EXPECT_THAT(error_of([&] { writer.write(planes); }), IsError(ExitCode::failed, text));
   };
@@ -204,7 +204,7 @@ TEST_F(Rows, ThatAreMissingAreADefect) {
   const ExrOutput o = output();
   for (const int rows : {1, 256, 600}) {
     SafeFile file(dir_ / "rows.exr", {});
-    ExrWriter writer(file, o);
+    ExrWriter writer(file, {o});
     write_rows(writer, o, 0, rows);
     EXPECT_THAT(error_of([&] { writer.finish(); }),
                 IsError(ExitCode::failed, std::to_string(601 - rows) + " rows"));
@@ -214,7 +214,7 @@ TEST_F(Rows, ThatAreMissingAreADefect) {
 TEST_F(Rows, ThatEndEarlyLeaveNoFile) {
   {
     SafeFile file(dir_ / "rows.exr", {});
-    ExrWriter writer(file, output());
+    ExrWriter writer(file, {output()});
     write_rows(writer, output(), 0, 300);
   }
   EXPECT_EQ(std::distance(fs::directory_iterator(dir_.path()), {}), 1) << "only in.exr stays";

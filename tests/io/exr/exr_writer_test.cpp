@@ -52,7 +52,7 @@ class Writer : public testing::Test {
   }
   std::size_t write(const ExrOutput& output) {
     SafeFile file(dir_ / "out.exr", {.overwrite = true, .create_dirs = false});
-    const std::size_t clamped = write_exr(file, output);
+    const std::size_t clamped = write_exr(file, {output});
     file.commit();
     written_.emplace(dir_ / "out.exr");
     return clamped;
@@ -259,7 +259,7 @@ TEST_F(Writer, DamageInWhatIsKeptIsTheInputsFault) {
   o.input = &*damaged;
   o.keep_channels = true;
   SafeFile file(dir_ / "out.exr", {});
-  EXPECT_THAT(error_of([&] { write_exr(file, o); }), IsError(ExitCode::input, "in.exr"));
+  EXPECT_THAT(error_of([&] { write_exr(file, {o}); }), IsError(ExitCode::input, "in.exr"));
 }
 
 }  // namespace

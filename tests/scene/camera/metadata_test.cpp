@@ -447,6 +447,23 @@ TEST(HeaderCamera, AtTheOriginMakesTheWorldKnown) {
   EXPECT_FALSE(build(with_header(gbuffer_of(picture), {}, kPlain)).geometry.world_known);
 }
 
+TEST(HeaderCamera, GivesWayToTheSpaceThatTheUserSays) {
+  const Camera camera = turned_camera(kPlain);
+  const Picture picture = take_picture(still_life(), camera, kPlain.data);
+  const HeaderNumbers header = standard_header(camera, kPlain.display);
+  GBuffer in_space = with_header(in_camera_space(picture, false), header, kPlain),
+          in_world = with_header(gbuffer_of(picture), header, kPlain);
+  in_space.space = Space::camera, in_world.space = Space::world;
+  expect_of(picture, build(in_space));
+  expect_of(picture, build(in_world));
+  in_space.space = Space::world, in_world.space = Space::camera;
+  for (const GBuffer& g : {in_space, in_world}) {
+    const Built built = build(g);
+    EXPECT_FALSE(built.report.header);
+    EXPECT_EQ(built.geometry.world_known, g.space == Space::world);
+  }
+}
+
 TEST(HeaderCamera, GivesWayToOptions) {
   const Camera camera = turned_camera(kPlain);
   const Picture picture = take_picture(still_life(), camera, kPlain.data);

@@ -58,10 +58,10 @@ TEST_F(FurtherPicturesOf, ASequenceAreKeptForTheFramesToCome) {
   second.neighbours = {{path("a"), {}, {}}, {path("b"), {}, {}}};
   pictures.expect(first);
   pictures.expect(second);
-  std::weak_ptr<const FurtherPicture> a = pictures.neighbour(first.neighbours[0], {}, {});
+  std::weak_ptr<const FurtherPicture> a = pictures.alike(first.neighbours[0], {}, {});
   pictures.release(first);
   EXPECT_FALSE(a.expired());
-  EXPECT_EQ(pictures.neighbour(second.neighbours[0], {}, {}), a.lock());
+  EXPECT_EQ(pictures.alike(second.neighbours[0], {}, {}), a.lock());
   pictures.release(second);
   EXPECT_TRUE(a.expired());
 }

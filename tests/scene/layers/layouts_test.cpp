@@ -137,7 +137,7 @@ TEST(Layouts, StereoIsOneViewOrAnError) {
     const LayerFile file(stereo.parts);
     const Error error = error_of([&] { file.find(); });
     EXPECT_THAT(error, IsError(ExitCode::layer, "2 layers could be position"));
-    EXPECT_THAT(error, IsError(ExitCode::layer, "--part left or --part right"));
+    EXPECT_THAT(error, IsError(ExitCode::layer, "choose --stereo left, right or all"));
     for (const std::string view : {"left", "right"}) {
       const LayerTable t = file.find({}, view);
       for (const Role role : {Role::position, Role::normal, Role::albedo, Role::alpha})

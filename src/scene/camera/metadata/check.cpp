@@ -119,9 +119,12 @@ FoundCamera check_against_fit(const Camera& fitted, const GBuffer& g,
   const auto with_pose =
       std::find_if(header.begin(), header.end(), [](const HeaderCamera& h) { return h.has_pose; });
   if (with_pose == header.end() || fitted.panorama) return alone;
-  report.header = explained_by(header, fitted, g);
+  const bool says_camera = g.space == Space::camera, says_world = g.space == Space::world;
+  if (!says_camera) report.header = explained_by(header, fitted, g);
   if (report.header) return {fitted, fitted, true};
-  if (!is_in_camera_space(fitted, g)) {
+  const bool in_camera_space = is_in_camera_space(fitted, g);
+  if (says_camera && !in_camera_space) return alone;
+  if (says_world || !in_camera_space) {
     warn_of_contradiction(*with_pose, "under no reading of it does P land on its own pixels",
                           report);
     return alone;

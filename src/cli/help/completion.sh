@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: Apache-2.0
+# The layers of a frame that can have a role, a line each: a name that no layer has ends ssdo after the
+# header of the file, with a list of them.
+_ssdo_layers() {  # TOOL FRAME ROLE
+  command "$1" info "$2" --aov "$3=?" 2>&1 >/dev/null |
+    sed -n "s/.* the file has '\(.*\)'$/\1/p" | sed "s/', '/\n/g"
+}
+

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "support/help_flags.h"
+
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <sstream>
+
+#include "support/run_tool.h"
+
+namespace ssdo::test {
+
+std::set<std::string> flags_of_help(const std::vector<std::string>& arguments) {
+  const Finished done = run_tool(arguments);
+  EXPECT_EQ(done.code, 0) << done.err;
+  static const std::regex declared(R"(^  (?:-\w,)?(--[a-z][a-z-]*))");
+  std::set<std::string> flags;
+  std::istringstream lines(done.out);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch found;
+    if (std::regex_search(line, found, declared)) flags.insert(found[1]);
+  }
+  return flags;
+}
+
+}  // namespace ssdo::test
