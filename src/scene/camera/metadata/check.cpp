@@ -2,7 +2,8 @@
 //
 // P proves a camera: it lands on its own pixels under no other. Where P is in camera space, it
 // proves the lens alone, and of a frame of depth nothing is proved; then the header has to agree
-// with itself, and normals of the world, where there are any, decide later (normals/world.cpp).
+// with itself, and normals of the world, where there are any, decide later
+// (normals/world_of_normals.cpp).
 #include "scene/camera/metadata/check.h"
 
 #include <fmt/format.h>
