@@ -40,12 +40,14 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return rows[a.size()][b.size()];
 }
 
-/// How far `name` is from `wrong`; nothing where it is not near. A name that is begun or ended is
-/// farther than any that is misspelt, and the shortest of them is the nearest.
+/// How far `name` is from `wrong`; nothing where it is not near. A name that is begun or ended, or
+/// misspelt without what stands before its last dot, is farther than any that is misspelt, and the
+/// shortest of them is the nearest.
 std::optional<std::size_t> cost(const std::string& wrong, const std::string& name) {
-  const std::size_t faults = distance(wrong, name);
-  if (faults <= (wrong.size() + 1) / 3) return faults;
-  const bool is_end = name.starts_with(wrong) || name.ends_with(wrong);
+  const std::size_t most = (wrong.size() + 1) / 3, faults = distance(wrong, name);
+  if (faults <= most) return faults;
+  const bool is_end = name.starts_with(wrong) || name.ends_with(wrong) ||
+                      distance(wrong, name.substr(name.rfind('.') + 1)) <= most;
   return is_end && wrong.size() >= kShortestEnd ? std::optional(name.size()) : std::nullopt;
 }
 

@@ -39,6 +39,7 @@ TEST(NearestName, KnowsANameByItsBeginningOrItsEnd) {
   EXPECT_EQ(near("bit"), "bitmask");
   EXPECT_EQ(near("exposure"), "env-exposure");
   EXPECT_EQ(near("Normal", {"ViewLayer.Normalised", "ViewLayer.Normal"}), "ViewLayer.Normal");
+  EXPECT_EQ(near("Normals", {"ViewLayer.Depth", "ViewLayer.Normal"}), "ViewLayer.Normal");
   EXPECT_EQ(near("bi"), "") << "too short to tell";
   EXPECT_EQ(near("tma"), "") << "the middle";
   EXPECT_EQ(near("comp", {"compression", "compose"}), "compose") << "the shorter one";

@@ -13,6 +13,7 @@
 
 #include "support/boxes.h"
 #include "support/frame_file.h"
+#include "support/header_camera.h"
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
@@ -196,19 +197,32 @@ TEST_F(Stereo, OtherMethodsDoNotLookAtTheOtherEye) {
   EXPECT_EQ(done.err, "") << "nobody has asked for it";
 }
 
-TEST_F(Stereo, WithoutAWorldEachEyeIsAlone) {
-  for (const bool world : {true, false}) {
-    std::vector<FramePart> parts = layouts()[0].parts;
-    const std::vector<Picture> pictures = {eye_at(-0.4), eye_at(0.4)};
-    for (std::size_t i = 0; i < 2 && !world; ++i) {
-      Plane<glm::vec3> p = pictures[i].position;
-      for (glm::vec3& v : p.pixels) v = glm::vec3(pictures[i].camera.to_camera(glm::dvec3(v)));
-      parts[i].add("Position", p);
-    }
-    write_frame(folder / "in.exr", parts);
-    const Finished done = run({"in.exr", "--stereo", "all", "-o", "out.exr", "--overwrite"});
-    EXPECT_EQ(done.err.find("no world space is known") == std::string::npos, world) << done.err;
+/// The parts of a file of two views with P in camera space, with their cameras in the headers or
+/// not.
+std::vector<FramePart> parts_in_camera_space(bool with_headers) {
+  std::vector<FramePart> parts = layouts()[0].parts;
+  const std::vector<Picture> pictures = {eye_at(-0.4), eye_at(0.4)};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Camera& camera = pictures[i].camera;
+    Plane<glm::vec3> p = pictures[i].position;
+    for (glm::vec3& v : p.pixels) v = glm::vec3(camera.to_camera(glm::dvec3(v)));
+    parts[i].add("Position", p);
+    if (with_headers) add_attributes(parts[i].extra, standard_header(camera, kWindow));
   }
+  return parts;
+}
+
+TEST_F(Stereo, AWorldPlacesTheOtherEye) {
+  const auto lines_of = [&](const std::vector<FramePart>& parts) {
+    write_frame(folder / "in.exr", parts);
+    return run({"in.exr", "--stereo", "all", "-o", "out.exr", "--overwrite", "-v"}).err;
+  };
+  const auto both = AllOf(HasSubstr("in.exr (left): "), HasSubstr("in.exr (right): "));
+  const std::string reason = "no world space is known";
+  EXPECT_THAT(lines_of(layouts()[0].parts), AllOf(both, Not(HasSubstr(reason))));
+  EXPECT_THAT(lines_of(parts_in_camera_space(false)),
+              AllOf(HasSubstr(reason), Not(HasSubstr("in.exr (left)"))));
+  EXPECT_THAT(lines_of(parts_in_camera_space(true)), AllOf(both, Not(HasSubstr(reason))));
 }
 
 TEST_F(Stereo, PicturesShowOneViewEach) {

@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "error.h"
+#include "io/exr/exr_parts.h"
 #include "io/sequence.h"
 #include "nearest_name.h"
 #include "scene/layers/advice.h"
@@ -73,7 +74,7 @@ void refuse_missing_file(const LayerRequest& request) {
   std::vector<std::string> names, forms;
   for (const ExrPart& part : frame.parts()) {
     names.insert(names.end(), {part.name, part.view});
-    forms.push_back(fmt::format("{} '{}'{}", part.index, part.name, part.deep ? " (deep)" : ""));
+    forms.push_back(label(part) + (part.deep ? " (deep)" : ""));
   }
   throw Error(ExitCode::layer,
               fmt::format("{}: no part or view '{}'; {}the file has {}", frame.path().string(),

@@ -147,7 +147,7 @@ TEST(Layers, APartRestrictsTheSearch) {
   EXPECT_EQ(file.find({}, "right")[Role::position]->part, 1);
   EXPECT_EQ(file.find({}, "0")[Role::position]->part, 0);
   EXPECT_THAT(error_of([&] { file.find({}, "middle"); }),
-              IsError(ExitCode::layer, "0 'left', 1 'right'"));
+              IsError(ExitCode::layer, "part 0 'left', part 1 'right'"));
 }
 
 TEST(Layers, FindsMotionOfBlenderAndOfOthersOnRequest) {
