@@ -16,7 +16,6 @@
 #include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 
 #include "cli/describe.h"
@@ -109,12 +108,7 @@ class Batch {
 
   /// Removes what killed runs have left in the folders of the outputs.
   void clean_folders() {
-    std::set<std::filesystem::path> folders;
-    for (const Job& job : jobs_) {
-      for (const Target& target : job.targets)
-        folders.insert(std::filesystem::path(target.path).parent_path());
-    }
-    for (const std::filesystem::path& folder : folders) {
+    for (const std::filesystem::path& folder : output_folders(jobs_)) {
       for (const std::filesystem::path& file : remove_stale_temporaries(folder)) {
         if (options_.verbosity.verbose)
           print(line_of(file.string() + ": removed; the run that wrote it was killed"));
@@ -172,19 +166,25 @@ class Batch {
                                                  "or leave it out of --frames",
                                                  job.input(), *job.frame));
       }
-      for (const FrameFiles& files : job.views) {
-        Frame frame = prepare_frame(options_, *light_, pictures_, files, job.frame.value_or(0));
-        if (frame.bands && job.views.size() > 1) {
-          throw Error(ExitCode::usage,
-                      fmt::format("{}: two views of this size need more memory than "
-                                  "there is; give --stereo left, then right",
-                                  files.input));
-        }
-        work.views.push_back({std::move(frame)});
-      }
+      for (const FrameFiles& files : job.views) work.views.push_back({prepare_view(job, files)});
     });
     for (const FrameFiles& files : jobs_[i].views) pictures_.release(files);
     return work;
+  }
+
+  /// Errors name the view where there are several.
+  Frame prepare_view(const Job& job, const FrameFiles& files) {
+    if (job.views.size() == 1)
+      return prepare_frame(options_, *light_, pictures_, files, job.frame.value_or(0));
+    try {
+      Frame frame = prepare_frame(options_, *light_, pictures_, files, job.frame.value_or(0));
+      if (!frame.bands) return frame;
+    } catch (const Error& e) {
+      throw Error(e.code, fmt::format("{} (view {})", e.what(), files.view));
+    }
+    throw Error(ExitCode::usage, fmt::format("{}: two views of this size need more memory than "
+                                             "there is; give --stereo left, then right",
+                                             files.input));
   }
 
   /// Whether the outputs are there. Errors: those of check_output().
@@ -223,7 +223,7 @@ class Batch {
     if (options_.verbosity.dry_run || options_.verbosity.verbose)
       work.lines += describe(frame);
     else
-      add_warnings(work, frame.warnings());
+      add_warnings(work, frame.warnings(), frame.view);
     RelightJob job = job_of(work, view);
     if (options_.verbosity.dry_run) {
       // The last checks that come before the work of a real run.
@@ -235,7 +235,7 @@ class Batch {
     view.relit = relight(job, on_progress, past);
     if (options_.verbosity.verbose)
       for (const std::string& note : view.relit.notes) add(work, note);
-    add_warnings(work, view.relit.warnings);
+    add_warnings(work, view.relit.warnings, frame.view);
   }
 
   /// What only estimators look at.
@@ -253,9 +253,11 @@ class Batch {
       for (WorkOnView& view : work.views) relit.push_back({job_of(work, view), &view.relit});
       write_outputs(relit, on_progress);
       if (const std::size_t clamped = work.views.front().relit.clamped_values) {
-        add_warnings(work, {fmt::format("{} values were beyond the range of half and clamped to "
-                                        "65504; keep them with --pixel-type float",
-                                        clamped)});
+        add_warnings(work,
+                     {fmt::format("{} values were beyond the range of half and clamped to "
+                                  "65504; keep them with --pixel-type float",
+                                  clamped)},
+                     "");
       }
       for (WorkOnView& view : work.views) {
         work.statistics.push_back(
@@ -342,10 +344,12 @@ class Batch {
 
   static void add(Work& work, const std::string& line) { work.lines += line_of(line); }
 
-  void add_warnings(Work& work, const std::vector<std::string>& warnings) const {
+  void add_warnings(Work& work, const std::vector<std::string>& warnings,
+                    const std::string& view) const {
     if (options_.verbosity.quiet) return;
+    const std::string of_view = view.empty() ? "" : " (" + view + ")";
     for (const std::string& warning : warnings)
-      add(work, fmt::format("{}: warning: {}", jobs_[work.index].input(), warning));
+      add(work, fmt::format("{}{}: warning: {}", jobs_[work.index].input(), of_view, warning));
   }
 
   /// Prints on standard error; if that is closed, the work goes on.

@@ -179,6 +179,15 @@ std::vector<Job> plan_jobs(const Options& options) {
   return jobs;
 }
 
+std::set<std::filesystem::path> output_folders(const std::vector<Job>& jobs) {
+  std::set<std::filesystem::path> folders;
+  for (const Job& job : jobs) {
+    for (const Target& target : job.targets)
+      folders.insert(std::filesystem::path(target.path).parent_path());
+  }
+  return folders;
+}
+
 bool is_done(const Job& job) {
   for (const Target& target : job.targets) {
     std::error_code ignored;

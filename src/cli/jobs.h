@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,9 @@ struct Job {
 /// Errors: ExitCode::usage for patterns, frames and kinds of output that do not fit together;
 /// ExitCode::input for a sequence without frames; those of check_run_files, over all frames.
 std::vector<Job> plan_jobs(const Options& options);
+
+/// The folders that the outputs of all jobs go to.
+std::set<std::filesystem::path> output_folders(const std::vector<Job>& jobs);
 
 /// Whether all outputs of a job exist and can be read.
 bool is_done(const Job& job);

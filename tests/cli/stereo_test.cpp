@@ -336,6 +336,16 @@ TEST_F(Stereo, TwoViewsAreNotMadeInBands) {
   run(with("left"));
 }
 
+TEST_F(Stereo, MessagesNameTheView) {
+  std::vector<FramePart> parts = layouts()[0].parts;
+  std::erase_if(parts[1].channels, [](const auto& c) { return c.first.starts_with("Position"); });
+  write_frame(folder / "in.exr", parts);
+  EXPECT_THAT(run({"in.exr", "--stereo", "all", "-o", "a.exr"}, 4).error_line(),
+              testing::EndsWith("(view right)"));
+  EXPECT_THAT(run({"in.exr", "--stereo", "left", "-o", "a.exr"}).err,
+              HasSubstr("in.exr (left): warning: left out as the other eye: in.exr"));
+}
+
 TEST_F(Stereo, TheSameBitsForAnyNumberOfThreads) {
   write_frame(folder / "in.exr", layouts()[0].parts);
   for (const std::string threads : {"1", "3"})
