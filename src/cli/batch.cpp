@@ -19,13 +19,12 @@
 #include <utility>
 
 #include "cli/describe.h"
+#include "cli/info_report.h"
 #include "cli/jobs.h"
-#include "cli/listing.h"
 #include "cli/place_in_sequence.h"
 #include "cli/progress.h"
 #include "cli/statistics.h"
 #include "frame.h"
-#include "io/json_text.h"
 #include "io/one_line.h"
 #include "io/stale_temporaries.h"
 #include "io/standard_output.h"
@@ -66,7 +65,8 @@ class Batch {
         overlaps_(resources.threads() > 1 && jobs_.size() > 1),
         // A temporal frame hands its surfaces to the next one, which therefore waits.
         writes_behind_(overlaps_ && !options.model.temporal),
-        progress_(options.batch.progress, options.verbosity.quiet) {
+        progress_(options.batch.progress, options.verbosity.quiet),
+        info_(options.verbosity.json, progress_) {
     const std::size_t views = std::max(std::size_t(1), options.input.views.size());
     options_.memory = resources.memory() / ((overlaps_ ? 2 : 1) * views);
     for (const Job& job : jobs_)
@@ -78,11 +78,11 @@ class Batch {
     try {
       code = run_jobs();
     } catch (const Error& e) {
-      note_in_info(e);
-      print_infos();
+      info_.note(e);
+      info_.finish();
       throw;
     }
-    print_infos();
+    info_.finish();
     if (has_statistics() && !options_.verbosity.dry_run)
       write_statistics(options_.verbosity.stats, policy_of_statistics(options_.output.policy),
                        statistics_);
@@ -95,7 +95,7 @@ class Batch {
       check_output(options_.verbosity.stats, policy_of_statistics(options_.output.policy));
     if (options_.command == Command::relight && !options_.verbosity.dry_run) clean_folders();
     for (std::size_t i = 0; i < jobs_.size() && !stopped_; ++i) {
-      if (options_.command == Command::info) list(jobs_[i]);
+      if (options_.command == Command::info) info_.list(jobs_[i].views.front());
       if (!light_) light_.emplace(options_.light);
       run_job(i);
     }
@@ -219,7 +219,7 @@ class Batch {
     Frame& frame = view.frame;
     Past past{std::move(before), {}};
     if (options_.model.temporal) place_in_sequence(frame, past, before_of(work.index));
-    if (options_.command == Command::info) return show(frame);
+    if (options_.command == Command::info) return info_.show(frame);
     if (options_.verbosity.dry_run || options_.verbosity.verbose)
       work.lines += describe(frame);
     else
@@ -278,7 +278,7 @@ class Batch {
     if (work.error) {
       // A job of one frame fails if that frame fails.
       if (jobs_.size() == 1) throw *work.error;
-      note_in_info(*work.error);
+      info_.note(*work.error);
       print(line_of(work.error->what()));
       if (code_ == ExitCode::done) code_ = work.error->code;
       stopped_ = options_.batch.on_error == OnError::stop;
@@ -307,37 +307,6 @@ class Batch {
     return [tell = progress_of(work.index), view, count = double(work.views.size())](double done) {
       tell((double(view) + done) / count);
     };
-  }
-
-  /// Called before anything that can fail, so that `info` lists the layers of every file.
-  void list(const Job& job) {
-    const std::deque<ExrReader> files = open_files(job.views.front());
-    infos_.push_back(listing_json(job.input(), files));
-    print_info(list_layers(files));
-  }
-
-  /// Of several views, each has an entry of its own.
-  void show(const Frame& frame) {
-    if (infos_.back().contains("view") && infos_.back()["view"] != frame.view)
-      infos_.push_back(infos_.back());
-    infos_.back().update(to_json(frame));
-    print_info(describe(frame));
-  }
-
-  void note_in_info(const Error& e) {
-    if (!infos_.empty()) infos_.back()["error"] = {{"code", int(e.code)}, {"message", e.what()}};
-  }
-
-  void print_info(const std::string& text) {
-    if (options_.verbosity.json) return;
-    progress_.clear();
-    print_out(text);
-  }
-
-  void print_infos() const {
-    if (!options_.verbosity.json || infos_.empty()) return;
-    const nlohmann::json& shown = infos_.size() == 1 ? infos_[0] : infos_;
-    print_out(json_text(shown, 2) + "\n");
   }
 
   static std::string line_of(const std::string& text) { return "ssdo: " + printable(text) + "\n"; }
@@ -375,7 +344,8 @@ class Batch {
   std::optional<Lighting> light_;  ///< read after the first listing of `info`
   FurtherPictures pictures_;       ///< of all frames
   ProgressLine progress_;
-  nlohmann::json statistics_ = nlohmann::json::array(), infos_ = nlohmann::json::array();
+  InfoReport info_;
+  nlohmann::json statistics_ = nlohmann::json::array();
   ExitCode code_ = ExitCode::done;
   bool stopped_ = false;
   std::vector<std::optional<History>> histories_;  ///< of the frame before's views, for --temporal
