@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/info_report.h"
 
+#include <nlohmann/json.hpp>
+
 #include "cli/describe.h"
 #include "cli/listing.h"
 #include "io/json_text.h"
 #include "io/standard_output.h"
 
 namespace ssdo {
+
+InfoReport::InfoReport(bool as_json, ProgressLine& progress)
+    : as_json_(as_json), progress_(progress) {}
+
+InfoReport::~InfoReport() = default;
 
 void InfoReport::list(const FrameFiles& files) {
   const std::deque<ExrReader> opened = open_files(files);
@@ -28,8 +35,7 @@ void InfoReport::note(const Error& error) {
 
 void InfoReport::finish() const {
   if (!as_json_ || entries_.empty()) return;
-  const nlohmann::json& shown = entries_.size() == 1 ? entries_[0] : entries_;
-  print_out(json_text(shown, 2) + "\n");
+  print_out(json_text(entries_.size() == 1 ? entries_[0] : nlohmann::json(entries_), 2) + "\n");
 }
 
 void InfoReport::print(const std::string& text) {

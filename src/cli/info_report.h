@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "cli/progress.h"
 #include "error.h"
@@ -13,7 +14,8 @@ namespace ssdo {
 /// What `ssdo info` says of the frames of a run: text as it comes, or JSON at the end.
 class InfoReport {
  public:
-  InfoReport(bool as_json, ProgressLine& progress) : as_json_(as_json), progress_(progress) {}
+  InfoReport(bool as_json, ProgressLine& progress);
+  ~InfoReport();
 
   /// The layers of a frame's files, before anything that can fail.
   void list(const FrameFiles& files);
@@ -32,7 +34,7 @@ class InfoReport {
 
   bool as_json_;
   ProgressLine& progress_;
-  nlohmann::json entries_ = nlohmann::json::array();
+  std::vector<nlohmann::json> entries_;
 };
 
 }  // namespace ssdo
