@@ -96,6 +96,8 @@ class Examples : public testing::Test {
       fs::create_directories((*folder_ / file).parent_path());
       write_frame(*folder_ / file, shrunk(std::string(name) + ".exr"));
     }
+    for (const auto& entry : fs::directory_iterator(data("blender/exports")))
+      fs::copy_file(entry.path(), *folder_ / entry.path().filename());
     write_maps();
     write_frames();
     write_pictures();
