@@ -38,7 +38,7 @@ bool wants_reflection(const OutputOptions& output, const std::vector<LayerReques
 void hint_at_missing_layers(Frame& frame) {
   for (const Role role : {Role::normal, Role::albedo}) {
     if (frame.layers[role]) continue;
-    const std::string hint = hint_at(role, group_channels(frame.files.front(), 0));
+    const std::string hint = hint_at(role, group_channels(frame.files.front(), 0, frame.view));
     if (hint.empty()) continue;
     frame.report.warnings.push_back(
         fmt::format("no layer for {} found by name; {}", role_name(role), hint));

@@ -69,10 +69,10 @@ void warn_of(const MergeCounts& view, std::vector<std::string>& warnings) {
   if (view.is_neighbour) {
     // What moves in a shot contradicts its frames, and needs no warning.
     if (!view.is_of_another_scene()) return;
-    warnings.push_back(
-        fmt::format("{}: left out as a neighbour: of {} pixels that show what the frame should see "
-                    "too, {} lie where it shows a surface, as after a cut",
-                    view.file, view.in_common(), view.seen));
+    warnings.push_back(fmt::format(
+        "{}: left out: of {} pixels, {} show what the frame shows too, and {} lie before "
+        "it, as after a cut or in another unit",
+        view.file, view.added + view.in_common(), view.seen, view.contradictory));
     return;
   }
   if (double(view.contradictory) <= kMostContradiction * double(view.in_common())) return;

@@ -10,6 +10,7 @@
 #include "cli/batch.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdint>
 #include <cstdio>
@@ -167,6 +168,7 @@ class Batch {
                                                  job.input(), *job.frame));
       }
       for (const FrameFiles& files : job.views) work.views.push_back({prepare_view(job, files)});
+      if (work.views.size() > 1) compare_views(work);
     });
     for (const FrameFiles& files : jobs_[i].views) pictures_.release(files);
     return work;
@@ -185,6 +187,26 @@ class Batch {
     throw Error(ExitCode::usage, fmt::format("{}: two views of this size need more memory than "
                                              "there is; give --stereo left, then right",
                                              files.input));
+  }
+
+  /// Errors: ExitCode::layer where both views are made from the same channels.
+  void compare_views(Work& work) const {
+    const Frame &left = work.views[0].frame, &right = work.views[1].frame;
+    if (left.lead().file == right.lead().file && left.lead().part == right.lead().part &&
+        left.lead().channels == right.lead().channels) {
+      throw Error(ExitCode::layer,
+                  fmt::format("{}: both views would be made from '{}'; leave out --aov, or give "
+                              "--stereo left, then right",
+                              left.input, left.lead().name));
+    }
+    if (left.plan.write != right.plan.write) {
+      add_warnings(
+          work,
+          {fmt::format("the views have different products, as their layers differ: "
+                       "left {}; right {}",
+                       fmt::join(left.plan.write, ", "), fmt::join(right.plan.write, ", "))},
+          "");
+    }
   }
 
   /// Whether the outputs are there. Errors: those of check_output().

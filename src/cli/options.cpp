@@ -86,6 +86,11 @@ void refuse_options_of_the_main_job(const CLI::App& app) {
 /// Refuses a main job without input or output.
 void check(const Options& o, const CLI::App& app) {
   if (o.input_file.empty()) throw Error(ExitCode::usage, "no INPUT given; see ssdo --help");
+  if (o.input.views.size() > 1 && !o.camera.file.empty()) {
+    throw Error(ExitCode::usage,
+                fmt::format("--camera {}: has the pose of one eye; give --stereo left, then right",
+                            o.camera.file));
+  }
   if (o.command == Command::relight && o.output.files.empty() && o.output.saves.empty() &&
       !o.verbosity.dry_run) {
     if (misspelt_command(app)) throw unknown_words(app);

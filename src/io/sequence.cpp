@@ -191,8 +191,8 @@ std::size_t take_conversion(std::string_view text, std::vector<Piece>& pieces) {
 [[noreturn]] void refuse_conversion(std::string_view text, const std::string& path) {
   throw Error(
       ExitCode::usage,
-      fmt::format("{}: no frame pattern begins at '{}'; use ####, @, %d or %04d, and %% for "
-                  "a percent sign beside one",
+      fmt::format("{}: no frame pattern begins at '{}'; use ####, @, %d or %04d, %% for a percent "
+                  "sign beside one, and %V or %v in outputs under --stereo",
                   path, text));
 }
 

@@ -16,6 +16,7 @@
 #include "parallel/tiles.h"
 #include "scene/background.h"
 #include "scene/depth_encoding.h"
+#include "scene/layers/groups.h"
 #include "scene/layers/windows.h"
 
 namespace ssdo {
@@ -243,7 +244,10 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   g.downsampling = make_downsampling(options.downsample, g.display, file);
   g.pixel_aspect = part.header.pixelAspectRatio();
   if (!(g.pixel_aspect > 0) || !std::isfinite(g.pixel_aspect)) g.pixel_aspect = 1;
-  g.header = header_numbers(*files[std::size_t(lead->file)], lead->part);
+  const ExrReader& of_lead = *files[std::size_t(lead->file)];
+  // A part of two views has one header, whose camera is that of the default view.
+  if (in_view_of(of_lead, part, lead->channels[0], "A") == "A")
+    g.header = header_numbers(of_lead, lead->part);
   g.by_blender = is_by_blender(part.header);
   note_precision(g, *lead, part, table[Role::position].has_value());
 

@@ -33,9 +33,9 @@ Plane<float> take_depth_from_samples(View& view, const std::string& part, GBuffe
 }
 
 /// An error of a frame without P, with the layer that may hold it.
-Error with_hint(const Error& error, const View& view) {
+Error with_hint(const Error& error, const View& view, const std::string& eye) {
   if (view.layers[Role::position] || error.code != ExitCode::layer) return error;
-  const std::string hint = hint_at(Role::position, group_channels(view.files.front(), 0));
+  const std::string hint = hint_at(Role::position, group_channels(view.files.front(), 0, eye));
   return hint.empty() ? error : Error(error.code, fmt::format("{}; {}", error.what(), hint));
 }
 
@@ -52,7 +52,7 @@ FrameFiles other_eye(const FrameFiles& files) {
 }
 
 InputOptions for_view(InputOptions options, const FrameFiles& files) {
-  if (!files.view.empty()) options.part = files.view;
+  options.view = files.view;
   return options;
 }
 
@@ -70,11 +70,12 @@ View read_view(std::deque<ExrReader> opened, const std::vector<LayerRequest>& ao
   view.files = std::move(opened);
   std::vector<const ExrReader*> files;
   for (const ExrReader& file : view.files) files.push_back(&file);
-  view.layers = find_layers(files, aovs, options.part, unused);
+  view.layers = find_layers(files, aovs, options.part, unused, options.view);
   GBufferOptions reading = options.gbuffer;
   std::vector<std::string> warnings;
-  const Plane<float> deep = take_depth_from_samples(view, options.part, reading, warnings);
-  require_position(view.layers, view.files.front(),
+  const Plane<float> deep = take_depth_from_samples(
+      view, options.view.empty() ? options.part : options.view, reading, warnings);
+  require_position(view.layers, view.files.front(), options.view,
                    options.listed ? "" : " ('ssdo info' lists the layers)");
   try {
     view.gbuffer = read_gbuffer(files, view.layers, reading, &deep);
@@ -82,7 +83,7 @@ View read_view(std::deque<ExrReader> opened, const std::vector<LayerRequest>& ao
     view.geometry =
         build_geometry(view.gbuffer, camera, view.files.front().path().string(), view.report);
   } catch (const Error& error) {
-    throw with_hint(error, view);
+    throw with_hint(error, view, options.view);
   }
   view.gbuffer.warnings.insert(view.gbuffer.warnings.begin(), warnings.begin(), warnings.end());
   // From here on there is one position, one normal and one kind of pixel: those of the geometry.

@@ -29,6 +29,7 @@ struct InputOptions {
   Neighbours neighbours;
   std::string part;                ///< name or number; empty: all
   std::vector<std::string> views;  ///< those to relight of a stereo file; empty: its only one
+  std::string view;                ///< of them, the one that is read
   GBufferOptions gbuffer;
   bool listed = false;  ///< the user has seen the list of layers: errors need not say where it is
 };
@@ -48,7 +49,7 @@ FrameFiles in_view(FrameFiles files, std::string_view view);
 /// The frame as its other eye sees it. `files` have a view.
 FrameFiles other_eye(const FrameFiles& files);
 
-/// `options` for these files: with their view in place of --part.
+/// `options` for these files: with their view.
 InputOptions for_view(InputOptions options, const FrameFiles& files);
 
 /// What one camera shows: a G-buffer, from its files to its surfaces in camera space.

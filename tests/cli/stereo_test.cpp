@@ -308,7 +308,7 @@ TEST_F(Stereo, SaysWhatIsWrong) {
     return run(arguments, code).error_line();
   };
   EXPECT_THAT(error({"mono.exr", "--stereo", "left", "-o", "a.exr"}, 4),
-              HasSubstr("mono.exr: no part or view 'left'"));
+              HasSubstr("mono.exr: shows one view; leave --stereo out"));
   EXPECT_THAT(error({"in.exr", "--stereo", "both", "-o", "a.exr"}, 2),
               HasSubstr("--stereo both: expected one of left, right, all"));
   EXPECT_THAT(error({"in.exr", "-o", "a.exr"}, 4), HasSubstr("--stereo"));
@@ -316,7 +316,104 @@ TEST_F(Stereo, SaysWhatIsWrong) {
               HasSubstr("--part"));
   EXPECT_THAT(error({"bench", "in.exr", "--stereo", "all"}, 2),
               HasSubstr("--stereo left or right"));
+  EXPECT_THAT(error({"in.exr", "--stereo", "all", "--camera", "c.json", "-o", "a.exr"}, 2),
+              HasSubstr("c.json: has the pose of one eye"));
+  FramePart other = left_frame(), another = right_frame();
+  other.name = "eyeL", another.name = "eyeR";
+  other.extra.setView("eyeL"), another.extra.setView("eyeR");
+  write_frame(folder / "named.exr", {other, another});
+  EXPECT_THAT(error({"named.exr", "--stereo", "all", "-o", "a.exr"}, 4),
+              HasSubstr("no view 'left'; it has 'eyeL', 'eyeR': choose one with --part"));
   EXPECT_FALSE(fs::exists(folder / "a.exr"));
+}
+
+TEST_F(Stereo, RequestedLayersAreOfTheViewThatIsRelit) {
+  write_frame(folder / "in.exr", layouts()[1].parts);
+  write_frame(folder / "mono.exr", left_frame());
+  EXPECT_THAT(
+      run({"in.exr", "--stereo", "all", "--aov", "position=Position.right", "-o", "a.exr"}, 4)
+          .error_line(),
+      HasSubstr("no layer 'Position.right'"));
+  const auto albedo_of = [&](const std::string& request) {
+    const auto info = parse_json(
+        run({"info", "in.exr", "--stereo", "all", "--aov", "albedo=" + request, "--json"}).out);
+    return std::vector<std::string>{info[0]["layers"]["albedo"]["layer"],
+                                    info[1]["layers"]["albedo"]["layer"]};
+  };
+  EXPECT_THAT(albedo_of("DiffCol"), ElementsAre("DiffCol.left", "DiffCol.right"));
+  EXPECT_THAT(albedo_of("in.exr:DiffCol"), ElementsAre("DiffCol.left", "DiffCol.right"));
+  EXPECT_THAT(albedo_of("mono.exr:DiffCol"), ElementsAre("DiffCol", "DiffCol"));
+}
+
+TEST_F(Stereo, RgbaIsThatOfTheView) {
+  FramePart part = layouts()[1].parts[0];
+  const Plane<float> gray(kWindow.width(), kWindow.height(), 0.5f);
+  for (const std::string view : {"", "right."})
+    for (const std::string c : {"R", "G", "B"}) part.channels[view + c] = gray;
+  write_frame(folder / "in.exr", part);
+  const auto info =
+      parse_json(run({"info", "in.exr", "--stereo", "all", "--aov", "ambient=rgba", "--json"}).out);
+  EXPECT_EQ(info[0]["layers"]["ambient"]["channels"][0], "R");
+  EXPECT_EQ(info[1]["layers"]["ambient"]["channels"][0], "right.R");
+}
+
+TEST_F(Stereo, LayersOfNoViewAreThoseOfBoth) {
+  std::vector<FramePart> parts = layouts()[0].parts;
+  FramePart shared = parts[0];
+  shared.extra = Imf::Header();
+  shared.name = "shared";
+  std::erase_if(shared.channels, [](const auto& c) { return !c.first.starts_with("DiffCol"); });
+  for (FramePart& part : parts)
+    std::erase_if(part.channels, [](const auto& c) { return c.first.starts_with("DiffCol"); });
+  write_frame(folder / "in.exr", {parts[0], parts[1], shared});
+  run({"in.exr", "--stereo", "all", "-o", "a.exr"});
+  for (const int part : {0, 1}) EXPECT_THAT(channel_names(folder / "a.exr", part), Contains("R"));
+  // P is of one eye alone.
+  shared.channels = left_frame().channels;
+  const Plane<float> gray(kWindow.width(), kWindow.height(), 0.5f);
+  for (FramePart& part : parts) part.channels = {{"R", gray}};
+  write_frame(folder / "in.exr", {parts[0], parts[1], shared});
+  run({"in.exr", "--stereo", "all", "-o", "b.exr"}, 4);
+  EXPECT_THAT(
+      run({"in.exr", "--stereo", "all", "--aov", "position=shared.Position", "-o", "b.exr"}, 4)
+          .error_line(),
+      HasSubstr("both views would be made from 'shared.Position'"));
+}
+
+TEST_F(Stereo, TheAttributeGoesBeforeTheNameOfAPart) {
+  std::vector<FramePart> parts = layouts()[0].parts;
+  std::swap(parts[0].name, parts[1].name);
+  write_frame(folder / "in.exr", parts);
+  run({"in.exr", "--stereo", "left", "-o", "a.exr"});
+  EXPECT_EQ(ExrReader(folder / "a.exr").parts()[0].view, "left");
+}
+
+TEST_F(Stereo, AnEyeInAnotherUnitIsLeftOut) {
+  std::vector<FramePart> parts = layouts()[0].parts;
+  for (auto& [name, plane] : parts[1].channels)
+    if (name.starts_with("Position") || name.starts_with("Depth"))
+      for (float& v : plane.pixels) v = v < 1e9f ? 100 * v : v;
+  write_frame(folder / "in.exr", parts);
+  run({"in.exr", "--part", "left", "-o", "alone.exr"});
+  EXPECT_THAT(run({"in.exr", "--stereo", "left", "-o", "a.exr"}).err,
+              HasSubstr("in.exr (right): left out: "));
+  EXPECT_EQ(channel(folder / "a.exr", "ao.Y").pixels, channel(folder / "alone.exr", "ao.Y").pixels);
+}
+
+TEST_F(Stereo, TheHeaderOfAPartOfBothIsThatOfTheDefaultView) {
+  FramePart part = layouts()[1].parts[0];
+  add_attributes(part.extra, standard_header(eye_at(-0.4).camera, kWindow));
+  write_frame(folder / "in.exr", part);
+  const Finished done = run({"in.exr", "--stereo", "all", "-o", "a.exr", "-v"});
+  EXPECT_THAT(done.err, AllOf(HasSubstr("proved by P"), Not(HasSubstr("is not used"))));
+}
+
+TEST_F(Stereo, DifferentProductsOfTheViewsAreWarnedOf) {
+  std::vector<FramePart> parts = layouts()[0].parts;
+  std::erase_if(parts[1].channels, [](const auto& c) { return c.first.starts_with("DiffCol"); });
+  write_frame(folder / "in.exr", parts);
+  EXPECT_THAT(run({"in.exr", "--stereo", "all", "-o", "a.exr"}).err,
+              HasSubstr("the views have different products, as their layers differ: left ao, "));
 }
 
 TEST_F(Stereo, TwoViewsAreNotMadeInBands) {

@@ -42,6 +42,10 @@ constexpr int kFrameColumns = 320;
 constexpr std::size_t kFewestInCommon = 50;
 constexpr double kLeastInCommon = 0.02, kLeastOfNeighbour = 0.5;
 
+/// A frame of the same sequence or pair sees of what the frame sees too, unless it is of another
+/// scene, place or unit.
+constexpr double kLeastSeenByNeighbour = 0.02;
+
 enum class Fate : unsigned char { none, added, repeated, seen, contradictory };
 
 class Merger {
@@ -305,6 +309,8 @@ Plane<Fate> judge(const Plane<Surfel>& surfel, const Merger& merger, MergeCounts
 
 bool MergeCounts::is_of_another_scene() const {
   const double least = is_neighbour ? kLeastOfNeighbour : kLeastInCommon;
+  if (is_neighbour && double(seen) < kLeastSeenByNeighbour * double(added + in_common()))
+    return true;
   return in_common() >= kFewestInCommon && double(seen) < least * double(in_common());
 }
 

@@ -11,6 +11,9 @@ namespace {
 /// V-Ray puts this before the name that the user gave an ExtraTex element.
 constexpr std::string_view kExtraTexture = "vrayextratex";
 
+/// What channels without a layer are called in requests.
+const std::string kNoLayer = "rgba";
+
 std::string last_segment(const std::string& path) { return split_channel(path).second; }
 
 /// Whether the channel is the z of three that end in x, y and z: a coordinate, not a depth.
@@ -106,6 +109,10 @@ std::vector<Candidate> best_candidates(Role role, const std::vector<LayerGroup>&
   return best;
 }
 
+std::string name_for_request(const LayerGroup& group) {
+  return group.name.empty() ? kNoLayer : group.name;
+}
+
 std::vector<Layer> layers_named(const std::string& wanted, Role role,
                                 const std::vector<LayerGroup>& groups) {
   std::vector<Layer> exact, loose;
@@ -120,8 +127,9 @@ std::vector<Layer> layers_named(const std::string& wanted, Role role,
   };
   for (const LayerGroup& group : groups) {
     const auto layer = as_layer(group, role);
-    const std::string plain = group.name.empty() ? "rgba" : group.name;
-    if (layer) note({group.name, group.layer, group.path, group.own_path, plain}, *layer);
+    const std::set<std::string> names = {group.name, group.layer, group.path, group.own_path,
+                                         group.path.empty() ? kNoLayer : group.path};
+    if (layer) note(names, *layer);
     if (!is_scalar(role)) continue;
     for (const auto& [component, channel] : group.components) {
       const Layer scalar = scalar_layer(group, channel);

@@ -23,6 +23,9 @@ std::optional<Layer> as_layer(const LayerGroup& group, Role role);
 /// The layers with the best name for the role: several where they have an equal claim.
 std::vector<Candidate> best_candidates(Role role, const std::vector<LayerGroup>& groups);
 
+/// What a request calls the layer: its name, or "rgba" for channels without a layer.
+std::string name_for_request(const LayerGroup& group);
+
 /// The layers whose name is `wanted`: exactly, else with the case ignored. Channels without a layer
 /// are "rgba".
 std::vector<Layer> layers_named(const std::string& wanted, Role role,

@@ -101,6 +101,16 @@ std::vector<LayerGroup> group_channels(const ExrReader& file, int file_index) {
   return groups;
 }
 
+std::vector<LayerGroup> group_channels(const ExrReader& file, int file_index,
+                                       const std::string& view) {
+  std::vector<LayerGroup> groups = group_channels(file, file_index);
+  if (view.empty() || views_of(groups).empty()) return groups;
+  std::erase_if(groups, [&](const LayerGroup& group) {
+    return lower(group.view) != view && !same_view(group.view, "");
+  });
+  return groups;
+}
+
 std::string in_view_of(const ExrReader& file, const ExrPart& part, const std::string& beside,
                        const std::string& channel) {
   if (views_of(group_channels(file, 0)).empty()) return channel;

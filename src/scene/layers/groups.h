@@ -41,6 +41,11 @@ struct LayerGroup {
 /// file; else, in a part with the attribute `multiView`, the first view of that.
 std::vector<LayerGroup> group_channels(const ExrReader& file, int file_index);
 
+/// Those of a view and those of none; all where `view` is empty or the file does not tell views
+/// apart.
+std::vector<LayerGroup> group_channels(const ExrReader& file, int file_index,
+                                       const std::string& view);
+
 /// What a channel is called in the view of another: as `channel` where parts tell views apart, or
 /// where the view is the default one and goes without its name; else "ao.right.Y" beside
 /// "P.right.X", "right.ao.Y" beside "right.P.X", and "right.R" beside both.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <set>
 
 #include "error.h"
 #include "io/exr/exr_parts.h"
@@ -81,6 +82,29 @@ void refuse_missing_file(const LayerRequest& request) {
                           wanted, did_you_mean(wanted, names), fmt::join(forms, ", ")));
 }
 
+[[noreturn]] void throw_no_view(const ExrReader& frame, const std::vector<LayerGroup>& groups,
+                                const std::string& wanted) {
+  std::set<std::string> views;
+  for (const LayerGroup& group : groups)
+    if (!same_view(group.view, "")) views.insert(group.view);
+  throw Error(ExitCode::layer,
+              views.empty()
+                  ? fmt::format("{}: shows one view; leave --stereo out", frame.path().string())
+                  : fmt::format("{}: no view '{}'; it has '{}': choose one with --part",
+                                frame.path().string(), wanted, fmt::join(views, "', '")));
+}
+
+/// The groups of one eye of the frame, then those of no view.
+Tiers select_view(const ExrReader& frame, const std::string& wanted) {
+  const std::vector<LayerGroup> groups = group_channels(frame, 0);
+  const auto own =
+      those_of(groups, [&](const LayerGroup& group) { return lower(group.view) == wanted; });
+  const bool deep = std::ranges::any_of(
+      frame.parts(), [&](const ExrPart& p) { return p.deep && lower(p.view) == wanted; });
+  if (own.empty() && !deep) throw_no_view(frame, groups, wanted);
+  return {own, those_of(groups, [](const LayerGroup& g) { return same_view(g.view, ""); })};
+}
+
 /// The groups of the frame that --part selects: a part by name or number, completed by the other
 /// parts of its view, or else a view.
 Tiers select_part(const ExrReader& frame, const std::vector<LayerGroup>& groups,
@@ -109,11 +133,12 @@ Tiers select_part(const ExrReader& frame, const std::vector<LayerGroup>& groups,
 class LayerFinder {
  public:
   LayerFinder(const std::vector<const ExrReader*>& files, const std::vector<LayerRequest>& requests,
-              const std::string& only_part)
-      : files_(files), requests_(requests) {
+              const std::string& only_part, const std::string& view)
+      : files_(files), requests_(requests), of_view_(!view.empty()) {
     for (std::size_t f = 0; f < files.size(); ++f)
-      groups_.push_back(group_channels(*files[f], int(f)));
-    tiers_ = select_part(*files[0], groups_[0], only_part);
+      groups_.push_back(group_channels(*files[f], int(f), view));
+    tiers_ =
+        of_view_ ? select_view(*files[0], view) : select_part(*files[0], groups_[0], only_part);
   }
 
   /// The layer that is requested for the role, or else, if `by_name`, the one with the best name.
@@ -144,7 +169,9 @@ class LayerFinder {
   std::string frame() const { return files_[0]->path().string(); }
 
   std::optional<Layer> find_by_name(Role role) const {
-    for (const auto& groups : tiers_) {
+    // What tells where surfaces are is of one eye alone.
+    const bool own = of_view_ && (role == Role::position || role == Role::depth);
+    for (const auto& groups : own ? Tiers{tiers_[0]} : tiers_) {
       std::vector<Candidate> best = best_candidates(role, groups);
       if (best.size() > 1) keep_those_beside_lead(best);
       if (best.size() > 1) throw_ambiguous(role, best);
@@ -193,7 +220,7 @@ class LayerFinder {
     if (found.empty()) refuse_missing_file(request);
     std::vector<std::string> names;
     for (const LayerGroup& group : groups_[file]) {
-      if (as_layer(group, request.role)) names.push_back(group.name);
+      if (as_layer(group, request.role)) names.push_back(name_for_request(group));
     }
     throw Error(ExitCode::layer,
                 fmt::format("{}: {} layer '{}' with channels for {}; {}the file has {}",
@@ -207,6 +234,7 @@ class LayerFinder {
   const std::vector<LayerRequest>& requests_;
   std::vector<std::vector<LayerGroup>> groups_;  ///< by file
   Tiers tiers_;                                  ///< of the frame
+  bool of_view_;                                 ///< they are of one eye
   std::string prefix_;                           ///< of layers that are preferred; may be empty
 };
 
@@ -237,17 +265,19 @@ LayerRequest parse_layer_request(const std::string& text) {
   return request;
 }
 
-void require_position(const LayerTable& table, const ExrReader& frame, const std::string& advice) {
+void require_position(const LayerTable& table, const ExrReader& frame, const std::string& view,
+                      const std::string& advice) {
   if (table[Role::position] || table[Role::depth]) return;
-  throw Error(ExitCode::layer, fmt::format("{}: no layer for position or depth found by name; {}{}",
-                                           frame.path().string(),
-                                           advice_on_position(group_channels(frame, 0)), advice));
+  throw Error(
+      ExitCode::layer,
+      fmt::format("{}: no layer for position or depth found by name; {}{}", frame.path().string(),
+                  advice_on_position(group_channels(frame, 0, view)), advice));
 }
 
 LayerTable find_layers(const std::vector<const ExrReader*>& files,
                        const std::vector<LayerRequest>& requests, const std::string& only_part,
-                       const std::vector<Role>& unused) {
-  LayerFinder finder(files, requests, only_part);
+                       const std::vector<Role>& unused, const std::string& view) {
+  LayerFinder finder(files, requests, only_part, view);
   LayerTable table;
   const auto find = [&](Role role) {
     const bool used = std::find(unused.begin(), unused.end(), role) == unused.end();

@@ -44,16 +44,18 @@ LayerRequest parse_layer_request(const std::string& text);
 /// A request wins over names. `files[0]` is the frame; a request with a file refers to the file of
 /// the same path in `files`. All layers are of the view of the position, or else of the depth.
 /// `only_part` is empty, or a part by name or number, which the other parts of its view complete,
-/// or a view. The roles in `unused` are filled on request only.
-/// Errors: ExitCode::layer when two layers have an equal claim, or a requested one does not exist;
-/// the message lists the candidates.
+/// or a view. With `view`, one of kEyes, all layers are of this view or of none, and the position
+/// or depth of this view. The roles in `unused` are filled on request only. Errors: ExitCode::layer
+/// when two layers have an equal claim, or a requested one does not exist; the message lists the
+/// candidates.
 LayerTable find_layers(const std::vector<const ExrReader*>& files,
                        const std::vector<LayerRequest>& requests, const std::string& only_part,
-                       const std::vector<Role>& unused = {});
+                       const std::vector<Role>& unused = {}, const std::string& view = "");
 
-/// Throws ExitCode::layer where the table has neither position nor depth. `advice` ends the
-/// message.
-void require_position(const LayerTable& table, const ExrReader& frame, const std::string& advice);
+/// Throws ExitCode::layer where the table has neither position nor depth. `view` is as of
+/// find_layers; `advice` ends the message.
+void require_position(const LayerTable& table, const ExrReader& frame, const std::string& view,
+                      const std::string& advice);
 
 /// The frame, then every file that `aovs` name, each once.
 std::vector<std::string> files_of_frame(const std::string& input,

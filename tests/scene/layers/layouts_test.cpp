@@ -232,7 +232,7 @@ TEST(Layouts, SamplerInfoIsUsedOnRequest) {
     const LayerTable t = file.find();
     EXPECT_EQ(name_of(t, Role::position), "none");
     const ExrReader reader(file.path());
-    EXPECT_THAT(error_of([&] { require_position(t, reader, ""); }),
+    EXPECT_THAT(error_of([&] { require_position(t, reader, "", ""); }),
                 IsError(ExitCode::layer, "--aov \"position=" + name + "\""));
     EXPECT_EQ(name_of(file.find({"position=" + name}), Role::position), name);
   }
