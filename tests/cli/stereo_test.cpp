@@ -373,7 +373,8 @@ TEST_F(Stereo, LayersOfNoViewAreThoseOfBoth) {
   const Plane<float> gray(kWindow.width(), kWindow.height(), 0.5f);
   for (FramePart& part : parts) part.channels = {{"R", gray}};
   write_frame(folder / "in.exr", {parts[0], parts[1], shared});
-  run({"in.exr", "--stereo", "all", "-o", "b.exr"}, 4);
+  EXPECT_THAT(run({"in.exr", "--stereo", "all", "-o", "b.exr"}, 4).error_line(),
+              HasSubstr("no layer for position"));
   EXPECT_THAT(
       run({"in.exr", "--stereo", "all", "--aov", "position=shared.Position", "-o", "b.exr"}, 4)
           .error_line(),
