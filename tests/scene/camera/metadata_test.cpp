@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <glm/matrix.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "error.h"
 #include "scene/camera/metadata/unreal.h"
@@ -461,6 +462,64 @@ TEST(HeaderCamera, GivesWayToTheSpaceThatTheUserSays) {
     const Built built = build(g);
     EXPECT_FALSE(built.report.header);
     EXPECT_EQ(built.geometry.world_known, g.space == Space::world);
+  }
+}
+
+/// A camera that is turned by little against the world, and its depth with normals of the world.
+struct SlightTurn {
+  Camera camera;
+  Picture picture;
+  GBuffer depth;
+
+  explicit SlightTurn(double yaw, double tilt) {
+    const double y = glm::radians(yaw), t = std::tan(glm::radians(tilt));
+    const glm::dvec3 eye(5 * std::sin(y), 0.6 + 5 * t, 5 * std::cos(y));
+    camera = look_at(shifted(camera_from_fov(40, kPlain.display, 1)), eye, {0, 0.6, 0}, {0, 1, 0});
+    picture = take_picture(all_of({plane({}, {0, 1, 0}), sphere({0.2, 0.6, 0}, 0.6)}), camera,
+                           kPlain.data);
+    depth = with_header(depth_of(picture), standard_header(camera, kPlain.display), kPlain);
+    depth.normal = gbuffer_of(picture).normal;
+  }
+
+  /// About the axis z of the world.
+  void turn_normals(float degrees) {
+    const float c = std::cos(glm::radians(degrees)), s = std::sin(glm::radians(degrees));
+    for (glm::vec3& n : depth.normal.pixels) n = {c * n.x - s * n.y, s * n.x + c * n.y, n.z};
+  }
+};
+
+TEST(HeaderCamera, IsProvedByNormalsOfAWorldThatIsTurnedByLittle) {
+  for (const glm::dvec2& turn : {glm::dvec2(3, 0), {20, 0}, {0, 4}, {0, 9}, {0, 20}, {24, 7}}) {
+    const SlightTurn frame(turn.x, turn.y);
+    const Built built = build(frame.depth);
+    expect_of(frame.picture, built);
+    EXPECT_EQ(built.report.normal_space, "the world of the header") << turn.x << ' ' << turn.y;
+    ASSERT_TRUE(built.report.header);
+    EXPECT_EQ(built.report.header->proof, HeaderProof::normals);
+    EXPECT_THAT(built.report.warnings, IsEmpty());
+  }
+}
+
+/// Smooth normals may lean to one side by some degrees: no reason to doubt the pose.
+TEST(HeaderCamera, StaysWhereNormalsLeanByLittle) {
+  SlightTurn frame(40, 20);
+  frame.turn_normals(2.5);
+  const Built built = build(frame.depth);
+  EXPECT_TRUE(built.geometry.world_known);
+  EXPECT_THAT(built.report.warnings, IsEmpty());
+}
+
+TEST(HeaderCamera, IsNotJudgedByNormalsWhoseSpaceTheUserSays) {
+  SlightTurn frame(40, 0);
+  frame.turn_normals(30);
+  EXPECT_THAT(build(frame.depth).report.warnings, ElementsAre(HasSubstr("of another world")));
+  for (const Space space : {Space::world, Space::camera}) {
+    frame.depth.space = space;
+    const Built built = build(frame.depth);
+    EXPECT_TRUE(built.geometry.world_known);
+    EXPECT_EQ(built.report.normal_space, space == Space::world
+                                             ? "the world of the header, by --space"
+                                             : "camera space, by --space");
   }
 }
 
