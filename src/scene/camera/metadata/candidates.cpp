@@ -284,7 +284,7 @@ std::vector<std::string> unusable_lenses(const Header& header) {
   for (const Fov& fov : fovs) {
     if (!is_lens(fov))
       all.push_back(
-          fmt::format("header {} is {:.4g} degrees, outside {:g} to {:g}, and is not used",
+          fmt::format("header {} is {:g} degrees, outside {:g} to {:g}, and is not used",
                       fov.source, fov.degrees, kLeastFov, kMostFov));
   }
   return all;
