@@ -108,11 +108,12 @@ void find_background(GBuffer& g, std::optional<float> background_depth,
     for (std::size_t i = g.valid.index(0, y), end = g.valid.index(0, y + 1); i < end; ++i) {
       const bool nothing_in_depth = !g.depth.empty() && shows_nothing(g.depth[i], far);
       bool background = nothing_in_depth || (!g.alpha.empty() && g.alpha[i] <= kLeastAlpha);
+      const bool no_normal = found.normals_tell && g.normal[i] == glm::vec3(0);
+      background |= no_normal && g.position.empty();
       bool broken = false;
       if (!g.position.empty()) {
         const glm::vec3& p = g.position[i];
-        const bool suspect =
-            p == glm::vec3(0) || (found.normals_tell && g.normal[i] == glm::vec3(0));
+        const bool suspect = no_normal || p == glm::vec3(0);
         background |= suspect && !(depth_of_position && depth_of_position->agrees(p, g.depth[i]));
         broken = is_missing(p, empty);
         background |= broken && !depth_of_position;

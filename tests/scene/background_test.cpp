@@ -91,6 +91,16 @@ TEST(Background, IsWhatN0SaysWherePHasAnyValue) {
   }
 }
 
+TEST(Background, IsWhatN0SaysBesideADepthAlone) {
+  const Picture picture = ball_before_nothing();
+  GBuffer g = with_depth(picture, kAsItIs, 1e4f), without_normals = g;
+  g.position = without_normals.position = {};
+  expect_shows(g, picture);
+  for (glm::vec3& n : without_normals.normal.pixels) n = glm::vec3(0);
+  find_background(without_normals, std::nullopt);
+  EXPECT_EQ(without_normals.background_pixels, 0u);
+}
+
 TEST(Background, IsNoSurfaceOfWhichDepthAndPAreSure) {
   // A real position of 0, and normals that are missing here and there or everywhere.
   const Picture picture = ball_before_nothing();

@@ -35,9 +35,23 @@ std::optional<Camera> camera_from_options(const GBuffer& g, const CameraOptions&
   return std::nullopt;
 }
 
+void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+/// What of the header is not used. The lens counts where P determines none.
+std::vector<std::string> unused_of(const GBuffer& g, bool is_fitted) {
+  std::vector<std::string> all = unusable_poses(g.header);
+  if (is_fitted) return all;
+  append(all, unusable_lenses(g.header));
+  return all;
+}
+
 /// What the header says where it does not determine the camera, for messages.
 std::string said_by(const std::vector<HeaderCamera>& header, const GBuffer& g) {
   if (g.by_blender) return " (Blender writes no camera; data/blender/export.py writes one)";
+  const std::vector<std::string> unused = unused_of(g, false);
+  if (!unused.empty()) return fmt::format(" ({})", unused.front());
   if (header.empty()) return "";
   const HeaderCamera& first = header.front();
   if (!first.contradiction.empty()) return fmt::format(" ({})", first.contradiction);
@@ -149,9 +163,13 @@ FoundCamera find_without_options(const GBuffer& g, const std::vector<HeaderCamer
                                  const std::string& file, GeometryReport& report) {
   if (const auto fitted = fit_camera(g, false)) {
     report.camera_source = "fitted from P";
+    append(report.warnings, unused_of(g, true));
     return check_against_fit(*fitted, g, header, report);
   }
-  if (const auto found = find_by_positions(g, header, report)) return *found;
+  if (const auto found = find_by_positions(g, header, report)) {
+    append(report.warnings, unused_of(g, false));
+    return *found;
+  }
   throw_undetermined(g, header, file);
 }
 
@@ -175,6 +193,7 @@ FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const st
     if (given) return {*given, *given, !options.file.empty()};
     const auto found = find_for_depth(g, header, report);
     if (!found) throw_undetermined(g, header, file);
+    append(report.warnings, unused_of(g, false));
     return on_file(*found, g.grid, nullptr);
   }
   bool is_fitted = !given;

@@ -48,6 +48,10 @@ constexpr float kWithin = 0.6f;  ///< cosine of 53 degrees
 constexpr float kBetter = 0.1f;
 constexpr std::size_t kTimesBetter = 3, kLeastBetter = 8, kSmallestShare = 500;
 
+/// A named space is told from another by the pixels whose normals differ by more than 2 degrees
+/// between them; it misses the gradient of P by clearly less if by less than half the angle.
+constexpr float kClearlyNearer = 0.5f;
+
 /// Rotations below 2 degrees count as none: precision and shading cause as much.
 const float kLeastTurn = std::cos(glm::radians(2.0f));
 constexpr int kFitRounds = 12;
@@ -165,6 +169,9 @@ struct Candidate {
   }
 };
 
+/// Between two lines.
+double angle_of(float cosine) { return std::acos(std::min(1.0, double(std::abs(cosine)))); }
+
 /// Whether `other` agrees with P at clearly more pixels than `rule`.
 bool is_clearly_better(const Candidate& other, const Candidate& rule) {
   std::size_t better = 0, worse = 0;
@@ -174,6 +181,36 @@ bool is_clearly_better(const Candidate& other, const Candidate& rule) {
     worse += gain < -kBetter;
   }
   return better > kTimesBetter * worse + kLeastBetter + rule.cosines.size() / kSmallestShare;
+}
+
+/// Pixels at which something has to hold for it to be no accident.
+std::size_t enough_of(const std::vector<Witness>& witnesses) {
+  return kLeastBetter + witnesses.size() / kSmallestShare;
+}
+
+/// Whether the normals of `other` are clearly nearer to the gradient of P than those of `first`,
+/// where the two differ. Bumps and smooth normals hide small turns: then they are not.
+bool is_clearly_nearer(const Candidate& other, const Candidate& first,
+                       const std::vector<Witness>& witnesses) {
+  std::vector<double> of_other, of_first;
+  for (std::size_t i = 0; i < witnesses.size(); ++i) {
+    const glm::vec3& n = witnesses[i].stored;
+    if (glm::dot(other.to_camera * n, first.to_camera * n) > kLeastTurn) continue;
+    of_other.push_back(angle_of(other.cosines[i])), of_first.push_back(angle_of(first.cosines[i]));
+  }
+  return of_first.size() > enough_of(witnesses) &&
+         quantile(of_other, 0.5) < kClearlyNearer * quantile(of_first, 0.5);
+}
+
+/// The space with its axes as they are that P shows; the first, unless another is clearly nearer.
+Candidate named_space(const std::vector<NamedRotation>& spaces,
+                      const std::vector<Witness>& witnesses) {
+  Candidate found(spaces[0], {}, witnesses);
+  for (const NamedRotation& space : spaces) {
+    Candidate other(space, {}, witnesses);
+    if (is_clearly_nearer(other, found, witnesses)) found = std::move(other);
+  }
+  return found;
 }
 
 float median_size(const Candidate& candidate) {
@@ -256,7 +293,7 @@ NormalSpace described(const Candidate& found) {
 NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
                               const std::vector<NamedRotation>& spaces, bool orthographic) {
   const std::vector<Witness> witnesses = collect_witnesses(stored, surfels, orthographic);
-  const Candidate rule(spaces[0], {}, witnesses);
+  const Candidate rule = named_space(spaces, witnesses);
   Candidate best = rule;
   for (const NamedRotation& space : spaces) {
     for (const Axes& axes : maps_of_axes()) {

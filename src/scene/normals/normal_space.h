@@ -35,9 +35,9 @@ struct NamedRotation {
 
 /// Decides in which of `spaces` and by which axes the normals are stored, of any order and sign.
 /// What agrees best with the gradient of P where P is smooth is taken; the first space with its
-/// axes as they are, unless another is clearly better, or there is nothing to decide by. Normals
-/// that agree with none, but with P once they are turned by one rotation, have a space of their
-/// own.
+/// axes as they are, unless another is clearly better, or there is nothing to decide by. Spaces
+/// that differ by a few degrees are told apart where normals are no rougher than that. Normals that
+/// agree with none, but with P once they are turned by one rotation, have a space of their own.
 NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
                               const std::vector<NamedRotation>& spaces, bool orthographic);
 

@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <glm/matrix.hpp>
+#include <glm/trigonometric.hpp>
+
 #include "scene/camera/metadata/check.h"
 #include "scene/normals/normal_space.h"
 
@@ -10,6 +14,16 @@ namespace ssdo {
 namespace {
 
 enum class Verdict { none, proved, refuted };
+
+/// Rotations closer than this are one: shading normals lean by as much on average.
+constexpr float kSameTurnDegrees = 3;
+
+/// The normals of back faces may be turned round, which is no rotation.
+bool is_same_turn(const glm::mat3& a, const glm::mat3& b) {
+  const glm::mat3 turn = glm::transpose(a) * b * glm::determinant(a) * glm::determinant(b);
+  const float cosine = 0.5f * (turn[0][0] + turn[1][1] + turn[2][2] - 1);
+  return cosine > std::cos(glm::radians(kSameTurnDegrees));
+}
 
 /// What normals say of a pose: they lie in its world with their axes as they are, in camera space,
 /// or in a space that is turned against both.
@@ -23,7 +37,12 @@ Verdict judge(const GBuffer& g, const Plane<Surfel>& surfels, const HeaderCamera
   const NormalSpace space = find_normal_space(g.normal, surfels, spaces, found.camera.orthographic);
   if (!space.is_known()) return Verdict::none;
   if (space.name == kWorld) return Verdict::proved;
-  return space.is_own ? Verdict::refuted : Verdict::none;
+  if (!space.is_own) return Verdict::none;
+  for (const NamedRotation& named : spaces) {
+    if (is_same_turn(space.to_camera, named.to_camera))
+      return named.name == kWorld ? Verdict::proved : Verdict::none;
+  }
+  return Verdict::refuted;
 }
 
 void set_pose(const Camera& pose, Placement& placement) {
@@ -53,7 +72,7 @@ void use(const HeaderCamera& reading, GeometryReport& report) {
 void settle_world(const GBuffer& g, const Plane<Surfel>& surfels,
                   const std::vector<HeaderCamera>& readings, GeometryReport& report) {
   const HeaderCamera& first = readings.front();
-  if (!g.normal.empty()) {
+  if (!g.normal.empty() && !g.space) {
     for (const HeaderCamera& reading : readings) {
       const Verdict verdict = judge(g, surfels, reading, report.placement);
       if (verdict == Verdict::none) break;

@@ -2,10 +2,12 @@
 //
 // The camera that a header says, as each renderer writes it: used where it is proved, named where
 // it is not, and refused where it is wrong.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <glm/matrix.hpp>
+#include <glm/trigonometric.hpp>
 
 #include "error.h"
 #include "scene/camera/metadata/unreal.h"
@@ -319,15 +321,74 @@ TEST(HeaderCamera, OfOverscanThatAToolMadeIsThatOfTheDataWindow) {
               ElementsAre(HasSubstr("unless the windows were changed after the render")));
 }
 
-TEST(HeaderCamera, OfNdcAloneIsWhole) {
-  const Camera camera = shifted(turned_camera(kPlain));
-  const Picture picture = take_picture(still_life(), camera, kPlain.data);
+/// The header of a picture by one matrix, times a factor that changes no projection.
+HeaderNumbers header_of_ndc(const Camera& camera, double factor) {
   HeaderNumbers header = standard_header(camera, kPlain.display);
   header.erase("worldToCamera");
-  for (const GBuffer& g : {depth_of(picture), in_camera_space(picture, false)}) {
+  for (double& value : header["worldToNDC"]) value *= factor;
+  return header;
+}
+
+TEST(HeaderCamera, OfNdcAloneIsWholeThoughNothingConfirmsIt) {
+  const Camera camera = shifted(turned_camera(kPlain));
+  const Picture picture = take_picture(still_life(), camera, kPlain.data);
+  const std::string unproved = "nothing proves the pose";
+  for (const double factor : {1.0, -1.0}) {
+    const HeaderNumbers header = header_of_ndc(camera, factor);
+    const Built of_depth = build(with_header(depth_of(picture), header, kPlain)),
+                in_space = build(with_header(in_camera_space(picture, false), header, kPlain)),
+                by_normals = build(with_header(in_camera_space(picture, true), header, kPlain));
+    for (const Built& built : {of_depth, in_space, by_normals}) expect_of(picture, built);
+    EXPECT_THAT(of_depth.report.warnings,
+                ElementsAre(HasSubstr("nothing proves that the lens"), HasSubstr(unproved)));
+    EXPECT_THAT(in_space.report.warnings, ElementsAre(HasSubstr(unproved)));
+    EXPECT_EQ(by_normals.report.header->proof, HeaderProof::normals);
+    EXPECT_THAT(by_normals.report.warnings, IsEmpty());
+  }
+}
+
+TEST(HeaderCamera, OfNdcAloneIsRefusedWithALensThatIsNotThatOfP) {
+  const Camera camera = turned_camera(kPlain);
+  const Picture picture = take_picture(still_life(), camera, kPlain.data);
+  Camera other = camera;
+  other.fx *= 1.2, other.fy *= 1.2;
+  const Built built =
+      build(with_header(in_camera_space(picture, false), header_of_ndc(other, 1), kPlain));
+  EXPECT_FALSE(built.report.header);
+  EXPECT_THAT(built.report.warnings, ElementsAre(HasSubstr("its lens is not that of P")));
+}
+
+TEST(HeaderCamera, OfAFieldOfViewThatNoLensHasIsNoneAndNamed) {
+  const Camera camera = turned_camera(kPlain);
+  const Picture picture = take_picture(still_life(), camera, kPlain.data);
+  HeaderNumbers header = vray_header(camera, kPlain.display);
+  for (const double fov : {0.0, 0.009, 179.5, -40.0}) {
+    header["cameraFov"] = {fov};
+    const Built by_film = build(with_header(depth_of(picture), header, kPlain));
+    expect_of(picture, by_film);
+    EXPECT_THAT(by_film.report.warnings,
+                testing::Contains(HasSubstr("header cameraFov is " + fmt::format("{:g}", fov))));
+    HeaderNumbers alone = header;
+    alone.erase("cameraAperture");
+    EXPECT_THAT(refusal_of(with_header(depth_of(picture), alone, kPlain)),
+                HasSubstr("outside 0.01 to 179, and is not used"));
+    EXPECT_THAT(build(with_header(gbuffer_of(picture), alone, kPlain)).report.warnings, IsEmpty());
+  }
+}
+
+TEST(HeaderCamera, OfAMatrixThatIsNoPoseIsNotUsedAndSaysSo) {
+  const Camera camera = turned_camera(kPlain);
+  const Picture picture = take_picture(still_life(), camera, kPlain.data);
+  HeaderNumbers header = redshift_header(camera, kPlain.display);
+  for (std::size_t i = 0; i < 12; ++i) header["rs/camera/transform"][i] *= 2;
+  for (const GBuffer& g :
+       {depth_of(picture), gbuffer_of(picture), in_camera_space(picture, false)}) {
     const Built built = build(with_header(g, header, kPlain));
-    expect_of(picture, built);
-    EXPECT_THAT(built.report.warnings, IsEmpty());
+    EXPECT_FALSE(built.report.placement.world_given);
+    EXPECT_THAT(built.report.warnings,
+                testing::Contains(HasSubstr("header rs/camera/transform is no rotation and "
+                                            "translation, and is not used"))
+                    .Times(1));
   }
 }
 
@@ -461,6 +522,64 @@ TEST(HeaderCamera, GivesWayToTheSpaceThatTheUserSays) {
     const Built built = build(g);
     EXPECT_FALSE(built.report.header);
     EXPECT_EQ(built.geometry.world_known, g.space == Space::world);
+  }
+}
+
+/// A camera that is turned by little against the world, and its depth with normals of the world.
+struct SlightTurn {
+  Camera camera;
+  Picture picture;
+  GBuffer depth;
+
+  explicit SlightTurn(double yaw, double tilt) {
+    const double y = glm::radians(yaw), t = std::tan(glm::radians(tilt));
+    const glm::dvec3 eye(5 * std::sin(y), 0.6 + 5 * t, 5 * std::cos(y));
+    camera = look_at(shifted(camera_from_fov(40, kPlain.display, 1)), eye, {0, 0.6, 0}, {0, 1, 0});
+    picture = take_picture(all_of({plane({}, {0, 1, 0}), sphere({0.2, 0.6, 0}, 0.6)}), camera,
+                           kPlain.data);
+    depth = with_header(depth_of(picture), standard_header(camera, kPlain.display), kPlain);
+    depth.normal = gbuffer_of(picture).normal;
+  }
+
+  /// About the axis z of the world.
+  void turn_normals(float degrees) {
+    const float c = std::cos(glm::radians(degrees)), s = std::sin(glm::radians(degrees));
+    for (glm::vec3& n : depth.normal.pixels) n = {c * n.x - s * n.y, s * n.x + c * n.y, n.z};
+  }
+};
+
+TEST(HeaderCamera, IsProvedByNormalsOfAWorldThatIsTurnedByLittle) {
+  for (const glm::dvec2& turn : {glm::dvec2(3, 0), {20, 0}, {0, 4}, {0, 9}, {0, 20}, {24, 7}}) {
+    const SlightTurn frame(turn.x, turn.y);
+    const Built built = build(frame.depth);
+    expect_of(frame.picture, built);
+    EXPECT_EQ(built.report.normal_space, "the world of the header") << turn.x << ' ' << turn.y;
+    ASSERT_TRUE(built.report.header);
+    EXPECT_EQ(built.report.header->proof, HeaderProof::normals);
+    EXPECT_THAT(built.report.warnings, IsEmpty());
+  }
+}
+
+/// Smooth normals may lean to one side by some degrees: no reason to doubt the pose.
+TEST(HeaderCamera, StaysWhereNormalsLeanByLittle) {
+  SlightTurn frame(40, 20);
+  frame.turn_normals(2.5);
+  const Built built = build(frame.depth);
+  EXPECT_TRUE(built.geometry.world_known);
+  EXPECT_THAT(built.report.warnings, IsEmpty());
+}
+
+TEST(HeaderCamera, IsNotJudgedByNormalsWhoseSpaceTheUserSays) {
+  SlightTurn frame(40, 0);
+  frame.turn_normals(30);
+  EXPECT_THAT(build(frame.depth).report.warnings, ElementsAre(HasSubstr("of another world")));
+  for (const Space space : {Space::world, Space::camera}) {
+    frame.depth.space = space;
+    const Built built = build(frame.depth);
+    EXPECT_TRUE(built.geometry.world_known);
+    EXPECT_EQ(built.report.normal_space, space == Space::world
+                                             ? "the world of the header, by --space"
+                                             : "camera space, by --space");
   }
 }
 

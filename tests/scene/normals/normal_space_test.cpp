@@ -100,6 +100,45 @@ TEST(NormalSpace, IsFittedWhereNormalsAreTurnedAgainstP) {
   }
 }
 
+/// Turned against the world by an angle about the vertical, which is y.
+Picture slightly_turned_picture(float degrees) {
+  const double angle = glm::radians(double(degrees));
+  const Camera camera =
+      look_at(camera_from_fov(40, kWindow, 1), {5 * std::sin(angle), 0.6, 5 * std::cos(angle)},
+              {0, 0.6, 0}, {0, 1, 0});
+  return take_picture(all_of({plane({}, {0, 1, 0}), sphere({0.2, 0.6, 0}, 0.6)}), camera, kWindow);
+}
+
+TEST(NormalSpace, IsToldFromAnotherThatIsTurnedByLittle) {
+  for (const float degrees : {3.0f, 10.0f, 24.0f}) {
+    const Picture picture = slightly_turned_picture(degrees);
+    const GBuffer right = gbuffer_of(picture);
+    GeometryReport of_world, of_camera;
+    mean_angle(right, right, of_world);
+    EXPECT_EQ(of_world.normal_space, "the space of P") << degrees;
+    GBuffer g = right;
+    for (glm::vec3& n : g.normal.pixels) n = glm::mat3(picture.camera.rotation) * n;
+    EXPECT_LT(mean_angle(g, right, of_camera), 0.05) << degrees;
+    EXPECT_EQ(of_camera.normal_space, "camera space") << degrees;
+  }
+}
+
+/// Bumps of 15 degrees do not show a turn of 5.
+TEST(NormalSpace, IsTheFirstWhereBumpsHideTheTurn) {
+  const Picture picture = slightly_turned_picture(5);
+  const GBuffer right = gbuffer_of(picture);
+  for (const glm::mat3& turn : {glm::mat3(1), glm::mat3(picture.camera.rotation)}) {
+    GBuffer g = right;
+    std::mt19937 random(1);
+    std::normal_distribution<float> bump(0, std::tan(glm::radians(15.0f)));
+    for (glm::vec3& n : g.normal.pixels)
+      n = turn * glm::normalize(n + glm::vec3(bump(random), bump(random), bump(random)));
+    GeometryReport report;
+    mean_angle(g, right, report);
+    EXPECT_EQ(report.normal_space, "the space of P");
+  }
+}
+
 TEST(NormalSpace, OfAShiftedFrameIsNone) {
   const GBuffer right = still_life_frame();
   for (const int shift : {6, 16}) {

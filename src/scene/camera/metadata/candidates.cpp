@@ -65,19 +65,40 @@ struct Lens {
 /// Fields of view closer than this are the same: apertures are stored with few digits.
 constexpr double kSameFov = 0.005;
 
-Lens lens_of(const Header& header, const RendererRow& row) {
+/// A field of view, and the attributes that say it.
+struct Fov {
+  std::string source;
+  double degrees;
+};
+
+/// Degrees, as of --fov.
+constexpr double kLeastFov = 0.01, kMostFov = 179;
+
+bool is_lens(const Fov& fov) { return fov.degrees >= kLeastFov && fov.degrees <= kMostFov; }
+
+/// What the attributes of a row say: its field of view, then that of its film.
+std::vector<Fov> fovs_of(const Header& header, const RendererRow& row) {
   const auto fov = number(header, row.fov), focal = number(header, row.focal_length),
              aperture = number(header, row.aperture);
-  Lens lens;
-  if (fov && *fov > 0 && *fov < 180) lens = {std::string(row.fov), "", *fov};
-  if (!focal || !aperture || !(*focal > 0) || !(*aperture > 0)) return lens;
-  const double of_film = glm::degrees(2 * std::atan(0.5 * *aperture / *focal));
-  const std::string film = fmt::format("{} + {}", row.focal_length, row.aperture);
-  if (lens.fov == 0) return {film, "", of_film};
-  lens.agrees = std::abs(of_film - lens.fov) < kSameFov * lens.fov;
+  std::vector<Fov> all;
+  if (fov) all.push_back({std::string(row.fov), *fov});
+  if (focal && aperture && *focal > 0 && *aperture > 0)
+    all.push_back({fmt::format("{} + {}", row.focal_length, row.aperture),
+                   glm::degrees(2 * std::atan(0.5 * *aperture / *focal))});
+  return all;
+}
+
+Lens lens_of(const Header& header, const RendererRow& row) {
+  std::vector<Fov> fovs = fovs_of(header, row);
+  std::erase_if(fovs, [](const Fov& fov) { return !is_lens(fov); });
+  if (fovs.empty()) return {};
+  const Fov &first = fovs.front(), &last = fovs.back();
+  Lens lens{first.source, "", first.degrees};
+  if (fovs.size() == 1) return lens;
+  lens.agrees = std::abs(last.degrees - first.degrees) < kSameFov * first.degrees;
   if (!lens.agrees)
-    lens.doubt =
-        fmt::format("{} is {:.4g} degrees, {} mean {:.4g}", row.fov, lens.fov, film, of_film);
+    lens.doubt = fmt::format("{} is {:.4g} degrees, {} mean {:.4g}", first.source, first.degrees,
+                             last.source, last.degrees);
   return lens;
 }
 
@@ -116,9 +137,13 @@ std::vector<HeaderCamera> of_ndc_alone(const StoredMatrix& to_ndc, const Picture
   std::vector<HeaderCamera> all;
   for (const bool transposed : {false, true}) {
     for (const NdcWindow ndc : kNdcWindows) {
-      if (const auto camera = read_perspective(to_ndc, transposed, ndc, windows))
-        all.push_back({"worldToNDC", joined(transposed ? "transposed" : "", name_of(ndc)), *camera,
-                       true, true, true, true});
+      const auto camera = read_perspective(to_ndc, transposed, ndc, windows);
+      if (!camera) continue;
+      HeaderCamera& out = all.emplace_back();
+      out.source = "worldToNDC";
+      out.reading = joined(transposed ? "transposed" : "", name_of(ndc));
+      out.camera = turned_to_picture(*camera, to_ndc, transposed);
+      out.has_pose = out.has_lens = out.is_one_matrix = true;
     }
   }
   return all;
@@ -168,13 +193,17 @@ bool is_renamed_by_oiio(const Header& header) {
          !header.contains("cameraTransform") && header.contains("cameraFov");
 }
 
-std::vector<HeaderCamera> of_vray(const Header& header, const PictureWindows& windows) {
-  // Other projections than that of a pinhole have other numbers.
-  Header pinhole = header;
+/// Without V-Ray's numbers of other projections than that of a pinhole, which mean others.
+Header of_pinholes(Header header) {
   if (number(header, "cameraProjection").value_or(0) != 0) {
     for (const std::string_view name : {kVRay.fov, kVRay.focal_length, kVRay.aperture})
-      pinhole.erase(std::string(name));
+      header.erase(std::string(name));
   }
+  return header;
+}
+
+std::vector<HeaderCamera> of_vray(const Header& header, const PictureWindows& windows) {
+  const Header pinhole = of_pinholes(header);
   if (!is_renamed_by_oiio(header)) return of_renderer(pinhole, kVRay, windows);
   RendererRow renamed = kVRay;
   renamed.pose = "worldToCamera";
@@ -228,6 +257,36 @@ std::vector<HeaderCamera> header_cameras(const Header& header, const PictureWind
   append(all, of_vray(header, windows));
   append(all, of_renderer(header, kRedshift, windows));
   append(all, of_unreal(header, windows));
+  return all;
+}
+
+std::vector<std::string> unusable_poses(const Header& header) {
+  std::vector<std::string> all;
+  for (const RendererRow& row : {kStandard, kVRay, kRedshift}) {
+    const auto stored = matrix(header, row.pose);
+    if (stored && read_pose(*stored, row.convention).empty())
+      all.push_back(
+          fmt::format("header {} is no rotation and translation, and is not used", row.pose));
+  }
+  return all;
+}
+
+std::vector<std::string> unusable_lenses(const Header& header) {
+  std::vector<Fov> fovs;
+  for (const RendererRow& row : {kStandard, kVRay, kRedshift}) {
+    for (const Fov& fov : fovs_of(of_pinholes(header), row)) fovs.push_back(fov);
+  }
+  for (const auto& [name, value] : header) {
+    if (name.starts_with("unreal/") && name.ends_with("/fov"))
+      fovs.push_back({name, value.front()});
+  }
+  std::vector<std::string> all;
+  for (const Fov& fov : fovs) {
+    if (!is_lens(fov))
+      all.push_back(
+          fmt::format("header {} is {:g} degrees, outside {:g} to {:g}, and is not used",
+                      fov.source, fov.degrees, kLeastFov, kMostFov));
+  }
   return all;
 }
 

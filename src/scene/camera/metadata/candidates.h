@@ -16,9 +16,9 @@ struct HeaderCamera {
   std::string reading;  ///< "" as their writer means them, else "transposed", "inverse", ...
   Camera camera;
   bool has_pose = false, has_lens = false;
-  /// Whether the header confirms it: a second attribute says the same, or one matrix holds both
-  /// and would come out with shear where it is misread.
+  /// Whether the header confirms it: a second attribute says the same.
   bool pose_agrees = false, lens_agrees = false;
+  bool is_one_matrix = false;      ///< pose and lens: where P has another lens, the pose is wrong
   std::string doubt = {};          ///< where numbers differ on the lens: how, for messages
   std::string contradiction = {};  ///< where matrices cannot be of one camera: P alone decides
 };
@@ -35,5 +35,10 @@ struct HeaderCamera {
 /// that is read as V-Ray's.
 std::vector<HeaderCamera> header_cameras(const std::map<std::string, std::vector<double>>& header,
                                          const PictureWindows& windows);
+
+/// The matrices of a header that hold no pose, and its fields of view that no lens has: a message
+/// for each.
+std::vector<std::string> unusable_poses(const std::map<std::string, std::vector<double>>& header);
+std::vector<std::string> unusable_lenses(const std::map<std::string, std::vector<double>>& header);
 
 }  // namespace ssdo

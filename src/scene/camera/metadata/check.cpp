@@ -134,12 +134,13 @@ FoundCamera check_against_fit(const Camera& fitted, const GBuffer& g,
     warn_of_contradiction(*with_pose, with_pose->contradiction, report);
     return alone;
   }
-  if (!with_pose->pose_agrees) {
+  const auto holds_lens = [](const HeaderCamera& h) { return h.pose_agrees || h.is_one_matrix; };
+  if (!holds_lens(*with_pose)) {
     report.header = found(*with_pose, HeaderProof::nothing);
     return posed(*with_pose, fitted, header);
   }
   for (const HeaderCamera& h : header) {
-    if (!h.pose_agrees) continue;
+    if (!holds_lens(h)) continue;
     const auto own = in_own_space(to_grid(h.camera, g.grid), g.position, g.valid, g.window);
     if (!own) continue;
     report.header = found(h, HeaderProof::lens, *own, g);

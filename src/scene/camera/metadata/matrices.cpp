@@ -167,6 +167,18 @@ std::optional<Camera> read_perspective(const StoredMatrix& stored, bool transpos
   return camera;
 }
 
+Camera turned_to_picture(Camera camera, const StoredMatrix& stored, bool transposed) {
+  // z = a w + b, b known to the rounding of floats.
+  const glm::dmat4 m = glm::transpose(matrix_of(stored, transposed));
+  const glm::dvec4 z = m[2], w = m[3];
+  const glm::dvec3 along(w);
+  const double a = glm::dot(glm::dvec3(z), along) / glm::dot(along, along), b = z.w - a * w.w;
+  if (!(std::abs(b) > 1e-6 * (std::abs(z.w) + std::abs(a * w.w)))) return camera;
+  const double w_of_plane = a > 0.5 ? -b / a : b / (1 - a);
+  if (w_of_plane < 0) camera.rotation = -camera.rotation;
+  return camera;
+}
+
 std::optional<Camera> read_orthographic(const StoredMatrix& stored, const PoseReading& pose,
                                         NdcWindow ndc, const PictureWindows& windows) {
   const PixelRows picture = pixel_rows(stored, pose.transposed, ndc, windows);

@@ -73,6 +73,11 @@ std::string_view name_of(NdcWindow window);
 std::optional<Camera> read_perspective(const StoredMatrix& stored, bool transposed, NdcWindow ndc,
                                        const PictureWindows& windows);
 
+/// The camera of a worldToNDC that may be stored with the other sign, which is the same projection:
+/// turned round where the plane of its near or far end, z = 0 or z = w, lies behind it. As it is
+/// where z does not tell.
+Camera turned_to_picture(Camera camera, const StoredMatrix& stored, bool transposed);
+
 /// The orthographic camera at `pose` whose worldToNDC this is. Nothing where they differ.
 std::optional<Camera> read_orthographic(const StoredMatrix& stored, const PoseReading& pose,
                                         NdcWindow ndc, const PictureWindows& windows);
