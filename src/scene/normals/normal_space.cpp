@@ -172,6 +172,9 @@ struct Candidate {
 /// Between two lines.
 double angle_of(float cosine) { return std::acos(std::min(1.0, double(std::abs(cosine)))); }
 
+/// Pixels at which something has to hold for it to be no accident.
+std::size_t enough_of(std::size_t pixels) { return kLeastBetter + pixels / kSmallestShare; }
+
 /// Whether `other` agrees with P at clearly more pixels than `rule`.
 bool is_clearly_better(const Candidate& other, const Candidate& rule) {
   std::size_t better = 0, worse = 0;
@@ -180,12 +183,7 @@ bool is_clearly_better(const Candidate& other, const Candidate& rule) {
     better += gain > kBetter;
     worse += gain < -kBetter;
   }
-  return better > kTimesBetter * worse + kLeastBetter + rule.cosines.size() / kSmallestShare;
-}
-
-/// Pixels at which something has to hold for it to be no accident.
-std::size_t enough_of(const std::vector<Witness>& witnesses) {
-  return kLeastBetter + witnesses.size() / kSmallestShare;
+  return better > kTimesBetter * worse + enough_of(rule.cosines.size());
 }
 
 /// Whether the normals of `other` are clearly nearer to the gradient of P than those of `first`,
@@ -198,7 +196,7 @@ bool is_clearly_nearer(const Candidate& other, const Candidate& first,
     if (glm::dot(other.to_camera * n, first.to_camera * n) > kLeastTurn) continue;
     of_other.push_back(angle_of(other.cosines[i])), of_first.push_back(angle_of(first.cosines[i]));
   }
-  return of_first.size() > enough_of(witnesses) &&
+  return of_first.size() > enough_of(witnesses.size()) &&
          quantile(of_other, 0.5) < kClearlyNearer * quantile(of_first, 0.5);
 }
 
@@ -211,12 +209,6 @@ Candidate named_space(const std::vector<NamedRotation>& spaces,
     if (is_clearly_nearer(other, found, witnesses)) found = std::move(other);
   }
   return found;
-}
-
-float median_size(const Candidate& candidate) {
-  std::vector<double> sizes;
-  for (const float c : candidate.cosines) sizes.push_back(std::abs(c));
-  return float(quantile(sizes, 0.5));
 }
 
 /// The rotation that brings the mapped normals closest to the gradients: Wahba's problem, solved by
@@ -256,20 +248,18 @@ glm::mat3 rotation_to_gradients(const Candidate& candidate, const std::vector<Wi
 }
 
 /// Normals of a space that is turned against the others, such as a world whose pose is not known:
-/// the candidate turned to P, if that is a turn and brings most pixels much closer.
+/// the candidate turned to P, if that is a turn and brings the pixels that it moves much closer.
 Candidate turned_to_gradients(Candidate candidate, const std::vector<Witness>& witnesses) {
-  // 1 - cos is half the square of a small angle.
-  const float miss = 1 - median_size(candidate);
-  if (witnesses.empty() || miss < 1 - kLeastTurn) return candidate;
+  if (witnesses.empty()) return candidate;
   const glm::mat3 turn = rotation_to_gradients(candidate, witnesses);
   const float cosine = 0.5f * (turn[0][0] + turn[1][1] + turn[2][2] - 1);
   const std::string name =
       fmt::format("a space of its own, {:.0f} degrees from {}",
                   glm::degrees(std::acos(std::clamp(cosine, -1.0f, 1.0f))), candidate.name());
   Candidate turned({turn * candidate.to_camera, name}, {}, witnesses);
-  const bool halves_the_angle = 1 - median_size(turned) < 0.25f * miss;
   turned.is_own = true;
-  return cosine < kLeastTurn && halves_the_angle ? turned : candidate;
+  return cosine < kLeastTurn && is_clearly_nearer(turned, candidate, witnesses) ? turned
+                                                                                : candidate;
 }
 
 NormalSpace described(const Candidate& found) {

@@ -217,5 +217,27 @@ TEST(NormalSpace, OfAFrameOfDepthAloneIsFoundInTheWorldToo) {
   EXPECT_FALSE(found.world_known);
 }
 
+/// Most pixels show a floor, whose normal a turn about the vertical does not change.
+TEST(NormalSpace, OfADepthAloneIsFittedBesideAFloor) {
+  for (const float degrees : {10.0f, 24.0f}) {
+    const Picture picture = slightly_turned_picture(degrees);
+    GBuffer g = gbuffer_of(picture);
+    g.position = {};
+    g.depth = Plane<float>(kWindow.width(), kWindow.height());
+    for (std::size_t i = 0; i < g.depth.size(); ++i)
+      g.depth[i] = float(-picture.camera.to_camera(glm::dvec3(picture.position[i])).z);
+    GBuffer right = g;
+    for (glm::vec3& n : right.normal.pixels) n = glm::mat3(picture.camera.rotation) * n;
+    GeometryReport report, ignored;
+    const Geometry found = build_geometry(g, {"", 40, {}}, "test", report),
+                   expected = build_geometry(right, {"", 40, {}}, "test", ignored);
+    float worst = 0;
+    for (std::size_t i = 0; i < found.surfel.size(); ++i)
+      worst = std::max(worst, glm::length(found.surfel[i].normal - expected.surfel[i].normal));
+    EXPECT_LT(worst, 5e-3f) << degrees << report.normal_space;
+    EXPECT_TRUE(report.warnings.empty());
+  }
+}
+
 }  // namespace
 }  // namespace ssdo::test

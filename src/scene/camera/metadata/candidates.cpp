@@ -283,9 +283,8 @@ std::vector<std::string> unusable_lenses(const Header& header) {
   std::vector<std::string> all;
   for (const Fov& fov : fovs) {
     if (!is_lens(fov))
-      all.push_back(
-          fmt::format("header {} is {:g} degrees, outside {:g} to {:g}, and is not used",
-                      fov.source, fov.degrees, kLeastFov, kMostFov));
+      all.push_back(fmt::format("header {} is {:g} degrees, outside {:g} to {:g}, and is not used",
+                                fov.source, fov.degrees, kLeastFov, kMostFov));
   }
   return all;
 }
