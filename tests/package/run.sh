@@ -83,7 +83,7 @@ test_package() {
   in_root root "apt-get purge -qq ssdo" >"$work/apt.log" 2>&1 || fail "the package cannot be purged"
   rm -r "$work"/root/{ssdo.deb,trial}
   local left
-  left=$(find "$work/root" -xdev -name '*ssdo*' -not -path '*/lib/apt/lists/*' -not -path '*/root/tmp/*')
+  left=$(find "$work/root" -xdev -name '*ssdo*' -not -path '*/lib/apt/lists/*' -not -path "$work/root/tmp/*")
   [ -z "$left" ] || fail "purged, and left behind: $left"
   say "package: tried by a plain user and purged; nothing is left"
 }
