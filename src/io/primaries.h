@@ -7,8 +7,6 @@
 #include <glm/mat3x3.hpp>
 #include <optional>
 
-namespace Imf = OPENEXR_IMF_NAMESPACE;
-
 namespace ssdo {
 
 /// CIE x and y of red, green, blue and white, one after the other.

@@ -15,7 +15,7 @@ std::string choose_isa(std::string_view wanted) {
   };
   static constexpr Choice choices[] = {
       {"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"scalar", HWY_SCALAR}};
-  const std::int64_t supported = hwy::SupportedTargets() | HWY_SCALAR;
+  const std::int64_t supported = (hwy::SupportedTargets() | HWY_SCALAR) & HWY_TARGETS;
   for (const Choice& choice : choices) {
     if (!wanted.empty() && choice.name != wanted) continue;
     const std::int64_t usable = choice.targets & supported;
@@ -25,7 +25,7 @@ std::string choose_isa(std::string_view wanted) {
     }
     if (!wanted.empty()) {
       throw Error(ExitCode::usage,
-                  fmt::format("$SSDO_ISA is '{}', which this processor lacks", wanted));
+                  fmt::format("$SSDO_ISA is '{}', which this processor or this build lacks", wanted));
     }
   }
   throw Error(ExitCode::usage,

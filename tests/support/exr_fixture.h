@@ -17,8 +17,6 @@
 
 namespace ssdo::test {
 
-namespace Imf = OPENEXR_IMF_NAMESPACE;
-
 /// What every test image holds in channel `c` (counted in the order of the header) at pixel (x, y):
 /// a whole number that half, float and uint all store exactly.
 int test_value(int c, int x, int y);

@@ -4,8 +4,6 @@
 #include <ImfCompression.h>
 #include <ImfHeader.h>
 
-namespace Imf = OPENEXR_IMF_NAMESPACE;
-
 namespace ssdo {
 
 /// Whether pixels come back changed.

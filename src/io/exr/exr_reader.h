@@ -14,8 +14,6 @@
 #include "math/pixel_grid.h"
 #include "math/plane.h"
 
-namespace Imf = OPENEXR_IMF_NAMESPACE;
-
 namespace OPENEXR_IMF_INTERNAL_NAMESPACE {
 class MultiPartInputFile;
 }

@@ -7,8 +7,6 @@
 #include <bit>
 #include <cstddef>
 
-namespace Imf = OPENEXR_IMF_NAMESPACE;
-
 // A chunk of ZIP holds 16 scanlines, one of ZIPS a single one; the channels of a line follow each
 // other in the order of the header. Before it is deflated, the bytes of the whole chunk with even
 // places are put before those with odd ones, and each byte but the first is replaced by its
