@@ -28,6 +28,7 @@ struct OutputOptions {
   bool keep_channels = false;
   bool crop = false;   ///< EXR outputs hold the display window only
   int downsample = 1;  ///< how many times as large as the outputs the frame is: 1 to 8
+  std::string made_by;  ///< of --history, for the header of EXR outputs; empty: not asked for
   OutputPolicy policy;
 };
 

@@ -38,6 +38,12 @@ std::vector<ChannelOfPart> geometry_channels(const Frame& frame) {
   return channels;
 }
 
+/// A line for each run of ssdo that the file has been through, where asked for.
+std::string history_of(const Frame& frame, const std::string& made_by) {
+  const std::string earlier = string_attribute(frame.part().header, "ssdo/history");
+  return earlier.empty() ? made_by : earlier + "\n" + made_by;
+}
+
 /// What goes into the parts of a file: views that share a part stand side by side in it.
 std::vector<ExrOutput> by_part(const std::vector<ExrContents>& views) {
   std::vector<ExrOutput> parts;
@@ -94,6 +100,8 @@ ExrContents exr_contents(const RelightJob& job, const Plan& plan, const Target& 
   };
   output.attributes = {{"ssdo/version", SSDO_VERSION},
                        {"ssdo/" + name("plan"), json_text(to_json(plan, frame.history))}};
+  if (!job.options.output.made_by.empty())
+    output.attributes.emplace_back("ssdo/history", history_of(frame, job.options.output.made_by));
   for (const NamedChannels& product : contents.products) {
     for (const NamedChannel& channel : product.channels)
       output.planes.push_back({name(channel.name), job.options.output.pixel_type, channel.pixels});

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -301,16 +302,18 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
 
 void explain_views(Plan& plan, const std::vector<MergeCounts>& views) {
   for (const MergeCounts& view : views) {
+    // Without its folder: the header of outputs holds the plan, and no paths.
+    const std::string file = std::filesystem::path(view.file).filename().string();
     if (view.backs > 0) {
       plan.reasons.push_back(fmt::format(
           "{}: back faces from the frame's own camera; they say how thick things are in {} pixels",
-          view.file, view.backs));
+          file, view.backs));
       continue;
     }
     plan.reasons.push_back(fmt::format(
         "{}: {} pixels show what the frame does not, {} what it shows as well, {} contradict it "
         "and are left out{}",
-        view.file, view.added, view.seen, view.contradictory,
+        file, view.added, view.seen, view.contradictory,
         view.has_albedo ? "" : "; it has no albedo, so that it sends no light"));
   }
 }

@@ -101,7 +101,7 @@ const std::vector<IdleRule>& rules() {
       {{"--products"},
        [](const Options& o) { return o.output.files.empty() && !o.output.saves.empty(); },
        "it is for files of -o, and --save names its product"},
-      {{"--pixel-type", "--compression", "--keep-channels", "--crop"},
+      {{"--pixel-type", "--compression", "--keep-channels", "--crop", "--history"},
        no_output(is_exr),
        "no output is an EXR"},
       {{"--bits"}, no_output(is_deep_picture), "no output is PNG or TIFF"},

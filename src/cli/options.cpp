@@ -12,6 +12,7 @@
 #include "cli/help/short_help.h"
 #include "cli/help/unknown_words.h"
 #include "cli/idle_options.h"
+#include "cli/made_by.h"
 #include "cli/main_options.h"
 #include "cli/option_values.h"
 #include "error.h"
@@ -124,6 +125,9 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
       ->configurable(false)
       ->group("Model");
   add_main_options(app, o);
+  bool history = false;
+  app.add_flag("--history", history, "add user, host and command line to the header of EXR outputs")
+      ->group("Output");
   app.require_subcommand(0, 1);
   const CLI::App* const info = add_info(app, o);
   const CLI::App* const bench = add_bench(app, o.bench);
@@ -168,6 +172,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   if (!o.config_file.empty()) read_config_file(o.config_file, app);
   if (o.command == Command::bench) finish_bench(app, o.bench);
   check(o, app);
+  if (history) o.output.made_by = made_by({argv, std::size_t(argc)});
   o.warnings = idle_options(given, o);
   return parsed;
 }
