@@ -112,6 +112,7 @@ class Bitmask {
       gather_visibility();
       gather_bounce();
     }
+    kept_light_in_ = nullptr;
     MarchPlanes planes = raster_.in_whole_rows(s, raster);
     std::vector<DepthBounds> bounds = depth_bounds(s);
     const float ao = mean_ao(s, scene_.geometry.display, request_.radius);

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ranges>
 
 #include "error.h"
 #include "estimators/bitmask.h"
@@ -34,8 +33,10 @@ std::vector<std::string> parameter_names(const Method& method) {
 
 std::vector<std::string_view> words_of(const Parameter& parameter) {
   std::vector<std::string_view> words;
-  for (const auto word : std::views::split(parameter.words, ' '))
-    words.emplace_back(word.begin(), word.end());
+  for (std::string_view rest = parameter.words; !rest.empty();) {
+    words.push_back(rest.substr(0, rest.find(' ')));
+    rest.remove_prefix(std::min(words.back().size() + 1, rest.size()));
+  }
   return words;
 }
 

@@ -5,10 +5,13 @@
 
 #include <utility>
 
+#include "parallel/fork_join.h"
+
 namespace ssdo {
 
 struct Background::Group {
   tbb::task_group tasks;
+  ForkJoin order;
 };
 
 Background::Background() : group_(std::make_unique<Group>()) {}
@@ -20,8 +23,17 @@ Background::~Background() {
   }
 }
 
-void Background::start(std::function<void()> job) { group_->tasks.run(std::move(job)); }
+void Background::start(std::function<void()> job) {
+  group_->order.fork();
+  group_->tasks.run([group = group_.get(), job = std::move(job)] {
+    const ForkJoin::Task task(group->order);
+    job();
+  });
+}
 
-void Background::wait() { group_->tasks.wait(); }
+void Background::wait() {
+  const ForkJoin::Join join(group_->order);
+  group_->tasks.wait();
+}
 
 }  // namespace ssdo

@@ -7,11 +7,25 @@
 #include <algorithm>
 #include <mutex>
 
+#include "parallel/fork_join.h"
+
 namespace ssdo {
 namespace {
 
 constexpr int kTileSize = 64;  ///< position and normal of 64 x 64 pixels fill half an L2 cache
 constexpr int kBandHeight = 16;
+
+/// Calls `work(i)` once for each i from 0 to count - 1.
+template <class Index, class Work>
+void run(Index count, const Work& work) {
+  ForkJoin order;
+  order.fork();
+  const ForkJoin::Join join(order);
+  tbb::parallel_for(Index(0), count, [&](Index i) {
+    const ForkJoin::Task task(order);
+    work(i);
+  });
+}
 
 }  // namespace
 
@@ -19,7 +33,7 @@ void for_each_task(std::size_t count, const std::function<void(std::size_t)>& wo
                    const Progress& progress) {
   std::mutex mutex;
   std::size_t done = 0;
-  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
+  run(count, [&](std::size_t i) {
     work(i);
     if (!progress) return;
     const std::lock_guard lock(mutex);
@@ -48,9 +62,7 @@ void for_each_band(int height, const std::function<void(int y0, int y1)>& work,
   for_each_task(std::size_t((height + kBandHeight - 1) / kBandHeight), one, progress);
 }
 
-void for_each_row(int height, const std::function<void(int y)>& work) {
-  tbb::parallel_for(0, height, work);
-}
+void for_each_row(int height, const std::function<void(int y)>& work) { run(height, work); }
 
 struct ThreadLimit::Control {
   tbb::global_control control;

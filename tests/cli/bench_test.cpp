@@ -57,8 +57,9 @@ TEST_F(Bench, TheErrorOfARowIsThatOfItsCommand) {
     const json row = report["rows"][i];
     const std::string command = row.at("command");
     ASSERT_TRUE(command.starts_with("ssdo "));
-    const std::string line = "cd '" + frame_.folder.path().string() + "' && " SSDO_BINARY +
-                             command.substr(4) + " --pixel-type float --overwrite -q";
+    const std::string line = "cd '" + frame_.folder.path().string() + "' && " +
+                             tool_path().string() + command.substr(4) +
+                             " --pixel-type float --overwrite -q";
     ASSERT_EQ(std::system(line.c_str()), 0) << line;
     const std::string relit = path("it's <!--<script>_relit.exr");
     for (const auto& [product, layer] :

@@ -43,8 +43,7 @@ class Completions : public testing::TestWithParam<std::string> {
     const std::string driver = std::string(SSDO_SOURCE_DIR) + "/tests/cli/complete." + GetParam();
     std::vector<std::string> words = {GetParam(), driver, script()};
     words.insert(words.end(), lines.begin(), lines.end());
-    const std::string path =
-        std::filesystem::path(SSDO_BINARY).parent_path().string() + ":" + getenv("PATH");
+    const std::string path = tool_path().parent_path().string() + ":" + getenv("PATH");
     const Finished done = run_tool(
         words, {.variables = {{"PATH", path}}, .binary = "/usr/bin/env", .folder = dir_ / "work"});
     std::map<std::string, Completed> all;

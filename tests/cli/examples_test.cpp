@@ -152,7 +152,7 @@ class Examples : public testing::Test {
       if (std::ranges::find(made, name) == made.end())
         fs::create_symlink(entry.path(), into / name);
     }
-    const std::string path = fs::path(SSDO_BINARY).parent_path().string() + ":" + getenv("PATH");
+    const std::string path = tool_path().parent_path().string() + ":" + getenv("PATH");
     return run_tool({"-ec", text},
                     {.variables = {{"PATH", path}}, .binary = "/bin/bash", .folder = into.path()});
   }

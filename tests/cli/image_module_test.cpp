@@ -19,12 +19,10 @@ class ImageModule : public testing::Test {
  protected:
   ImageModule() : tool_(folder_ / "bin" / "ssdo") {
     fs::create_directory(tool_.parent_path());
-    fs::copy_file(SSDO_BINARY, tool_);
+    fs::copy_file(tool_path(), tool_);
   }
 
-  fs::path module_of_build() const {
-    return fs::path(SSDO_BINARY).parent_path() / "ssdo_images.so";
-  }
+  fs::path module_of_build() const { return tool_path().parent_path() / "ssdo_images.so"; }
   Finished run(const std::vector<std::string>& arguments) const {
     return run_tool(arguments, {.binary = tool_});
   }

@@ -48,7 +48,7 @@ class FarmShot : public testing::Test {
     fs::create_directory(dir_ / "out");
     for (int frame = kFirst; frame <= kLast; ++frame) write_input(frame);
     // A plain user must reach the tool, wherever it was built, and may write to out/ alone.
-    fs::copy(SSDO_BINARY, dir_ / "ssdo");
+    fs::copy(tool_path(), dir_ / "ssdo");
     fs::permissions(dir_.path(), fs::perms(0755));
     fs::permissions(dir_ / "out", fs::perms(0777));
   }
@@ -280,7 +280,7 @@ TEST_F(FarmShot, WhatAKilledRunHasLeftIsRemovedByTheNext) {
   };
   const std::vector<std::string> flags = {"-o", dir_ / "out/shot.####.png", "--frames", "1001-1008",
                                           "--skip-existing"};
-  fs::copy(fs::path(SSDO_BINARY).parent_path() / "ssdo_images.so", dir_ / "ssdo_images.so");
+  fs::copy(tool_path().parent_path() / "ssdo_images.so", dir_ / "ssdo_images.so");
   EXPECT_EQ(run(flags, {.kill_with = SIGKILL, .kill_when = temporary_exists}).code, 137);
   ASSERT_TRUE(temporary_exists());
   std::vector<std::string> dry = flags;

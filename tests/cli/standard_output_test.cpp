@@ -20,7 +20,7 @@ Finished run_into(int out, const char* argument) {
   if (child == 0) {
     dup2(out, STDOUT_FILENO);
     dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
-    execl(SSDO_BINARY, SSDO_BINARY, argument, nullptr);
+    execl(tool_path().c_str(), "ssdo", argument, nullptr);
     _exit(127);
   }
   int status = 0;

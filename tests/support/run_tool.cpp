@@ -34,6 +34,8 @@ struct Pipe {
 
 }  // namespace
 
+std::filesystem::path tool_path() { return SSDO_BINARY; }
+
 std::string Finished::error_line() const {
   const auto end = err.find('\n');
   return end + 1 == err.size() ? err.substr(0, end) : "not one line: " + err;

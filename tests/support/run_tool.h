@@ -26,10 +26,13 @@ struct Finished {
 /// All bytes of a file; none where there is no such file.
 std::string read_file(const std::filesystem::path& path);
 
+/// The tool of the build that this is linked in: compiled tests are linked in others too.
+std::filesystem::path tool_path();
+
 /// How a run differs from a plain one.
 struct Surroundings {
   std::map<std::string, std::string> variables = {};
-  std::filesystem::path binary = SSDO_BINARY;
+  std::filesystem::path binary = tool_path();
   std::filesystem::path folder = {};  ///< to start in
   rlim_t file_size = RLIM_INFINITY;   ///< a disk that is full after this many bytes per file
   int kill_with = 0;                  ///< sent as soon as `kill_when` holds

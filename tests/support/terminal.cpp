@@ -10,7 +10,7 @@
 namespace ssdo::test {
 
 Finished run_on_terminal(const std::vector<std::string>& arguments) {
-  std::vector<std::string> words = {SSDO_BINARY};
+  std::vector<std::string> words = {tool_path()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

@@ -94,7 +94,7 @@ SliceSide make_side(const Interleaving& layout, const FarRaster* far, int column
     const bool repeated =
         !side.steps.empty() && side.steps.back().dx == float(x) && side.steps.back().dy == float(y);
     if (repeated || (x == 0 && y == 0)) continue;
-    SliceStep step;
+    SliceStep step{};
     step.dx = float(x), step.dy = float(y);
     step.row = y;
     step.column_shift = (column_phase + x) >> Interleaving::kShift;
