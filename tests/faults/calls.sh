@@ -59,6 +59,7 @@ test_each_of() {
   local calls=$1 most=$2 count error i which good=0 bad=0
   new_case old a.exr a.png
   count=$(calls_of "$calls" "${job[@]}" --overwrite --threads 2 -o a.exr -o a.png)
+  [ "$count" -gt 0 ] || complain "${calls%%,*} is never called"
   for error in "${@:3}"; do
     for ((i = 1; i <= count && i <= most; i++)); do
       which=$i

@@ -3,14 +3,19 @@
 # folder of its own, with the outputs of two undisturbed runs to compare with: $old, which a case may
 # find there, and $new, which is what it makes.
 
-say() { echo "[${SECONDS}s] $*"; }
+# say WORDS: a line for what is done, which begins with the faults that it had.
+say() {
+  local count=$((faults - faults_told))
+  faults_told=$faults
+  echo "[${SECONDS}s] $([ "$count" -eq 0 ] || echo "$count FAULTS: ")$*"
+}
 
 fail() {
   echo "tests/faults: $*" >&2
   exit 1
 }
 
-faults=0
+faults=0 faults_told=0
 
 # complain WHAT: shows a fault of the last run, and goes on.
 complain() {
