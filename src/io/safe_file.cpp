@@ -150,8 +150,13 @@ SafeFile::~SafeFile() {
   leave_temporary(slot_, TableInUse());
 }
 
+void SafeFile::flush() {
+  if (!flushed_) flush_to_disk(temporary_, target_);
+  flushed_ = true;
+}
+
 void SafeFile::commit() {
-  flush_to_disk(temporary_, target_);
+  flush();
   const int error = policy_.overwrite ? rename_over(temporary_, destination_)
                                       : rename_new(temporary_, destination_);
   if (error == EEXIST) {
@@ -160,6 +165,11 @@ void SafeFile::commit() {
   if (error) fail(target_, fmt::format("cannot be written: {}; write elsewhere", reason(error)));
   committed_ = true;
   flush_folder(folder_of(destination_));
+}
+
+void commit_all(const std::vector<std::unique_ptr<SafeFile>>& files) {
+  for (const auto& file : files) file->flush();
+  for (const auto& file : files) file->commit();
 }
 
 }  // namespace ssdo

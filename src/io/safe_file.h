@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace ssdo {
 
@@ -30,7 +32,10 @@ class SafeFile {
   const std::filesystem::path& target() const { return target_; }
   const std::filesystem::path& temporary() const { return temporary_; }
 
-  /// Flushes the temporary to disk and gives it the target's name. Without `overwrite` a target
+  /// Flushes the temporary to disk. Errors: ExitCode::output, as where only now a full disk shows.
+  void flush();
+
+  /// Flushes the temporary, once, and gives it the target's name. Without `overwrite` a target
   /// that has appeared in the meantime is not replaced. Errors: ExitCode::output.
   void commit();
 
@@ -40,8 +45,11 @@ class SafeFile {
   std::filesystem::path temporary_;
   OutputPolicy policy_;
   int slot_ = -1;
-  bool committed_ = false;
+  bool flushed_ = false, committed_ = false;
 };
+
+/// Commits files that belong together. None gets its name before all are on the disk.
+void commit_all(const std::vector<std::unique_ptr<SafeFile>>& files);
 
 /// Has SIGINT (130), SIGTERM (143) and the other signals that end a process, such as SIGHUP and
 /// those of schedulers, remove every open temporary and end the process with 128 + their number.

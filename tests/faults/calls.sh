@@ -47,7 +47,7 @@ test_no_thread() {
   for ((i = 1; i <= 9; i += 2)); do
     new_case old a.exr a.png
     with_failing clone3 EAGAIN "$i+" "${job[@]}" --overwrite --threads 2 -o a.exr -o a.png
-    if [ "$code" -eq 0 ]; then made a.exr a.png; else refused 1 "threads" a.exr a.png; fi
+    if [ "$code" -eq 0 ]; then made a.exr a.png; else refused 1 thread a.exr a.png; fi
     around=()
     count_outcome
   done

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -64,6 +65,21 @@ TEST(SafeFile, LeavesNothingWithoutCommit) {
   const TempDir dir;
   { SafeFile file(dir / "a.exr", kNew); }
   EXPECT_EQ(files_in(dir.path()), 0u);
+}
+
+TEST(SafeFile, SeveralAreRenamedOnceAllAreOnTheDisk) {
+  const TempDir dir;
+  std::vector<std::unique_ptr<SafeFile>> files;
+  for (const char* name : {"a.exr", "b.exr"})
+    files.push_back(std::make_unique<SafeFile>(dir / name, kNew));
+  const fs::path lost = files[1]->temporary();
+  fs::remove(lost);
+  EXPECT_THAT(error_of([&] { commit_all(files); }),
+              IsError(ExitCode::output, "b.exr: cannot be written"));
+  EXPECT_FALSE(fs::exists(dir / "a.exr"));
+  write_text(lost, "back");
+  commit_all(files);
+  EXPECT_EQ(files_in(dir.path()), 2u);
 }
 
 TEST(SafeFile, RespectsTheUmask) {
