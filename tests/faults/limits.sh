@@ -12,7 +12,7 @@ count_outcome() {
 test_address_space() {
   local mib threads good=0 bad=0
   for threads in 1 4; do
-    for ((mib = 64; mib < 760; mib += mib < 320 ? 16 : 64)); do
+    for ((mib = 64; mib < 760; mib += mib < 320 ? 32 : 128)); do
       new_case old a.exr a.png
       around=(prlimit --as=$((mib << 20)))
       run "${job[@]}" --overwrite -o a.exr -o a.png --threads "$threads"
