@@ -7,8 +7,10 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 
 #include "cli/batch.h"
+#include "cli/memory.h"
 #include "cli/options.h"
 #include "cli/resources.h"
 #include "cli/run_bench.h"
@@ -18,8 +20,13 @@
 #include "io/one_line.h"
 #include "io/safe_file.h"
 #include "io/standard_output.h"
+#include "io/temporary_table.h"
 
 namespace {
+
+void warn(const ssdo::ParsedOptions& parsed, const std::string& warning) {
+  if (!parsed.options.verbosity.quiet) std::fprintf(stderr, "ssdo: warning: %s\n", warning.c_str());
+}
 
 ssdo::ExitCode run(int argc, char** argv) {
   const ssdo::ParsedOptions parsed = ssdo::parse_options(argc, argv);
@@ -31,16 +38,14 @@ ssdo::ExitCode run(int argc, char** argv) {
     ssdo::print_out(ssdo::describe_methods());
     return ssdo::ExitCode::done;
   }
-  for (const std::string& warning : parsed.options.warnings) {
-    if (!parsed.options.verbosity.quiet)
-      std::fprintf(stderr, "ssdo: warning: %s\n", warning.c_str());
-  }
+  for (const std::string& warning : parsed.options.warnings) warn(parsed, warning);
+  const ssdo::Resources resources(parsed.options.threads, parsed.options.mem_limit);
+  if (const std::string warning = resources.warning(); !warning.empty()) warn(parsed, warning);
   if (parsed.options.command == ssdo::Command::compare) {
     const ssdo::CompareReport report = ssdo::compare(parsed.options.compare);
     ssdo::print_out(report.text);
     return report.code;
   }
-  const ssdo::Resources resources(parsed.options.threads, parsed.options.mem_limit);
   if (parsed.options.command == ssdo::Command::bench)
     return ssdo::run_bench(parsed.options, resources);
   return ssdo::run_batch(parsed.options, resources);
@@ -70,22 +75,47 @@ ssdo::ExitCode fail(ssdo::ExitCode code, const char* message) {
   return code;
 }
 
+/// Says why the exception that is being handled ends the process.
+ssdo::ExitCode fail() {
+  try {
+    throw;
+  } catch (const ssdo::Error& e) {
+    return fail(e.code, e.what());
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "ssdo: %s\n", ssdo::kNoMemory);  // without allocating
+    return ssdo::ExitCode::failed;
+  } catch (const std::exception& e) {
+    return fail(ssdo::ExitCode::failed, e.what());
+  }
+}
+
+/// In place of abort() where an exception has nobody to catch it, as that of a destructor, or of a
+/// library whose thread does not start.
+[[noreturn]] void end_at_once() {
+  ssdo::remove_temporaries();
+  if (std::current_exception()) _exit(int(fail()));
+  std::fputs(
+      "ssdo: a thread could not be started; raise the limits on processes (ulimit -u) and "
+      "memory (ulimit -v)\n",
+      stderr);
+  _exit(int(ssdo::ExitCode::failed));
+}
+
+/// Before main(), since other initialisers of globals allocate.
+[[maybe_unused]] const std::terminate_handler g_abort = std::set_terminate(end_at_once);
+
 }  // namespace
 
 int main(int argc, char** argv) {
   open_standard_streams();
   keep_freed_memory();
   ssdo::remove_temporaries_on_signals();
-  ssdo::ExitCode code = ssdo::ExitCode::failed;
+  ssdo::ExitCode code;
   try {
     code = run(argc, argv);
     ssdo::print_out("");  // progress lines that are still in the buffer
-  } catch (const ssdo::Error& e) {
-    code = fail(e.code, e.what());
-  } catch (const std::bad_alloc&) {
-    code = fail(code, "not enough memory for this frame");
-  } catch (const std::exception& e) {
-    code = fail(code, e.what());
+  } catch (...) {
+    code = fail();
   }
   return int(code);
 }

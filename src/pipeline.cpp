@@ -174,7 +174,7 @@ void write_outputs(const std::vector<RelitFrame>& views,
   Relit& relit = *views.front().relit;
   if (views.front().job.frame.bands) {
     Stopwatch watch;
-    for (const auto& file : relit.written) file->commit();
+    commit_all(relit.written);
     relit.times.write += watch.lap();
     return;
   }
@@ -187,7 +187,7 @@ void write_outputs(const std::vector<RelitFrame>& views,
       shown, [&](double done) { on_progress(kEstimateShare + (1 - kEstimateShare) * done); });
   relit.clamped_values = written.clamped_values;
   Stopwatch watch;
-  for (const auto& file : written.files) file->commit();
+  commit_all(written.files);
   relit.times.compose = written.compose_ms;
   relit.times.write = written.write_ms + watch.lap();
 }

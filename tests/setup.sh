@@ -23,6 +23,7 @@ build_packages=(g++ cmake ninja-build pkg-config libopenexr-dev libopenimageio-d
   libtomlplusplus-dev)
 test_packages=(libgtest-dev libgmock-dev groff chromium zsh)
 farm_packages=(slurm-wlm munge parallel make debootstrap dpkg-dev)  # of tests/farm and tests/package
+fault_packages=(strace)  # of tests/faults
 
 # build FOLDER TARGET [cmake options]: configures FOLDER and builds TARGET in it.
 build() {

@@ -62,7 +62,7 @@ void write_reports(const BenchReport& report, const std::vector<std::string>& pa
     checked.write(text.data(), text.size());
     checked.close();
   }
-  for (const auto& file : files) file->commit();
+  commit_all(files);
 }
 
 }  // namespace ssdo

@@ -22,6 +22,7 @@
 #include "cli/describe.h"
 #include "cli/info_report.h"
 #include "cli/jobs.h"
+#include "cli/memory.h"
 #include "cli/place_in_sequence.h"
 #include "cli/progress.h"
 #include "cli/statistics.h"
@@ -148,8 +149,7 @@ class Batch {
     } catch (const Error& e) {
       work.error = e;
     } catch (const std::bad_alloc&) {
-      work.error =
-          Error(ExitCode::failed, fmt::format("{}: not enough memory for this frame", input));
+      work.error = Error(ExitCode::failed, fmt::format("{}: {}", input, kNoMemory));
     } catch (const std::exception& e) {
       work.error = Error(ExitCode::failed, fmt::format("{}: {}", input, e.what()));
     }

@@ -2,6 +2,7 @@
 #include "cli/memory.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cctype>
@@ -50,6 +51,12 @@ std::optional<double> from_control_groups(const std::filesystem::path& root) {
   return least;
 }
 
+std::optional<double> from_address_space() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
+  return double(limit.rlim_cur);
+}
+
 /// Slurm counts in units of 1024 x 1024 bytes (sbatch(1)).
 std::optional<double> from_slurm() {
   if (const auto node = parse_positive(variable("SLURM_MEM_PER_NODE"))) return *node * kMiB;
@@ -77,7 +84,7 @@ std::size_t choose_memory(std::optional<std::size_t> requested, const std::files
   if (requested) return *requested;
   if (const auto size = from_user()) return *size;
   double least = physical_memory();
-  for (const auto& limit : {from_control_groups(root), from_slurm()})
+  for (const auto& limit : {from_address_space(), from_control_groups(root), from_slurm()})
     least = std::min(least, limit.value_or(least));
   return std::size_t(kDefaultShare * least);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/resources.h"
 
+#include <fmt/format.h>
+
 #include "cli/environment.h"
 #include "cli/memory.h"
 #include "cli/threads.h"
@@ -11,11 +13,20 @@ namespace ssdo {
 
 Resources::Resources(std::optional<int> requested_threads,
                      std::optional<std::size_t> requested_memory)
-    : threads_(choose_thread_count(requested_threads)),
+    : wanted_threads_(choose_thread_count(requested_threads)),
+      threads_(startable_threads(wanted_threads_)),
       memory_(choose_memory(requested_memory)),
       limit_(threads_),
       isa_(choose_isa(variable("SSDO_ISA"))) {
   limit_io_threads(threads_);
+}
+
+std::string Resources::warning() const {
+  if (threads_ == wanted_threads_) return "";
+  return fmt::format(
+      "{} of {} threads are used, as no more can be started; raise the limits on "
+      "processes (ulimit -u) and memory (ulimit -v)",
+      threads_, wanted_threads_);
 }
 
 }  // namespace ssdo

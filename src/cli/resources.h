@@ -13,18 +13,20 @@ namespace ssdo {
 /// on threads lasts as long as this object.
 class Resources {
  public:
-  /// Limits the whole process to the threads of choose_thread_count() and to the instruction set
-  /// that $SSDO_ISA names. Errors: those of choose_thread_count(), choose_memory() and
-  /// choose_isa().
+  /// Limits the whole process to the threads of choose_thread_count(), as far as they can be
+  /// started, and to the instruction set that $SSDO_ISA names. Errors: those of
+  /// choose_thread_count(), startable_threads(), choose_memory() and choose_isa().
   explicit Resources(std::optional<int> requested_threads,
                      std::optional<std::size_t> requested_memory = std::nullopt);
 
   int threads() const { return threads_; }
+  /// Says if there are fewer threads than chosen, because no more can be started; else empty.
+  std::string warning() const;
   std::size_t memory() const { return memory_; }   ///< bytes that the run may use
   const std::string& isa() const { return isa_; }  ///< avx512, avx2 or scalar
 
  private:
-  int threads_;
+  int wanted_threads_, threads_;
   std::size_t memory_;
   ThreadLimit limit_;
   std::string isa_;

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/statistics.h"
 
-#include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
 
-#include "error.h"
+#include "io/checked_file.h"
 #include "io/json_text.h"
-#include "io/safe_file.h"
 
 namespace ssdo {
 namespace {
@@ -69,11 +67,10 @@ OutputPolicy policy_of_statistics(OutputPolicy of_images) {
 void write_statistics(const std::string& path, const OutputPolicy& policy,
                       const nlohmann::json& frames) {
   SafeFile file(path, policy);
-  std::ofstream out(file.temporary());
-  out << json_text(frames, 2) << '\n';
-  out.close();
-  if (!out)
-    throw Error(ExitCode::output, fmt::format("{}: the statistics could not be written", path));
+  const std::string text = json_text(frames, 2) + "\n";
+  CheckedFile checked(file);
+  checked.write(text.data(), text.size());
+  checked.close();
   file.commit();
 }
 

@@ -5,9 +5,14 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <new>
 #include <sstream>
 #include <string_view>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 #include "cli/control_groups.h"
 #include "cli/environment.h"
@@ -45,6 +50,25 @@ int from_affinity() {
   return sched_getaffinity(0, sizeof set, &set) == 0 ? std::max(1, CPU_COUNT(&set)) : 1;
 }
 
+/// Beside the first thread: each of the three libraries has its own, and what OpenImageIO is linked
+/// with starts five or six (Debian 12).
+constexpr int kPools = 3, kOthers = 6;
+
+/// How many threads can live beside each other, up to `most`.
+int count_startable(int most) {
+  std::atomic<bool> done = false;
+  std::vector<std::thread> threads;
+  try {
+    while (int(threads.size()) < most) threads.emplace_back([&done] { done.wait(false); });
+  } catch (const std::system_error&) {  // no further thread
+  } catch (const std::bad_alloc&) {
+  }
+  done = true;
+  done.notify_all();
+  for (std::thread& thread : threads) thread.join();
+  return int(threads.size());
+}
+
 }  // namespace
 
 int choose_thread_count(std::optional<int> requested, const std::filesystem::path& root) {
@@ -54,6 +78,17 @@ int choose_thread_count(std::optional<int> requested, const std::filesystem::pat
     if (const auto count = parse_count(variable(name))) return *count;
   }
   return within_quotas(from_affinity(), root);
+}
+
+int startable_threads(int count) {
+  const int startable = count_startable(kPools * (count - 1) + kOthers);
+  if (startable < kOthers) {
+    throw Error(ExitCode::failed,
+                fmt::format("only {} threads can be started, and a run needs {}; raise the limits "
+                            "on processes (ulimit -u) and memory (ulimit -v)",
+                            startable, kOthers));
+  }
+  return 1 + (startable - kOthers) / kPools;
 }
 
 std::optional<int> processors_of_quota(const std::string& cpu_max) {

@@ -16,6 +16,11 @@ inline constexpr int kMostThreads = 4096;
 /// /sys are. Errors: ExitCode::usage for an $SSDO_THREADS that is not 1 to kMostThreads.
 int choose_thread_count(std::optional<int> requested, const std::filesystem::path& root = "/");
 
+/// How many of `count` threads a run can have, found by starting as many as its libraries will and
+/// ending them: OpenEXR, oneTBB and OpenImageIO crash or wait for ever where they get fewer than
+/// they ask for. Errors: ExitCode::failed where there are not even those of a single-threaded run.
+int startable_threads(int count);
+
 /// The processors of a quota of control groups v2, rounded up: "200000 100000" is the time and the
 /// period in microseconds, and gives 2. Nothing for "max" and for any other text.
 std::optional<int> processors_of_quota(const std::string& cpu_max);

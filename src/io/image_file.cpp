@@ -58,7 +58,8 @@ const ImageCodec& open_codec() {
   void* const module = dlopen(place->c_str(), RTLD_NOW | RTLD_LOCAL);
   void* const found = module ? dlsym(module, kCodecFunction) : nullptr;
   if (!found) {
-    throw Error(ExitCode::failed, fmt::format("{}: cannot be loaded ({}); install ssdo again",
+    throw Error(ExitCode::failed, fmt::format("{}: cannot be loaded ({}); raise the limits "
+                                              "on memory and open files, or install ssdo again",
                                               place->string(), one_line(dlerror())));
   }
   return *reinterpret_cast<GetImageCodec*>(found)(io_threads());

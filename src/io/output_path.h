@@ -10,7 +10,7 @@ namespace ssdo {
 inline constexpr int kMostLinks = 40;
 
 /// The file that a path stands for once symbolic links are followed, also when that file does not
-/// exist yet: an output given as a link is written through it, as cp does, and the link stays.
+/// exist yet: an output given as a link is written through it, and the link stays.
 /// Unlike std::filesystem::canonical, the folder is left as the user wrote it.
 std::filesystem::path follow_links(std::filesystem::path path);
 

@@ -28,10 +28,20 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
+/// A link to nothing may lead anywhere: a file out of the folder that was named is made on request.
+void check_dangling(const fs::path& path, const OutputPolicy& policy) {
+  std::error_code ignored;
+  if (policy.overwrite || !fs::is_symlink(path, ignored)) return;
+  fail(path,
+       fmt::format("is a symbolic link to '{}', which does not exist; give --overwrite to make "
+                   "that file, or name another output",
+                   fs::read_symlink(path, ignored).string()));
+}
+
 void check_existing(const fs::path& path, const OutputPolicy& policy) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) return;
+  if (status.type() == fs::file_type::not_found) return check_dangling(path, policy);
   if (!fs::status_known(status)) {
     fail(path, fmt::format("cannot be used: {}; name another output", error.message()));
   }
@@ -120,14 +130,16 @@ SafeFile::SafeFile(fs::path target, const OutputPolicy& policy)
     : target_(std::move(target)), policy_(policy) {
   check_output(target_, policy_);
   if (policy_.create_dirs) create_folder(target_);
-  temporary_ = temporary_beside(follow_links(target_));
-  slot_ = enter_temporary(temporary_.c_str());
+  destination_ = follow_links(target_);
+  temporary_ = temporary_beside(destination_);
+  const TableInUse in_use;
+  slot_ = enter_temporary(temporary_.c_str(), in_use);
   if (slot_ < 0)
     fail(target_, "cannot be opened: too many outputs are open, or its path is too long");
   const int descriptor = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) {
     const int error = errno;
-    leave_temporary(slot_);
+    leave_temporary(slot_, in_use);
     fail(target_, fmt::format("cannot be written: {}; write elsewhere", reason(error)));
   }
   close(descriptor);
@@ -135,20 +147,29 @@ SafeFile::SafeFile(fs::path target, const OutputPolicy& policy)
 
 SafeFile::~SafeFile() {
   if (!committed_) unlink(temporary_.c_str());
-  leave_temporary(slot_);
+  leave_temporary(slot_, TableInUse());
+}
+
+void SafeFile::flush() {
+  if (!flushed_) flush_to_disk(temporary_, target_);
+  flushed_ = true;
 }
 
 void SafeFile::commit() {
-  flush_to_disk(temporary_, target_);
-  const fs::path destination = follow_links(target_);
-  const int error = policy_.overwrite ? rename_over(temporary_, destination)
-                                      : rename_new(temporary_, destination);
+  flush();
+  const int error = policy_.overwrite ? rename_over(temporary_, destination_)
+                                      : rename_new(temporary_, destination_);
   if (error == EEXIST) {
     fail(target_, "appeared while it was being made; give --overwrite to replace it");
   }
   if (error) fail(target_, fmt::format("cannot be written: {}; write elsewhere", reason(error)));
   committed_ = true;
-  flush_folder(folder_of(destination));
+  flush_folder(folder_of(destination_));
+}
+
+void commit_all(const std::vector<std::unique_ptr<SafeFile>>& files) {
+  for (const auto& file : files) file->flush();
+  for (const auto& file : files) file->commit();
 }
 
 }  // namespace ssdo

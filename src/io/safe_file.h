@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace ssdo {
 
@@ -13,12 +15,13 @@ struct OutputPolicy {
 };
 
 /// Throws ExitCode::output if `path` may not be written under `policy`: it exists, its folder
-/// does not, it is a folder, or it cannot be written to. Called before any work is done.
+/// does not, it is a folder, or it cannot be written to. A symbolic link is written through, but
+/// only under `overwrite`, also where it leads to nothing. Called before any work is done.
 void check_output(const std::filesystem::path& path, const OutputPolicy& policy);
 
 /// A file that appears complete or not at all. It is written under a temporary name in the folder
 /// of its target (same file system, so that the rename is atomic) and renamed by `commit`. Without
-/// a commit the temporary is removed, also when SIGINT or SIGTERM ends the process.
+/// a commit the temporary is removed, also when a signal that can be caught ends the process.
 class SafeFile {
  public:
   SafeFile(std::filesystem::path target, const OutputPolicy& policy);
@@ -29,19 +32,28 @@ class SafeFile {
   const std::filesystem::path& target() const { return target_; }
   const std::filesystem::path& temporary() const { return temporary_; }
 
-  /// Flushes the temporary to disk and gives it the target's name. Without `overwrite` a target
+  /// Flushes the temporary to disk. Errors: ExitCode::output, as where only now a full disk shows.
+  void flush();
+
+  /// Flushes the temporary, once, and gives it the target's name. Without `overwrite` a target
   /// that has appeared in the meantime is not replaced. Errors: ExitCode::output.
   void commit();
 
  private:
-  std::filesystem::path target_, temporary_;
+  std::filesystem::path target_;
+  std::filesystem::path destination_;  ///< the file that a link at `target_` led to at the start
+  std::filesystem::path temporary_;
   OutputPolicy policy_;
   int slot_ = -1;
-  bool committed_ = false;
+  bool flushed_ = false, committed_ = false;
 };
 
-/// Installs handlers for SIGINT and SIGTERM that remove every open temporary and end the process
-/// with 130 or 143, and ignores SIGXFSZ and SIGPIPE so that a full disk arrives as a write error.
+/// Commits files that belong together. None gets its name before all are on the disk.
+void commit_all(const std::vector<std::unique_ptr<SafeFile>>& files);
+
+/// Has SIGINT (130), SIGTERM (143) and the other signals that end a process, such as SIGHUP and
+/// those of schedulers, remove every open temporary and end the process with 128 + their number.
+/// SIGXFSZ and SIGPIPE are ignored: a full disk arrives as a write error.
 void remove_temporaries_on_signals();
 
 }  // namespace ssdo

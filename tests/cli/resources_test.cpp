@@ -6,9 +6,15 @@
 #include <ImfThreading.h>
 #include <gmock/gmock.h>
 #include <oneapi/tbb/global_control.h>
+#include <pthread.h>
 #include <sched.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <fstream>
 #include <thread>
 
 #include "cli/memory.h"
@@ -99,6 +105,45 @@ TEST_F(Resource, ThreadsAreNoMoreThanTheLeastQuotaOfTheControlGroups) {
       << "a quota is no reason for more threads than processors";
 }
 
+/// What a child process gets that may have no more than `threads` beside its own, of `wanted`.
+/// Memory for stacks is what limits them here; root is limited by no number of processes.
+int startable_with_room_for(int threads, int wanted) {
+  const pid_t child = fork();
+  if (child == 0) {
+    int status = 99;
+    try {
+      constexpr rlim_t stack = 64 << 20;
+      pthread_attr_t stacks;
+      pthread_attr_init(&stacks);
+      pthread_attr_setstacksize(&stacks, stack);
+      pthread_setattr_default_np(&stacks);
+      std::ifstream in("/proc/self/statm");
+      rlim_t pages = 0;
+      in >> pages;
+      const rlim_t room =
+          pages * rlim_t(sysconf(_SC_PAGESIZE)) + rlim_t(2 * threads + 1) * stack / 2;
+      const rlimit space{room, room};
+      setrlimit(RLIMIT_AS, &space);
+      status = startable_threads(wanted);
+    } catch (const Error& error) {
+      status = error.code == ExitCode::failed ? 0 : 98;
+    }
+    _exit(status);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(StartableThreads, AreThoseThatCanBeStarted) {
+  EXPECT_EQ(startable_threads(1), 1);
+  EXPECT_EQ(startable_threads(4), 4);
+  EXPECT_EQ(startable_with_room_for(15, 4), 4);
+  EXPECT_EQ(startable_with_room_for(14, 4), 3);
+  EXPECT_EQ(startable_with_room_for(6, 4), 1);
+  EXPECT_EQ(startable_with_room_for(5, 4), 0) << "an error";
+}
+
 TEST(Quota, IsRoundedUpToProcessors) {
   EXPECT_EQ(processors_of_quota("200000 100000"), 2);
   EXPECT_EQ(processors_of_quota("150000 100000"), 2);
@@ -169,6 +214,15 @@ TEST_F(Resource, MemoryIsThreeQuartersOfTheLeastLimit) {
                     {"sys/fs/cgroup/memory/job/memory.limit_in_bytes", "40000000"},
                     {"sys/fs/cgroup/memory/memory.limit_in_bytes", "9223372036854771712"}};
   EXPECT_EQ(choose_memory(std::nullopt, v1.path()), 30000000u);
+}
+
+TEST_F(Resource, MemoryIsNoMoreThanTheAddressSpace) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  const rlimit space{rlim_t(8) << 30, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &space), 0);
+  EXPECT_EQ(memory_in("max", "max"), std::min(default_of(physical_memory()), 6144 * kMiB));
+  setrlimit(RLIMIT_AS, &before);
 }
 
 TEST_F(Resource, MemoryIsNoMoreThanSlurmGrants) {

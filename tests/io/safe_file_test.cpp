@@ -7,13 +7,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <thread>
 #include <vector>
 
 #include "io/checked_file.h"
+#include "io/temporary_table.h"
 #include "support/error_matchers.h"
 #include "support/temp_dir.h"
 
@@ -66,6 +69,21 @@ TEST(SafeFile, LeavesNothingWithoutCommit) {
   EXPECT_EQ(files_in(dir.path()), 0u);
 }
 
+TEST(SafeFile, SeveralAreRenamedOnceAllAreOnTheDisk) {
+  const TempDir dir;
+  std::vector<std::unique_ptr<SafeFile>> files;
+  for (const char* name : {"a.exr", "b.exr"})
+    files.push_back(std::make_unique<SafeFile>(dir / name, kNew));
+  const fs::path lost = files[1]->temporary();
+  fs::remove(lost);
+  EXPECT_THAT(error_of([&] { commit_all(files); }),
+              IsError(ExitCode::output, "b.exr: cannot be written"));
+  EXPECT_FALSE(fs::exists(dir / "a.exr"));
+  write_text(lost, "back");
+  commit_all(files);
+  EXPECT_EQ(files_in(dir.path()), 2u);
+}
+
 TEST(SafeFile, RespectsTheUmask) {
   const TempDir dir;
   const mode_t before = umask(027);
@@ -105,11 +123,39 @@ TEST(SafeFile, WritesThroughLinks) {
   fs::create_symlink("store/real.exr", dir / "link.exr");
   fs::create_symlink("store/later.exr", dir / "dangling.exr");
   save(dir / "link.exr", "new", kOverwrite);
-  save(dir / "dangling.exr", "made", kNew);
+  save(dir / "dangling.exr", "made", kOverwrite);
   EXPECT_TRUE(fs::is_symlink(dir / "link.exr"));
   EXPECT_TRUE(fs::is_symlink(dir / "dangling.exr"));
   EXPECT_EQ(text_of(dir / "store" / "real.exr"), "new");
   EXPECT_EQ(text_of(dir / "store" / "later.exr"), "made");
+}
+
+TEST(SafeFile, FollowsNoLinkWithoutOverwrite) {
+  const TempDir dir;
+  write_text(dir / "real.exr", "old");
+  fs::create_symlink("real.exr", dir / "link.exr");
+  fs::create_symlink("later.exr", dir / "dangling.exr");
+  EXPECT_THAT(error_of([&] { check_output(dir / "link.exr", kNew); }),
+              IsError(ExitCode::output, "link.exr: exists"));
+  EXPECT_THAT(error_of([&] { check_output(dir / "dangling.exr", kNew); }),
+              IsError(ExitCode::output, "is a symbolic link to 'later.exr', which does not exist"));
+}
+
+TEST(SafeFile, FollowsNoLinkThatAppearedMeanwhile) {
+  const TempDir dir;
+  fs::create_directory(dir / "elsewhere");
+  for (const OutputPolicy& policy : {kNew, kOverwrite}) {
+    fs::remove(dir / "a.exr");
+    SafeFile file(dir / "a.exr", policy);
+    write_text(file.temporary(), "new");
+    fs::create_symlink("elsewhere/a.exr", dir / "a.exr");
+    if (policy.overwrite)
+      file.commit();
+    else
+      EXPECT_EQ(error_of([&] { file.commit(); }).code, ExitCode::output);
+    EXPECT_EQ(fs::is_symlink(dir / "a.exr"), !policy.overwrite);
+    EXPECT_EQ(files_in(dir / "elsewhere"), 0u);
+  }
 }
 
 TEST(SafeFile, LinksInACircleAreAnError) {
@@ -217,7 +263,7 @@ int status_of_child(const Action& action) {
 
 TEST(SafeFile, SignalsRemoveEveryTemporary) {
   const TempDir dir;
-  for (const int signal : {SIGTERM, SIGINT}) {
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGALRM, SIGXCPU, SIGUSR1, SIGUSR2}) {
     EXPECT_EQ(status_of_child([&] {
                 remove_temporaries_on_signals();
                 SafeFile first(dir / "a.exr", kNew), second(dir / "b.exr", kNew);
@@ -231,6 +277,38 @@ TEST(SafeFile, SignalsRemoveEveryTemporary) {
               128 + signal);
     EXPECT_EQ(files_in(dir.path()), 1u) << "only the committed c.exr stays";
   }
+}
+
+TEST(SafeFile, IgnoresAHangupThatTheCallerIgnores) {
+  const TempDir dir;
+  EXPECT_EQ(status_of_child([&] {
+              std::signal(SIGHUP, SIG_IGN);
+              remove_temporaries_on_signals();
+              SafeFile file(dir / "a.exr", kNew);
+              raise(SIGHUP);
+              file.commit();
+            }),
+            0);
+  EXPECT_EQ(files_in(dir.path()), 1u);
+}
+
+TEST(SafeFile, ASignalWaitsForATemporaryThatIsBeingMade) {
+  const TempDir dir;
+  EXPECT_EQ(status_of_child([&] {
+              remove_temporaries_on_signals();
+              std::atomic<bool> begun = false;
+              std::thread maker([&] {
+                const TableInUse in_use;
+                begun = true;
+                usleep(100'000);
+                write_text(dir / "made", "");
+              });
+              while (!begun) usleep(1000);
+              kill(getpid(), SIGTERM);
+              maker.join();
+            }),
+            128 + SIGTERM);
+  EXPECT_EQ(files_in(dir.path()), 1u);
 }
 
 TEST(CheckedFile, FullDiskIsAnErrorThatNamesTheTarget) {

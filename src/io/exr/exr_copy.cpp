@@ -38,6 +38,8 @@ void copy_part(const ExrReader& input, const ExrPart& part, Imf::MultiPartOutput
     copy(input.file(), part.index, output);
   } catch (const Error&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     throw Error(ExitCode::input,
                 fmt::format("{}: {} cannot be copied ({}); render or copy the file again, or leave "

@@ -76,6 +76,8 @@ class ExrWriter::File {
       step();
     } catch (const Error&) {
       throw;
+    } catch (const std::bad_alloc&) {
+      throw;
     } catch (const std::exception& error) {
       if (checked_.failed()) checked_.close();
       throw Error(ExitCode::output, fmt::format("{}: cannot be written as EXR ({})", target_,

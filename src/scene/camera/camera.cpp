@@ -171,7 +171,8 @@ Camera camera_from_ortho_width(double width, const Window& display, double pixel
 
 Camera read_camera(const std::filesystem::path& path, const Window& display, double pixel_aspect) {
   std::ifstream in(path);
-  if (!in) {
+  in.peek();  // a folder can be opened, but not read
+  if (in.bad() || !in.is_open()) {
     throw Error(ExitCode::input,
                 fmt::format("{}: camera file cannot be read; check --camera", path.string()));
   }

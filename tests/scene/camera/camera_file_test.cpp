@@ -50,6 +50,11 @@ TEST_F(CameraFile, FieldsOfViewAndSizesAreThoseOfACamera) {
   EXPECT_NEAR(read(R"({"hfov_deg": 90})").fx, 32, 1e-9);
 }
 
+TEST_F(CameraFile, IsNoFolder) {
+  EXPECT_THAT(error_of([&] { read_camera(dir_.path(), {0, 0, 64, 48}, 1); }),
+              IsError(ExitCode::input, "camera file cannot be read"));
+}
+
 TEST_F(CameraFile, APoseIsARigidMatrixForColumnVectors) {
   expect_refused(with_matrix("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[1,2,3,1]]"),
                  "the last row of world_to_camera is 1 2 3 1, not 0 0 0 1");

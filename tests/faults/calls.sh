@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+# Sourced by run.sh: system calls that fail, one at a time, as on failing disks and network file systems.
+# strace(1) makes them fail.
+
+# with_failing CALLS ERROR WHICH ARGUMENTS...: as run.
+with_failing() {
+  around=(strace --follow-forks --quiet=all --output=/dev/null --trace="$1" --inject="$1:error=$2:when=$3")
+  run "${@:4}"
+  [ "$code" -ne 0 ] || around=()
+}
+
+# calls_of CALLS ARGUMENTS...: how many a run makes.
+calls_of() {
+  around=(strace --follow-forks --quiet=all --output="$work/calls" --trace="$1")
+  : >"$work/calls"
+  run "${@:2}"
+  around=()
+  grep -c "(" "$work/calls" || true
+}
+
+# What cannot be renamed stays as it was; the outputs before it are new.
+test_renaming() {
+  local options
+  for options in "" --overwrite; do
+    new_case
+    with_failing rename,renameat2 EACCES 1 "${job[@]}" $options -o a.exr -o a.png
+    around=()
+    refused 5 "a.exr: cannot be written: Permission denied" a.exr a.png
+    with_failing rename,renameat2 EACCES 2 "${job[@]}" $options -o a.exr -o a.png
+    around=()
+    ended 5 "a.png: cannot be written: Permission denied"
+    are new a.exr
+    are none a.png
+    holds a.exr
+  done
+  new_case
+  with_failing renameat2 EINVAL 1+ "${job[@]}" -o a.exr -o a.png
+  around=()
+  made a.exr a.png
+  say "calls: rename fails; file systems that cannot rename without replacing are written to"
+}
+
+# A limit that the first, second... thread reaches. (A library whose thread fails once, after others
+# have started, may wait for it for ever.)
+test_no_thread() {
+  local i good=0 bad=0
+  for ((i = 1; i <= 9; i += 2)); do
+    new_case old a.exr a.png
+    with_failing clone3 EAGAIN "$i+" "${job[@]}" --overwrite --threads 2 -o a.exr -o a.png
+    if [ "$code" -eq 0 ]; then made a.exr a.png; else refused 1 thread a.exr a.png; fi
+    around=()
+    count_outcome
+  done
+  say "calls: clone3 fails (EAGAIN): $good runs made what they should, $bad refused"
+}
+
+# test_each_of CALLS MOST ERROR...: up to MOST of the calls, at random if there are more.
+test_each_of() {
+  local calls=$1 most=$2 count error i which good=0 bad=0
+  new_case old a.exr a.png
+  count=$(calls_of "$calls" "${job[@]}" --overwrite --threads 2 -o a.exr -o a.png)
+  [ "$count" -gt 0 ] || complain "${calls%%,*} is never called"
+  for error in "${@:3}"; do
+    for ((i = 1; i <= count && i <= most; i++)); do
+      which=$i
+      draw "$count"
+      [ "$count" -le "$most" ] || which=$((1 + drawn))
+      new_case old a.exr a.png
+      with_failing "$calls" "$error" "$which" "${job[@]}" --overwrite --threads 2 -o a.exr -o a.png
+      if [ "$code" -ne 127 ]; then made_or_refused "1 2 3 4 5" "" a.exr a.png; fi
+      around=()
+      count_outcome
+    done
+  done
+  say "calls: ${calls%%,*} fails (${*:3}), of $count: $good runs made what they should, $bad refused"
+}
+
+test_calls() {
+  local most=$((runs / 8))
+  test_each_of write "$most" ENOSPC EIO
+  test_each_of fsync "$most" ENOSPC EDQUOT EIO
+  test_each_of close "$most" ENOSPC EIO
+  test_renaming
+  test_each_of lseek "$most" EIO
+  test_each_of read,pread64 "$most" EIO
+  test_each_of openat "$most" EMFILE
+  test_each_of mmap,brk "$most" ENOMEM
+  test_no_thread
+}

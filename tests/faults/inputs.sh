@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+# Sourced by run.sh: inputs that vanish, shrink or change while they are read, and files that are none.
+
+# draw_delay: sets drawn to microseconds within a run; mostly few, since it reads first.
+draw_delay() {
+  draw "$job_us"
+  draw $((drawn + 1))
+}
+
+# disturb HOW FILE DELAY
+disturb() {
+  pause "$3"
+  case $1 in
+    removed) rm -f "$2" ;;
+    emptied) : >"$2" ;;
+    halved) truncate --size="$(($(stat --format=%s "$2") / 2))" "$2" ;;
+    renamed) mv "$given/other.exr" "$2" ;;
+    rewritten) cat "$given/other.exr" >"$2" ;;
+  esac
+}
+
+# is_whole FILE: all its pixels can be read, whatever it was made from.
+is_whole() { "$tool" compare "$1" "$1" >/dev/null 2>&1 || complain "$1 cannot be read"; }
+
+# test_disturbed HOW FILE ARGUMENTS...: FILE is one of the inputs that are named.
+test_disturbed() {
+  new_case
+  draw_delay
+  disturb "$1" "$2" "$drawn" &
+  local other=$!
+  run "${@:3}" -q -o a.exr
+  wait "$other"
+  ended "0 3"
+  holds a.exr
+  if [ "$code" -eq 0 ]; then
+    is_whole a.exr
+    [ "$1" = rewritten ] || [ "$1" = renamed ] || are new a.exr
+    finished=$((finished + 1))
+  else
+    are none a.exr
+  fi
+}
+
+test_changing_inputs() {
+  local finished=0 i count=$((runs / 4)) file=$given/shot.1001.exr
+  for ((i = 0; i < count; i++)); do
+    cp "$input/sky.exr" "$given/sky.exr"
+    cp "$frame" "$file"
+    cp "$input/shot.1002.exr" "$given/other.exr"
+    case $((i % 2)) in
+      0)
+        pick removed emptied halved renamed rewritten
+        test_disturbed "$picked" "$file" "$file" --env "$input/sky.exr"
+        ;;
+      1)
+        pick removed emptied halved
+        test_disturbed "$picked" "$given/sky.exr" "$frame" --env "$given/sky.exr"
+        ;;
+    esac
+  done
+  say "inputs that change: $count runs, $finished finished, the others refused; every output whole"
+}
+
+# Frames, further pictures and neighbours that go between two frames.
+test_changing_shots() {
+  local i name finished=0 count=$((runs / 8)) known victim
+  for ((i = 0; i < count; i++)); do
+    rm -rf "$given"/*
+    cp "$input"/shot.*.exr "$given"
+    new_case
+    pick "" "--also $given/shot.1003.exr" "--neighbours 1"
+    known=$picked
+    pick "$given"/shot.*.exr
+    victim=$picked
+    pick removed emptied halved
+    draw_delay
+    disturb "$picked" "$victim" "$drawn" &
+    local other=$!
+    run "$given/shot.####.exr" --frames 1001-1002 $known -q --env "$input/sky.exr" -o a.####.exr
+    wait "$other"
+    ended "0 3"
+    for name in a.*.exr; do [ ! -e "$name" ] || is_whole "$name"; done
+    holds a.1001.exr a.1002.exr
+    [ "$code" -ne 0 ] || finished=$((finished + 1))
+  done
+  rm -rf "$given"/*
+  say "shots that change: $count runs, $finished finished, the others refused; every output whole"
+}
+
+# refuse_input CODES ARGUMENTS...: no output is made.
+refuse_input() {
+  new_case
+  run "${@:2}"
+  refused "$1" "" a.exr
+  count=$((count + 1))
+}
+
+# Where a file is expected: what is none, in every option that names one. Text may come from a pipe.
+test_odd_inputs() {
+  local odd option count=0
+  mkfifo "$given/pipe.exr"
+  mkdir "$given/folder.exr"
+  : >"$given/empty.exr"
+  python3 -c 'import socket, sys; socket.socket(socket.AF_UNIX).bind(sys.argv[1])' "$given/socket.exr"
+  for odd in "$given"/{pipe,folder,empty,socket,none}.exr /dev/{zero,null,full} /proc/{cpuinfo,self/mem}; do
+    refuse_input 3 "$odd" -q -o a.exr
+    refuse_input 3 "$frame" -q -o a.exr --env "$odd"
+  done
+  for odd in "$given"/{pipe,folder}.exr /dev/zero /proc/self/mem; do
+    refuse_input 3 info "$odd"
+    refuse_input 3 compare "$odd" "$new/a.exr"
+    refuse_input 3 compare "$new/a.exr" "$new/a.exr" --mask "$odd"
+    refuse_input 3 bench "$tiny" -q --methods sao --truth "$odd:AO"
+    refuse_input 3 "$frame" -q -o a.exr --also "$odd"
+    refuse_input "3 4" "$frame" -q -o a.exr --aov "albedo=$odd:Albedo"
+  done
+  for odd in "$given"/{folder,socket,none}.exr /proc/self/mem; do
+    refuse_input 3 "$frame" -q -o a.exr --camera "$odd"
+    refuse_input 2 "$frame" -q -o a.exr --config "$odd"
+    refuse_input 3 "$frame" -q -o a.png --ocio "$odd"
+  done
+  rm -r "$given"/*
+  say "inputs that are no files: $count runs refused, none waits"
+}
+
+test_inputs() {
+  local job_us
+  new_case
+  job_us=$(microseconds run "${job[@]}" -o a.exr)
+  test_changing_inputs
+  test_changing_shots
+  test_odd_inputs
+}

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+# Sourced by run.sh: too little memory, too few open files, too few threads.
+
+# The loader has its own words, before the tool starts.
+was_loaded() { [ "$code" -ne 127 ] || ! grep -q "error while loading shared libraries" "$log.err"; }
+
+# count_outcome: good counts the runs that are done, bad those that are refused.
+count_outcome() {
+  if [ "$code" -eq 0 ]; then good=$((good + 1)); else bad=$((bad + 1)); fi
+}
+
+test_address_space() {
+  local mib threads good=0 bad=0
+  for threads in 1 4; do
+    for ((mib = 64; mib < 760; mib += mib < 320 ? 32 : 128)); do
+      new_case old a.exr a.png
+      around=(prlimit --as=$((mib << 20)))
+      run "${job[@]}" --overwrite -o a.exr -o a.png --threads "$threads"
+      around=()
+      was_loaded || continue
+      made_or_refused 1 "memory|threads" a.exr a.png
+      count_outcome
+      new_case old a.exr
+      draw 4096
+      around=(prlimit --as=$(((mib << 20) + 4096 * drawn)))
+      run "${job[@]}" --overwrite -o a.exr --threads "$threads"
+      around=()
+      was_loaded || continue
+      made_or_refused 1 "memory|threads" a.exr
+      count_outcome
+    done
+  done
+  [ "$good" -gt 0 ] && [ "$bad" -gt 0 ] || complain "$good runs made, $bad refused"
+  say "address space: $good runs made what they should, $bad refused for want of memory"
+}
+
+# make_group BYTES: a control group for memory, of version 1 or 2. Fails where there may be none.
+make_group() {
+  local limit=memory.max swap=memory.swap.max
+  group=/sys/fs/cgroup/ssdo-faults-$$
+  [ ! -d /sys/fs/cgroup/memory ] || group=/sys/fs/cgroup/memory/ssdo-faults-$$ limit=memory.limit_in_bytes
+  mkdir "$group" && echo "$1" >"$group/$limit" && [ -w "$group/cgroup.procs" ] || return 1
+  [ ! -e "$group/$swap" ] || echo 0 >"$group/$swap"
+} 2>/dev/null
+
+drop_group() { rmdir "$group" 2>/dev/null || true; }
+
+# run_in_group ARGUMENTS...: as run, in the control group.
+run_in_group() {
+  arguments=("$@") code=0
+  (echo "$BASHPID" >"$group/cgroup.procs" && as_plain_user timeout --foreground 60 "$tool" "$@") \
+    >"$log.out" 2>"$log.err" </dev/null || code=$?
+} 2>/dev/null
+
+test_control_group() {
+  local mib group good=0 killed=0 bad=0 left=0
+  for mib in 8 12 16 24 32 48 64 128; do
+    make_group $((mib << 20)) || { drop_group; say "control group: none can be made here; left out"; return 0; }
+    new_case old a.exr a.png
+    run_in_group "${job[@]}" --overwrite -o a.exr -o a.png
+    if [ "$code" -eq 137 ]; then
+      killed=$((killed + 1))
+      are old a.exr a.png
+    else
+      made_or_refused "1 2" "memory" a.exr a.png  # 2: pictures are not made in bands
+      count_outcome
+    fi
+    left=$((left + $(leftovers | wc -l)))
+    run "${job[@]}" --overwrite -o a.exr -o a.png
+    made a.exr a.png
+    drop_group
+  done
+  say "control group: $good made, $bad refused, $killed killed; the next run removed $left temporaries"
+}
+
+test_open_files() {
+  local most good=0 bad=0
+  for most in 3 4 5 6 7 8 10 12 16 20; do
+    new_case old a.exr a.png
+    around=(prlimit --nofile="$most")
+    run "${job[@]}" --overwrite -o a.exr -o a.png --stats stats.json
+    around=()
+    was_loaded || continue
+    rm -f stats.json
+    made_or_refused "1 3 5" "" a.exr a.png
+    count_outcome
+  done
+  say "open files: $good runs made what they should, $bad refused"
+}
+
+test_threads() {
+  local most good=0 bad=0
+  for most in 1 2 3 4 5 6 7 8 9 10 11 12 14 16 20; do
+    new_case old a.exr a.png
+    around=(prlimit --nproc="$most")
+    run "${job[@]}" --overwrite -o a.exr -o a.png --threads 4
+    around=()
+    made_or_refused 1 "threads" a.exr a.png
+    count_outcome
+    around=(prlimit --nproc="$most")
+    run compare "$new/a.exr" "$old/a.png:R" --json
+    around=()
+    ended "0 1 4"
+  done
+  [ "$good" -gt 0 ] && [ "$bad" -gt 0 ] || complain "$good runs made, $bad refused"
+  say "threads: $good runs made what they should, $bad refused"
+}
+
+test_limits() {
+  test_address_space
+  test_control_group
+  test_open_files
+  test_threads
+}
