@@ -12,8 +12,10 @@
 #include <array>
 #include <cerrno>
 #include <fstream>
+#include <new>
 
 #include "error.h"
+#include "io/exr/attribute_sizes.h"
 #include "io/one_line.h"
 #include "io/size_guard.h"
 
@@ -26,7 +28,9 @@ namespace {
   throw Error(ExitCode::input, fmt::format("{}: {}", file.string(), what));
 }
 
-Window window(const Imath::Box2i& box) {
+}  // namespace
+
+Window window_of(const Imath::Box2i& box) {
   return {box.min.x, box.min.y, box.max.x + 1, box.max.y + 1};
 }
 
@@ -55,8 +59,6 @@ double pixels_per_chunk(const ExrPart& part) {
   return double(part.data_window.width()) * lines_per_chunk(part.header.compression());
 }
 
-}  // namespace
-
 void check_is_exr(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
@@ -80,6 +82,7 @@ void check_is_exr(const fs::path& file) {
     fail(file,
          "is not an EXR file, by its first four bytes; convert it, for example with oiiotool");
   }
+  check_attribute_sizes(file);
 }
 
 bool begins_as_exr(const fs::path& file) {
@@ -88,6 +91,10 @@ bool begins_as_exr(const fs::path& file) {
 }
 
 void throw_damaged(const ExrReader& file, const ExrPart& part, const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error))
+    fail(file.path(), fmt::format("{} needs more memory than there is; reduce the image or use a "
+                                  "larger machine",
+                                  label(part)));
   const char* state = file.file().partComplete(part.index)
                           ? "is damaged or cut short"
                           : "is incomplete: its writing was interrupted";
@@ -103,8 +110,8 @@ ExrPart describe_part(const Imf::MultiPartInputFile& file, int index) {
   if (header.hasName()) part.name = header.name();
   if (header.hasView()) part.view = header.view();
   part.deep = header.hasType() && Imf::isDeepData(header.type());
-  part.data_window = window(header.dataWindow());
-  part.display_window = window(header.displayWindow());
+  part.data_window = window_of(header.dataWindow());
+  part.display_window = window_of(header.displayWindow());
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
     part.channels.push_back(
         {c.name(), c.channel().type, c.channel().xSampling, c.channel().ySampling});
