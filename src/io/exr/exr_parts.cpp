@@ -98,8 +98,10 @@ void throw_damaged(const ExrReader& file, const ExrPart& part, const std::except
   const char* state = file.file().partComplete(part.index)
                           ? "is damaged or cut short"
                           : "is incomplete: its writing was interrupted";
-  fail(file.path(), fmt::format("{} ({}: {}); render or copy it again", state, label(part),
-                                one_line(error.what())));
+  const bool offers = file.salvage() == Salvage::offered && !part.deep;
+  fail(file.path(), fmt::format("{} ({}: {}); render or copy it again{}", state, label(part),
+                                one_line(error.what()),
+                                offers ? ", or take what is there with --allow-partial" : ""));
 }
 
 ExrPart describe_part(const Imf::MultiPartInputFile& file, int index) {
