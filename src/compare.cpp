@@ -2,7 +2,6 @@
 #include "compare.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +15,7 @@
 #include "io/picture_layers.h"
 #include "io/run_files.h"
 #include "metrics/difference.h"
+#include "nearest_name.h"
 
 namespace ssdo {
 namespace {
@@ -209,10 +209,7 @@ nlohmann::json to_json(const CompareOptions& options, const Comparison& all) {
 std::string list_channels(std::string_view where, const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 8;
   if (names.empty()) return "";
-  const auto end = names.begin() + std::ptrdiff_t(std::min(kMost, names.size()));
-  std::string text = fmt::format("only in {}: {}", where, fmt::join(names.begin(), end, ", "));
-  if (names.size() > kMost) text += fmt::format(" and {} more", names.size() - kMost);
-  return printable(text) + "\n";
+  return printable(fmt::format("only in {}: {}", where, some_of(names, kMost))) + "\n";
 }
 
 std::string to_table(const Comparison& all) {

@@ -81,6 +81,14 @@ std::vector<std::string> Frame::warnings() const {
   return all;
 }
 
+std::vector<std::string> Frame::losses() const {
+  std::vector<std::string> all;
+  for (const ExrReader& file : files)
+    for (const std::string& line : file.losses()) all.push_back(line);
+  all.insert(all.end(), further_losses.begin(), further_losses.end());
+  return all;
+}
+
 Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherPictures& pictures,
                     const FrameFiles& files, int number) {
   Frame frame;
@@ -91,7 +99,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   std::vector<Role> unused;
   if (!wants_reflection(options.output, files.aovs)) unused.push_back(Role::roughness);
   if (!options.model.temporal) unused.push_back(Role::motion);
-  std::deque<ExrReader> opened = open_view(files.input, files.aovs);
+  std::deque<ExrReader> opened = open_view(files.input, files.aovs, options.input.allow_partial);
   const double opening = watch.lap();
   InputOptions input = for_view(options.input, files);
   input.gbuffer.downsample = options.output.downsample;
@@ -156,6 +164,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   if (!files.also.empty() || !files.neighbours.empty()) frame.times.known += of_known.lap();
   frame.report.warnings.insert(frame.report.warnings.end(), known.warnings.begin(),
                                known.warnings.end());
+  frame.further_losses = std::move(known.losses);
   frame.plan = make_plan(model, options.output, scene, frame.gbuffer, frame.input);
   if (frame.gbuffer.grid.is_coarse()) {
     const Window& all = frame.part().data_window;

@@ -55,7 +55,8 @@ struct Frame {
   Plan plan;
   std::string advice;                ///< what to render where much is guessed: see explain_guessed
   std::vector<std::string> history;  ///< what a temporal plan takes from the frame before, and why
-  StageTimes times;                  ///< of the stages up to here
+  std::vector<std::string> further_losses;  ///< of further views; see ExrReader::losses()
+  StageTimes times;                         ///< of the stages up to here
   /// Set for a frame that is larger than memory: the scene and what is left of the G-buffer then
   /// are an overview of it, one pixel of kOverviewStride x kOverviewStride.
   std::optional<BandPlan> bands;
@@ -64,6 +65,10 @@ struct Frame {
   const Layer& lead() const;
   const ExrPart& part() const;
   std::vector<std::string> warnings() const;
+
+  /// What --allow-partial has found missing so far, in files of the frame and of further views: a
+  /// line each. Rows may be read, and channels kept, until the outputs are written.
+  std::vector<std::string> losses() const;
 };
 
 /// Reads the files of a frame and decides what to do with them: read, layers, gbuffer, camera,

@@ -102,7 +102,7 @@ class ViewReader {
       return;
     }
     if (!knows_place("--also " + path)) return;
-    known_.views.push_back(place(picture, frame_.scene.geometry));
+    add(place(picture, frame_.scene.geometry));
     known_.warnings.insert(known_.warnings.end(), picture->warnings.begin(),
                            picture->warnings.end());
   }
@@ -135,10 +135,16 @@ class ViewReader {
       FurtherView view =
           place(pictures_.alike(files, options_.input, camera), frame_.scene.geometry);
       view.is_neighbour = true;
-      known_.views.push_back(std::move(view));
+      add(std::move(view));
     } catch (const Error& e) {
       known_.warnings.push_back(fmt::format("left out as {}: {}", role, e.what()));
     }
+  }
+
+  void add(FurtherView view) {
+    const std::vector<std::string>& losses = view.picture->losses;
+    known_.losses.insert(known_.losses.end(), losses.begin(), losses.end());
+    known_.views.push_back(std::move(view));
   }
 
   /// False for a frame without surfaces, to which no view can add anything.

@@ -20,6 +20,7 @@ struct KnownGeometry {
   std::vector<DeepImage> deep;     ///< of the frame itself
   std::vector<FurtherView> views;  ///< of other cameras, in the frame's camera space
   std::vector<std::string> warnings;
+  std::vector<std::string> losses;  ///< of the views; see ExrReader::losses()
 };
 
 /// Reads what `files` name beside the frame, but for neighbours that do not exist; of those, and of

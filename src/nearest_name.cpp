@@ -6,6 +6,7 @@
 #include "nearest_name.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -69,6 +70,12 @@ std::optional<std::string> nearest_name(std::string_view wrong,
 std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& names) {
   const auto name = nearest_name(wrong, names);
   return name ? fmt::format("did you mean {}? ", *name) : "";
+}
+
+std::string some_of(const std::vector<std::string>& names, std::size_t most) {
+  const auto end = names.begin() + std::ptrdiff_t(std::min(most, names.size()));
+  const std::string text = fmt::format("{}", fmt::join(names.begin(), end, ", "));
+  return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
 }
 
 }  // namespace ssdo

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,5 +17,8 @@ std::optional<std::string> nearest_name(std::string_view wrong,
 
 /// "did you mean NAME? ", for a message; "" where no name is near.
 std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& names);
+
+/// "a, b, c and 7 more": at most `most` of the names, for a message that stays readable.
+std::string some_of(const std::vector<std::string>& names, std::size_t most = 30);
 
 }  // namespace ssdo

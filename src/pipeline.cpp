@@ -9,6 +9,7 @@
 #include "color/display_image.h"
 #include "io/image_file.h"
 #include "io/json_text.h"
+#include "io/size_guard.h"
 #include "scene/layers/groups.h"
 #include "stopwatch.h"
 
@@ -62,6 +63,13 @@ std::vector<ExrOutput> by_part(const std::vector<ExrContents>& views) {
   return parts;
 }
 
+/// A picture shows the whole display window, however little of it there are pixels for.
+void check_display_size(const Frame& frame) {
+  const double factor = frame.gbuffer.downsampling.factor,
+               values = 4 * double(frame.part().display_window.area()) / (factor * factor);
+  check_decoded_size(frame.input, 0, values * sizeof(float));
+}
+
 void append(std::vector<std::string>& lines, const std::vector<std::string>& more) {
   lines.insert(lines.end(), more.begin(), more.end());
 }
@@ -71,6 +79,7 @@ void append(std::vector<std::string>& lines, const std::vector<std::string>& mor
 std::optional<DisplayTransform> make_display(const RelightJob& job) {
   for (const Target& target : job.targets) {
     if (has_exr_ending(target.path) || !target.shows(job.frame.view)) continue;
+    check_display_size(job.frame);
     load_image_codec();
     if (needs_display(product_of_picture(target, job.frame.plan)))
       return DisplayTransform(job.options.color, color_tags(job.frame));

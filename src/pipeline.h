@@ -65,7 +65,8 @@ void write_outputs(const std::vector<RelitFrame>& views,
 
 /// How colours become those of a display, where a target is a picture that shows colours. Where a
 /// target is a picture, loads what writes it.
-/// Errors: those of DisplayTransform and load_image_codec().
+/// Errors: those of DisplayTransform and load_image_codec(); ExitCode::input where the picture does
+/// not fit into memory.
 std::optional<DisplayTransform> make_display(const RelightJob& job);
 
 /// What an EXR of a job holds of `results`, which have to stay. Channels are named as those of the

@@ -58,5 +58,12 @@ TEST(DidYouMean, IsAQuestionOrNothing) {
   EXPECT_EQ(did_you_mean("magic", kNames), "");
 }
 
+TEST(SomeOf, NamesTheFirstAndCountsTheRest) {
+  EXPECT_EQ(some_of({}), "");
+  EXPECT_EQ(some_of({"a"}), "a");
+  EXPECT_EQ(some_of({"a", "b"}, 2), "a, b");
+  EXPECT_EQ(some_of({"a", "b", "c", "d"}, 2), "a, b and 2 more");
+}
+
 }  // namespace
 }  // namespace ssdo::test

@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "cli/describe.h"
@@ -49,6 +50,7 @@ struct Work {
   std::vector<WorkOnView> views = {};  ///< while there is something left to do with them
   std::string lines = {};              ///< to be printed
   nlohmann::json statistics = {};      ///< of its views; null unless the outputs were made
+  std::set<std::string> losses = {};   ///< what --allow-partial has taken as background
   std::optional<Error> error = {};
 };
 
@@ -67,6 +69,7 @@ class Batch {
         overlaps_(resources.threads() > 1 && jobs_.size() > 1),
         // A temporal frame hands its surfaces to the next one, which therefore waits.
         writes_behind_(overlaps_ && !options.model.temporal),
+        pictures_(options.input.allow_partial),
         progress_(options.batch.progress, options.verbosity.quiet),
         info_(options.verbosity.json, progress_) {
     const std::size_t views = std::max(std::size_t(1), options.input.views.size());
@@ -241,6 +244,7 @@ class Batch {
     Frame& frame = view.frame;
     Past past{std::move(before), {}};
     if (options_.model.temporal) place_in_sequence(frame, past, before_of(work.index));
+    if (options_.command == Command::info || options_.verbosity.dry_run) note_losses(work, frame);
     if (options_.command == Command::info) return info_.show(frame);
     if (options_.verbosity.dry_run || options_.verbosity.verbose)
       work.lines += describe(frame);
@@ -282,6 +286,7 @@ class Batch {
                      "");
       }
       for (WorkOnView& view : work.views) {
+        note_losses(work, view.frame);
         work.statistics.push_back(
             statistics_of(view.frame, jobs_[work.index], resources_, view.relit));
         if (!options_.model.temporal) continue;
@@ -293,8 +298,14 @@ class Batch {
     work.views.clear();
   }
 
+  static void note_losses(Work& work, const Frame& frame) {
+    for (const std::string& loss : frame.losses()) work.losses.insert(loss);
+  }
+
   /// Says what became of a job, once all those before it are concluded.
   void conclude(Work& work) {
+    for (const std::string& loss : work.losses) add(work, loss + "; taken as background");
+    if (!work.losses.empty() && code_ == ExitCode::done) code_ = ExitCode::input;
     print_lines(work);
     for (nlohmann::json& view : work.statistics) statistics_.push_back(std::move(view));
     if (work.error) {

@@ -16,11 +16,11 @@ namespace {
 
 /// Options that bench sets itself, and those that need an output.
 const std::set<std::string> kRefused = {
-    "--method",    "--quality", "--slices",        "--steps",         "--error",
-    "--temporal",  "--output",  "--save",          "--pixel-type",    "--compression",
-    "--bits",      "--frames",  "--keep-channels", "--skip-existing", "--on-error",
-    "--crop",      "--dry-run", "--stats",         "--neighbours",    "--list-methods",
-    "--downsample"};
+    "--method",     "--quality",      "--slices",        "--steps",         "--error",
+    "--temporal",   "--output",       "--save",          "--pixel-type",    "--compression",
+    "--bits",       "--frames",       "--keep-channels", "--skip-existing", "--on-error",
+    "--crop",       "--dry-run",      "--stats",         "--neighbours",    "--list-methods",
+    "--downsample", "--allow-partial"};
 
 /// Groups of options that change what the main job computes.
 const std::set<std::string> kCarried = {"Input", "Camera", "Light", "Model"};

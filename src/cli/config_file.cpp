@@ -11,6 +11,7 @@
 
 #include "error.h"
 #include "io/one_line.h"
+#include "io/size_guard.h"
 #include "nearest_name.h"
 
 namespace ssdo {
@@ -50,6 +51,9 @@ class ConfigFile {
   }
 
  private:
+  /// Every option takes less than 10 KiB; toml++ recurses into tables, and has the stack for this.
+  static constexpr std::size_t kMostBytes = 64 << 10;
+
   [[noreturn]] void fail(std::uint32_t line, const std::string& what) const {
     throw Error(ExitCode::usage, fmt::format("{}:{}: {}", path_, line, one_line(what)));
   }
@@ -63,6 +67,7 @@ class ConfigFile {
       throw Error(ExitCode::usage,
                   fmt::format("{}: config file cannot be read; check --config", path_));
     }
+    check_text_size(path_, kMostBytes, ExitCode::usage);
     try {
       return toml::parse(in, path_);
     } catch (const toml::parse_error& e) {

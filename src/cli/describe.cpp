@@ -220,6 +220,7 @@ std::string describe(const Frame& frame) {
   for (const std::string& reason : frame.plan.reasons) line("", reason);
   for (const std::string& line_of_history : frame.history) line("", line_of_history);
   for (const std::string& warning : warnings_of(frame)) line("warning", warning);
+  for (const std::string& loss : frame.losses()) line("missing", loss);
   return text;
 }
 
@@ -249,7 +250,8 @@ nlohmann::json to_json(const Frame& frame) {
           {"median_depth", g.median_depth},
           {"light", frame.light},
           {"plan", to_json(frame.plan, frame.history)},
-          {"warnings", warnings_of(frame)}};
+          {"warnings", warnings_of(frame)},
+          {"missing", frame.losses()}};
 }
 
 }  // namespace ssdo

@@ -121,6 +121,9 @@ void add_input(CLI::App& app, InputOptions& o) {
           [&](const Text& text) { o.gbuffer.motion_scale = read_motion_scale(text); },
           "turns a motion layer into pixels to the frame before, x right, y up; default 1,1")
       ->allow_extra_args(false);
+  group.flag(
+      "--allow-partial", o.allow_partial,
+      "take missing rows of files that are cut short or damaged as background; exits with 3");
   group
       .value("--background-depth", "Z", o.gbuffer.background_depth,
              "depth from which on a pixel is background")

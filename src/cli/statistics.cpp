@@ -52,6 +52,7 @@ nlohmann::json statistics_of(const Frame& frame, const Job& job, const Resources
       {"pixels", frame.part().data_window.area()},
       {"background_pixels", frame.gbuffer.background_pixels},
       {"bad_pixels", frame.gbuffer.bad_pixels},
+      {"missing", frame.losses()},
       {"plan", to_json(plan, frame.history)},
   };
   if (const auto& error = relit.error)

@@ -17,6 +17,7 @@
 #include "color/color_space.h"
 #include "error.h"
 #include "io/one_line.h"
+#include "io/size_guard.h"
 #include "nearest_name.h"
 
 namespace ssdo {
@@ -34,6 +35,9 @@ constexpr int kFirstVersionWithUris = 0x02020000;
 
 /// Of a half float. The ACES transforms take values far beyond it for black, infinite ones for NaN.
 constexpr float kLargest = 65504.0f;
+
+/// Of an OpenColorIO config; that of ACES has 0.3 MiB.
+constexpr std::size_t kMostConfigBytes = 4 << 20;
 
 struct LabelledConfig {
   OCIO::ConstConfigRcPtr config;
@@ -57,6 +61,7 @@ LabelledConfig load_config(const std::string& file, const std::string& source) {
   if (std::filesystem::is_directory(file, ignored)) {
     throw Error(ExitCode::input, label + ": is a folder; name the config.ocio in it");
   }
+  check_text_size(file, kMostConfigBytes, ExitCode::input);
   try {
     return {OCIO::Config::CreateFromFile(file.c_str()), label};
   } catch (const OCIO::Exception& error) {

@@ -97,7 +97,7 @@ LayeredPicture::LayeredPicture(const std::string& file) : file_(file) {
 std::string LayeredPicture::names() const {
   std::vector<std::string> names;
   for (const PictureLayer& layer : layers_) names.push_back(shown_name(layer));
-  return fmt::format("{}", fmt::join(names, ", "));
+  return some_of(names);
 }
 
 PictureLayer LayeredPicture::find(const std::string& name) const {

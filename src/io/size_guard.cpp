@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "error.h"
-
 namespace ssdo {
 namespace {
 
@@ -31,6 +29,15 @@ void check_decoded_size(const std::filesystem::path& file, double pixel_bytes, d
                             "{:.1f} GiB; reduce the image or use a larger machine",
                             file.string(), needed_bytes / kGiB, physical_memory() / kGiB));
   }
+}
+
+void check_text_size(const std::filesystem::path& file, std::size_t most, ExitCode code) {
+  std::error_code unknown;
+  const auto bytes = std::filesystem::file_size(file, unknown);
+  if (unknown || bytes <= most) return;
+  throw Error(code, fmt::format("{}: has {} KiB, and a file of its kind {} KiB at most; is it the "
+                                "one that is meant?",
+                                file.string(), bytes / 1024, most / 1024));
 }
 
 }  // namespace ssdo

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+
+#include "error.h"
 
 namespace ssdo {
 
@@ -17,5 +20,8 @@ double physical_memory();
 /// `needed_bytes`, what is about to be allocated, exceeds the machine's memory.
 void check_decoded_size(const std::filesystem::path& file, double pixel_bytes, double needed_bytes,
                         double largest_ratio = kLargestRatio);
+
+/// Refuses a text of more than `most` bytes before a parser takes it in. Throws `code`.
+void check_text_size(const std::filesystem::path& file, std::size_t most, ExitCode code);
 
 }  // namespace ssdo

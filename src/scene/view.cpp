@@ -56,9 +56,11 @@ InputOptions for_view(InputOptions options, const FrameFiles& files) {
   return options;
 }
 
-std::deque<ExrReader> open_view(const std::string& input, const std::vector<LayerRequest>& aovs) {
+std::deque<ExrReader> open_view(const std::string& input, const std::vector<LayerRequest>& aovs,
+                                bool allow_partial) {
+  const Salvage salvage = allow_partial ? Salvage::done : Salvage::offered;
   std::deque<ExrReader> files;
-  for (const std::string& path : files_of_frame(input, aovs)) files.emplace_back(path);
+  for (const std::string& path : files_of_frame(input, aovs)) files.emplace_back(path, salvage);
   return files;
 }
 

@@ -31,6 +31,7 @@ struct InputOptions {
   std::vector<std::string> views;  ///< those to relight of a stereo file; empty: its only one
   std::string view;                ///< of them, the one that is read
   GBufferOptions gbuffer;
+  bool allow_partial = false;  ///< take what is there of files with missing chunks
   bool listed = false;  ///< the user has seen the list of layers: errors need not say where it is
 };
 
@@ -63,8 +64,10 @@ struct View {
   double read_ms = 0;  ///< wall time of what was read, without the geometry
 };
 
-/// The file `input`, then the files that `aovs` name. Errors: those of ExrReader.
-std::deque<ExrReader> open_view(const std::string& input, const std::vector<LayerRequest>& aovs);
+/// The file `input`, then the files that `aovs` name; with `allow_partial`, their missing chunks
+/// are no errors. Errors: those of ExrReader.
+std::deque<ExrReader> open_view(const std::string& input, const std::vector<LayerRequest>& aovs,
+                                bool allow_partial = false);
 
 /// Reads what open_view() has opened: layers, gbuffer, camera, geometry. `aovs` are the requests
 /// for layers, with files of this very frame. The roles in `unused` are filled on request only.

@@ -29,5 +29,15 @@ TEST(SizeGuard, RefusesMoreThanTheMemoryOfTheMachine) {
               IsError(ExitCode::input, "memory"));
 }
 
+TEST(SizeGuard, RefusesTextsThatAreLargerThanTheirKind) {
+  const TempDir dir;
+  const std::filesystem::path file = dir / "text";
+  std::ofstream(file) << std::string(4096, 'x');
+  EXPECT_NO_THROW(check_text_size(file, 4096, ExitCode::usage));
+  EXPECT_NO_THROW(check_text_size(dir / "none", 1, ExitCode::usage));
+  EXPECT_THAT(error_of([&] { check_text_size(file, 2048, ExitCode::usage); }),
+              IsError(ExitCode::usage, "text: has 4 KiB, and a file of its kind 2 KiB at most"));
+}
+
 }  // namespace
 }  // namespace ssdo::test

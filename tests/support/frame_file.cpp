@@ -37,7 +37,10 @@ void write_frame(const std::filesystem::path& path, const std::vector<FramePart>
     header.displayWindow() = box_of(part.display);
     header.dataWindow() = box_of(part.data);
     header.compression() = Imf::ZIP_COMPRESSION;
-    header.setType(Imf::SCANLINEIMAGE);
+    header.setType(part.tile_size > 0 ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
+    if (part.tile_size > 0)
+      header.setTileDescription(
+          Imf::TileDescription(unsigned(part.tile_size), unsigned(part.tile_size), Imf::ONE_LEVEL));
     if (!part.name.empty()) header.setName(part.name);
     for (const auto& [name, plane] : part.channels)
       header.channels().insert(name, Imf::Channel(part.type));
@@ -55,6 +58,12 @@ void write_frame(const std::filesystem::path& path, const std::vector<FramePart>
         base = halves.back().data();
       }
       buffer.insert(name, Imf::Slice::Make(parts[p].type, base, box_of(parts[p].data)));
+    }
+    if (parts[p].tile_size > 0) {
+      Imf::TiledOutputPart part(file, int(p));
+      part.setFrameBuffer(buffer);
+      part.writeTiles(0, part.numXTiles() - 1, 0, part.numYTiles() - 1);
+      continue;
     }
     Imf::OutputPart part(file, int(p));
     part.setFrameBuffer(buffer);

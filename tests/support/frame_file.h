@@ -7,6 +7,7 @@
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
+#include <ImfTiledOutputPart.h>
 #include <half.h>
 
 #include <filesystem>
@@ -27,6 +28,7 @@ struct FramePart {
   std::map<std::string, Plane<float>> channels;
   Imf::PixelType type = Imf::FLOAT;
   Imf::Header extra;  ///< attributes to take over
+  int tile_size = 0;  ///< 0: scanlines
 
   /// Adds a channel for each component.
   void add(const std::string& layer, const Plane<glm::vec3>& values,

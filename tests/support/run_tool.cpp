@@ -68,6 +68,7 @@ Finished run_tool(const std::vector<std::string>& arguments, const Surroundings&
     _exit(127);
   }
   int status = 0;
+  rusage used{};
   if (around.kill_with != 0) {
     while (waitpid(child, &status, WNOHANG) == 0) {
       if (around.kill_when()) {
@@ -78,10 +79,10 @@ Finished run_tool(const std::vector<std::string>& arguments, const Surroundings&
       usleep(1000);
     }
   } else {
-    waitpid(child, &status, 0);
+    wait4(child, &status, 0, &used);
   }
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return {code, out.drain(), err.drain()};
+  return {code, out.drain(), err.drain(), used};
 }
 
 std::vector<std::string> listing(const std::filesystem::path& folder) {

@@ -15,9 +15,10 @@ namespace ssdo::test {
 
 /// What a finished process left behind.
 struct Finished {
-  int code = -1;    ///< exit status; 128 + signal where one ended it
-  std::string out;  ///< standard output
-  std::string err;  ///< standard error
+  int code = -1;     ///< exit status; 128 + signal where one ended it
+  std::string out;   ///< standard output
+  std::string err;   ///< standard error
+  rusage used = {};  ///< processor and memory, of a run that was not killed
 
   /// The one line of an error message, without its end.
   std::string error_line() const;

@@ -8,6 +8,7 @@
 #include <ImfMultiPartInputFile.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 
@@ -37,8 +38,8 @@ class DeepPartReader {
  public:
   DeepPartReader(const ExrReader& file, int part)
       : file_(file), part_(file.parts()[std::size_t(part)]) {
-    // The table of counts takes four bytes of each pixel.
-    const double table = 4.0 * double(part_.data_window.area());
+    // The table of counts takes four bytes of each pixel, also in those of a tile that lie outside.
+    const double table = 4.0 * std::max(double(part_.data_window.area()), pixels_per_chunk(part_));
     check_decoded_size(file_.path(), table, table, largest_ratio(part_));
     counts_.resize(part_.data_window.area());
   }

@@ -56,7 +56,7 @@ Window known_window(const ExrOutput& output, const ExrPart& part);
 Window written_window(const ExrOutput& output, const ExrPart& part);
 
 /// Whether the pixels of another part than that with the planes have to be written anew, as they
-/// are cropped or downsampled.
+/// are cropped or downsampled, or some are missing.
 bool is_changed(const ExrOutput& output, const ExrPart& part);
 
 /// What the written part is compressed with. A compression that the input brings along is kept if

@@ -12,8 +12,10 @@
 #include <array>
 #include <cerrno>
 #include <fstream>
+#include <new>
 
 #include "error.h"
+#include "io/exr/attribute_sizes.h"
 #include "io/one_line.h"
 #include "io/size_guard.h"
 
@@ -26,7 +28,9 @@ namespace {
   throw Error(ExitCode::input, fmt::format("{}: {}", file.string(), what));
 }
 
-Window window(const Imath::Box2i& box) {
+}  // namespace
+
+Window window_of(const Imath::Box2i& box) {
   return {box.min.x, box.min.y, box.max.x + 1, box.max.y + 1};
 }
 
@@ -55,8 +59,6 @@ double pixels_per_chunk(const ExrPart& part) {
   return double(part.data_window.width()) * lines_per_chunk(part.header.compression());
 }
 
-}  // namespace
-
 void check_is_exr(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
@@ -80,6 +82,7 @@ void check_is_exr(const fs::path& file) {
     fail(file,
          "is not an EXR file, by its first four bytes; convert it, for example with oiiotool");
   }
+  check_attribute_sizes(file);
 }
 
 bool begins_as_exr(const fs::path& file) {
@@ -92,8 +95,10 @@ void throw_damaged(const ExrReader& file, const ExrPart& part, const std::except
   const char* state = file.file().partComplete(part.index)
                           ? "is damaged or cut short"
                           : "is incomplete: its writing was interrupted";
-  fail(file.path(), fmt::format("{} ({}: {}); render or copy it again", state, label(part),
-                                one_line(error.what())));
+  const bool offers = file.salvage() == Salvage::offered && !part.deep;
+  fail(file.path(), fmt::format("{} ({}: {}); render or copy it again{}", state, label(part),
+                                one_line(error.what()),
+                                offers ? ", or take what is there with --allow-partial" : ""));
 }
 
 ExrPart describe_part(const Imf::MultiPartInputFile& file, int index) {
@@ -104,8 +109,8 @@ ExrPart describe_part(const Imf::MultiPartInputFile& file, int index) {
   if (header.hasName()) part.name = header.name();
   if (header.hasView()) part.view = header.view();
   part.deep = header.hasType() && Imf::isDeepData(header.type());
-  part.data_window = window(header.dataWindow());
-  part.display_window = window(header.displayWindow());
+  part.data_window = window_of(header.dataWindow());
+  part.display_window = window_of(header.displayWindow());
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
     part.channels.push_back(
         {c.name(), c.channel().type, c.channel().xSampling, c.channel().ySampling});

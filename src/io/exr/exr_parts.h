@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <ImathBox.h>
+#include <ImfCompression.h>
+
 #include <filesystem>
 #include <string>
 
@@ -9,7 +12,8 @@
 namespace ssdo {
 
 /// Throws ExitCode::input, saying what `file` is instead, unless it is a readable EXR by its first
-/// bytes. OpenEXR's own messages do not tell a missing file from a folder.
+/// bytes, and where check_attribute_sizes() does. OpenEXR's own messages do not tell a missing file
+/// from a folder.
 void check_is_exr(const std::filesystem::path& file);
 
 /// Whether `file` is a plain file that begins as an EXR does, whatever its name.
@@ -26,6 +30,15 @@ ExrPart describe_part(const Imf::MultiPartInputFile& file, int index);
 std::string label(const ExrPart& part);
 
 bool is_tiled(const ExrPart& part);
+
+/// A window as OpenEXR has it, with its last pixel.
+Window window_of(const Imath::Box2i& box);
+
+/// Scanlines that are packed together.
+int lines_per_chunk(Imf::Compression compression);
+
+/// Those of a tile, or of scanlines that are packed together.
+double pixels_per_chunk(const ExrPart& part);
 
 /// How many bytes of float pixels a byte of the part's chunks can hold at best.
 double largest_ratio(const ExrPart& part);

@@ -2,18 +2,18 @@
 #include "io/exr/exr_reader.h"
 
 #include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfInputPart.h>
 #include <ImfIntAttribute.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfStandardAttributes.h>
+#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
-#include <ImfTiledInputPart.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "error.h"
+#include "io/exr/exr_chunks.h"
 #include "io/exr/exr_parts.h"
 #include "io/exr/zip_lines.h"
 #include "io/one_line.h"
@@ -59,44 +59,56 @@ std::size_t stored_bytes(const ExrPart& part, const ExrChannel& channel) {
          (channel.type == Imf::HALF ? 2 : 4);
 }
 
+/// How much less than a whole one a file may be and be read, in full or in part.
+constexpr double kLeastShare = 1.0 / 64;
+
 /// `grid` is what is read of the part.
-void check_size(const ExrReader& reader, const ExrPart& part, std::size_t channels,
+void check_size(const ExrReader& reader, const ExrPart& part, Names names,
                 const PixelGrid& grid = {}) {
-  const double value_bytes = 4.0 * double(channels);
+  double value_bytes = 0;  // of a pixel
+  for (const std::string& name : names) {
+    const ExrChannel& channel = find_channel(reader, part, name);
+    value_bytes += 4.0 / (double(channel.x_sampling) * channel.y_sampling);
+  }
+  const double ratio = largest_ratio(part),
+               with_gaps = std::min(kLargestRatio, ratio / kLeastShare);
   check_decoded_size(reader.path(), double(part.data_window.area()) * value_bytes,
                      double(grid.of(part.data_window).area()) * value_bytes + decoder_bytes(part),
-                     largest_ratio(part));
+                     reader.salvage() == Salvage::none ? ratio : with_gaps);
 }
 
-/// `rows` is the data window, or some rows of it.
-void read_pixels(Imf::MultiPartInputFile& file, const ExrPart& part, const Window& rows,
-                 const Imf::FrameBuffer& frame_buffer) {
-  if (is_tiled(part) && rows == part.data_window) {
-    Imf::TiledInputPart tiles(file, part.index);
-    tiles.setFrameBuffer(frame_buffer);
-    tiles.readTiles(0, tiles.numXTiles() - 1, 0, tiles.numYTiles() - 1);
-  } else {
-    Imf::InputPart lines(file, part.index);
-    lines.setFrameBuffer(frame_buffer);
-    lines.readPixels(rows.y0, rows.y1 - 1);
+/// What is read where chunks are missing: NaN, which is no surface, and 0 as stored.
+void clear(const ExrPart& part, const Window& rows, const ChannelRows& to) {
+  if (to.as_float)
+    std::fill_n(reinterpret_cast<float*>(to.pixels), rows.area(), NAN);
+  else
+    std::fill_n(to.pixels, stored_bytes(part, to.channel), std::byte{0});
+}
+
+/// Reads what can be read, after `error`.
+void salvage_or_fail(const ExrReader& reader, const ExrPart& part, const Window& rows,
+                     std::span<const ChannelRows> channels, const std::exception& error) {
+  reader.recover();
+  const MissingChunks& missing = reader.missing(part.index);
+  const std::size_t lost = missing.windows.size();
+  if (lost == 0 || lost == missing.count) throw_damaged(reader, part, error);
+  for (const ChannelRows& to : channels) clear(part, rows, to);
+  try {
+    read_chunks(reader, part, rows, channels, missing);
+  } catch (const std::exception& another) {
+    throw_damaged(reader, part, another);
   }
 }
 
+/// `rows` is the data window, or some rows of it.
 void read_or_fail(const ExrReader& reader, const ExrPart& part, const Window& rows,
                   std::span<const ChannelRows> channels) {
   if (rows.area() == 0) return;
   try {
-    if (read_zip_lines(reader.file(), part, rows, channels)) return;
-    Imf::FrameBuffer frame_buffer;
-    const Imath::Box2i box({rows.x0, rows.y0}, {rows.x1 - 1, rows.y1 - 1});
-    for (const auto& [channel, pixels, as_float] : channels) {
-      frame_buffer.insert(channel.name,
-                          Imf::Slice::Make(as_float ? Imf::FLOAT : channel.type, pixels, box, 0, 0,
-                                           channel.x_sampling, channel.y_sampling));
-    }
-    read_pixels(reader.file(), part, rows, frame_buffer);
+    if (!read_zip_lines(reader.file(), part, rows, channels))
+      read_chunks(reader, part, rows, channels);
   } catch (const std::exception& error) {
-    throw_damaged(reader, part, error);
+    salvage_or_fail(reader, part, rows, channels, error);
   }
 }
 
@@ -149,10 +161,12 @@ std::vector<Plane<float>> read_blocks(const ExrReader& reader, const ExrPart& pa
 
 }  // namespace
 
-ExrReader::ExrReader(std::filesystem::path path) : path_(std::move(path)) {
+ExrReader::ExrReader(std::filesystem::path path, Salvage salvage)
+    : path_(std::move(path)), salvage_(salvage) {
   check_is_exr(path_);
   try {
-    file_ = std::make_unique<Imf::MultiPartInputFile>(path_.c_str());
+    stream_ = std::make_unique<Imf::StdIFStream>(path_.c_str());
+    file_ = std::make_unique<Imf::MultiPartInputFile>(*stream_);
     for (int i = 0; i < file_->parts(); ++i) parts_.push_back(describe_part(*file_, i));
   } catch (const std::exception& error) {
     fail(*this, fmt::format("is damaged or cut short in its header ({}); render or copy it again",
@@ -165,7 +179,7 @@ ExrReader::ExrReader(ExrReader&&) noexcept = default;
 
 std::vector<Plane<float>> ExrReader::read(int index, Names names, const PixelGrid& grid) const {
   const ExrPart& part = flat_part(*this, index);
-  check_size(*this, part, names.size(), grid);
+  check_size(*this, part, names, grid);
   for (const std::string& name : names) {
     const ExrChannel& channel = find_channel(*this, part, name);
     if (channel.x_sampling != 1 || channel.y_sampling != 1) {
@@ -180,7 +194,7 @@ std::vector<Plane<float>> ExrReader::read(int index, Names names, const PixelGri
 
 std::vector<StoredChannel> ExrReader::read_stored(int index, Names names) const {
   const ExrPart& part = flat_part(*this, index);
-  check_size(*this, part, names.size());
+  check_size(*this, part, names);
   std::vector<StoredChannel> stored;
   std::vector<ChannelRows> rows;
   for (const std::string& name : names) {
@@ -191,6 +205,30 @@ std::vector<StoredChannel> ExrReader::read_stored(int index, Names names) const 
   read_or_fail(*this, part, part.data_window, rows);
   fill_repeated(names, stored);
   return stored;
+}
+
+const MissingChunks& ExrReader::missing(int index) const {
+  const auto known = missing_.find(index);
+  if (known != missing_.end()) return known->second;
+  const ExrPart& part = parts_[std::size_t(index)];
+  const bool looks = salvage_ == Salvage::done && !part.deep;
+  return missing_[index] = looks ? find_missing_chunks(*this, part) : MissingChunks();
+}
+
+std::vector<std::string> ExrReader::losses() const {
+  std::vector<std::string> lines;
+  for (const auto& [index, missing] : missing_) {
+    if (missing.windows.empty()) continue;
+    const ExrPart& part = parts_[std::size_t(index)];
+    lines.push_back(
+        fmt::format("{}: {}: {}", path_.string(), label(part), describe(missing, part)));
+  }
+  return lines;
+}
+
+void ExrReader::recover() const {
+  stream_->clear();
+  file_->flushPartCache();  // which holds where the stream stood
 }
 
 std::string string_attribute(const Imf::Header& header, const std::string& name) {

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -16,7 +17,8 @@
 
 namespace OPENEXR_IMF_INTERNAL_NAMESPACE {
 class MultiPartInputFile;
-}
+class StdIFStream;
+}  // namespace OPENEXR_IMF_INTERNAL_NAMESPACE
 
 namespace ssdo {
 
@@ -53,13 +55,26 @@ struct StoredChannel {
   std::vector<std::byte> pixels;
 };
 
+/// The chunks of a part that are cut off, were never written, or cannot be decoded.
+struct MissingChunks {
+  std::vector<Window> windows;  ///< the rows or full-resolution tiles, from the top left
+  std::size_t count = 0;        ///< of all chunks, sound ones too
+};
+
+/// What becomes of flat parts with missing chunks.
+enum class Salvage {
+  none,     ///< they are errors
+  offered,  ///< errors, which name --allow-partial
+  done,     ///< their other chunks are read; a part without any is an error
+};
+
 /// An EXR of any kind that OpenEXR reads: scanline or tiled, one part or many, any windows.
 /// Opening reads the headers only; pixels are read channel by channel when asked for, so that a
 /// frame with a hundred AOVs costs the four that are used.
 /// Errors: ExitCode::input for a file that is missing, is no EXR, or is damaged.
 class ExrReader {
  public:
-  explicit ExrReader(std::filesystem::path path);
+  explicit ExrReader(std::filesystem::path path, Salvage salvage = Salvage::none);
   ~ExrReader();
   ExrReader(ExrReader&&) noexcept;
 
@@ -69,20 +84,36 @@ class ExrReader {
   /// The named channels of a part as float planes over the part's data window; half and uint
   /// values are converted. Tiled parts give their full-resolution level. A deep part, a channel
   /// that does not exist or one that is subsampled is an error.
-  /// Of `grid`, what it takes of the data window.
+  /// Of `grid`, what it takes of the data window. Salvaged: missing pixels are NaN.
   std::vector<Plane<float>> read(int part, std::span<const std::string> channels,
                                  const PixelGrid& grid = {}) const;
 
   /// The named channels of a part, bit for bit as stored. Subsampled channels are allowed.
+  /// Salvaged: missing pixels are 0.
   std::vector<StoredChannel> read_stored(int part, std::span<const std::string> channels) const;
+
+  Salvage salvage() const { return salvage_; }
+
+  /// What is missing of a flat part; nothing unless parts are salvaged. Looks at every chunk when
+  /// it is first asked for.
+  const MissingChunks& missing(int part) const;
+
+  /// A line about each part of which something has been found missing so far.
+  std::vector<std::string> losses() const;
+
+  /// Makes the file readable again after a chunk that could not be read. No part may be open.
+  void recover() const;
 
   /// The open file, for copying whole parts without decoding them.
   Imf::MultiPartInputFile& file() const { return *file_; }
 
  private:
   std::filesystem::path path_;
+  Salvage salvage_;
+  std::unique_ptr<Imf::StdIFStream> stream_;
   std::unique_ptr<Imf::MultiPartInputFile> file_;
   std::vector<ExrPart> parts_;
+  mutable std::map<int, MissingChunks> missing_;  ///< of the parts that were looked at
 };
 
 }  // namespace ssdo

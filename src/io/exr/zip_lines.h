@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <span>
 
-#include "io/exr/exr_reader.h"
+#include "io/exr/exr_chunks.h"
 
 namespace ssdo {
-
-/// Where the values of a channel go, row by row over some rows of its part's data window.
-struct ChannelRows {
-  ExrChannel channel;
-  std::byte* pixels;
-  bool as_float;  ///< half becomes float; else as stored
-};
 
 /// Reads rows of channels of a part whose scanlines are packed with ZIP or ZIPS: libdeflate
 /// inflates chunks side by side, and only these channels are unpacked. The bits are those of

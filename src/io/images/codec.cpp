@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <new>
 #include <string>
 
 #include "error.h"
@@ -101,31 +102,98 @@ std::vector<unsigned char> encode_pixels(const OIIO::ImageSpec& spec, const fs::
   return bytes;
 }
 
-Image read(const fs::path& path) {
-  auto file = open_image(path);
-  const OIIO::ImageSpec& spec = file->spec();
+/// The channels that are read of a file, from its first one on.
+struct Channels {
+  int colors, count, alpha;  ///< `alpha` is its place; -1: there is none
+
+  explicit Channels(const OIIO::ImageSpec& spec)
+      : colors(spec.nchannels < 3 ? 1 : 3),
+        count(std::max(colors, spec.alpha_channel + 1)),
+        alpha(spec.alpha_channel >= colors ? spec.alpha_channel : -1) {}
+};
+
+/// Errors: ExitCode::input for what is no picture, or claims more than the file can hold.
+void check_spec(const fs::path& path, const OIIO::ImageSpec& spec) {
   if (spec.deep || spec.depth > 1 || spec.nchannels < 1) {
     fail(ExitCode::input, path, "is not a flat image (it is deep, a volume or has no channels)");
   }
-  const int colors = spec.nchannels < 3 ? 1 : 3;
-  const int channels = std::max(colors, spec.alpha_channel + 1);
-  const double bytes = double(spec.width) * spec.height * (sizeof(glm::vec3) + 4.0 * channels);
-  check_decoded_size(path, bytes, bytes);
-  std::vector<float> values(std::size_t(spec.width) * spec.height * channels);
-  // libjpeg fills up what a file lacks with grey, and OpenImageIO reports that but goes on.
-  if (!file->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data()) ||
-      file->has_error()) {
+  if (spec.width < 1 || spec.height < 1) {
     fail(ExitCode::input, path,
-         fmt::format("is damaged or cut short ({}); copy it again", one_line(file->geterror())));
+         fmt::format("is damaged: its header claims {} x {} pixels; render or copy it again",
+                     spec.width, spec.height));
   }
-  Image image{Plane<glm::vec3>(spec.width, spec.height), {}, !spec.format.is_floating_point()};
-  if (spec.alpha_channel >= colors) image.alpha = Plane<float>(spec.width, spec.height);
-  for (std::size_t i = 0; i < image.color.size(); ++i) {
-    const float* value = &values[i * std::size_t(channels)];
-    image.color[i] = colors == 1 ? glm::vec3(*value) : glm::vec3(value[0], value[1], value[2]);
-    if (!image.alpha.empty()) image.alpha[i] = value[spec.alpha_channel];
+  const double pixel_bytes = sizeof(glm::vec3) + 4.0 * Channels(spec).count,
+               bytes = double(spec.width) * spec.height * pixel_bytes,
+               tile_bytes = double(spec.tile_width) * spec.tile_height * pixel_bytes;
+  check_decoded_size(path, std::max(bytes, tile_bytes), bytes + tile_bytes);
+}
+
+/// A plane with memory for all of its rows, which is used when they come: a header claims much.
+template <class T>
+Plane<T> plane_without_rows(const OIIO::ImageSpec& spec) {
+  Plane<T> plane;
+  plane.width = spec.width, plane.height = spec.height;
+  plane.pixels.reserve(std::size_t(spec.width) * std::size_t(spec.height));
+  return plane;
+}
+
+/// How many rows are decoded at a time: whole tiles, or about 16 MB.
+int rows_at_a_time(const OIIO::ImageSpec& spec, const Channels& channels) {
+  if (spec.tile_height > 0) return std::min(spec.tile_height, spec.height);
+  const double line_bytes = sizeof(float) * double(spec.width) * channels.count;
+  return std::clamp(int((1 << 24) / line_bytes), 1, std::max(1, spec.height));
+}
+
+/// Decodes the rows from `first` to before `end`, counted from the top.
+void decode(OIIO::ImageInput& file, const fs::path& path, int first, int end,
+            std::vector<float>& values) {
+  const OIIO::ImageSpec& spec = file.spec();
+  const int channels = Channels(spec).count, top = spec.y;
+  const OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT;
+  const bool read =
+      spec.tile_height > 0
+          ? file.read_tiles(0, 0, spec.x, spec.x + spec.width, top + first, top + end, 0, 1, 0,
+                            channels, type, values.data())
+          : file.read_scanlines(0, 0, top + first, top + end, 0, 0, channels, type, values.data());
+  // libjpeg fills up what a file lacks with grey, and OpenImageIO reports that but goes on.
+  if (read && !file.has_error()) return;
+  fail(ExitCode::input, path,
+       fmt::format("is damaged or cut short ({}); copy it again", one_line(file.geterror())));
+}
+
+Image read_rows(OIIO::ImageInput& file, const fs::path& path) {
+  const OIIO::ImageSpec& spec = file.spec();
+  check_spec(path, spec);
+  const Channels channels(spec);
+  Image image{plane_without_rows<glm::vec3>(spec), {}, !spec.format.is_floating_point()};
+  if (channels.alpha >= 0) image.alpha = plane_without_rows<float>(spec);
+  const int rows = rows_at_a_time(spec, channels);
+  std::vector<float> values(std::size_t(spec.width) * std::size_t(rows) *
+                            std::size_t(channels.count));
+  for (int y = 0; y < spec.height; y += rows) {
+    const int end = std::min(y + rows, spec.height);
+    decode(file, path, y, end, values);
+    const float* value = values.data();
+    for (std::size_t i = image.color.index(0, y); i < image.color.index(0, end); ++i) {
+      image.color.pixels.push_back(channels.colors == 1 ? glm::vec3(*value)
+                                                        : glm::vec3(value[0], value[1], value[2]));
+      if (channels.alpha >= 0) image.alpha.pixels.push_back(value[channels.alpha]);
+      value += channels.count;
+    }
   }
   return image;
+}
+
+Image read(const fs::path& path) {
+  const auto file = open_image(path);
+  try {
+    return read_rows(*file, path);
+  } catch (const std::bad_alloc&) {
+    fail(ExitCode::input, path,
+         fmt::format("needs more memory than there is for its {} x {} pixels; reduce the image or "
+                     "use a larger machine",
+                     file->spec().width, file->spec().height));
+  }
 }
 
 std::vector<unsigned char> encode(const fs::path& name, const ImageSpec& spec,

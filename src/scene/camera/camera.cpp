@@ -15,9 +15,13 @@
 #include <nlohmann/json.hpp>
 
 #include "error.h"
+#include "io/size_guard.h"
 
 namespace ssdo {
 namespace {
+
+/// Of a camera's JSON, which takes less than 1 KiB.
+constexpr std::size_t kMostCameraBytes = 1 << 20;
 
 using nlohmann::json;
 
@@ -176,6 +180,7 @@ Camera read_camera(const std::filesystem::path& path, const Window& display, dou
     throw Error(ExitCode::input,
                 fmt::format("{}: camera file cannot be read; check --camera", path.string()));
   }
+  check_text_size(path, kMostCameraBytes, ExitCode::input);
   try {
     return parse_camera(json::parse(in), path.string(), display, pixel_aspect);
   } catch (const json::exception& e) {

@@ -72,6 +72,8 @@ FurtherPictures::Picture picture_of(View view, const std::string& file) {
     out.warnings.push_back(file + ": " + warning);
   for (const std::string& warning : view.report.warnings)
     out.warnings.push_back(file + ": " + warning);
+  for (const ExrReader& read : view.files)
+    for (const std::string& line : read.losses()) out.losses.push_back(line);
   return std::make_shared<const FurtherPicture>(std::move(out));
 }
 
@@ -100,7 +102,7 @@ void FurtherPictures::release(const FrameFiles& frame) {
 
 FurtherPictures::Picture FurtherPictures::also(const std::string& file) {
   return get({kByNames, file}, [&]() -> Picture {
-    std::deque<ExrReader> opened = open_view(file, {});
+    std::deque<ExrReader> opened = open_view(file, {}, allow_partial_);
     if (has_deep_part(opened.front())) return nullptr;
     return picture_of(read_view(std::move(opened), {}, {}, {}, kUnused), file);
   });
@@ -113,9 +115,9 @@ FurtherPictures::Picture FurtherPictures::alike(const FrameFiles& frame, const I
     std::erase_if(aovs, [](const LayerRequest& request) {
       return std::find(kUnused.begin(), kUnused.end(), request.role) != kUnused.end();
     });
-    return picture_of(
-        read_view(open_view(frame.input, aovs), aovs, for_view(input, frame), camera, kUnused),
-        name_of(frame));
+    return picture_of(read_view(open_view(frame.input, aovs, input.allow_partial), aovs,
+                                for_view(input, frame), camera, kUnused),
+                      name_of(frame));
   });
 }
 

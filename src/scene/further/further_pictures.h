@@ -21,6 +21,9 @@ class FurtherPictures {
  public:
   using Picture = FurtherView::Picture;
 
+  /// With `allow_partial`, missing chunks of the files of --also are no errors.
+  explicit FurtherPictures(bool allow_partial = false) : allow_partial_(allow_partial) {}
+
   /// A further frame will ask for its files, until it is released. Files that no frame expects any
   /// more are forgotten; those that none has expected are kept.
   void expect(const FrameFiles& frame);
@@ -47,6 +50,7 @@ class FurtherPictures {
   static std::vector<Key> keys_of(const FrameFiles& frame);
   Picture get(const Key& key, const std::function<Picture()>& read);
 
+  const bool allow_partial_;
   std::mutex mutex_;
   std::map<Key, Entry> entries_;
 };

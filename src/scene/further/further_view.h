@@ -26,6 +26,7 @@ struct FurtherPicture {
   Plane<float> depth;       ///< Camera::depth_of; infinite where there is no surface
   Plane<HalfColor> albedo;  ///< empty where the file has none
   std::vector<std::string> warnings;
+  std::vector<std::string> losses;  ///< see ExrReader::losses()
 };
 
 /// A further picture, placed in the camera space of a frame.

@@ -32,7 +32,9 @@ std::vector<LayerGroup> those_of(const std::vector<LayerGroup>& groups, const Ke
 }
 
 std::string quoted(const std::vector<std::string>& names) {
-  return fmt::format("'{}'", fmt::join(names, "', '"));
+  std::vector<std::string> all;
+  for (const std::string& name : names) all.push_back("'" + name + "'");
+  return some_of(all);
 }
 
 /// The other parts of the view of `part`, which complete it. Not those with a position of their
@@ -79,7 +81,7 @@ void refuse_missing_file(const LayerRequest& request) {
   }
   throw Error(ExitCode::layer,
               fmt::format("{}: no part or view '{}'; {}the file has {}", frame.path().string(),
-                          wanted, did_you_mean(wanted, names), fmt::join(forms, ", ")));
+                          wanted, did_you_mean(wanted, names), some_of(forms)));
 }
 
 [[noreturn]] void throw_no_view(const ExrReader& frame, const std::vector<LayerGroup>& groups,

@@ -11,6 +11,7 @@
 #include "io/picture_layers.h"
 #include "io/size_guard.h"
 #include "math/light_range.h"
+#include "nearest_name.h"
 #include "scene/layers/names.h"
 
 namespace ssdo {
@@ -84,7 +85,7 @@ PictureLayer choose_layer(const LayeredPicture& picture) {
   throw Error(ExitCode::layer,
               fmt::format("{}: {} layers could be the environment: {}; name one with --env "
                           "FILE:LAYER",
-                          picture.file(), best.size(), fmt::join(names, ", ")));
+                          picture.file(), best.size(), some_of(names)));
 }
 
 PictureLayer find_layer(const LayeredPicture& picture, const std::string& name) {

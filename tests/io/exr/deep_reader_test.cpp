@@ -8,6 +8,7 @@
 
 #include "support/deep_file.h"
 #include "support/error_matchers.h"
+#include "support/exr_bytes.h"
 #include "support/run_tool.h"
 #include "support/temp_dir.h"
 
@@ -119,6 +120,17 @@ TEST(DeepReader, FlippedBytesDoNoHarm) {
     }
     EXPECT_GT(refused, 20);
   }
+}
+
+/// OpenEXR allocates the counts of whole tiles.
+TEST(DeepReader, RefusesTilesThatTheFileCannotHold) {
+  const TempDir dir;
+  write_deep(dir / "a.exr", {{.pixels = pattern({0, 0, 4, 4}), .tiles = true}});
+  ExrBytes bytes(dir / "a.exr");
+  for (const std::size_t side : {0, 4}) bytes.put_int(bytes.value_of("tiles") + side, 30000);
+  bytes.write(dir / "a.exr");
+  EXPECT_THAT(error_of([&] { read_deep(ExrReader(dir / "a.exr"), kUsual); }),
+              IsError(ExitCode::input, "a.exr: is damaged: its header claims 3.4 GiB"));
 }
 
 }  // namespace

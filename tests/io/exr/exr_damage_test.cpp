@@ -125,6 +125,16 @@ TEST(DamagedExr, UnfinishedFilesAreIncomplete) {
               IsError(ExitCode::input, "a.exr: is incomplete"));
 }
 
+TEST(DamagedExr, AListOfAQuarterOfAMillionChannelsIsRefused) {
+  const TempDir dir;
+  const std::size_t size = 5 << 20;
+  std::string bytes("\x76\x2f\x31\x01\2\0\0\0channels\0chlist\0", 24);
+  for (int i = 0; i < 4; ++i) bytes += char(size >> 8 * i);
+  write_bytes(dir / "a.exr", bytes + std::string(size, 'x'));
+  EXPECT_THAT(error_of([&] { ExrReader reader(dir / "a.exr"); }),
+              IsError(ExitCode::input, "a.exr: lists 5 MiB of channels"));
+}
+
 TEST(DamagedExr, AbsurdSizesAreRefusedBeforeAllocation) {
   const TempDir dir;
   write_test_exr(dir / "a.exr", scanline_file(Imf::ZIP_COMPRESSION));

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/exr/exr_chunks.h"
+
+#include <ImfFrameBuffer.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfTiledInputPart.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <tuple>
+
+#include "io/exr/exr_parts.h"
+#include "io/exr/zip_chunk.h"
+
+namespace ssdo {
+namespace {
+
+/// The order in which a part's chunks are searched, and in which those that are missing stand.
+bool comes_before(const Window& a, const Window& b) {
+  return std::tie(a.y0, a.x0) < std::tie(b.y0, b.x0);
+}
+
+Imf::FrameBuffer slices_over(const Window& rows, std::span<const ChannelRows> channels) {
+  Imf::FrameBuffer slices;
+  const Imath::Box2i box({rows.x0, rows.y0}, {rows.x1 - 1, rows.y1 - 1});
+  for (const auto& [channel, pixels, as_float] : channels) {
+    slices.insert(channel.name, Imf::Slice::Make(as_float ? Imf::FLOAT : channel.type, pixels, box,
+                                                 0, 0, channel.x_sampling, channel.y_sampling));
+  }
+  return slices;
+}
+
+void read_lines(const ExrReader& file, const ExrPart& part, const Window& rows,
+                std::span<const ChannelRows> channels, const MissingChunks& missing) {
+  Imf::InputPart lines(file.file(), part.index);
+  lines.setFrameBuffer(slices_over(rows, channels));
+  int y = rows.y0;
+  for (const Window& gap : missing.windows) {
+    const int end = std::min(gap.y0, rows.y1);
+    if (y < end) lines.readPixels(y, end - 1);
+    y = std::max(y, gap.y1);
+  }
+  if (y < rows.y1) lines.readPixels(y, rows.y1 - 1);
+}
+
+/// The tiles of the full-resolution level.
+class Tiles {
+ public:
+  Tiles(const ExrReader& file, const ExrPart& part) : tiles_(file.file(), part.index) {}
+
+  int columns() const { return tiles_.numXTiles(0); }
+  int rows() const { return tiles_.numYTiles(0); }
+  Window window(int x, int y) const { return window_of(tiles_.dataWindowForTile(x, y, 0)); }
+
+  void read_one(int x, int y, const Window& window, std::span<const ChannelRows> channels) {
+    tiles_.setFrameBuffer(slices_over(window, channels));
+    tiles_.readTile(x, y, 0);
+  }
+
+  /// `first` to `last` are rows of tiles, which cover `window`.
+  void read(int first, int last, const Window& window, std::span<const ChannelRows> channels,
+            const MissingChunks& missing) {
+    tiles_.setFrameBuffer(slices_over(window, channels));
+    if (missing.windows.empty()) return tiles_.readTiles(0, columns() - 1, first, last);
+    for (int y = first; y <= last; ++y) {
+      for (int x = 0; x < columns(); ++x) {
+        if (!std::ranges::binary_search(missing.windows, this->window(x, y), comes_before))
+          tiles_.readTile(x, y, 0);
+      }
+    }
+  }
+
+ private:
+  Imf::TiledInputPart tiles_;
+};
+
+/// Where `rows` begin or end within tiles, these go through memory of their own.
+void read_tiles(const ExrReader& file, const ExrPart& part, const Window& rows,
+                std::span<const ChannelRows> channels, const MissingChunks& missing) {
+  Tiles tiles(file, part);
+  const int height = int(part.header.tileDescription().ySize), top = part.data_window.y0,
+            first = (rows.y0 - top) / height, last = (rows.y1 - 1 - top) / height;
+  const Window whole{rows.x0, tiles.window(0, first).y0, rows.x1, tiles.window(0, last).y1};
+  if (whole == rows) return tiles.read(first, last, rows, channels, missing);
+  std::vector<std::vector<std::byte>> planes;
+  std::vector<ChannelRows> to_planes(channels.begin(), channels.end());
+  const auto line_bytes = [&](const ChannelRows& to) {
+    return std::size_t(rows.width()) * (to.as_float ? sizeof(float) : bytes_of(to.channel.type));
+  };
+  const auto above = std::size_t(rows.y0 - whole.y0);
+  for (ChannelRows& to : to_planes) {
+    auto& plane = planes.emplace_back(std::size_t(whole.height()) * line_bytes(to));
+    // What no tile overwrites stays as it was.
+    std::memcpy(&plane[above * line_bytes(to)], to.pixels,
+                std::size_t(rows.height()) * line_bytes(to));
+    to.pixels = plane.data();
+  }
+  tiles.read(first, last, whole, to_planes, missing);
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const std::size_t line = line_bytes(channels[i]);
+    std::memcpy(channels[i].pixels, &planes[i][above * line], std::size_t(rows.height()) * line);
+  }
+}
+
+/// Whether a chunk can be read, which one of its channels shows: they are packed together.
+template <class Read>
+bool can_read(const ExrReader& file, const ExrPart& part, const Window& chunk, const Read& read) {
+  std::vector<std::byte> pixels(4 * chunk.area());
+  const ChannelRows first{part.channels[0], pixels.data(), false};
+  try {
+    read(std::span(&first, 1));
+    return true;
+  } catch (const std::exception&) {
+    file.recover();
+    return false;
+  }
+}
+
+MissingChunks find_missing_lines(const ExrReader& file, const ExrPart& part) {
+  MissingChunks missing;
+  const Window& all = part.data_window;
+  const int height = lines_per_chunk(part.header.compression());
+  for (int y = all.y0; y < all.y1; y += height, ++missing.count) {
+    const Window chunk{all.x0, y, all.x1, std::min(y + height, all.y1)};
+    const auto read = [&](auto channels) { read_lines(file, part, chunk, channels, {}); };
+    if (!can_read(file, part, chunk, read)) missing.windows.push_back(chunk);
+  }
+  return missing;
+}
+
+MissingChunks find_missing_tiles(const ExrReader& file, const ExrPart& part) {
+  MissingChunks missing;
+  const int rows = Tiles(file, part).rows(), columns = Tiles(file, part).columns();
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x, ++missing.count) {
+      const Window chunk = Tiles(file, part).window(x, y);
+      const auto read = [&](auto to) { Tiles(file, part).read_one(x, y, chunk, to); };
+      if (!can_read(file, part, chunk, read)) missing.windows.push_back(chunk);
+    }
+  }
+  return missing;
+}
+
+}  // namespace
+
+MissingChunks find_missing_chunks(const ExrReader& file, const ExrPart& part) {
+  return is_tiled(part) ? find_missing_tiles(file, part) : find_missing_lines(file, part);
+}
+
+std::string describe(const MissingChunks& missing, const ExrPart& part) {
+  int rows = 0, first = part.data_window.y1, end = part.data_window.y0;
+  for (const Window& chunk : missing.windows) {
+    rows += chunk.height();
+    first = std::min(first, chunk.y0);
+    end = std::max(end, chunk.y1);
+  }
+  const std::string count =
+      is_tiled(part) ? fmt::format("{} of {} tiles", missing.windows.size(), missing.count)
+                     : fmt::format("{} of {} rows", rows, part.data_window.height());
+  return fmt::format("{} are missing or damaged, between rows {} and {}", count, first, end - 1);
+}
+
+void read_chunks(const ExrReader& file, const ExrPart& part, const Window& rows,
+                 std::span<const ChannelRows> channels, const MissingChunks& missing) {
+  if (is_tiled(part))
+    read_tiles(file, part, rows, channels, missing);
+  else
+    read_lines(file, part, rows, channels, missing);
+}
+
+}  // namespace ssdo
