@@ -55,6 +55,12 @@ double pixels_per_chunk(const ExrPart& part) {
   return double(part.data_window.width()) * lines_per_chunk(part.header.compression());
 }
 
+double bytes_per_pixel(const ExrPart& part) {
+  double bytes = 0;
+  for (const ExrChannel& c : part.channels) bytes += c.type == Imf::HALF ? 2 : 4;
+  return bytes;
+}
+
 }  // namespace
 
 void check_is_exr(const fs::path& file) {
@@ -137,9 +143,14 @@ double largest_ratio(const ExrPart& part) {
 }
 
 double decoder_bytes(const ExrPart& part) {
-  double bytes_per_pixel = 0;
-  for (const ExrChannel& c : part.channels) bytes_per_pixel += c.type == Imf::HALF ? 2 : 4;
-  return bytes_per_pixel * pixels_per_chunk(part) * 2 * std::max(1, Imf::globalThreadCount());
+  return bytes_per_pixel(part) * pixels_per_chunk(part) * 2 * std::max(1, Imf::globalThreadCount());
+}
+
+double tile_row_bytes(const ExrPart& part) {
+  if (!is_tiled(part)) return 0;
+  const Imf::TileDescription& tiles = part.header.tileDescription();
+  return bytes_per_pixel(part) * std::max(double(part.data_window.width()), double(tiles.xSize)) *
+         double(tiles.ySize);
 }
 
 std::string text_of(const Window& w) {

@@ -34,6 +34,10 @@ double largest_ratio(const ExrPart& part);
 /// for each of its threads.
 double decoder_bytes(const ExrPart& part);
 
+/// What all channels of a row of tiles take, of which OpenEXR makes room for all, also where the
+/// image is smaller than a tile. 0 for scanlines.
+double tile_row_bytes(const ExrPart& part);
+
 /// A window by its first and last pixel, as headers have it: "0,0 to 575,323".
 std::string text_of(const Window& window);
 

@@ -62,24 +62,34 @@ std::size_t stored_bytes(const ExrPart& part, const ExrChannel& channel) {
 /// `grid` is what is read of the part.
 void check_size(const ExrReader& reader, const ExrPart& part, std::size_t channels,
                 const PixelGrid& grid = {}) {
-  const double value_bytes = 4.0 * double(channels);
-  check_decoded_size(reader.path(), double(part.data_window.area()) * value_bytes,
+  constexpr double kLargeTiles = 1 << 28;  // bytes; below, a tile may well be larger than its image
+  const double value_bytes = 4.0 * double(channels), tiles = tile_row_bytes(part),
+               pixels = double(part.data_window.area()) * value_bytes;
+  check_decoded_size(reader.path(), tiles > kLargeTiles ? std::max(pixels, tiles) : pixels,
                      double(grid.of(part.data_window).area()) * value_bytes + decoder_bytes(part),
                      largest_ratio(part));
 }
 
-/// `rows` is the data window, or some rows of it.
-void read_pixels(Imf::MultiPartInputFile& file, const ExrPart& part, const Window& rows,
+void read_lines(Imf::MultiPartInputFile& file, const ExrPart& part, const Window& rows,
+                const Imf::FrameBuffer& frame_buffer) {
+  Imf::InputPart lines(file, part.index);
+  lines.setFrameBuffer(frame_buffer);
+  lines.readPixels(rows.y0, rows.y1 - 1);
+}
+
+/// `rows` is the data window, or some rows of it. OpenEXR keeps one reader for each part of an open
+/// file and takes it for whatever is asked for later, so the lines of a part whose tiles are read
+/// too come from a file of their own.
+void read_pixels(const ExrReader& reader, const ExrPart& part, const Window& rows,
                  const Imf::FrameBuffer& frame_buffer) {
-  if (is_tiled(part) && rows == part.data_window) {
-    Imf::TiledInputPart tiles(file, part.index);
-    tiles.setFrameBuffer(frame_buffer);
-    tiles.readTiles(0, tiles.numXTiles() - 1, 0, tiles.numYTiles() - 1);
-  } else {
-    Imf::InputPart lines(file, part.index);
-    lines.setFrameBuffer(frame_buffer);
-    lines.readPixels(rows.y0, rows.y1 - 1);
+  if (!is_tiled(part)) return read_lines(reader.file(), part, rows, frame_buffer);
+  if (rows != part.data_window) {
+    Imf::MultiPartInputFile again(reader.path().c_str());
+    return read_lines(again, part, rows, frame_buffer);
   }
+  Imf::TiledInputPart tiles(reader.file(), part.index);
+  tiles.setFrameBuffer(frame_buffer);
+  tiles.readTiles(0, tiles.numXTiles() - 1, 0, tiles.numYTiles() - 1);
 }
 
 void read_or_fail(const ExrReader& reader, const ExrPart& part, const Window& rows,
@@ -94,7 +104,7 @@ void read_or_fail(const ExrReader& reader, const ExrPart& part, const Window& ro
                           Imf::Slice::Make(as_float ? Imf::FLOAT : channel.type, pixels, box, 0, 0,
                                            channel.x_sampling, channel.y_sampling));
     }
-    read_pixels(reader.file(), part, rows, frame_buffer);
+    read_pixels(reader, part, rows, frame_buffer);
   } catch (const std::exception& error) {
     throw_damaged(reader, part, error);
   }
