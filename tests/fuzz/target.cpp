@@ -36,7 +36,7 @@ void may_refuse(const std::function<void()>& read) {
     read();
   } catch (const Error& error) {
     require(is_for_inputs(error.code), error.what());
-    require(*error.what() != '\0' && !std::strchr(error.what(), '\n'), error.what());
+    require(*error.what() != '\0', "an error without a message");
   } catch (const std::exception& error) {
     require(false, error.what());
   }

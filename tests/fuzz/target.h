@@ -18,9 +18,9 @@ void read_input(Bytes input);
 /// Inputs to begin with, one of every kind that the target tells apart.
 std::vector<std::string> seeds();
 
-/// Calls `read`, which may refuse its input as the tool refuses files: with an Error whose message
-/// is one line and whose code is for inputs. Every other exception would reach the user as the text
-/// of a library and without a hint: it ends the process as a crash does.
+/// Calls `read`, which may refuse its input as the tool refuses files: with an Error whose code is
+/// for inputs. Every other exception would reach the user as the text of a library and without a
+/// hint: it ends the process as a crash does.
 void may_refuse(const std::function<void()>& read);
 
 /// Ends the process as a finding where `holds` is false.
