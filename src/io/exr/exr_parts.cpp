@@ -47,14 +47,6 @@ int lines_per_chunk(Imf::Compression compression) {
   }
 }
 
-double pixels_per_chunk(const ExrPart& part) {
-  if (is_tiled(part)) {
-    const Imf::TileDescription& tiles = part.header.tileDescription();
-    return double(tiles.xSize) * double(tiles.ySize);
-  }
-  return double(part.data_window.width()) * lines_per_chunk(part.header.compression());
-}
-
 double bytes_per_pixel(const ExrPart& part) {
   double bytes = 0;
   for (const ExrChannel& c : part.channels) bytes += c.type == Imf::HALF ? 2 : 4;
@@ -125,6 +117,14 @@ std::string label(const ExrPart& part) {
 
 bool is_tiled(const ExrPart& part) {
   return part.header.hasType() && Imf::isTiled(part.header.type());
+}
+
+double pixels_per_chunk(const ExrPart& part) {
+  if (is_tiled(part)) {
+    const Imf::TileDescription& tiles = part.header.tileDescription();
+    return double(tiles.xSize) * double(tiles.ySize);
+  }
+  return double(part.data_window.width()) * lines_per_chunk(part.header.compression());
 }
 
 double largest_ratio(const ExrPart& part) {

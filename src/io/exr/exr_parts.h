@@ -27,6 +27,9 @@ std::string label(const ExrPart& part);
 
 bool is_tiled(const ExrPart& part);
 
+/// Pixels of a tile, or of the scanlines that are packed together.
+double pixels_per_chunk(const ExrPart& part);
+
 /// How many bytes of float pixels a byte of the part's chunks can hold at best.
 double largest_ratio(const ExrPart& part);
 
