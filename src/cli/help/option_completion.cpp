@@ -81,7 +81,7 @@ Completion completion_of(const CLI::Option& option) {
 std::vector<MethodSettings> method_settings() {
   std::vector<MethodSettings> all;
   for (const Method& method : methods()) {
-    MethodSettings& row = all.emplace_back(std::string(method.name), Words());
+    MethodSettings& row = all.emplace_back(MethodSettings{std::string(method.name), {}});
     for (const Parameter& parameter : method.parameters) {
       const std::string key = std::string(parameter.name) + "=";
       if (parameter.words.empty()) row.settings.push_back(key);

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 #include "error.h"
 #include "io/one_line.h"
@@ -17,10 +19,44 @@ namespace {
 
 constexpr std::uint32_t kMultiPartFlag = 0x1000;
 constexpr std::size_t kLongestName = 255;
+constexpr std::int64_t kNoFile = std::int64_t(1) << 62;  ///< bytes that none has
 
 /// Of the list of channels, each of which takes 20 bytes or more there and many times that in
 /// memory: files of renderers have some hundreds of channels.
 constexpr std::int32_t kLargestChannelList = 4 << 20;
+
+/// Types whose values have a size of their own, in bytes. OpenEXR reads as many, whatever size the
+/// header says, and takes what is left for the next attribute.
+struct FixedSize {
+  std::string_view type;
+  std::int32_t bytes;
+};
+constexpr FixedSize kFixedSizes[] = {
+    {"box2f", 16},
+    {"box2i", 16},
+    {"chromaticities", 32},
+    {"compression", 1},
+    {"double", 8},
+    {"envmap", 1},
+    {"deepImageState", 1},
+    {"float", 4},
+    {"int", 4},
+    {"m33d", 72},
+    {"m33f", 36},
+    {"m44d", 128},
+    {"m44f", 64},
+    {"v2d", 16},
+    {"v2f", 8},
+    {"v2i", 8},
+    {"v3d", 24},
+    {"v3f", 12},
+    {"v3i", 12},
+    {"keycode", 28},
+    {"rational", 8},
+    {"timecode", 8},
+    {"lineOrder", 1},
+    {"tiledesc", 9},
+};
 
 std::int32_t read_int(std::istream& in) {
   unsigned char bytes[4] = {};
@@ -38,6 +74,35 @@ std::string read_name(std::istream& in) {
   return name;
 }
 
+/// The bytes that OpenEXR takes of `in` for a value of this type, or at least tries to.
+std::int64_t bytes_taken(std::istream& in, std::string_view type, std::int32_t size) {
+  const auto* fixed = std::ranges::find(kFixedSizes, type, &FixedSize::type);
+  if (fixed != std::end(kFixedSizes)) return fixed->bytes;
+  if (type == "preview") {
+    const std::int64_t width = std::uint32_t(read_int(in)), height = std::uint32_t(read_int(in));
+    return width > size || height > size ? kNoFile : 8 + 4 * width * height;
+  }
+  std::int64_t taken = 0;
+  if (type == "chlist") {
+    // A name, 16 bytes of type and sampling; an empty name ends the list.
+    for (std::string name = "first"; in && !name.empty() && taken <= size;) {
+      name = read_name(in);
+      taken += std::int64_t(name.size()) + (name.empty() ? 1 : 17);
+      if (!name.empty()) in.seekg(16, std::ios::cur);
+    }
+    return taken;
+  }
+  if (type == "stringvector") {
+    while (in && taken < size) {
+      const std::int64_t length = std::uint32_t(read_int(in));
+      taken += 4 + length;
+      in.seekg(length, std::ios::cur);
+    }
+    return taken;
+  }
+  return size;
+}
+
 }  // namespace
 
 void check_attribute_sizes(const fs::path& file) {
@@ -51,7 +116,7 @@ void check_attribute_sizes(const fs::path& file) {
     if (name.empty() && (!multi_part || before.empty())) return;
     before = name;
     if (name.empty()) continue;
-    read_name(in);  // its type
+    const std::string type = read_name(in);
     const std::int32_t size = read_int(in);
     const std::int64_t left = file_bytes - in.tellg();
     if (in && (size < 0 || size > left)) {
@@ -67,7 +132,16 @@ void check_attribute_sizes(const fs::path& file) {
                       "split it into files of fewer channels",
                       file.string(), size >> 20, kLargestChannelList >> 20));
     }
-    in.seekg(size, std::ios::cur);
+    const std::istream::pos_type value = in.tellg();
+    const std::int64_t taken = bytes_taken(in, type, size);
+    if (in && taken != size) {
+      throw Error(
+          ExitCode::input,
+          fmt::format("{}: is damaged in its header (attribute '{}' claims {} bytes, and its "
+                      "value takes {}); render or copy it again",
+                      file.string(), printable(name), size, taken));
+    }
+    in.seekg(value + std::streamoff(size));
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "error.h"
@@ -38,9 +39,12 @@ class DeepPartReader {
  public:
   DeepPartReader(const ExrReader& file, int part)
       : file_(file), part_(file.parts()[std::size_t(part)]) {
-    // The table of counts takes four bytes of each pixel, also in those of a tile that lie outside.
-    const double table = 4.0 * std::max(double(part_.data_window.area()), pixels_per_chunk(part_));
-    check_decoded_size(file_.path(), table, table, largest_ratio(part_));
+    // The table of counts takes four bytes of each pixel, also in those of a tile that lie outside;
+    // OpenEXR counts these in an int.
+    const double tile = 4.0 * pixels_per_chunk(part_),
+                 table = std::max(4.0 * double(part_.data_window.area()), tile);
+    const bool overflows = tile > std::numeric_limits<int>::max();
+    check_decoded_size(file_.path(), table, table, overflows ? 0 : largest_ratio(part_));
     counts_.resize(part_.data_window.area());
   }
 

@@ -51,12 +51,10 @@ int lines_per_chunk(Imf::Compression compression) {
   }
 }
 
-double pixels_per_chunk(const ExrPart& part) {
-  if (is_tiled(part)) {
-    const Imf::TileDescription& tiles = part.header.tileDescription();
-    return double(tiles.xSize) * double(tiles.ySize);
-  }
-  return double(part.data_window.width()) * lines_per_chunk(part.header.compression());
+double bytes_per_pixel(const ExrPart& part) {
+  double bytes = 0;
+  for (const ExrChannel& c : part.channels) bytes += c.type == Imf::HALF ? 2 : 4;
+  return bytes;
 }
 
 void check_is_exr(const fs::path& file) {
@@ -127,6 +125,14 @@ bool is_tiled(const ExrPart& part) {
   return part.header.hasType() && Imf::isTiled(part.header.type());
 }
 
+double pixels_per_chunk(const ExrPart& part) {
+  if (is_tiled(part)) {
+    const Imf::TileDescription& tiles = part.header.tileDescription();
+    return double(tiles.xSize) * double(tiles.ySize);
+  }
+  return double(part.data_window.width()) * lines_per_chunk(part.header.compression());
+}
+
 double largest_ratio(const ExrPart& part) {
   constexpr double kFloatOverHalf = 2;
   switch (part.header.compression()) {
@@ -143,9 +149,14 @@ double largest_ratio(const ExrPart& part) {
 }
 
 double decoder_bytes(const ExrPart& part) {
-  double bytes_per_pixel = 0;
-  for (const ExrChannel& c : part.channels) bytes_per_pixel += c.type == Imf::HALF ? 2 : 4;
-  return bytes_per_pixel * pixels_per_chunk(part) * 2 * std::max(1, Imf::globalThreadCount());
+  return bytes_per_pixel(part) * pixels_per_chunk(part) * 2 * std::max(1, Imf::globalThreadCount());
+}
+
+double tile_row_bytes(const ExrPart& part) {
+  if (!is_tiled(part)) return 0;
+  const Imf::TileDescription& tiles = part.header.tileDescription();
+  return bytes_per_pixel(part) * std::max(double(part.data_window.width()), double(tiles.xSize)) *
+         double(tiles.ySize);
 }
 
 std::string text_of(const Window& w) {

@@ -37,7 +37,7 @@ Window window_of(const Imath::Box2i& box);
 /// Scanlines that are packed together.
 int lines_per_chunk(Imf::Compression compression);
 
-/// Those of a tile, or of scanlines that are packed together.
+/// Pixels of a tile, or of the scanlines that are packed together.
 double pixels_per_chunk(const ExrPart& part);
 
 /// How many bytes of float pixels a byte of the part's chunks can hold at best.
@@ -46,6 +46,10 @@ double largest_ratio(const ExrPart& part);
 /// The memory in which OpenEXR decodes the chunks of a part: every channel of a chunk, two chunks
 /// for each of its threads.
 double decoder_bytes(const ExrPart& part);
+
+/// What all channels of a row of tiles take, of which OpenEXR makes room for all, also where the
+/// image is smaller than a tile. 0 for scanlines.
+double tile_row_bytes(const ExrPart& part);
 
 /// A window by its first and last pixel, as headers have it: "0,0 to 575,323".
 std::string text_of(const Window& window);

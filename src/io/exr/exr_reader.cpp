@@ -72,7 +72,9 @@ void check_size(const ExrReader& reader, const ExrPart& part, Names names,
   }
   const double ratio = largest_ratio(part),
                with_gaps = std::min(kLargestRatio, ratio / kLeastShare);
-  check_decoded_size(reader.path(), double(part.data_window.area()) * value_bytes,
+  constexpr double kLargeTiles = 1 << 28;  // bytes; below, a tile may well be larger than its image
+  const double tiles = tile_row_bytes(part), pixels = double(part.data_window.area()) * value_bytes;
+  check_decoded_size(reader.path(), tiles > kLargeTiles ? std::max(pixels, tiles) : pixels,
                      double(grid.of(part.data_window).area()) * value_bytes + decoder_bytes(part),
                      reader.salvage() == Salvage::none ? ratio : with_gaps);
 }
@@ -107,6 +109,8 @@ void read_or_fail(const ExrReader& reader, const ExrPart& part, const Window& ro
   try {
     if (!read_zip_lines(reader.file(), part, rows, channels))
       read_chunks(reader, part, rows, channels);
+  } catch (const std::bad_alloc&) {
+    throw;  // nothing is wrong with the file
   } catch (const std::exception& error) {
     salvage_or_fail(reader, part, rows, channels, error);
   }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <fstream>
 #include <random>
 
@@ -97,6 +98,24 @@ TEST(DeepReader, RefusesFilesThatAreCutShort) {
 }
 
 /// Whatever the bytes are, reading ends in samples or in an ssdo::Error.
+// OpenEXR makes room for the counts of a whole tile, and multiplies its sides as ints.
+TEST(DeepReader, RefusesTilesThatNoFileHolds) {
+  const TempDir dir;
+  write_deep(dir / "a.exr", {{.pixels = pattern({0, 0, 8, 8}), .tiles = true}});
+  std::string bytes = read_file(dir / "a.exr");
+  const std::size_t sides = bytes.find("tiles") + sizeof("tiles") + sizeof("tiledesc") + 4;
+  const auto read_with_side = [&](std::uint32_t side) {
+    std::memcpy(&bytes[sides], &side, 4);
+    std::memcpy(&bytes[sides + 4], &side, 4);
+    std::ofstream(dir / "b.exr", std::ios::binary) << bytes;
+    return error_of([&] { read_deep(ExrReader(dir / "b.exr"), {{0, "Z"}, {}, {}}); });
+  };
+  const auto refused = IsError(ExitCode::input, "GiB of pixels, which a file of");
+  EXPECT_THAT(read_with_side(1 << 13), refused);
+  bytes.resize(3 << 20);  // which may hold 6 GiB
+  EXPECT_THAT(read_with_side(30000), refused);
+}
+
 TEST(DeepReader, FlippedBytesDoNoHarm) {
   const TempDir dir;
   std::mt19937 random(2026);

@@ -148,5 +148,26 @@ TEST(DamagedExr, AbsurdSizesAreRefusedBeforeAllocation) {
               IsError(ExitCode::input, "GiB of pixels, which a file of"));
 }
 
+// OpenEXR makes room for a whole row of tiles, however small the image is.
+TEST(DamagedExr, AbsurdTilesAreRefusedBeforeAllocation) {
+  const TempDir dir;
+  write_test_exr(dir / "a.exr", tiled_file());
+  std::string bytes = bytes_of(dir / "a.exr");
+  const std::size_t side = bytes.find("tiles") + sizeof("tiles") + sizeof("tiledesc") + 4;
+  const std::uint32_t absurd = 1 << 15;
+  std::memcpy(&bytes[side], &absurd, 4);
+  std::memcpy(&bytes[side + 4], &absurd, 4);
+  write_bytes(dir / "a.exr", bytes);
+  const std::vector<std::string> names = {"R"};
+  EXPECT_THAT(error_of([&] { ExrReader(dir / "a.exr").read(0, names); }),
+              IsError(ExitCode::input, "claims 10.0 GiB of pixels, which a file of"));
+}
+
+TEST(DamagedExr, TilesMayBeLargerThanTheImage) {
+  const TempDir dir;
+  write_test_exr(dir / "a.exr", {tiled(test_header(Box2i({0, 0}, {7, 7}), kChannels), 4096)});
+  EXPECT_TRUE(reads(dir / "a.exr"));
+}
+
 }  // namespace
 }  // namespace ssdo

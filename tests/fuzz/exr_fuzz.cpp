@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Flat EXRs: every channel of every part, as float and as stored, and what the names of layers say.
+// ZIP chunks that our own code takes have to give what OpenEXR gives.
+#include <ImfFrameBuffer.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+
+#include "fuzz/exr_mutation.h"
+#include "fuzz/target.h"
+#include "io/exr/exr_parts.h"
+#include "io/exr/exr_reader.h"
+#include "io/exr/header_numbers.h"
+#include "io/exr/zip_chunk.h"
+#include "scene/layers/groups.h"
+#include "scene/layers/layers.h"
+
+namespace ssdo::fuzz {
+namespace {
+
+/// What OpenEXR's own reader gives; nothing where it refuses.
+std::vector<StoredChannel> by_openexr(const ExrReader& file, const ExrPart& part,
+                                      std::vector<StoredChannel> like) {
+  const Window& window = part.data_window;
+  const Imath::Box2i box({window.x0, window.y0}, {window.x1 - 1, window.y1 - 1});
+  Imf::FrameBuffer buffer;
+  for (auto& [channel, pixels] : like) {
+    std::fill(pixels.begin(), pixels.end(), std::byte(0));
+    buffer.insert(channel.name, Imf::Slice::Make(channel.type, pixels.data(), box, 0, 0));
+  }
+  try {
+    Imf::InputPart lines(file.file(), part.index);
+    lines.setFrameBuffer(buffer);
+    lines.readPixels(window.y0, window.y1 - 1);
+  } catch (const std::exception&) {
+    return {};
+  }
+  return like;
+}
+
+void compare(const ExrReader& file, const ExrPart& part, const std::vector<StoredChannel>& ours) {
+  const std::vector<StoredChannel> theirs = by_openexr(file, part, ours);
+  require(theirs.size() == ours.size(), "OpenEXR refuses what the ZIP code reads");
+  for (std::size_t i = 0; i < ours.size(); ++i)
+    require(ours[i].pixels == theirs[i].pixels, "the ZIP code and OpenEXR read other pixels");
+}
+
+void read_part(const ExrReader& file, const ExrPart& part) {
+  std::vector<std::string> full, all;
+  for (const ExrChannel& channel : part.channels) {
+    all.push_back(channel.name);
+    if (channel.x_sampling == 1 && channel.y_sampling == 1) full.push_back(channel.name);
+  }
+  may_refuse([&] { file.read(part.index, full); });
+  may_refuse([&] { file.read(part.index, full, PixelGrid{.stride = kOverviewStride}); });
+  may_refuse([&] {
+    const std::vector<StoredChannel> stored = file.read_stored(part.index, all);
+    if (is_zip(part.header.compression()) && !is_tiled(part) && all == full)
+      compare(file, part, stored);
+  });
+}
+
+}  // namespace
+
+void read_input(Bytes input) {
+  static MemoryFile memory;
+  memory.hold(input);
+  may_refuse([] {
+    const ExrReader file(memory.path());
+    for (const ExrPart& part : file.parts()) {
+      read_part(file, part);
+      header_numbers(file, part.index);
+      is_by_blender(part.header);
+    }
+    views_of(group_channels(file, 0));
+    find_layers({&file}, {}, "");
+  });
+}
+
+std::vector<std::string> seeds() { return exr_samples(flat_kinds()); }
+
+}  // namespace ssdo::fuzz
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most, unsigned seed) {
+  return ssdo::fuzz::mutate_exr(data, size, most, ssdo::fuzz::flat_kinds(), seed);
+}

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A command line, one word on each line up to an empty line, and a config file, which is the rest.
+// Each word is read as what words may be: a frame pattern, a list of frames, FILE:LAYER.
+#include <sstream>
+
+#include "cli/options.h"
+#include "fuzz/target.h"
+#include "io/picture_layers.h"
+#include "io/sequence.h"
+#include "scene/layers/layers.h"
+
+namespace ssdo::fuzz {
+namespace {
+
+void read_word(const std::string& word) {
+  may_refuse([&] { is_pattern(word); });
+  may_refuse([&] { expand_pattern(word, -17); });
+  may_refuse([&] { parse_frames(word); });
+  may_refuse([&] { parse_picture_name(word); });
+  may_refuse([&] { parse_layer_request(word); });
+}
+
+void parse(const std::vector<std::string>& words) {
+  std::vector<const char*> arguments;
+  for (const std::string& word : words) arguments.push_back(word.c_str());
+  may_refuse([&] { parse_options(int(arguments.size()), arguments.data()); });
+}
+
+}  // namespace
+
+void read_input(Bytes input) {
+  static MemoryFile config;
+  const std::string text(input.begin(), input.end());
+  const std::size_t end = std::min(text.find("\n\n"), text.size());
+  std::vector<std::string> words = {"ssdo"};
+  std::istringstream lines(text.substr(0, end));
+  for (std::string word; std::getline(lines, word);) words.push_back(word);
+  for (const std::string& word : words) read_word(word);
+  if (end < text.size()) {
+    config.hold(input.subspan(end + 2));
+    words.insert(words.end(), {"--config", config.path()});
+  }
+  parse(words);
+}
+
+std::vector<std::string> seeds() {
+  return {
+      "in.exr\n-o\nout.exr\n\nquality = \"final\"\nbounces = 2\n",
+      "in.####.exr\n-o\nout.%04d.png\n--frames\n1-10x2,20,-5--1\n--on-error\ncontinue\n",
+      "in.exr\n-o\nout.exr\n--aov\nposition=P\n--aov\nnormal=n.exr:N\n--env\nsky.exr:left.sky\n",
+      "info\nin.exr\n--json\n--depth-kind\nnormalized:1,20\n--camera\nc.json\n--part\n2\n",
+      "compare\na.exr:P\nb.exr:P\n--fail-above\n0.1\n--mask\nm.exr:A\n",
+      "bench\nin.exr\n--report\nr.html\n",
+      "in.exr\n--dry-run\n--set\nfalloff=2\n--method\ngtao\n--save\nao=ao.png\n--mem-limit\n2G\n",
+      "in.exr\n-o\nout.exr\n--compression\nzip:9\n--neighbours\n2x3\n--motion-scale\n1,-1\n"
+      "--thickness\nauto\n--radius\ninf\n--env\n1,2,3\n\n"
+      "aov = [\"position=P\", \"normal=N\"]\nframes = \"1-3\"\nverbose = true\nradius = 0.5\n"};
+}
+
+}  // namespace ssdo::fuzz
