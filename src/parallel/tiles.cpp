@@ -5,7 +5,13 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <mutex>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "parallel/task_order.h"
 
 namespace ssdo {
 namespace {
@@ -13,13 +19,26 @@ namespace {
 constexpr int kTileSize = 64;  ///< position and normal of 64 x 64 pixels fill half an L2 cache
 constexpr int kBandHeight = 16;
 
+std::atomic<unsigned> order_seed = 0;  ///< of ShuffledOrder; 0: none
+
+/// Calls `work(i)` once for each i from 0 to count - 1.
+template <class Index, class Work>
+void run(Index count, const Work& work) {
+  const unsigned seed = order_seed;
+  if (seed == 0) return tbb::parallel_for(Index(0), count, work);
+  std::vector<Index> order(std::size_t(std::max(count, Index(0))));
+  std::iota(order.begin(), order.end(), Index(0));
+  std::shuffle(order.begin(), order.end(), std::mt19937(seed));
+  tbb::parallel_for(Index(0), count, [&](Index i) { work(order[std::size_t(i)]); });
+}
+
 }  // namespace
 
 void for_each_task(std::size_t count, const std::function<void(std::size_t)>& work,
                    const Progress& progress) {
   std::mutex mutex;
   std::size_t done = 0;
-  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
+  run(count, [&](std::size_t i) {
     work(i);
     if (!progress) return;
     const std::lock_guard lock(mutex);
@@ -48,9 +67,7 @@ void for_each_band(int height, const std::function<void(int y0, int y1)>& work,
   for_each_task(std::size_t((height + kBandHeight - 1) / kBandHeight), one, progress);
 }
 
-void for_each_row(int height, const std::function<void(int y)>& work) {
-  tbb::parallel_for(0, height, work);
-}
+void for_each_row(int height, const std::function<void(int y)>& work) { run(height, work); }
 
 struct ThreadLimit::Control {
   tbb::global_control control;
@@ -60,5 +77,9 @@ ThreadLimit::ThreadLimit(int count)
     : control_(new Control{{tbb::global_control::max_allowed_parallelism, std::size_t(count)}}) {}
 
 ThreadLimit::~ThreadLimit() { delete control_; }
+
+ShuffledOrder::ShuffledOrder(unsigned seed) { order_seed = seed; }
+
+ShuffledOrder::~ShuffledOrder() { order_seed = 0; }
 
 }  // namespace ssdo
