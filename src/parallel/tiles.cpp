@@ -5,9 +5,14 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <mutex>
+#include <numeric>
+#include <random>
+#include <vector>
 
 #include "parallel/fork_join.h"
+#include "parallel/task_order.h"
 
 namespace ssdo {
 namespace {
@@ -15,9 +20,11 @@ namespace {
 constexpr int kTileSize = 64;  ///< position and normal of 64 x 64 pixels fill half an L2 cache
 constexpr int kBandHeight = 16;
 
-/// Calls `work(i)` once for each i from 0 to count - 1.
+std::atomic<unsigned> order_seed = 0;  ///< of ShuffledOrder; 0: none
+
+/// Calls `work(i)` once for each i from 0 to count - 1, which TBB starts in any order.
 template <class Index, class Work>
-void run(Index count, const Work& work) {
+void start(Index count, const Work& work) {
   ForkJoin order;
   order.fork();
   const ForkJoin::Join join(order);
@@ -25,6 +32,17 @@ void run(Index count, const Work& work) {
     const ForkJoin::Task task(order);
     work(i);
   });
+}
+
+/// The same, in the order of ShuffledOrder where there is one.
+template <class Index, class Work>
+void run(Index count, const Work& work) {
+  const unsigned seed = order_seed;
+  if (seed == 0) return start(count, work);
+  std::vector<Index> order(std::size_t(std::max(count, Index(0))));
+  std::iota(order.begin(), order.end(), Index(0));
+  std::shuffle(order.begin(), order.end(), std::mt19937(seed));
+  start(count, [&](Index i) { work(order[std::size_t(i)]); });
 }
 
 }  // namespace
@@ -72,5 +90,9 @@ ThreadLimit::ThreadLimit(int count)
     : control_(new Control{{tbb::global_control::max_allowed_parallelism, std::size_t(count)}}) {}
 
 ThreadLimit::~ThreadLimit() { delete control_; }
+
+ShuffledOrder::ShuffledOrder(unsigned seed) { order_seed = seed; }
+
+ShuffledOrder::~ShuffledOrder() { order_seed = 0; }
 
 }  // namespace ssdo

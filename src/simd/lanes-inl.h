@@ -63,15 +63,9 @@ HWY_INLINE V smooth(V t) { return t * t * hn::NegMulAdd(set(2), t, set(3)); }
 /// From 0 at `from` to 1 at `to`, as in GLSL.
 HWY_INLINE V smoothstep(V from, V to, V x) { return smooth(saturate((x - from) / (to - from))); }
 
-/// 1 / sqrt(x), off by kReciprocalSqrtError of it at most.
-constexpr float kReciprocalSqrtError = 4e-4f;
-HWY_INLINE V reciprocal_sqrt(V x) {
-#if HWY_TARGET == HWY_SCALAR
-  return set(1) / hn::Sqrt(x);  // Highway's own is off by 2e-3 here
-#else
-  return hn::ApproximateReciprocalSqrt(x);
-#endif
-}
+/// 1 / sqrt(x). An estimate by the processor would make a march a twentieth faster, but AVX2's is
+/// another on each maker's processors.
+HWY_INLINE V reciprocal_sqrt(V x) { return set(1) / hn::Sqrt(x); }
 
 /// A place in a plane.
 struct V2 {

@@ -211,7 +211,7 @@ TEST(Lanes, FunctionsOfOneNumberAreThoseOfShadingLanguages) {
       EXPECT_NEAR(out.smoothstep[i], t * t * (3 - 2 * t), 1e-6) << i;
       if (s != 0) {
         const double expected = 1 / std::sqrt(std::abs(s));
-        EXPECT_NEAR(out.reciprocal_sqrt[i] / expected, 1, 4e-4) << i;
+        EXPECT_NEAR(out.reciprocal_sqrt[i] / expected, 1, 2e-7) << i;
       }
       EXPECT_EQ(out.gathered[i], in.s[in.index[i]]) << i;
       EXPECT_EQ(out.iota[i], float(i));

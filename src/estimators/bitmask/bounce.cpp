@@ -103,17 +103,18 @@ HWY_INLINE V measure_of(const MarchReceiver& p, const SideFrame& side, VU bits) 
   const VU one = set_bits(1), last = set_bits(31);
   const VU first = hn::PopulationCount(hn::AndNot(bits, bits - one));
   const VU begin = hn::And(first, last), end = hn::And(first + hn::PopulationCount(bits), last);
-  if (none(hn::Xor(bits, hn::AndNot(bits_from(end), bits_from(begin))))) {
-    // One run of sectors, as nearly always.
-    const auto moment = [&](int m) HWY_ATTR {
-      const float* table = slice_sectors().of_first[std::size_t(m)].data();
-      return lookup32(table, end) - lookup32(table, begin);
-    };
-    return dot(V2{p.shading_v, side.shading_t},
-               V2{moment(1), moment(SliceSectors::sine_moment(1))});
-  }
+  const VU others = hn::Xor(bits, hn::AndNot(bits_from(end), bits_from(begin)));
+  const auto moment = [&](int m) HWY_ATTR {
+    const float* table = slice_sectors().of_first[std::size_t(m)].data();
+    return lookup32(table, end) - lookup32(table, begin);
+  };
+  const V of_run =
+      dot(V2{p.shading_v, side.shading_t}, V2{moment(1), moment(SliceSectors::sine_moment(1))});
+  if (none(others)) return of_run;  // as nearly always
+  // The two ways round differently: which one is taken must not depend on the lanes beside.
   const auto moments = moments_of_bits<1>(bits);
-  return dot(V2{p.shading_v, side.shading_t}, V2{moments.cosine[1], moments.sine[1]});
+  const V of_bits = dot(V2{p.shading_v, side.shading_t}, V2{moments.cosine[1], moments.sine[1]});
+  return hn::IfThenElse(hn::RebindMask(D(), others == set_bits(0)), of_run, of_bits);
 }
 
 /// Light from what only further views show.

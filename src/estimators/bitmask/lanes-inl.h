@@ -28,8 +28,8 @@ namespace ssdo::HWY_NAMESPACE {
 /// place.
 constexpr float kHeightError = 2.4e-7f;
 
-/// Error of the difference of two cosines from reciprocal_sqrt().
-constexpr float kCosineError = 2 * kReciprocalSqrtError;
+/// Least difference of two cosines that is more than rounding.
+constexpr float kCosineError = 8e-4f;
 
 /// The bits from `first` (0..32 or more) on.
 HWY_INLINE VU bits_from(VU first) {
@@ -37,17 +37,6 @@ HWY_INLINE VU bits_from(VU first) {
   return hn::IfThenElseZero(first < set_bits(32), set_bits(~0u) << hn::Min(first, set_bits(31)));
 #else
   return set_bits(~0u) << first;  // nothing is left of a shift by 32 or more
-#endif
-}
-
-/// 1 / x, off by a unit or two in the last place: a quarter of the time of a division. Infinite or
-/// not-a-number for 0.
-HWY_INLINE V reciprocal(V x) {
-#if HWY_TARGET == HWY_SCALAR
-  return set(1) / x;
-#else
-  const V near = hn::ApproximateReciprocal(x);
-  return hn::MulAdd(near, hn::NegMulAdd(x, near, set(1)), near);  // a step of Newton's
 #endif
 }
 

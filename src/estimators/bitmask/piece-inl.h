@@ -60,9 +60,8 @@ HWY_INLINE Piece piece_at(const MarchPlanes& planes, const MarchReceiver& p, con
             least = kOrthographic ? hn::Neg(most) : set(1 / kMostDeepening - 1);
     const V limited = hn::Clamp(change, least, most);
     const M beyond = limited != change;
-    if (any(beyond))
-      share = hn::IfThenElse(beyond, hn::MulAdd(limited, reciprocal(nearer), one), share);
-    V end_depth = kOrthographic ? depth - limited : depth * reciprocal(one + limited);
+    if (any(beyond)) share = hn::IfThenElse(beyond, one + limited / nearer, share);
+    V end_depth = kOrthographic ? depth - limited : depth / (one + limited);
     // On a round silhouette the tangent plane would extend far in front of the surface.
     if (inner) end_depth = hn::Max(end_depth, depth);
     return end_at<kOrthographic>(p, side, share, end_depth, rise, across);

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "error.h"
+#include "estimators/ray_device.h"
 
 namespace ssdo {
 namespace {
@@ -61,7 +62,7 @@ RTCRay ray_of(const glm::vec3& origin, const glm::vec3& direction, float reach) 
 }  // namespace
 
 struct FurtherRays::Embree {
-  RTCDevice device = rtcNewDevice(nullptr);
+  RTCDevice device = rtcNewDevice(kRayDevice);
   RTCScene scene = rtcNewScene(device);
   const std::vector<Vertex>& vertices;
   const std::vector<FurtherSurfaces::Triangle>& triangles;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "error.h"
+#include "estimators/ray_device.h"
 
 namespace ssdo {
 namespace {
@@ -80,7 +81,7 @@ struct Query : RTCIntersectContext {
 }  // namespace
 
 struct RayScene::Embree {
-  RTCDevice device = rtcNewDevice(nullptr);
+  RTCDevice device = rtcNewDevice(kRayDevice);
   RTCScene scene = rtcNewScene(device);
 
   Embree() = default;
