@@ -19,7 +19,7 @@
 namespace ssdo::test {
 namespace {
 
-constexpr int kShards = 4, kFrames = 1600;
+constexpr int kShards = 4, kFrames = 1200;
 
 /// Most frames that may be refused: those whose camera nothing tells.
 constexpr double kMostRefused = 0.15;
