@@ -83,9 +83,11 @@ Measured lost_by_more_light_of_one_color(const Subject& s) {
   return lost_by(s, changed(before, [&](const glm::vec3& color) { return color + more; }));
 }
 
-/// Where texels of a map are brighter. Not of methods whose direct light is the exact unoccluded
-/// light times a ratio of sums over few directions: there, a brighter texel in a hidden direction
-/// makes the ratio smaller by more than the light grows where the directions look at it too often.
+/// Where texels of a map are brighter. A texel that becomes a sun is looked up exactly, as the sky
+/// around it is not: 0.03 was the worst of 2000 maps. Not of methods whose direct light is the
+/// exact unoccluded light times a ratio of sums over few directions: there, a brighter texel in a
+/// hidden direction makes the ratio smaller by more than the light grows where the directions look
+/// at it too often.
 Measured lost_by_more_light_in_a_map(const Subject& s) {
   const bool is_ratio = s.method() == "bitmask" || s.method() == "trace" || s.method() == "ssdo";
   if (s.shot.map.empty() || is_ratio || !s.shot.has_energy_of_nature()) return std::nullopt;
