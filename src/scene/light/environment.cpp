@@ -6,6 +6,7 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
+#include <numeric>
 #include <vector>
 
 #include "parallel/tiles.h"
@@ -18,6 +19,19 @@ constexpr float kPi = glm::pi<float>();
 /// off. Nodes are 3 degrees apart, the lobes 10 or wider.
 constexpr int kBlurredSize = 65;
 constexpr int kBlurSourceWidth = 128;  ///< patches of 2.8 degrees
+
+/// Over the texels, of the sum of the channels without its sign; 1 for a black map.
+float mean_brightness(const Plane<glm::vec3>& map) {
+  std::vector<double> of_row(std::size_t(map.height));
+  for_each_row(map.height, [&](int y) {
+    for (int x = 0; x < map.width; ++x) {
+      const glm::vec3& c = map(x, y);
+      of_row[std::size_t(y)] += std::abs(c.x + c.y + c.z);
+    }
+  });
+  const double sum = std::accumulate(of_row.begin(), of_row.end(), 0.0);
+  return sum > 0 ? float(sum / double(map.size())) : 1;
+}
 
 }  // namespace
 
@@ -98,6 +112,9 @@ std::vector<Environment::Patch> Environment::patches(const glm::mat3& world_to_c
   const int rows = std::min(map.height, std::max(1, columns / 2));
   columns = std::min(map.width, columns);
   std::vector<Patch> sky(std::size_t(columns) * std::size_t(rows));
+  // Black texels count a little, in proportion to the others: brighter light has the same patches.
+  constexpr float kLeastWeight = 1e-6f;
+  const float per_brightness = 1 / mean_brightness(map);
   // Unit vectors around the horizon, so that the loop over texels has no trigonometry.
   std::vector<glm::vec3> horizon(std::size_t(map.width));
   for (int x = 0; x < map.width; ++x)
@@ -118,9 +135,9 @@ std::vector<Environment::Patch> Environment::patches(const glm::mat3& world_to_c
         glm::vec3 light(0), around(0);
         float weights = 0;
         for (int x = x0; x < x1; ++x) {
-          const glm::vec3 c = gain_ * map(x, y);
-          const float weight = std::abs(c.x + c.y + c.z) + 1e-6f;
-          light += c;
+          const glm::vec3& c = map(x, y);
+          const float weight = std::abs(c.x + c.y + c.z) * per_brightness + kLeastWeight;
+          light += gain_ * c;
           around += weight * horizon[x];
           weights += weight;
         }

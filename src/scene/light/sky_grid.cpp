@@ -2,11 +2,25 @@
 #include "scene/light/sky_grid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "scene/light/sun.h"
 
 namespace ssdo {
+namespace {
+
+/// Over the sphere, without signs; 1 for black patches.
+float mean_brightness(const std::vector<Environment::Patch>& patches) {
+  double sum = 0, solid_angle = 0;
+  for (const Environment::Patch& patch : patches) {
+    sum += std::abs(brightness(patch.power));
+    solid_angle += patch.solid_angle;
+  }
+  return sum > 0 ? float(sum / solid_angle) : 1;
+}
+
+}  // namespace
 
 SkyGrid::SkyGrid(const Environment& environment, const glm::mat3& world_to_camera, int most_columns)
     : columns(std::min(environment.map()->width, most_columns)),
@@ -15,6 +29,8 @@ SkyGrid::SkyGrid(const Environment& environment, const glm::mat3& world_to_camer
 }
 
 SkyGrid SkyGrid::merged(int most_columns) const {
+  constexpr float kLeastWeight = 1e-6f;  // of black patches, in proportion to the others
+  const float per_brightness = 1 / mean_brightness(patches);
   SkyGrid out;
   out.columns = std::min(columns, most_columns);
   out.rows = std::min(rows, std::max(1, most_columns / 2));
@@ -25,7 +41,8 @@ SkyGrid SkyGrid::merged(int most_columns) const {
       Environment::Patch& whole =
           out.patches[out.index(x * out.columns / columns, y * out.rows / rows)];
       whole.direction +=
-          (std::abs(brightness(part.power)) + 1e-6f * part.solid_angle) * part.direction;
+          (std::abs(brightness(part.power)) * per_brightness + kLeastWeight * part.solid_angle) *
+          part.direction;
       whole.power += part.power;
       whole.solid_angle += part.solid_angle;
     }

@@ -155,6 +155,22 @@ TEST(Light, TurnsWithTheEnvironmentAndTheCamera) {
   }
 }
 
+TEST(Light, IsTheSameInAnyExposureButForItsBrightness) {
+  constexpr float kStops = 20;
+  const Environment usual = paint(512, sunny);
+  const Environment dim(usual.map(), {.up = UpAxis::z, .exposure_stops = -kStops});
+  const Light bright_light = model_light(usual, glm::mat3(1)),
+              dim_light = model_light(dim, glm::mat3(1));
+  EXPECT_EQ(bright_light.order, dim_light.order);
+  for (int i = 0; i < kShCount; ++i)
+    EXPECT_EQ(bright_light.coefficients[i], std::exp2(kStops) * dim_light.coefficients[i]) << i;
+  std::mt19937 random(1);
+  for (int i = 0; i < 20; ++i) {
+    const glm::vec3 n = random_direction(random);
+    EXPECT_EQ(bright_light.unoccluded(n), std::exp2(kStops) * dim_light.unoccluded(n));
+  }
+}
+
 TEST(Light, StaysFiniteForAnyMap) {
   std::mt19937 random(5);
   std::normal_distribution<float> normal;
