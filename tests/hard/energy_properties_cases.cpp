@@ -84,7 +84,7 @@ Measured lost_by_more_light_of_one_color(const Subject& s) {
 }
 
 /// Where texels of a map are brighter. A texel that becomes a sun is looked up exactly, as the sky
-/// around it is not: 0.03 was the worst of 2000 maps. Not of methods whose direct light is the
+/// around it is not: 0.055 was the worst of 1600 maps. Not of methods whose direct light is the
 /// exact unoccluded light times a ratio of sums over few directions: there, a brighter texel in a
 /// hidden direction makes the ratio smaller by more than the light grows where the directions look
 /// at it too often.
@@ -98,8 +98,10 @@ Measured lost_by_more_light_in_a_map(const Subject& s) {
                  }));
 }
 
-/// Of light that is twice as bright, what is not; and what is not the same of all else.
+/// Of light that is twice as bright, what is not; and what is not the same of all else. Not with
+/// broken values: bounces among albedos of 65504 reach the most that light may be.
 Measured change_by_twice_the_light(const Subject& s) {
+  if (!s.shot.broken.empty()) return std::nullopt;
   const Environment twice =
       changed(s.frame.scene.light.environment, [](const glm::vec3& texel) { return 2.0f * texel; });
   const Products one = relit(s.frame.scene, s.frame.plan),
