@@ -26,8 +26,8 @@ struct OutputOptions {
   std::optional<int> compression_level;         ///< its own default where not given
   int bits = 8;                                 ///< per channel of PNG and TIFF: 8 or 16
   bool keep_channels = false;
-  bool crop = false;   ///< EXR outputs hold the display window only
-  int downsample = 1;  ///< how many times as large as the outputs the frame is: 1 to 8
+  bool crop = false;    ///< EXR outputs hold the display window only
+  int downsample = 1;   ///< how many times as large as the outputs the frame is: 1 to 8
   std::string made_by;  ///< of --history, for the header of EXR outputs; empty: not asked for
   OutputPolicy policy;
 };

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is needed, builds, and runs every test; a shot on a farm, the package and cppcheck
-# included. Or some stages, of which those of sanitizers, address and thread, are run on request only:
-#   tests/run.sh [release|lint|address|thread|farm|package]...
+# Installs what is needed, builds, and runs every test; a shot on a farm, the package, faults and
+# cppcheck included. Or some stages, of which those of sanitizers, address and thread, are run on
+# request only:
+#   tests/run.sh [release|lint|address|thread|farm|package|faults]...
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 mkdir -p "$root/build"
@@ -75,7 +76,12 @@ run_package() {
   as_root "$root/tests/package/run.sh" "$release"
 }
 
-[ $# -gt 0 ] || set -- release farm package lint
+run_faults() {
+  install_packages "${fault_packages[@]}"
+  as_root "$root/tests/faults/run.sh" "$release/ssdo" 24
+}
+
+[ $# -gt 0 ] || set -- release farm package faults lint
 for stage in "$@"; do
   SECONDS=0
   "run_$stage"

@@ -24,8 +24,9 @@ std::string choose_isa(std::string_view wanted) {
       return std::string(choice.name);
     }
     if (!wanted.empty()) {
-      throw Error(ExitCode::usage,
-                  fmt::format("$SSDO_ISA is '{}', which this processor or this build lacks", wanted));
+      throw Error(
+          ExitCode::usage,
+          fmt::format("$SSDO_ISA is '{}', which this processor or this build lacks", wanted));
     }
   }
   throw Error(ExitCode::usage,

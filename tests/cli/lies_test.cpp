@@ -81,6 +81,8 @@ const std::vector<ExrLie> kExrLies = {
     {"text_of_2_gb", size("notes", 2147483647), "attribute 'notes' claims 2147483647 bytes"},
     {"text_of_1_gb", size("notes", 1 << 30), "attribute 'notes' claims 1073741824 bytes"},
     {"text_of_less_than_nothing", size("notes", -5), "attribute 'notes' claims -5 bytes"},
+    {"number_of_6_bytes", size("pixelAspectRatio", 6), "claims 6 bytes, and its value takes 4"},
+    {"list_of_7_bytes", size("channels", 7), "attribute 'channels' claims 7 bytes, and its value"},
     {"table_beyond_the_file", places(1ull << 40, 1ull << 40), kDamaged},
     {"table_beyond_int64", places(1ull << 63, ~0ull), kDamaged},
     {"table_in_the_header", places(8, 9), kDamaged},

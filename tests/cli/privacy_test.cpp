@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What outputs say about who made them, who may read them, and what names in headers may not do.
+#include <ImfStringAttribute.h>
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "error.h"
 #include "io/exr/compression.h"
@@ -42,12 +44,16 @@ void check_crop(const ExrOutput& output, const ExrPart& part,
   }
 }
 
+/// Attributes that say how pixels were stored.
+constexpr std::array<std::string_view, 4> kStorage = {"tiles", "chunkCount", "version",
+                                                      "maxSamplesPerPixel"};
+
 /// The header of a part whose pixels are written anew, in scanlines.
 Imf::Header scanline_header(const ExrOutput& output, const ExrPart& part) {
-  Imf::Header header = part.header;
-  for (const char* storage : {"tiles", "chunkCount", "version", "maxSamplesPerPixel"}) {
-    header.erase(storage);
-  }
+  Imf::Header header;  // not a copy: Header::erase() of OpenEXR 3.1 does not free what it takes out
+  for (auto it = part.header.begin(); it != part.header.end(); ++it)
+    if (std::ranges::find(kStorage, it.name()) == kStorage.end())
+      header.insert(it.name(), it.attribute());
   header.setType(Imf::SCANLINEIMAGE);
   header.lineOrder() = Imf::INCREASING_Y;
   const Window window = written_window(output, part);
@@ -81,7 +87,8 @@ Imf::Header header_for(const ExrOutput& output, const std::vector<KeptChannel>& 
     header.channels().insert(plane.name, Imf::Channel(plane.type));
   }
   for (const auto& [name, text] : output.attributes) {
-    header.erase(name);
+    // That of an earlier run is replaced; one of another type has to go first.
+    if (!header.findTypedAttribute<Imf::StringAttribute>(name)) header.erase(name);
     header.insert(name, Imf::StringAttribute(text));
   }
   return header;

@@ -51,7 +51,9 @@ TEST_F(CameraFile, FieldsOfViewAndSizesAreThoseOfACamera) {
 }
 
 TEST_F(CameraFile, IsNoFolder) {
-  EXPECT_THAT(error_of([&] { read_camera(dir_.path(), {0, 0, 64, 48}, 1); }),
+  EXPECT_THAT(error_of([&] {
+                read_camera(dir_.path(), {0, 0, 64, 48}, 1);
+              }),
               IsError(ExitCode::input, "camera file cannot be read"));
 }
 
