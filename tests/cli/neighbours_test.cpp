@@ -72,7 +72,7 @@ class NeighboursOf : public testing::Test {
     return done.out;
   }
   /// The line of a plan that says what a view adds begins so.
-  std::string adds(int frame) const { return file(frame) + ": "; }
+  static std::string adds(int frame) { return fmt::format(" in.{:04}.exr: ", frame); }
 
   TempDir folder;
 };
