@@ -89,7 +89,8 @@ bool begins_as_exr(const fs::path& file) {
 }
 
 void throw_damaged(const ExrReader& file, const ExrPart& part, const std::exception& error) {
-  if (dynamic_cast<const std::bad_alloc*>(&error)) throw;  // nothing is wrong with the file
+  if (const auto* no_memory = dynamic_cast<const std::bad_alloc*>(&error))
+    throw *no_memory;  // nothing is wrong with the file
   const char* state = file.file().partComplete(part.index)
                           ? "is damaged or cut short"
                           : "is incomplete: its writing was interrupted";
