@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 #include <tuple>
 
 #include "io/exr/exr_parts.h"
@@ -112,6 +113,8 @@ bool can_read(const ExrReader& file, const ExrPart& part, const Window& chunk, c
   try {
     read(std::span(&first, 1));
     return true;
+  } catch (const std::bad_alloc&) {
+    throw;  // a chunk that memory is too short for is not missing
   } catch (const std::exception&) {
     file.recover();
     return false;
