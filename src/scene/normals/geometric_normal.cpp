@@ -122,7 +122,7 @@ glm::vec3 geometric_normal(const Plane<Surfel>& surfels, int x, int y, const glm
   const float length = glm::length(n);
   if (!(length > 0)) return shading;
   const glm::vec3 normal = n / (glm::dot(n, view) < 0 ? -length : length);
-  const bool steep = glm::dot(normal, view) < kSteep;
+  const bool steep = !(glm::dot(normal, view) >= kSteep);  // or not a number
   return steep || glm::dot(normal, shading) > kSameCosine ? shading : normal;
 }
 

@@ -2,6 +2,7 @@
 #include "scene/normals/normals.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 namespace ssdo {
@@ -37,7 +38,7 @@ glm::vec3 gradient_normal(const Plane<Surfel>& surfels, int x, int y, const glm:
   const glm::vec3 down = shorter_step(surfels, x, y, 0, 1);
   const glm::vec3 n = glm::cross(down, right);
   const float length = glm::length(n);
-  if (!(length > 0)) return glm::vec3(0);
+  if (!std::isnormal(length * length)) return glm::vec3(0);
   return glm::dot(n, view) < 0 ? -n / length : n / length;
 }
 

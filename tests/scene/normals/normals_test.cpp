@@ -2,10 +2,10 @@
 //
 // Normals of frames that have depth and no N, and of surfaces under a normal map.
 #include "scene/normals/normals.h"
-#include "scene/normals/geometric_normal.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
@@ -54,6 +54,29 @@ TEST(NormalsFromDepth, OfAPlaneAreItsNormalUpToTheBorder) {
     const Geometry g = from_depth(floor, camera, {"", {}, 2});
     for (std::size_t i = 0; i < g.surfel.size(); ++i)
       EXPECT_LT(glm::length(normal_at(g, i) - camera.rotation * glm::dvec3(0, 0, 1)), 1e-3);
+  }
+}
+
+TEST(NormalsFromDepth, AreUnitVectorsAtAnyDistance) {
+  constexpr std::array kDepths = {1e-44f, 1e-30f, 1e-20f, 1.0f, 1e17f, 1e25f, 3e38f};
+  for (const float near : kDepths) {
+    for (const float far : kDepths) {
+      GBuffer g;
+      g.window = g.display = {0, 0, 5, 4};
+      g.valid = Plane<unsigned char>(5, 4, 1);
+      g.depth = Plane<float>(5, 4, near);
+      g.depth(2, 1) = g.depth(3, 3) = g.depth(0, 2) = far;
+      GeometryReport report;
+      const Geometry geometry = build_geometry(g, {"", 40, {}}, "test", report);
+      std::vector<glm::vec3> smooth(5);
+      for (int y = 0; y < 4; ++y) {
+        find_geometric_normals(geometry.surfel, y, false, smooth);
+        for (int x = 0; x < 5; ++x) {
+          EXPECT_NEAR(glm::length(geometry.surfel(x, y).normal), 1, 1e-5) << near << " " << far;
+          EXPECT_NEAR(glm::length(smooth[std::size_t(x)]), 1, 1e-5) << near << " " << far;
+        }
+      }
+    }
   }
 }
 
