@@ -35,7 +35,7 @@ void read_input(Bytes input) {
   const std::size_t end = std::min(text.find("\n\n"), text.size());
   std::vector<std::string> words = {"ssdo"};
   std::istringstream lines(text.substr(0, end));
-  for (std::string word; std::getline(lines, word);) words.push_back(word);
+  for (std::string word; std::getline(lines, word);) words.emplace_back(word.c_str());
   for (const std::string& word : words) read_word(word);
   if (end < text.size()) {
     config.hold(input.subspan(end + 2));
