@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <glm/gtc/constants.hpp>
+#include <utility>
 
 #include "math/sequence_numbers.h"
 
@@ -84,10 +85,10 @@ SliceSide make_side(const Interleaving& layout, const FarRaster* far, int column
                     double dx, double dy, int steps, double diagonal, double start, float phase) {
   SliceSide side;
   side.phase = phase;
+  double next = march_distance(start / steps, diagonal);
   for (int i = 0; i < steps; ++i) {
-    const double distance = march_distance((i + start) / steps, diagonal);
-    const bool is_long = march_distance((i + 1 + start) / steps, diagonal) - distance > kLongStep,
-               is_far = far && distance > far->from_px;
+    const double distance = std::exchange(next, march_distance((i + 1 + start) / steps, diagonal));
+    const bool is_long = next - distance > kLongStep, is_far = far && distance > far->from_px;
     const int block = is_far ? kPeriod : is_long ? kBlock : 1;
     const int x = to_block(distance * dx, column_phase, block),
               y = to_block(distance * dy, line, block);

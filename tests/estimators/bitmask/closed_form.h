@@ -32,13 +32,16 @@ inline double error_of_ao(const Surface& scene, const Camera& camera, const Wind
   const Geometry g = geometry_of(scene, camera, window);
   std::optional<Solids> solids;
   if (backs) request.solids = &solids.emplace(backs(g, camera));
+  const int half = window.width() / 60;
+  request.receivers = middle_square(window, half);
   const Products out = run(g, request);
   return middle(
       window,
       [&](int x, int y) {
-        return out.ao(x, y) - formula(point_at(scene, camera, window, x, y).position);
+        return at_pixel(out.ao, request.receivers, x, y) -
+               formula(point_at(scene, camera, window, x, y).position);
       },
-      window.width() / 60);
+      half);
 }
 
 /// Holds method bitmask to a formula, and the formula to rays. Occluders must be solid, with their

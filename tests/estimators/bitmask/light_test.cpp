@@ -81,16 +81,21 @@ TEST(BitmaskLight, AnOpenPlaneHasTheWholeIrradiance) {
 /// Relative error of direct in the middle of a frame, on average over a square of 1/30 its width.
 glm::dvec3 error_of_direct(const Surface& scene, const Camera& camera, const Window& window,
                            const Environment& environment) {
-  const Products out = run(geometry_of(scene, camera, window),
-                           {.environment = environment, .products = {.ao = true, .direct = true}});
+  const int half = window.width() / 60;
+  const Window receivers = middle_square(window, half);
+  const Products out =
+      run(geometry_of(scene, camera, window), {.environment = environment,
+                                               .products = {.ao = true, .direct = true},
+                                               .receivers = receivers});
   return middle(
       window,
       [&](int x, int y) {
         const Point p = point_at(scene, camera, window, x, y);
-        return glm::dvec3(out.direct(x, y)) / direct_by_rays(scene, p, 1, environment, 1 << 13) -
+        return glm::dvec3(at_pixel(out.direct, receivers, x, y)) /
+                   direct_by_rays(scene, p, 1, environment, 1 << 13) -
                1.0;
       },
-      window.width() / 60);
+      half);
 }
 
 TEST(BitmaskLight, BesideAWallItIsTheSumOverOpenDirections) {
@@ -152,10 +157,11 @@ TEST(BitmaskLight, TheBentNormalLeansAwayFromAWall) {
   const Surface scene = floor_and_wall();
   for (const double x : {0.1, 0.3, 0.7}) {
     const Camera camera = tilted(camera_from_fov(30, kFineWindow, 1), 45, 4.5, {0, -x, 0});
-    const Products out =
-        run(geometry_of(scene, camera, kFineWindow), {.products = {.ao = true, .bent = true}});
+    const Window receivers = middle_square(kFineWindow);
+    const Products out = run(geometry_of(scene, camera, kFineWindow),
+                             {.products = {.ao = true, .bent = true}, .receivers = receivers});
     const glm::dvec3 mean = middle(kFineWindow, [&](int px, int py) {
-      return glm::transpose(camera.rotation) * glm::dvec3(out.bent(px, py));
+      return glm::transpose(camera.rotation) * glm::dvec3(at_pixel(out.bent, receivers, px, py));
     });
     const auto point = [&](int px, int py) { return point_at(scene, camera, kFineWindow, px, py); };
     const glm::dvec3 expected = middle(kFineWindow, [&](int px, int py) {

@@ -26,7 +26,7 @@ struct BitmaskRequest {
   float radius = 1;
   Environment environment = Environment::constant(glm::vec3(1));
   ProductSet products = {.ao = true};
-  int slices = 12, steps = 4096;
+  int slices = 12, steps = 2048;
   const Solids* solids = nullptr;
   bool extend = true;
   float albedo = 0.8f;
@@ -96,16 +96,28 @@ inline Point point_at(const Surface& scene, const Camera& camera, const Window& 
   return {ray.origin + hit.distance * ray.direction, away ? -hit.normal : hit.normal};
 }
 
-/// Mean of `value(x, y)` over the square of 2 `half` pixels around the middle. With an even `half`
-/// their slices are evenly spread.
+/// The square of 2 `half` pixels around the middle of a frame that begins at (0, 0).
+inline Window middle_square(const Window& window, int half = 2) {
+  const int x = window.width() / 2, y = window.height() / 2;
+  return {x - half, y - half, x + half, y + half};
+}
+
+/// Mean of `value(x, y)` over that square. With an even `half` the slices of its pixels are evenly
+/// spread.
 template <class Value>
 auto middle(const Window& window, const Value& value, int half = 2) {
-  auto sum = value(window.width() / 2, window.height() / 2) * 0.0;
-  for (int y = -half; y < half; ++y) {
-    for (int x = -half; x < half; ++x)
-      sum += value(window.width() / 2 + x, window.height() / 2 + y) / (4.0 * half * half);
+  const Window square = middle_square(window, half);
+  auto sum = value(square.x0, square.y0) * 0.0;
+  for (int y = square.y0; y < square.y1; ++y) {
+    for (int x = square.x0; x < square.x1; ++x) sum += value(x, y) / (4.0 * half * half);
   }
   return sum;
+}
+
+/// Of a plane over `receivers`, what the pixel (x, y) of their frame has.
+template <class T>
+T at_pixel(const Plane<T>& plane, const Window& receivers, int x, int y) {
+  return plane(x - receivers.x0, y - receivers.y0);
 }
 
 /// Calls `visit(direction)` for `count` directions with the density of the cosine: a Fibonacci
