@@ -62,6 +62,19 @@ std::size_t stored_bytes(const ExrPart& part, const ExrChannel& channel) {
 /// How much less than a whole one a file may be and be read, in full or in part.
 constexpr double kLeastShare = 1.0 / 64;
 
+/// Blocks of a coarse grid whose rows are in memory at a time.
+constexpr int kBlocksOfStrip = 64;
+
+/// Pixels that are in memory at a time while `grid` is read of a part: its own, and those of a
+/// strip, twice where they are cut from tiles.
+double pixels_in_memory(const ExrPart& part, const PixelGrid& grid) {
+  const Window& all = part.data_window;
+  const double own = double(grid.of(all).area());
+  if (!grid.is_coarse()) return own;
+  const int rows = std::min(all.height(), kBlocksOfStrip * grid.stride);
+  return own + double(all.width()) * rows * (is_tiled(part) ? 2 : 1);
+}
+
 /// `grid` is what is read of the part.
 void check_size(const ExrReader& reader, const ExrPart& part, Names names,
                 const PixelGrid& grid = {}) {
@@ -75,7 +88,7 @@ void check_size(const ExrReader& reader, const ExrPart& part, Names names,
   constexpr double kLargeTiles = 1 << 28;  // bytes; below, a tile may well be larger than its image
   const double tiles = tile_row_bytes(part), pixels = double(part.data_window.area()) * value_bytes;
   check_decoded_size(reader.path(), tiles > kLargeTiles ? std::max(pixels, tiles) : pixels,
-                     double(grid.of(part.data_window).area()) * value_bytes + decoder_bytes(part),
+                     pixels_in_memory(part, grid) * value_bytes + decoder_bytes(part),
                      reader.salvage() == Salvage::none ? ratio : with_gaps);
 }
 
@@ -145,7 +158,6 @@ std::vector<Plane<float>> read_rows(const ExrReader& reader, const ExrPart& part
 /// The middle pixels of blocks, from strips of a part that are read one after another.
 std::vector<Plane<float>> read_blocks(const ExrReader& reader, const ExrPart& part, Names names,
                                       const PixelGrid& grid) {
-  constexpr int kBlocksOfStrip = 64;
   const Window &from = part.data_window, to = grid.of(from);
   std::vector<Plane<float>> planes(names.size(), Plane<float>(to.width(), to.height()));
   for (int block = to.y0; block < to.y1; block += kBlocksOfStrip) {
