@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is needed, builds, and runs every test; a shot on a farm, the package, faults and
-# cppcheck included. Or some stages, of which those of sanitizers, address and thread, are run on
-# request only:
-#   tests/run.sh [release|lint|address|thread|farm|package|faults]...
+# Installs what is needed, builds, and runs every test: also with sanitizers, fuzzing for a minute
+# each, a shot on a farm, the package, faults and cppcheck. Or some of these stages:
+#   tests/run.sh [release|address|fuzz|thread|farm|package|faults|lint]...
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 mkdir -p "$root/build"
@@ -16,9 +15,11 @@ build_release() {
   build "$release" all "${options[@]}"
 }
 
+run_tests() { ctest --test-dir "$1" --output-on-failure --parallel "$(nproc)"; }
+
 run_release() {
   build_release
-  ctest --test-dir "$release" --output-on-failure --parallel "$(nproc)"
+  run_tests "$release"
   cat "$release"/reports/*.md
 }
 
@@ -31,26 +32,30 @@ run_lint() {
     --suppressions-list=tests/cppcheck.txt -I src -I "$release" src
 }
 
-# sanitize NAME SANITIZERS FILTER: runs the tests of FILTER with the tool compiled for SANITIZERS.
-# What those find, in the tool as a process too, is in files; a file is a failure.
-sanitize() (
-  folder=$root/build/$1 findings=$root/build/$1/findings failed=0 tests=()
+# build_sanitized NAME TARGET [cmake options]: the tool with a sanitizer, and the tests as they are.
+build_sanitized() {
   build_release
-  install_packages clang
-  CXX=clang++ build "$folder" ssdo_tests "${options[@]}" -DSSDO_SANITIZE="$2" -DSSDO_ONE_ISA=avx2 \
-    -DSSDO_COMPILED_TESTS="$release"
+  install_packages clang llvm
+  CXX=clang++ build "$root/build/$1" "$2" "${options[@]}" -DSSDO_ONE_ISA=avx2 \
+    -DSSDO_COMPILED_TESTS="$release" "${@:3}"
+}
+build_address() {
+  build_sanitized address "$1" -DSSDO_SANITIZE=address,undefined,float-cast-overflow -DSSDO_FUZZ=ON
+}
+
+# test_sanitized NAME FILTER: runs the tests of FILTER. What sanitizers find, in the tool as a
+# process too, is in files; a file is a failure.
+test_sanitized() (
+  findings=$root/build/$1/findings failed=0
   rm -rf "$findings"
   mkdir -m 1777 "$findings"  # tests run the tool as another user too
-  shards=$(nproc)
   common=log_path=$findings/report:exitcode=86
-  export GTEST_TOTAL_SHARDS=$shards UBSAN_OPTIONS=$common:print_stacktrace=1
+  export UBSAN_OPTIONS=$common:print_stacktrace=1 GTEST_FILTER=$2
   export ASAN_OPTIONS=$common:allocator_may_return_null=1:handle_abort=1
+  export LSAN_OPTIONS=suppressions=$root/tests/leaks.txt:print_suppressions=0
   export TSAN_OPTIONS=$common:ignore_noninstrumented_modules=1
-  for ((shard = 0; shard < shards; ++shard)); do
-    GTEST_SHARD_INDEX=$shard "$folder/tests/ssdo_tests" --gtest_brief=1 --gtest_filter="$3" &
-    tests+=($!)
-  done
-  for test in "${tests[@]}"; do wait "$test" || failed=1; done
+  ulimit -s 65536  # KiB: functions that are watched take more
+  run_tests "$root/build/$1" || failed=1
   for report in "$findings"/*; do
     [ -e "$report" ] || continue
     cat "$report"
@@ -62,9 +67,20 @@ sanitize() (
 # A list of tests as a filter of GoogleTest.
 names() { grep -v '^#' "$root/tests/$1" | paste -sd:; }
 
-run_address() { sanitize address address,undefined,float-cast-overflow "-$(names address_left_out.txt)"; }
+run_address() {
+  build_address ssdo_tests
+  test_sanitized address "-$(names address_left_out.txt)"
+}
 
-run_thread() { sanitize thread thread "$(names threaded.txt)"; }
+run_fuzz() {
+  build_address fuzz
+  "$root/tests/fuzz/run.sh" "$root/build/address"
+}
+
+run_thread() {
+  build_sanitized thread ssdo_tests -DSSDO_SANITIZE=thread
+  test_sanitized thread "$(names threaded.txt)"
+}
 
 run_farm() {
   install_packages "${farm_packages[@]}"
@@ -81,7 +97,7 @@ run_faults() {
   as_root "$root/tests/faults/run.sh" "$release/ssdo" 24
 }
 
-[ $# -gt 0 ] || set -- release farm package faults lint
+[ $# -gt 0 ] || set -- release address fuzz thread farm package faults lint
 for stage in "$@"; do
   SECONDS=0
   "run_$stage"

@@ -99,8 +99,8 @@ TEST_F(Privacy, HistorySaysWhoRanWhat) {
   const std::string first = path("first run.exr"), second = path("second.exr");
   EXPECT_EQ(run_tool({path("in.exr"), "-o", first, "--keep-channels", "--history"}).code, 0);
   const std::string line = text_in_header(first, "ssdo/history");
-  EXPECT_THAT(line, HasSubstr("@" + host() + ": " + SSDO_BINARY + " " + path("in.exr") + " -o '" +
-                              first + "' --keep-channels --history"));
+  EXPECT_THAT(line, HasSubstr("@" + host() + ": " + tool_path().string() + " " + path("in.exr") +
+                              " -o '" + first + "' --keep-channels --history"));
   EXPECT_NE(line[0], '@') << "no user";
 
   EXPECT_EQ(run_tool({first, "-o", second, "--history", "--keep-channels"}).code, 0);

@@ -280,6 +280,7 @@ TEST(Shares, ConstantLightNeedsAoAlone) {
 }
 
 TEST(Shares, AgreeAmongInstructionSets) {
+  if (!has_isa("scalar")) GTEST_SKIP() << "a build for one instruction set";
   for (const Size size : kSizes) {
     const Scene scene =
         scene_of(random_geometry(size.width, size.height, 3), light_from_a_side(true));

@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Fuzzes what reads files and command lines: run.sh FOLDER [SECONDS [TARGET...]]
 #
-# FOLDER is a build of the target `fuzz` by clang++ (Debian's packages clang and llvm), with
-# -DSSDO_FUZZ=ON -DSSDO_SANITIZE=address,undefined -DSSDO_ONE_ISA=scalar.
+# FOLDER is a build of the target `fuzz` by clang++, as tests/run.sh makes it in build/address.
 # Every target of tests/fuzz runs for SECONDS, 60 by default, as many at a time as there are
 # processors. FOLDER/fuzz/corpus keeps what reaches new code, and the next run goes on from there:
 # run.sh FOLDER 3600 runs for long, names of targets choose some of them.
@@ -22,7 +21,7 @@ corpus=$build/fuzz/corpus findings=$build/fuzz/findings logs=$build/fuzz/logs
 # size that a header claims.
 limits=(-max_len=65536 -timeout=10 -report_slow_units=10 -rss_limit_mb=2048)
 export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
-export LSAN_OPTIONS=suppressions=$sources/leaks.txt:print_suppressions=0
+export LSAN_OPTIONS=suppressions=$sources/../leaks.txt:print_suppressions=0
 
 fuzz_target() {
   local program=$build/fuzz/$1_fuzz options=("${limits[@]}" -artifact_prefix="$findings/$1-")

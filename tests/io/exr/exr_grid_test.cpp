@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Rows of a file, and one pixel of every block.
+#include <ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
 
 #include "io/exr/exr_reader.h"
+#include "io/size_guard.h"
+#include "support/error_matchers.h"
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
@@ -92,6 +95,26 @@ TEST_F(ExrGrid, GivesNoRowsWhereThereAreNone) {
   for_each_file([](const ExrReader& reader) {
     EXPECT_EQ(reader.read(0, kNames, {.y0 = 400, .y1 = 500})[0].height, 0);
   });
+}
+
+/// An overview is small, and the rows of a frame this wide, which it is read from, are not.
+TEST_F(ExrGrid, CountsTheRowsThatAnOverviewIsReadFrom) {
+  constexpr int kWidth = 1 << 20, kHeight = 8192, kStrip = 64 * kOverviewStride;
+  const int count = int(physical_memory() / (4.0 * kWidth * kStrip)) + 1;
+  std::vector<TestChannel> channels;
+  for (int i = 0; i < count; ++i) channels.push_back({"c" + std::to_string(i), Imf::FLOAT});
+  const std::filesystem::path file = dir_ / "wide.exr";
+  {
+    const Imf::Header header =
+        test_header(Box2i({0, 0}, {kWidth - 1, kHeight - 1}), channels, Imf::DWAA_COMPRESSION);
+    const Imf::TiledOutputFile begun(file.c_str(), tiled(header, 512));
+  }
+  std::filesystem::resize_file(file, 64 << 20);  // which might hold so many pixels
+  std::vector<std::string> names;
+  for (const TestChannel& channel : channels) names.push_back(channel.name);
+  const ExrReader reader(file);
+  EXPECT_THAT(error_of([&] { reader.read(0, names, PixelGrid{.stride = kOverviewStride}); }),
+              IsError(ExitCode::input, "of memory for its pixels"));
 }
 
 }  // namespace
