@@ -3,17 +3,21 @@
 #include <malloc.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <climits>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 
 #include "cli/batch.h"
 #include "cli/memory.h"
 #include "cli/options.h"
 #include "cli/resources.h"
 #include "cli/run_bench.h"
+#include "cli/threads.h"
 #include "compare.h"
 #include "error.h"
 #include "estimators/registry.h"
@@ -85,7 +89,10 @@ ssdo::ExitCode fail() {
     std::fprintf(stderr, "ssdo: %s\n", ssdo::kNoMemory);  // without allocating
     return ssdo::ExitCode::failed;
   } catch (const std::exception& e) {
-    return fail(ssdo::ExitCode::failed, e.what());
+    // Of the standard library and of TBB, where no thread starts.
+    const bool no_thread =
+        std::string_view(e.what()).find(std::strerror(EAGAIN)) != std::string_view::npos;
+    return fail(ssdo::ExitCode::failed, no_thread ? ssdo::kNoThread : e.what());
   }
 }
 
@@ -94,10 +101,7 @@ ssdo::ExitCode fail() {
 [[noreturn]] void end_at_once() {
   ssdo::remove_temporaries();
   if (std::current_exception()) _exit(int(fail()));
-  std::fputs(
-      "ssdo: a thread could not be started; raise the limits on processes (ulimit -u) and "
-      "memory (ulimit -v)\n",
-      stderr);
+  std::fprintf(stderr, "ssdo: %s\n", ssdo::kNoThread);
   _exit(int(ssdo::ExitCode::failed));
 }
 
