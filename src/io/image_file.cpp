@@ -10,6 +10,7 @@
 #include "error.h"
 #include "io/checked_file.h"
 #include "io/images/codec.h"
+#include "io/images/png_chunks.h"
 #include "io/one_line.h"
 #include "io/threads.h"
 #include "parallel/thread_start.h"
@@ -92,6 +93,7 @@ void load_image_codec() { codec(); }
 
 Image read_image(const fs::path& path) {
   check_exists(path);
+  check_png_chunks(path);
   return codec().read(path);
 }
 
