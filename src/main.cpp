@@ -43,7 +43,9 @@ ssdo::ExitCode run(int argc, char** argv) {
     return ssdo::ExitCode::done;
   }
   for (const std::string& warning : parsed.options.warnings) warn(parsed, warning);
-  const ssdo::Resources resources(parsed.options.threads, parsed.options.mem_limit);
+  // Never destroyed: without its limit TBB starts more threads, and ends the process if it cannot.
+  static const ssdo::Resources& resources =
+      *new ssdo::Resources(parsed.options.threads, parsed.options.mem_limit);
   if (const std::string warning = resources.warning(); !warning.empty()) warn(parsed, warning);
   if (parsed.options.command == ssdo::Command::compare) {
     const ssdo::CompareReport report = ssdo::compare(parsed.options.compare);
