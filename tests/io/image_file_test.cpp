@@ -240,19 +240,22 @@ TEST(ReadImage, RefusesDamagedChunksOfPng) {
   const TempDir dir;
   save(dir / "a.png", {64, 48, 3, 8, 1}, std::vector<float>(64 * 48 * 3, 0.5f));
   const std::string whole = bytes_of(dir / "a.png");
-  const auto damage = [&](const std::string& chunk) {
+  const auto damage = [&](const std::string& chunk, std::size_t place) {
     std::string bytes = whole;
-    char& byte = bytes.at(whole.find(chunk) + 5);
-    byte = char(byte ^ 0x10);
+    char& byte = bytes.at(whole.find(chunk) + place);
+    byte = char(byte ^ 0x80);
     std::ofstream(dir / "b.png", std::ios::binary) << bytes;
   };
   testing::internal::CaptureStderr();
   for (const char* chunk : {"IHDR", "IDAT"}) {
-    damage(chunk);
+    damage(chunk, 5);
     EXPECT_THAT(error_of([&] { read_image(dir / "b.png"); }),
                 IsError(ExitCode::input, fmt::format("its chunk '{}' has another", chunk)));
   }
-  damage("pHYs");
+  damage("pHYs", 1);
+  EXPECT_THAT(error_of([&] { read_image(dir / "b.png"); }),
+              IsError(ExitCode::input, "it has a chunk 'p"));
+  damage("pHYs", 5);
   EXPECT_EQ(read_image(dir / "b.png").color.height, 48) << "a picture can be shown without";
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "libpng has no words of its own";
 }

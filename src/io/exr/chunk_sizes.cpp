@@ -127,15 +127,15 @@ std::size_t unpacked_bytes(const ExrPart& part, const Window& chunk, Bytes packe
 }  // namespace
 
 void check_chunk_size(const ExrPart& part, const PackedChunks& chunks, std::size_t chunk) {
+  const auto bytes_of_chunk = [&](const Window& window) {
+    return part.deep ? sizeof(std::uint32_t) * window.area() : pixel_bytes(part, window);
+  };
   const Window window = chunks.window(chunk);
-  const std::size_t counts = sizeof(std::uint32_t) * window.area(),
-                    needed = part.deep ? counts : pixel_bytes(part, window),
-                    // Tables of tiles at the border may have those of a whole tile.
-      most = part.deep ? sizeof(std::uint32_t) * chunks.window(0).area() : needed;
+  // The table of a deep tile at the border may be that of a whole one.
+  const std::size_t most = bytes_of_chunk(part.deep ? chunks.window(0) : window);
   const auto packed = chunks.read(chunk, most);
-  if (!packed) return;
   // The same words for every chunk, whichever thread comes first.
-  if (unpacked_bytes(part, window, *packed, most) < needed)
+  if (packed && unpacked_bytes(part, window, *packed, most) < bytes_of_chunk(window))
     throw std::runtime_error("a chunk holds fewer bytes than its pixels take");
 }
 

@@ -28,8 +28,8 @@ bool is_missing(const MissingChunks& missing, const Window& chunk);
 std::string describe(const MissingChunks& missing, const ExrPart& part);
 
 /// Has OpenEXR read `rows` of channels of a flat part, which are its data window or some rows of
-/// it, but for the chunks in `missing`, whose pixels stay as they are. Errors: those
-/// of check_chunk_sizes() and of OpenEXR.
+/// it, but for the chunks in `missing`, whose pixels stay as they are. Errors: those of
+/// check_chunk_sizes() and of OpenEXR.
 void read_chunks(const ExrReader& file, const ExrPart& part, const Window& rows,
                  std::span<const ChannelRows> channels, const MissingChunks& missing = {});
 

@@ -140,12 +140,12 @@ std::optional<std::vector<std::byte>> PackedChunks::read(std::size_t chunk,
 
 /// The tables of all parts stand one after another, each with the full resolution first.
 void PackedChunks::read_table() {
-  std::uint64_t table = check_attribute_sizes(file_.path());
+  const std::uint64_t tables = check_attribute_sizes(file_.path());
   for (const ExrPart& part : file_.parts()) {
-    if (&part == &part_) in_.seekg(std::streamoff(table));
-    table += 8 * count_chunks(part);
+    if (&part == &part_) in_.seekg(std::streamoff(tables + 8 * all_chunks_));
+    all_chunks_ += count_chunks(part);
   }
-  first_chunk_ = table;
+  first_chunk_ = tables + 8 * all_chunks_;
   places_.resize(count());
   for (std::uint64_t& place : places_) place = read_number<std::uint64_t>(in_);
 }
@@ -154,11 +154,13 @@ void PackedChunks::read_table() {
 void PackedChunks::search() {
   const std::uint64_t size = std::filesystem::file_size(file_.path());
   in_.clear();
-  for (std::uint64_t place = first_chunk_; place < size;) {
+  std::uint64_t place = first_chunk_;
+  for (std::uint64_t i = 0; i < all_chunks_; ++i) {
     in_.seekg(std::streamoff(place));
     const Head head = read_head(in_, file_);
     if (!head.part || head.bytes > size || head.samples > size) return;
-    const int row = is_tiled(part_) ? head.y : (head.y - part_.data_window.y0) / height_;
+    const std::int64_t row =
+        is_tiled(part_) ? head.y : (std::int64_t(head.y) - part_.data_window.y0) / height_;
     if (head.part == &part_ && head.full_resolution && head.x >= 0 && head.x < columns_ &&
         row >= 0 && row < rows_)
       places_[std::size_t(row) * std::size_t(columns_) + std::size_t(head.x)] = place;

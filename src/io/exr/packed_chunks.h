@@ -40,9 +40,9 @@ class PackedChunks {
 
   const ExrReader& file_;
   const ExrPart& part_;
-  int width_, height_;             ///< of a chunk, in pixels
-  int columns_, rows_;             ///< of chunks
-  std::uint64_t first_chunk_ = 0;  ///< of all parts
+  int width_, height_;                              ///< of a chunk, in pixels
+  int columns_, rows_;                              ///< of chunks
+  std::uint64_t all_chunks_ = 0, first_chunk_ = 0;  ///< of all parts: how many, and where
   std::vector<std::uint64_t> places_;
   mutable std::ifstream in_;
   mutable std::mutex mutex_;

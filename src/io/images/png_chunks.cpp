@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <libdeflate.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -32,6 +33,8 @@ std::uint32_t read_number(std::istream& in) {
   return in ? number : 0;
 }
 
+bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
+
 }  // namespace
 
 void check_png_chunks(const std::filesystem::path& file) {
@@ -49,6 +52,7 @@ void check_png_chunks(const std::filesystem::path& file) {
     if (!in || size > file_bytes - std::uintmax_t(in.tellg()))
       fail("it ends before its last chunk");
     const std::string name = printable(type);
+    if (!std::ranges::all_of(type, is_letter)) fail(fmt::format("it has a chunk '{}'", name));
     type += read_bytes(in, size);
     const std::uint32_t sum = read_number(in);
     if (!in) fail(fmt::format("it ends in its chunk '{}'", name));
