@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parallel/thread_start.h"
 
+#include <oneapi/tbb/task_arena.h>
 #include <oneapi/tbb/task_group.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -52,9 +54,11 @@ int count_startable(int most) {
 }
 
 void start_threads(int count) {
-  Meeting meeting(count);
+  // TBB uses no more than the machine has processors.
+  const int all = std::min(count, tbb::this_task_arena::max_concurrency());
+  Meeting meeting(all);
   tbb::task_group tasks;
-  for (int i = 1; i < count; ++i) tasks.run([&meeting] { meeting.join(); });
+  for (int i = 1; i < all; ++i) tasks.run([&meeting] { meeting.join(); });
   meeting.join();
   tasks.wait();
 }

@@ -103,7 +103,7 @@ test_disturbed_report() {
 }
 
 test_changing_bench() {
-  local finished=0 i count=$((runs / 4)) job_us how
+  local finished=0 i count=$((runs / 8)) job_us how
   local command=(bench "$given/frame.exr" -q --methods sao --env "$given/sky.exr" --report a.json)
   for ((i = 0; i < count; i++)); do
     cp "$frame" "$input/sky.exr" "$given"
