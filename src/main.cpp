@@ -3,17 +3,21 @@
 #include <malloc.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <climits>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 
 #include "cli/batch.h"
 #include "cli/memory.h"
 #include "cli/options.h"
 #include "cli/resources.h"
 #include "cli/run_bench.h"
+#include "cli/threads.h"
 #include "compare.h"
 #include "error.h"
 #include "estimators/registry.h"
@@ -39,7 +43,9 @@ ssdo::ExitCode run(int argc, char** argv) {
     return ssdo::ExitCode::done;
   }
   for (const std::string& warning : parsed.options.warnings) warn(parsed, warning);
-  const ssdo::Resources resources(parsed.options.threads, parsed.options.mem_limit);
+  // Never destroyed: without its limit TBB starts more threads, and ends the process if it cannot.
+  static const ssdo::Resources& resources =
+      *new ssdo::Resources(parsed.options.threads, parsed.options.mem_limit);
   if (const std::string warning = resources.warning(); !warning.empty()) warn(parsed, warning);
   if (parsed.options.command == ssdo::Command::compare) {
     const ssdo::CompareReport report = ssdo::compare(parsed.options.compare);
@@ -85,7 +91,10 @@ ssdo::ExitCode fail() {
     std::fprintf(stderr, "ssdo: %s\n", ssdo::kNoMemory);  // without allocating
     return ssdo::ExitCode::failed;
   } catch (const std::exception& e) {
-    return fail(ssdo::ExitCode::failed, e.what());
+    // Of the standard library and of TBB, where no thread starts.
+    const bool no_thread =
+        std::string_view(e.what()).find(std::strerror(EAGAIN)) != std::string_view::npos;
+    return fail(ssdo::ExitCode::failed, no_thread ? ssdo::kNoThread : e.what());
   }
 }
 
@@ -94,10 +103,7 @@ ssdo::ExitCode fail() {
 [[noreturn]] void end_at_once() {
   ssdo::remove_temporaries();
   if (std::current_exception()) _exit(int(fail()));
-  std::fputs(
-      "ssdo: a thread could not be started; raise the limits on processes (ulimit -u) and "
-      "memory (ulimit -v)\n",
-      stderr);
+  std::fprintf(stderr, "ssdo: %s\n", ssdo::kNoThread);
   _exit(int(ssdo::ExitCode::failed));
 }
 

@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "cli/environment.h"
 #include "cli/memory.h"
 #include "cli/threads.h"
+#include "error.h"
 #include "io/threads.h"
 #include "simd/isa.h"
 
@@ -18,7 +21,12 @@ Resources::Resources(std::optional<int> requested_threads,
       memory_(choose_memory(requested_memory)),
       limit_(threads_),
       isa_(choose_isa(variable("SSDO_ISA"))) {
-  limit_io_threads(threads_);
+  try {
+    limit_io_threads(threads_);
+    start_threads(threads_);
+  } catch (const std::runtime_error&) {
+    throw Error(ExitCode::failed, kNoThread);
+  }
 }
 
 std::string Resources::warning() const {

@@ -14,8 +14,9 @@ namespace ssdo {
 class Resources {
  public:
   /// Limits the whole process to the threads of choose_thread_count(), as far as they can be
-  /// started, and to the instruction set that $SSDO_ISA names. Errors: those of
-  /// choose_thread_count(), startable_threads(), choose_memory() and choose_isa().
+  /// started, and starts them; and to the instruction set that $SSDO_ISA names. Errors: those of
+  /// choose_thread_count(), startable_threads(), choose_memory() and choose_isa();
+  /// ExitCode::failed where a thread no longer starts.
   explicit Resources(std::optional<int> requested_threads,
                      std::optional<std::size_t> requested_memory = std::nullopt);
 

@@ -5,14 +5,9 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <new>
 #include <sstream>
 #include <string_view>
-#include <system_error>
-#include <thread>
-#include <vector>
 
 #include "cli/control_groups.h"
 #include "cli/environment.h"
@@ -53,21 +48,6 @@ int from_affinity() {
 /// Beside the first thread: each of the three libraries has its own, and what OpenImageIO is linked
 /// with starts five or six (Debian 12).
 constexpr int kPools = 3, kOthers = 6;
-
-/// How many threads can live beside each other, up to `most`.
-int count_startable(int most) {
-  std::atomic<bool> done = false;
-  std::vector<std::thread> threads;
-  try {
-    while (int(threads.size()) < most) threads.emplace_back([&done] { done.wait(false); });
-  } catch (const std::system_error&) {  // no further thread
-  } catch (const std::bad_alloc&) {
-  }
-  done = true;
-  done.notify_all();
-  for (std::thread& thread : threads) thread.join();
-  return int(threads.size());
-}
 
 }  // namespace
 

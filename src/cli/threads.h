@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "parallel/thread_start.h"
+
 namespace ssdo {
 
 inline constexpr int kMostThreads = 4096;

@@ -10,8 +10,10 @@
 #include "error.h"
 #include "io/checked_file.h"
 #include "io/images/codec.h"
+#include "io/images/png_chunks.h"
 #include "io/one_line.h"
 #include "io/threads.h"
+#include "parallel/thread_start.h"
 
 namespace fs = std::filesystem;
 
@@ -43,6 +45,21 @@ std::vector<fs::path> places_of_codec() {
           folder.parent_path() / kCodecFile};
 }
 
+/// The libraries of the module start threads when they are loaded: OpenImageIO's pool, and five
+/// others at most (Debian 12). Some wait for ever where one of theirs does not start.
+void check_threads() {
+  const int needed = std::max(1, io_threads() - 1) + 5;
+  if (count_startable(needed) < needed) throw Error(ExitCode::failed, kNoThread);
+}
+
+/// Null where the module cannot be loaded. It is never closed: its libraries' threads live on. What
+/// their initialisers throw ends the process, as it leaves the loader locked.
+const ImageCodec* load(const fs::path& place) noexcept {
+  void* const module = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* const found = module ? dlsym(module, kCodecFunction) : nullptr;
+  return found ? reinterpret_cast<GetImageCodec*>(found)(io_threads()) : nullptr;
+}
+
 const ImageCodec& open_codec() {
   const std::vector<fs::path> places = places_of_codec();
   const auto place = std::find_if(places.begin(), places.end(),
@@ -54,15 +71,14 @@ const ImageCodec& open_codec() {
                     "need it: install ssdo again",
                     places[1].lexically_normal().string(), places[0].string()));
   }
-  // Never closed: OpenImageIO's threads live on.
-  void* const module = dlopen(place->c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* const found = module ? dlsym(module, kCodecFunction) : nullptr;
-  if (!found) {
+  check_threads();
+  const ImageCodec* const codec = load(*place);
+  if (!codec) {
     throw Error(ExitCode::failed, fmt::format("{}: cannot be loaded ({}); raise the limits "
                                               "on memory and open files, or install ssdo again",
                                               place->string(), one_line(dlerror())));
   }
-  return *reinterpret_cast<GetImageCodec*>(found)(io_threads());
+  return *codec;
 }
 
 /// Loaded when the first image is read or written.
@@ -77,6 +93,7 @@ void load_image_codec() { codec(); }
 
 Image read_image(const fs::path& path) {
   check_exists(path);
+  check_png_chunks(path);
   return codec().read(path);
 }
 

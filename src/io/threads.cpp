@@ -5,7 +5,6 @@
 
 #include <atomic>
 #include <cstdlib>
-#include <string>
 
 namespace ssdo {
 namespace {
@@ -18,8 +17,9 @@ void limit_io_threads(int count) {
   limit = count;
   // OpenEXR counts helpers beside the calling thread: 0 makes it work alone.
   OPENEXR_IMF_NAMESPACE::setGlobalThreadCount(count == 1 ? 0 : count);
-  // OpenImageIO starts $CUE_THREADS threads, be they 99999, before another number can be set.
-  setenv("OPENIMAGEIO_THREADS", std::to_string(count).c_str(), 1);
+  // OpenImageIO starts $CUE_THREADS threads, be they 99999, before another number can be set, and
+  // waits for ever where the second of them does not start.
+  setenv("OPENIMAGEIO_THREADS", "1", 1);
 }
 
 int io_threads() { return limit; }

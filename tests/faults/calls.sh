@@ -40,18 +40,30 @@ test_renaming() {
   say "calls: rename fails; file systems that cannot rename without replacing are written to"
 }
 
-# A limit that the first, second... thread reaches. (A library whose thread fails once, after others
-# have started, may wait for it for ever.)
-test_no_thread() {
-  local i good=0 bad=0
-  for ((i = 1; i <= 9; i += 2)); do
-    new_case old a.exr a.png
-    with_failing clone3 EAGAIN "$i+" "${job[@]}" --overwrite --threads 2 -o a.exr -o a.png
-    if [ "$code" -eq 0 ]; then made a.exr a.png; else refused 1 thread a.exr a.png; fi
-    around=()
-    count_outcome
+# test_no_thread_in WHAT FILES ARGUMENTS...: the first, second... thread does not start, alone or with all
+# after it. FILES is what the run makes.
+test_no_thread_in() {
+  local i which count good=0 bad=0
+  new_case
+  count=$(calls_of clone3 "${@:3}")
+  for ((i = 1; i <= count; i++)); do
+    for which in "$i" "$i+"; do
+      new_case
+      with_failing clone3 EAGAIN "$which" "${@:3}"
+      made_or_refused 1 thread $2
+      around=()
+      count_outcome
+    done
   done
-  say "calls: clone3 fails (EAGAIN): $good runs made what they should, $bad refused"
+  [ "$good" -gt 0 ] && [ "$bad" -gt 0 ] || complain "$good runs made, $bad refused"
+  say "calls: clone3 fails (EAGAIN) in $1: $good runs made what they should, $bad refused"
+}
+
+# No pictures: where the last of the threads fails alone that log4cplus starts while it is loaded, with which
+# OpenImageIO is linked, it waits for ever. test_threads has them with a limit that stays.
+test_no_thread() {
+  test_no_thread_in "a frame" a.exr "${job[@]}" --threads 4 -o a.exr
+  test_no_thread_in "a shot" "relit.1001.exr relit.1002.exr relit.1003.exr" "${shot[@]}" --threads 2 -o relit.####.exr
 }
 
 # test_each_of CALLS MOST ERROR...: up to MOST of the calls, at random if there are more.

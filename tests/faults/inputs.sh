@@ -87,6 +87,59 @@ test_changing_shots() {
   say "shots that change: $count runs, $finished finished, the others refused; every output whole"
 }
 
+# test_disturbed_report HOW FILE CODES REPORT ARGUMENTS...: REPORT is what the run makes.
+test_disturbed_report() {
+  new_case
+  draw_delay
+  disturb "$1" "$2" "$drawn" &
+  local other=$!
+  run "${@:5}"
+  wait "$other"
+  ended "$3"
+  holds "$4"
+  [ "$code" -eq 0 ] || return 0
+  [ -s "$4" ] || complain "$4 is missing"
+  finished=$((finished + 1))
+}
+
+test_changing_bench() {
+  local finished=0 i count=$((runs / 8)) job_us how
+  local command=(bench "$given/frame.exr" -q --methods sao --env "$given/sky.exr" --report a.json)
+  for ((i = 0; i < count; i++)); do
+    cp "$frame" "$input/sky.exr" "$given"
+    cp "$new/a.exr" "$given/truth.exr"
+    cp "$tiny" "$given/other.exr"
+    new_case
+    # It reads in the first of the time that it takes.
+    [ "$i" -gt 0 ] || job_us=$(($(microseconds run "${command[@]}" --truth "$given/truth.exr:ao") / 20))
+    pick removed emptied halved renamed rewritten
+    how=$picked
+    pick frame sky truth
+    test_disturbed_report "$how" "$given/$picked.exr" "0 3 4" a.json "${command[@]}" --truth "$given/truth.exr:ao"
+  done
+  say "bench with inputs that change: $count runs, $finished finished, the others refused"
+}
+
+test_changing_compare() {
+  local finished=0 i count=$((runs / 4)) job_us how
+  local command=(compare "$given/a.exr:ao" "$given/b.exr:ao" --mask "$given/mask.exr:ao" --diff d.exr)
+  for ((i = 0; i < count; i++)); do
+    cp "$new/a.exr" "$given/a.exr"
+    cp "$old/a.exr" "$given/b.exr"
+    cp "$new/a.exr" "$given/mask.exr"
+    cp "$tiny" "$given/other.exr"
+    new_case
+    [ "$i" -gt 0 ] || job_us=$(microseconds run "${command[@]}")
+    [ "$i" -gt 0 ] || mv d.exr "$new"
+    pick removed emptied halved renamed rewritten
+    how=$picked
+    pick a b mask
+    test_disturbed_report "$how" "$given/$picked.exr" "0 3 4" d.exr "${command[@]}"
+    [ "$code" -ne 0 ] || [ "$how" = rewritten ] || are new d.exr
+  done
+  say "compare with inputs that change: $count runs, $finished finished, the others refused"
+}
+
 # refuse_input CODES ARGUMENTS...: no output is made.
 refuse_input() {
   new_case
@@ -129,5 +182,8 @@ test_inputs() {
   job_us=$(microseconds run "${job[@]}" -o a.exr)
   test_changing_inputs
   test_changing_shots
+  test_changing_bench
+  test_changing_compare
+  rm -rf "$given"/*
   test_odd_inputs
 }

@@ -2,6 +2,7 @@
 #include "io/image_file.h"
 
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -226,10 +227,37 @@ TEST(ReadImage, RefusesFilesCutShort) {
     for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9, 0.97}) {
       fs::copy_file(whole, cut, fs::copy_options::overwrite_existing);
       fs::resize_file(cut, std::uintmax_t(share * double(size)));
+      testing::internal::CaptureStderr();
       const Error error = error_of([&] { read_image(cut); });
+      EXPECT_EQ(testing::internal::GetCapturedStderr(), "")
+          << "libraries have no words of their own";
       EXPECT_EQ(error.code, ExitCode::input) << name << " " << share << ": " << error.what();
     }
   }
+}
+
+TEST(ReadImage, RefusesDamagedChunksOfPng) {
+  const TempDir dir;
+  save(dir / "a.png", {64, 48, 3, 8, 1}, std::vector<float>(64 * 48 * 3, 0.5f));
+  const std::string whole = bytes_of(dir / "a.png");
+  const auto damage = [&](const std::string& chunk, std::size_t place) {
+    std::string bytes = whole;
+    char& byte = bytes.at(whole.find(chunk) + place);
+    byte = char(byte ^ 0x80);
+    std::ofstream(dir / "b.png", std::ios::binary) << bytes;
+  };
+  testing::internal::CaptureStderr();
+  for (const char* chunk : {"IHDR", "IDAT"}) {
+    damage(chunk, 5);
+    EXPECT_THAT(error_of([&] { read_image(dir / "b.png"); }),
+                IsError(ExitCode::input, fmt::format("its chunk '{}' has another", chunk)));
+  }
+  damage("pHYs", 1);
+  EXPECT_THAT(error_of([&] { read_image(dir / "b.png"); }),
+              IsError(ExitCode::input, "it has a chunk 'p"));
+  damage("pHYs", 5);
+  EXPECT_EQ(read_image(dir / "b.png").color.height, 48) << "a picture can be shown without";
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "libpng has no words of its own";
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ std::int64_t bytes_taken(std::istream& in, std::string_view type, std::int32_t s
 
 }  // namespace
 
-void check_attribute_sizes(const fs::path& file) {
+std::uint64_t check_attribute_sizes(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   const auto file_bytes = std::int64_t(fs::file_size(file));
   in.seekg(4);
@@ -113,7 +113,7 @@ void check_attribute_sizes(const fs::path& file) {
   for (std::string before = "magic number and flags"; in;) {
     const std::string name = read_name(in);
     // An empty name ends a header, and in a file of parts a second one all headers.
-    if (name.empty() && (!multi_part || before.empty())) return;
+    if (name.empty() && (!multi_part || before.empty())) return std::uint64_t(in.tellg());
     before = name;
     if (name.empty()) continue;
     const std::string type = read_name(in);
@@ -143,6 +143,7 @@ void check_attribute_sizes(const fs::path& file) {
     }
     in.seekg(value + std::streamoff(size));
   }
+  return std::uint64_t(file_bytes);
 }
 
 }  // namespace ssdo

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "error.h"
+#include "io/exr/chunk_sizes.h"
 #include "io/exr/exr_parts.h"
 #include "io/size_guard.h"
 
@@ -83,6 +84,7 @@ class DeepPartReader {
         Imf::Slice(Imf::UINT, at_origin(counts_.data(), part_.data_window), sizeof(unsigned),
                    sizeof(unsigned) * std::size_t(part_.data_window.width())));
     try {
+      if (!samples) check_chunk_sizes(file_, part_, part_.data_window);
       if (is_tiled(part_)) {
         Imf::DeepTiledInputPart tiles(file_.file(), part_.index);
         tiles.setFrameBuffer(buffer);

@@ -12,7 +12,9 @@
 #include <new>
 #include <tuple>
 
+#include "io/exr/chunk_sizes.h"
 #include "io/exr/exr_parts.h"
+#include "io/exr/packed_chunks.h"
 #include "io/exr/zip_chunk.h"
 
 namespace ssdo {
@@ -52,7 +54,6 @@ class Tiles {
   Tiles(const ExrReader& file, const ExrPart& part) : tiles_(file.file(), part.index) {}
 
   int columns() const { return tiles_.numXTiles(0); }
-  int rows() const { return tiles_.numYTiles(0); }
   Window window(int x, int y) const { return window_of(tiles_.dataWindowForTile(x, y, 0)); }
 
   void read_one(int x, int y, const Window& window, std::span<const ChannelRows> channels) {
@@ -67,8 +68,7 @@ class Tiles {
     if (missing.windows.empty()) return tiles_.readTiles(0, columns() - 1, first, last);
     for (int y = first; y <= last; ++y) {
       for (int x = 0; x < columns(); ++x) {
-        if (!std::ranges::binary_search(missing.windows, this->window(x, y), comes_before))
-          tiles_.readTile(x, y, 0);
+        if (!is_missing(missing, this->window(x, y))) tiles_.readTile(x, y, 0);
       }
     }
   }
@@ -105,13 +105,25 @@ void read_tiles(const ExrReader& file, const ExrPart& part, const Window& rows,
   }
 }
 
+/// Reads one chunk. Errors: those of check_chunk_size() and of OpenEXR.
+void read_chunk(const ExrReader& file, const ExrPart& part, const PackedChunks& chunks,
+                std::size_t chunk, std::span<const ChannelRows> channels) {
+  check_chunk_size(part, chunks, chunk);
+  const Window window = chunks.window(chunk);
+  const auto columns = std::size_t(chunks.columns());
+  if (is_tiled(part))
+    Tiles(file, part).read_one(int(chunk % columns), int(chunk / columns), window, channels);
+  else
+    read_lines(file, part, window, channels, {});
+}
+
 /// Whether a chunk can be read, which one of its channels shows: they are packed together.
-template <class Read>
-bool can_read(const ExrReader& file, const ExrPart& part, const Window& chunk, const Read& read) {
-  std::vector<std::byte> pixels(4 * chunk.area());
+bool can_read(const ExrReader& file, const ExrPart& part, const PackedChunks& chunks,
+              std::size_t chunk) {
+  std::vector<std::byte> pixels(4 * chunks.window(chunk).area());
   const ChannelRows first{part.channels[0], pixels.data(), false};
   try {
-    read(std::span(&first, 1));
+    read_chunk(file, part, chunks, chunk, std::span(&first, 1));
     return true;
   } catch (const std::bad_alloc&) {
     throw;  // a chunk that memory is too short for is not missing
@@ -121,35 +133,18 @@ bool can_read(const ExrReader& file, const ExrPart& part, const Window& chunk, c
   }
 }
 
-MissingChunks find_missing_lines(const ExrReader& file, const ExrPart& part) {
-  MissingChunks missing;
-  const Window& all = part.data_window;
-  const int height = lines_per_chunk(part.header.compression());
-  for (int y = all.y0; y < all.y1; y += height, ++missing.count) {
-    const Window chunk{all.x0, y, all.x1, std::min(y + height, all.y1)};
-    const auto read = [&](auto channels) { read_lines(file, part, chunk, channels, {}); };
-    if (!can_read(file, part, chunk, read)) missing.windows.push_back(chunk);
-  }
-  return missing;
-}
-
-MissingChunks find_missing_tiles(const ExrReader& file, const ExrPart& part) {
-  MissingChunks missing;
-  const int rows = Tiles(file, part).rows(), columns = Tiles(file, part).columns();
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x, ++missing.count) {
-      const Window chunk = Tiles(file, part).window(x, y);
-      const auto read = [&](auto to) { Tiles(file, part).read_one(x, y, chunk, to); };
-      if (!can_read(file, part, chunk, read)) missing.windows.push_back(chunk);
-    }
-  }
-  return missing;
-}
-
 }  // namespace
 
+bool is_missing(const MissingChunks& missing, const Window& chunk) {
+  return std::ranges::binary_search(missing.windows, chunk, comes_before);
+}
+
 MissingChunks find_missing_chunks(const ExrReader& file, const ExrPart& part) {
-  return is_tiled(part) ? find_missing_tiles(file, part) : find_missing_lines(file, part);
+  const PackedChunks chunks(file, part);
+  MissingChunks missing{{}, chunks.count()};
+  for (std::size_t chunk = 0; chunk < chunks.count(); ++chunk)
+    if (!can_read(file, part, chunks, chunk)) missing.windows.push_back(chunks.window(chunk));
+  return missing;
 }
 
 std::string describe(const MissingChunks& missing, const ExrPart& part) {
@@ -167,6 +162,7 @@ std::string describe(const MissingChunks& missing, const ExrPart& part) {
 
 void read_chunks(const ExrReader& file, const ExrPart& part, const Window& rows,
                  std::span<const ChannelRows> channels, const MissingChunks& missing) {
+  check_chunk_sizes(file, part, rows, missing);
   if (is_tiled(part))
     read_tiles(file, part, rows, channels, missing);
   else

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <fstream>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "io/exr/exr_reader.h"
+
+namespace ssdo {
+
+/// The chunks of a part as they are packed in the file: scanlines from the top, or the tiles of the
+/// full resolution row by row. OpenEXR gives those of tiles in the order of the file only.
+/// Source: OpenEXR file layout, "Chunk Offset Table" and "Pixel data".
+class PackedChunks {
+ public:
+  /// `file` and `part` have to live as long as this object.
+  PackedChunks(const ExrReader& file, const ExrPart& part);
+
+  std::size_t count() const { return std::size_t(columns_) * std::size_t(rows_); }
+  int columns() const { return columns_; }  ///< 1 for scanlines
+
+  /// The chunks that hold rows [y0, y1) of the data window: the first and the end.
+  std::size_t first(int y0) const;
+  std::size_t end(int y1) const;
+
+  /// The part of the data window that a chunk holds.
+  Window window(std::size_t chunk) const;
+
+  /// The bytes of a chunk; of a deep part, those of its table of sample counts. Nothing for a chunk
+  /// that is missing, cut short, or larger than `most` bytes. From any thread.
+  std::optional<std::vector<std::byte>> read(std::size_t chunk, std::size_t most) const;
+
+ private:
+  void read_table();
+  void search();
+
+  const ExrReader& file_;
+  const ExrPart& part_;
+  int width_, height_;                              ///< of a chunk, in pixels
+  int columns_, rows_;                              ///< of chunks
+  std::uint64_t all_chunks_ = 0, first_chunk_ = 0;  ///< of all parts: how many, and where
+  std::vector<std::uint64_t> places_;
+  mutable std::ifstream in_;
+  mutable std::mutex mutex_;
+};
+
+}  // namespace ssdo
