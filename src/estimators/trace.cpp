@@ -24,8 +24,8 @@
 // What only further views show is a second set of triangles, in camera space, for it may lie behind
 // the camera; it sends what rays among all views find (further/further_light.h).
 //
-// Rays start from the surface itself, whose normal comes from P (scene/normals.h), before all
-// triangles of the pixel (trace/ray_origin.h). Those below the surface are blocked; their
+// Rays start from the surface itself, whose normal comes from P (scene/normals.h), in front of
+// all triangles of the pixel (trace/ray_origin.h). Those below the surface are blocked; their
 // directions are distributed about the normal of shading.
 //
 // Directions are points of Sobol's sequence, scrambled anew for every pixel (math/sobol.h). Their
@@ -71,7 +71,7 @@ using Groups = std::array<float, kGroups>;
 
 /// Directions of the seen points of one pixel.
 struct Receiver {
-  glm::dvec3 origin;          ///< before all triangles of the pixel
+  glm::dvec3 origin;          ///< in front of all triangles of the pixel
   glm::vec3 normal, surface;  ///< that of shading and that of the geometry
   glm::mat3 frame;            ///< about the normal of shading
   std::uint32_t seed;
