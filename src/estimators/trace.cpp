@@ -24,8 +24,9 @@
 // What only further views show is a second set of triangles, in camera space, for it may lie behind
 // the camera; it sends what rays among all views find (further/further_light.h).
 //
-// Rays start from the surface itself, whose normal comes from P (scene/normals.h), and those below
-// it are blocked; their directions are distributed about the normal of shading.
+// Rays start from the surface itself, whose normal comes from P (scene/normals.h), in front of
+// all triangles of the pixel (trace/ray_origin.h). Those below the surface are blocked; their
+// directions are distributed about the normal of shading.
 //
 // Directions are points of Sobol's sequence, scrambled anew for every pixel (math/sobol.h). Their
 // error falls about as n^-3/4, and is not shared by neighbours, so that no filter is needed and
@@ -43,7 +44,7 @@
 #include "estimators/further/further_light.h"
 #include "estimators/further/further_rays.h"
 #include "estimators/guessed.h"
-#include "estimators/ray_start.h"
+#include "estimators/trace/ray_origin.h"
 #include "estimators/trace/ray_scene.h"
 #include "math/frame.h"
 #include "math/light_range.h"
@@ -70,7 +71,7 @@ using Groups = std::array<float, kGroups>;
 
 /// Directions of the seen points of one pixel.
 struct Receiver {
-  glm::dvec3 origin;          ///< above the surface
+  glm::dvec3 origin;          ///< in front of all triangles of the pixel
   glm::vec3 normal, surface;  ///< that of shading and that of the geometry
   glm::mat3 frame;            ///< about the normal of shading
   std::uint32_t seed;
@@ -172,11 +173,9 @@ class Trace {
     const Geometry& g = scene_.geometry;
     const Surfel& s = g.surfel[pixel];
     const glm::vec3 normal(s.normal), position(s.position),
-        surface =
-            geometric_normal(g.surfel, x, y, direction_to_viewer(position, g.camera.orthographic));
-    const float above =
-        kAboveRoundings * s.rounding + kAboveFootprints * footprint_.at(-position.z);
-    return {glm::dvec3(position) + double(above) * glm::dvec3(surface), normal, surface,
+        view = direction_to_viewer(position, g.camera.orthographic),
+        surface = geometric_normal(g.surfel, x, y, view);
+    return {ray_origin(rays_, s, {surface, view, footprint_.at(-position.z)}), normal, surface,
             frame_about(normal),
             hash_of(std::uint32_t(g.window.x0 - g.display.x0 + x),
                     std::uint32_t(g.window.y0 - g.display.y0 + y), request_.seed)};

@@ -112,7 +112,7 @@ std::span<const FrameProperty> frame_properties() {
       FrameProperty{"change of ao in other units", 0.1, 1e-3, change_in_other_units},
       FrameProperty{"change of ao in a turned world", 0.1, 1e-3, change_in_a_turned_world},
       FrameProperty{"change of ao in a moved world", 0.1, 1e-3, change_in_a_moved_world},
-      FrameProperty{"change of ao by a crop", 0, 0, change_by_a_crop},
+      FrameProperty{"change of bits by a crop", 0, 0, change_by_a_crop},
   };
   return all;
 }

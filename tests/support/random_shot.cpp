@@ -267,12 +267,13 @@ std::string RandomShot::describe() const {
   return text;
 }
 
-RandomShot random_shot(std::uint64_t seed) {
+RandomShot random_shot(std::uint64_t seed, int finer) {
   RandomNumbers random(seed);
   RandomShot shot;
   shot.seed = seed;
   shot.lens = random_lens(random);
   const Surface world = random_world(random, shot.lens);
+  shot.lens = test::finer(shot.lens, finer);
   shot.seen = look(world, shot.lens);
   draw_further(random, world, shot);
   wear(random, shot.lens, shot.seen);

@@ -70,7 +70,8 @@ struct RandomShot {
   std::string describe() const;
 };
 
-RandomShot random_shot(std::uint64_t seed);
+/// With `finer`, the same world in so many times the rows and columns; all else is drawn anew.
+RandomShot random_shot(std::uint64_t seed, int finer = 1);
 
 /// The pixels of a shot without broken values in a smaller data window.
 RandomShot cropped(RandomShot shot, const Window& data);

@@ -126,6 +126,14 @@ RandomLens random_lens(RandomNumbers& random) {
   return lens;
 }
 
+RandomLens finer(RandomLens lens, int times) {
+  for (Window* w : {&lens.data, &lens.display})
+    *w = {times * w->x0, times * w->y0, times * w->x1, times * w->y1};
+  Camera& camera = lens.camera;
+  for (double* length : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *length *= times;
+  return lens;
+}
+
 Surface random_world(RandomNumbers& random, const RandomLens& lens) {
   const bool deep = random.chance(0.1);
   const double near = deep ? 1e-3 : 2, far = deep ? 1e4 : 20;

@@ -27,6 +27,9 @@ struct RandomLens {
 /// perspective of 1 to 170 degrees, or none; sometimes shifted.
 RandomLens random_lens(RandomNumbers& random);
 
+/// The same view in `times` as many rows and columns.
+RandomLens finer(RandomLens lens, int times);
+
 /// One to six things before a lens: balls, boxes, planes at any angle and grazing ones, strips
 /// below a pixel's width, stairs, layers that all but touch, and rooms around the camera.
 Surface random_world(RandomNumbers& random, const RandomLens& lens);

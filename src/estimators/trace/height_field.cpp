@@ -28,6 +28,9 @@ namespace {
 
 constexpr int kRowsOfBlock = 32;
 
+/// Embree knows where a triangle ends to 1e-7 of its length: of one so long, far below a pixel.
+constexpr float kExactLengthPx = 4096;
+
 /// A place of the picture, and the heights of a front and a back there.
 struct Point {
   glm::vec2 at;
@@ -299,12 +302,12 @@ class Builder {
   }
 
   void add_wall(const Node& n, const Point& a, const Point& b, Block& block) const {
-    // Embree knows where a triangle ends to 1e-7 of its length. Endless walls of parallel views are
-    // cut where this is still far below a pixel; those of perspective are no longer than 1 / depth.
-    const float exact = float(width_ + height_);
-    if (!out_.space.orthographic() || std::min(a.front - a.back, b.front - b.back) <= exact)
+    // Endless walls of parallel views are cut; those of perspective are no longer than 1 / depth.
+    if (!out_.space.orthographic() ||
+        std::min(a.front - a.back, b.front - b.back) <= kExactLengthPx)
       return add_quad(n, {front(a), front(b), back(b), back(a)}, block.cuts);
-    const glm::vec3 a_between(a.at, a.front - exact), b_between(b.at, b.front - exact);
+    const glm::vec3 a_between(a.at, a.front - kExactLengthPx),
+        b_between(b.at, b.front - kExactLengthPx);
     add_quad(n, {front(a), front(b), b_between, a_between}, block.cuts);
     add_quad(n, {a_between, b_between, back(b), back(a)}, block.cuts);
   }

@@ -22,12 +22,13 @@ PictureSpace::PictureSpace(const Geometry& g)
   for (std::size_t i = 0; i < g.surfel.size(); ++i) {
     if (!g.surfel[i].is_usable()) continue;
     const glm::vec3 p(g.surfel[i].position);
-    logarithms += std::log(double(-p.z));
+    logarithms += std::log2(double(-p.z));
     count += 1;
     farthest = std::max(farthest, double(glm::length(p)));
   }
-  scale_ = orthographic_ ? fy_ : fy_ * std::exp(logarithms / std::max(count, 1.0));
-  endless_ = -kEndless * scale_ * farthest;
+  // Powers of two, so that the heights of a part of the frame differ in their exponents only.
+  scale_ = orthographic_ ? fy_ : fy_ * std::exp2(std::round(logarithms / std::max(count, 1.0)));
+  endless_ = -kEndless * scale_ * std::exp2(std::ceil(std::log2(std::max(farthest, 1e-30))));
 }
 
 glm::vec3 PictureSpace::point(const glm::dvec3& p) const {

@@ -11,8 +11,8 @@ namespace ssdo {
 
 /// Pixels from the principal point to the right and down, and a height h that falls away from the
 /// viewer: proportional to 1 / depth, or to minus the depth in parallel views, so that a slope of
-/// one pixel per pixel is 45 degrees at the mean depth. Straight lines and planes stay what they
-/// are, view rays become parallel to the axis of h, and endless walls end at h = 0.
+/// one pixel per pixel is 45 degrees about at the mean depth. Straight lines and planes stay what
+/// they are, view rays become parallel to the axis of h, and endless walls end at h = 0.
 class PictureSpace {
  public:
   explicit PictureSpace(const Geometry& geometry);

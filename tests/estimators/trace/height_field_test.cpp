@@ -10,6 +10,7 @@
 
 #include "estimators/trace/ray_scene.h"
 #include "support/analytic_scene.h"
+#include "support/crop.h"
 
 namespace ssdo::test {
 namespace {
@@ -131,6 +132,24 @@ TEST(HeightField, HoldsAsManyLayersAsAPixelHas) {
     EXPECT_EQ(rays.first_hit(origin, along, 0.15).owner.layer, layer) << from;
     EXPECT_EQ(rays.first_hit(origin, along, 0.15).owner.sender, int(middle)) << from;
     EXPECT_FALSE(rays.is_blocked(origin, along, 0.04)) << from;
+  }
+}
+
+/// Then rays in a part of a frame are rounded as those in the whole.
+TEST(HeightField, OfAPartDiffersInTheExponentsOfItsHeightsOnly) {
+  const Camera tilted = look_at(camera_from_fov(40, kWindow, 1), {0, -5, 2}, {0, 0, 0}, {0, 0, 1});
+  const Geometry whole = geometry_of(wall(), tilted, kWindow), part = crop(whole, {3, 20, 60, 48});
+  const HeightField all = build_height_field(whole, {}), some = build_height_field(part, {});
+  const float ratio = some.sheets.corners[0].z / all.sheets.corners[20 * 64 + 3].z;
+  int exponent;
+  EXPECT_EQ(std::frexp(ratio, &exponent), 0.5f);
+  EXPECT_NE(exponent, 1) << "the part has another mean depth";
+  for (int y = 0; y < 28; ++y) {
+    for (int x = 0; x < 57; ++x) {
+      const glm::vec3 &one = all.sheets.corners[whole.surfel.index(x + 3, y + 20)],
+                      &other = some.sheets.corners[part.surfel.index(x, y)];
+      ASSERT_EQ(other, one * glm::vec3(1, 1, ratio)) << x << " " << y;
+    }
   }
 }
 
