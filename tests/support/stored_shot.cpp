@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "io/exr/exr_parts.h"
 #include "support/boxes.h"
 #include "support/typed_frame.h"
 
@@ -138,7 +139,7 @@ void write_shot(const std::filesystem::path& path, const StoredShot& shot) {
     return;
   }
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    parts[i].header.erase("name");
+    take_out(parts[i].header, "name");
     write_typed(i == 0 ? path : path.parent_path() / (names[i] + ".exr"), {parts[i]});
   }
 }

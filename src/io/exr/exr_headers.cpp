@@ -50,7 +50,7 @@ constexpr std::array<std::string_view, 4> kStorage = {"tiles", "chunkCount", "ve
 
 /// The header of a part whose pixels are written anew, in scanlines.
 Imf::Header scanline_header(const ExrOutput& output, const ExrPart& part) {
-  Imf::Header header;  // not a copy: Header::erase() of OpenEXR 3.1 does not free what it takes out
+  Imf::Header header;
   for (auto it = part.header.begin(); it != part.header.end(); ++it)
     if (std::ranges::find(kStorage, it.name()) == kStorage.end())
       header.insert(it.name(), it.attribute());
@@ -88,7 +88,7 @@ Imf::Header header_for(const ExrOutput& output, const std::vector<KeptChannel>& 
   }
   for (const auto& [name, text] : output.attributes) {
     // That of an earlier run is replaced; one of another type has to go first.
-    if (!header.findTypedAttribute<Imf::StringAttribute>(name)) header.erase(name);
+    if (!header.findTypedAttribute<Imf::StringAttribute>(name)) take_out(header, name);
     header.insert(name, Imf::StringAttribute(text));
   }
   return header;

@@ -12,6 +12,7 @@
 #include <array>
 #include <cerrno>
 #include <fstream>
+#include <memory>
 #include <new>
 
 #include "error.h"
@@ -158,6 +159,12 @@ double tile_row_bytes(const ExrPart& part) {
   const Imf::TileDescription& tiles = part.header.tileDescription();
   return bytes_per_pixel(part) * std::max(double(part.data_window.width()), double(tiles.xSize)) *
          double(tiles.ySize);
+}
+
+void take_out(Imf::Header& header, const std::string& name) {
+  if (header.find(name) == header.end()) return;
+  const std::unique_ptr<Imf::Attribute> attribute(&header[name]);
+  header.erase(name);
 }
 
 std::string text_of(const Window& w) {

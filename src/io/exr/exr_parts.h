@@ -51,6 +51,9 @@ double decoder_bytes(const ExrPart& part);
 /// image is smaller than a tile. 0 for scanlines.
 double tile_row_bytes(const ExrPart& part);
 
+/// Takes an attribute out of a header, if it is there. OpenEXR's Header::erase() does not free it.
+void take_out(Imf::Header& header, const std::string& name);
+
 /// A window by its first and last pixel, as headers have it: "0,0 to 575,323".
 std::string text_of(const Window& window);
 

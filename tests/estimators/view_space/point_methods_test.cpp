@@ -36,6 +36,7 @@ Geometry room(const Window& window = kWindow) {
 }
 
 TEST_P(PointMethods, VectorsGiveWhatOneLaneGives) {
+  if (!has_isa("scalar")) GTEST_SKIP() << "a build for one instruction set";
   const Geometry g = room();
   const auto ao = [&](const char* name) {
     const ChosenIsa isa(name);
