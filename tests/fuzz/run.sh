@@ -19,7 +19,7 @@ corpus=$build/fuzz/corpus findings=$build/fuzz/findings logs=$build/fuzz/logs
 
 # The largest input is a frame of some thousand pixels: what takes more seconds or MiB follows a
 # size that a header claims.
-limits=(-max_len=65536 -timeout=10 -report_slow_units=10 -rss_limit_mb=2048)
+limits=(-max_len=65536 -timeout=30 -report_slow_units=30 -rss_limit_mb=2048)
 export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
 export LSAN_OPTIONS=suppressions=$sources/../leaks.txt:print_suppressions=0
 
