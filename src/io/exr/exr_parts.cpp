@@ -14,6 +14,7 @@
 #include <fstream>
 #include <memory>
 #include <new>
+#include <stdexcept>
 
 #include "error.h"
 #include "io/exr/attribute_sizes.h"
@@ -114,6 +115,12 @@ ExrPart describe_part(const Imf::MultiPartInputFile& file, int index) {
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
     part.channels.push_back(
         {c.name(), c.channel().type, c.channel().xSampling, c.channel().ySampling});
+    // OpenEXR does not look at those of a part whose type it does not know.
+    const ExrChannel& channel = part.channels.back();
+    if (channel.x_sampling < 1 || channel.y_sampling < 1) {
+      throw std::runtime_error(fmt::format("channel '{}' is subsampled {}x{}", channel.name,
+                                           channel.x_sampling, channel.y_sampling));
+    }
   }
   return part;
 }

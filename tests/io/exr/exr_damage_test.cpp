@@ -8,6 +8,7 @@
 
 #include "io/exr/deep_reader.h"
 #include "support/error_matchers.h"
+#include "support/exr_bytes.h"
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
@@ -123,6 +124,21 @@ TEST(DamagedExr, UnfinishedFilesAreIncomplete) {
   const std::vector<std::string> names = {"Z"};
   EXPECT_THAT(error_of([&] { ExrReader(dir / "a.exr").read(0, names); }),
               IsError(ExitCode::input, "a.exr: is incomplete"));
+}
+
+TEST(DamagedExr, SubsamplingByNothingIsRefusedInPartsOfAnyType) {
+  const TempDir dir;
+  Imf::Header part = test_header({{0, 0}, {7, 7}}, {{"a", Imf::FLOAT}}, Imf::ZIP_COMPRESSION),
+              other = part;
+  part.setName("part"), other.setName("other");
+  write_test_exr(dir / "a.exr", {part, other});
+  ExrBytes bytes(dir / "a.exr");
+  bytes.put_int(bytes.value_of("type"), 0x78787878);
+  const std::string name_and_end = "a0";
+  bytes.put_int(bytes.value_of("channels") + name_and_end.size() + 8, 0);
+  bytes.write(dir / "a.exr");
+  EXPECT_THAT(error_of([&] { const ExrReader reader(dir / "a.exr"); }),
+              IsError(ExitCode::input, "channel 'a' is subsampled 0x1"));
 }
 
 TEST(DamagedExr, AListOfAQuarterOfAMillionChannelsIsRefused) {
