@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "io/exr/exr_writer.h"
@@ -74,15 +75,14 @@ std::vector<Pair> pair_layers(const LayeredPicture& a, const LayeredPicture& b,
 /// The channels that no pair compares, of the picture whose layer of a pair is `side`.
 std::vector<std::string> unpaired(const LayeredPicture& picture, const std::vector<Pair>& pairs,
                                   PictureLayer Pair::*side) {
+  std::set<std::pair<int, std::string>> paired;
+  for (const Pair& pair : pairs)
+    for (const std::string& channel : (pair.*side).channels)
+      paired.insert({(pair.*side).part, channel});
   std::vector<std::string> names;
   for (const PictureLayer& layer : picture.layers()) {
     for (const std::string& channel : layer.channels) {
-      const auto compares = [&](const Pair& pair) {
-        const PictureLayer& own = pair.*side;
-        return own.part == layer.part &&
-               std::find(own.channels.begin(), own.channels.end(), channel) != own.channels.end();
-      };
-      if (std::none_of(pairs.begin(), pairs.end(), compares))
+      if (!paired.contains({layer.part, channel}))
         names.push_back(layer.part_name.empty() ? channel : layer.part_name + "." + channel);
     }
   }

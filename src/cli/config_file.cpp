@@ -67,9 +67,9 @@ class ConfigFile {
       throw Error(ExitCode::usage,
                   fmt::format("{}: config file cannot be read; check --config", path_));
     }
-    check_text_size(path_, kMostBytes, ExitCode::usage);
+    const std::string text = read_text(in, path_, kMostBytes, ExitCode::usage);
     try {
-      return toml::parse(in, path_);
+      return toml::parse(text, path_);
     } catch (const toml::parse_error& e) {
       fail(e.source().begin.line, fmt::format("not TOML: {}", e.description()));
     }

@@ -9,6 +9,7 @@
 #include "cli/memory.h"
 #include "cli/threads.h"
 #include "error.h"
+#include "io/size_guard.h"
 #include "io/threads.h"
 #include "simd/isa.h"
 
@@ -21,6 +22,7 @@ Resources::Resources(std::optional<int> requested_threads,
       memory_(choose_memory(requested_memory)),
       limit_(threads_),
       isa_(choose_isa(variable("SSDO_ISA"))) {
+  limit_memory(double(memory_));
   try {
     limit_io_threads(threads_);
     start_threads(threads_);

@@ -12,6 +12,7 @@
 #include "io/images/codec.h"
 #include "io/images/png_chunks.h"
 #include "io/one_line.h"
+#include "io/size_guard.h"
 #include "io/threads.h"
 #include "parallel/thread_start.h"
 
@@ -57,7 +58,7 @@ void check_threads() {
 const ImageCodec* load(const fs::path& place) noexcept {
   void* const module = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* const found = module ? dlsym(module, kCodecFunction) : nullptr;
-  return found ? reinterpret_cast<GetImageCodec*>(found)(io_threads()) : nullptr;
+  return found ? reinterpret_cast<GetImageCodec*>(found)(io_threads(), memory_limit()) : nullptr;
 }
 
 const ImageCodec& open_codec() {

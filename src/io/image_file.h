@@ -23,7 +23,7 @@ struct Image {
 /// Errors: ExitCode::failed where it is missing.
 void load_image_codec();
 
-/// Reads any flat image that OpenImageIO reads: Radiance HDR, TIFF, PNG, JPEG.
+/// Reads a flat image: PNG, JPEG, TIFF or Radiance HDR, whatever the file is called.
 /// Errors: ExitCode::input, also for a file that is cut short and that the library would fill up.
 Image read_image(const std::filesystem::path& path);
 

@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <string_view>
 
 #include "error.h"
 #include "io/exr/exr_parts.h"
 #include "io/image_file.h"
+#include "io/size_guard.h"
 #include "nearest_name.h"
 
 namespace ssdo {
@@ -27,16 +29,14 @@ std::vector<PictureLayer> layers_of(const ExrReader& exr) {
   std::vector<PictureLayer> layers;
   for (const ExrPart& part : exr.parts()) {
     if (part.deep) continue;
-    const std::size_t first = layers.size();
+    std::map<std::string, std::size_t> places;
     for (const ExrChannel& channel : part.channels) {
       if (channel.x_sampling != 1 || channel.y_sampling != 1) continue;
       const auto dot = channel.name.rfind('.');
       const std::string name = dot == std::string::npos ? "" : channel.name.substr(0, dot);
-      auto layer = std::find_if(layers.begin() + std::ptrdiff_t(first), layers.end(),
-                                [&](const PictureLayer& l) { return l.name == name; });
-      if (layer == layers.end())
-        layer = layers.insert(layers.end(), {part.index, name, part.name, {}, {}});
-      layer->channels.push_back(channel.name);
+      const auto [place, is_new] = places.emplace(name, layers.size());
+      if (is_new) layers.push_back({part.index, name, part.name, {}, {}});
+      layers[place->second].channels.push_back(channel.name);
     }
   }
   for (PictureLayer& layer : layers) {
@@ -152,7 +152,11 @@ Window LayeredPicture::display(const PictureLayer& layer) const {
 }
 
 std::vector<Plane<float>> LayeredPicture::read(const PictureLayer& layer) const {
-  if (exr_) return exr_->read(layer.part, layer.channels);
+  if (exr_) {
+    const double bytes = double(window(layer).area()) * sizeof(float);
+    check_picture_size(file_, 0, bytes * double(layer.channels.size()));
+    return exr_->read(layer.part, layer.channels);
+  }
   std::vector<Plane<float>> planes;
   for (const std::string& channel : layer.channels)
     planes.push_back(image_[std::string_view("RGBA").find(channel)]);

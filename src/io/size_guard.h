@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <istream>
+#include <string>
 
 #include "error.h"
 
@@ -15,13 +17,27 @@ inline constexpr double kLargestRatio = 1 << 18;
 /// Of the machine, in bytes.
 double physical_memory();
 
+/// Sets the bytes that the run may use (--mem-limit), and tells them: those of the machine at
+/// first.
+void limit_memory(double bytes);
+double memory_limit();
+
 /// Refuses to allocate what a damaged header claims. Throws ExitCode::input if `pixel_bytes`, all
 /// decoded pixels, are more than a file of the size of `file` can hold at `largest_ratio`, or if
 /// `needed_bytes`, what is about to be allocated, exceeds the machine's memory.
 void check_decoded_size(const std::filesystem::path& file, double pixel_bytes, double needed_bytes,
                         double largest_ratio = kLargestRatio);
 
+/// The same for a picture or map: there are no bands of it, so that `needed_bytes` may not exceed
+/// memory_limit() either.
+void check_picture_size(const std::filesystem::path& file, double pixel_bytes, double needed_bytes);
+
 /// Refuses a text of more than `most` bytes before a parser takes it in. Throws `code`.
 void check_text_size(const std::filesystem::path& file, std::size_t most, ExitCode code);
+
+/// All of `in`, which reads `file`; that may be a pipe without an end. Errors: those of
+/// check_text_size().
+std::string read_text(std::istream& in, const std::filesystem::path& file, std::size_t most,
+                      ExitCode code);
 
 }  // namespace ssdo

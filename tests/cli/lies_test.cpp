@@ -2,7 +2,9 @@
 //
 // Files whose headers lie, in every place where a file is read: one line that says so, before time
 // and memory are spent on what is not there.
+#include <ImfBoxAttribute.h>
 #include <ImfStringAttribute.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -11,6 +13,7 @@
 #include <functional>
 #include <map>
 
+#include "support/deep_file.h"
 #include "support/exr_bytes.h"
 #include "support/frame_file.h"
 #include "support/run_tool.h"
@@ -60,6 +63,11 @@ std::function<void(ExrBytes&)> chunk_size(std::int32_t bytes) {
   return [=](ExrBytes& file) { file.put_int(std::size_t(file.places(3)[1]) + 4, bytes); };
 }
 
+/// Gives the first channel or attribute of this name another of the same length.
+std::function<void(ExrBytes&)> rename(const std::string& name, const std::string& other) {
+  return [=](ExrBytes& file) { file.put_text(file.place_of(name), other); };
+}
+
 const std::string kIntMin = "-2147483648", kIntMax = "2147483647", kDamaged = "is damaged";
 
 const std::vector<ExrLie> kExrLies = {
@@ -83,6 +91,8 @@ const std::vector<ExrLie> kExrLies = {
     {"text_of_less_than_nothing", size("notes", -5), "attribute 'notes' claims -5 bytes"},
     {"number_of_6_bytes", size("pixelAspectRatio", 6), "claims 6 bytes, and its value takes 4"},
     {"list_of_7_bytes", size("channels", 7), "attribute 'channels' claims 7 bytes, and its value"},
+    {"channel_twice", rename("ViewLayer.DiffCol.G", "ViewLayer.DiffCol.B"), kDamaged},
+    {"window_twice", rename("dataWindox", "dataWindow"), kDamaged},
     {"table_beyond_the_file", places(1ull << 40, 1ull << 40), kDamaged},
     {"table_beyond_int64", places(1ull << 63, ~0ull), kDamaged},
     {"table_in_the_header", places(8, 9), kDamaged},
@@ -137,6 +147,7 @@ class Lies : public testing::Test {
   Lies() {
     FramePart part = frame_of(small_picture());
     part.extra.insert("notes", Imf::StringAttribute("none"));
+    part.extra.insert("dataWindox", Imf::Box2iAttribute({{0, 0}, {9, 9}}));  // for window_twice
     write_frame(path("good.exr"), part);
   }
 
@@ -158,9 +169,10 @@ class Lies : public testing::Test {
     EXPECT_LT(done.used.ru_maxrss, std::max(kMostKilobytes, resident_kilobytes() * 11 / 10));
   }
 
-  void expect_refused(const Words& words, const std::string& file, const std::string& message) {
+  void expect_refused(const Words& words, const std::string& file, const std::string& message,
+                      const Surroundings& around = {}) {
     SCOPED_TRACE(testing::PrintToString(words));
-    const Finished done = run_tool(words);
+    const Finished done = run_tool(words, around);
     EXPECT_EQ(done.code, 3) << done.err;
     const std::string last = done.err.substr(done.err.rfind("ssdo: ", done.err.size()));
     EXPECT_THAT(last, AllOf(HasSubstr(path(file)), HasSubstr(message)));
@@ -226,6 +238,54 @@ TEST_F(Lies, ADisplayWindowThatNoPictureCanShow) {
     EXPECT_THAT(done.error_line(), HasSubstr("huge.exr: needs 14901.2 GiB of memory")) << name;
     expect_cheap(done);
   }
+}
+
+/// A frame of one pixel and 4000 channels costs little, more than the list may hold is refused.
+TEST_F(Lies, OfThousandsOfChannels) {
+  FramePart part{"", {0, 0, 1, 1}, {0, 0, 1, 1}, {}, Imf::HALF, {}};
+  for (int i = 0; i < 4000; ++i) part.channels[fmt::format("layer{:05}.Y", i)] = Plane<float>(1, 1);
+  write_frame(path("many.exr"), part);
+  for (const Words& words :
+       {Words{"compare", path("many.exr"), path("many.exr")}, Words{"info", path("many.exr")},
+        Words{path("many.exr"), "-o", path("out.exr"), "--keep-channels"}}) {
+    const Finished done = run_tool(words);
+    EXPECT_NE(done.code, 1) << done.err;
+    expect_cheap(done);
+  }
+  for (int i = 4000; i < 10000; ++i)
+    part.channels[fmt::format("layer{:05}.Y", i)] = Plane<float>(1, 1);
+  write_frame(path("more.exr"), part);
+  for (const Role& role : kExrRoles)
+    expect_refused(role.words(path("more.exr"), path("good.exr"), path("out.exr")), "more.exr",
+                   "lists 283 KiB of channels");
+}
+
+/// A deep image whose one pixel has as many samples as an int can count.
+TEST_F(Lies, OfDeepSamples) {
+  DeepPart deep{DeepPixels({0, 0, 1, 1})};
+  deep.pixels.at(0, 0) = {{1, 2, 1}};
+  write_deep(path("deep.exr"), {deep});
+  for (const std::int32_t samples : {1'000'000'000, 2'147'483'647, -1}) {
+    ExrBytes bytes(path("deep.exr"));
+    constexpr std::size_t kHead = 4 + 3 * 8;  // the row, and the sizes of counts and samples
+    bytes.put_int(std::size_t(bytes.places(1)[0]) + kHead, samples);
+    bytes.write(path("lie.exr"));
+    expect_refused({path("lie.exr"), "-o", path("out.exr")}, "lie.exr", kDamaged);
+  }
+}
+
+/// A map that packs a thousandfold, of more memory than the run may use.
+TEST_F(Lies, OfMapsThatPackWell) {
+  const Window window{0, 0, 4096, 4352};
+  FramePart part{"", window, window, {}, Imf::HALF, {}};
+  part.channels["Y"] = Plane<float>(window.width(), window.height());
+  write_frame(path("map.exr"), part);
+  EXPECT_LT(fs::file_size(path("map.exr")), 100'000u);
+  expect_refused(
+      {path("good.exr"), "--env", path("map.exr"), "-o", path("out.exr"), "--mem-limit", "64M"},
+      "map.exr", "raise --mem-limit");
+  expect_refused({"compare", path("map.exr"), path("map.exr")}, "map.exr", "$SSDO_MEM_LIMIT",
+                 {.variables = {{"SSDO_MEM_LIMIT", "64M"}}});
 }
 
 std::string big_endian(std::uint32_t value) {

@@ -15,7 +15,8 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kInfinity = std::numeric_limits<float>::infinity(),
+                kNaN = std::numeric_limits<float>::quiet_NaN();
 
 class LightRangeOfTheTool : public testing::Test {
  protected:
@@ -24,13 +25,17 @@ class LightRangeOfTheTool : public testing::Test {
 
   /// A map of a dim sky with one texel of this radiance.
   std::string map_with(float texel) const {
-    FramePart part{"", {0, 0, 64, 32}, {0, 0, 64, 32}, {}, Imf::FLOAT, {}};
-    for (const char* c : {"R", "G", "B"}) {
-      part.channels[c] = Plane<float>(64, 32, 0.5f);
-      part.channels[c](20, 8) = texel;
-    }
-    write_frame(path("map.exr"), part);
-    return path("map.exr");
+    Plane<float> texels(64, 32, 0.5f);
+    texels(20, 8) = texel;
+    return write_map("map.exr", texels);
+  }
+
+  std::string write_map(const std::string& name, const Plane<float>& texels) const {
+    const Window window{0, 0, texels.width, texels.height};
+    FramePart part{"", window, window, {}, Imf::FLOAT, {}};
+    for (const char* c : {"R", "G", "B"}) part.channels[c] = texels;
+    write_frame(path(name), part);
+    return path(name);
   }
 
   /// Every product that the method makes of in.exr is finite.
@@ -61,6 +66,8 @@ TEST_F(LightRangeOfTheTool, EveryMethodIsFiniteInTheBrightestLight) {
   }
   expect_finite("bitmask", {"--env", map_with(1e15f), "--bounces", "8"});
   expect_finite("bitmask", {"--env", map_with(kInfinity), "--bounces", "2"});
+  expect_finite("bitmask", {"--env", map_with(kNaN)});
+  expect_finite("bitmask", {"--env", write_map("point.exr", Plane<float>(1, 1, 2.0f))});
 }
 
 TEST_F(LightRangeOfTheTool, EveryMethodIsFiniteWithBrokenLayers) {
@@ -88,10 +95,12 @@ TEST_F(LightRangeOfTheTool, AnAbsurdExposureIsRefused) {
 }
 
 TEST_F(LightRangeOfTheTool, TexelsThatAreNoLightAreMentioned) {
-  const Finished done =
-      run_tool({path("in.exr"), "-o", path("out.exr"), "--env", map_with(kInfinity)});
-  EXPECT_EQ(done.code, 0);
-  EXPECT_THAT(done.err, HasSubstr("map.exr: 1 of 2048 texels are not finite"));
+  for (const float texel : {kInfinity, kNaN}) {
+    const Finished done =
+        run_tool({path("in.exr"), "-o", path("out.exr"), "--overwrite", "--env", map_with(texel)});
+    EXPECT_EQ(done.code, 0);
+    EXPECT_THAT(done.err, HasSubstr("map.exr: 1 of 2048 texels are not finite"));
+  }
   const Finished info = run_tool({"info", path("in.exr"), "--env", map_with(-1)});
   EXPECT_THAT(info.out, HasSubstr("1 of 2048 texels have negative channels"));
 }

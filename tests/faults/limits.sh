@@ -70,6 +70,7 @@ test_control_group() {
     made a.exr a.png
     drop_group
   done
+  [ "$killed" -gt 0 ] || complain "no run was killed for want of memory"
   say "control group: $good made, $bad refused, $killed killed; the next run removed $left temporaries"
 }
 

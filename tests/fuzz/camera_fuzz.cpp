@@ -7,6 +7,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "fuzz/real_files.h"
 #include "fuzz/target.h"
 #include "scene/camera/camera.h"
 #include "scene/camera/metadata/candidates.h"
@@ -64,16 +65,18 @@ std::vector<std::string> seeds() {
   Camera camera;
   camera.fx = camera.fy = 60, camera.cx = 32, camera.cy = 24;
   camera.origin = {1, 2, 3};
-  return {header_text(test::standard_header(camera, kDisplay)),
-          header_text(test::pbrt_header(camera, kDisplay)),
-          header_text(test::vray_header(camera, kDisplay)),
-          header_text(test::redshift_header(camera, kDisplay)),
-          header_text(test::unreal_header({1, 2, 3, {4, 5, 6}}, camera, kDisplay)),
-          R"({"type": "persp", "fx": 60, "fy": 60, "cx": 32, "cy": 24, "world_to_camera":
+  const std::vector<std::string> made = {
+      header_text(test::standard_header(camera, kDisplay)),
+      header_text(test::pbrt_header(camera, kDisplay)),
+      header_text(test::vray_header(camera, kDisplay)),
+      header_text(test::redshift_header(camera, kDisplay)),
+      header_text(test::unreal_header({1, 2, 3, {4, 5, 6}}, camera, kDisplay)),
+      R"({"type": "persp", "fx": 60, "fy": 60, "cx": 32, "cy": 24, "world_to_camera":
               [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, -5], [0, 0, 0, 1]]})",
-          R"({"hfov_deg": 50, "world_handedness": "left", "world_to_camera":
+      R"({"hfov_deg": 50, "world_handedness": "left", "world_to_camera":
               [[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, -5]]})",
-          R"({"type": "ortho", "ortho_width": 8})"};
+      R"({"type": "ortho", "ortho_width": 8})"};
+  return joined(made, real_files(".", ".json"));
 }
 
 }  // namespace ssdo::fuzz

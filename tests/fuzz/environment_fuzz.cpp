@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fuzz/exr_mutation.h"
+#include "fuzz/real_files.h"
 #include "fuzz/target.h"
 #include "io/image_file.h"
 #include "scene/light/environment_map.h"
@@ -66,7 +67,7 @@ void read_input(Bytes input) {
 }
 
 std::vector<std::string> seeds() {
-  std::vector<std::string> all = exr_samples(kinds());
+  std::vector<std::string> all = joined(exr_samples(kinds()), real_files("environments", ".exr"));
   all.push_back(radiance_picture(8, 4));
   for (const int channels : {1, 3, 4}) {
     for (const int bits : {8, 16}) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fuzz/exr_mutation.h"
+#include "fuzz/real_files.h"
 #include "fuzz/target.h"
 #include "scene/view.h"
 
@@ -13,6 +14,7 @@ namespace {
 
 struct Choices {
   InputOptions input;
+  bool allow_partial = false;
   CameraOptions camera;
 };
 
@@ -26,10 +28,11 @@ Choices choices_of(unsigned bits) {
   GBufferOptions& gbuffer = choices.input.gbuffer;
   if (take(2)) choices.camera.fov = 43;
   gbuffer.beauty = take(2) == 1;
-  if (take(4) == 1) gbuffer.depth_kind = DepthKind::ray;
+  if (take(2) == 1) gbuffer.depth_kind = DepthKind::ray;
   if (take(4) == 1) gbuffer.grid = PixelGrid{.stride = kOverviewStride};
   if (take(2)) choices.input.view = "left";
   if (take(2)) gbuffer.background_depth = 5.0f;
+  choices.allow_partial = take(2) == 1;
   return choices;
 }
 
@@ -56,13 +59,13 @@ void read_input(Bytes input) {
   memory.hold(input);
   may_refuse([&] {
     const Choices choices = choices_of(input.empty() ? 0 : input.back());
-    const View view =
-        read_view(open_view(memory.path(), {}), {}, choices.input, choices.camera, {});
+    const View view = read_view(open_view(memory.path(), {}, choices.allow_partial), {},
+                                choices.input, choices.camera, {});
     check(view.geometry);
   });
 }
 
-std::vector<std::string> seeds() { return exr_samples(kinds()); }
+std::vector<std::string> seeds() { return joined(exr_samples(kinds()), real_frames()); }
 
 }  // namespace ssdo::fuzz
 

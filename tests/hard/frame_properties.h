@@ -58,6 +58,7 @@ Measured light_gained(const Subject& s);
 Measured lost_by_a_bounce(const Subject& s);
 Measured lost_by_more_light_of_one_color(const Subject& s);
 Measured lost_by_more_light_in_a_map(const Subject& s);
+Measured lost_by_more_light_of_a_ratio(const Subject& s);
 Measured change_by_twice_the_light(const Subject& s);
 
 // What must not matter: invariance_properties_cases.cpp.

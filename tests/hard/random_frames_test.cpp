@@ -24,6 +24,9 @@ constexpr int kShards = 4, kFrames = 1200;
 /// Most frames that may be refused: those whose camera nothing tells.
 constexpr double kMostRefused = 0.15;
 
+/// One frame in so many at least has a property measured.
+constexpr int kFewest = 20;
+
 constexpr int kMostPrinted = 20;
 
 /// What a property was found to be over many frames.
@@ -58,6 +61,7 @@ class RandomFrames : public testing::TestWithParam<int> {
     for (const FrameProperty& property : frame_properties()) {
       const Tally& tally = tallies_[property.name];
       EXPECT_LE(tally.sum, property.mean_bound * tally.frames) << property.name;
+      EXPECT_GE(tally.frames, frames_ / kFewest) << property.name << " is hardly measured";
     }
     EXPECT_LE(refused_, kMostRefused * frames_ + 5);
   }

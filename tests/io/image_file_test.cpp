@@ -211,7 +211,36 @@ TEST(ReadImage, SaysWhatIsWrong) {
   EXPECT_THAT(error_of([&] { read_image("/dev/null"); }), IsError(ExitCode::input, "is a device"));
   std::ofstream(dir / "text.png") << "a text";
   EXPECT_THAT(error_of([&] { read_image(dir / "text.png"); }),
-              IsError(ExitCode::input, "text.png: cannot be read as an image"));
+              IsError(ExitCode::input, "text.png: cannot be read as an image (it is no EXR, PNG,"));
+}
+
+/// Rows beyond the largest int are none for OpenImageIO, which then reports success.
+TEST(ReadImage, RefusesAPlaceBeyondInt) {
+  const TempDir dir;
+  for (const bool down : {false, true}) {
+    OIIO::ImageSpec spec(200, 200, 1, OIIO::TypeDesc::UINT8);
+    (down ? spec.y : spec.x) = std::numeric_limits<int>::max() - 127;
+    write_floats(dir / "a.tif", spec, std::vector<float>(200 * 200, 0.5f));
+    EXPECT_THAT(error_of([&] { read_image(dir / "a.tif"); }),
+                IsError(ExitCode::input, "a.tif: is damaged: its header places it at "));
+  }
+}
+
+/// A damaged picture of Maya's kind ended the tool by a signal in OpenImageIO's reader.
+TEST(ReadImage, TakesTheKindsThatManNames) {
+  const TempDir dir;
+  const std::vector<float> grey(4 * 2 * 3, 0.5f);
+  for (const char* name : {"a.png", "a.jpg", "a.tif", "a.hdr"}) {
+    write_floats(dir / name, OIIO::ImageSpec(4, 2, 3, OIIO::TypeDesc::FLOAT), grey);
+    fs::rename(dir / name, dir / "picture.iff");
+    EXPECT_EQ(read_image(dir / "picture.iff").color.width, 4) << name;
+  }
+  for (const char* name : {"a.iff", "a.tga", "a.bmp"}) {
+    write_floats(dir / name, OIIO::ImageSpec(4, 2, 3, OIIO::TypeDesc::UINT8), grey);
+    EXPECT_THAT(error_of([&] { read_image(dir / name); }),
+                IsError(ExitCode::input, "it is no EXR, PNG, JPEG, TIFF or Radiance HDR"))
+        << name;
+  }
 }
 
 /// Issue 12, number 14: libjpeg makes up what a file lacks and warns only.

@@ -28,14 +28,23 @@ std::vector<std::uint64_t> ExrBytes::places(std::size_t chunks) const {
   return places;
 }
 
+std::size_t ExrBytes::place_of(const std::string& name) const {
+  const std::size_t place = bytes_.find(name + '\0');
+  if (place == bytes_.npos) throw std::runtime_error("nothing is called " + name);
+  return place;
+}
+
 std::size_t ExrBytes::size_of(const std::string& attribute) const {
-  const std::size_t name = bytes_.find(attribute + '\0');
-  if (name == bytes_.npos) throw std::runtime_error("no attribute " + attribute);
+  const std::size_t name = place_of(attribute);
   return bytes_.find('\0', name + attribute.size() + 1) + 1;  // after its type
 }
 
 std::size_t ExrBytes::value_of(const std::string& attribute) const {
   return size_of(attribute) + 4;
+}
+
+void ExrBytes::put_text(std::size_t place, const std::string& text) {
+  bytes_.replace(place, text.size(), text);
 }
 
 void ExrBytes::put_int(std::size_t place, std::int32_t value) {

@@ -23,6 +23,10 @@ class ExrBytes {
   std::size_t value_of(const std::string& attribute) const;
   std::size_t size_of(const std::string& attribute) const;
 
+  /// Where the first name of this text stands.
+  std::size_t place_of(const std::string& name) const;
+
+  void put_text(std::size_t place, const std::string& text);
   void put_int(std::size_t place, std::int32_t value);
   void put_place(std::size_t place, std::uint64_t value);
 

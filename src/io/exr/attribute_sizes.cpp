@@ -23,7 +23,7 @@ constexpr std::int64_t kNoFile = std::int64_t(1) << 62;  ///< bytes that none ha
 
 /// Of the list of channels, each of which takes 20 bytes or more there and many times that in
 /// memory: files of renderers have some hundreds of channels.
-constexpr std::int32_t kLargestChannelList = 4 << 20;
+constexpr std::int32_t kLargestChannelList = 1 << 18;
 
 /// Types whose values have a size of their own, in bytes. OpenEXR reads as many, whatever size the
 /// header says, and takes what is left for the next attribute.
@@ -80,7 +80,8 @@ std::int64_t bytes_taken(std::istream& in, std::string_view type, std::int32_t s
   if (fixed != std::end(kFixedSizes)) return fixed->bytes;
   if (type == "preview") {
     const std::int64_t width = std::uint32_t(read_int(in)), height = std::uint32_t(read_int(in));
-    return width > size || height > size ? kNoFile : 8 + 4 * width * height;
+    const bool fits = width <= size && height <= size && width * height <= size / 4;
+    return fits ? 8 + 4 * width * height : kNoFile;
   }
   std::int64_t taken = 0;
   if (type == "chlist") {
@@ -100,6 +101,7 @@ std::int64_t bytes_taken(std::istream& in, std::string_view type, std::int32_t s
     }
     return taken;
   }
+  if (type == "floatvector") return size / 4 * 4;
   return size;
 }
 
@@ -128,9 +130,9 @@ std::uint64_t check_attribute_sizes(const fs::path& file) {
     if (name == "channels" && size > kLargestChannelList) {
       throw Error(
           ExitCode::input,
-          fmt::format("{}: lists {} MiB of channels in its header, and ssdo reads up to {}; "
+          fmt::format("{}: lists {} KiB of channels in its header, and ssdo reads up to {}; "
                       "split it into files of fewer channels",
-                      file.string(), size >> 20, kLargestChannelList >> 20));
+                      file.string(), size >> 10, kLargestChannelList >> 10));
     }
     const std::istream::pos_type value = in.tellg();
     const std::int64_t taken = bytes_taken(in, type, size);

@@ -4,6 +4,7 @@
 #include <ImfChannelList.h>
 #include <ImfIntAttribute.h>
 #include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
@@ -11,6 +12,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <new>
+#include <string_view>
 
 #include "error.h"
 #include "io/exr/exr_chunks.h"
@@ -40,14 +44,19 @@ const ExrPart& flat_part(const ExrReader& reader, int index) {
                              "example with oiiotool --flatten",
                              label(part)));
   }
+  const Imf::Header& header = part.header;
+  if (header.hasType() && !Imf::isSupportedType(header.type())) {
+    fail(reader, fmt::format("{} is of the type '{}', which no EXR of pixels has; render or copy "
+                             "it again",
+                             label(part), printable(header.type())));
+  }
   return part;
 }
 
 const ExrChannel& find_channel(const ExrReader& reader, const ExrPart& part,
                                const std::string& name) {
-  const auto found = std::find_if(part.channels.begin(), part.channels.end(),
-                                  [&](const ExrChannel& c) { return c.name == name; });
-  if (found != part.channels.end()) return *found;
+  const auto found = std::ranges::lower_bound(part.channels, name, {}, &ExrChannel::name);
+  if (found != part.channels.end() && found->name == name) return *found;
   fail(reader,
        fmt::format("has no channel '{}' in {}; ssdo info lists what it has", name, label(part)));
 }
@@ -133,11 +142,10 @@ void read_or_fail(const ExrReader& reader, const ExrPart& part, const Window& ro
 /// last place only: copies it to the others.
 template <class Pixels>
 void fill_repeated(Names names, std::vector<Pixels>& read) {
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto last = std::find(names.rbegin(), names.rend(), names[i]);
-    const std::size_t place = std::size_t(names.rend() - last) - 1;
-    if (place != i) read[i] = read[place];
-  }
+  std::map<std::string_view, std::size_t> last;
+  for (std::size_t i = 0; i < names.size(); ++i) last[names[i]] = i;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (last[names[i]] != i) read[i] = read[last[names[i]]];
 }
 
 /// Some rows of a part's data window, or all, as float.
@@ -184,6 +192,8 @@ ExrReader::ExrReader(std::filesystem::path path, Salvage salvage)
     stream_ = std::make_unique<Imf::StdIFStream>(path_.c_str());
     file_ = std::make_unique<Imf::MultiPartInputFile>(*stream_);
     for (int i = 0; i < file_->parts(); ++i) parts_.push_back(describe_part(*file_, i));
+  } catch (const std::bad_alloc&) {
+    throw;  // nothing is wrong with the file
   } catch (const std::exception& error) {
     fail(*this, fmt::format("is damaged or cut short in its header ({}); render or copy it again",
                             one_line(error.what())));

@@ -10,7 +10,9 @@
 #include <atomic>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <memory>
+#include <string_view>
 
 #include "io/exr/exr_parts.h"
 #include "io/exr/zip_chunk.h"
@@ -69,10 +71,11 @@ class ZipLines {
         window_(part.data_window),
         wanted_rows_(rows),
         chunk_rows_(rows_of_chunk(part.header.compression())) {
+    std::multimap<std::string_view, const ChannelRows*> wanted;
+    for (const ChannelRows& rows_of : channels) wanted.emplace(rows_of.channel.name, &rows_of);
     for (const ExrChannel& channel : part.channels) {
-      for (const ChannelRows& wanted : channels) {
-        if (wanted.channel.name == channel.name) wanted_.push_back({wanted, line_bytes_});
-      }
+      for (auto [it, end] = wanted.equal_range(channel.name); it != end; ++it)
+        wanted_.push_back({*it->second, line_bytes_});
       line_bytes_ += bytes_of(channel.type) * columns();
     }
   }

@@ -10,10 +10,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 
 #include "error.h"
 #include "io/images/kind.h"
@@ -25,21 +28,43 @@ namespace fs = std::filesystem;
 namespace ssdo {
 namespace {
 
+using namespace std::string_view_literals;
+
 [[noreturn]] void fail(ExitCode code, const fs::path& file, std::string_view what) {
   throw Error(code, fmt::format("{}: {}", file.string(), what));
 }
 
+/// How files of a kind begin, and what OpenImageIO calls their reader.
+struct Kind {
+  std::string_view begin;
+  const char* reader;
+};
+
+/// OpenImageIO knows thirty further kinds. Readers of some of them end the process on damaged
+/// files.
+constexpr Kind kKinds[] = {{"\x89PNG"sv, "png"}, {"\xff\xd8\xff"sv, "jpeg"}, {"#?"sv, "hdr"},
+                           {"II*\0"sv, "tiff"},  {"MM\0*"sv, "tiff"},        {"II+\0"sv, "tiff"},
+                           {"MM\0+"sv, "tiff"}};
+
+/// Null for a file of another kind.
+std::unique_ptr<OIIO::ImageInput> reader_of(const fs::path& path) {
+  char begin[4] = {};
+  std::ifstream(path, std::ios::binary).read(begin, sizeof begin);
+  const auto kind = std::ranges::find_if(
+      kKinds, [text = std::string_view(begin, 4)](Kind k) { return text.starts_with(k.begin); });
+  return kind == std::end(kKinds) ? nullptr : OIIO::ImageInput::create(kind->reader);
+}
+
 std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& path) {
-  OIIO::ImageSpec as_stored;
+  OIIO::ImageSpec spec, as_stored;
   as_stored.attribute("oiio:UnassociatedAlpha", 1);
   as_stored.attribute("oiio:RawColor", 1);
-  auto image = OIIO::ImageInput::open(path.string(), &as_stored);
-  if (!image) {
-    fail(ExitCode::input, path,
-         fmt::format("cannot be read as an image ({}); check the file or convert it to EXR",
-                     one_line(OIIO::geterror())));
-  }
-  return image;
+  auto image = reader_of(path);
+  if (image && image->open(path.string(), spec, as_stored)) return image;
+  fail(ExitCode::input, path,
+       fmt::format(
+           "cannot be read as an image ({}); check the file or convert it to EXR",
+           image ? one_line(image->geterror()) : "it is no EXR, PNG, JPEG, TIFF or Radiance HDR"));
 }
 
 /// Interleaved values as unsigned integers of the whole range of T.
@@ -122,10 +147,16 @@ void check_spec(const fs::path& path, const OIIO::ImageSpec& spec) {
          fmt::format("is damaged: its header claims {} x {} pixels; render or copy it again",
                      spec.width, spec.height));
   }
+  constexpr std::int64_t kLast = std::numeric_limits<int>::max();
+  if (std::int64_t(spec.x) + spec.width > kLast || std::int64_t(spec.y) + spec.height > kLast) {
+    fail(ExitCode::input, path,
+         fmt::format("is damaged: its header places it at {}, {}; render or copy it again", spec.x,
+                     spec.y));
+  }
   const double pixel_bytes = sizeof(glm::vec3) + 4.0 * Channels(spec).count,
                bytes = double(spec.width) * spec.height * pixel_bytes,
                tile_bytes = double(spec.tile_width) * spec.tile_height * pixel_bytes;
-  check_decoded_size(path, std::max(bytes, tile_bytes), bytes + tile_bytes);
+  check_picture_size(path, std::max(bytes, tile_bytes), bytes + tile_bytes);
 }
 
 /// A plane with memory for all of its rows, which is used when they come: a header claims much.
@@ -211,7 +242,8 @@ constexpr ImageCodec kCodec = {read, encode};
 }  // namespace ssdo
 
 extern "C" __attribute__((visibility("default"))) const ssdo::ImageCodec* ssdo_image_codec(
-    int threads) {
+    int threads, double memory) {
+  ssdo::limit_memory(memory);
   if (threads > 0) {
     OIIO::attribute("threads", threads);
     OIIO::attribute("exr_threads", threads == 1 ? -1 : threads);

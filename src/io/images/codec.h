@@ -17,9 +17,9 @@ struct ImageCodec {
 };
 
 /// The module's file, and the function in it that returns its codec; `threads` are those that it
-/// may use, or 0 to let it choose.
+/// may use, or 0 to let it choose, `memory` the bytes.
 inline constexpr const char* kCodecFile = "ssdo_images.so";
 inline constexpr const char* kCodecFunction = "ssdo_image_codec";
-using GetImageCodec = const ImageCodec*(int threads);
+using GetImageCodec = const ImageCodec*(int threads, double memory);
 
 }  // namespace ssdo

@@ -180,9 +180,9 @@ Camera read_camera(const std::filesystem::path& path, const Window& display, dou
     throw Error(ExitCode::input,
                 fmt::format("{}: camera file cannot be read; check --camera", path.string()));
   }
-  check_text_size(path, kMostCameraBytes, ExitCode::input);
+  const std::string text = read_text(in, path, kMostCameraBytes, ExitCode::input);
   try {
-    return parse_camera(json::parse(in), path.string(), display, pixel_aspect);
+    return parse_camera(json::parse(text), path.string(), display, pixel_aspect);
   } catch (const json::exception& e) {
     throw Error(ExitCode::input,
                 fmt::format("{}: not a camera: {}; it needs fx (or hfov_deg, or type ortho with "

@@ -111,8 +111,9 @@ void refuse_luminance_chroma(const ExrReader& exr, const PictureLayer& layer) {
 
 Plane<glm::vec3> lay_out(const LayeredPicture& picture, const PictureLayer& layer) {
   const Window data = picture.window(layer), display = picture.display(layer);
-  const double bytes = double(display.area()) * sizeof(glm::vec3);
-  check_decoded_size(picture.file(), bytes, bytes);
+  const double bytes = double(display.area()) * sizeof(glm::vec3),
+               as_stored = double(data.area()) * sizeof(float) * double(layer.channels.size());
+  check_picture_size(picture.file(), bytes, bytes + as_stored);
   const std::vector<Plane<float>> planes = picture.read(layer);
   const std::array<const Plane<float>*, 3> rgb = {&planes.front(), &planes[planes.size() / 2],
                                                   &planes.back()};

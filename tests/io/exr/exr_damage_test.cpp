@@ -141,6 +141,30 @@ TEST(DamagedExr, SubsamplingByNothingIsRefusedInPartsOfAnyType) {
               IsError(ExitCode::input, "channel 'a' is subsampled 0x1"));
 }
 
+TEST(DamagedExr, PartsOfUnknownTypeHaveNoPixels) {
+  const TempDir dir;
+  Imf::Header part = test_header({{0, 0}, {7, 7}}, {{"a", Imf::FLOAT}}, Imf::ZIP_COMPRESSION),
+              other = part;
+  part.setName("part"), other.setName("other");
+  write_test_exr(dir / "a.exr", {part, other});
+  ExrBytes bytes(dir / "a.exr");
+  bytes.put_int(bytes.value_of("type"), 0x78787878);
+  bytes.write(dir / "a.exr");
+  const ExrReader reader(dir / "a.exr");
+  const std::vector<std::string> names = {"a"};
+  EXPECT_THAT(error_of([&] { reader.read(0, names); }),
+              IsError(ExitCode::input, "part 0 'part' is of the type 'xxxx"));
+}
+
+/// OpenEXR takes whole floats, and what is left over as the next attribute.
+TEST(DamagedExr, AListOfFloatsHasWholeOnes) {
+  const TempDir dir;
+  std::string bytes("\x76\x2f\x31\x01\2\0\0\0multiView\0floatvector\0", 30);
+  write_bytes(dir / "a.exr", bytes + std::string("\7\0\0\0", 4) + std::string(100, 'x'));
+  EXPECT_THAT(error_of([&] { ExrReader reader(dir / "a.exr"); }),
+              IsError(ExitCode::input, "'multiView' claims 7 bytes, and its value takes 4"));
+}
+
 TEST(DamagedExr, AListOfAQuarterOfAMillionChannelsIsRefused) {
   const TempDir dir;
   const std::size_t size = 5 << 20;
@@ -148,7 +172,7 @@ TEST(DamagedExr, AListOfAQuarterOfAMillionChannelsIsRefused) {
   for (int i = 0; i < 4; ++i) bytes += char(size >> 8 * i);
   write_bytes(dir / "a.exr", bytes + std::string(size, 'x'));
   EXPECT_THAT(error_of([&] { ExrReader reader(dir / "a.exr"); }),
-              IsError(ExitCode::input, "a.exr: lists 5 MiB of channels"));
+              IsError(ExitCode::input, "a.exr: lists 5120 KiB of channels"));
 }
 
 TEST(DamagedExr, AbsurdSizesAreRefusedBeforeAllocation) {
