@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <exception>
+#include <limits>
 #include <memory>
 #include <new>
 #include <span>
@@ -110,18 +112,23 @@ std::size_t unpacked_bytes(const ExrPart& part, const Window& chunk, Bytes packe
   }
 }
 
+/// The largest chunk, or table of counts, that OpenEXR takes, whose decoders count bytes in an int.
+/// In a tile that the image fills in part, the bytes of a whole one may be packed.
+std::size_t most_packed(const ExrPart& part) {
+  constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+  const double pixel = part.deep ? sizeof(std::uint32_t) : bytes_per_pixel(part);
+  return std::size_t(std::min(pixel * pixels_per_chunk(part), kMost));
+}
+
 }  // namespace
 
 void check_chunk_size(const ExrPart& part, const PackedChunks& chunks, std::size_t chunk) {
-  const auto bytes_of_chunk = [&](const Window& window) {
-    return part.deep ? sizeof(std::uint32_t) * window.area() : pixel_bytes(part, window);
-  };
   const Window window = chunks.window(chunk);
-  // The table of a deep tile at the border may be that of a whole one.
-  const std::size_t most = bytes_of_chunk(part.deep ? chunks.window(0) : window);
-  const auto packed = chunks.read(chunk, most);
-  // The same words for every chunk, whichever thread comes first.
-  if (packed && unpacked_bytes(part, window, *packed, most) < bytes_of_chunk(window))
+  const std::size_t most = most_packed(part),
+                    taken = part.deep ? sizeof(std::uint32_t) * window.area()
+                                      : pixel_bytes(part, window),
+                    room = part.deep ? most : taken;
+  if (unpacked_bytes(part, window, chunks.read(chunk, most), room) < taken)
     throw std::runtime_error("a chunk holds fewer bytes than its pixels take");
 }
 
@@ -129,9 +136,19 @@ void check_chunk_sizes(const ExrReader& file, const ExrPart& part, const Window&
                        const MissingChunks& missing) {
   const PackedChunks chunks(file, part);
   const std::size_t first = chunks.first(rows.y0);
-  for_each_task(chunks.end(rows.y1) - first, [&](std::size_t i) {
-    if (!is_missing(missing, chunks.window(first + i))) check_chunk_size(part, chunks, first + i);
+  std::vector<std::exception_ptr> errors(chunks.end(rows.y1) - first);
+  for_each_task(errors.size(), [&](std::size_t i) {
+    if (is_missing(missing, chunks.window(first + i))) return;
+    try {
+      check_chunk_size(part, chunks, first + i);
+    } catch (...) {
+      errors[i] = std::current_exception();
+    }
   });
+  // That of the first chunk, whichever thread comes first.
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
 }
 
 }  // namespace ssdo
