@@ -31,6 +31,10 @@ class ExrBytes {
   void put_place(std::size_t place, std::uint64_t value);
 
   void cut(std::size_t bytes) { bytes_.resize(bytes); }
+  void append(const std::string& bytes) { bytes_ += bytes; }
+  std::string slice(std::size_t begin, std::size_t end) const {
+    return bytes_.substr(begin, end - begin);
+  }
   void write(const std::filesystem::path& file) const;
   std::size_t size() const { return bytes_.size(); }
 

@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <exception>
+#include <limits>
 #include <memory>
 #include <new>
 #include <span>
 #include <stdexcept>
 
+#include "io/exr/dwa_chunk.h"
 #include "io/exr/exr_chunks.h"
 #include "io/exr/exr_parts.h"
 #include "io/exr/packed_chunks.h"
@@ -60,47 +63,32 @@ std::size_t bytes_of_runs(Bytes packed) {
   return bytes;
 }
 
-/// Little endian, from `place` on.
-std::uint64_t number_at(Bytes bytes, std::size_t place, std::size_t size) {
-  std::uint64_t number = 0;
-  for (std::size_t i = size; i-- > 0;) number = number << 8 | std::uint64_t(bytes[place + i]);
-  return number;
-}
-
-/// Whether a chunk of DWAA or DWAB holds its pixels. It begins with eleven numbers of eight bytes:
-/// the second is the bytes of channels that are deflated, the third what these are packed to, the
-/// eighth the bytes of channels that are stored as runs, and the tenth counts the first
-/// coefficients of channels that are transformed in blocks of 8 x 8. Rules say which channel is
-/// which; all of them together have to be there. From version 2 on the rules come next, with their
-/// size before them, and then what is deflated. OpenEXR checks runs and coefficients only.
-/// Source: OpenEXR 3.1, ImfDwaCompressor.h, DataSizesSingle.
+/// Whether a chunk of DWAA or DWAB holds its pixels: all channels that are deflated, stored as
+/// runs, or transformed in blocks of 8 x 8. OpenEXR takes what is there of each, and does not
+/// compare it with the pixels.
 bool holds_dwa_pixels(const ExrPart& part, const Window& chunk, Bytes packed) {
-  constexpr std::size_t kNumbers = 11 * 8;
-  if (packed.size() < kNumbers + 2) return false;
-  const std::size_t all = pixel_bytes(part, chunk), deflated = number_at(packed, 8, 8),
-                    deflated_to = number_at(packed, 16, 8), runs = number_at(packed, 56, 8),
-                    coefficients = number_at(packed, 72, 8),
-                    blocks = std::size_t((chunk.width() + 7) / 8) *
-                             std::size_t((chunk.height() + 7) / 8),
-                    transformed = coefficients / blocks,
-                    rules = number_at(packed, 0, 8) < 2 ? 0 : number_at(packed, kNumbers, 2);
-  if (coefficients % blocks != 0 || transformed > part.channels.size() || deflated > all ||
-      kNumbers + rules > packed.size() || deflated_to > packed.size() - kNumbers - rules)
-    return false;
-  const auto is_all = [&](std::size_t halves) {  // of those that are transformed
-    return deflated + runs + chunk.area() * (4 * transformed - 2 * halves) == all;
-  };
-  std::size_t halves = 0;
-  while (halves <= transformed && !is_all(halves)) ++halves;
-  return halves <= transformed &&
+  const auto dwa = read_dwa_chunk(packed);
+  if (!dwa) return false;
+  std::size_t deflated = 0, runs = 0, blocks = 0;
+  for (const ExrChannel& c : part.channels) {
+    const std::size_t columns = multiples(chunk.x0, chunk.x1, c.x_sampling),
+                      rows = multiples(chunk.y0, chunk.y1, c.y_sampling),
+                      bytes = columns * rows * bytes_of(c.type);
+    switch (scheme_of(c, dwa->rules)) {
+      case DwaScheme::deflated:
+        deflated += bytes;
+        break;
+      case DwaScheme::transformed:
+        blocks += (columns + 7) / 8 * ((rows + 7) / 8);
+        break;
+      case DwaScheme::runs:
+        runs += bytes;
+        break;
+    }
+  }
+  return dwa->runs == runs && dwa->blocks == blocks && (blocks == 0 || dwa->has_coefficients) &&
          (deflated == 0 ||
-          inflated_bytes(packed.subspan(kNumbers + rules, deflated_to), deflated) == deflated);
-}
-
-bool is_sampled_everywhere(const ExrPart& part) {
-  return std::ranges::all_of(part.channels, [](const ExrChannel& channel) {
-    return channel.x_sampling == 1 && channel.y_sampling == 1;
-  });
+          (!dwa->deflated.empty() && inflated_bytes(dwa->deflated, deflated) == deflated));
 }
 
 /// What the bytes of a chunk unpack to, as far as OpenEXR does not check that itself: it has an
@@ -118,24 +106,29 @@ std::size_t unpacked_bytes(const ExrPart& part, const Window& chunk, Bytes packe
       return inflated_bytes(packed, most);
     case Imf::DWAA_COMPRESSION:
     case Imf::DWAB_COMPRESSION:
-      return !is_sampled_everywhere(part) || holds_dwa_pixels(part, chunk, packed) ? most : 0;
+      return holds_dwa_pixels(part, chunk, packed) ? most : 0;
     default:
       return most;
   }
 }
 
+/// The largest chunk, or table of counts, that OpenEXR takes, whose decoders count bytes in an int.
+/// In a tile that the image fills in part, the bytes of a whole one may be packed.
+std::size_t most_packed(const ExrPart& part) {
+  constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+  const double pixel = part.deep ? sizeof(std::uint32_t) : bytes_per_pixel(part);
+  return std::size_t(std::min(pixel * pixels_per_chunk(part), kMost));
+}
+
 }  // namespace
 
 void check_chunk_size(const ExrPart& part, const PackedChunks& chunks, std::size_t chunk) {
-  const auto bytes_of_chunk = [&](const Window& window) {
-    return part.deep ? sizeof(std::uint32_t) * window.area() : pixel_bytes(part, window);
-  };
   const Window window = chunks.window(chunk);
-  // The table of a deep tile at the border may be that of a whole one.
-  const std::size_t most = bytes_of_chunk(part.deep ? chunks.window(0) : window);
-  const auto packed = chunks.read(chunk, most);
-  // The same words for every chunk, whichever thread comes first.
-  if (packed && unpacked_bytes(part, window, *packed, most) < bytes_of_chunk(window))
+  const std::size_t most = most_packed(part),
+                    taken = part.deep ? sizeof(std::uint32_t) * window.area()
+                                      : pixel_bytes(part, window),
+                    room = part.deep ? most : taken;
+  if (unpacked_bytes(part, window, chunks.read(chunk, most), room) < taken)
     throw std::runtime_error("a chunk holds fewer bytes than its pixels take");
 }
 
@@ -143,9 +136,19 @@ void check_chunk_sizes(const ExrReader& file, const ExrPart& part, const Window&
                        const MissingChunks& missing) {
   const PackedChunks chunks(file, part);
   const std::size_t first = chunks.first(rows.y0);
-  for_each_task(chunks.end(rows.y1) - first, [&](std::size_t i) {
-    if (!is_missing(missing, chunks.window(first + i))) check_chunk_size(part, chunks, first + i);
+  std::vector<std::exception_ptr> errors(chunks.end(rows.y1) - first);
+  for_each_task(errors.size(), [&](std::size_t i) {
+    if (is_missing(missing, chunks.window(first + i))) return;
+    try {
+      check_chunk_size(part, chunks, first + i);
+    } catch (...) {
+      errors[i] = std::current_exception();
+    }
   });
+  // That of the first chunk, whichever thread comes first.
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
 }
 
 }  // namespace ssdo

@@ -10,8 +10,7 @@ class PackedChunks;
 /// Throws std::runtime_error where a chunk of a part unpacks to fewer bytes than its pixels take,
 /// as where a header claims wider rows or larger tiles than were written. Of a deep part, the
 /// tables of sample counts are looked at. OpenEXR checks this for some compressions only, and
-/// leaves the other pixels as they were in memory.
-/// Chunks that are missing, cut short or larger are left to OpenEXR, which has messages for them.
+/// leaves the other pixels as they were in memory. Also throws what PackedChunks::read() does.
 void check_chunk_size(const ExrPart& part, const PackedChunks& chunks, std::size_t chunk);
 
 /// The same for all chunks that hold `rows` of the data window, but for those in `missing`.

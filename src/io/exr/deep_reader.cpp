@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "error.h"
@@ -79,7 +80,9 @@ class DeepPartReader {
   const ExrPart& part() const { return part_; }
 
  private:
+  /// OpenEXR reads the counts again before it reads samples, and writes as many as they say then.
   void read(Imf::DeepFrameBuffer buffer, bool samples) {
+    const std::vector<unsigned> known = samples ? counts_ : std::vector<unsigned>();
     buffer.insertSampleCountSlice(
         Imf::Slice(Imf::UINT, at_origin(counts_.data(), part_.data_window), sizeof(unsigned),
                    sizeof(unsigned) * std::size_t(part_.data_window.width())));
@@ -90,16 +93,26 @@ class DeepPartReader {
         tiles.setFrameBuffer(buffer);
         const int x = tiles.numXTiles() - 1, y = tiles.numYTiles() - 1;
         tiles.readPixelSampleCounts(0, x, 0, y);
-        if (samples) tiles.readTiles(0, x, 0, y);
+        if (!samples) return;
+        check_same_counts(known);
+        tiles.readTiles(0, x, 0, y);
       } else {
         Imf::DeepScanLineInputPart lines(file_.file(), part_.index);
         lines.setFrameBuffer(buffer);
-        lines.readPixelSampleCounts(part_.data_window.y0, part_.data_window.y1 - 1);
-        if (samples) lines.readPixels(part_.data_window.y0, part_.data_window.y1 - 1);
+        const int y = part_.data_window.y0, last = part_.data_window.y1 - 1;
+        lines.readPixelSampleCounts(y, last);
+        if (!samples) return;
+        check_same_counts(known);
+        lines.readPixels(y, last);
       }
     } catch (const std::exception& error) {
       throw_damaged(file_, part_, error);
     }
+  }
+
+  void check_same_counts(const std::vector<unsigned>& known) const {
+    if (counts_ != known)
+      throw std::runtime_error("its counts of samples changed while it was read");
   }
 
   const ExrReader& file_;

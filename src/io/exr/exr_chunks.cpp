@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/exr/exr_chunks.h"
 
+#include <IexBaseExc.h>
 #include <ImfFrameBuffer.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
 #include <ImfTiledInputPart.h>
 #include <fmt/format.h>
 
@@ -105,10 +107,8 @@ void read_tiles(const ExrReader& file, const ExrPart& part, const Window& rows,
   }
 }
 
-/// Reads one chunk. Errors: those of check_chunk_size() and of OpenEXR.
 void read_chunk(const ExrReader& file, const ExrPart& part, const PackedChunks& chunks,
                 std::size_t chunk, std::span<const ChannelRows> channels) {
-  check_chunk_size(part, chunks, chunk);
   const Window window = chunks.window(chunk);
   const auto columns = std::size_t(chunks.columns());
   if (is_tiled(part))
@@ -123,13 +123,18 @@ bool can_read(const ExrReader& file, const ExrPart& part, const PackedChunks& ch
   std::vector<std::byte> pixels(4 * chunks.window(chunk).area());
   const ChannelRows first{part.channels[0], pixels.data(), false};
   try {
+    check_chunk_size(part, chunks, chunk);
     read_chunk(file, part, chunks, chunk, std::span(&first, 1));
     return true;
   } catch (const std::bad_alloc&) {
     throw;  // a chunk that memory is too short for is not missing
-  } catch (const std::exception&) {
-    file.recover();
+  } catch (const Iex::IoExc&) {
+    return false;  // OpenEXR took its bytes and could not decode them: the next chunk can be read
+  } catch (const Iex::BaseExc&) {
+    file.recover();  // which opens the part again, and takes as long as it has chunks
     return false;
+  } catch (const std::exception&) {
+    return false;  // OpenEXR was not asked
   }
 }
 
@@ -140,6 +145,7 @@ bool is_missing(const MissingChunks& missing, const Window& chunk) {
 }
 
 MissingChunks find_missing_chunks(const ExrReader& file, const ExrPart& part) {
+  if (!Imf::isSupportedType(part.header.type())) return {};  // which nothing is read of
   const PackedChunks chunks(file, part);
   MissingChunks missing{{}, chunks.count()};
   for (std::size_t chunk = 0; chunk < chunks.count(); ++chunk)

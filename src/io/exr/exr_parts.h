@@ -37,6 +37,9 @@ Window window_of(const Imath::Box2i& box);
 /// Scanlines that are packed together.
 int lines_per_chunk(Imf::Compression compression);
 
+/// What a pixel takes that has a value of every channel.
+double bytes_per_pixel(const ExrPart& part);
+
 /// Pixels of a tile, or of the scanlines that are packed together.
 double pixels_per_chunk(const ExrPart& part);
 

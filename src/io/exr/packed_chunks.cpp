@@ -2,12 +2,13 @@
 #include "io/exr/packed_chunks.h"
 
 #include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
 #include <ImfVersion.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <numeric>
-#include <utility>
+#include <stdexcept>
 
 #include "io/exr/attribute_sizes.h"
 #include "io/exr/exr_parts.h"
@@ -42,8 +43,10 @@ std::vector<std::uint64_t> tiles_of_levels(std::uint64_t side, std::uint64_t til
   return tiles;
 }
 
-/// Of all levels, as many as there are places in the part's table.
+/// Of all levels, as many as there are places in the part's table. A part of a type that OpenEXR
+/// does not know says so itself.
 std::uint64_t count_chunks(const ExrPart& part) {
+  if (!Imf::isSupportedType(part.header.type())) return std::uint64_t(part.header.chunkCount());
   const auto width = std::uint64_t(part.data_window.width()),
              height = std::uint64_t(part.data_window.height());
   if (!is_tiled(part))
@@ -63,42 +66,33 @@ std::uint64_t count_chunks(const ExrPart& part) {
          std::accumulate(rows.begin(), rows.end(), std::uint64_t(0));
 }
 
+bool is_multi_part(const ExrReader& file) { return Imf::isMultiPart(file.file().version()); }
+
+/// Of a chunk that stands in several places.
+constexpr std::uint64_t kNowhere = ~std::uint64_t(0);
+
+}  // namespace
+
 /// What stands before the bytes of a chunk.
-struct Head {
+struct PackedChunks::Head {
   const ExrPart* part = nullptr;  ///< none: there is no chunk
   std::int32_t x = 0, y = 0;      ///< the column and row of a tile, or the first scanline
   bool full_resolution = true;
   std::uint64_t bytes = 0;    ///< of a flat chunk, or of a deep one's table of sample counts
   std::uint64_t samples = 0;  ///< the bytes of a deep chunk's samples, which follow
+  std::uint64_t place = 0;    ///< where the bytes begin
+
+  std::uint64_t end() const { return place + bytes + samples; }
 };
-
-/// Leaves the stream at the bytes of the chunk.
-Head read_head(std::istream& in, const ExrReader& file) {
-  const std::size_t part =
-      Imf::isMultiPart(file.file().version()) ? read_number<std::uint32_t>(in) : 0;
-  if (part >= file.parts().size()) return {};
-  Head head{&file.parts()[part]};
-  if (is_tiled(*head.part)) head.x = std::int32_t(read_number<std::uint32_t>(in));
-  head.y = std::int32_t(read_number<std::uint32_t>(in));
-  if (is_tiled(*head.part)) head.full_resolution = read_number<std::uint64_t>(in) == 0;
-  if (head.part->deep) {
-    head.bytes = read_number<std::uint64_t>(in);
-    head.samples = read_number<std::uint64_t>(in);
-    read_number<std::uint64_t>(in);  // the bytes of the samples when unpacked
-  } else {
-    head.bytes = read_number<std::uint32_t>(in);
-  }
-  return in ? head : Head();
-}
-
-}  // namespace
 
 PackedChunks::PackedChunks(const ExrReader& file, const ExrPart& part)
     : file_(file),
       part_(part),
       width_(part.data_window.width()),
       height_(lines_per_chunk(part.header.compression())),
+      size_(std::filesystem::file_size(file.path())),
       in_(file.path(), std::ios::binary) {
+  if (!Imf::isSupportedType(part.header.type())) throw std::runtime_error("its type is unknown");
   if (is_tiled(part)) {
     // The file may claim sides that no int holds.
     const Imf::TileDescription& tile = part.header.tileDescription();
@@ -125,17 +119,18 @@ Window PackedChunks::window(std::size_t chunk) const {
   return {x, y, std::min(all.x1 - x, width_) + x, std::min(all.y1 - y, height_) + y};
 }
 
-std::optional<std::vector<std::byte>> PackedChunks::read(std::size_t chunk,
-                                                         std::size_t most) const {
+std::vector<std::byte> PackedChunks::read(std::size_t chunk, std::size_t most) const {
   const std::lock_guard lock(mutex_);
-  if (places_[chunk] == 0) return std::nullopt;
-  in_.clear();
-  in_.seekg(std::streamoff(places_[chunk]));
-  const Head head = read_head(in_, file_);
-  if (head.part != &part_ || head.bytes > most) return std::nullopt;
+  check_is_next(chunk, most);
+  const Head head = head_of(chunk);
+  if (!head.part) throw std::runtime_error("a chunk is missing or cut short");
+  if (!is_of(head, chunk)) throw std::runtime_error("a chunk stands in the place of another");
+  if (head.bytes > most) throw std::runtime_error("a chunk claims more bytes than its pixels take");
+  if (head.bytes > size_ - head.place) throw std::runtime_error("a chunk is cut short");
   std::vector<std::byte> bytes(head.bytes);
   in_.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
-  return in_ ? std::optional(std::move(bytes)) : std::nullopt;
+  if (!in_) throw std::runtime_error("a chunk cannot be read");
+  return bytes;
 }
 
 /// The tables of all parts stand one after another, each with the full resolution first.
@@ -150,22 +145,73 @@ void PackedChunks::read_table() {
   for (std::uint64_t& place : places_) place = read_number<std::uint64_t>(in_);
 }
 
-/// Goes from chunk to chunk, as OpenEXR does where a table is incomplete.
+/// Goes from chunk to chunk, as OpenEXR does where a table is incomplete. OpenEXR may stop earlier,
+/// and take what the table says or the first of two places.
 void PackedChunks::search() {
-  const std::uint64_t size = std::filesystem::file_size(file_.path());
-  in_.clear();
-  std::uint64_t place = first_chunk_;
+  std::uint64_t next = first_chunk_;
   for (std::uint64_t i = 0; i < all_chunks_; ++i) {
-    in_.seekg(std::streamoff(place));
-    const Head head = read_head(in_, file_);
-    if (!head.part || head.bytes > size || head.samples > size) return;
+    in_.clear();
+    in_.seekg(std::streamoff(next));
+    const Head head = read_head();
+    if (!head.part || head.bytes > size_ || head.samples > size_) return;
     const std::int64_t row =
         is_tiled(part_) ? head.y : (std::int64_t(head.y) - part_.data_window.y0) / height_;
     if (head.part == &part_ && head.full_resolution && head.x >= 0 && head.x < columns_ &&
-        row >= 0 && row < rows_)
-      places_[std::size_t(row) * std::size_t(columns_) + std::size_t(head.x)] = place;
-    place = std::uint64_t(in_.tellg()) + head.bytes + head.samples;
+        row >= 0 && row < rows_) {
+      std::uint64_t& place =
+          places_[std::size_t(row) * std::size_t(columns_) + std::size_t(head.x)];
+      place = place == 0 || place == next ? next : kNowhere;
+    }
+    next = head.end();
   }
+}
+
+/// Leaves the stream at the bytes of the chunk.
+PackedChunks::Head PackedChunks::read_head() const {
+  const std::size_t part = is_multi_part(file_) ? read_number<std::uint32_t>(in_) : 0;
+  if (part >= file_.parts().size()) return {};
+  Head head{&file_.parts()[part]};
+  if (is_tiled(*head.part)) head.x = std::int32_t(read_number<std::uint32_t>(in_));
+  head.y = std::int32_t(read_number<std::uint32_t>(in_));
+  if (is_tiled(*head.part)) head.full_resolution = read_number<std::uint64_t>(in_) == 0;
+  if (head.part->deep) {
+    head.bytes = read_number<std::uint64_t>(in_);
+    head.samples = read_number<std::uint64_t>(in_);
+    read_number<std::uint64_t>(in_);  // the bytes of the samples when unpacked
+  } else {
+    head.bytes = read_number<std::uint32_t>(in_);
+  }
+  if (!in_) return {};
+  head.place = std::uint64_t(in_.tellg());
+  return head;
+}
+
+PackedChunks::Head PackedChunks::head_of(std::size_t chunk) const {
+  if (places_[chunk] == 0) return {};
+  in_.clear();
+  in_.seekg(std::streamoff(places_[chunk]));
+  return read_head();
+}
+
+bool PackedChunks::is_of(const Head& head, std::size_t chunk) const {
+  const auto column = std::int32_t(chunk % std::size_t(columns_)),
+             row = std::int32_t(chunk / std::size_t(columns_));
+  return head.part == &part_ && head.full_resolution && head.x == (is_tiled(part_) ? column : 0) &&
+         head.y == (is_tiled(part_) ? row : window(chunk).y0);
+}
+
+/// In a file of one part OpenEXR does not look up where the chunk of scanlines is that comes after
+/// the one it has just read: it takes what stands next in the file.
+/// Source: OpenEXR 3.1, ImfScanLineInputFile.cpp and ImfDeepScanLineInputFile.cpp, readPixelData().
+void PackedChunks::check_is_next(std::size_t chunk, std::size_t most) const {
+  if (is_tiled(part_) || is_multi_part(file_)) return;
+  const bool down = part_.header.lineOrder() == Imf::INCREASING_Y;
+  if (chunk == (down ? 0 : count() - 1)) return;
+  const std::size_t before = down ? chunk - 1 : chunk + 1;
+  const Head head = head_of(before);
+  const bool is_readable = is_of(head, before) && head.bytes <= most;
+  if (is_readable && places_[chunk] != 0 && places_[chunk] != head.end())
+    throw std::runtime_error("a chunk does not stand after the one before it");
 }
 
 }  // namespace ssdo

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <fstream>
 #include <mutex>
-#include <optional>
 #include <vector>
 
 #include "io/exr/exr_reader.h"
@@ -17,7 +16,8 @@ namespace ssdo {
 /// Source: OpenEXR file layout, "Chunk Offset Table" and "Pixel data".
 class PackedChunks {
  public:
-  /// `file` and `part` have to live as long as this object.
+  /// `file` and `part` have to live as long as this object. Throws std::runtime_error for a part of
+  /// a type that OpenEXR does not read.
   PackedChunks(const ExrReader& file, const ExrPart& part);
 
   std::size_t count() const { return std::size_t(columns_) * std::size_t(rows_); }
@@ -30,19 +30,27 @@ class PackedChunks {
   /// The part of the data window that a chunk holds.
   Window window(std::size_t chunk) const;
 
-  /// The bytes of a chunk; of a deep part, those of its table of sample counts. Nothing for a chunk
-  /// that is missing, cut short, or larger than `most` bytes. From any thread.
-  std::optional<std::vector<std::byte>> read(std::size_t chunk, std::size_t most) const;
+  /// The bytes of a chunk; of a deep part, those of its table of sample counts. From any thread.
+  /// Throws std::runtime_error where the chunk is missing, cut short or larger than `most` bytes,
+  /// and where OpenEXR would take other bytes for it than those at its place.
+  std::vector<std::byte> read(std::size_t chunk, std::size_t most) const;
 
  private:
+  struct Head;
+
   void read_table();
   void search();
+  Head read_head() const;
+  Head head_of(std::size_t chunk) const;
+  bool is_of(const Head& head, std::size_t chunk) const;
+  void check_is_next(std::size_t chunk, std::size_t most) const;
 
   const ExrReader& file_;
   const ExrPart& part_;
   int width_, height_;                              ///< of a chunk, in pixels
   int columns_, rows_;                              ///< of chunks
   std::uint64_t all_chunks_ = 0, first_chunk_ = 0;  ///< of all parts: how many, and where
+  std::uint64_t size_;                              ///< of the file, in bytes
   std::vector<std::uint64_t> places_;
   mutable std::ifstream in_;
   mutable std::mutex mutex_;

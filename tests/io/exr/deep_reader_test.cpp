@@ -97,7 +97,6 @@ TEST(DeepReader, RefusesFilesThatAreCutShort) {
   }
 }
 
-/// Whatever the bytes are, reading ends in samples or in an ssdo::Error.
 // OpenEXR makes room for the counts of a whole tile, and multiplies its sides as ints.
 TEST(DeepReader, RefusesTilesThatNoFileHolds) {
   const TempDir dir;
@@ -116,6 +115,7 @@ TEST(DeepReader, RefusesTilesThatNoFileHolds) {
   EXPECT_THAT(read_with_side(30000), refused);
 }
 
+/// Whatever the bytes are, reading ends in samples or in an ssdo::Error.
 TEST(DeepReader, FlippedBytesDoNoHarm) {
   const TempDir dir;
   std::mt19937 random(2026);

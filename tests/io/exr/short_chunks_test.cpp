@@ -197,5 +197,24 @@ TEST(ShortDeepChunks, OfTilesThatClaimToBeLarger) {
   expect_damaged_counts(dir, bytes);
 }
 
+// Of a tile that the image fills in part, as many bytes may be packed as a whole one takes.
+TEST(ShortDeepChunks, OfTilesThatAreLargerThanTheImage) {
+  const TempDir dir;
+  const DeepPixels pixels({0, 0, 4, 4});
+  write_deep(dir / "whole.exr", {{.pixels = pixels, .tiles = true}});
+  ExrBytes bytes(dir / "whole.exr");
+  const std::string empty_block("\0\0\0\xff\xff", 5), last_block("\1\0\0\xff\xff", 5),
+      checksum("\0\0\0\1", 4);
+  std::string table = "\x78\x01";
+  while (table.size() < sizeof(std::uint32_t) * pixels.window.area()) table += empty_block;
+  table += last_block + checksum;
+  const std::size_t tile = bytes.places(1)[0], sizes = tile + 16;
+  bytes.cut(sizes + 24);
+  bytes.put_place(sizes, table.size());
+  for (const std::size_t samples : {8, 16}) bytes.put_place(sizes + samples, 0);
+  bytes.append(table);
+  expect_damaged_counts(dir, bytes);
+}
+
 }  // namespace
 }  // namespace ssdo
