@@ -31,7 +31,7 @@ run_lint() {
     --enable=warning,performance,portability --inline-suppr \
     --suppressions-list=tests/cppcheck.txt -I src -I "$release" src
   mapfile -t changed < <(git log --format= --name-only -- 'src/*.cpp' |
-    awk 'count < 8 && !seen[$0]++ && system("test -e " $0) == 0 {++count; print}')
+    awk 'count < 5 && !seen[$0]++ && system("test -e " $0) == 0 {++count; print}')
   [ ${#changed[@]} -eq 0 ] || tidy "${changed[@]}"
 }
 
@@ -63,7 +63,7 @@ test_sanitized() (
   rm -rf "$findings"
   mkdir -m 1777 "$findings"  # tests run the tool as another user too
   common=log_path=$findings/report:exitcode=86
-  export SSDO_RANDOM_FRAMES=40  # of 1200
+  export SSDO_RANDOM_FRAMES=20  # of 1200
   export UBSAN_OPTIONS=$common:print_stacktrace=1 GTEST_FILTER=$2
   export ASAN_OPTIONS=$common:allocator_may_return_null=1:handle_abort=1
   export LSAN_OPTIONS=suppressions=$root/tests/leaks.txt:print_suppressions=0

@@ -126,14 +126,20 @@ TEST(DamagedExr, UnfinishedFilesAreIncomplete) {
               IsError(ExitCode::input, "a.exr: is incomplete"));
 }
 
-TEST(DamagedExr, SubsamplingByNothingIsRefusedInPartsOfAnyType) {
-  const TempDir dir;
+/// Two parts with a channel "a", the first of them of a type that begins with xxxx.
+ExrBytes of_unknown_type(const TempDir& dir) {
   Imf::Header part = test_header({{0, 0}, {7, 7}}, {{"a", Imf::FLOAT}}, Imf::ZIP_COMPRESSION),
               other = part;
   part.setName("part"), other.setName("other");
-  write_test_exr(dir / "a.exr", {part, other});
-  ExrBytes bytes(dir / "a.exr");
+  write_test_exr(dir / "two_parts.exr", {part, other});
+  ExrBytes bytes(dir / "two_parts.exr");
   bytes.put_int(bytes.value_of("type"), 0x78787878);
+  return bytes;
+}
+
+TEST(DamagedExr, SubsamplingByNothingIsRefusedInPartsOfAnyType) {
+  const TempDir dir;
+  ExrBytes bytes = of_unknown_type(dir);
   const std::string name_and_end = "a0";
   bytes.put_int(bytes.value_of("channels") + name_and_end.size() + 8, 0);
   bytes.write(dir / "a.exr");
@@ -143,12 +149,7 @@ TEST(DamagedExr, SubsamplingByNothingIsRefusedInPartsOfAnyType) {
 
 TEST(DamagedExr, PartsOfUnknownTypeHaveNoPixels) {
   const TempDir dir;
-  Imf::Header part = test_header({{0, 0}, {7, 7}}, {{"a", Imf::FLOAT}}, Imf::ZIP_COMPRESSION),
-              other = part;
-  part.setName("part"), other.setName("other");
-  write_test_exr(dir / "a.exr", {part, other});
-  ExrBytes bytes(dir / "a.exr");
-  bytes.put_int(bytes.value_of("type"), 0x78787878);
+  ExrBytes bytes = of_unknown_type(dir);
   bytes.write(dir / "a.exr");
   const ExrReader reader(dir / "a.exr");
   const std::vector<std::string> names = {"a"};
