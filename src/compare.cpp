@@ -221,7 +221,7 @@ std::string to_table(const Comparison& all) {
     const Difference& d = c.difference.figures;
     const LeftOut& left_out = c.difference.left_out;
     const std::string a = printable(shown_name(c.pair.a)), b = printable(shown_name(c.pair.b));
-    const std::string name = a == b ? a : a + " - " + b;
+    const std::string name = a == b ? a : fmt::format("{} - {}", a, b);
     text += fmt::format(
         "{:<32} {:>9} {:>9} {:>11.6g} {:>10.4g} {:>+11.4g} {:>11.6g} {:>11.6g} {:>8.2f}\n", name,
         c.difference.pixels, left_out.all(), d.rmse, d.relative_rmse(), d.bias, d.largest, d.p99,
