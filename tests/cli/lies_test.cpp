@@ -245,8 +245,10 @@ TEST_F(Lies, OfThousandsOfChannels) {
   FramePart part{"", {0, 0, 1, 1}, {0, 0, 1, 1}, {}, Imf::HALF, {}};
   for (int i = 0; i < 4000; ++i) part.channels[fmt::format("layer{:05}.Y", i)] = Plane<float>(1, 1);
   write_frame(path("many.exr"), part);
-  for (const Words& words : {Words{"compare", path("many.exr") + ":layer00000", path("many.exr")},
-                             Words{path("many.exr"), "-o", path("out.exr"), "--keep-channels"}}) {
+  for (const Words& words :
+       {Words{"info", path("many.exr")}, Words{"compare", path("many.exr"), path("many.exr")},
+        Words{"compare", path("many.exr") + ":layer00000", path("many.exr")},
+        Words{path("many.exr"), "-o", path("out.exr"), "--keep-channels"}}) {
     const Finished done = run_tool(words);
     EXPECT_NE(done.code, 1) << done.err;
     expect_cheap(done);

@@ -22,7 +22,8 @@ disturb() {
 # is_whole FILE: all its pixels can be read, whatever it was made from.
 is_whole() { "$tool" compare "$1" "$1" >/dev/null 2>&1 || complain "$1 cannot be read"; }
 
-# test_disturbed HOW FILE ARGUMENTS...: FILE is one of the inputs that are named.
+# test_disturbed HOW FILE ARGUMENTS...: FILE is one of the inputs that are named. What is moved over
+# a frame is $given/other.exr, of which an undisturbed run has made $given/of_other.exr.
 test_disturbed() {
   new_case
   draw_delay
@@ -33,8 +34,11 @@ test_disturbed() {
   ended "0 3"
   holds a.exr
   if [ "$code" -eq 0 ]; then
-    is_whole a.exr
-    [ "$1" = rewritten ] || [ "$1" = renamed ] || are new a.exr
+    case $1 in
+      rewritten) is_whole a.exr ;;  # it may have read some of each
+      renamed) cmp -s a.exr "$given/of_other.exr" || are new a.exr ;;
+      *) are new a.exr ;;
+    esac
     finished=$((finished + 1))
   else
     are none a.exr
@@ -43,6 +47,7 @@ test_disturbed() {
 
 test_changing_inputs() {
   local finished=0 i count=$((runs / 4)) file=$given/shot.1001.exr
+  "$tool" "$input/shot.1002.exr" -q --env "$input/sky.exr" -o "$given/of_other.exr"
   for ((i = 0; i < count; i++)); do
     cp "$input/sky.exr" "$given/sky.exr"
     cp "$frame" "$file"
@@ -58,29 +63,40 @@ test_changing_inputs() {
         ;;
     esac
   done
-  say "inputs that change: $count runs, $finished finished, the others refused; every output whole"
+  say "inputs that change: $count runs, $finished finished, the others refused; every output of one input"
 }
 
-# Frames, further pictures and neighbours that go between two frames.
+# Frames, further pictures and neighbours that go between two frames. A neighbour that is gone is
+# left out: such a frame is compared with none.
 test_changing_shots() {
-  local i name finished=0 count=$((runs / 8)) known victim
+  local i name finished=0 count=$((runs / 8)) kind victim
+  local whole=$work/shots
+  local -A flags=([alone]="" [also]="--also $given/shot.1003.exr" [neighbours]="--neighbours 1")
+  local render=("$tool" "$given/shot.####.exr" --frames 1001-1002 -q --env "$input/sky.exr")
+  mkdir "$whole"
+  cp "$input"/shot.*.exr "$given"
+  for kind in alone also; do "${render[@]}" ${flags[$kind]} -o "$whole/$kind.####.exr"; done
   for ((i = 0; i < count; i++)); do
     rm -rf "$given"/*
     cp "$input"/shot.*.exr "$given"
     new_case
-    pick "" "--also $given/shot.1003.exr" "--neighbours 1"
-    known=$picked
+    pick "${!flags[@]}"
+    kind=$picked
     pick "$given"/shot.*.exr
     victim=$picked
     pick removed emptied halved
     draw_delay
     disturb "$picked" "$victim" "$drawn" &
     local other=$!
-    run "$given/shot.####.exr" --frames 1001-1002 $known -q --env "$input/sky.exr" -o a.####.exr
+    run "${render[@]:1}" ${flags[$kind]} -o "$kind.####.exr"
     wait "$other"
     ended "0 3"
-    for name in a.*.exr; do [ ! -e "$name" ] || is_whole "$name"; done
-    holds a.1001.exr a.1002.exr
+    for name in "$kind".*.exr; do
+      [ -e "$name" ] || continue
+      is_whole "$name"
+      [ "$kind" = neighbours ] || cmp -s "$name" "$whole/$name" || complain "$name is not as undisturbed"
+    done
+    holds "$kind".100{1,2}.exr
     [ "$code" -ne 0 ] || finished=$((finished + 1))
   done
   rm -rf "$given"/*

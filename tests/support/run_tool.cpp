@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <csignal>
 #include <fstream>
+#include <future>
 #include <sstream>
 #include <stdexcept>
 
@@ -15,7 +16,7 @@ namespace ssdo::test {
 
 namespace {
 
-/// One direction of a child's output. A pipe's buffer is enough for what the tool says.
+/// One direction of a child's output.
 struct Pipe {
   int ends[2];
   Pipe() {
@@ -67,6 +68,9 @@ Finished run_tool(const std::vector<std::string>& arguments, const Surroundings&
     execv(argv[0], argv.data());
     _exit(127);
   }
+  // While it runs: a pipe holds some of it only.
+  auto out_text = std::async(std::launch::async, [&] { return out.drain(); }),
+       err_text = std::async(std::launch::async, [&] { return err.drain(); });
   int status = 0;
   rusage used{};
   if (around.kill_with != 0) {
@@ -82,7 +86,7 @@ Finished run_tool(const std::vector<std::string>& arguments, const Surroundings&
     wait4(child, &status, 0, &used);
   }
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return {code, out.drain(), err.drain(), used};
+  return {code, out_text.get(), err_text.get(), used};
 }
 
 std::vector<std::string> listing(const std::filesystem::path& folder) {

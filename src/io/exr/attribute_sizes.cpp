@@ -12,8 +12,6 @@
 #include "error.h"
 #include "io/one_line.h"
 
-namespace fs = std::filesystem;
-
 namespace ssdo {
 namespace {
 
@@ -107,9 +105,9 @@ std::int64_t bytes_taken(std::istream& in, std::string_view type, std::int32_t s
 
 }  // namespace
 
-std::uint64_t check_attribute_sizes(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  const auto file_bytes = std::int64_t(fs::file_size(file));
+std::uint64_t check_attribute_sizes(const InputFile& file) {
+  std::ifstream in = file.stream();
+  const auto file_bytes = std::int64_t(file.bytes());
   in.seekg(4);
   const bool multi_part = std::uint32_t(read_int(in)) & kMultiPartFlag;
   for (std::string before = "magic number and flags"; in;) {
@@ -125,14 +123,14 @@ std::uint64_t check_attribute_sizes(const fs::path& file) {
       throw Error(ExitCode::input,
                   fmt::format("{}: is damaged or cut short in its header (attribute '{}' claims {} "
                               "bytes, and {} are left in the file); render or copy it again",
-                              file.string(), printable(name), size, left));
+                              file.path().string(), printable(name), size, left));
     }
     if (name == "channels" && size > kLargestChannelList) {
       throw Error(
           ExitCode::input,
           fmt::format("{}: lists {} KiB of channels in its header, and ssdo reads up to {}; "
                       "split it into files of fewer channels",
-                      file.string(), size >> 10, kLargestChannelList >> 10));
+                      file.path().string(), size >> 10, kLargestChannelList >> 10));
     }
     const std::istream::pos_type value = in.tellg();
     const std::int64_t taken = bytes_taken(in, type, size);
@@ -141,7 +139,7 @@ std::uint64_t check_attribute_sizes(const fs::path& file) {
           ExitCode::input,
           fmt::format("{}: is damaged in its header (attribute '{}' claims {} bytes, and its "
                       "value takes {}); render or copy it again",
-                      file.string(), printable(name), size, taken));
+                      file.path().string(), printable(name), size, taken));
     }
     in.seekg(value + std::streamoff(size));
   }

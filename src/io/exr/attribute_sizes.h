@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+
+#include "io/input_file.h"
 
 namespace ssdo {
 
@@ -11,6 +12,6 @@ namespace ssdo {
 /// file has, another size than its value takes, or more channels than any renderer writes. OpenEXR
 /// allocates what is claimed, up to 2 GiB, before it reads. Other defects of headers are left to
 /// OpenEXR, which has messages for them. Source: OpenEXR file layout, "Header".
-std::uint64_t check_attribute_sizes(const std::filesystem::path& file);
+std::uint64_t check_attribute_sizes(const InputFile& file);
 
 }  // namespace ssdo

@@ -11,13 +11,11 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <fstream>
 #include <memory>
 #include <new>
 #include <stdexcept>
 
 #include "error.h"
-#include "io/exr/attribute_sizes.h"
 #include "io/one_line.h"
 #include "io/size_guard.h"
 
@@ -59,7 +57,7 @@ double bytes_per_pixel(const ExrPart& part) {
   return bytes;
 }
 
-void check_is_exr(const fs::path& file) {
+InputFile open_exr(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (status.type() == fs::file_type::not_found) {
@@ -70,11 +68,12 @@ void check_is_exr(const fs::path& file) {
     fail(file, "is a device, pipe or socket; an EXR is read out of order, so name a file");
   }
   errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
+  InputFile opened(file);
+  if (!opened.is_open()) {
     fail(file, fmt::format("cannot be opened: {}; check its permissions",
                            std::generic_category().message(errno)));
   }
+  std::ifstream stream = opened.stream();
   std::array<char, 4> magic = {};
   stream.read(magic.data(), magic.size());
   if (stream.gcount() == 0) fail(file, "is empty; render or copy it again");
@@ -82,7 +81,7 @@ void check_is_exr(const fs::path& file) {
     fail(file,
          "is not an EXR file, by its first four bytes; convert it, for example with oiiotool");
   }
-  check_attribute_sizes(file);
+  return opened;
 }
 
 bool begins_as_exr(const fs::path& file) {

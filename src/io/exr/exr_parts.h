@@ -12,9 +12,8 @@
 namespace ssdo {
 
 /// Throws ExitCode::input, saying what `file` is instead, unless it is a readable EXR by its first
-/// bytes, and where check_attribute_sizes() does. OpenEXR's own messages do not tell a missing file
-/// from a folder.
-void check_is_exr(const std::filesystem::path& file);
+/// bytes. OpenEXR's own messages do not tell a missing file from a folder.
+InputFile open_exr(const std::filesystem::path& file);
 
 /// Whether `file` is a plain file that begins as an EXR does, whatever its name.
 bool begins_as_exr(const std::filesystem::path& file);

@@ -17,6 +17,7 @@
 #include <string_view>
 
 #include "error.h"
+#include "io/exr/attribute_sizes.h"
 #include "io/exr/exr_chunks.h"
 #include "io/exr/exr_parts.h"
 #include "io/exr/zip_lines.h"
@@ -129,8 +130,7 @@ void read_or_fail(const ExrReader& reader, const ExrPart& part, const Window& ro
                   std::span<const ChannelRows> channels) {
   if (rows.area() == 0) return;
   try {
-    if (!read_zip_lines(reader.file(), part, rows, channels))
-      read_chunks(reader, part, rows, channels);
+    if (!read_zip_lines(reader, part, rows, channels)) read_chunks(reader, part, rows, channels);
   } catch (const std::bad_alloc&) {
     throw;  // nothing is wrong with the file
   } catch (const std::exception& error) {
@@ -185,11 +185,13 @@ std::vector<Plane<float>> read_blocks(const ExrReader& reader, const ExrPart& pa
 
 }  // namespace
 
-ExrReader::ExrReader(std::filesystem::path path, Salvage salvage)
-    : path_(std::move(path)), salvage_(salvage) {
-  check_is_exr(path_);
+ExrReader::ExrReader(const std::filesystem::path& path, Salvage salvage)
+    : input_(open_exr(path)),
+      tables_(check_attribute_sizes(input_)),
+      salvage_(salvage),
+      bytes_(std::make_unique<std::ifstream>(input_.stream())) {
   try {
-    stream_ = std::make_unique<Imf::StdIFStream>(path_.c_str());
+    stream_ = std::make_unique<Imf::StdIFStream>(*bytes_, path.c_str());
     file_ = std::make_unique<Imf::MultiPartInputFile>(*stream_);
     for (int i = 0; i < file_->parts(); ++i) parts_.push_back(describe_part(*file_, i));
   } catch (const std::bad_alloc&) {
@@ -247,7 +249,7 @@ std::vector<std::string> ExrReader::losses() const {
     if (missing.windows.empty()) continue;
     const ExrPart& part = parts_[std::size_t(index)];
     lines.push_back(
-        fmt::format("{}: {}: {}", path_.string(), label(part), describe(missing, part)));
+        fmt::format("{}: {}: {}", path().string(), label(part), describe(missing, part)));
   }
   return lines;
 }

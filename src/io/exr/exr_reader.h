@@ -5,13 +5,16 @@
 #include <ImfPixelType.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "io/input_file.h"
 #include "math/pixel_grid.h"
 #include "math/plane.h"
 
@@ -74,11 +77,12 @@ enum class Salvage {
 /// Errors: ExitCode::input for a file that is missing, is no EXR, or is damaged.
 class ExrReader {
  public:
-  explicit ExrReader(std::filesystem::path path, Salvage salvage = Salvage::none);
+  explicit ExrReader(const std::filesystem::path& path, Salvage salvage = Salvage::none);
   ~ExrReader();
   ExrReader(ExrReader&&) noexcept;
 
-  const std::filesystem::path& path() const { return path_; }
+  const InputFile& input() const { return input_; }
+  const std::filesystem::path& path() const { return input_.path(); }
   const std::vector<ExrPart>& parts() const { return parts_; }
 
   /// The named channels of a part as float planes over the part's data window; half and uint
@@ -104,12 +108,17 @@ class ExrReader {
   /// Makes the file readable again after a chunk that could not be read. No part may be open.
   void recover() const;
 
+  /// Where the headers end and the tables of chunks begin, in bytes.
+  std::uint64_t tables() const { return tables_; }
+
   /// The open file, for copying whole parts without decoding them.
   Imf::MultiPartInputFile& file() const { return *file_; }
 
  private:
-  std::filesystem::path path_;
+  InputFile input_;
+  std::uint64_t tables_;
   Salvage salvage_;
+  std::unique_ptr<std::ifstream> bytes_;
   std::unique_ptr<Imf::StdIFStream> stream_;
   std::unique_ptr<Imf::MultiPartInputFile> file_;
   std::vector<ExrPart> parts_;

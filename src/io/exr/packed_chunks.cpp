@@ -6,11 +6,9 @@
 #include <ImfVersion.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <numeric>
 #include <stdexcept>
 
-#include "io/exr/attribute_sizes.h"
 #include "io/exr/exr_parts.h"
 
 namespace ssdo {
@@ -90,8 +88,8 @@ PackedChunks::PackedChunks(const ExrReader& file, const ExrPart& part)
       part_(part),
       width_(part.data_window.width()),
       height_(lines_per_chunk(part.header.compression())),
-      size_(std::filesystem::file_size(file.path())),
-      in_(file.path(), std::ios::binary) {
+      size_(file.input().bytes()),
+      in_(file.input().stream()) {
   if (!Imf::isSupportedType(part.header.type())) throw std::runtime_error("its type is unknown");
   if (is_tiled(part)) {
     // The file may claim sides that no int holds.
@@ -135,12 +133,11 @@ std::vector<std::byte> PackedChunks::read(std::size_t chunk, std::size_t most) c
 
 /// The tables of all parts stand one after another, each with the full resolution first.
 void PackedChunks::read_table() {
-  const std::uint64_t tables = check_attribute_sizes(file_.path());
   for (const ExrPart& part : file_.parts()) {
-    if (&part == &part_) in_.seekg(std::streamoff(tables + 8 * all_chunks_));
+    if (&part == &part_) in_.seekg(std::streamoff(file_.tables() + 8 * all_chunks_));
     all_chunks_ += count_chunks(part);
   }
-  first_chunk_ = tables + 8 * all_chunks_;
+  first_chunk_ = file_.tables() + 8 * all_chunks_;
   places_.resize(count());
   for (std::uint64_t& place : places_) place = read_number<std::uint64_t>(in_);
 }

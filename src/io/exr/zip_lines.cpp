@@ -2,7 +2,6 @@
 #include "io/exr/zip_lines.h"
 
 #include <ImfChannelList.h>
-#include <ImfInputPart.h>
 #include <half.h>
 #include <libdeflate.h>
 
@@ -12,9 +11,11 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string_view>
 
 #include "io/exr/exr_parts.h"
+#include "io/exr/packed_chunks.h"
 #include "io/exr/zip_chunk.h"
 #include "parallel/tiles.h"
 
@@ -65,27 +66,23 @@ struct ChunkBytes {
 
 class ZipLines {
  public:
-  ZipLines(Imf::MultiPartInputFile& file, const ExrPart& part, const Window& rows,
+  ZipLines(const ExrReader& file, const ExrPart& part, const Window& rows,
            std::span<const ChannelRows> channels)
-      : lines_(file, part.index),
-        window_(part.data_window),
-        wanted_rows_(rows),
-        chunk_rows_(rows_of_chunk(part.header.compression())) {
+      : chunks_(file, part), rows_(rows), columns_(std::size_t(part.data_window.width())) {
     std::multimap<std::string_view, const ChannelRows*> wanted;
     for (const ChannelRows& rows_of : channels) wanted.emplace(rows_of.channel.name, &rows_of);
     for (const ExrChannel& channel : part.channels) {
       for (auto [it, end] = wanted.equal_range(channel.name); it != end; ++it)
         wanted_.push_back({*it->second, line_bytes_});
-      line_bytes_ += bytes_of(channel.type) * columns();
+      line_bytes_ += bytes_of(channel.type) * columns_;
     }
   }
 
   bool read() {
     std::atomic<bool> sound = true;
-    const int first = (wanted_rows_.y0 - window_.y0) / chunk_rows_,
-              end = (wanted_rows_.y1 - window_.y0 + chunk_rows_ - 1) / chunk_rows_;
-    for_each_task(std::size_t(end - first), [&](std::size_t k) {
-      if (sound && !read_chunk(window_.y0 + (first + int(k)) * chunk_rows_)) sound = false;
+    const std::size_t first = chunks_.first(rows_.y0), end = chunks_.end(rows_.y1);
+    for_each_task(end - first, [&](std::size_t i) {
+      if (sound && !read_chunk(first + i)) sound = false;
     });
     return sound;
   }
@@ -96,50 +93,43 @@ class ZipLines {
     std::size_t offset;  ///< in a line
   };
 
-  std::size_t columns() const { return std::size_t(window_.width()); }
-
   /// False for a chunk that is missing or damaged.
-  bool read_chunk(int y) const {
-    const int rows = std::min(chunk_rows_, window_.y1 - y);
-    const std::size_t size = std::size_t(rows) * line_bytes_;
-    // OpenEXR refuses chunks that are larger than all lines of one.
-    const auto packed =
-        std::make_unique_for_overwrite<std::byte[]>(std::size_t(chunk_rows_) * line_bytes_);
-    int packed_size = 0;
+  bool read_chunk(std::size_t chunk) const {
+    const Window window = chunks_.window(chunk);
+    const std::size_t size = std::size_t(window.height()) * line_bytes_;
+    std::vector<std::byte> packed;
     try {
-      lines_.rawPixelDataToBuffer(y, reinterpret_cast<char*>(packed.get()), packed_size);
-    } catch (const std::exception&) {
+      packed = chunks_.read(chunk, size);
+    } catch (const std::runtime_error&) {
       return false;
     }
-    if (packed_size < 0 || std::size_t(packed_size) > size) return false;
-    if (std::size_t(packed_size) == size) {
-      unpack({packed.get(), size, false}, y, rows);
+    if (packed.size() == size) {
+      unpack({packed.data(), size, false}, window);
       return true;
     }
     const auto inflated = std::make_unique_for_overwrite<std::byte[]>(size);
     const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> inflate(
         libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
-    if (!inflate ||
-        libdeflate_zlib_decompress(inflate.get(), packed.get(), std::size_t(packed_size),
-                                   inflated.get(), size, nullptr) != LIBDEFLATE_SUCCESS)
+    if (!inflate || libdeflate_zlib_decompress(inflate.get(), packed.data(), packed.size(),
+                                               inflated.get(), size, nullptr) != LIBDEFLATE_SUCCESS)
       return false;
     sum_differences(inflated.get(), size);
-    unpack({inflated.get(), size, true}, y, rows);
+    unpack({inflated.get(), size, true}, window);
     return true;
   }
 
-  void unpack(const ChunkBytes& chunk, int y, int rows) const {
-    std::vector<half> halves(columns());
-    const int first = std::max(y, wanted_rows_.y0), end = std::min(y + rows, wanted_rows_.y1);
+  void unpack(const ChunkBytes& chunk, const Window& window) const {
+    std::vector<half> halves(columns_);
+    const int first = std::max(window.y0, rows_.y0), end = std::min(window.y1, rows_.y1);
     for (int row = first; row < end; ++row) {
       for (const auto& [to, offset] : wanted_) {
-        const std::size_t begin = std::size_t(row - y) * line_bytes_ + offset,
-                          stored = bytes_of(to.channel.type) * columns(),
-                          line = std::size_t(row - wanted_rows_.y0);
+        const std::size_t begin = std::size_t(row - window.y0) * line_bytes_ + offset,
+                          stored = bytes_of(to.channel.type) * columns_,
+                          line = std::size_t(row - rows_.y0);
         if (to.channel.type == Imf::HALF && to.as_float) {
           chunk.copy(begin, stored, reinterpret_cast<std::byte*>(halves.data()));
           std::copy(halves.begin(), halves.end(),
-                    reinterpret_cast<float*>(to.pixels) + line * columns());
+                    reinterpret_cast<float*>(to.pixels) + line * columns_);
         } else {
           chunk.copy(begin, stored, to.pixels + line * stored);
         }
@@ -147,9 +137,9 @@ class ZipLines {
     }
   }
 
-  const Imf::InputPart lines_;
-  const Window window_, wanted_rows_;
-  const int chunk_rows_;
+  const PackedChunks chunks_;
+  const Window rows_;
+  const std::size_t columns_;
   std::size_t line_bytes_ = 0;  ///< of all channels
   std::vector<Wanted> wanted_;
 };
@@ -166,7 +156,7 @@ bool is_readable(const ExrPart& part, std::span<const ChannelRows> channels) {
 
 }  // namespace
 
-bool read_zip_lines(Imf::MultiPartInputFile& file, const ExrPart& part, const Window& rows,
+bool read_zip_lines(const ExrReader& file, const ExrPart& part, const Window& rows,
                     std::span<const ChannelRows> channels) {
   return is_readable(part, channels) && ZipLines(file, part, rows, channels).read();
 }

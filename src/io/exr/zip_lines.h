@@ -14,7 +14,7 @@ namespace ssdo {
 /// `rows` is the part's data window, or some rows of it. Returns false, with some pixels written or
 /// none, where that reader has to be asked: a part or a channel of another kind, or a damaged
 /// chunk, which it has a message for.
-bool read_zip_lines(Imf::MultiPartInputFile& file, const ExrPart& part, const Window& rows,
+bool read_zip_lines(const ExrReader& file, const ExrPart& part, const Window& rows,
                     std::span<const ChannelRows> channels);
 
 }  // namespace ssdo

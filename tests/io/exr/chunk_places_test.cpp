@@ -23,7 +23,6 @@ using testing::ElementsAre;
 constexpr int kSide = 64;
 const std::vector<std::string> kNames = {"R", "Z"};
 
-/// What no other reader but OpenEXR decodes.
 struct Kind {
   const char* name;
   Imf::Compression compression;
@@ -113,13 +112,13 @@ TEST_P(ChunkPlaces, OfLinesFromTheBottom) {
   EXPECT_THAT(cut.missing(0).windows, ElementsAre(Window{0, 0, kSide, GetParam().rows}));
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, ChunkPlaces,
-                         testing::Values(Kind{"none", Imf::NO_COMPRESSION, 1},
-                                         Kind{"rle", Imf::RLE_COMPRESSION, 1},
-                                         Kind{"pxr24", Imf::PXR24_COMPRESSION, 16},
-                                         Kind{"piz", Imf::PIZ_COMPRESSION, 32},
-                                         Kind{"dwaa", Imf::DWAA_COMPRESSION, 32}),
-                         [](const auto& kind) { return kind.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, ChunkPlaces,
+    testing::Values(Kind{"none", Imf::NO_COMPRESSION, 1}, Kind{"rle", Imf::RLE_COMPRESSION, 1},
+                    Kind{"zips", Imf::ZIPS_COMPRESSION, 1}, Kind{"zip", Imf::ZIP_COMPRESSION, 16},
+                    Kind{"pxr24", Imf::PXR24_COMPRESSION, 16},
+                    Kind{"piz", Imf::PIZ_COMPRESSION, 32}, Kind{"dwaa", Imf::DWAA_COMPRESSION, 32}),
+    [](const auto& kind) { return kind.param.name; });
 
 // Where the table is incomplete, chunks are searched for. OpenEXR may stop before a second one.
 TEST(ChunkPlacesOfUnfinishedFiles, OfTwoForOneChunk) {

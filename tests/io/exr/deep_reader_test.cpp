@@ -66,6 +66,15 @@ TEST(DeepReader, ReadsScanlinesAndTilesOfAnyWindow) {
   }
 }
 
+TEST(DeepReader, ReadsTheFileThatIsOpen) {
+  const TempDir dir;
+  const DeepPixels pixels = pattern({-3, 7, 30, 47});
+  write_deep(dir / "a.exr", {{.pixels = pixels}});
+  const ExrReader file(dir / "a.exr");
+  std::filesystem::remove(dir / "a.exr");
+  expect_same(read_deep(file, kUsual), pixels);
+}
+
 TEST(DeepReader, TakesSurfacesAndOpaqueSamplesWhereNothingElseIsWritten) {
   const TempDir dir;
   const DeepPixels pixels = pattern({0, 0, 20, 20});

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <memory>
 
 #include "support/error_matchers.h"
@@ -65,7 +66,7 @@ class DwaChunks : public testing::Test {
   }
 
   /// Reads the first channel, with another chunk.
-  Error error_with(const std::vector<TestChannel>& channels, const std::string& chunk) const {
+  void read_with(const std::vector<TestChannel>& channels, const std::string& chunk) const {
     write(channels);
     ExrBytes bytes(dir_ / "a.exr");
     const std::size_t place = bytes.places(1)[0];
@@ -73,10 +74,12 @@ class DwaChunks : public testing::Test {
     bytes.put_int(place + 4, int(chunk.size()));
     bytes.append(chunk);
     bytes.write(dir_ / "a.exr");
-    return error_of([&] {
-      const std::vector<std::string> names = {channels[0].name};
-      ExrReader(dir_ / "a.exr").read(0, names);
-    });
+    const std::vector<std::string> names = {channels[0].name};
+    ExrReader(dir_ / "a.exr").read(0, names);
+  }
+
+  Error error_with(const std::vector<TestChannel>& channels, const std::string& chunk) const {
+    return error_of([&] { read_with(channels, chunk); });
   }
 
   TempDir dir_;
@@ -137,6 +140,24 @@ TEST_F(DwaChunks, WithoutASubsampledChannelHoldFewerBytes) {
 TEST_F(DwaChunks, OfAsManyBytesButStoredInAnotherWayHoldFewer) {
   EXPECT_THAT(error_with({{"Z"}, {"A", Imf::HALF}}, deflated_chunk(1, 6 * kPixels)), kShort);
   EXPECT_THAT(error_with({{"Z"}, {"Y", Imf::HALF}}, deflated_chunk(1, 6 * kPixels)), kShort);
+}
+
+// The means of blocks stand at the end of a chunk of nothing but such channels. OpenEXR compares
+// how many there are with what the chunk says, not with the pixels.
+TEST_F(DwaChunks, OfFewerBlocksHoldFewerBytes) {
+  const std::vector<TestChannel> channels = {{"Y", Imf::HALF}};
+  const std::string whole = chunk_of(channels);
+  const auto with_means = [&](std::size_t count) {
+    constexpr std::size_t kPackedSize = 8 * 4, kCount = 8 * 9;
+    std::uint64_t size = 0;
+    std::memcpy(&size, &whole[kPackedSize], sizeof size);
+    const std::string means = deflated_zeros(2 * count);
+    std::string chunk = whole.substr(0, whole.size() - size) + means;
+    chunk.replace(kPackedSize, 8, bytes_of(means.size(), 8));
+    return chunk.replace(kCount, 8, bytes_of(count, 8));
+  };
+  EXPECT_NO_THROW(read_with(channels, with_means(kPixels / 64)));
+  EXPECT_THAT(error_with(channels, with_means(kPixels / 64 - 1)), kShort);
 }
 
 }  // namespace

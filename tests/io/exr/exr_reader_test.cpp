@@ -145,6 +145,27 @@ TEST(ExrReader, ReadsChannelsInTheOrderAskedForAndRepeatedly) {
   }
 }
 
+// A renderer moves its new frame over the one that is read, or a cleaner removes that.
+TEST(ExrReader, ReadsTheFileThatItHasOpened) {
+  const TempDir dir;
+  const Box2i window({-3, -5}, {40, 61});
+  for (const auto compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
+                                 Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
+    const Imf::Header lines = test_header(window, kMixed, compression);
+    for (const Imf::Header& header : {lines, tiled(lines, 16)}) {
+      SCOPED_TRACE(testing::Message() << "compression " << compression);
+      write_test_exr(dir / "a.exr", {header});
+      const ExrReader reader(dir / "a.exr");
+      const std::vector<Plane<float>> planes = reader.read(0, kMixedNames);
+      write_test_exr(dir / "b.exr", {test_header(Box2i({7, 7}, {46, 89}), kMixed, compression)});
+      std::filesystem::rename(dir / "b.exr", dir / "a.exr");
+      EXPECT_EQ(reader.read(0, kMixedNames)[1].pixels, planes[1].pixels);
+      std::filesystem::remove(dir / "a.exr");
+      EXPECT_EQ(reader.read(0, kMixedNames)[1].pixels, planes[1].pixels);
+    }
+  }
+}
+
 TEST(ExrReader, DeepPartsAreRefusedOnlyWhenRead) {
   const TempDir dir;
   Imf::Header deep = named(test_header(Box2i({0, 0}, {7, 7}), {{"A"}, {"Z"}}), "deep");

@@ -101,13 +101,13 @@ TEST(ZipLines, AreThoseOfOpenExr) {
         for (const ChannelRows& form : all_forms(part)) {
           std::vector<ChannelRows> to = {form};
           const std::vector<Bytes> found = buffers(part, to);
-          ASSERT_TRUE(read_zip_lines(reader.file(), part, part.data_window, to));
+          ASSERT_TRUE(read_zip_lines(reader, part, part.data_window, to));
           EXPECT_EQ(found, by_openexr(reader, to)) << form.channel.name << form.as_float;
         }
         std::vector<ChannelRows> to;
         for (const ExrChannel& channel : part.channels) to.push_back({channel, nullptr, false});
         const std::vector<Bytes> found = buffers(part, to);
-        ASSERT_TRUE(read_zip_lines(reader.file(), part, part.data_window, to));
+        ASSERT_TRUE(read_zip_lines(reader, part, part.data_window, to));
         EXPECT_EQ(found, values);
       }
     }
@@ -122,7 +122,7 @@ TEST(ZipLines, ArePartsOfAFile) {
   const ExrPart& part = reader.parts()[1];
   std::vector<ChannelRows> to = {{part.channels[1], nullptr, true}};
   const std::vector<Bytes> found = buffers(part, to);
-  ASSERT_TRUE(read_zip_lines(reader.file(), part, part.data_window, to));
+  ASSERT_TRUE(read_zip_lines(reader, part, part.data_window, to));
   float value;
   std::memcpy(&value, &found[0][4 * (3 * 21 + 5)], 4);
   EXPECT_EQ(value, float(test_value(1, 5, 3)));
@@ -134,7 +134,7 @@ bool reads_last_channel(const std::filesystem::path& path, bool as_float) {
   const ExrPart& part = reader.parts().front();
   std::vector<ChannelRows> to = {{part.channels.back(), nullptr, as_float}};
   const std::vector<Bytes> found = buffers(part, to);
-  return read_zip_lines(reader.file(), part, part.data_window, to);
+  return read_zip_lines(reader, part, part.data_window, to);
 }
 
 TEST(ZipLines, LeaveOtherPartsToOpenExr) {
