@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "estimators/bitmask/request.h"
 #include "scene/further/further_pictures.h"
 #include "support/boxes.h"
@@ -81,6 +83,19 @@ TEST_F(Merge, OfEqualViewsOneAddsIt) {
   const FurtherView one = view("one.exr", kFine, eye), other = view("other.exr", kFine, eye);
   const FurtherSurfaces alone = merge({one}), both = merge({other, one});
   EXPECT_EQ(both.added.size(), alone.added.size());
+}
+
+TEST_F(Merge, IsTheSameInAnyOrderOfViews) {
+  const FurtherView one = view("one.exr", kFine, {-3.5, 2.5, 2.5}),
+                    equal = view("equal.exr", kFine, {-3.5, 2.5, 2.5}),
+                    right = view("right.exr", kCoarse, {3.5, 2.5, 2.5});
+  const FurtherSurfaces first = merge({one, equal, right});
+  for (const auto& views : {std::vector{equal, right, one}, {right, one, equal}}) {
+    const FurtherSurfaces again = merge(views);
+    EXPECT_EQ(again.added, first.added);
+    EXPECT_TRUE(std::ranges::equal(again.vertices, first.vertices, {}, &Vertex::position,
+                                   &Vertex::position));
+  }
 }
 
 TEST_F(Merge, WhatOneViewAloneShowsStays) {
