@@ -6,9 +6,11 @@
 
 #include <cstddef>
 #include <glm/geometric.hpp>
+#include <optional>
 
 #include "error.h"
 #include "estimators/ray_device.h"
+#include "estimators/triangle_hit.h"
 
 namespace ssdo {
 namespace {
@@ -17,44 +19,64 @@ namespace {
 /// the seen side of the same thin thing, which coarse triangles cut.
 constexpr float kThinThing = 4;
 
-struct Query : RTCIntersectContext {
-  const std::vector<Vertex>* vertices;
-  const std::vector<FurtherSurfaces::Triangle>* triangles;
+bool is_unseen(const Vertex& vertex, const glm::vec3& direction) {
+  return glm::dot(vertex.normal, direction) > 0;
+}
 
-  int corner(unsigned triangle, float u, float v) const {
-    const float w = 1 - u - v;
-    return int((*triangles)[triangle][w >= u && w >= v ? 0 : u >= v ? 1 : 2]);
+using Triangles = std::vector<FurtherSurfaces::Triangle>;
+
+/// A ray that asks for what is within reach and not of the thing that it starts from.
+class Query : public RTCIntersectContext {
+ public:
+  Query(const std::vector<Vertex>& vertices, const Triangles& triangles, float reach)
+      : vertices_(vertices), triangles_(triangles), reach_(reach) {
+    rtcInitIntersectContext(this);
+    filter = &Query::look;
   }
 
-  static bool is_unseen(const Vertex& vertex, const float* direction) {
-    return vertex.normal.x * direction[0] + vertex.normal.y * direction[1] +
-               vertex.normal.z * direction[2] >
-           0;
-  }
+  /// What the ray meets first, once it was traced, and the vertex that is nearest there; none for a
+  /// ray that meets nothing.
+  struct Met {
+    TriangleHit hit;
+    const Vertex& vertex;
+  };
+  const std::optional<Met>& first() const { return first_; }
 
-  static void refuse_own_thing(const RTCFilterFunctionNArguments* hits) {
-    const auto& query = *static_cast<const Query*>(hits->context);
-    for (unsigned i = 0; i < hits->N; ++i) {
-      if (hits->valid[i] == 0) continue;
-      const int corner =
-          query.corner(RTCHitN_primID(hits->hit, hits->N, i), RTCHitN_u(hits->hit, hits->N, i),
-                       RTCHitN_v(hits->hit, hits->N, i));
-      const Vertex& vertex = (*query.vertices)[std::size_t(corner)];
-      const float direction[3] = {RTCRayN_dir_x(hits->ray, hits->N, i),
-                                  RTCRayN_dir_y(hits->ray, hits->N, i),
-                                  RTCRayN_dir_z(hits->ray, hits->N, i)};
-      const float distance = RTCRayN_tfar(hits->ray, hits->N, i);
-      if (distance < kThinThing * vertex.footprint && is_unseen(vertex, direction))
-        hits->valid[i] = 0;
+ private:
+  /// Embree asks about one hit at a time.
+  static void look(const RTCFilterFunctionNArguments* hits) {
+    auto& query = *static_cast<Query*>(hits->context);
+    const RTCRay ray = rtcGetRayFromRayN(hits->ray, 1, 0);
+    const RTCHit hit = rtcGetHitFromHitN(hits->hit, 1, 0);
+    const auto& corners = query.triangles_[hit.primID];
+    const auto vertex = [&](int corner) -> const Vertex& {
+      return query.vertices_[corners[std::size_t(corner)]];
+    };
+    const TriangleHit found =
+        hit_of(ray, hit, {vertex(0).position, vertex(1).position, vertex(2).position});
+    const Vertex& nearest = vertex(found.corner);
+    const bool is_own_thing = found.distance < double(kThinThing * nearest.footprint) &&
+                              is_unseen(nearest, {ray.dir_x, ray.dir_y, ray.dir_z});
+    if (found.distance > query.reach_ || is_own_thing) {
+      hits->valid[0] = 0;
+      return;
     }
+    if (!query.first_ || found.is_before(query.first_->hit))
+      query.first_.emplace(Met{found, nearest});
+    RTCRayN_tfar(hits->ray, 1, 0) = float(query.first_->hit.distance) * kReachForEmbree;
   }
+
+  const std::vector<Vertex>& vertices_;
+  const Triangles& triangles_;
+  float reach_;
+  std::optional<Met> first_;
 };
 
 RTCRay ray_of(const glm::vec3& origin, const glm::vec3& direction, float reach) {
   RTCRay ray{};
   ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
   ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
-  ray.tfar = reach;
+  ray.tfar = reach * kReachForEmbree;
   ray.mask = ~0u;
   return ray;
 }
@@ -65,9 +87,9 @@ struct FurtherRays::Embree {
   RTCDevice device = rtcNewDevice(kRayDevice);
   RTCScene scene = rtcNewScene(device);
   const std::vector<Vertex>& vertices;
-  const std::vector<FurtherSurfaces::Triangle>& triangles;
+  const Triangles& triangles;
 
-  Embree(const std::vector<Vertex>& of, const std::vector<FurtherSurfaces::Triangle>& between)
+  Embree(const std::vector<Vertex>& of, const Triangles& between)
       : vertices(of), triangles(between) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     // A vertex holds more than its position, so that four floats can be read from the last one.
@@ -88,14 +110,6 @@ struct FurtherRays::Embree {
     rtcReleaseScene(scene);
     rtcReleaseDevice(device);
   }
-
-  Query query() const {
-    Query query;
-    rtcInitIntersectContext(&query);
-    query.vertices = &vertices, query.triangles = &triangles;
-    query.filter = &Query::refuse_own_thing;
-    return query;
-  }
 };
 
 FurtherRays::FurtherRays(const std::vector<Vertex>& vertices,
@@ -114,8 +128,8 @@ FurtherRays::~FurtherRays() = default;
 bool FurtherRays::is_blocked(const glm::vec3& origin, const glm::vec3& direction,
                              float reach) const {
   RTCRay ray = ray_of(origin, direction, reach);
-  Query context = embree_->query();
-  rtcOccluded1(embree_->scene, &context, &ray);
+  Query query(embree_->vertices, embree_->triangles, reach);
+  rtcOccluded1(embree_->scene, &query, &ray);
   return ray.tfar < 0;
 }
 
@@ -123,12 +137,11 @@ FurtherRays::Hit FurtherRays::first_hit(const glm::vec3& origin, const glm::vec3
                                         float reach) const {
   RTCRayHit ray{ray_of(origin, direction, reach), {}};
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  Query context = embree_->query();
-  rtcIntersect1(embree_->scene, &context, &ray);
-  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  const Vertex& corner =
-      embree_->vertices[std::size_t(context.corner(ray.hit.primID, ray.hit.u, ray.hit.v))];
-  return {int(corner.sender), Query::is_unseen(corner, &direction.x), ray.ray.tfar};
+  Query query(embree_->vertices, embree_->triangles, reach);
+  rtcIntersect1(embree_->scene, &query, &ray);
+  if (!query.first()) return {};
+  const auto& [hit, vertex] = *query.first();
+  return {int(vertex.sender), is_unseen(vertex, direction), float(hit.distance)};
 }
 
 }  // namespace ssdo

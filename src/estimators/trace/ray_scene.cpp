@@ -6,10 +6,12 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <utility>
 
 #include "error.h"
 #include "estimators/ray_device.h"
+#include "estimators/triangle_hit.h"
 
 namespace ssdo {
 namespace {
@@ -25,7 +27,7 @@ RTCRay ray_of(const PictureSpace::Ray& from) {
   RTCRay ray{};
   ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
   ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
-  ray.tfar = from.reach;
+  ray.tfar = from.reach * kReachForEmbree;
   ray.mask = ~0u;
   return ray;
 }
@@ -39,43 +41,54 @@ bool is_traceable(const RTCRay& ray) {
          std::abs(ray.dir_y) < kLargest && std::abs(ray.dir_z) < kLargest;
 }
 
-/// A ray that asks for fronts within reach.
-struct Query : RTCIntersectContext {
-  const HeightField* field;
-  glm::vec3 origin;
-  float reach;
-
-  Query(const HeightField& of, const glm::dvec3& from, double limit)
-      : field(&of), origin(from), reach(float(limit)) {
+/// A ray that asks for what is within reach with its front.
+class Query : public RTCIntersectContext {
+ public:
+  Query(const HeightField& field, const glm::dvec3& origin, double reach,
+        const PictureSpace::Ray& ray)
+      : field_(field), origin_(origin), reach_(float(reach)), reach_in_picture_(ray.reach) {
     rtcInitIntersectContext(this);
-    if (!std::isinf(limit)) filter = &Query::refuse_far_fronts;
+    filter = &Query::look;
   }
 
-  const TriangleMesh& mesh(unsigned id) const {
-    return id == kSheets ? field->sheets : field->cuts;
-  }
+  /// What the ray meets first, once it was traced, and what the corner belongs to that is nearest
+  /// there; none for a ray that meets nothing.
+  struct Met {
+    TriangleHit hit;
+    Owner owner;
+  };
+  const std::optional<Met>& first() const { return first_; }
 
-  /// The corner of a triangle that is nearest to a place in it.
-  std::uint32_t corner(unsigned id, unsigned triangle, float u, float v) const {
-    const float w = 1 - u - v;
-    return mesh(id).triangles[triangle][w >= u && w >= v ? 0 : u >= v ? 1 : 2];
-  }
-
-  static void refuse_far_fronts(const RTCFilterFunctionNArguments* hits) {
-    const auto& query = *static_cast<const Query*>(hits->context);
-    for (unsigned i = 0; i < hits->N; ++i) {
-      if (hits->valid[i] == 0) continue;
-      const unsigned id = RTCHitN_geomID(hits->hit, hits->N, i);
-      const std::uint32_t c =
-          query.corner(id, RTCHitN_primID(hits->hit, hits->N, i), RTCHitN_u(hits->hit, hits->N, i),
-                       RTCHitN_v(hits->hit, hits->N, i));
-      const glm::vec3& at = query.mesh(id).corners[c];
-      const float front = query.mesh(id).owners[c].front;
-      if (id == kSheets && at.z == front) continue;
-      const glm::vec3 position = query.field->space.position({at.x, at.y, front});
-      if (glm::distance(position, query.origin) > query.reach) hits->valid[i] = 0;
+ private:
+  /// Embree asks about one hit at a time.
+  static void look(const RTCFilterFunctionNArguments* hits) {
+    auto& query = *static_cast<Query*>(hits->context);
+    const RTCHit hit = rtcGetHitFromHitN(hits->hit, 1, 0);
+    const TriangleMesh& mesh = hit.geomID == kSheets ? query.field_.sheets : query.field_.cuts;
+    const auto& corners = mesh.triangles[hit.primID];
+    const TriangleHit found =
+        hit_of(rtcGetRayFromRayN(hits->ray, 1, 0), hit,
+               {mesh.corners[corners[0]], mesh.corners[corners[1]], mesh.corners[corners[2]]});
+    const std::uint32_t corner = corners[std::size_t(found.corner)];
+    const Owner& owner = mesh.owners[corner];
+    if (found.distance > query.reach_in_picture_ ||
+        query.is_behind_far_front(hit.geomID, mesh.corners[corner], owner.front)) {
+      hits->valid[0] = 0;
+      return;
     }
+    if (!query.first_ || found.is_before(query.first_->hit)) query.first_ = Met{found, owner};
+    RTCRayN_tfar(hits->ray, 1, 0) = float(query.first_->hit.distance) * kReachForEmbree;
   }
+
+  bool is_behind_far_front(unsigned geometry, const glm::vec3& at, float front) const {
+    if (std::isinf(reach_) || (geometry == kSheets && at.z == front)) return false;
+    return glm::distance(field_.space.position({at.x, at.y, front}), origin_) > reach_;
+  }
+
+  const HeightField& field_;
+  glm::vec3 origin_;
+  float reach_, reach_in_picture_;
+  std::optional<Met> first_;
 };
 
 }  // namespace
@@ -130,26 +143,26 @@ RayScene::~RayScene() = default;
 
 bool RayScene::is_blocked(const glm::dvec3& origin, const glm::dvec3& direction,
                           double reach) const {
-  RTCRay ray = ray_of(field_.space.ray(origin, direction, reach));
+  const PictureSpace::Ray in_picture = field_.space.ray(origin, direction, reach);
+  RTCRay ray = ray_of(in_picture);
   if (!is_traceable(ray)) return false;
-  Query context(field_, origin, reach);
-  rtcOccluded1(embree_->scene, &context, &ray);
+  Query query(field_, origin, reach, in_picture);
+  rtcOccluded1(embree_->scene, &query, &ray);
   return ray.tfar < 0;
 }
 
 RayScene::Hit RayScene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
                                   double reach) const {
   const PictureSpace::Ray ray = field_.space.ray(origin, direction, reach);
-  RTCRayHit query{ray_of(ray), {}};
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  if (!is_traceable(query.ray)) return {};
-  Query context(field_, origin, reach);
-  rtcIntersect1(embree_->scene, &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  const RTCHit& hit = query.hit;
-  const glm::vec3 at = ray.origin + query.ray.tfar * ray.direction;
-  return {context.mesh(hit.geomID).owners[context.corner(hit.geomID, hit.primID, hit.u, hit.v)],
-          glm::distance(glm::dvec3(field_.space.position(at)), origin)};
+  RTCRayHit traced{ray_of(ray), {}};
+  traced.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  if (!is_traceable(traced.ray)) return {};
+  Query query(field_, origin, reach, ray);
+  rtcIntersect1(embree_->scene, &query, &traced);
+  if (!query.first()) return {};
+  const auto& [hit, owner] = *query.first();
+  const glm::vec3 at = ray.origin + float(hit.distance) * ray.direction;
+  return {owner, glm::distance(glm::dvec3(field_.space.position(at)), origin)};
 }
 
 }  // namespace ssdo
