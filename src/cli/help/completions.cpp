@@ -132,7 +132,7 @@ std::string zsh_specs(const CLI::Option& option) {
   const Completion value = completion_of(option);
   const bool takes_value = value.kind != "none";
   const bool repeatable = option.get_expected_max() > 1;
-  const std::string description = option.get_description();
+  const std::string& description = option.get_description();
   std::string rest =
       fmt::format("[{}]", escaped(description.substr(0, description.find('\n')), "\\[]"));
   if (takes_value)

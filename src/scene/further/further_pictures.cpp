@@ -68,10 +68,10 @@ FurtherPictures::Picture picture_of(View view, const std::string& file) {
     }
   });
   out.albedo = in_half(view.gbuffer.albedo);
-  for (const std::string& warning : view.gbuffer.warnings)
-    out.warnings.push_back(file + ": " + warning);
-  for (const std::string& warning : view.report.warnings)
-    out.warnings.push_back(file + ": " + warning);
+  for (const auto* warnings : {&view.gbuffer.warnings, &view.report.warnings}) {
+    for (const std::string& warning : *warnings)
+      out.warnings.push_back(fmt::format("{}: {}", file, warning));
+  }
   for (const ExrReader& read : view.files)
     for (const std::string& line : read.losses()) out.losses.push_back(line);
   return std::make_shared<const FurtherPicture>(std::move(out));

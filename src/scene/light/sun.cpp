@@ -36,9 +36,9 @@ void divide(Points::iterator begin, Points::iterator end, int halvings, Points& 
 
 void set_points(Sun& sun) {
   Points places;
-  for (int i = 0; i < kSide * kSide; ++i) {
-    places.push_back(
-        sun.point((glm::vec2(float(i % kSide), float(i / kSide)) + 0.5f) / float(kSide)));
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column)
+      places.push_back(sun.point((glm::vec2(float(column), float(row)) + 0.5f) / float(kSide)));
   }
   sun.points.clear();
   divide(places.begin(), places.end(), kHalvings, sun.points);
