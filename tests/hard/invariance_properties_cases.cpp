@@ -152,10 +152,10 @@ Measured change_in_a_moved_world(const Subject& s) {
 }
 
 /// Pixels that are far enough from the new sides keep their bits. That is farther than the radius
-/// by a step, as a sample stands for what is around it, or by two pixels of half the resolution; of
-/// a bounce, twice as far, as what sends has its own radius. Not with msvo, which looks as far as
-/// the frame goes. Of most random frames no pixel is that far inside: the shot is made three times
-/// as fine.
+/// by a step, as a sample stands for what is around it; of a bounce, twice as far, as what sends
+/// has its own radius. The points of ssao-fade lie up to five radii away, and its pixels are means
+/// of those around them, which may be nearer. Not with msvo, which looks as far as the frame goes.
+/// Of most random frames no pixel is that far inside: the shot is made three times as fine.
 Measured change_by_a_crop(const Subject& s) {
   const RandomShot shot = random_shot(s.shot.seed, 3);
   if (!shot.is_plain() || !find_method(shot.options.model.method).takes.radius) return std::nullopt;
@@ -168,16 +168,25 @@ Measured change_by_a_crop(const Subject& s) {
   const Products of_all = products_of_shot(whole), of_part = products_of_shot(cropped(whole, part));
   const Camera& camera = shot.lens.camera;
   const ModelOptions& model = whole.options.model;
+  const bool is_fade = model.method == "ssao-fade";
+  const int around = is_fade ? 3 : 0;
+  const auto is_inside = [&](int left, int top) {
+    const SeenPoint& p = whole.seen(left, top);
+    const double depth = camera.orthographic ? 1 : -p.position.z,
+                 pixel = depth / std::min(camera.fx, camera.fy),
+                 reach = (1 + model.bounces) * ((is_fade ? 5 : 2) * *model.radius + 4 * pixel);
+    return !p.surface || distance_to_sides(camera, part, p.position) >= reach;
+  };
   bool compared = false;
   Worst worst;
-  for (int y = 0; y < part.height(); ++y) {
-    for (int x = 0; x < part.width(); ++x) {
+  for (int y = around; y < part.height() - around; ++y) {
+    for (int x = around; x < part.width() - around; ++x) {
       const int left = x + part.x0 - all.x0, top = y + part.y0 - all.y0;
-      const SeenPoint& p = whole.seen(left, top);
-      const double depth = camera.orthographic ? 1 : -p.position.z,
-                   pixel = depth / std::min(camera.fx, camera.fy),
-                   far_enough = (1 + model.bounces) * (2 * *model.radius + 4 * pixel);
-      if (!p.surface || distance_to_sides(camera, part, p.position) < far_enough) continue;
+      bool inside = whole.seen(left, top).surface;
+      for (int dy = -around; dy <= around; ++dy)
+        for (int dx = -around; dx <= around; ++dx)
+          inside = inside && is_inside(left + dx, top + dy);
+      if (!inside) continue;
       compared = true;
       for_each_plane(
           [&](const Product& product, const auto& one, const auto& other) {
