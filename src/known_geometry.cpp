@@ -25,6 +25,11 @@ DeepImage read_deep_image(const ExrReader& file, const std::string& view,
                           const GBufferOptions& options, std::vector<std::string>& warnings) {
   auto channels = view.empty() ? std::nullopt : find_deep_channels(file, view);
   if (!channels) channels = find_deep_channels(file, "");
+  if (!channels) {  // an earlier frame has found them
+    throw Error(ExitCode::input, fmt::format("{}: was a deep image and is none any more; leave the "
+                                             "files of --also alone while they are read",
+                                             file.path().string()));
+  }
   return read_deep_frame(file, *channels, options, warnings);
 }
 
@@ -97,8 +102,10 @@ class ViewReader {
   void add_also(const std::string& path) {
     const FurtherPictures::Picture picture = pictures_.also(path);
     if (!picture) {
-      known_.deep.push_back(read_deep_image(ExrReader(path), frame_.part().view,
-                                            options_.input.gbuffer, known_.warnings));
+      const ExrReader file(path, options_.input.allow_partial ? Salvage::done : Salvage::offered);
+      known_.deep.push_back(
+          read_deep_image(file, frame_.part().view, options_.input.gbuffer, known_.warnings));
+      for (const std::string& line : file.losses()) known_.losses.push_back(line);
       return;
     }
     if (!knows_place("--also " + path)) return;

@@ -67,7 +67,7 @@ std::vector<ExrOutput> by_part(const std::vector<ExrContents>& views) {
 void check_display_size(const Frame& frame) {
   const double factor = frame.gbuffer.downsampling.factor,
                values = 4 * double(frame.part().display_window.area()) / (factor * factor);
-  check_decoded_size(frame.input, 0, values * sizeof(float));
+  check_decoded_size(frame.input, 0, 0, values * sizeof(float));
 }
 
 void append(std::vector<std::string>& lines, const std::vector<std::string>& more) {

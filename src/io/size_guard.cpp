@@ -17,11 +17,9 @@ std::atomic<double> limit = 0;  ///< 0: that of the machine
 
 double physical_memory() { return double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)); }
 
-void check_decoded_size(const std::filesystem::path& file, double pixel_bytes, double needed_bytes,
-                        double largest_ratio) {
-  std::error_code unknown;
-  const auto file_bytes = std::filesystem::file_size(file, unknown);
-  if (!unknown && pixel_bytes > double(file_bytes) * largest_ratio) {
+void check_decoded_size(const std::filesystem::path& file, std::uint64_t file_bytes,
+                        double pixel_bytes, double needed_bytes, double largest_ratio) {
+  if (pixel_bytes > double(file_bytes) * largest_ratio) {
     throw Error(ExitCode::input,
                 fmt::format("{}: is damaged: its header claims {:.1f} GiB of pixels, which a file "
                             "of {} bytes cannot hold; render or copy it again",
@@ -41,7 +39,9 @@ double memory_limit() { return limit > 0 ? limit.load() : physical_memory(); }
 
 void check_picture_size(const std::filesystem::path& file, double pixel_bytes,
                         double needed_bytes) {
-  check_decoded_size(file, pixel_bytes, needed_bytes);
+  std::error_code unknown;
+  const auto bytes = std::filesystem::file_size(file, unknown);
+  check_decoded_size(file, bytes, unknown ? 0 : pixel_bytes, needed_bytes);
   if (needed_bytes <= memory_limit()) return;
   throw Error(
       ExitCode::input,

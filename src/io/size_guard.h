@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <istream>
 #include <string>
@@ -23,9 +24,10 @@ void limit_memory(double bytes);
 double memory_limit();
 
 /// Refuses to allocate what a damaged header claims. Throws ExitCode::input if `pixel_bytes`, all
-/// decoded pixels, are more than a file of the size of `file` can hold at `largest_ratio`, or if
+/// decoded pixels, are more than a file of `file_bytes` can hold at `largest_ratio`, or if
 /// `needed_bytes`, what is about to be allocated, exceeds the machine's memory.
-void check_decoded_size(const std::filesystem::path& file, double pixel_bytes, double needed_bytes,
+void check_decoded_size(const std::filesystem::path& file, std::uint64_t file_bytes,
+                        double pixel_bytes, double needed_bytes,
                         double largest_ratio = kLargestRatio);
 
 /// The same for a picture or map: there are no bands of it, so that `needed_bytes` may not exceed

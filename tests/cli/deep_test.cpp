@@ -10,6 +10,7 @@
 
 #include "support/boxes.h"
 #include "support/error_matchers.h"
+#include "support/exr_bytes.h"
 #include "support/frame_file.h"
 #include "support/parse_json.h"
 #include "support/run_tool.h"
@@ -91,6 +92,33 @@ TEST_F(Deep, BesideAFrameMeasuresWhatIsHidden) {
   }
   ASSERT_EQ(run(words).code, 0);
   EXPECT_EQ(difference(measured), 0) << "elements that are not merged";
+}
+
+/// Where a part of its samples is lost, a frame is what is left of it: rows of an INPUT without any
+/// are background.
+TEST_F(Deep, ThatIsCutShortGivesWhatIsThere) {
+  ExrBytes bytes(path("deep.exr"));
+  bytes.cut(std::size_t(bytes.places(48)[36]) + 9);
+  bytes.write(path("cut.exr"));
+  const std::string loss =
+      "cut.exr: part 0 'deep': 12 of 48 rows are missing or damaged, between rows 36 "
+      "and 47; taken as background\n";
+  for (const std::vector<std::string>& words :
+       {std::vector{path("in.exr"), std::string("--also"), path("cut.exr")},
+        std::vector{path("cut.exr"), std::string("--fov"), std::string("40")}}) {
+    refused(words, 3, "--allow-partial");
+    std::vector<std::string> all = words;
+    all.push_back("--allow-partial");
+    const Finished done = run(all);
+    EXPECT_EQ(done.code, 3) << done.err;
+    EXPECT_THAT(done.err, HasSubstr(path(loss)));
+    ASSERT_TRUE(std::filesystem::exists(path("out.exr"))) << done.err;
+    const Plane<float> found = channel(path("out.exr"), "ao.Y");
+    EXPECT_LT(found(32, 20), 1);
+    std::filesystem::remove(path("out.exr"));
+    if (words.size() == 3 && words[1] == "--also") continue;
+    EXPECT_EQ(found(32, 40), 1);
+  }
 }
 
 TEST_F(Deep, GivesTheSameBitsOnAnyNumberOfThreads) {

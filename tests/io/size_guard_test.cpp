@@ -13,20 +13,14 @@ namespace ssdo::test {
 namespace {
 
 TEST(SizeGuard, RefusesMorePixelsThanTheFileCanHold) {
-  const TempDir dir;
-  const std::filesystem::path file = dir / "hundred.exr";
-  std::ofstream(file) << std::string(100, 'x');
-  EXPECT_NO_THROW(check_decoded_size(file, 1000, 0, 10));
-  EXPECT_THAT(error_of([&] { check_decoded_size(file, 1001, 0, 10); }),
+  EXPECT_NO_THROW(check_decoded_size("a.exr", 100, 1000, 0, 10));
+  EXPECT_THAT(error_of([&] { check_decoded_size("a.exr", 100, 1001, 0, 10); }),
               IsError(ExitCode::input, "cannot hold"));
-  EXPECT_NO_THROW(check_decoded_size(file, 100 * kLargestRatio, 0));
+  EXPECT_NO_THROW(check_decoded_size("a.exr", 100, 100 * kLargestRatio, 0));
 }
 
 TEST(SizeGuard, RefusesMoreThanTheMemoryOfTheMachine) {
-  const TempDir dir;
-  const std::filesystem::path file = dir / "hundred.exr";
-  std::ofstream(file) << std::string(100, 'x');
-  EXPECT_THAT(error_of([&] { check_decoded_size(file, 1000, 1e18); }),
+  EXPECT_THAT(error_of([&] { check_decoded_size("a.exr", 100, 1000, 1e18); }),
               IsError(ExitCode::input, "memory"));
 }
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
+#include <istream>
 #include <string>
 #include <string_view>
 
@@ -106,7 +106,7 @@ std::int64_t bytes_taken(std::istream& in, std::string_view type, std::int32_t s
 }  // namespace
 
 std::uint64_t check_attribute_sizes(const InputFile& file) {
-  std::ifstream in = file.stream();
+  InputStream in(file);
   const auto file_bytes = std::int64_t(file.bytes());
   in.seekg(4);
   const bool multi_part = std::uint32_t(read_int(in)) & kMultiPartFlag;

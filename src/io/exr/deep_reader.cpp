@@ -3,9 +3,6 @@
 
 #include <ImfChannelList.h>
 #include <ImfDeepFrameBuffer.h>
-#include <ImfDeepScanLineInputPart.h>
-#include <ImfDeepTiledInputPart.h>
-#include <ImfMultiPartInputFile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +13,10 @@
 
 #include "error.h"
 #include "io/exr/chunk_sizes.h"
+#include "io/exr/deep_chunks.h"
+#include "io/exr/exr_chunks.h"
 #include "io/exr/exr_parts.h"
+#include "io/exr/packed_chunks.h"
 #include "io/size_guard.h"
 
 namespace ssdo {
@@ -28,15 +28,7 @@ struct Target {
   float DeepSample::*member;
 };
 
-/// The address that (0, 0) of the display window has in a plane over `window`.
-template <class T>
-char* at_origin(T* first, const Window& window) {
-  const std::ptrdiff_t offset = std::ptrdiff_t(window.y0) * window.width() + window.x0;
-  return reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(first) -
-                                 std::uintptr_t(offset) * sizeof(T));
-}
-
-/// Reads one deep part of a file.
+/// Reads one deep part of a file. Pixels of missing chunks have no samples.
 class DeepPartReader {
  public:
   DeepPartReader(const ExrReader& file, int part)
@@ -46,8 +38,10 @@ class DeepPartReader {
     const double tile = 4.0 * pixels_per_chunk(part_),
                  table = std::max(4.0 * double(part_.data_window.area()), tile);
     const bool overflows = tile > std::numeric_limits<int>::max();
-    check_decoded_size(file_.path(), table, table, overflows ? 0 : largest_ratio(part_));
+    check_decoded_size(file_.path(), file_.input().bytes(), table, table,
+                       overflows ? 0 : largest_ratio(part_));
     counts_.resize(part_.data_window.area());
+    find_windows();
   }
 
   /// The first sample of each pixel, and the end.
@@ -87,27 +81,28 @@ class DeepPartReader {
         Imf::Slice(Imf::UINT, at_origin(counts_.data(), part_.data_window), sizeof(unsigned),
                    sizeof(unsigned) * std::size_t(part_.data_window.width())));
     try {
-      if (!samples) check_chunk_sizes(file_, part_, part_.data_window);
-      if (is_tiled(part_)) {
-        Imf::DeepTiledInputPart tiles(file_.file(), part_.index);
-        tiles.setFrameBuffer(buffer);
-        const int x = tiles.numXTiles() - 1, y = tiles.numYTiles() - 1;
-        tiles.readPixelSampleCounts(0, x, 0, y);
-        if (!samples) return;
-        check_same_counts(known);
-        tiles.readTiles(0, x, 0, y);
-      } else {
-        Imf::DeepScanLineInputPart lines(file_.file(), part_.index);
-        lines.setFrameBuffer(buffer);
-        const int y = part_.data_window.y0, last = part_.data_window.y1 - 1;
-        lines.readPixelSampleCounts(y, last);
-        if (!samples) return;
-        check_same_counts(known);
-        lines.readPixels(y, last);
-      }
+      if (!samples) check_chunk_sizes(file_, part_, part_.data_window, file_.missing(part_.index));
+      DeepChunks chunks(file_, part_, buffer);
+      for (const Window& window : windows_) chunks.read_counts(window);
+      if (!samples) return;
+      check_same_counts(known);
+      for (const Window& window : windows_) chunks.read_samples(window);
     } catch (const std::exception& error) {
       throw_damaged(file_, part_, error);
     }
+  }
+
+  /// All chunks at once, or one by one those that are not missing.
+  void find_windows() {
+    windows_ = {part_.data_window};
+    const MissingChunks& missing = file_.missing(part_.index);
+    if (missing.windows.empty()) return;
+    const PackedChunks chunks(file_, part_);
+    windows_.clear();
+    for (std::size_t i = 0; i < chunks.count(); ++i)
+      if (!is_missing(missing, chunks.window(i))) windows_.push_back(chunks.window(i));
+    if (windows_.empty())
+      throw_damaged(file_, part_, std::runtime_error("none of its chunks can be read"));
   }
 
   void check_same_counts(const std::vector<unsigned>& known) const {
@@ -118,6 +113,7 @@ class DeepPartReader {
   const ExrReader& file_;
   const ExrPart& part_;
   std::vector<unsigned> counts_;
+  std::vector<Window> windows_;  ///< that are read
 };
 
 }  // namespace
@@ -138,8 +134,8 @@ DeepImage read_deep(const ExrReader& file, const DeepChannels& channels) {
   }
   const double count = double(image.first.back()), values = 4.0 * double(targets.size()) * count,
                pointers = double(sizeof(char*) * targets.size()) * double(part.data_window.area());
-  check_decoded_size(file.path(), values, values + double(sizeof(DeepSample)) * count + pointers,
-                     largest_ratio(part));
+  check_decoded_size(file.path(), file.input().bytes(), values,
+                     values + double(sizeof(DeepSample)) * count + pointers, largest_ratio(part));
   image.samples.resize(image.first.back());
   lead.read_samples(targets, image.first, image.samples);
   for (const auto& [channel, member] : more) {

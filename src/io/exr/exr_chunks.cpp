@@ -14,7 +14,9 @@
 #include <new>
 #include <tuple>
 
+#include "error.h"
 #include "io/exr/chunk_sizes.h"
+#include "io/exr/deep_chunks.h"
 #include "io/exr/exr_parts.h"
 #include "io/exr/packed_chunks.h"
 #include "io/exr/zip_chunk.h"
@@ -117,17 +119,27 @@ void read_chunk(const ExrReader& file, const ExrPart& part, const PackedChunks& 
     read_lines(file, part, window, channels, {});
 }
 
+void try_flat_chunk(const ExrReader& file, const ExrPart& part, const PackedChunks& chunks,
+                    std::size_t chunk) {
+  std::vector<std::byte> pixels(4 * chunks.window(chunk).area());
+  const ChannelRows first{part.channels[0], pixels.data(), false};
+  read_chunk(file, part, chunks, chunk, std::span(&first, 1));
+}
+
 /// Whether a chunk can be read, which one of its channels shows: they are packed together.
 bool can_read(const ExrReader& file, const ExrPart& part, const PackedChunks& chunks,
               std::size_t chunk) {
-  std::vector<std::byte> pixels(4 * chunks.window(chunk).area());
-  const ChannelRows first{part.channels[0], pixels.data(), false};
   try {
     check_chunk_size(part, chunks, chunk);
-    read_chunk(file, part, chunks, chunk, std::span(&first, 1));
+    if (part.deep)
+      try_deep_chunk(file, part, chunks.window(chunk));
+    else
+      try_flat_chunk(file, part, chunks, chunk);
     return true;
   } catch (const std::bad_alloc&) {
     throw;  // a chunk that memory is too short for is not missing
+  } catch (const Error&) {
+    throw;  // nor is one that the disk does not give
   } catch (const Iex::IoExc&) {
     return false;  // OpenEXR took its bytes and could not decode them: the next chunk can be read
   } catch (const Iex::BaseExc&) {

@@ -17,7 +17,7 @@ struct ChannelRows {
   bool as_float;  ///< half becomes float; else as stored
 };
 
-/// Tries every chunk of a flat part.
+/// Tries every chunk of a part.
 MissingChunks find_missing_chunks(const ExrReader& file, const ExrPart& part);
 
 /// Whether a chunk, of this window, is among them.

@@ -21,7 +21,8 @@ Window written_window(const ExrOutput& output, const ExrPart& part) {
 
 bool is_changed(const ExrOutput& output, const ExrPart& part) {
   return written_window(output, part) != known_window(output, part) ||
-         !output.downsampling.is_identity() || !output.input->missing(part.index).windows.empty();
+         !output.downsampling.is_identity() ||
+         (!part.deep && !output.input->missing(part.index).windows.empty());
 }
 
 Imf::Compression compression_for(const ExrOutput& output) {

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -57,7 +58,7 @@ double bytes_per_pixel(const ExrPart& part) {
   return bytes;
 }
 
-InputFile open_exr(const fs::path& file) {
+std::unique_ptr<InputFile> open_exr(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (status.type() == fs::file_type::not_found) {
@@ -68,16 +69,15 @@ InputFile open_exr(const fs::path& file) {
     fail(file, "is a device, pipe or socket; an EXR is read out of order, so name a file");
   }
   errno = 0;
-  InputFile opened(file);
-  if (!opened.is_open()) {
+  auto opened = std::make_unique<InputFile>(file);
+  if (!opened->is_open()) {
     fail(file, fmt::format("cannot be opened: {}; check its permissions",
                            std::generic_category().message(errno)));
   }
-  std::ifstream stream = opened.stream();
-  std::array<char, 4> magic = {};
-  stream.read(magic.data(), magic.size());
-  if (stream.gcount() == 0) fail(file, "is empty; render or copy it again");
-  if (magic != std::array<char, 4>{0x76, 0x2f, 0x31, 0x01}) {
+  std::array<std::byte, 4> magic = {};
+  if (opened->read(0, magic) == 0) fail(file, "is empty; render or copy it again");
+  constexpr unsigned char kMagic[] = {0x76, 0x2f, 0x31, 0x01};
+  if (std::memcmp(magic.data(), kMagic, sizeof kMagic) != 0) {
     fail(file,
          "is not an EXR file, by its first four bytes; convert it, for example with oiiotool");
   }
@@ -92,10 +92,11 @@ bool begins_as_exr(const fs::path& file) {
 void throw_damaged(const ExrReader& file, const ExrPart& part, const std::exception& error) {
   if (const auto* no_memory = dynamic_cast<const std::bad_alloc*>(&error))
     throw *no_memory;  // nothing is wrong with the file
+  if (const auto* of_disk = dynamic_cast<const Error*>(&error)) throw *of_disk;
   const char* state = file.file().partComplete(part.index)
                           ? "is damaged or cut short"
                           : "is incomplete: its writing was interrupted";
-  const bool offers = file.salvage() == Salvage::offered && !part.deep;
+  const bool offers = file.salvage() == Salvage::offered;
   fail(file.path(), fmt::format("{} ({}: {}); render or copy it again{}", state, label(part),
                                 one_line(error.what()),
                                 offers ? ", or take what is there with --allow-partial" : ""));

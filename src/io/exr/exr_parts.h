@@ -13,7 +13,7 @@ namespace ssdo {
 
 /// Throws ExitCode::input, saying what `file` is instead, unless it is a readable EXR by its first
 /// bytes. OpenEXR's own messages do not tell a missing file from a folder.
-InputFile open_exr(const std::filesystem::path& file);
+std::unique_ptr<InputFile> open_exr(const std::filesystem::path& file);
 
 /// Whether `file` is a plain file that begins as an EXR does, whatever its name.
 bool begins_as_exr(const std::filesystem::path& file);

@@ -6,7 +6,6 @@
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
-#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
@@ -20,6 +19,7 @@
 #include "io/exr/attribute_sizes.h"
 #include "io/exr/exr_chunks.h"
 #include "io/exr/exr_parts.h"
+#include "io/exr/exr_stream.h"
 #include "io/exr/zip_lines.h"
 #include "io/one_line.h"
 #include "io/size_guard.h"
@@ -97,7 +97,8 @@ void check_size(const ExrReader& reader, const ExrPart& part, Names names,
                with_gaps = std::min(kLargestRatio, ratio / kLeastShare);
   constexpr double kLargeTiles = 1 << 28;  // bytes; below, a tile may well be larger than its image
   const double tiles = tile_row_bytes(part), pixels = double(part.data_window.area()) * value_bytes;
-  check_decoded_size(reader.path(), tiles > kLargeTiles ? std::max(pixels, tiles) : pixels,
+  check_decoded_size(reader.path(), reader.input().bytes(),
+                     tiles > kLargeTiles ? std::max(pixels, tiles) : pixels,
                      pixels_in_memory(part, grid) * value_bytes + decoder_bytes(part),
                      reader.salvage() == Salvage::none ? ratio : with_gaps);
 }
@@ -133,6 +134,8 @@ void read_or_fail(const ExrReader& reader, const ExrPart& part, const Window& ro
     if (!read_zip_lines(reader, part, rows, channels)) read_chunks(reader, part, rows, channels);
   } catch (const std::bad_alloc&) {
     throw;  // nothing is wrong with the file
+  } catch (const Error&) {
+    throw;  // its disk cannot be read
   } catch (const std::exception& error) {
     salvage_or_fail(reader, part, rows, channels, error);
   }
@@ -187,15 +190,16 @@ std::vector<Plane<float>> read_blocks(const ExrReader& reader, const ExrPart& pa
 
 ExrReader::ExrReader(const std::filesystem::path& path, Salvage salvage)
     : input_(open_exr(path)),
-      tables_(check_attribute_sizes(input_)),
+      tables_(check_attribute_sizes(*input_)),
       salvage_(salvage),
-      bytes_(std::make_unique<std::ifstream>(input_.stream())) {
+      stream_(std::make_unique<ExrInputStream>(*input_)) {
   try {
-    stream_ = std::make_unique<Imf::StdIFStream>(*bytes_, path.c_str());
     file_ = std::make_unique<Imf::MultiPartInputFile>(*stream_);
     for (int i = 0; i < file_->parts(); ++i) parts_.push_back(describe_part(*file_, i));
   } catch (const std::bad_alloc&) {
     throw;  // nothing is wrong with the file
+  } catch (const Error&) {
+    throw;  // its disk cannot be read
   } catch (const std::exception& error) {
     fail(*this, fmt::format("is damaged or cut short in its header ({}); render or copy it again",
                             one_line(error.what())));
@@ -239,7 +243,7 @@ const MissingChunks& ExrReader::missing(int index) const {
   const auto known = missing_.find(index);
   if (known != missing_.end()) return known->second;
   const ExrPart& part = parts_[std::size_t(index)];
-  const bool looks = salvage_ == Salvage::done && !part.deep;
+  const bool looks = salvage_ == Salvage::done;
   return missing_[index] = looks ? find_missing_chunks(*this, part) : MissingChunks();
 }
 

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <span>
@@ -20,10 +19,11 @@
 
 namespace OPENEXR_IMF_INTERNAL_NAMESPACE {
 class MultiPartInputFile;
-class StdIFStream;
 }  // namespace OPENEXR_IMF_INTERNAL_NAMESPACE
 
 namespace ssdo {
+
+class ExrInputStream;
 
 /// One channel as the header declares it.
 struct ExrChannel {
@@ -81,8 +81,8 @@ class ExrReader {
   ~ExrReader();
   ExrReader(ExrReader&&) noexcept;
 
-  const InputFile& input() const { return input_; }
-  const std::filesystem::path& path() const { return input_.path(); }
+  const InputFile& input() const { return *input_; }
+  const std::filesystem::path& path() const { return input_->path(); }
   const std::vector<ExrPart>& parts() const { return parts_; }
 
   /// The named channels of a part as float planes over the part's data window; half and uint
@@ -115,11 +115,10 @@ class ExrReader {
   Imf::MultiPartInputFile& file() const { return *file_; }
 
  private:
-  InputFile input_;
+  std::unique_ptr<InputFile> input_;
   std::uint64_t tables_;
   Salvage salvage_;
-  std::unique_ptr<std::ifstream> bytes_;
-  std::unique_ptr<Imf::StdIFStream> stream_;
+  std::unique_ptr<ExrInputStream> stream_;
   std::unique_ptr<Imf::MultiPartInputFile> file_;
   std::vector<ExrPart> parts_;
   mutable std::map<int, MissingChunks> missing_;  ///< of the parts that were looked at

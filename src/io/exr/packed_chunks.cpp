@@ -14,15 +14,38 @@
 namespace ssdo {
 namespace {
 
-/// A number as files have it, little endian; 0 where the file ends.
-template <class Number>
-Number read_number(std::istream& in) {
-  unsigned char bytes[sizeof(Number)] = {};
-  in.read(reinterpret_cast<char*>(bytes), sizeof bytes);
-  Number number = 0;
-  for (std::size_t i = 0; i < sizeof bytes; ++i) number |= Number(bytes[i]) << (8 * i);
-  return number;
-}
+/// Numbers that stand one after another, little endian; 0 where the file ends.
+class Numbers {
+ public:
+  Numbers(const InputFile& file, std::uint64_t place, std::size_t bytes) : bytes_(bytes) {
+    end_ = file.read(place, bytes_);
+  }
+
+  template <class Number>
+  Number next() {
+    Number number = 0;
+    if (sizeof(Number) <= end_ - at_) {
+      for (std::size_t i = 0; i < sizeof(Number); ++i)
+        number |= Number(std::to_integer<Number>(bytes_[at_ + i]) << (8 * i));
+      at_ += sizeof(Number);
+    } else {
+      are_all_ = false, at_ = end_;
+    }
+    return number;
+  }
+
+  std::size_t taken() const { return at_; }  ///< bytes
+  bool are_all() const { return are_all_; }  ///< the file has not ended before
+
+ private:
+  std::vector<std::byte> bytes_;
+  std::size_t at_ = 0, end_;
+  bool are_all_ = true;
+};
+
+/// Of what stands before the bytes of a chunk, at most: part, column, row, two levels, and three
+/// sizes of eight bytes.
+constexpr std::size_t kHeadBytes = 5 * 4 + 3 * 8;
 
 std::uint64_t divide_up(std::uint64_t a, std::uint64_t b) { return (a + b - 1) / b; }
 
@@ -88,8 +111,7 @@ PackedChunks::PackedChunks(const ExrReader& file, const ExrPart& part)
       part_(part),
       width_(part.data_window.width()),
       height_(lines_per_chunk(part.header.compression())),
-      size_(file.input().bytes()),
-      in_(file.input().stream()) {
+      size_(file.input().bytes()) {
   if (!Imf::isSupportedType(part.header.type())) throw std::runtime_error("its type is unknown");
   if (is_tiled(part)) {
     // The file may claim sides that no int holds.
@@ -118,7 +140,6 @@ Window PackedChunks::window(std::size_t chunk) const {
 }
 
 std::vector<std::byte> PackedChunks::read(std::size_t chunk, std::size_t most) const {
-  const std::lock_guard lock(mutex_);
   check_is_next(chunk, most);
   const Head head = head_of(chunk);
   if (!head.part) throw std::runtime_error("a chunk is missing or cut short");
@@ -126,20 +147,22 @@ std::vector<std::byte> PackedChunks::read(std::size_t chunk, std::size_t most) c
   if (head.bytes > most) throw std::runtime_error("a chunk claims more bytes than its pixels take");
   if (head.bytes > size_ - head.place) throw std::runtime_error("a chunk is cut short");
   std::vector<std::byte> bytes(head.bytes);
-  in_.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
-  if (!in_) throw std::runtime_error("a chunk cannot be read");
+  if (file_.input().read(head.place, bytes) < bytes.size())
+    throw std::runtime_error("a chunk is cut short");
   return bytes;
 }
 
 /// The tables of all parts stand one after another, each with the full resolution first.
 void PackedChunks::read_table() {
+  std::uint64_t table = 0;
   for (const ExrPart& part : file_.parts()) {
-    if (&part == &part_) in_.seekg(std::streamoff(file_.tables() + 8 * all_chunks_));
+    if (&part == &part_) table = file_.tables() + 8 * all_chunks_;
     all_chunks_ += count_chunks(part);
   }
   first_chunk_ = file_.tables() + 8 * all_chunks_;
   places_.resize(count());
-  for (std::uint64_t& place : places_) place = read_number<std::uint64_t>(in_);
+  Numbers numbers(file_.input(), table, std::min(8 * count(), std::size_t(size_)));
+  for (std::uint64_t& place : places_) place = numbers.next<std::uint64_t>();
 }
 
 /// Goes from chunk to chunk, as OpenEXR does where a table is incomplete. OpenEXR may stop earlier,
@@ -147,9 +170,7 @@ void PackedChunks::read_table() {
 void PackedChunks::search() {
   std::uint64_t next = first_chunk_;
   for (std::uint64_t i = 0; i < all_chunks_; ++i) {
-    in_.clear();
-    in_.seekg(std::streamoff(next));
-    const Head head = read_head();
+    const Head head = head_at(next);
     if (!head.part || head.bytes > size_ || head.samples > size_) return;
     const std::int64_t row =
         is_tiled(part_) ? head.y : (std::int64_t(head.y) - part_.data_window.y0) / height_;
@@ -163,31 +184,28 @@ void PackedChunks::search() {
   }
 }
 
-/// Leaves the stream at the bytes of the chunk.
-PackedChunks::Head PackedChunks::read_head() const {
-  const std::size_t part = is_multi_part(file_) ? read_number<std::uint32_t>(in_) : 0;
+PackedChunks::Head PackedChunks::head_at(std::uint64_t place) const {
+  Numbers numbers(file_.input(), place, kHeadBytes);
+  const std::size_t part = is_multi_part(file_) ? numbers.next<std::uint32_t>() : 0;
   if (part >= file_.parts().size()) return {};
   Head head{&file_.parts()[part]};
-  if (is_tiled(*head.part)) head.x = std::int32_t(read_number<std::uint32_t>(in_));
-  head.y = std::int32_t(read_number<std::uint32_t>(in_));
-  if (is_tiled(*head.part)) head.full_resolution = read_number<std::uint64_t>(in_) == 0;
+  if (is_tiled(*head.part)) head.x = std::int32_t(numbers.next<std::uint32_t>());
+  head.y = std::int32_t(numbers.next<std::uint32_t>());
+  if (is_tiled(*head.part)) head.full_resolution = numbers.next<std::uint64_t>() == 0;
   if (head.part->deep) {
-    head.bytes = read_number<std::uint64_t>(in_);
-    head.samples = read_number<std::uint64_t>(in_);
-    read_number<std::uint64_t>(in_);  // the bytes of the samples when unpacked
+    head.bytes = numbers.next<std::uint64_t>();
+    head.samples = numbers.next<std::uint64_t>();
+    numbers.next<std::uint64_t>();  // the bytes of the samples when unpacked
   } else {
-    head.bytes = read_number<std::uint32_t>(in_);
+    head.bytes = numbers.next<std::uint32_t>();
   }
-  if (!in_) return {};
-  head.place = std::uint64_t(in_.tellg());
+  if (!numbers.are_all()) return {};
+  head.place = place + numbers.taken();
   return head;
 }
 
 PackedChunks::Head PackedChunks::head_of(std::size_t chunk) const {
-  if (places_[chunk] == 0) return {};
-  in_.clear();
-  in_.seekg(std::streamoff(places_[chunk]));
-  return read_head();
+  return places_[chunk] == 0 ? Head() : head_at(places_[chunk]);
 }
 
 bool PackedChunks::is_of(const Head& head, std::size_t chunk) const {

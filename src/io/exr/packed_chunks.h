@@ -3,8 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <fstream>
-#include <mutex>
 #include <vector>
 
 #include "io/exr/exr_reader.h"
@@ -40,7 +38,7 @@ class PackedChunks {
 
   void read_table();
   void search();
-  Head read_head() const;
+  Head head_at(std::uint64_t place) const;
   Head head_of(std::size_t chunk) const;
   bool is_of(const Head& head, std::size_t chunk) const;
   void check_is_next(std::size_t chunk, std::size_t most) const;
@@ -52,8 +50,6 @@ class PackedChunks {
   std::uint64_t all_chunks_ = 0, first_chunk_ = 0;  ///< of all parts: how many, and where
   std::uint64_t size_;                              ///< of the file, in bytes
   std::vector<std::uint64_t> places_;
-  mutable std::ifstream in_;
-  mutable std::mutex mutex_;
 };
 
 }  // namespace ssdo

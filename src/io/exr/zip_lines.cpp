@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "error.h"
 #include "io/exr/exr_parts.h"
 #include "io/exr/packed_chunks.h"
 #include "io/exr/zip_chunk.h"
@@ -100,6 +101,8 @@ class ZipLines {
     std::vector<std::byte> packed;
     try {
       packed = chunks_.read(chunk, size);
+    } catch (const Error&) {
+      throw;  // of the disk, not of the file
     } catch (const std::runtime_error&) {
       return false;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/exr/deep_reader.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cstring>
 #include <fstream>
@@ -103,6 +103,54 @@ TEST(DeepReader, RefusesFilesThatAreCutShort) {
     std::filesystem::resize_file(dir / "a.exr", std::filesystem::file_size(dir / "a.exr") * 2 / 3);
     EXPECT_THAT(error_of([&] { read_deep(ExrReader(dir / "a.exr"), kUsual); }),
                 IsError(ExitCode::input, "a.exr: is "));
+  }
+}
+
+/// The chunks of pattern({0, 0, 64, 64}), written with one row or 16 x 16 pixels in each.
+std::size_t chunks_of(bool tiles) { return tiles ? 16 : 64; }
+
+/// Reads a file that lacks some chunks, and expects all samples of the others, and no more.
+void expect_salvaged(const std::filesystem::path& path, const std::string& loss) {
+  const ExrReader file(path, Salvage::done);
+  DeepPixels expected = pattern({0, 0, 64, 64});
+  const DeepImage image = read_deep(file, kUsual);
+  for (const Window& gap : file.missing(0).windows) {
+    for (int y = gap.y0; y < gap.y1; ++y)
+      for (int x = gap.x0; x < gap.x1; ++x) expected.at(x, y).clear();
+  }
+  expect_same(image, expected);
+  EXPECT_THAT(file.losses(), testing::ElementsAre(testing::HasSubstr(loss)));
+}
+
+TEST(DeepReader, SalvagesTheChunksThatAreThere) {
+  const TempDir dir;
+  for (const bool tiles : {false, true}) {
+    write_deep(dir / "a.exr", {{.pixels = pattern({0, 0, 64, 64}), .tiles = tiles}});
+    ExrBytes bytes(dir / "a.exr");
+    const std::vector<std::uint64_t> places = bytes.places(chunks_of(tiles));
+    ExrBytes cut = bytes;
+    cut.cut(std::size_t(places[places.size() / 2]) + 9);
+    cut.write(dir / "a.exr");
+    expect_salvaged(dir / "a.exr", tiles ? "8 of 16 tiles are missing or damaged"
+                                         : "32 of 64 rows are missing or damaged");
+    EXPECT_THAT(error_of([&] { read_deep(ExrReader(dir / "a.exr", Salvage::offered), kUsual); }),
+                IsError(ExitCode::input, "--allow-partial"));
+    // The second chunk, in its samples: their packed bytes are the last of it.
+    bytes.put_text(std::size_t(places[2]) - 6, "\xff\xff\xff\xff\xff\xff");
+    bytes.write(dir / "a.exr");
+    expect_salvaged(dir / "a.exr", tiles ? "1 of 16 tiles" : "1 of 64 rows");
+  }
+}
+
+TEST(DeepReader, RefusesFilesOfWhichNothingIsLeft) {
+  const TempDir dir;
+  for (const bool tiles : {false, true}) {
+    write_deep(dir / "a.exr", {{.pixels = pattern({0, 0, 64, 64}), .tiles = tiles}});
+    ExrBytes bytes(dir / "a.exr");
+    bytes.cut(std::size_t(bytes.places(chunks_of(tiles))[0]) + 9);
+    bytes.write(dir / "a.exr");
+    EXPECT_THAT(error_of([&] { read_deep(ExrReader(dir / "a.exr", Salvage::done), kUsual); }),
+                IsError(ExitCode::input, "none of its chunks can be read"));
   }
 }
 

@@ -160,6 +160,9 @@ TEST(ExrReader, ReadsTheFileThatItHasOpened) {
       write_test_exr(dir / "b.exr", {test_header(Box2i({7, 7}, {46, 89}), kMixed, compression)});
       std::filesystem::rename(dir / "b.exr", dir / "a.exr");
       EXPECT_EQ(reader.read(0, kMixedNames)[1].pixels, planes[1].pixels);
+      std::ofstream(dir / "empty.exr").close();
+      std::filesystem::rename(dir / "empty.exr", dir / "a.exr");
+      EXPECT_EQ(reader.read(0, kMixedNames)[1].pixels, planes[1].pixels);
       std::filesystem::remove(dir / "a.exr");
       EXPECT_EQ(reader.read(0, kMixedNames)[1].pixels, planes[1].pixels);
     }
