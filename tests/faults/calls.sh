@@ -87,6 +87,22 @@ test_each_of() {
   say "calls: ${calls%%,*} fails (${*:3}), of $count: $good runs made what they should, $bad refused"
 }
 
+# A frame that its disk does not give is not damaged: --allow-partial makes no part of it.
+test_failing_disk() {
+  local i count=0 most=$((runs / 4))
+  for ((i = 1; i <= most; i++)); do
+    new_case old a.exr
+    around=(strace --follow-forks --quiet=all --output=/dev/null --trace-path="$frame" --trace=pread64
+      --inject="pread64:error=EIO:when=$i+")
+    run "${job[@]}" --allow-partial --overwrite -o a.exr
+    around=()
+    made_or_refused 3 "cannot be read at byte .*: Input/output error" a.exr
+    [ "$code" -eq 0 ] || count=$((count + 1))
+  done
+  [ "$count" -gt 0 ] || complain "no read of a frame failed"
+  say "calls: pread64 of a frame fails with --allow-partial: $count of $most runs refused, the others needed no more reads"
+}
+
 test_calls() {
   local most=$((runs / 8))
   test_each_of write "$most" ENOSPC EIO
@@ -95,6 +111,7 @@ test_calls() {
   test_renaming
   test_each_of lseek "$most" EIO
   test_each_of read,pread64 "$most" EIO
+  test_failing_disk
   test_each_of openat "$most" EMFILE
   test_each_of mmap,brk "$most" ENOMEM
   test_no_thread

@@ -52,6 +52,20 @@ run_in_group() {
     >"$log.out" 2>"$log.err" </dev/null || code=$?
 } 2>/dev/null
 
+# start_in_group ARGUMENTS...: as start, in the control group, and the first there to be killed.
+start_in_group() {
+  arguments=("$@")
+  (echo "$BASHPID" >"$group/cgroup.procs" && echo 1000 >/proc/self/oom_score_adj &&
+    as_plain_user "$tool" "$@") >"$log.out" 2>"$log.err" </dev/null &
+  pid=$!
+}
+
+# take_memory BYTES: by a process of the control group that is never killed, and then ends.
+take_memory() {
+  (echo "$BASHPID" >"$group/cgroup.procs" && echo -1000 >/proc/self/oom_score_adj &&
+    head -c "$1" /dev/zero | tail -c "$1" >/dev/null)
+}
+
 test_control_group() {
   local mib group good=0 killed=0 bad=0 left=0
   for mib in 8 12 16 24 32 48 64 128; do
@@ -72,6 +86,34 @@ test_control_group() {
   done
   [ "$killed" -gt 0 ] || complain "no run was killed for want of memory"
   say "control group: $good made, $bad refused, $killed killed; the next run removed $left temporaries"
+}
+
+# The tool stops when its first temporary is there, and another process of its group, which may not
+# be killed, takes what memory is left to both.
+test_killed_while_writing() {
+  local group i killed=0 left=0
+  for i in 1 2 3 4; do
+    make_group $((256 << 20)) || { drop_group; say "killed while it writes: no control group can be made here; left out"; return 0; }
+    new_case old a.exr a.png
+    start_in_group "${job[@]}" --overwrite -o a.exr -o a.png
+    wait_for_temporary
+    kill -STOP "$pid" 2>/dev/null || true
+    take_memory $((240 << 20))
+    kill -CONT "$pid" 2>/dev/null || true
+    finish
+    if [ "$code" -eq 137 ]; then
+      killed=$((killed + 1))
+      are old a.exr a.png
+      left=$((left + $(leftovers | wc -l)))
+    else
+      made a.exr a.png
+    fi
+    run "${job[@]}" --overwrite -o a.exr -o a.png
+    made a.exr a.png
+    drop_group
+  done
+  [ "$left" -gt 0 ] || complain "no run was killed while it wrote"
+  say "killed for want of memory while it writes: $killed of 4; the next run removed $left temporaries"
 }
 
 test_open_files() {
@@ -110,6 +152,7 @@ test_threads() {
 test_limits() {
   test_address_space
   test_control_group
+  test_killed_while_writing
   test_open_files
   test_threads
 }
