@@ -120,7 +120,7 @@ Measured lost_by_more_light_in_a_map(const Subject& s) {
 
 /// There, a brighter texel in a hidden direction makes the ratio smaller by more than the light
 /// grows where the directions look at it too often. One pixel may lose all, if a single direction
-/// of a map of noise is open to it: the frame may not.
+/// of a map of noise is open to it: the frame may not. 0.25 was the worst of 2873, of three pixels.
 Measured lost_by_more_light_of_a_ratio(const Subject& s) {
   return is_ratio(s) ? lost_by_brighter_texels(s, lost_in_all) : std::nullopt;
 }

@@ -107,7 +107,7 @@ std::span<const FrameProperty> frame_properties() {
       FrameProperty{"light lost by more light of one colour", 1e-5, 1e-5,
                     lost_by_more_light_of_one_color},
       FrameProperty{"light lost by more light in a map", 0.1, 1e-3, lost_by_more_light_in_a_map},
-      FrameProperty{"light lost by more light in a map, of ratios", 0.05, 2e-3,
+      FrameProperty{"light lost by more light in a map, of ratios", 0.3, 5e-3,
                     lost_by_more_light_of_a_ratio},
       FrameProperty{"change by twice the light", 0, 0, change_by_twice_the_light},
       FrameProperty{"change in units of a power of two", 0, 0, change_in_units_of_a_power_of_two},
