@@ -147,6 +147,7 @@ bool RayScene::is_blocked(const glm::dvec3& origin, const glm::dvec3& direction,
   RTCRay ray = ray_of(in_picture);
   if (!is_traceable(ray)) return false;
   Query query(field_, origin, reach, in_picture);
+  if (std::isinf(reach)) query.filter = nullptr;  // whatever is met blocks
   rtcOccluded1(embree_->scene, &query, &ray);
   return ray.tfar < 0;
 }
