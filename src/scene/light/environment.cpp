@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/light/environment.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -20,7 +22,7 @@ constexpr float kPi = glm::pi<float>();
 constexpr int kBlurredSize = 65;
 constexpr int kBlurSourceWidth = 128;  ///< patches of 2.8 degrees
 
-/// Over the texels, of the sum of the channels without its sign; 1 for a black map.
+/// Over the texels, of the sum of the channels without its sign; at least what has a reciprocal.
 float mean_brightness(const Plane<glm::vec3>& map) {
   std::vector<double> of_row(std::size_t(map.height));
   for_each_row(map.height, [&](int y) {
@@ -30,7 +32,7 @@ float mean_brightness(const Plane<glm::vec3>& map) {
     }
   });
   const double sum = std::accumulate(of_row.begin(), of_row.end(), 0.0);
-  return sum > 0 ? float(sum / double(map.size())) : 1;
+  return std::max(float(sum / double(map.size())), std::numeric_limits<float>::min());
 }
 
 }  // namespace

@@ -4,20 +4,21 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "scene/light/sun.h"
 
 namespace ssdo {
 namespace {
 
-/// Over the sphere, without signs; 1 for black patches.
+/// Over the sphere, without signs; at least what has a reciprocal.
 float mean_brightness(const std::vector<Environment::Patch>& patches) {
   double sum = 0, solid_angle = 0;
   for (const Environment::Patch& patch : patches) {
     sum += std::abs(brightness(patch.power));
     solid_angle += patch.solid_angle;
   }
-  return sum > 0 ? float(sum / solid_angle) : 1;
+  return std::max(float(sum / solid_angle), std::numeric_limits<float>::min());
 }
 
 }  // namespace
