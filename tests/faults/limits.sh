@@ -43,6 +43,14 @@ make_group() {
   [ ! -e "$group/$swap" ] || echo 0 >"$group/$swap"
 } 2>/dev/null
 
+# need_group BYTES WHAT: makes the group, or says that WHAT is left out.
+need_group() {
+  make_group "$1" && return
+  drop_group
+  say "$2: no control group can be made here; left out"
+  return 1
+}
+
 drop_group() { rmdir "$group" 2>/dev/null || true; }
 
 # run_in_group ARGUMENTS...: as run, in the control group.
@@ -68,7 +76,7 @@ take_memory() {
 test_control_group() {
   local mib group good=0 killed=0 bad=0 left=0
   for mib in 8 12 16 24 32 48 64 128; do
-    make_group $((mib << 20)) || { drop_group; say "control group: none can be made here; left out"; return 0; }
+    need_group $((mib << 20)) "control group" || return 0
     new_case old a.exr a.png
     run_in_group "${job[@]}" --overwrite -o a.exr -o a.png
     if [ "$code" -eq 137 ]; then
@@ -92,7 +100,7 @@ test_control_group() {
 test_killed_while_writing() {
   local group i killed=0 left=0
   for i in 1 2 3 4; do
-    make_group $((256 << 20)) || { drop_group; say "killed while it writes: no control group can be made here; left out"; return 0; }
+    need_group $((256 << 20)) "killed while it writes" || return 0
     new_case old a.exr a.png
     start_in_group "${job[@]}" --overwrite -o a.exr -o a.png
     wait_for_temporary

@@ -32,7 +32,7 @@ float mean_brightness(const Plane<glm::vec3>& map) {
     }
   });
   const double sum = std::accumulate(of_row.begin(), of_row.end(), 0.0);
-  return std::max(float(sum / double(map.size())), std::numeric_limits<float>::min());
+  return std::max(std::numeric_limits<float>::min(), float(sum / double(map.size())));
 }
 
 }  // namespace

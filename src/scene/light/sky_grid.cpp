@@ -18,7 +18,7 @@ float mean_brightness(const std::vector<Environment::Patch>& patches) {
     sum += std::abs(brightness(patch.power));
     solid_angle += patch.solid_angle;
   }
-  return std::max(float(sum / solid_angle), std::numeric_limits<float>::min());
+  return std::max(std::numeric_limits<float>::min(), float(sum / solid_angle));
 }
 
 }  // namespace
