@@ -51,7 +51,7 @@ need_group() {
   return 1
 }
 
-drop_group() { rmdir "$group" 2>/dev/null || true; }
+drop_group() { rmdir /sys/fs/cgroup/{,memory/}ssdo-faults-$$ 2>/dev/null || true; }
 
 # run_in_group ARGUMENTS...: as run, in the control group.
 run_in_group() {
@@ -68,9 +68,9 @@ start_in_group() {
   pid=$!
 }
 
-# take_memory BYTES: by a process of the control group, which then ends.
+# take_memory BYTES: by a process of the control group, which then ends, or is killed as well.
 take_memory() {
-  (echo "$BASHPID" >"$group/cgroup.procs" && head -c "$1" /dev/zero | tail -c "$1" >/dev/null)
+  (echo "$BASHPID" >"$group/cgroup.procs" && head -c "$1" /dev/zero | tail -c "$1" >/dev/null) || true
 }
 
 test_control_group() {

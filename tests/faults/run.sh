@@ -61,8 +61,9 @@ make_disks() {
 
 end() {
   cd /
-  kill $(jobs -p) 2>/dev/null || true
+  kill -KILL $(jobs -p) 2>/dev/null || true  # one may be stopped
   umount "$small" "$readonly" 2>/dev/null || true
+  drop_group
   rm -rf "$work"
 }
 
