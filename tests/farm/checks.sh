@@ -66,7 +66,8 @@ frames_done() { find relit -name 'relit.*.exr' | wc -l; }
 
 is_shot_complete() { diff -r local relit >/dev/null; }
 
-oldest_frame() { find relit -name 'relit.*' -printf '%T@ %i %p\n' | sort | head -1; }
+# To the end of the list: at head -1, sort may write on and end with SIGPIPE.
+oldest_frame() { find relit -name 'relit.*' -printf '%T@ %i %p\n' | sort | sed -n 1p; }
 
 # check_shot NAME: every file has the bits of the local run, and there are no others.
 check_shot() {

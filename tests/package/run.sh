@@ -30,7 +30,7 @@ check_machine() {
 # The mirror that this machine's apt takes its own release from.
 mirror_of() {
   apt-get indextargets --format '$(CODENAME) $(REPO_URI)' 'Created-By: Packages' 'Origin: Debian' |
-    sed -n "s/^$1 //p" | head -1
+    sed -n "s/^$1 //p" | sed -n 1p
 }
 
 make_package() {
