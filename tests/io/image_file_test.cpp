@@ -276,6 +276,11 @@ TEST(ReadImage, RefusesDamagedChunksOfPng) {
     std::ofstream(dir / "b.png", std::ios::binary) << bytes;
   };
   testing::internal::CaptureStderr();
+  for (const std::size_t place : {4, 5, 6, 7}) {
+    damage("\x89PNG", place);
+    EXPECT_THAT(error_of([&] { read_image(dir / "b.png"); }),
+                IsError(ExitCode::input, "its line ends were changed"));
+  }
   for (const char* chunk : {"IHDR", "IDAT"}) {
     damage(chunk, 5);
     EXPECT_THAT(error_of([&] { read_image(dir / "b.png"); }),

@@ -39,11 +39,14 @@ bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z')
 
 void check_png_chunks(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
-  if (read_bytes(in, 8) != "\x89PNG\r\n\x1a\n"sv) return;
+  const std::string signature = read_bytes(in, 8);
+  if (!signature.starts_with("\x89PNG")) return;
   const auto fail = [&](std::string_view what) {
     throw Error(ExitCode::input, fmt::format("{}: is damaged or cut short ({}); copy it again",
                                              file.string(), what));
   };
+  if (!"\x89PNG\r\n\x1a\n"sv.starts_with(signature))
+    fail("its line ends were changed, as by a transfer as text");
   const std::uintmax_t file_bytes = std::filesystem::file_size(file);
   std::string type;
   while (type != "IEND") {
