@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A frame, flat or deep, up to its surfaces in camera space: layers, G-buffer, the camera of the
-// header and that of P, depth, normals. The last byte of the file chooses the options.
+// header and that of P, depth, normals. The last two bytes of the file choose the options.
 #include <cmath>
 
 #include "fuzz/exr_mutation.h"
@@ -11,6 +11,14 @@
 
 namespace ssdo::fuzz {
 namespace {
+
+/// What --aov may ask for: layers of some files, a channel of a layer, and what no file has.
+const LayerRequest kRequests[] = {{Role::position, "", "ViewLayer.Position"},
+                                  {Role::normal, "", "N"},
+                                  {Role::depth, "", "ViewLayer.Depth.Z"},
+                                  {Role::depth, "", "P.X"},
+                                  {Role::ambient, "", "ViewLayer.Combined"},
+                                  {Role::motion, "", "none"}};
 
 struct Choices {
   InputOptions input;
@@ -33,6 +41,9 @@ Choices choices_of(unsigned bits) {
   if (take(2)) choices.input.view = "left";
   if (take(2)) gbuffer.background_depth = 5.0f;
   choices.allow_partial = take(2) == 1;
+  gbuffer.downsample = int(1 + take(2));
+  for (unsigned count = take(3); count > 0; --count)
+    choices.input.aovs.push_back(kRequests[take(std::size(kRequests))]);
   return choices;
 }
 
@@ -58,9 +69,9 @@ void read_input(Bytes input) {
   static MemoryFile memory;
   memory.hold(input);
   may_refuse([&] {
-    const Choices choices = choices_of(input.empty() ? 0 : input.back());
-    const View view = read_view(open_view(memory.path(), {}, choices.allow_partial), {},
-                                choices.input, choices.camera, {});
+    const Choices choices = choices_of(tail_of(input));
+    const View view = read_view(open_view(memory.path(), {}, choices.allow_partial),
+                                choices.input.aovs, choices.input, choices.camera, {});
     check(view.geometry);
   });
 }
@@ -72,6 +83,9 @@ std::vector<std::string> seeds() { return joined(exr_samples(kinds()), real_fram
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t most, unsigned seed) {
   const std::size_t out = ssdo::fuzz::mutate_exr(data, size, most, ssdo::fuzz::kinds(), seed);
-  if (out > 0 && seed % 8 == 0) data[out - 1] = std::uint8_t(seed >> 8);
+  if (out > 1 && seed % 8 == 0) {
+    data[out - 1] = std::uint8_t(seed >> 8);
+    data[out - 2] = std::uint8_t(seed >> 16);
+  }
   return out;
 }

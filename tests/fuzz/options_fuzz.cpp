@@ -2,6 +2,8 @@
 //
 // A command line, one word on each line up to an empty line, and a config file, which is the rest.
 // Each word is read as what words may be: a frame pattern, a list of frames, FILE:LAYER.
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include "cli/options.h"
@@ -9,13 +11,38 @@
 #include "io/picture_layers.h"
 #include "io/sequence.h"
 #include "scene/layers/layers.h"
+#include "support/temp_dir.h"
 
 namespace ssdo::fuzz {
 namespace {
 
+/// A folder, with its slash, of a sequence whose numbers have any length and sign.
+const std::string& folder() {
+  static const test::TempDir dir;
+  static const std::string path = [] {
+    for (const char* number : {"1", "0001", "-1", "-0012", "2147483647", "-2147483648",
+                               "2147483648", "99999999999999999999", "-", "", "1.5"})
+      std::ofstream(dir / (std::string("in.") + number + ".exr"));
+    std::filesystem::create_directory(dir / "in.0007.exr");
+    return dir.path().string() + '/';
+  }();
+  return path;
+}
+
+/// Frames that are found have files. Above the folder, files come and go.
+void find_files(const std::string& word) {
+  if (word.find("..") != std::string::npos) return;
+  const std::string pattern = folder() + word;
+  for (const int frame : find_frames(pattern)) {
+    require(std::filesystem::is_regular_file(expand_pattern(pattern, frame)),
+            "a frame is found that has no file");
+  }
+}
+
 void read_word(const std::string& word) {
   may_refuse([&] { is_pattern(word); });
   may_refuse([&] { expand_pattern(word, -17); });
+  may_refuse([&] { find_files(word); });
   may_refuse([&] { parse_frames(word); });
   may_refuse([&] { parse_picture_name(word); });
   may_refuse([&] { parse_layer_request(word); });

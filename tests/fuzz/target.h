@@ -15,6 +15,11 @@ namespace ssdo::fuzz {
 /// Reads an input as the tool does.
 void read_input(Bytes input);
 
+/// The last two bytes of an input, by which targets choose options; 0 where there are none.
+inline unsigned tail_of(Bytes input) {
+  return input.size() < 2 ? 0 : input.back() + 256u * input[input.size() - 2];
+}
+
 /// Inputs to begin with, one of every kind that the target tells apart.
 std::vector<std::string> seeds();
 

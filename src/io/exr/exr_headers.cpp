@@ -13,6 +13,7 @@
 #include "error.h"
 #include "io/exr/compression.h"
 #include "io/exr/exr_parts.h"
+#include "io/one_line.h"
 
 namespace ssdo {
 namespace {
@@ -65,7 +66,18 @@ Imf::Header scanline_header(const ExrOutput& output, const ExrPart& part) {
 
 /// That of another part than the one with the planes.
 Imf::Header other_header(const ExrOutput& output, const ExrPart& part) {
-  if (!is_changed(output, part)) return part.header;
+  if (!Imf::isSupportedType(part.header.type())) {
+    throw Error(ExitCode::input,
+                fmt::format("{}: {} is of the type '{}', which no EXR of pixels has, and cannot be "
+                            "kept; leave out --keep-channels",
+                            output.input->path().string(), label(part),
+                            printable(part.header.type())));
+  }
+  if (!is_changed(output, part)) {
+    Imf::Header header = part.header;
+    take_out(header, "chunkCount");  // OpenEXR counts, and refuses one of another type than its own
+    return header;
+  }
   check_crop(output, part, part.channels);
   Imf::Header header = scanline_header(output, part);
   if (is_lossy(header.compression())) header.compression() = Imf::ZIP_COMPRESSION;

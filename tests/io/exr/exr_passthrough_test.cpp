@@ -21,6 +21,7 @@
 #include "io/exr/exr_writer.h"
 #include "io/threads.h"
 #include "support/error_matchers.h"
+#include "support/exr_bytes.h"
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
@@ -43,11 +44,13 @@ Plane<float> ramp(const Window& window) {
   return plane;
 }
 
-/// Adds the plane "new" to part 0 of `input` and keeps all else.
-void pass_through(const ExrReader& input, const fs::path& output, Imf::PixelType type = Imf::HALF) {
-  const Plane<float> plane = ramp(input.parts()[0].data_window);
+/// Adds the plane "new" to a part of `input` and keeps all else.
+void pass_through(const ExrReader& input, const fs::path& output, Imf::PixelType type = Imf::HALF,
+                  int part = 0) {
+  const Plane<float> plane = ramp(input.parts()[std::size_t(part)].data_window);
   ExrOutput out;
   out.input = &input;
+  out.part = part;
   out.planes = {{"new", type, &plane}};
   out.keep_channels = true;
   SafeFile file(output, {.overwrite = true});
@@ -155,6 +158,31 @@ TEST(PassThrough, CopiesEveryCompressionAndLineOrder) {
       EXPECT_EQ(written.parts()[1].header.compression(), Imf::Compression(compression));
     }
   }
+}
+
+/// OpenEXR sets its count of chunks, and refused a header that has it with another type.
+TEST(PassThrough, CopiesPartsWhoseCountOfChunksIsNoInt) {
+  const TempDir dir;
+  write_test_exr(dir / "in.exr", {named(test_header(Box2i({0, 0}, {7, 7}), {{"Z"}}), "other"),
+                                  named(test_header(Box2i({0, 0}, {7, 7}), {{"R"}}), "frame")});
+  ExrBytes bytes(dir / "in.exr");
+  bytes.put_text(bytes.place_of("chunkCount") + sizeof("chunkCount"), "odd");
+  bytes.write(dir / "in.exr");
+  const ExrReader input(dir / "in.exr");
+  pass_through(input, dir / "out.exr", Imf::HALF, 1);
+  expect_same_channels(input, ExrReader(dir / "out.exr"), 0);
+}
+
+TEST(PassThrough, RefusesToKeepPartsOfUnknownType) {
+  const TempDir dir;
+  write_test_exr(dir / "in.exr", {named(test_header(Box2i({0, 0}, {7, 7}), {{"Z"}}), "other"),
+                                  named(test_header(Box2i({0, 0}, {7, 7}), {{"R"}}), "frame")});
+  ExrBytes bytes(dir / "in.exr");
+  bytes.put_text(bytes.value_of("type"), "scanlinefutur");
+  bytes.write(dir / "in.exr");
+  const ExrReader input(dir / "in.exr");
+  EXPECT_THAT(error_of([&] { pass_through(input, dir / "out.exr", Imf::HALF, 1); }),
+              IsError(ExitCode::input, "'other' is of the type 'scanlinefutur', which no EXR"));
 }
 
 TEST(PassThrough, KeepsSubsampledChannels) {
