@@ -13,8 +13,10 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "io/exr/chunk_sizes.h"
 #include "io/exr/exr_parts.h"
 #include "io/one_line.h"
+#include "io/size_guard.h"
 
 namespace ssdo {
 namespace {
@@ -27,6 +29,25 @@ void copy_chunks(Imf::MultiPartInputFile& from, int index, Imf::MultiPartOutputF
 }
 
 }  // namespace
+
+void check_copy(const ExrReader& input, const ExrPart& part) {
+  double value_bytes = 0;  // of a pixel
+  for (const ExrChannel& channel : part.channels) value_bytes += float_bytes(channel);
+  if (part.deep) value_bytes = sizeof(std::uint32_t);  // its count of samples
+  const double chunk = part.deep ? value_bytes * pixels_per_chunk(part) : decoder_bytes(part);
+  check_decoded_size(input.path(), input.input().bytes(), claimed_bytes(part, value_bytes), chunk,
+                     largest_ratio(part));
+  if (!part.deep) return;
+  try {
+    check_chunk_sizes(input, part, part.data_window);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw_damaged(input, part, error);
+  }
+}
 
 void copy_part(const ExrReader& input, const ExrPart& part, Imf::MultiPartOutputFile& output) {
   const auto copy =

@@ -12,6 +12,7 @@
 
 #include "error.h"
 #include "io/exr/compression.h"
+#include "io/exr/exr_copy.h"
 #include "io/exr/exr_parts.h"
 #include "io/one_line.h"
 
@@ -74,6 +75,7 @@ Imf::Header other_header(const ExrOutput& output, const ExrPart& part) {
                             printable(part.header.type())));
   }
   if (!is_changed(output, part)) {
+    check_copy(*output.input, part);
     Imf::Header header = part.header;
     take_out(header, "chunkCount");  // OpenEXR counts, and refuses one of another type than its own
     return header;

@@ -168,6 +168,16 @@ double tile_row_bytes(const ExrPart& part) {
          double(tiles.ySize);
 }
 
+double float_bytes(const ExrChannel& channel) {
+  return 4.0 / (double(channel.x_sampling) * channel.y_sampling);
+}
+
+double claimed_bytes(const ExrPart& part, double value_bytes) {
+  constexpr double kLargeTiles = 1 << 28;  // bytes; below, a tile may well be larger than its image
+  const double tiles = tile_row_bytes(part), pixels = double(part.data_window.area()) * value_bytes;
+  return tiles > kLargeTiles ? std::max(pixels, tiles) : pixels;
+}
+
 void take_out(Imf::Header& header, const std::string& name) {
   if (header.find(name) == header.end()) return;
   const std::unique_ptr<Imf::Attribute> attribute(&header[name]);

@@ -89,16 +89,11 @@ double pixels_in_memory(const ExrPart& part, const PixelGrid& grid) {
 void check_size(const ExrReader& reader, const ExrPart& part, Names names,
                 const PixelGrid& grid = {}) {
   double value_bytes = 0;  // of a pixel
-  for (const std::string& name : names) {
-    const ExrChannel& channel = find_channel(reader, part, name);
-    value_bytes += 4.0 / (double(channel.x_sampling) * channel.y_sampling);
-  }
+  for (const std::string& name : names)
+    value_bytes += float_bytes(find_channel(reader, part, name));
   const double ratio = largest_ratio(part),
                with_gaps = std::min(kLargestRatio, ratio / kLeastShare);
-  constexpr double kLargeTiles = 1 << 28;  // bytes; below, a tile may well be larger than its image
-  const double tiles = tile_row_bytes(part), pixels = double(part.data_window.area()) * value_bytes;
-  check_decoded_size(reader.path(), reader.input().bytes(),
-                     tiles > kLargeTiles ? std::max(pixels, tiles) : pixels,
+  check_decoded_size(reader.path(), reader.input().bytes(), claimed_bytes(part, value_bytes),
                      pixels_in_memory(part, grid) * value_bytes + decoder_bytes(part),
                      reader.salvage() == Salvage::none ? ratio : with_gaps);
 }

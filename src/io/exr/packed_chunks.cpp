@@ -145,7 +145,8 @@ std::vector<std::byte> PackedChunks::read(std::size_t chunk, std::size_t most) c
   if (!head.part) throw std::runtime_error("a chunk is missing or cut short");
   if (!is_of(head, chunk)) throw std::runtime_error("a chunk stands in the place of another");
   if (head.bytes > most) throw std::runtime_error("a chunk claims more bytes than its pixels take");
-  if (head.bytes > size_ - head.place) throw std::runtime_error("a chunk is cut short");
+  if (head.bytes > size_ - head.place || head.samples > size_ - head.place - head.bytes)
+    throw std::runtime_error("a chunk is cut short");
   std::vector<std::byte> bytes(head.bytes);
   if (file_.input().read(head.place, bytes) < bytes.size())
     throw std::runtime_error("a chunk is cut short");

@@ -185,6 +185,35 @@ TEST(PassThrough, RefusesToKeepPartsOfUnknownType) {
               IsError(ExitCode::input, "'other' is of the type 'scanlinefutur', which no EXR"));
 }
 
+/// OpenEXR made room for 170 GiB.
+TEST(PassThrough, RefusesToKeepPartsLargerThanTheirFile) {
+  const TempDir dir;
+  write_test_exr(dir / "in.exr", {named(test_header(Box2i({0, 0}, {7, 7}), {{"Z"}}), "other"),
+                                  named(test_header(Box2i({0, 0}, {7, 7}), {{"R"}}), "frame")});
+  ExrBytes bytes(dir / "in.exr");
+  bytes.put_int(bytes.value_of("dataWindow") + 8, 973078539);
+  bytes.write(dir / "in.exr");
+  const ExrReader input(dir / "in.exr");
+  EXPECT_THAT(error_of([&] { pass_through(input, dir / "out.exr", Imf::HALF, 1); }),
+              IsError(ExitCode::input, "its header claims"));
+}
+
+TEST(PassThrough, RefusesToKeepDeepChunksLargerThanTheirFile) {
+  const TempDir dir;
+  Imf::Header deep = named(test_header(Box2i({0, 0}, {7, 0}), {{"Z"}}), "deep");
+  deep.compression() = Imf::ZIPS_COMPRESSION;
+  deep.setType(Imf::DEEPSCANLINE);
+  write_test_exr(dir / "in.exr",
+                 {deep, named(test_header(Box2i({0, 0}, {7, 0}), {{"R"}}), "frame")});
+  ExrBytes bytes(dir / "in.exr");
+  constexpr std::size_t kSamples = 16;  // behind the part, the row and the size of the counts
+  bytes.put_place(bytes.places(2)[0] + kSamples, std::uint64_t(1) << 40);
+  bytes.write(dir / "in.exr");
+  const ExrReader input(dir / "in.exr");
+  EXPECT_THAT(error_of([&] { pass_through(input, dir / "out.exr", Imf::HALF, 1); }),
+              IsError(ExitCode::input, "a chunk is cut short"));
+}
+
 TEST(PassThrough, KeepsSubsampledChannels) {
   const TempDir dir;
   write_test_exr(dir / "in.exr", {test_header(Box2i({-4, -6}, {27, 601}),
