@@ -7,8 +7,8 @@
 
 namespace ssdo {
 
-/// OpenEXR makes room for chunks as large as a header claims, and for as many samples as a deep chunk
-/// claims. Throws ExitCode::input where the file cannot hold them, before copy_part().
+/// OpenEXR makes room for chunks as large as a header claims, and for as many samples as a deep
+/// chunk claims. Throws ExitCode::input where the file cannot hold them, before copy_part().
 void check_copy(const ExrReader& input, const ExrPart& part);
 
 /// Copies the compressed chunks of a part, flat or deep, into the part of `output` that has the

@@ -56,8 +56,8 @@ double tile_row_bytes(const ExrPart& part);
 /// What a channel takes of each pixel as float.
 double float_bytes(const ExrChannel& channel);
 
-/// What a header claims of a part: its pixels with `value_bytes` of each, or a row of its tiles where
-/// these are large.
+/// What a header claims of a part: its pixels with `value_bytes` of each, or a row of its tiles
+/// where these are large.
 double claimed_bytes(const ExrPart& part, double value_bytes);
 
 /// Takes an attribute out of a header, if it is there. OpenEXR's Header::erase() does not free it.
