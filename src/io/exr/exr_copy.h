@@ -7,8 +7,9 @@
 
 namespace ssdo {
 
-/// OpenEXR makes room for chunks as large as a header claims, and for as many samples as a deep
-/// chunk claims. Throws ExitCode::input where the file cannot hold them, before copy_part().
+/// OpenEXR makes room for chunks as large as a header claims and for as many samples as a deep
+/// chunk claims, and reads tiles as long as they claim to be. Throws ExitCode::input where the file
+/// or a chunk cannot hold them. To be called before copy_part(), and before the output is opened.
 void check_copy(const ExrReader& input, const ExrPart& part);
 
 /// Copies the compressed chunks of a part, flat or deep, into the part of `output` that has the

@@ -17,6 +17,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <optional>
 
 #include "io/exr/exr_writer.h"
 #include "io/threads.h"
@@ -160,58 +161,72 @@ TEST(PassThrough, CopiesEveryCompressionAndLineOrder) {
   }
 }
 
+/// A file of the parts "other", by this header, and "frame", of which a test changes bytes. The
+/// frame is then written with all else.
+class OtherPart : public testing::Test {
+ protected:
+  explicit OtherPart(Imf::Header other = test_header(Box2i({0, 0}, {7, 7}), {{"Z"}})) {
+    write_test_exr(dir_ / "in.exr", {named(std::move(other), "other"),
+                                     named(test_header(Box2i({0, 0}, {7, 7}), {{"R"}}), "frame")});
+    bytes_.emplace(dir_ / "in.exr");
+  }
+
+  void pass() {
+    bytes_->write(dir_ / "in.exr");
+    pass_through(ExrReader(dir_ / "in.exr"), dir_ / "out.exr", Imf::HALF, 1);
+  }
+
+  TempDir dir_;
+  std::optional<ExrBytes> bytes_;
+};
+
 /// OpenEXR sets its count of chunks, and refused a header that has it with another type.
-TEST(PassThrough, CopiesPartsWhoseCountOfChunksIsNoInt) {
-  const TempDir dir;
-  write_test_exr(dir / "in.exr", {named(test_header(Box2i({0, 0}, {7, 7}), {{"Z"}}), "other"),
-                                  named(test_header(Box2i({0, 0}, {7, 7}), {{"R"}}), "frame")});
-  ExrBytes bytes(dir / "in.exr");
-  bytes.put_text(bytes.place_of("chunkCount") + sizeof("chunkCount"), "odd");
-  bytes.write(dir / "in.exr");
-  const ExrReader input(dir / "in.exr");
-  pass_through(input, dir / "out.exr", Imf::HALF, 1);
-  expect_same_channels(input, ExrReader(dir / "out.exr"), 0);
+TEST_F(OtherPart, IsCopiedWhereItsCountOfChunksIsNoInt) {
+  bytes_->put_text(bytes_->place_of("chunkCount") + sizeof("chunkCount"), "odd");
+  pass();
+  expect_same_channels(ExrReader(dir_ / "in.exr"), ExrReader(dir_ / "out.exr"), 0);
 }
 
-TEST(PassThrough, RefusesToKeepPartsOfUnknownType) {
-  const TempDir dir;
-  write_test_exr(dir / "in.exr", {named(test_header(Box2i({0, 0}, {7, 7}), {{"Z"}}), "other"),
-                                  named(test_header(Box2i({0, 0}, {7, 7}), {{"R"}}), "frame")});
-  ExrBytes bytes(dir / "in.exr");
-  bytes.put_text(bytes.value_of("type"), "scanlinefutur");
-  bytes.write(dir / "in.exr");
-  const ExrReader input(dir / "in.exr");
-  EXPECT_THAT(error_of([&] { pass_through(input, dir / "out.exr", Imf::HALF, 1); }),
+TEST_F(OtherPart, IsRefusedWhereItsTypeIsUnknown) {
+  bytes_->put_text(bytes_->value_of("type"), "scanlinefutur");
+  EXPECT_THAT(error_of([&] { pass(); }),
               IsError(ExitCode::input, "'other' is of the type 'scanlinefutur', which no EXR"));
 }
 
 /// OpenEXR made room for 170 GiB.
-TEST(PassThrough, RefusesToKeepPartsLargerThanTheirFile) {
-  const TempDir dir;
-  write_test_exr(dir / "in.exr", {named(test_header(Box2i({0, 0}, {7, 7}), {{"Z"}}), "other"),
-                                  named(test_header(Box2i({0, 0}, {7, 7}), {{"R"}}), "frame")});
-  ExrBytes bytes(dir / "in.exr");
-  bytes.put_int(bytes.value_of("dataWindow") + 8, 973078539);
-  bytes.write(dir / "in.exr");
-  const ExrReader input(dir / "in.exr");
-  EXPECT_THAT(error_of([&] { pass_through(input, dir / "out.exr", Imf::HALF, 1); }),
-              IsError(ExitCode::input, "its header claims"));
+TEST_F(OtherPart, IsRefusedWhereItClaimsMoreThanTheFileHolds) {
+  bytes_->put_int(bytes_->value_of("dataWindow") + 8, 973078539);
+  EXPECT_THAT(error_of([&] { pass(); }), IsError(ExitCode::input, "its header claims"));
 }
 
-TEST(PassThrough, RefusesToKeepDeepChunksLargerThanTheirFile) {
-  const TempDir dir;
-  Imf::Header deep = named(test_header(Box2i({0, 0}, {7, 0}), {{"Z"}}), "deep");
-  deep.compression() = Imf::ZIPS_COMPRESSION;
+Imf::Header deep_header() {
+  Imf::Header deep = test_header(Box2i({0, 0}, {7, 7}), {{"Z"}}, Imf::ZIPS_COMPRESSION);
   deep.setType(Imf::DEEPSCANLINE);
-  write_test_exr(dir / "in.exr",
-                 {deep, named(test_header(Box2i({0, 0}, {7, 0}), {{"R"}}), "frame")});
-  ExrBytes bytes(dir / "in.exr");
+  return deep;
+}
+
+class OtherDeepPart : public OtherPart {
+ protected:
+  OtherDeepPart() : OtherPart(deep_header()) {}
+};
+
+TEST_F(OtherDeepPart, IsRefusedWhereAChunkClaimsMoreThanTheFileHolds) {
   constexpr std::size_t kSamples = 16;  // behind the part, the row and the size of the counts
-  bytes.put_place(bytes.places(2)[0] + kSamples, std::uint64_t(1) << 40);
-  bytes.write(dir / "in.exr");
-  const ExrReader input(dir / "in.exr");
-  EXPECT_THAT(error_of([&] { pass_through(input, dir / "out.exr", Imf::HALF, 1); }),
-              IsError(ExitCode::input, "a chunk is cut short"));
+  bytes_->put_place(bytes_->places(9)[0] + kSamples, std::uint64_t(1) << 40);
+  EXPECT_THAT(error_of([&] { pass(); }), IsError(ExitCode::input, "a chunk is cut short"));
+}
+
+class OtherTiledPart : public OtherPart {
+ protected:
+  OtherTiledPart() : OtherPart(tiled(test_header(Box2i({0, 0}, {7, 7}), {{"Z"}}), 8)) {}
+};
+
+/// OpenEXR read it as long as it claims to be, and beyond its memory.
+TEST_F(OtherTiledPart, IsRefusedWhereATileClaimsANegativeSize) {
+  constexpr std::size_t kSize = 20;  // behind the part, the place of the tile and its level
+  bytes_->put_int(bytes_->places(2)[0] + kSize, -2000000000);
+  EXPECT_THAT(error_of([&] { pass(); }),
+              IsError(ExitCode::input, "a chunk claims more bytes than its pixels take"));
 }
 
 TEST(PassThrough, KeepsSubsampledChannels) {
