@@ -151,4 +151,8 @@ void check_chunk_sizes(const ExrReader& file, const ExrPart& part, const Window&
   }
 }
 
+void check_smaller_levels(const ExrReader& file, const ExrPart& part) {
+  PackedChunks(file, part).check_smaller_levels(most_packed(part));
+}
+
 }  // namespace ssdo

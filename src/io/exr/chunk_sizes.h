@@ -17,4 +17,8 @@ void check_chunk_size(const ExrPart& part, const PackedChunks& chunks, std::size
 void check_chunk_sizes(const ExrReader& file, const ExrPart& part, const Window& rows,
                        const MissingChunks& missing = {});
 
+/// Throws std::runtime_error where a tile of a smaller level of a part is cut short or claims more
+/// bytes than a tile's pixels take.
+void check_smaller_levels(const ExrReader& file, const ExrPart& part);
+
 }  // namespace ssdo

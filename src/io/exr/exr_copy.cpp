@@ -41,6 +41,7 @@ void check_copy(const ExrReader& input, const ExrPart& part) {
   if (!part.deep && !is_tiled(part)) return;
   try {
     check_chunk_sizes(input, part, part.data_window);
+    check_smaller_levels(input, part);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

@@ -144,13 +144,24 @@ std::vector<std::byte> PackedChunks::read(std::size_t chunk, std::size_t most) c
   const Head head = head_of(chunk);
   if (!head.part) throw std::runtime_error("a chunk is missing or cut short");
   if (!is_of(head, chunk)) throw std::runtime_error("a chunk stands in the place of another");
-  if (head.bytes > most) throw std::runtime_error("a chunk claims more bytes than its pixels take");
-  if (head.bytes > size_ - head.place || head.samples > size_ - head.place - head.bytes)
-    throw std::runtime_error("a chunk is cut short");
+  check_size(head, most);
   std::vector<std::byte> bytes(head.bytes);
   if (file_.input().read(head.place, bytes) < bytes.size())
     throw std::runtime_error("a chunk is cut short");
   return bytes;
+}
+
+void PackedChunks::check_smaller_levels(std::size_t most) const {
+  for (const std::uint64_t place : smaller_places_) {
+    const Head head = place == 0 ? Head() : head_at(place);
+    if (head.part == &part_) check_size(head, most);  // of the others OpenEXR says it itself
+  }
+}
+
+void PackedChunks::check_size(const Head& head, std::size_t most) const {
+  if (head.bytes > most) throw std::runtime_error("a chunk claims more bytes than its pixels take");
+  if (head.bytes > size_ - head.place || head.samples > size_ - head.place - head.bytes)
+    throw std::runtime_error("a chunk is cut short");
 }
 
 /// The tables of all parts stand one after another, each with the full resolution first.
@@ -162,8 +173,10 @@ void PackedChunks::read_table() {
   }
   first_chunk_ = file_.tables() + 8 * all_chunks_;
   places_.resize(count());
-  Numbers numbers(file_.input(), table, std::min(8 * count(), std::size_t(size_)));
+  smaller_places_.resize(count_chunks(part_) - count());
+  Numbers numbers(file_.input(), table, std::min(8 * count_chunks(part_), size_));
   for (std::uint64_t& place : places_) place = numbers.next<std::uint64_t>();
+  for (std::uint64_t& place : smaller_places_) place = numbers.next<std::uint64_t>();
 }
 
 /// Goes from chunk to chunk, as OpenEXR does where a table is incomplete. OpenEXR may stop earlier,
@@ -172,17 +185,21 @@ void PackedChunks::search() {
   std::uint64_t next = first_chunk_;
   for (std::uint64_t i = 0; i < all_chunks_; ++i) {
     const Head head = head_at(next);
-    if (!head.part || head.bytes > size_ || head.samples > size_) return;
-    const std::int64_t row =
-        is_tiled(part_) ? head.y : (std::int64_t(head.y) - part_.data_window.y0) / height_;
-    if (head.part == &part_ && head.full_resolution && head.x >= 0 && head.x < columns_ &&
-        row >= 0 && row < rows_) {
-      std::uint64_t& place =
-          places_[std::size_t(row) * std::size_t(columns_) + std::size_t(head.x)];
-      place = place == 0 || place == next ? next : kNowhere;
-    }
+    if (!head.part) return;
+    if (head.part == &part_) add_place(head, next);
+    if (head.bytes > size_ || head.samples > size_) return;
     next = head.end();
   }
+}
+
+/// Of a chunk of this part that was found in the file.
+void PackedChunks::add_place(const Head& head, std::uint64_t found) {
+  if (!head.full_resolution) return smaller_places_.push_back(found);
+  const std::int64_t row =
+      is_tiled(part_) ? head.y : (std::int64_t(head.y) - part_.data_window.y0) / height_;
+  if (head.x < 0 || head.x >= columns_ || row < 0 || row >= rows_) return;
+  std::uint64_t& place = places_[std::size_t(row) * std::size_t(columns_) + std::size_t(head.x)];
+  place = place == 0 || place == found ? found : kNowhere;
 }
 
 PackedChunks::Head PackedChunks::head_at(std::uint64_t place) const {

@@ -33,14 +33,20 @@ class PackedChunks {
   /// and where OpenEXR would take other bytes for it than those at its place.
   std::vector<std::byte> read(std::size_t chunk, std::size_t most) const;
 
+  /// Throws std::runtime_error where a tile of a smaller level is cut short or larger than `most`
+  /// bytes.
+  void check_smaller_levels(std::size_t most) const;
+
  private:
   struct Head;
 
   void read_table();
   void search();
+  void add_place(const Head& head, std::uint64_t found);
   Head head_at(std::uint64_t place) const;
   Head head_of(std::size_t chunk) const;
   bool is_of(const Head& head, std::size_t chunk) const;
+  void check_size(const Head& head, std::size_t most) const;
   void check_is_next(std::size_t chunk, std::size_t most) const;
 
   const ExrReader& file_;
@@ -49,7 +55,8 @@ class PackedChunks {
   int columns_, rows_;                              ///< of chunks
   std::uint64_t all_chunks_ = 0, first_chunk_ = 0;  ///< of all parts: how many, and where
   std::uint64_t size_;                              ///< of the file, in bytes
-  std::vector<std::uint64_t> places_;
+  std::vector<std::uint64_t> places_;          ///< of the chunks; 0 where one is missing
+  std::vector<std::uint64_t> smaller_places_;  ///< of the tiles of all smaller levels
 };
 
 }  // namespace ssdo

@@ -216,17 +216,52 @@ TEST_F(OtherDeepPart, IsRefusedWhereAChunkClaimsMoreThanTheFileHolds) {
   EXPECT_THAT(error_of([&] { pass(); }), IsError(ExitCode::input, "a chunk is cut short"));
 }
 
+/// Tiles of 8x8, 4x4, 2x2 and 1x1 pixels.
 class OtherTiledPart : public OtherPart {
  protected:
-  OtherTiledPart() : OtherPart(tiled(test_header(Box2i({0, 0}, {7, 7}), {{"Z"}}), 8)) {}
+  OtherTiledPart()
+      : OtherPart(tiled(test_header(Box2i({0, 0}, {7, 7}), {{"Z"}}), 8, Imf::MIPMAP_LEVELS)) {}
+
+  void claim_negative_size(std::size_t tile) {
+    constexpr std::size_t kSize = 20;  // behind the part, the place of the tile and its level
+    bytes_->put_int(bytes_->places(kChunks)[tile] + kSize, -2000000000);
+  }
+
+  void expect_refused() {
+    EXPECT_THAT(error_of([&] { pass(); }),
+                IsError(ExitCode::input, "a chunk claims more bytes than its pixels take"));
+  }
+
+  static constexpr std::size_t kChunks = 5;
 };
 
 /// OpenEXR read it as long as it claims to be, and beyond its memory.
 TEST_F(OtherTiledPart, IsRefusedWhereATileClaimsANegativeSize) {
-  constexpr std::size_t kSize = 20;  // behind the part, the place of the tile and its level
-  bytes_->put_int(bytes_->places(2)[0] + kSize, -2000000000);
-  EXPECT_THAT(error_of([&] { pass(); }),
-              IsError(ExitCode::input, "a chunk claims more bytes than its pixels take"));
+  claim_negative_size(0);
+  expect_refused();
+}
+
+TEST_F(OtherTiledPart, IsRefusedWhereATileOfASmallerLevelDoes) {
+  claim_negative_size(2);
+  expect_refused();
+}
+
+/// OpenEXR looks for a tile itself where its place is missing.
+TEST_F(OtherTiledPart, IsRefusedWhereOpenExrFindsSuchATile) {
+  constexpr std::size_t kTile = 3;
+  claim_negative_size(kTile);
+  bytes_->put_place(bytes_->table(kChunks) + 8 * kTile, 0);
+  expect_refused();
+}
+
+TEST_F(OtherTiledPart, IsCopiedWithAllLevels) {
+  pass();
+  const ExrReader before(dir_ / "in.exr"), after(dir_ / "out.exr");
+  expect_same_channels(before, after, 0);
+  const std::vector<std::uint64_t> old_places = bytes_->places(kChunks),
+                                   new_places = ExrBytes(dir_ / "out.exr").places(kChunks);
+  for (std::size_t tile = 0; tile + 1 < kChunks; ++tile)
+    EXPECT_EQ(old_places[tile + 1] - old_places[tile], new_places[tile + 1] - new_places[tile]);
 }
 
 TEST(PassThrough, KeepsSubsampledChannels) {
