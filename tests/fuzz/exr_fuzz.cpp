@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Flat EXRs: every channel of every part, as float and as stored, and what the names of layers say.
-// ZIP chunks that our own code takes have to give what OpenEXR gives. The last byte chooses whether
-// files are salvaged.
+// ZIP chunks that our own code takes have to give what OpenEXR gives. Some files are written again.
+// The last two bytes choose which, and which are salvaged.
 #include <ImfFrameBuffer.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
@@ -10,6 +10,7 @@
 #include "fuzz/exr_mutation.h"
 #include "fuzz/real_files.h"
 #include "fuzz/target.h"
+#include "fuzz/written_back.h"
 #include "io/exr/exr_parts.h"
 #include "io/exr/exr_reader.h"
 #include "io/exr/header_numbers.h"
@@ -47,7 +48,7 @@ void compare(const ExrReader& file, const ExrPart& part, const std::vector<Store
     require(ours[i].pixels == theirs[i].pixels, "the ZIP code and OpenEXR read other pixels");
 }
 
-void read_part(const ExrReader& file, const ExrPart& part) {
+void read_part(const ExrReader& file, const ExrPart& part, unsigned choices) {
   std::vector<std::string> full, all;
   for (const ExrChannel& channel : part.channels) {
     all.push_back(channel.name);
@@ -60,6 +61,7 @@ void read_part(const ExrReader& file, const ExrPart& part) {
     const bool is_whole = file.salvage() == Salvage::none;
     if (is_whole && is_zip(part.header.compression()) && !is_tiled(part) && all == full)
       compare(file, part, stored);
+    if (choices % 4 == 3) write_back(file, part, choices / 4);
   });
 }
 
@@ -68,11 +70,11 @@ void read_part(const ExrReader& file, const ExrPart& part) {
 void read_input(Bytes input) {
   static MemoryFile memory;
   memory.hold(input);
-  const bool salvages = !input.empty() && input.back() % 4 == 3;
+  const unsigned choices = tail_of(input);
   may_refuse([&] {
-    const ExrReader file(memory.path(), salvages ? Salvage::done : Salvage::none);
+    const ExrReader file(memory.path(), choices % 4 == 3 ? Salvage::done : Salvage::none);
     for (const ExrPart& part : file.parts()) {
-      read_part(file, part);
+      read_part(file, part, choices / 4);
       header_numbers(file, part.index);
       is_by_blender(part.header);
     }
