@@ -64,24 +64,35 @@ std::vector<std::uint64_t> tiles_of_levels(std::uint64_t side, std::uint64_t til
   return tiles;
 }
 
+/// The numbers of tiles at each level. Those of mip maps are as many for columns as for rows.
+struct TileCounts {
+  std::vector<std::uint64_t> columns, rows;
+
+  explicit TileCounts(const ExrPart& part) {
+    const Imf::TileDescription& tile = part.header.tileDescription();
+    const auto width = std::uint64_t(part.data_window.width()),
+               height = std::uint64_t(part.data_window.height());
+    if (tile.mode == Imf::ONE_LEVEL) {
+      columns = {divide_up(width, tile.xSize)}, rows = {divide_up(height, tile.ySize)};
+      return;
+    }
+    const bool mipmap = tile.mode == Imf::MIPMAP_LEVELS;
+    const std::uint64_t largest = std::max(width, height);
+    columns = tiles_of_levels(width, tile.xSize, mipmap ? largest : width, tile.roundingMode);
+    rows = tiles_of_levels(height, tile.ySize, mipmap ? largest : height, tile.roundingMode);
+  }
+};
+
 /// Of all levels, as many as there are places in the part's table. A part of a type that OpenEXR
 /// does not know says so itself.
 std::uint64_t count_chunks(const ExrPart& part) {
   if (!Imf::isSupportedType(part.header.type())) return std::uint64_t(part.header.chunkCount());
-  const auto width = std::uint64_t(part.data_window.width()),
-             height = std::uint64_t(part.data_window.height());
-  if (!is_tiled(part))
-    return divide_up(height, std::uint64_t(lines_per_chunk(part.header.compression())));
-  const Imf::TileDescription& tile = part.header.tileDescription();
-  if (tile.mode == Imf::ONE_LEVEL)
-    return divide_up(width, tile.xSize) * divide_up(height, tile.ySize);
-  const bool mipmap = tile.mode == Imf::MIPMAP_LEVELS;
-  const std::uint64_t largest = std::max(width, height);
-  const auto columns =
-      tiles_of_levels(width, tile.xSize, mipmap ? largest : width, tile.roundingMode);
-  const auto rows =
-      tiles_of_levels(height, tile.ySize, mipmap ? largest : height, tile.roundingMode);
-  if (mipmap)
+  if (!is_tiled(part)) {
+    return divide_up(std::uint64_t(part.data_window.height()),
+                     std::uint64_t(lines_per_chunk(part.header.compression())));
+  }
+  const auto [columns, rows] = TileCounts(part);
+  if (part.header.tileDescription().mode == Imf::MIPMAP_LEVELS)
     return std::inner_product(columns.begin(), columns.end(), rows.begin(), std::uint64_t(0));
   return std::accumulate(columns.begin(), columns.end(), std::uint64_t(0)) *
          std::accumulate(rows.begin(), rows.end(), std::uint64_t(0));
@@ -98,12 +109,25 @@ constexpr std::uint64_t kNowhere = ~std::uint64_t(0);
 struct PackedChunks::Head {
   const ExrPart* part = nullptr;  ///< none: there is no chunk
   std::int32_t x = 0, y = 0;      ///< the column and row of a tile, or the first scanline
-  bool full_resolution = true;
+  std::int32_t x_level = 0, y_level = 0;
   std::uint64_t bytes = 0;    ///< of a flat chunk, or of a deep one's table of sample counts
   std::uint64_t samples = 0;  ///< the bytes of a deep chunk's samples, which follow
   std::uint64_t place = 0;    ///< where the bytes begin
 
   std::uint64_t end() const { return place + bytes + samples; }
+  bool is_full_resolution() const { return x_level == 0 && y_level == 0; }
+
+  /// Whether the part has such a scanline or tile. The rows of mip maps are those of the level that
+  /// the columns have.
+  bool is_in_part() const {
+    if (!is_tiled(*part)) return y >= part->data_window.y0 && y < part->data_window.y1;
+    if (std::min({x, y, x_level, y_level}) < 0) return false;
+    const auto [columns, rows] = TileCounts(*part);
+    const bool mipmap = part->header.tileDescription().mode == Imf::MIPMAP_LEVELS;
+    const auto across = std::size_t(x_level), down = std::size_t(mipmap ? x_level : y_level);
+    return across < columns.size() && std::size_t(y_level) < rows.size() &&
+           std::uint64_t(x) < columns[across] && std::uint64_t(y) < rows[down];
+  }
 };
 
 PackedChunks::PackedChunks(const ExrReader& file, const ExrPart& part)
@@ -179,13 +203,14 @@ void PackedChunks::read_table() {
   for (std::uint64_t& place : smaller_places_) place = numbers.next<std::uint64_t>();
 }
 
-/// Goes from chunk to chunk, as OpenEXR does where a table is incomplete. OpenEXR may stop earlier,
-/// and take what the table says or the first of two places.
+/// Goes from chunk to chunk, as OpenEXR does where a table is incomplete, and as far. OpenEXR may
+/// take what the table says, or the first of two places.
+/// Source: OpenEXR 3.1, ImfMultiPartInputFile.cpp, chunkOffsetReconstruction().
 void PackedChunks::search() {
   std::uint64_t next = first_chunk_;
   for (std::uint64_t i = 0; i < all_chunks_; ++i) {
     const Head head = head_at(next);
-    if (!head.part) return;
+    if (!head.part || !head.is_in_part()) return;
     if (head.part == &part_) add_place(head, next);
     if (head.bytes > size_ || head.samples > size_) return;
     next = head.end();
@@ -194,10 +219,9 @@ void PackedChunks::search() {
 
 /// Of a chunk of this part that was found in the file.
 void PackedChunks::add_place(const Head& head, std::uint64_t found) {
-  if (!head.full_resolution) return smaller_places_.push_back(found);
+  if (!head.is_full_resolution()) return smaller_places_.push_back(found);
   const std::int64_t row =
       is_tiled(part_) ? head.y : (std::int64_t(head.y) - part_.data_window.y0) / height_;
-  if (head.x < 0 || head.x >= columns_ || row < 0 || row >= rows_) return;
   std::uint64_t& place = places_[std::size_t(row) * std::size_t(columns_) + std::size_t(head.x)];
   place = place == 0 || place == found ? found : kNowhere;
 }
@@ -209,7 +233,10 @@ PackedChunks::Head PackedChunks::head_at(std::uint64_t place) const {
   Head head{&file_.parts()[part]};
   if (is_tiled(*head.part)) head.x = std::int32_t(numbers.next<std::uint32_t>());
   head.y = std::int32_t(numbers.next<std::uint32_t>());
-  if (is_tiled(*head.part)) head.full_resolution = numbers.next<std::uint64_t>() == 0;
+  if (is_tiled(*head.part)) {
+    head.x_level = std::int32_t(numbers.next<std::uint32_t>());
+    head.y_level = std::int32_t(numbers.next<std::uint32_t>());
+  }
   if (head.part->deep) {
     head.bytes = numbers.next<std::uint64_t>();
     head.samples = numbers.next<std::uint64_t>();
@@ -229,7 +256,8 @@ PackedChunks::Head PackedChunks::head_of(std::size_t chunk) const {
 bool PackedChunks::is_of(const Head& head, std::size_t chunk) const {
   const auto column = std::int32_t(chunk % std::size_t(columns_)),
              row = std::int32_t(chunk / std::size_t(columns_));
-  return head.part == &part_ && head.full_resolution && head.x == (is_tiled(part_) ? column : 0) &&
+  return head.part == &part_ && head.is_full_resolution() &&
+         head.x == (is_tiled(part_) ? column : 0) &&
          head.y == (is_tiled(part_) ? row : window(chunk).y0);
 }
 

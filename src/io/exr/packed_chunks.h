@@ -55,8 +55,8 @@ class PackedChunks {
   int columns_, rows_;                              ///< of chunks
   std::uint64_t all_chunks_ = 0, first_chunk_ = 0;  ///< of all parts: how many, and where
   std::uint64_t size_;                              ///< of the file, in bytes
-  std::vector<std::uint64_t> places_;          ///< of the chunks; 0 where one is missing
-  std::vector<std::uint64_t> smaller_places_;  ///< of the tiles of all smaller levels
+  std::vector<std::uint64_t> places_;               ///< of the chunks; 0 where one is missing
+  std::vector<std::uint64_t> smaller_places_;       ///< of the tiles of all smaller levels
 };
 
 }  // namespace ssdo

@@ -135,6 +135,32 @@ TEST(ChunkPlacesOfUnfinishedFiles, OfTwoForOneChunk) {
   EXPECT_THAT(file.missing(0).windows, ElementsAre(Window{0, 5, kSide, 6}));
 }
 
+// OpenEXR searches no further than to a chunk whose row the part does not have.
+TEST(ChunkPlacesOfUnfinishedFiles, BehindOneOfNoRow) {
+  constexpr std::size_t kGone = 5;
+  const TempDir dir;
+  for (const auto compression : {Imf::NO_COMPRESSION, Imf::ZIPS_COMPRESSION}) {
+    SCOPED_TRACE(compression);
+    write_test_exr(dir / "whole.exr", {header(compression)});
+    const ExrBytes whole(dir / "whole.exr");
+    const std::vector<std::uint64_t> places = whole.places(kSide);
+    const std::size_t table = whole.table(kSide);
+    ExrBytes bytes = whole;
+    bytes.cut(places[0]);
+    bytes.append(whole.slice(places[0], places[1]));
+    bytes.append(whole.slice(places[0], whole.size()));
+    bytes.put_int(places[0], kSide);
+    for (std::size_t i = 0; i < kSide; ++i)
+      bytes.put_place(table + 8 * i, i == kGone ? 0 : places[i] + places[1] - places[0]);
+    bytes.write(dir / "a.exr");
+    EXPECT_THAT(error_of([&] { ExrReader(dir / "a.exr").read(0, kNames); }),
+                IsError(ExitCode::input, "a chunk is missing or cut short"));
+    const ExrReader salvaged(dir / "a.exr", Salvage::done);
+    salvaged.read(0, kNames);
+    EXPECT_THAT(salvaged.missing(0).windows, ElementsAre(Window{0, kGone, kSide, kGone + 1}));
+  }
+}
+
 // The table of a part of a type that OpenEXR does not know is as long as its header says.
 TEST(ChunkPlacesOfParts, AfterOneOfAnUnknownType) {
   const TempDir dir;
