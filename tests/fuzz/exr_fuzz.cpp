@@ -23,7 +23,7 @@
 namespace ssdo::fuzz {
 namespace {
 
-/// What OpenEXR's own reader gives; nothing where it refuses.
+/// What OpenEXR's own reader gives.
 std::vector<StoredChannel> by_openexr(const ExrReader& file, const ExrPart& part,
                                       std::vector<StoredChannel> like) {
   const Window& window = part.data_window;
@@ -33,19 +33,14 @@ std::vector<StoredChannel> by_openexr(const ExrReader& file, const ExrPart& part
     std::fill(pixels.begin(), pixels.end(), std::byte(0));
     buffer.insert(channel.name, Imf::Slice::Make(channel.type, pixels.data(), box, 0, 0));
   }
-  try {
-    Imf::InputPart lines(file.file(), part.index);
-    lines.setFrameBuffer(buffer);
-    lines.readPixels(window.y0, window.y1 - 1);
-  } catch (const std::exception&) {
-    return {};
-  }
+  Imf::InputPart lines(file.file(), part.index);
+  lines.setFrameBuffer(buffer);
+  lines.readPixels(window.y0, window.y1 - 1);
   return like;
 }
 
 void compare(const ExrReader& file, const ExrPart& part, const std::vector<StoredChannel>& ours) {
   const std::vector<StoredChannel> theirs = by_openexr(file, part, ours);
-  require(theirs.size() == ours.size(), "OpenEXR refuses what the ZIP code reads");
   for (std::size_t i = 0; i < ours.size(); ++i)
     require(ours[i].pixels == theirs[i].pixels, "the ZIP code and OpenEXR read other pixels");
 }

@@ -3,11 +3,12 @@
 # Fuzzes what reads files and command lines: run.sh FOLDER [SECONDS [TARGET...]]
 #
 # FOLDER is a build of the target `fuzz` by clang++, as tests/run.sh makes it in build/address.
-# Every target of tests/fuzz runs for SECONDS, 60 by default, as many at a time as there are
-# processors. FOLDER/fuzz/corpus keeps what reaches new code, and the next run goes on from there:
-# run.sh FOLDER 3600 runs for long, names of targets choose some of them.
+# Every target of tests/fuzz runs for SECONDS, as many at a time as there are processors.
+# FOLDER/fuzz/corpus keeps what reaches new code, and the next run goes on from there: run.sh FOLDER
+# 3600 runs for long, names of targets choose some of them. Without SECONDS, for 60, it makes the
+# same changes in the same order each time, so that what it finds comes of a change of the code.
 # An input that ends a target is a finding: it stays in FOLDER/fuzz/findings, the command that
-# repeats it is printed, and the exit code is 1.
+# repeats it is printed, and the exit code is 1. Where CI is set, the input is printed too.
 set -euo pipefail
 
 sources=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -20,6 +21,12 @@ corpus=$build/fuzz/corpus findings=$build/fuzz/findings logs=$build/fuzz/logs
 # The largest input is a frame of some thousand pixels: what takes more seconds or MiB follows a
 # size that a header claims.
 limits=(-max_len=65536 -timeout=30 -report_slow_units=30 -rss_limit_mb=2048)
+launch=()
+if [ $# -lt 2 ]; then
+  limits+=(-seed=1)
+  # At the same addresses: libFuzzer tries values that the code compares.
+  ! setarch -R true 2>/dev/null || launch=(setarch -R)
+fi
 export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
 export LSAN_OPTIONS=suppressions=$sources/../leaks.txt:print_suppressions=0
 
@@ -28,7 +35,8 @@ fuzz_target() {
   [ ! -f "$sources/$1.dict" ] || options+=(-dict="$sources/$1.dict")
   mkdir -p "$corpus/$1"
   [ -n "$(ls -A "$corpus/$1")" ] || "$program" --seeds "$corpus/$1" || return
-  "$program" "${options[@]}" -max_total_time="$seconds" -print_final_stats=1 "$corpus/$1"
+  "${launch[@]}" "$program" "${options[@]}" -max_total_time="$seconds" -print_final_stats=1 \
+    "$corpus/$1"
 }
 
 # The last number behind a name in the log of a target.
@@ -45,7 +53,9 @@ report_findings() {
   local input
   grep -ahE 'ERROR: |runtime error: |FINDING: |error while loading' "$logs/$1.log" || tail -3 "$logs/$1.log"
   for input in "$findings/$1"-*; do
-    [ ! -f "$input" ] || echo "  $build/fuzz/$1_fuzz $input"
+    [ -f "$input" ] || continue
+    echo "  $build/fuzz/$1_fuzz $input"
+    [ -z "${CI:-}" ] || (echo 'base64 --decode <<END | gunzip' && gzip -9 <"$input" | base64 && echo END)
   done
 }
 
