@@ -30,8 +30,10 @@ std::uint64_t InputFile::bytes() const {
 }
 
 std::size_t InputFile::read(std::uint64_t place, std::span<std::byte> to) const {
+  constexpr auto kEnd = std::uint64_t(std::numeric_limits<off_t>::max());  // of the largest file
+  to = to.first(std::min(to.size(), kEnd - std::min(place, kEnd)));
   std::size_t done = 0;
-  while (done < to.size() && place + done <= std::uint64_t(std::numeric_limits<off_t>::max())) {
+  while (done < to.size()) {
     const ssize_t count =
         pread(descriptor_, to.data() + done, to.size() - done, off_t(place + done));
     if (count == 0) break;

@@ -3,6 +3,7 @@
 
 #include <ImfDeepFrameBuffer.h>
 #include <ImfDeepScanLineOutputPart.h>
+#include <ImfDeepTiledOutputPart.h>
 
 #include <cstdint>
 #include <cstring>
@@ -85,27 +86,56 @@ void write_tiles(Imf::MultiPartOutputFile& file, int index) {
   }
 }
 
+namespace {
+
+/// One sample in every pixel, of the value 1 in every channel.
+class DeepTestPixels {
+ public:
+  explicit DeepTestPixels(const Imf::Header& header) {
+    const Imath::Box2i window = header.dataWindow();
+    const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
+    counts_.assign(std::size_t(width) * height, 1);
+    samples_.assign(counts_.size(), &sample_);
+    const auto at_origin = [&](void* first, std::size_t size) {
+      return static_cast<char*>(first) -
+             (std::ptrdiff_t(window.min.y) * width + window.min.x) * std::ptrdiff_t(size);
+    };
+    frame_buffer_.insertSampleCountSlice(
+        Imf::Slice(Imf::UINT, at_origin(counts_.data(), 4), 4, std::size_t(width) * 4));
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+      frame_buffer_.insert(c.name(),
+                           Imf::DeepSlice(Imf::FLOAT, at_origin(samples_.data(), sizeof(float*)),
+                                          sizeof(float*), width * sizeof(float*), sizeof(float)));
+    }
+  }
+  const Imf::DeepFrameBuffer& frame_buffer() const { return frame_buffer_; }
+
+ private:
+  float sample_ = 1;
+  std::vector<unsigned> counts_;
+  std::vector<float*> samples_;
+  Imf::DeepFrameBuffer frame_buffer_;
+};
+
+}  // namespace
+
 void write_deep_lines(Imf::MultiPartOutputFile& file, int index) {
   Imf::DeepScanLineOutputPart part(file, index);
-  const Imath::Box2i window = part.header().dataWindow();
-  const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
-  float sample = 1;
-  std::vector<unsigned> counts(std::size_t(width) * height, 1);
-  std::vector<float*> samples(counts.size(), &sample);
-  const auto at_origin = [&](void* first, std::size_t size) {
-    return static_cast<char*>(first) -
-           (std::ptrdiff_t(window.min.y) * width + window.min.x) * std::ptrdiff_t(size);
-  };
-  Imf::DeepFrameBuffer frame_buffer;
-  frame_buffer.insertSampleCountSlice(
-      Imf::Slice(Imf::UINT, at_origin(counts.data(), 4), 4, std::size_t(width) * 4));
-  for (auto c = part.header().channels().begin(); c != part.header().channels().end(); ++c) {
-    frame_buffer.insert(c.name(),
-                        Imf::DeepSlice(Imf::FLOAT, at_origin(samples.data(), sizeof(float*)),
-                                       sizeof(float*), width * sizeof(float*), sizeof(float)));
+  const DeepTestPixels pixels(part.header());
+  part.setFrameBuffer(pixels.frame_buffer());
+  part.writePixels(part.header().dataWindow().max.y - part.header().dataWindow().min.y + 1);
+}
+
+void write_deep_tiles(Imf::MultiPartOutputFile& file, int index) {
+  Imf::DeepTiledOutputPart part(file, index);
+  const DeepTestPixels pixels(part.header());
+  part.setFrameBuffer(pixels.frame_buffer());
+  for (int ly = 0; ly < part.numYLevels(); ++ly) {
+    for (int lx = 0; lx < part.numXLevels(); ++lx) {
+      if (part.isValidLevel(lx, ly))
+        part.writeTiles(0, part.numXTiles(lx) - 1, 0, part.numYTiles(ly) - 1, lx, ly);
+    }
   }
-  part.setFrameBuffer(frame_buffer);
-  part.writePixels(height);
 }
 
 void write_test_exr(const std::filesystem::path& path, const std::vector<Imf::Header>& headers) {
@@ -116,6 +146,8 @@ void write_test_exr(const std::filesystem::path& path, const std::vector<Imf::He
       write_tiles(file, i);
     else if (type == Imf::DEEPSCANLINE)
       write_deep_lines(file, i);
+    else if (type == Imf::DEEPTILE)
+      write_deep_tiles(file, i);
     else
       write_lines(file, i);
   }

@@ -51,9 +51,9 @@ void write_tiles(Imf::MultiPartOutputFile& file, int index);
 
 /// One sample in every pixel, of the value 1 in every channel.
 void write_deep_lines(Imf::MultiPartOutputFile& file, int index);
+void write_deep_tiles(Imf::MultiPartOutputFile& file, int index);
 
-/// Writes an EXR of test values, one part for each header. The type of a header (scanline, tiled or
-/// deep scanline) says how.
+/// Writes an EXR of test values, one part for each header. The type of a header says how.
 void write_test_exr(const std::filesystem::path& path, const std::vector<Imf::Header>& headers);
 
 }  // namespace ssdo::test

@@ -28,6 +28,16 @@ void copy_chunks(Imf::MultiPartInputFile& from, int index, Imf::MultiPartOutputF
   output.copyPixels(input);
 }
 
+/// --allow-partial does not help with what only copying needs.
+[[noreturn]] void throw_not_copied(const ExrReader& input, const ExrPart& part,
+                                   const std::exception& error) {
+  throw_unless_of_file(error);
+  throw Error(ExitCode::input,
+              fmt::format("{}: {} cannot be copied ({}); render or copy the file again, or leave "
+                          "out --keep-channels",
+                          input.path().string(), label(part), one_line(error.what())));
+}
+
 }  // namespace
 
 void check_copy(const ExrReader& input, const ExrPart& part) {
@@ -41,13 +51,14 @@ void check_copy(const ExrReader& input, const ExrPart& part) {
   if (!part.deep && !is_tiled(part)) return;
   try {
     check_chunk_sizes(input, part, part.data_window);
-    check_smaller_levels(input, part);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
   } catch (const std::exception& error) {
+    if (part.deep) throw_not_copied(input, part, error);
     throw_damaged(input, part, error);
+  }
+  try {
+    check_smaller_levels(input, part);
+  } catch (const std::exception& error) {
+    throw_not_copied(input, part, error);
   }
 }
 
@@ -59,15 +70,8 @@ void copy_part(const ExrReader& input, const ExrPart& part, Imf::MultiPartOutput
                        : copy_chunks<Imf::OutputPart, Imf::InputPart>;
   try {
     copy(input.file(), part.index, output);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
   } catch (const std::exception& error) {
-    throw Error(ExitCode::input,
-                fmt::format("{}: {} cannot be copied ({}); render or copy the file again, or leave "
-                            "out --keep-channels",
-                            input.path().string(), label(part), one_line(error.what())));
+    throw_not_copied(input, part, error);
   }
 }
 

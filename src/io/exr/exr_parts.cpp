@@ -89,10 +89,13 @@ bool begins_as_exr(const fs::path& file) {
   return fs::is_regular_file(file, ignored) && Imf::isOpenExrFile(file.c_str());
 }
 
-void throw_damaged(const ExrReader& file, const ExrPart& part, const std::exception& error) {
-  if (const auto* no_memory = dynamic_cast<const std::bad_alloc*>(&error))
-    throw *no_memory;  // nothing is wrong with the file
+void throw_unless_of_file(const std::exception& error) {
+  if (const auto* no_memory = dynamic_cast<const std::bad_alloc*>(&error)) throw *no_memory;
   if (const auto* of_disk = dynamic_cast<const Error*>(&error)) throw *of_disk;
+}
+
+void throw_damaged(const ExrReader& file, const ExrPart& part, const std::exception& error) {
+  throw_unless_of_file(error);
   const char* state = file.file().partComplete(part.index)
                           ? "is damaged or cut short"
                           : "is incomplete: its writing was interrupted";

@@ -18,6 +18,9 @@ std::unique_ptr<InputFile> open_exr(const std::filesystem::path& file);
 /// Whether `file` is a plain file that begins as an EXR does, whatever its name.
 bool begins_as_exr(const std::filesystem::path& file);
 
+/// Throws `error` itself where nothing is wrong with the file: of memory, or of its disk.
+void throw_unless_of_file(const std::exception& error);
+
 /// Throws ExitCode::input for a part whose pixels could not be read.
 [[noreturn]] void throw_damaged(const ExrReader& file, const ExrPart& part,
                                 const std::exception& error);

@@ -17,6 +17,7 @@
 
 #include "error.h"
 #include "io/exr/attribute_sizes.h"
+#include "io/exr/chunk_tables.h"
 #include "io/exr/exr_chunks.h"
 #include "io/exr/exr_parts.h"
 #include "io/exr/exr_stream.h"
@@ -251,6 +252,12 @@ std::vector<std::string> ExrReader::losses() const {
         fmt::format("{}: {}: {}", path().string(), label(part), describe(missing, part)));
   }
   return lines;
+}
+
+const ChunkTables& ExrReader::chunk_tables() const {
+  if (!chunk_tables_)
+    chunk_tables_ = std::make_unique<ChunkTables>(*input_, *file_, parts_, tables_);
+  return *chunk_tables_;
 }
 
 void ExrReader::recover() const {

@@ -23,6 +23,7 @@ class MultiPartInputFile;
 
 namespace ssdo {
 
+class ChunkTables;
 class ExrInputStream;
 
 /// One channel as the header declares it.
@@ -108,19 +109,21 @@ class ExrReader {
   /// Makes the file readable again after a chunk that could not be read. No part may be open.
   void recover() const;
 
-  /// Where the headers end and the tables of chunks begin, in bytes.
-  std::uint64_t tables() const { return tables_; }
+  /// Where the chunks of all parts stand. Looks for those whose places are missing when it is first
+  /// asked for.
+  const ChunkTables& chunk_tables() const;
 
   /// The open file, for copying whole parts without decoding them.
   Imf::MultiPartInputFile& file() const { return *file_; }
 
  private:
   std::unique_ptr<InputFile> input_;
-  std::uint64_t tables_;
+  std::uint64_t tables_;  ///< where the headers end and the tables of chunks begin, in bytes
   Salvage salvage_;
   std::unique_ptr<ExrInputStream> stream_;
   std::unique_ptr<Imf::MultiPartInputFile> file_;
   std::vector<ExrPart> parts_;
+  mutable std::unique_ptr<ChunkTables> chunk_tables_;
   mutable std::map<int, MissingChunks> missing_;  ///< of the parts that were looked at
 };
 

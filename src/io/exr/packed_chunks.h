@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "io/exr/chunk_tables.h"
 #include "io/exr/exr_reader.h"
 
 namespace ssdo {
@@ -38,25 +39,19 @@ class PackedChunks {
   void check_smaller_levels(std::size_t most) const;
 
  private:
-  struct Head;
-
-  void read_table();
-  void search();
-  void add_place(const Head& head, std::uint64_t found);
-  Head head_at(std::uint64_t place) const;
-  Head head_of(std::size_t chunk) const;
-  bool is_of(const Head& head, std::size_t chunk) const;
-  void check_size(const Head& head, std::size_t most) const;
+  void add_place(std::uint64_t found);
+  ChunkHead head_of(std::size_t chunk) const;
+  bool is_of(const ChunkHead& head, std::size_t chunk) const;
+  void check_size(const ChunkHead& head, std::size_t most) const;
   void check_is_next(std::size_t chunk, std::size_t most) const;
 
   const ExrReader& file_;
   const ExrPart& part_;
-  int width_, height_;                              ///< of a chunk, in pixels
-  int columns_, rows_;                              ///< of chunks
-  std::uint64_t all_chunks_ = 0, first_chunk_ = 0;  ///< of all parts: how many, and where
-  std::uint64_t size_;                              ///< of the file, in bytes
-  std::vector<std::uint64_t> places_;               ///< of the chunks; 0 where one is missing
-  std::vector<std::uint64_t> smaller_places_;       ///< of the tiles of all smaller levels
+  int width_, height_;  ///< of a chunk, in pixels
+  int columns_, rows_;  ///< of chunks
+  const ChunkTables& tables_;
+  std::uint64_t size_;                 ///< of the file, in bytes
+  std::vector<std::uint64_t> places_;  ///< of the chunks, then of all tiles of smaller levels
 };
 
 }  // namespace ssdo

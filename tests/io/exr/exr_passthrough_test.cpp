@@ -216,6 +216,40 @@ TEST_F(OtherDeepPart, IsRefusedWhereAChunkClaimsMoreThanTheFileHolds) {
   EXPECT_THAT(error_of([&] { pass(); }), IsError(ExitCode::input, "a chunk is cut short"));
 }
 
+/// OpenEXR reads as many bytes as an int says, and ended the tool. The file is a hole for the most
+/// part.
+TEST_F(OtherDeepPart, IsRefusedWhereAChunkIsLargerThanAnIntCounts) {
+  constexpr std::size_t kSamples = 16;
+  bytes_->put_place(bytes_->places(9)[0] + kSamples, std::uint64_t(1) << 31);
+  bytes_->write(dir_ / "in.exr");
+  fs::resize_file(dir_ / "in.exr", std::uintmax_t(3) << 30);
+  EXPECT_THAT(
+      error_of([&] { pass_through(ExrReader(dir_ / "in.exr"), dir_ / "out.exr", Imf::HALF, 1); }),
+      IsError(ExitCode::input, "a chunk is larger than 2 GiB"));
+}
+
+class OtherDeepTiledPart : public OtherPart {
+ protected:
+  OtherDeepTiledPart() : OtherPart(header()) {}
+
+  static Imf::Header header() {
+    Imf::Header deep = tiled(deep_header(), 8, Imf::MIPMAP_LEVELS);
+    deep.setType(Imf::DEEPTILE);
+    return deep;
+  }
+};
+
+/// OpenEXR reads two of the three sizes, and makes room for them, before it reads the third.
+TEST_F(OtherDeepTiledPart, IsRefusedWhereASmallerTileEndsBeforeItsLastSize) {
+  constexpr std::size_t kChunks = 5, kTile = 1, kSamples = 28;
+  const std::uint64_t place = bytes_->places(kChunks)[kTile];
+  bytes_->put_place(bytes_->table(kChunks) + 8 * kTile, bytes_->size());
+  bytes_->append(bytes_->slice(place, place + kSamples + 8));
+  bytes_->put_place(bytes_->size() - 8, std::uint64_t(1) << 36);
+  EXPECT_THAT(error_of([&] { pass(); }),
+              IsError(ExitCode::input, "cannot be copied (a chunk is cut short)"));
+}
+
 /// Tiles of 8x8, 4x4, 2x2 and 1x1 pixels.
 class OtherTiledPart : public OtherPart {
  protected:
