@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Flat EXRs: every channel of every part, as float and as stored, and what the names of layers say.
+// Flat EXRs, and flat parts beside deep ones: every channel, as float and as stored, and what the
+// names of layers say.
 // ZIP chunks that our own code takes have to give what OpenEXR gives. Some files are written again.
 // The last two bytes choose which, and which are salvaged.
 #include <ImfFrameBuffer.h>
@@ -8,6 +9,7 @@
 #include <ImfMultiPartInputFile.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "fuzz/exr_mutation.h"
 #include "fuzz/real_files.h"
@@ -88,11 +90,21 @@ void read_input(Bytes input) {
   });
 }
 
-std::vector<std::string> seeds() { return joined(exr_samples(flat_kinds()), real_frames()); }
+namespace {
+
+std::vector<ExrKind> kinds() {
+  std::vector<ExrKind> all = flat_kinds();
+  std::ranges::copy(mixed_kinds(), std::back_inserter(all));
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> seeds() { return joined(exr_samples(kinds()), real_frames()); }
 
 }  // namespace ssdo::fuzz
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t most, unsigned seed) {
-  return ssdo::fuzz::mutate_exr(data, size, most, ssdo::fuzz::flat_kinds(), seed);
+  return ssdo::fuzz::mutate_exr(data, size, most, ssdo::fuzz::kinds(), seed);
 }

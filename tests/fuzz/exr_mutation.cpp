@@ -160,10 +160,14 @@ void change_packed(std::string& data, std::string_view compression, Chance& chan
   data = pack(compression[0], *pixels);
 }
 
-/// The size of what was changed, right but now and then.
+/// The size of what was changed, right but now and then. One of 64 bits may be odd in its upper
+/// half.
 template <class Number>
 std::string size_of(const std::string& data, Chance& chance) {
-  return stored(chance.one_in(20) ? Number(chance.pick(kOddInts)) : Number(data.size()));
+  if (!chance.one_in(20)) return stored(Number(data.size()));
+  const auto odd = std::uint64_t(chance.pick(kOddInts));
+  const bool is_upper = sizeof(Number) == 8 && chance.one_in(2);
+  return stored(Number(is_upper ? odd << 32 : odd));
 }
 
 void change_flat_chunk(std::string& chunk, const ExrLayout& layout, Chance& chance) {

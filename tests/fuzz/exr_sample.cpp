@@ -205,15 +205,24 @@ class DeepPixels {
   Imf::DeepFrameBuffer buffer_;
 };
 
-template <class Part>
-void write_deep_part(Imf::MultiPartOutputFile& file, int index, Chance& chance) {
-  Part part(file, index);
+/// All levels of the same pixels, in as many as each has.
+void write_deep_tiles(Imf::MultiPartOutputFile& file, int index, Chance& chance) {
+  Imf::DeepTiledOutputPart part(file, index);
   const DeepPixels pixels(part.header(), chance);
   part.setFrameBuffer(pixels.buffer());
-  if constexpr (std::is_same_v<Part, Imf::DeepTiledOutputPart>)
-    part.writeTiles(0, part.numXTiles() - 1, 0, part.numYTiles() - 1);
-  else
-    part.writePixels(part.header().dataWindow().max.y - part.header().dataWindow().min.y + 1);
+  for (int ly = 0; ly < part.numYLevels(); ++ly) {
+    for (int lx = 0; lx < part.numXLevels(); ++lx) {
+      if (part.isValidLevel(lx, ly))
+        part.writeTiles(0, part.numXTiles(lx) - 1, 0, part.numYTiles(ly) - 1, lx, ly);
+    }
+  }
+}
+
+void write_deep_lines(Imf::MultiPartOutputFile& file, int index, Chance& chance) {
+  Imf::DeepScanLineOutputPart part(file, index);
+  const DeepPixels pixels(part.header(), chance);
+  part.setFrameBuffer(pixels.buffer());
+  part.writePixels(part.header().dataWindow().max.y - part.header().dataWindow().min.y + 1);
 }
 
 void write_tiles(Imf::MultiPartOutputFile& file, int index, Chance& chance) {
@@ -236,6 +245,16 @@ void write_lines(Imf::MultiPartOutputFile& file, int index, Chance& chance) {
   part.writePixels(window.max.y - window.min.y + 1);
 }
 
+constexpr Imf::LevelMode kLevels[] = {Imf::ONE_LEVEL, Imf::MIPMAP_LEVELS, Imf::RIPMAP_LEVELS};
+constexpr Imf::Compression kDeepCompressions[] = {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION,
+                                                  Imf::ZIPS_COMPRESSION};
+
+/// That of one part of a file.
+ExrKind kind_of_part(ExrKind kind, int part) {
+  if (kind.deep_behind_flat) kind.deep = part > 0;
+  return kind;
+}
+
 }  // namespace
 
 std::vector<ExrKind> flat_kinds() {
@@ -244,7 +263,7 @@ std::vector<ExrKind> flat_kinds() {
     const auto compression = Imf::Compression(c);
     for (const int parts : {1, 3}) {
       kinds.push_back({compression, false, false, Imf::ONE_LEVEL, parts});
-      for (const Imf::LevelMode levels : {Imf::ONE_LEVEL, Imf::MIPMAP_LEVELS, Imf::RIPMAP_LEVELS})
+      for (const Imf::LevelMode levels : kLevels)
         kinds.push_back({compression, false, true, levels, parts});
     }
   }
@@ -253,12 +272,22 @@ std::vector<ExrKind> flat_kinds() {
 
 std::vector<ExrKind> deep_kinds() {
   std::vector<ExrKind> kinds;
-  for (const Imf::Compression compression :
-       {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION}) {
-    for (const bool tiled : {false, true}) {
-      for (const int parts : {1, 2})
-        kinds.push_back({compression, true, tiled, Imf::ONE_LEVEL, parts});
+  for (const Imf::Compression compression : kDeepCompressions) {
+    for (const int parts : {1, 2}) {
+      kinds.push_back({compression, true, false, Imf::ONE_LEVEL, parts});
+      for (const Imf::LevelMode levels : kLevels)
+        kinds.push_back({compression, true, true, levels, parts});
     }
+  }
+  return kinds;
+}
+
+std::vector<ExrKind> mixed_kinds() {
+  std::vector<ExrKind> kinds;
+  for (const Imf::Compression compression : kDeepCompressions) {
+    kinds.push_back({compression, false, false, Imf::ONE_LEVEL, 3, true});
+    for (const Imf::LevelMode levels : kLevels)
+      kinds.push_back({compression, false, true, levels, 3, true});
   }
   return kinds;
 }
@@ -266,17 +295,18 @@ std::vector<ExrKind> deep_kinds() {
 std::string exr_sample(const ExrKind& kind, Chance& chance) {
   std::vector<Imf::Header> headers;
   for (int i = 0; i < kind.parts; ++i) {
-    headers.push_back(make_header(kind, i, chance));
+    headers.push_back(make_header(kind_of_part(kind, i), i, chance));
     headers[std::size_t(i)].displayWindow() = headers[0].displayWindow();  // parts share it
   }
   Imf::StdOSStream memory;
   {
     Imf::MultiPartOutputFile file(memory, headers.data(), int(headers.size()));
     for (int i = 0; i < kind.parts; ++i) {
-      if (kind.deep && kind.tiled)
-        write_deep_part<Imf::DeepTiledOutputPart>(file, i, chance);
-      else if (kind.deep)
-        write_deep_part<Imf::DeepScanLineOutputPart>(file, i, chance);
+      const bool deep = kind_of_part(kind, i).deep;
+      if (deep && kind.tiled)
+        write_deep_tiles(file, i, chance);
+      else if (deep)
+        write_deep_lines(file, i, chance);
       else if (kind.tiled)
         write_tiles(file, i, chance);
       else

@@ -17,11 +17,13 @@ struct ExrKind {
   bool deep = false, tiled = false;
   Imf::LevelMode levels = Imf::ONE_LEVEL;  ///< of a tiled one
   int parts = 1;
+  bool deep_behind_flat = false;  ///< all parts but the first are deep
 };
 
 /// All that the reader tells apart.
 std::vector<ExrKind> flat_kinds();
 std::vector<ExrKind> deep_kinds();
+std::vector<ExrKind> mixed_kinds();  ///< deep parts beside a flat one
 
 /// A small G-buffer of this kind: layers under the names of several renderers, with a camera in the
 /// header or none; names, types, windows and some odd values by chance. In most of them P
