@@ -46,12 +46,12 @@ void may_refuse(const std::function<void()>& read) {
 
 }  // namespace ssdo::fuzz
 
-/// A machine of half a GiB: a larger frame is refused, and where there is more memory it may be an
-/// honest one that packs well. glibc has the real function by this name too; sanitizers ask for the
-/// size of a page before they are ready to follow a call.
+/// A machine of 128 MiB: a larger frame is refused, and where there is more memory it may be an
+/// honest one that packs well, which takes a minute with sanitizers. glibc has the real function by
+/// this name too; sanitizers ask for the size of a page before they are ready to follow a call.
 extern "C" long __sysconf(int name);
 extern "C" __attribute__((no_sanitize("all"))) long sysconf(int name) noexcept {
-  return name == _SC_PHYS_PAGES ? (1 << 29) / __sysconf(_SC_PAGESIZE) : __sysconf(name);
+  return name == _SC_PHYS_PAGES ? (1 << 27) / __sysconf(_SC_PAGESIZE) : __sysconf(name);
 }
 
 /// With `--seeds FOLDER` alone, writes the seeds there and exits.
