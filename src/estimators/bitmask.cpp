@@ -28,8 +28,9 @@
 //   (no arc function) and the same for all pixels, so that moments of masks come from tables
 //   (bitmask/slice_sectors.cpp). The point that stands for a sector differs from slice to slice, or
 //   a gentle curve would show the sectors as bands.
-// - direct is a ratio to the exact unoccluded irradiance E(N): the noise of a few directions
-//   cancels. L is taken in spherical harmonics, of the environment without its suns; each sun is a
+// - direct is a ratio to the exact unoccluded irradiance E(N), the ratio estimator of Heitz, Hill
+//   and McGuire (2018, Combining Analytic Direct Illumination and Stochastic Shadows): the noise
+//   of a few directions cancels. L is taken in spherical harmonics, of the environment without its suns; each sun is a
 //   direction of its own, tested along the slice that holds it (bitmask/rays/sun.cpp). So is what
 //   facets mirror (bitmask/rays/reflection.cpp).
 // - bounce takes the radiance of the first surface in each sector; no 1/d^2, so no singularity

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Horizon-based ambient occlusion: Bavoil, Sainz, Dimitrov, SIGGRAPH 2008, in the two forms of a
-// series of lessons on Unity. Its text has the paper's, without the paper's falloff:
+// series of lessons on Unity. Its text has the paper's form, without the paper's falloff; its
+// listing is Hbao.shader of github.com/lync-li/UnityCrytekSponza-master2019. The text's form:
 //
 //   ao(p) = max(0, 1 - s / 4 sum_d max(0, max_i sin h - sin(t + asin b)))
 //
