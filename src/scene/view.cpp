@@ -3,11 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 #include "error.h"
+#include "scene/camera/position_check.h"
 #include "scene/deep/channels.h"
 #include "scene/deep/deep_frame.h"
+#include "scene/depth_check.h"
 #include "scene/layers/advice.h"
 #include "scene/layers/groups.h"
 #include "stopwatch.h"
@@ -37,6 +40,88 @@ Error with_hint(const Error& error, const View& view, const std::string& eye) {
   if (view.layers[Role::position] || error.code != ExitCode::layer) return error;
   const std::string hint = hint_at(Role::position, group_channels(view.files.front(), 0, eye));
   return hint.empty() ? error : Error(error.code, fmt::format("{}; {}", error.what(), hint));
+}
+
+/// What a view is read from, and how.
+struct Reading {
+  const std::vector<const ExrReader*>& files;
+  GBufferOptions options;
+  const CameraOptions& camera;
+  const Plane<float>& deep;
+};
+
+/// Refuses a P that no camera has seen. `camera` is the one that was found, if any.
+void check_positions(const View& view, const Camera* camera) {
+  const auto& layer = view.layers[Role::position];
+  if (!layer) return;
+  const std::string fault = find_fault_of_positions(view.gbuffer, camera);
+  if (fault.empty()) return;
+  throw Error(ExitCode::layer, fmt::format("{}: position '{}' {}",
+                                           view.files[std::size_t(layer->file)].path().string(),
+                                           layer->name, fault));
+}
+
+/// The camera of P, in the pixels of the G-buffer.
+Camera camera_of_positions(const View& view) {
+  return to_grid(view.report.placement.of_positions, view.gbuffer.grid);
+}
+
+/// Fills the G-buffer and the geometry.
+void read_surfaces(const Reading& reading, View& view) {
+  Stopwatch watch;
+  view.gbuffer = read_gbuffer(reading.files, view.layers, reading.options, &reading.deep);
+  view.read_ms += watch.lap();
+  view.report = {};
+  const std::string file = view.files.front().path().string();
+  try {
+    view.geometry = build_geometry(view.gbuffer, reading.camera, file, view.report);
+  } catch (const Error&) {
+    check_positions(view, nullptr);
+    throw;
+  }
+  if (view.report.placement.median_depth <= 0) return;
+  const Camera camera = camera_of_positions(view);
+  check_positions(view, &camera);
+}
+
+/// Whether the camera of P is known well enough to hold a depth to it.
+bool knows_camera_of_positions(const View& view) {
+  constexpr double kWell = 0.005;  // of the diagonal of the picture
+  const Window& window = view.gbuffer.window;
+  const auto& residual = view.report.residual;
+  return view.report.placement.median_depth > 0 && residual &&
+         residual->median_px < kWell * std::hypot(window.width(), window.height());
+}
+
+/// The same without a depth that contradicts the camera of P. A wrong depth may take so many
+/// surfaces for background that no camera is found: then there is one without it.
+void read_surfaces_by_right_depth(Reading reading, View& view) {
+  std::optional<Error> failure;
+  try {
+    read_surfaces(reading, view);
+  } catch (const Error& error) {
+    failure = error;
+  }
+  const bool has_both = !view.gbuffer.depth.empty() && !view.gbuffer.position.empty();
+  if (!has_both && failure) throw *failure;
+  if (!has_both || (!failure && !knows_camera_of_positions(view))) return;
+  const auto instead = [&](const GBuffer& g) {
+    return what_depth_is_instead(g, camera_of_positions(view));
+  };
+  std::string found = failure ? "" : instead(view.gbuffer);
+  if (!failure && found.empty()) return;
+  const GBuffer with_depth = std::move(view.gbuffer);
+  reading.options.known = with_depth.encodings;
+  reading.options.known->depth_is_wrong = true;
+  reading.options.known->depth_of_position.reset();
+  try {
+    read_surfaces(reading, view);
+    if (failure && knows_camera_of_positions(view)) found = instead(with_depth);
+  } catch (const Error&) {
+    if (!failure) throw;
+  }
+  if (found.empty()) throw *failure;
+  view.gbuffer.warnings.push_back(fmt::format("depth contradicts P ({}) and is left out", found));
 }
 
 }  // namespace
@@ -79,11 +164,9 @@ View read_view(std::deque<ExrReader> opened, const std::vector<LayerRequest>& ao
       view, options.view.empty() ? options.part : options.view, reading, warnings);
   require_position(view.layers, view.files.front(), options.view,
                    options.listed ? "" : " ('ssdo info' lists the layers)");
+  view.read_ms = watch.lap();
   try {
-    view.gbuffer = read_gbuffer(files, view.layers, reading, &deep);
-    view.read_ms = watch.lap();
-    view.geometry =
-        build_geometry(view.gbuffer, camera, view.files.front().path().string(), view.report);
+    read_surfaces_by_right_depth({files, reading, camera, deep}, view);
   } catch (const Error& error) {
     throw with_hint(error, view, options.view);
   }

@@ -152,6 +152,52 @@ TEST_F(DataChecks, ADepthOfAnotherMeaningIsLeftOutWithWhatItIs) {
   EXPECT_EQ(said_, "") << "as it is said what it is";
 }
 
+TEST_F(DataChecks, ADepthThatIsAnotherFunctionOfPIsLeftOut) {
+  const auto of_world = [](float (*depth)(const glm::vec3&)) {
+    return [=](const ShotPixel& p) {
+      return glm::vec4(p.surface ? depth(p.position) : 1e10f, 0, 0, 0);
+    };
+  };
+  const std::vector<std::pair<Content, std::string>> wrong = {
+      {of_world([](const glm::vec3& p) { return p.y; }), "it is the y of P"},
+      {of_world([](const glm::vec3& p) { return glm::length(p); }),
+       "it is the distance from the origin of P"},
+      {[](const ShotPixel& p) { return planar_depth(1e10f)(p) - glm::vec4(p.surface ? 4 : 0); },
+       "it is the distance from the camera - 4"}};
+  const json expected = info(plain_shot())["surface_pixels"];
+  for (const auto& [depth, text] : wrong) {
+    const StoredShot shot = with(Role::depth, depth);
+    const json found = info(shot);
+    EXPECT_EQ(found["depth"]["used"], false);
+    EXPECT_EQ(found["surface_pixels"], expected);
+    EXPECT_THAT(warnings_of(found),
+                ElementsAre("depth contradicts P (" + text + ") and is left out"));
+    EXPECT_LT(off(shot), 1e-6);
+  }
+}
+
+TEST_F(DataChecks, APThatNoCameraHasSeenIsRefused) {
+  const auto root = [](const ShotPixel& p) {
+    const glm::vec3 v = p.position;
+    return glm::vec4(glm::sign(v) * glm::sqrt(glm::abs(v)), 0);
+  };
+  const std::vector<std::pair<Content, std::string>> wrong = {
+      {[](const ShotPixel& p) { return glm::max(world_position()(p), glm::vec4(0)); },
+       "looks clipped at 0"},
+      {root, "looks gamma-encoded: P^2 fits a camera"},
+      {world_normal(), "has length 1 everywhere: looks like normals"}};
+  for (const auto& [position, text] : wrong) {
+    write_shot(input_, with(Role::position, position));
+    for (const std::vector<std::string>& flags : {std::vector<std::string>{}, {"--fov", "40"}}) {
+      std::vector<std::string> words = {input_, "-o", dir_ / "none.exr"};
+      words.insert(words.end(), flags.begin(), flags.end());
+      const Finished done = run_tool(words);
+      EXPECT_EQ(done.code, 4) << text;
+      EXPECT_THAT(done.error_line(), HasSubstr(input_ + ": position 'P' " + text));
+    }
+  }
+}
+
 TEST_F(DataChecks, BackgroundOfAnyValueIsBackground) {
   for (const float empty : {0.0f, 1e10f, kInfinity, -kInfinity, NAN}) {
     for (const float far : {0.0f, 1e10f, kInfinity, NAN}) {

@@ -27,15 +27,26 @@ Eigen::VectorXd null_vector(const Eigen::MatrixXd& normal_matrix) {
   return Eigen::Map<const Eigen::VectorXd>(x.data(), Eigen::Index(x.size()));
 }
 
-/// Direct linear transform: M (3 x 4) with pixel ~ M (p, 1), split by an RQ decomposition into
-/// K [R | t] with a positive diagonal of K and the points in front.
-ProjectionModel direct_linear_transform(const Samples& samples, const Window& window) {
-  const Vector2d middle(0.5 * (window.x0 + window.x1), 0.5 * (window.y0 + window.y1));
-  const double half = 0.5 * std::hypot(window.width(), window.height());
+/// Pixels as the direct linear transform takes them: from -1 to 1.
+struct PictureScale {
+  Vector2d middle;
+  double half;
+
+  explicit PictureScale(const Window& window)
+      : middle(0.5 * (window.x0 + window.x1), 0.5 * (window.y0 + window.y1)),
+        half(0.5 * std::hypot(window.width(), window.height())) {}
+
+  Vector2d of(const glm::dvec2& pixel) const {
+    return (Vector2d(pixel.x, pixel.y) - middle) / half;
+  }
+};
+
+/// Direct linear transform: M (3 x 4) with pixel ~ M (p, 1) and the points in front.
+Eigen::Matrix<double, 3, 4> projective_matrix(const Samples& samples, const PictureScale& picture) {
   Eigen::MatrixXd ata = Eigen::MatrixXd::Zero(12, 12);
   for (const Sample& s : samples.items) {
     const Eigen::Vector4d h(s.p.x, s.p.y, s.p.z, 1);
-    const Vector2d uv = (Vector2d(s.pixel.x, s.pixel.y) - middle) / half;
+    const Vector2d uv = picture.of(s.pixel);
     Eigen::Matrix<double, 2, 12> rows = Eigen::Matrix<double, 2, 12>::Zero();
     rows.block<1, 4>(0, 0) = h.transpose();
     rows.block<1, 4>(0, 8) = -uv.x() * h.transpose();
@@ -48,6 +59,15 @@ ProjectionModel direct_linear_transform(const Samples& samples, const Window& wi
   for (int i = 0; i < 3; ++i) matrix.row(i) = m.segment<4>(4 * i).transpose();
   // w of the centroid is the last entry: the points are in front where it is positive.
   if (matrix(2, 3) < 0) matrix = -matrix;
+  return matrix;
+}
+
+/// The projective matrix split by an RQ decomposition into K [R | t] with a positive diagonal of K.
+ProjectionModel direct_linear_transform(const Samples& samples, const Window& window) {
+  const PictureScale picture(window);
+  const Vector2d& middle = picture.middle;
+  const double half = picture.half;
+  const Eigen::Matrix<double, 3, 4> matrix = projective_matrix(samples, picture);
 
   // RQ by the QR of the matrix turned upside down.
   const Matrix3d flip = Vector3d::Ones().asDiagonal().toDenseMatrix().rowwise().reverse();
@@ -238,6 +258,20 @@ bool explains(const Camera& camera, const Plane<glm::vec3>& positions,
 double median_miss_px(const Camera& camera, const Plane<glm::vec3>& positions,
                       const Plane<unsigned char>& valid, const Window& window) {
   return median_miss_px(camera, collect_samples(positions, valid, window));
+}
+
+double projective_miss_px(const Plane<glm::vec3>& positions, const Plane<unsigned char>& valid,
+                          const Window& window) {
+  const Samples samples = collect_samples(positions, valid, window);
+  if (samples.items.size() < 6) return INFINITY;
+  const PictureScale picture(window);
+  const Eigen::Matrix<double, 3, 4> matrix = projective_matrix(samples, picture);
+  std::vector<double> misses;
+  for (const Sample& s : samples.items) {
+    const Vector3d at = matrix * Eigen::Vector4d(s.p.x, s.p.y, s.p.z, 1);
+    misses.push_back(picture.half * (at.head<2>() / at.z() - picture.of(s.pixel)).norm());
+  }
+  return quantile(misses, 0.5);
 }
 
 std::optional<Camera> in_own_space(const Camera& projection, const Plane<glm::vec3>& positions,

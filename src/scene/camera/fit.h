@@ -44,6 +44,11 @@ std::optional<Camera> in_own_space(const Camera& projection, const Plane<glm::ve
 double median_miss_px(const Camera& camera, const Plane<glm::vec3>& positions,
                       const Plane<unsigned char>& valid, const Window& window);
 
+/// The same under the best of all projections of space to the picture, skew and scales of the axes
+/// included: small where P is an affine function of positions. Infinite for fewer than six pixels.
+double projective_miss_px(const Plane<glm::vec3>& positions, const Plane<unsigned char>& valid,
+                          const Window& window);
+
 /// How well `camera` explains the positions.
 Residual measure_residual(const Camera& camera, const Plane<glm::vec3>& positions,
                           const Plane<unsigned char>& valid, const Window& window);
