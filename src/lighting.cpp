@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <string_view>
 
 #include "color/color_space.h"
 #include "error.h"
@@ -12,24 +14,49 @@
 #include "math/light_range.h"
 #include "math/number.h"
 #include "parallel/tiles.h"
+#include "scene/layers/names.h"
 #include "scene/light/environment_map.h"
 
 namespace ssdo {
 namespace {
 
-/// "0.2,0.3,0.5", or one number for grey. Nothing for a text that is no list of numbers.
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == text.npos ? std::string_view() : text.substr(first, last - first + 1);
+}
+
+/// Whether a text that names no file can only be meant as numbers.
+bool is_like_numbers(const std::string& text) {
+  std::string rest = lower(text);
+  for (const std::string_view word : {"infinity", "inf", "nan"}) {
+    for (auto at = rest.find(word); at != rest.npos; at = rest.find(word))
+      rest.erase(at, word.size());
+  }
+  return !std::filesystem::exists(text) &&
+         rest.find_first_not_of("0123456789.,;+-e \t") == rest.npos;
+}
+
+/// "0.2,0.3,0.5", or one number for grey; blanks do not count. Nothing for what may be a file.
+/// Errors: ExitCode::usage for other numbers.
 std::optional<glm::vec3> parse_color(const std::string& text) {
   std::vector<float> values;
+  bool numbers = true;
   for (std::size_t start = 0; start <= text.size();) {
     const std::size_t comma = std::min(text.find(',', start), text.size());
-    const auto value = parse_number(std::string_view(text).substr(start, comma - start));
-    if (!value) return std::nullopt;
-    values.push_back(float(*value));
+    const auto value = parse_number(trimmed(std::string_view(text).substr(start, comma - start)));
+    numbers = numbers && value;
+    values.push_back(float(value.value_or(0)));
     start = comma + 1;
   }
-  if (values.size() == 1) return glm::vec3(values[0]);
-  if (values.size() == 3) return glm::vec3(values[0], values[1], values[2]);
-  return std::nullopt;
+  if (numbers && values.size() == 1) return glm::vec3(values[0]);
+  if (numbers && values.size() == 3) return glm::vec3(values[0], values[1], values[2]);
+  if (!is_like_numbers(text)) return std::nullopt;
+  throw Error(ExitCode::usage,
+              fmt::format("--env {}: a colour of light is R,G,B or one number for grey, each from "
+                          "0 to {:g}; {}",
+                          text, kBrightest,
+                          numbers ? fmt::format("these are {} numbers", values.size())
+                                  : "these are not such numbers"));
 }
 
 /// Smaller values are 0 in half.
@@ -79,6 +106,7 @@ void Lighting::read_map() {
   const std::string file = parse_picture_name(options_.env).file;
   description_ = map.layer.empty() ? file : file + ":" + map.layer;
   description_ += fmt::format(", {} x {}", map.texels.width, map.texels.height);
+  for (const std::string& how : map.converted) description_ += ", " + how;
   map_ = std::make_shared<const Plane<glm::vec3>>(std::move(map.texels));
 }
 

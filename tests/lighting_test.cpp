@@ -61,6 +61,19 @@ TEST_F(LightRange, ColoursAreFiniteAndNotNegative) {
   EXPECT_EQ(brightest.constant_radiance(), glm::vec3(kBrightest, 0, 1));
 }
 
+/// They were looked for as files.
+TEST_F(LightRange, ColoursMayHaveBlanksAndWrongOnesAreNamed) {
+  for (const char* env : {"1, 2, 3", " 1,2,3 ", "1 ,2\t,3"}) {
+    EXPECT_EQ(light(env).around(UpAxis::y, {}).environment.constant_radiance(), glm::vec3(1, 2, 3))
+        << env;
+  }
+  EXPECT_THAT(error_of([&] { light("0.5,0.5"); }), IsError(ExitCode::usage, "these are 2 numbers"));
+  for (const char* env : {"nan", "inf", "1,nan,1", "1 2 3", "1,,2", "1;2;3", "1e"})
+    EXPECT_THAT(error_of([&] { light(env); }), IsError(ExitCode::usage, "is R,G,B or one")) << env;
+  for (const char* env : {"info.exr", "nan.hdr", "1x.exr"})
+    EXPECT_THAT(error_of([&] { light(env); }), IsError(ExitCode::input, "does not exist")) << env;
+}
+
 TEST_F(LightRange, ExposureEndsWhereLightDoes) {
   EXPECT_THAT(error_of([&] { light("1", 80); }),
               IsError(ExitCode::usage,

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "io/images/kind.h"
@@ -12,11 +13,12 @@
 
 namespace ssdo {
 
-/// An image as it is stored, without a colour transform.
+/// An image without a colour transform, turned as its file says.
 struct Image {
-  Plane<glm::vec3> color;  ///< the first three channels, or one as grey
-  Plane<float> alpha;      ///< empty where there is none
-  bool integers = false;   ///< stored as integers, which become 0..1
+  Plane<glm::vec3> color;   ///< the first three channels, or one as grey
+  Plane<float> alpha;       ///< empty where there is none
+  bool integers = false;    ///< stored as integers, which become 0..1
+  std::string color_space;  ///< that the file names, as OpenImageIO calls it; empty: none
 };
 
 /// Loads the module that the functions below need, before work that would be lost without it.

@@ -11,7 +11,6 @@
 
 #include "error.h"
 #include "io/exr/exr_parts.h"
-#include "io/image_file.h"
 #include "io/size_guard.h"
 #include "nearest_name.h"
 
@@ -81,17 +80,11 @@ LayeredPicture::LayeredPicture(const std::string& file) : file_(file) {
     }
     return;
   }
-  Image image = read_image(file);
-  integers_ = image.integers;
+  image_ = read_image(file);
   layers_ = {{0, "", "", {"R", "G", "B"}, {"R", "G", "B"}}};
-  image_.assign(3, Plane<float>::like(image.color));
-  for (std::size_t i = 0; i < image.color.size(); ++i) {
-    for (int c = 0; c < 3; ++c) image_[std::size_t(c)][i] = image.color[i][c];
-  }
-  if (image.alpha.empty()) return;
+  if (image_.alpha.empty()) return;
   layers_[0].channels.push_back("A");
   layers_[0].components.push_back("A");
-  image_.push_back(std::move(image.alpha));
 }
 
 std::string LayeredPicture::names() const {
@@ -144,22 +137,33 @@ PictureLayer LayeredPicture::find(const std::string& name) const {
 
 Window LayeredPicture::window(const PictureLayer& layer) const {
   if (exr_) return exr_->parts()[std::size_t(layer.part)].data_window;
-  return {0, 0, image_[0].width, image_[0].height};
+  return {0, 0, image_.color.width, image_.color.height};
 }
 
 Window LayeredPicture::display(const PictureLayer& layer) const {
   return exr_ ? exr_->parts()[std::size_t(layer.part)].display_window : window(layer);
 }
 
-std::vector<Plane<float>> LayeredPicture::read(const PictureLayer& layer) const {
+std::optional<TransferCurve> LayeredPicture::curve(const PictureLayer& layer) const {
+  if (exr_) return curve_of(exr_->parts()[std::size_t(layer.part)].header);
+  return curve_of(image_.color_space.empty() && image_.integers ? "sRGB" : image_.color_space);
+}
+
+std::vector<Plane<float>> LayeredPicture::read(const PictureLayer& layer,
+                                               const PixelGrid& grid) const {
+  const Window rows = grid.rows_of(window(layer));
   if (exr_) {
-    const double bytes = double(window(layer).area()) * sizeof(float);
+    const double bytes = double(rows.area()) * sizeof(float);
     check_picture_size(file_, 0, bytes * double(layer.channels.size()));
-    return exr_->read(layer.part, layer.channels);
+    return exr_->read(layer.part, layer.channels, grid);
   }
   std::vector<Plane<float>> planes;
-  for (const std::string& channel : layer.channels)
-    planes.push_back(image_[std::string_view("RGBA").find(channel)]);
+  for (const std::string& channel : layer.channels) {
+    const auto c = glm::length_t(std::string_view("RGB").find(channel));
+    Plane<float>& plane = planes.emplace_back(rows.width(), rows.height());
+    for (std::size_t i = 0, from = image_.color.index(0, rows.y0); i < plane.size(); ++i)
+      plane[i] = channel == "A" ? image_.alpha[from + i] : image_.color[from + i][c];
+  }
   return planes;
 }
 

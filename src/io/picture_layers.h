@@ -7,6 +7,9 @@
 #include <vector>
 
 #include "io/exr/exr_reader.h"
+#include "io/image_file.h"
+#include "io/transfer_curve.h"
+#include "math/pixel_grid.h"
 #include "math/plane.h"
 
 namespace ssdo {
@@ -44,7 +47,11 @@ class LayeredPicture {
   std::string names() const;
 
   /// Whether the image is no EXR and stores integers, which become 0..1.
-  bool integers() const { return integers_; }
+  bool integers() const { return image_.integers; }
+
+  /// How the colours of a layer are encoded, where the file says that they are not linear. Integers
+  /// without a word about it are in sRGB, as in OpenImageIO and Nuke.
+  std::optional<TransferCurve> curve(const PictureLayer& layer) const;
 
   /// The layer of that name, or the one channel: by its full name ("ViewLayer.DiffDir", "Z"), also
   /// behind a part's name and a dot; else by its last words ("DiffDir").
@@ -54,14 +61,15 @@ class LayeredPicture {
   /// The window that a layer covers, and the one that it is shown in.
   Window window(const PictureLayer& layer) const;
   Window display(const PictureLayer& layer) const;
-  std::vector<Plane<float>> read(const PictureLayer& layer) const;
+
+  /// The layer's channels over the rows of its window that `grid` has.
+  std::vector<Plane<float>> read(const PictureLayer& layer, const PixelGrid& grid = {}) const;
 
  private:
   std::string file_;
   std::optional<ExrReader> exr_;
   std::vector<PictureLayer> layers_;
-  std::vector<Plane<float>> image_;  ///< of what is no EXR, in the order of its channels
-  bool integers_ = false;
+  Image image_;  ///< of what is no EXR
 };
 
 /// How a layer is called in messages and tables.

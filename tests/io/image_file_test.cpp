@@ -226,6 +226,51 @@ TEST(ReadImage, RefusesAPlaceBeyondInt) {
   }
 }
 
+/// Radiance, "File Formats": the first axis is that of the rows, and a sign says where it begins.
+/// OpenImageIO 2.4 exchanges +X +Y and -X -Y.
+TEST(ReadImage, TurnsARadianceFileAsItsResolutionStringSays) {
+  const TempDir dir;
+  const auto values_of = [&](const std::string& resolution, const std::vector<int>& stored) {
+    std::ofstream file(dir / "a.hdr", std::ios::binary);
+    file << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" << resolution << "\n";
+    for (const int value : stored) file << char(value) << char(value) << char(value) << '\x88';
+    file.close();
+    const Image image = read_image(dir / "a.hdr");
+    EXPECT_EQ(image.color.width, 3) << resolution;
+    std::vector<int> values;
+    for (const glm::vec3& pixel : image.color.pixels) values.push_back(int(pixel.x));
+    return values;
+  };
+  const std::vector<int> picture = {1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(values_of("-Y 2 +X 3", {1, 2, 3, 4, 5, 6}), picture);
+  EXPECT_EQ(values_of("-Y 2 -X 3", {3, 2, 1, 6, 5, 4}), picture);
+  EXPECT_EQ(values_of("+Y 2 -X 3", {6, 5, 4, 3, 2, 1}), picture);
+  EXPECT_EQ(values_of("+Y 2 +X 3", {4, 5, 6, 1, 2, 3}), picture);
+  EXPECT_EQ(values_of("+X 3 -Y 2", {1, 4, 2, 5, 3, 6}), picture);
+  EXPECT_EQ(values_of("+X 3 +Y 2", {4, 1, 5, 2, 6, 3}), picture);
+  EXPECT_EQ(values_of("-X 3 +Y 2", {6, 3, 5, 2, 4, 1}), picture);
+  EXPECT_EQ(values_of("-X 3 -Y 2", {3, 6, 2, 5, 1, 4}), picture);
+}
+
+TEST(ReadImage, TurnsATiffAsItsTagSays) {
+  const TempDir dir;
+  OIIO::ImageSpec spec(1, 2, 3, OIIO::TypeDesc::FLOAT);
+  spec.attribute("Orientation", 6);  // rows are columns from the right
+  write_floats(dir / "a.tif", spec, {2, 2, 2, 1, 1, 1});
+  const Image image = read_image(dir / "a.tif");
+  ASSERT_EQ(image.color.width, 2);
+  EXPECT_EQ(image.color[0].x, 1);
+  EXPECT_EQ(image.color[1].x, 2);
+}
+
+TEST(ReadImage, TellsTheColourSpace) {
+  const TempDir dir;
+  save(dir / "a.png", {1, 1, 3, 8, 1}, {1, 0.2f, 0.4f});
+  EXPECT_EQ(read_image(dir / "a.png").color_space, "sRGB");
+  write_floats(dir / "a.hdr", OIIO::ImageSpec(1, 1, 3, OIIO::TypeDesc::FLOAT), {1, 1, 1});
+  EXPECT_EQ(read_image(dir / "a.hdr").color_space, "linear");
+}
+
 /// A damaged picture of Maya's kind ended the tool by a signal in OpenImageIO's reader.
 TEST(ReadImage, TakesTheKindsThatManNames) {
   const TempDir dir;

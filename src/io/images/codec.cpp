@@ -17,9 +17,11 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "error.h"
 #include "io/images/kind.h"
+#include "io/images/orientation.h"
 #include "io/one_line.h"
 #include "io/size_guard.h"
 
@@ -196,7 +198,10 @@ Image read_rows(OIIO::ImageInput& file, const fs::path& path) {
   const OIIO::ImageSpec& spec = file.spec();
   check_spec(path, spec);
   const Channels channels(spec);
-  Image image{plane_without_rows<glm::vec3>(spec), {}, !spec.format.is_floating_point()};
+  Image image{plane_without_rows<glm::vec3>(spec),
+              {},
+              !spec.format.is_floating_point(),
+              spec.get_string_attribute("oiio:ColorSpace")};
   if (channels.alpha >= 0) image.alpha = plane_without_rows<float>(spec);
   const int rows = rows_at_a_time(spec, channels);
   std::vector<float> values(std::size_t(spec.width) * std::size_t(rows) *
@@ -212,6 +217,10 @@ Image read_rows(OIIO::ImageInput& file, const fs::path& path) {
       value += channels.count;
     }
   }
+  const Orientation orientation = orientation_of_radiance(path).value_or(
+      orientation_of_tiff(spec.get_int_attribute("Orientation", 1)));
+  image.color = upright(std::move(image.color), orientation);
+  image.alpha = upright(std::move(image.alpha), orientation);
   return image;
 }
 

@@ -6,13 +6,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
 
 #include "error.h"
+#include "io/cube_map.h"
 #include "io/picture_layers.h"
 #include "io/size_guard.h"
 #include "math/light_range.h"
 #include "nearest_name.h"
+#include "parallel/tiles.h"
 #include "scene/layers/names.h"
+#include "scene/light/map_reduction.h"
 
 namespace ssdo {
 namespace {
@@ -109,44 +115,151 @@ void refuse_luminance_chroma(const ExrReader& exr, const PictureLayer& layer) {
   }
 }
 
-Plane<glm::vec3> lay_out(const LayeredPicture& picture, const PictureLayer& layer) {
-  const Window data = picture.window(layer), display = picture.display(layer);
-  const double bytes = double(display.area()) * sizeof(glm::vec3),
-               as_stored = double(data.area()) * sizeof(float) * double(layer.channels.size());
-  check_picture_size(picture.file(), bytes, bytes + as_stored);
-  const std::vector<Plane<float>> planes = picture.read(layer);
+/// What was found in texels that is no light.
+struct NoLight {
+  std::size_t broken = 0, negative = 0;
+};
+
+/// Makes texels black that are no light.
+void clear_broken(Plane<glm::vec3>& texels, NoLight& found) {
+  for (glm::vec3& texel : texels.pixels) {
+    const glm::vec3 held = within_range(texel);
+    if (texel != held) {
+      texel = glm::vec3(0);
+      ++found.broken;
+    } else if (std::min({texel.x, texel.y, texel.z}) < 0) {
+      texel = glm::max(texel, glm::vec3(0));
+      ++found.negative;
+    }
+  }
+}
+
+/// The curve by which the layer is made linear, with a word about it; null where it is linear.
+std::optional<TransferCurve> choose_curve(const LayeredPicture& picture, const PictureLayer& layer,
+                                          EnvironmentMap& map) {
+  const auto curve = picture.curve(layer);
+  if (!curve || layer.channels == std::vector<std::string>{"A"}) return std::nullopt;
+  if (curve->kind == TransferCurve::Kind::unknown) {
+    map.warnings.push_back(fmt::format(
+        "{}: says that its colours are {}, whose curve is not known; they are taken as linear "
+        "light: convert the map to a linear space",
+        picture.file(), curve->space));
+    return std::nullopt;
+  }
+  map.converted.push_back("decoded from " + curve->space);
+  if (picture.integers()) {
+    map.warnings.push_back(
+        fmt::format("{}: stores integers, encoded as {}; decoded, they are light of at most 1: use "
+                    "an EXR or Radiance HDR, which have the brightness of suns and lamps",
+                    picture.file(), curve->space));
+  }
+  return curve;
+}
+
+/// Rows of a layer that it has, over the columns of `rows`; black where it lacks these.
+Plane<glm::vec3> read_rows(const LayeredPicture& picture, const PictureLayer& layer,
+                           const Window& rows) {
+  const Window data = picture.window(layer);
+  const std::vector<Plane<float>> planes = picture.read(layer, {.y0 = rows.y0, .y1 = rows.y1});
   const std::array<const Plane<float>*, 3> rgb = {&planes.front(), &planes[planes.size() / 2],
                                                   &planes.back()};
-  Plane<glm::vec3> out(display.width(), display.height());
-  for (int y = std::max(display.y0, data.y0); y < std::min(display.y1, data.y1); ++y) {
-    for (int x = std::max(display.x0, data.x0); x < std::min(display.x1, data.x1); ++x) {
-      const std::size_t from = rgb[0]->index(x - data.x0, y - data.y0);
-      for (int c = 0; c < 3; ++c) out(x - display.x0, y - display.y0)[c] = (*rgb[c])[from];
+  Plane<glm::vec3> out(rows.width(), rows.height());
+  for (int y = 0; y < out.height; ++y) {
+    for (int x = std::max(rows.x0, data.x0); x < std::min(rows.x1, data.x1); ++x) {
+      const std::size_t from = rgb[0]->index(x - data.x0, y);
+      for (int c = 0; c < 3; ++c) out(x - rows.x0, y)[c] = (*rgb[c])[from];
     }
   }
   return out;
 }
 
-/// Makes texels black that are no light; says how many there were.
-void clear_broken(EnvironmentMap& map, const std::string& file) {
-  std::size_t broken = 0, negative = 0;
-  for (glm::vec3& texel : map.texels.pixels) {
-    const glm::vec3 held = within_range(texel);
-    if (texel != held) {
-      texel = glm::vec3(0);
-      ++broken;
-    } else if (std::min({texel.x, texel.y, texel.z}) < 0) {
-      texel = glm::max(texel, glm::vec3(0));
-      ++negative;
-    }
+/// Reads the layer over a window into a map of at most about `most_columns`.
+void read_texels(const LayeredPicture& picture, const PictureLayer& layer, const Window& window,
+                 int most_columns, EnvironmentMap& map) {
+  constexpr int kRows = 256;  // whole chunks of every compression
+  const Window data = picture.window(layer);
+  MapReduction reduction(window.width(), window.height(), most_columns);
+  const double texel_bytes = sizeof(glm::vec3),
+               row_bytes = (texel_bytes + sizeof(float) * double(layer.channels.size())) *
+                           std::max(window.width(), data.width());
+  check_picture_size(
+      picture.file(), double(window.area()) * texel_bytes,
+      double(reduction.area()) * texel_bytes + row_bytes * std::min(kRows, data.height()));
+  const auto curve = choose_curve(picture, layer, map);
+  NoLight found;
+  for (int y = data.y0; y < std::min(window.y1, data.y1); y += kRows) {
+    const int first = std::max(y, window.y0), end = std::min({y + kRows, window.y1, data.y1});
+    if (first >= end) continue;
+    Plane<glm::vec3> rows = read_rows(picture, layer, {window.x0, first, window.x1, end});
+    for_each_row(curve ? rows.height : 0, [&](int row) {
+      for (int x = 0; x < rows.width; ++x)
+        for (int c = 0; c < 3; ++c) rows(x, row)[c] = curve->to_linear(rows(x, row)[c]);
+    });
+    clear_broken(rows, found);
+    reduction.add(first - window.y0, rows);
   }
+  map.texels = reduction.take();
   const auto warn = [&](std::size_t count, std::string_view what) {
     if (count == 0) return;
     map.warnings.push_back(
-        fmt::format("{}: {} of {} texels {}", file, count, map.texels.size(), what));
+        fmt::format("{}: {} of {} texels {}", picture.file(), count, window.area(), what));
   };
-  warn(broken, fmt::format("are not finite or above {:g}, and are taken as black", kBrightest));
-  warn(negative, "have negative channels, which are taken as 0");
+  warn(found.broken,
+       fmt::format("are not finite or above {:g}, and are taken as black", kBrightest));
+  warn(found.negative, "have negative channels, which are taken as 0");
+}
+
+/// What a picture of a shape mostly is, and what to do.
+struct Shape {
+  int width, height;
+  std::string_view what;
+};
+constexpr Shape kFaces[] = {{1, 6, "six faces of a cube in a column"},
+                            {6, 1, "six faces of a cube in a row"},
+                            {3, 4, "six faces of a cube in a cross"},
+                            {4, 3, "six faces of a cube in a cross"}};
+
+/// Refuses pictures of all directions that are no lat-long map, and warns where one is likely. Any
+/// shape will do for a single colour.
+/// Errors: ExitCode::input.
+void check_shape(const std::string& file, const Window& window, EnvironmentMap& map) {
+  const Plane<glm::vec3>& texels = map.texels;
+  const int width = window.width(), height = window.height();
+  const auto is_near = [&](double w, double h) {
+    constexpr double kTolerance = 0.1;  // panoramas are cropped and padded
+    const double wanted = height * w / h;
+    return std::abs(width - wanted) <= std::max(2.0, kTolerance * wanted);
+  };
+  if (is_near(2, 1) || std::ranges::count(texels.pixels, texels[0]) == std::ssize(texels.pixels))
+    return;
+  for (const Shape& shape : kFaces) {
+    if (std::int64_t(width) * shape.height != std::int64_t(height) * shape.width) continue;
+    throw Error(ExitCode::input,
+                fmt::format("{}: has {} x {} texels, the shape of {}, and light is read from a "
+                            "lat-long map of 2 to 1: convert it; faces in OpenEXR's order, in a "
+                            "column, are read where the header has envmap = cube",
+                            file, width, height, shape.what));
+  }
+  map.warnings.push_back(fmt::format(
+      "{}: has {} x {} texels, and a lat-long map of all directions is 2 to 1; {}", file, width,
+      height,
+      is_near(1, 1) ? "is it a light probe (a mirror ball or an angular map)? It is read as a "
+                      "lat-long map: convert it to one"
+                    : "it is stretched over all directions: if it shows a part of them, give it a "
+                      "display window of 2 to 1"));
+}
+
+/// Makes a lat-long map of a cube map. Errors: ExitCode::input where it has not six faces.
+void unfold(const std::string& file, EnvironmentMap& map) {
+  const int width = map.texels.width, height = map.texels.height;
+  if (height != 6 * width) {
+    throw Error(ExitCode::input,
+                fmt::format("{}: its header says envmap = cube, which has six square faces in a "
+                            "column, and it has {} x {} texels; correct the attribute or the map",
+                            file, width, height));
+  }
+  map.texels = lat_long_of_cube(map.texels);
+  map.converted.push_back(fmt::format("from a cube map of {} x {}", width, height));
 }
 
 }  // namespace
@@ -162,13 +275,17 @@ EnvironmentMap read_environment_map(const std::string& text) {
     map.primaries = chromaticities_of(exr->parts()[std::size_t(layer.part)].header);
     map.layer = layer.name.empty() ? layer.part_name : layer.name;
   }
-  map.texels = lay_out(picture, layer);
-  clear_broken(map, name.file);
-  if (picture.integers()) {
-    map.warnings.push_back(
-        fmt::format("{}: stores integers, which are mostly encoded for a display; they are taken "
-                    "as linear light of at most 1: convert the map to EXR or Radiance HDR",
-                    name.file));
+  const bool cube =
+      picture.exr() && is_cube_map(picture.exr()->parts()[std::size_t(layer.part)].header);
+  const Window window = cube ? picture.window(layer) : picture.display(layer);
+  read_texels(picture, layer, window, cube ? window.width() : MapReduction::kColumns, map);
+  if (cube) {
+    unfold(name.file, map);
+    return map;
+  }
+  check_shape(name.file, window, map);
+  if (map.texels.width < window.width()) {
+    map.converted.push_back(fmt::format("averaged from {} x {}", window.width(), window.height()));
   }
   return map;
 }

@@ -5,9 +5,13 @@
 #include "scene/light/environment_map.h"
 
 #include <ImfChromaticitiesAttribute.h>
+#include <ImfEnvmapAttribute.h>
+#include <ImfStringAttribute.h>
 #include <gtest/gtest.h>
 
+#include <glm/geometric.hpp>
 #include <limits>
+#include <utility>
 
 #include "io/image_file.h"
 #include "support/error_matchers.h"
@@ -162,9 +166,73 @@ TEST_F(EnvironmentMapFile, OtherKindsHaveOneLayer) {
   write_image(png, {2, 1, 4, 8, 1}, std::vector<float>{0.2f, 0.4f, 0.6f, 0.5f, 1, 1, 1, 1});
   png.commit();
   const EnvironmentMap map = read_environment_map(path("map.png"));
-  EXPECT_NEAR(map.texels[0].y, 0.4, 1e-6) << "as stored, whatever its alpha";
-  EXPECT_THAT(map.warnings, ElementsAre(HasSubstr("map.png: stores integers")));
+  EXPECT_NEAR(map.texels[0].y, 0.1329, 1e-4) << "decoded from sRGB, whatever its alpha";
+  EXPECT_THAT(map.warnings, ElementsAre(HasSubstr("map.png: stores integers, encoded as sRGB")));
   EXPECT_EQ(read_environment_map(path("map.png") + ":A").texels[0], glm::vec3(128 / 255.0f));
+}
+
+TEST_F(EnvironmentMapFile, EncodedColoursAreDecoded) {
+  FramePart file = part({{"R", 0.5f}, {"G", 0.25f}, {"B", 2}});
+  file.extra.insert("oiio:ColorSpace", Imf::StringAttribute("sRGB"));
+  write_frame(path(), file);
+  const EnvironmentMap map = read_environment_map(path());
+  EXPECT_NEAR(map.texels[0].x, 0.21404, 1e-5);
+  EXPECT_GT(map.texels[0].z, 4) << "brighter than white";
+  EXPECT_THAT(map.converted, ElementsAre("decoded from sRGB"));
+  EXPECT_THAT(map.warnings, IsEmpty());
+  file.extra.insert("colorInteropID", Imf::StringAttribute("ACEScct"));
+  write_frame(path(), file);
+  const EnvironmentMap unknown = read_environment_map(path());
+  EXPECT_EQ(unknown.texels[0].x, 0.5f);
+  EXPECT_THAT(unknown.warnings, ElementsAre(HasSubstr("colours are ACEScct, whose curve is not")));
+}
+
+/// Its directions were those of a lat-long map.
+TEST_F(EnvironmentMapFile, ACubeMapIsConverted) {
+  const Window cube{0, 0, 4, 24};
+  FramePart file = part(kRgb, "", cube);
+  file.display = cube;
+  for (int y = 4; y < 24; ++y) {
+    for (int x = 0; x < 4; ++x)
+      for (auto& [name, plane] : file.channels) plane(x, y) = 0;
+  }
+  file.extra.insert("envmap", Imf::EnvmapAttribute(Imf::ENVMAP_CUBE));
+  write_frame(path(), file);
+  const EnvironmentMap map = read_environment_map(path());
+  const int columns = map.texels.width, rows = map.texels.height;
+  EXPECT_EQ(columns, 2 * rows);
+  const auto at = [&](float longitude) {  // atan2(x, z), on the horizon
+    return map.texels(int((0.5f - longitude / 360) * float(columns)), rows / 2);
+  };
+  EXPECT_LT(glm::distance(at(90), glm::vec3(1, 2, 3)), 1e-4f) << "+X";
+  for (const float dark : {-90.0f, 0.0f, 179.0f, 40.0f, 140.0f}) EXPECT_EQ(at(dark).x, 0) << dark;
+  EXPECT_THAT(map.converted, ElementsAre("from a cube map of 4 x 24"));
+  file.data = file.display = {0, 0, 4, 20};
+  for (auto& [name, plane] : file.channels) plane = Plane<float>(4, 20, 1);
+  write_frame(path(), file);
+  EXPECT_THAT(error_of([&] { read_environment_map(path()); }),
+              IsError(ExitCode::input, "map.exr: its header says envmap = cube"));
+}
+
+/// Crosses, strips and probes were lit as lat-long maps without a word.
+TEST_F(EnvironmentMapFile, ShapesOfOtherMapsAreNamed) {
+  const auto read = [&](int width, int height, bool grey = false) {
+    const Window window{0, 0, width, height};
+    FramePart file = part(kRgb, "", window);
+    file.display = window;
+    if (!grey) file.channels["R"][0] = 9;
+    write_frame(path(), file);
+    return read_environment_map(path()).warnings;
+  };
+  EXPECT_THAT(error_of([&] { read(16, 96); }), IsError(ExitCode::input, "in a column"));
+  EXPECT_THAT(error_of([&] { read(96, 16); }), IsError(ExitCode::input, "in a row"));
+  EXPECT_THAT(error_of([&] { read(48, 64); }), IsError(ExitCode::input, "in a cross"));
+  EXPECT_THAT(error_of([&] { read(64, 48); }), IsError(ExitCode::input, "in a cross"));
+  EXPECT_THAT(read(64, 64), ElementsAre(HasSubstr("is it a light probe")));
+  EXPECT_THAT(read(64, 16), ElementsAre(HasSubstr("if it shows a part of them")));
+  for (const auto& [width, height] : {std::pair(64, 32), {1, 1}, {5, 3}, {2, 2}, {100, 53}})
+    EXPECT_THAT(read(width, height), IsEmpty()) << width << " x " << height;
+  EXPECT_THAT(read(64, 64, true), IsEmpty()) << "one colour from everywhere";
 }
 
 TEST_F(EnvironmentMapFile, TellsItsPrimaries) {
