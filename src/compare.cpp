@@ -17,6 +17,7 @@
 #include "io/run_files.h"
 #include "metrics/difference.h"
 #include "nearest_name.h"
+#include "scene/layers/names.h"
 
 namespace ssdo {
 namespace {
@@ -55,6 +56,52 @@ const PictureLayer* counterpart(const PictureLayer& wanted,
   return best;
 }
 
+/// The channels that are measured together: colours, or a coordinate; an alpha, a depth and all
+/// else alone. `layer` has one of them.
+std::vector<std::size_t> channels_beside(const PictureLayer& layer, std::size_t channel) {
+  const auto kind = [&](std::size_t c) {
+    const std::string name = lower(layer.components[c]);
+    for (const char* color : {"r", "g", "b", "red", "green", "blue"})
+      if (name == color) return std::string("color");
+    return name == "x" || name == "y" || name == "z" ? std::string("coordinate") : "alone " + name;
+  };
+  const auto has = [&](std::string_view component) {
+    return std::ranges::any_of(layer.components,
+                               [&](const std::string& own) { return lower(own) == component; });
+  };
+  const bool alone = kind(channel) == "coordinate" && !(has("x") && has("y"));
+  std::vector<std::size_t> beside;
+  for (std::size_t c = 0; c < layer.channels.size(); ++c)
+    if (c == channel || (!alone && kind(c) == kind(channel))) beside.push_back(c);
+  return beside;
+}
+
+/// Some channels of a layer; called after the channel where it is one of several.
+PictureLayer piece_of(const PictureLayer& layer, const std::vector<std::size_t>& channels) {
+  PictureLayer piece = layer;
+  piece.channels.clear(), piece.components.clear();
+  for (const std::size_t c : channels) {
+    piece.channels.push_back(layer.channels[c]);
+    piece.components.push_back(layer.components[c]);
+  }
+  if (channels.size() == 1 && layer.channels.size() > 1) {
+    const std::string& of = layer.name.empty() ? layer.part_name : layer.name;
+    piece.name = (of.empty() ? "" : of + ".") + piece.components[0];
+  }
+  return piece;
+}
+
+/// A pair by what its channels are, where both layers have the same.
+std::vector<Pair> split_by_kind(const Pair& pair) {
+  if (pair.a.components != pair.b.components) return {pair};
+  std::vector<Pair> pieces;
+  for (std::size_t c = 0; c < pair.a.channels.size(); ++c) {
+    const std::vector<std::size_t> beside = channels_beside(pair.a, c);
+    if (beside[0] == c) pieces.push_back({piece_of(pair.a, beside), piece_of(pair.b, beside)});
+  }
+  return pieces;
+}
+
 /// The layers that are named, or all that both pictures have.
 std::vector<Pair> pair_layers(const LayeredPicture& a, const LayeredPicture& b,
                               const std::string& layer_a, const std::string& layer_b) {
@@ -87,6 +134,17 @@ std::vector<std::string> unpaired(const LayeredPicture& picture, const std::vect
     }
   }
   return names;
+}
+
+/// Whether the picture has colours, vectors or values that no pair compares. Not an alpha alone,
+/// which one kind of picture has and another has not.
+bool lacks_counterpart(const LayeredPicture& picture, const std::vector<Pair>& pairs,
+                       PictureLayer Pair::*side) {
+  for (const std::string& channel : unpaired(picture, pairs, side)) {
+    const std::string component = lower(channel.substr(channel.rfind('.') + 1));
+    if (component != "a" && component != "alpha") return true;
+  }
+  return false;
 }
 
 /// Pixels that count, over a window of their own.
@@ -267,13 +325,18 @@ CompareReport compare(const CompareOptions& options) {
   const Mask mask = read_mask(options.mask);
   const std::vector<Pair> pairs = pair_layers(a, b, name_a.layer, name_b.layer);
   Comparison all;
-  for (const Pair& pair : pairs) all.layers.push_back(compare_pair(a, b, pair, mask));
+  for (const Pair& pair : pairs)
+    for (const Pair& piece : split_by_kind(pair))
+      all.layers.push_back(compare_pair(a, b, piece, mask));
+  CompareReport report;
   if (name_a.layer.empty() && name_b.layer.empty()) {
     all.only_in_a = unpaired(a, pairs, &Pair::a);
     all.only_in_b = unpaired(b, pairs, &Pair::b);
+    if (options.fail_above &&
+        (lacks_counterpart(a, pairs, &Pair::a) || lacks_counterpart(b, pairs, &Pair::b)))
+      report.code = ExitCode::failed;
   }
   if (!options.diff.empty()) write_difference(options.diff, options.policy, a, all.layers);
-  CompareReport report;
   report.text = options.json ? json_text(to_json(options, all), 2) + "\n" : to_table(all);
   for (const Compared& c : all.layers) {
     if (!passes(options, c.difference)) report.code = ExitCode::failed;

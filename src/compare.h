@@ -21,7 +21,8 @@ struct CompareOptions {
 };
 
 /// What `ssdo compare` says, and whether it fails: ExitCode::failed where `fail_above` is given and
-/// a layer's RMSE is above it, or more than `max_invalid` of its pixels have no counterpart.
+/// a layer's RMSE is above it, more than `max_invalid` of its pixels have no counterpart, or no
+/// layers are named and one picture has a layer that the other lacks.
 struct CompareReport {
   std::string text;
   ExitCode code = ExitCode::done;

@@ -59,11 +59,13 @@ class CompareGate : public testing::Test {
     return run_tool(arguments);
   }
 
-  json layer(const std::string& a, const std::string& b) const {
+  json layers(const std::string& a, const std::string& b) const {
     const Finished done = run_tool({"compare", path(a), path(b), "--json"});
     EXPECT_EQ(done.code, 0) << done.err;
-    return parse_json(done.out).at("layers").at(0);
+    return parse_json(done.out).at("layers");
   }
+
+  json layer(const std::string& a, const std::string& b) const { return layers(a, b).at(0); }
 
   TempDir dir_;
 };
@@ -73,9 +75,12 @@ TEST_F(CompareGate, AlphaOfPngIsCompared) {
   write_png("thin.png", 4, 0.4f, 0.2f);
   write_png("rgb.png", 3, 0.4f, 1);
   EXPECT_EQ(gate("opaque.png", "thin.png").code, 1);
-  const json l = layer("opaque.png", "thin.png");
-  EXPECT_EQ(l["channels"], 4);
-  EXPECT_NEAR(l["rmse"], 0.8 / 2, 1e-6) << "over four channels";
+  const json kinds = layers("opaque.png", "thin.png");
+  ASSERT_EQ(kinds.size(), 2u);
+  EXPECT_EQ(kinds[0]["channels"], 3);
+  EXPECT_EQ(kinds[0]["rmse"], 0);
+  EXPECT_EQ(kinds[1]["a"], "A");
+  EXPECT_NEAR(kinds[1]["rmse"], 0.8, 1e-6);
   EXPECT_EQ(gate("opaque.png", "opaque.png").code, 0);
   const Finished without = gate("opaque.png", "rgb.png");
   EXPECT_EQ(without.code, 0) << "what both have is equal";
@@ -146,6 +151,43 @@ TEST_F(CompareGate, OutputsOfTheToolPassAgainstThemselves) {
   EXPECT_EQ(gate("out.png", "out.png").code, 0);
 }
 
+/// Colours, a depth and an alpha were one figure, which the depth ruled.
+TEST_F(CompareGate, WhatDiffersInKindHasFiguresOfItsOwn) {
+  const auto value = [&](float v) { return plane_of([=](int, int) { return v; }); };
+  const std::map<std::string, Plane<float>> a = {
+      {"R", value(1)},   {"G", value(1)},   {"B", value(1)},     {"A", value(1)},
+      {"Z", value(500)}, {"P.X", value(1)}, {"P.Y", value(1)},   {"P.Z", value(1)},
+      {"c.R", value(1)}, {"c.A", value(1)}, {"N.red", value(1)}, {"N.green", value(1)}};
+  std::map<std::string, Plane<float>> b = a;
+  b["R"] = b["P.Z"] = value(1.5), b["Z"] = value(400), b["c.A"] = value(0.5);
+  write("a.exr", a);
+  write("b.exr", b);
+  std::map<std::string, double> rmse;
+  for (const json& l : layers("a.exr", "b.exr")) rmse[l["a"]] = l["rmse"];
+  EXPECT_EQ(rmse.size(), 7u);
+  EXPECT_NEAR(rmse.at("R,G,B"), 0.5 / std::sqrt(3), 1e-6);
+  EXPECT_EQ(rmse.at("A"), 0);
+  EXPECT_EQ(rmse.at("Z"), 100);
+  EXPECT_NEAR(rmse.at("P"), 0.5 / std::sqrt(3), 1e-6);
+  EXPECT_EQ(rmse.at("c.A"), 0.5);
+  EXPECT_EQ(rmse.at("N"), 0);
+}
+
+/// A gate passed a picture without the layer that it was to guard.
+TEST_F(CompareGate, ALayerThatOneSideLacksFails) {
+  const auto one = plane_of([](int, int) { return 1; });
+  write("both.exr", {{"ao.Y", one}, {"direct.R", one}, {"direct.G", one}, {"direct.B", one}});
+  write("ao.exr", {{"ao.Y", one}});
+  for (const auto& [a, b] : {std::pair("both.exr", "ao.exr"), {"ao.exr", "both.exr"}}) {
+    const Finished done = gate(a, b);
+    EXPECT_EQ(done.code, 1) << a;
+    EXPECT_THAT(done.out, HasSubstr("direct.R")) << a;
+    EXPECT_EQ(run_tool({"compare", path(a), path(b)}).code, 0) << "no gate";
+  }
+  EXPECT_EQ(gate("both.exr:ao", "ao.exr:ao").code, 0) << "named";
+  EXPECT_EQ(gate("both.exr:direct", "ao.exr").code, 4);
+}
+
 TEST_F(CompareGate, ABareChannelCanBeNamedBesideALayerWithItsName) {
   const auto value = [&](float v) { return plane_of([=](int, int) { return v; }); };
   write(
@@ -180,7 +222,7 @@ TEST_F(CompareGate, ChannelsWithoutACounterpartAreListed) {
   write("a.exr", {{"ao.Y", one}, {"bounce.R", one}});
   write("b.exr", {{"ao.Y", one}, {"error.Y", one}});
   const Finished done = gate("a.exr", "b.exr");
-  EXPECT_EQ(done.code, 0);
+  EXPECT_EQ(done.code, 1);
   EXPECT_THAT(done.out, HasSubstr("only in A: bounce.R\nonly in B: error.Y\n"));
   const json all = parse_json(run_tool({"compare", path("a.exr"), path("b.exr"), "--json"}).out);
   EXPECT_THAT(all["only_in_a"], ElementsAre("bounce.R"));
