@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <set>
+#include <sstream>
 
 #include "cli/bench_options.h"
 #include "cli/config_file.h"
@@ -100,6 +102,26 @@ void check(const Options& o, const CLI::App& app) {
   }
 }
 
+/// Breaks long lines between words; what follows is indented as the text that it goes on with.
+std::string wrap(const std::string& text) {
+  constexpr std::size_t kColumns = 100;
+  std::string out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t first = std::min(line.find_first_not_of(' '), line.size());
+    const std::size_t gap = line.find("  ", first);  // between an option and its text
+    const std::size_t indent = gap == line.npos ? first : line.find_first_not_of(' ', gap);
+    while (line.size() > kColumns) {
+      const std::size_t blank = line.rfind(' ', kColumns);
+      if (blank == line.npos || blank <= indent) break;
+      out += line.substr(0, blank) + "\n";
+      line = std::string(indent, ' ') + line.substr(blank + 1);
+    }
+    out += line + "\n";
+  }
+  return out;
+}
+
 }  // namespace
 
 ParsedOptions parse_options(int argc, const char* const* argv) {
@@ -135,10 +157,11 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForAllHelp&) {
-    parsed.print = app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::All);
+    parsed.print =
+        wrap(app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::All));
     return parsed;
   } catch (const CLI::CallForHelp&) {
-    parsed.print = app.get_subcommands().empty() ? std::string(kShortHelp) : app.help();
+    parsed.print = app.get_subcommands().empty() ? std::string(kShortHelp) : wrap(app.help());
     return parsed;
   } catch (const CLI::CallForVersion&) {
     parsed.print = std::string("ssdo ") + SSDO_VERSION + "\n";

@@ -49,6 +49,8 @@ TEST(FullHelp, HasTheOptionsOfAllCommands) {
   for (const char* option : {"--seed", "--list-methods", "--want", "--fail-above", "--json"})
     EXPECT_THAT(text, HasSubstr(option));
   EXPECT_EQ(help({"info", "--help-all"}), text) << "the same after a command";
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) EXPECT_LE(line.size(), 100u) << line;
 }
 
 TEST(HelpOfACommand, HasItsOptions) {

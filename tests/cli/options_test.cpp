@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <regex>
 
 namespace ssdo::test {
 namespace {
@@ -37,7 +38,11 @@ std::string refusal(const std::vector<std::string>& words) {
   }
 }
 
-std::string help() { return parse_words({"--help-all"}).print.value_or(""); }
+/// Without the breaks of long lines.
+std::string help() {
+  static const std::regex breaks("\n {20,}");
+  return std::regex_replace(parse_words({"--help-all"}).print.value_or(""), breaks, " ");
+}
 
 /// Every name sets its value; another is refused with a list of the names, which the help has too.
 template <class T, class Field>
