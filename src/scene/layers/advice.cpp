@@ -41,10 +41,14 @@ struct Wording {
 
 const std::vector<Wording>& wordings() {
   static const std::vector<Wording> rows = {
-      {Role::position, {"position", "worldpos", "point"}, {"object", "rest", "pref"}},
-      {Role::normal, {"normal"}, {"object", "rest", "nref", "noice", "tangent"}},
+      {Role::position,
+       {"pos", "point", "worldp", "pworld", "wpp", "xyz"},
+       {"object", "rest", "pref", "expos", "compos"}},
+      {Role::normal,
+       {"normal", "nrm", "worldn", "nworld"},
+       {"object", "rest", "nref", "noice", "tangent"}},
       {Role::albedo,
-       {"albedo", "basecolor", "diffusecolor", "diffusefilter"},
+       {"alb", "basecol", "diffcol", "diffusecol", "diffusefilter"},
        {"specular", "coat", "sheen", "mse", "variance"}}};
   return rows;
 }

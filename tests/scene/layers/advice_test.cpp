@@ -31,6 +31,13 @@ TEST(Advice, NamesTheOneLayerThatIsLikeTheRole) {
             "if 'FinalBaseColor' is the albedo, say --aov \"albedo=FinalBaseColor\"");
 }
 
+TEST(Advice, KnowsShortWords) {
+  EXPECT_THAT(hint_at(Role::position, groups_of({"myPosPass", "exposure"})),
+              HasSubstr("myPosPass"));
+  EXPECT_THAT(hint_at(Role::normal, groups_of({"geo_nrm", "spec"})), HasSubstr("geo_nrm"));
+  EXPECT_THAT(hint_at(Role::albedo, groups_of({"char_alb", "spec"})), HasSubstr("char_alb"));
+}
+
 TEST(Advice, DoesNotChooseAmongSeveralNorFromOtherSpaces) {
   EXPECT_EQ(hint_at(Role::position, groups_of({"PositionA", "PositionB"})), "");
   EXPECT_EQ(hint_at(Role::position, groups_of({"ObjectPosition", "RestPosition"})), "");

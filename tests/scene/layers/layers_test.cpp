@@ -27,6 +27,25 @@ TEST(Layers, FindsBlender) {
   EXPECT_EQ(channels_of(t, Role::alpha), Channels{"ViewLayer.Combined.A"});
 }
 
+/// Of these, neither a match nor a hint was found.
+TEST(Layers, FindsShortNames) {
+  const auto vector = [](const std::string& layer) {
+    return Channels{layer + ".R", layer + ".G", layer + ".B"};
+  };
+  for (const char* name : {"WPos", "wpp", "Pw", "pos", "P_world", "world_P", "position_world"})
+    EXPECT_EQ(channels_of(File(vector(name)).find(), Role::position), vector(name)) << name;
+  for (const char* name : {"Nw", "normal_world", "nrm"}) {
+    Channels both = vector(name), p = vector("P");
+    both.insert(both.end(), p.begin(), p.end());
+    EXPECT_EQ(channels_of(File(both).find(), Role::normal), vector(name)) << name;
+  }
+  Channels both = vector("alb"), p = vector("pos"), better = vector("P");
+  both.insert(both.end(), p.begin(), p.end());
+  EXPECT_EQ(channels_of(File(both).find(), Role::albedo), vector("alb"));
+  both.insert(both.end(), better.begin(), better.end());
+  EXPECT_EQ(channels_of(File(both).find(), Role::position), better) << "the usual name comes first";
+}
+
 TEST(Layers, FindsBlender5InParts) {
   const auto t =
       File(Parts{{"ViewLayer.Combined",
