@@ -10,7 +10,6 @@
 #include "cli/batch.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cstdint>
 #include <cstdio>
@@ -21,6 +20,7 @@
 #include <utility>
 
 #include "cli/describe.h"
+#include "cli/frame_changes.h"
 #include "cli/info_report.h"
 #include "cli/jobs.h"
 #include "cli/memory.h"
@@ -49,6 +49,7 @@ struct Work {
   OutputPolicy policy = {};            ///< of its outputs
   std::vector<WorkOnView> views = {};  ///< while there is something left to do with them
   std::string lines = {};              ///< to be printed
+  std::string advice = {};             ///< to be printed once the outputs are made
   nlohmann::json statistics = {};      ///< of its views; null unless the outputs were made
   std::set<std::string> losses = {};   ///< what --allow-partial has taken as background
   std::optional<Error> error = {};
@@ -171,7 +172,9 @@ class Batch {
                                                  job.input(), *job.frame));
       }
       for (const FrameFiles& files : job.views) work.views.push_back({prepare_view(job, files)});
-      if (work.views.size() > 1) compare_views(work);
+      if (work.views.size() > 1)
+        add_warnings(work, compare_views(work.views[0].frame, work.views[1].frame), "");
+      note_changes(work);
     });
     for (const FrameFiles& files : jobs_[i].views) pictures_.release(files);
     return work;
@@ -180,9 +183,9 @@ class Batch {
   /// Errors name the view where there are several.
   Frame prepare_view(const Job& job, const FrameFiles& files) {
     if (job.views.size() == 1)
-      return prepare_frame(options_, *light_, pictures_, files, job.frame.value_or(0));
+      return prepare_in_sequence(options_, *light_, pictures_, files, job.frame);
     try {
-      Frame frame = prepare_frame(options_, *light_, pictures_, files, job.frame.value_or(0));
+      Frame frame = prepare_in_sequence(options_, *light_, pictures_, files, job.frame);
       if (!frame.bands) return frame;
     } catch (const Error& e) {
       throw Error(e.code, fmt::format("{} (view {})", e.what(), files.view));
@@ -192,23 +195,13 @@ class Batch {
                                              files.input));
   }
 
-  /// Errors: ExitCode::layer where both views are made from the same channels.
-  void compare_views(Work& work) const {
-    const Frame &left = work.views[0].frame, &right = work.views[1].frame;
-    if (left.lead().file == right.lead().file && left.lead().part == right.lead().part &&
-        left.lead().channels == right.lead().channels) {
-      throw Error(ExitCode::layer,
-                  fmt::format("{}: both views would be made from '{}'; leave out --aov, or give "
-                              "--stereo left, then right",
-                              left.input, left.lead().name));
-    }
-    if (left.plan.write != right.plan.write) {
-      add_warnings(
-          work,
-          {fmt::format("the views have different products, as their layers differ: "
-                       "left {}; right {}",
-                       fmt::join(left.plan.write, ", "), fmt::join(right.plan.write, ", "))},
-          "");
+  /// Says what the frame before had otherwise; frames are prepared one after the other.
+  void note_changes(Work& work) {
+    std::vector<FrameLooks> before = std::exchange(looks_, {});
+    for (const WorkOnView& view : work.views) {
+      looks_.push_back(looks_of(view.frame, jobs_[work.index].frame.value_or(0)));
+      if (looks_.size() <= before.size())
+        add_warnings(work, changes(before[looks_.size() - 1], looks_.back()), view.frame.view);
     }
   }
 
@@ -248,8 +241,10 @@ class Batch {
     if (options_.command == Command::info) return info_.show(frame);
     if (options_.verbosity.dry_run || options_.verbosity.verbose)
       work.lines += describe(frame);
-    else
+    else {
       add_warnings(work, frame.warnings(), frame.view);
+      if (!jobs_[work.index].frame && !options_.verbosity.quiet) work.advice = frame.advice;
+    }
     RelightJob job = job_of(work, view);
     if (options_.verbosity.dry_run) {
       // The last checks that come before the work of a real run.
@@ -306,6 +301,8 @@ class Batch {
   void conclude(Work& work) {
     for (const std::string& loss : work.losses) add(work, loss + "; taken as background");
     if (!work.losses.empty() && code_ == ExitCode::done) code_ = ExitCode::input;
+    if (!work.error && !work.advice.empty())
+      add(work, jobs_[work.index].input() + ": " + work.advice);
     print_lines(work);
     for (nlohmann::json& view : work.statistics) statistics_.push_back(std::move(view));
     if (work.error) {
@@ -381,6 +378,7 @@ class Batch {
   nlohmann::json statistics_ = nlohmann::json::array();
   ExitCode code_ = ExitCode::done;
   bool stopped_ = false;
+  std::vector<FrameLooks> looks_;  ///< of the views of the last frame that was prepared
   std::vector<std::optional<History>> histories_;  ///< of the frame before's views, for --temporal
   std::optional<Work> ahead_;                      ///< the next job, prepared
   std::optional<Work> behind_;                     ///< the last one, computed and not concluded

@@ -66,13 +66,6 @@ void check_kinds(const std::vector<Target>& targets) {
   }
 }
 
-/// The files of a frame without further views, with its number in their patterns.
-FrameFiles files_at(const Options& options, int frame) {
-  FrameFiles files{expand_pattern(options.input_file, frame), options.input.aovs, {}};
-  for (LayerRequest& request : files.aovs) request.file = expand_pattern(request.file, frame);
-  return files;
-}
-
 /// Those before and after a frame, whether they exist or not.
 std::vector<FrameFiles> neighbours_of(const Options& options, int frame) {
   std::vector<FrameFiles> neighbours;
@@ -168,6 +161,12 @@ bool is_readable(const std::string& path) {
 }
 
 }  // namespace
+
+FrameFiles files_at(const Options& options, int frame) {
+  FrameFiles files{expand_pattern(options.input_file, frame), options.input.aovs, {}};
+  for (LayerRequest& request : files.aovs) request.file = expand_pattern(request.file, frame);
+  return files;
+}
 
 std::vector<Job> plan_jobs(const Options& options) {
   std::vector<Target> targets = targets_of(options.output, options.input.views);

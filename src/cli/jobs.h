@@ -37,6 +37,9 @@ bool is_done(const Job& job);
 /// which such a frame has not.
 FrameFiles files_named(const Options& options);
 
+/// The files of a frame of a sequence without further views, with its number in their patterns.
+FrameFiles files_at(const Options& options, int frame);
+
 /// Every file that a frame is made from: `files`, those of --env, --camera, --config and the
 /// OpenColorIO config.
 std::vector<RunFile> inputs_of(const Options& options, const FrameFiles& files);

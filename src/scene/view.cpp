@@ -37,7 +37,6 @@ Plane<float> take_depth_from_samples(View& view, const std::string& part, GBuffe
 
 /// An error of a frame without P, with the layer that may hold it.
 Error with_hint(const Error& error, const View& view, const std::string& eye) {
-  if (view.layers[Role::position] || error.code != ExitCode::layer) return error;
   const std::string hint = hint_at(Role::position, group_channels(view.files.front(), 0, eye));
   return hint.empty() ? error : Error(error.code, fmt::format("{}; {}", error.what(), hint));
 }
@@ -168,6 +167,7 @@ View read_view(std::deque<ExrReader> opened, const std::vector<LayerRequest>& ao
   try {
     read_surfaces_by_right_depth({files, reading, camera, deep}, view);
   } catch (const Error& error) {
+    if (view.layers[Role::position] || error.code != ExitCode::layer) throw;
     throw with_hint(error, view, options.view);
   }
   view.gbuffer.warnings.insert(view.gbuffer.warnings.begin(), warnings.begin(), warnings.end());

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "support/analytic_scene.h"
 #include "support/frame_file.h"
 #include "support/parse_json.h"
 #include "support/run_tool.h"
@@ -108,6 +110,49 @@ TEST_F(Shot, PicturesThatAreCutShortAreMadeAnew) {
     ASSERT_EQ(run_tool(flags).code, 0);
     EXPECT_TRUE(read_file(picture) == whole) << kind;
   }
+}
+
+/// A frame that shows one plane only stopped the sequence; its own frames tell the lens.
+TEST_F(Shot, AFlatFrameTakesTheLensOfAFrameBeside) {
+  const Window window{0, 0, 64, 48};
+  const Camera camera = look_at(small_picture().camera, {0, -4, 3}, {0, 0, 0}, {0, 0, 1});
+  const FramePart flat = frame_of(take_picture(plane({}, {0, 0, 1}), camera, window));
+  write_frame(file("in", 3), flat);
+  write_frame(dir_ / "flat.exr", flat);
+  EXPECT_EQ(run_tool({dir_ / "flat.exr", "-o", dir_ / "flat_out.exr"}).code, 4) << "alone";
+  const Finished whole = run({});
+  EXPECT_EQ(whole.code, 0) << whole.err;
+  const std::string first = read_file(file("out", 3));
+  EXPECT_EQ(run({"--frames", "3", "--overwrite"}).code, 0);
+  EXPECT_TRUE(read_file(file("out", 3)) == first) << "however the shot is cut";
+  const Finished info = run_tool({"info", dir_ / "in.####.exr", "--frames", "3"});
+  EXPECT_THAT(info.out, HasSubstr("fitted from P with the lens of " + file("in", 2)));
+}
+
+/// Layers came and went in silence, and with them bounce and composite.
+TEST_F(Shot, WhatChangesFromFrameToFrameIsSaidOnce) {
+  FramePart part = frame_of(small_picture());
+  for (const char* c : {"R", "G", "B"}) part.channels.erase("ViewLayer.DiffCol." + std::string(c));
+  write_frame(file("in", 2), part);
+  write_frame(file("in", 4), part);
+  const auto lines_with = [](const Finished& done, const std::string& text) {
+    std::vector<std::string> found;
+    std::istringstream in(done.err);
+    for (std::string line; std::getline(in, line);)
+      if (line.find(text) != line.npos) found.push_back(line);
+    return found;
+  };
+  const Finished done = run({"--dry-run"});
+  EXPECT_EQ(done.code, 0);
+  EXPECT_THAT(lines_with(done, "albedo is "),
+              ElementsAre(HasSubstr("in.0002.exr: warning: albedo is gone: frame 1 has it in "
+                                    "'ViewLayer.DiffCol', frame 2 has none"),
+                          HasSubstr("in.0005.exr: warning: albedo is new: frame 4 has none")));
+  EXPECT_THAT(lines_with(run({"--dry-run", "--frames", "2,4"}), "albedo is "), ElementsAre());
+  const Window small{0, 0, 32, 24};
+  write_frame(file("in", 5), frame_of(small_picture(small, small)));
+  EXPECT_THAT(lines_with(run({"--dry-run"}), "the size changes"),
+              ElementsAre(HasSubstr("frame 4 has 64 x 48 pixels, frame 5 32 x 24")));
 }
 
 TEST_F(Shot, ManyFramesDoNotGoToOneFile) {

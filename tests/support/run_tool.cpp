@@ -33,6 +33,20 @@ struct Pipe {
   }
 };
 
+/// Without what a plain run of one frame says last: how much of it is guessed, which small frames
+/// are for the most part.
+std::string without_advice(const std::string& text) {
+  std::string kept;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const bool whole = !lines.eof();
+    if (line.starts_with("ssdo: ") && line.find(" of all directions are guessed; ") != line.npos)
+      continue;
+    kept += line + (whole ? "\n" : "");
+  }
+  return kept;
+}
+
 }  // namespace
 
 std::filesystem::path tool_path() { return SSDO_BINARY; }
@@ -86,7 +100,7 @@ Finished run_tool(const std::vector<std::string>& arguments, const Surroundings&
     wait4(child, &status, 0, &used);
   }
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return {code, out_text.get(), err_text.get(), used};
+  return {code, out_text.get(), without_advice(err_text.get()), used};
 }
 
 std::vector<std::string> listing(const std::filesystem::path& folder) {

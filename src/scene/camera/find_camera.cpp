@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <optional>
+#include <string_view>
 
 #include "error.h"
 #include "scene/camera/fit.h"
@@ -63,13 +64,16 @@ std::string said_by(const std::vector<HeaderCamera>& header, const GBuffer& g) {
 
 [[noreturn]] void throw_undetermined(const GBuffer& g, const std::vector<HeaderCamera>& header,
                                      const std::string& file) {
-  throw Error(ExitCode::layer,
-              fmt::format("{}: {}; give --fov DEGREES, --ortho WIDTH or --camera FILE.json{}", file,
-                          g.position.empty()
-                              ? "has depth but no position, which leaves the camera open"
-                              : "the camera cannot be fitted from P, whose pixels lie in one plane "
-                                "or are too few",
-                          said_by(header, g)));
+  const auto message = [&](std::string_view what) {
+    return fmt::format("{}: {}; give --fov DEGREES, --ortho WIDTH or --camera FILE.json{}", file,
+                       what, said_by(header, g));
+  };
+  if (g.position.empty())
+    throw Error(ExitCode::layer,
+                message("has depth but no position, which leaves the camera open"));
+  throw UndeterminedCamera(
+      ExitCode::layer,
+      message("the camera cannot be fitted from P, whose pixels lie in one plane or are too few"));
 }
 
 /// Pixels whose neighbours all show surfaces. Beside background, P may be an average with the

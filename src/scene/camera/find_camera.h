@@ -4,12 +4,18 @@
 #include <string>
 #include <vector>
 
+#include "error.h"
 #include "scene/camera/camera.h"
 #include "scene/camera/metadata/candidates.h"
 #include "scene/gbuffer.h"
 #include "scene/geometry.h"
 
 namespace ssdo {
+
+/// P leaves the camera open: its pixels lie in one plane, or are too few. A lens would settle it.
+struct UndeterminedCamera : Error {
+  using Error::Error;
+};
 
 /// The camera of the frame, and the transform from stored P to camera space. They are the same
 /// unless P is stored in camera space and a file or the header gives the pose. Both are in the
@@ -26,7 +32,8 @@ struct FoundCamera {
 /// it, or if no camera fits better; else the camera fitted from P, with a warning. Without options,
 /// the camera is that fitted from P, and the header's where P or its lens agrees with it or where P
 /// leaves the camera open.
-/// Errors: ExitCode::layer where neither P nor the options nor the header determine the camera.
+/// Errors: ExitCode::layer where neither P nor the options nor the header determine the camera;
+/// UndeterminedCamera where there is a P.
 FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,
                         GeometryReport& report);
 

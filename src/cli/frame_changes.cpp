@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/frame_changes.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "error.h"
+
+namespace ssdo {
+
+FrameLooks looks_of(const Frame& frame, int number) {
+  const Window& display = frame.part().display_window;
+  FrameLooks looks{number, {}, display.width(), display.height()};
+  for (std::size_t i = 0; i < kRoleCount; ++i)
+    if (const auto& layer = frame.layers.layers[i]) looks.layers[i] = layer->name;
+  return looks;
+}
+
+std::vector<std::string> changes(const FrameLooks& before, const FrameLooks& now) {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < kRoleCount; ++i) {
+    const std::string &old = before.layers[i], &own = now.layers[i];
+    const std::string_view role = role_name(Role(i));
+    if (old == own) continue;
+    lines.push_back(
+        own.empty()   ? fmt::format("{} is gone: frame {} has it in '{}', frame {} has none", role,
+                                    before.number, old, now.number)
+        : old.empty() ? fmt::format("{} is new: frame {} has none, frame {} has it in '{}'", role,
+                                    before.number, now.number, own)
+                      : fmt::format("{} is another layer: '{}' in frame {}, '{}' in frame {}", role,
+                                    old, before.number, own, now.number));
+  }
+  if (before.width != now.width || before.height != now.height) {
+    lines.push_back(fmt::format("the size changes: frame {} has {} x {} pixels, frame {} {} x {}",
+                                before.number, before.width, before.height, now.number, now.width,
+                                now.height));
+  }
+  return lines;
+}
+
+std::vector<std::string> compare_views(const Frame& left, const Frame& right) {
+  if (left.lead().file == right.lead().file && left.lead().part == right.lead().part &&
+      left.lead().channels == right.lead().channels) {
+    throw Error(ExitCode::layer,
+                fmt::format("{}: both views would be made from '{}'; leave out --aov, or give "
+                            "--stereo left, then right",
+                            left.input, left.lead().name));
+  }
+  if (left.plan.write == right.plan.write) return {};
+  return {
+      fmt::format("the views have different products, as their layers differ: left {}; right {}",
+                  fmt::join(left.plan.write, ", "), fmt::join(right.plan.write, ", "))};
+}
+
+}  // namespace ssdo

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "frame.h"
+
+namespace ssdo {
+
+/// What is expected to stay the same from one frame of a sequence to the next.
+struct FrameLooks {
+  int number = 0;
+  std::array<std::string, kRoleCount> layers;  ///< by role, without their view; empty: none
+  int width = 0, height = 0;                   ///< of the display window
+};
+
+FrameLooks looks_of(const Frame& frame, int number);
+
+/// A line for each layer that comes, goes or has another name, and for another size.
+std::vector<std::string> changes(const FrameLooks& before, const FrameLooks& now);
+
+/// What differs between the views of a stereo frame, as warnings. Errors: ExitCode::layer where
+/// both are made from the same channels.
+std::vector<std::string> compare_views(const Frame& left, const Frame& right);
+
+}  // namespace ssdo
