@@ -4,13 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <set>
 #include <string_view>
 #include <utility>
 
 #include "composite_choice.h"
 #include "error.h"
 #include "estimators/registry.h"
+#include "io/transfer_curve.h"
 #include "known_geometry.h"
 #include "scene/layers/advice.h"
 #include "stopwatch.h"
@@ -34,14 +39,78 @@ bool wants_reflection(const OutputOptions& output, const std::vector<LayerReques
                       [](const LayerRequest& aov) { return aov.role == Role::specular; }));
 }
 
-/// Names the layers that may be meant for what the frame lacks.
-void hint_at_missing_layers(Frame& frame) {
-  for (const Role role : {Role::normal, Role::albedo}) {
-    if (frame.layers[role]) continue;
-    const std::string hint = hint_at(role, group_channels(frame.files.front(), 0, frame.view));
-    if (hint.empty()) continue;
+/// The usual products that an EXR of the frame goes without, since it has no albedo; "" where it
+/// has a composite all the same.
+std::string left_out_without_albedo(const Plan& plan, const OutputOptions& output) {
+  if (!output.products.empty() || plan.write.empty() || contains(plan.write, "composite"))
+    return "";
+  return makes(*plan.method, find_product("bounce")) ? ": no bounce and no composite"
+                                                     : ": no composite";
+}
+
+/// Says what follows from layers that the frame lacks, and which may be meant for them.
+void warn_of_missing_layers(Frame& frame, const OutputOptions& output) {
+  const auto warn = [&](Role role, const std::string& effect) {
+    if (frame.layers[role]) return;
+    std::string remedy = hint_at(role, group_channels(frame.files.front(), 0, frame.view));
+    if (remedy.empty() && effect.empty()) return;
+    if (remedy.empty()) remedy = fmt::format("name one with --aov {}=LAYER", role_name(role));
     frame.report.warnings.push_back(
-        fmt::format("no layer for {} found by name; {}", role_name(role), hint));
+        fmt::format("no layer for {} found by name{}; {}", role_name(role), effect, remedy));
+  };
+  const bool has_surfaces = frame.report.placement.median_depth > 0;
+  warn(Role::position, "");
+  warn(Role::normal, frame.layers[Role::position] && has_surfaces
+                         ? ": normals are rebuilt from the position"
+                         : "");
+  warn(Role::albedo, left_out_without_albedo(frame.plan, output));
+}
+
+/// A radius that is given in another unit than that of the scene leaves nothing to see, or is none.
+void warn_of_radius(Frame& frame, const ModelOptions& model) {
+  const Geometry& g = frame.scene.geometry;
+  if (!model.radius || std::isinf(*model.radius) || g.median_depth <= 0) return;
+  const double pixel = double(g.frame_height_at(g.median_depth)) / g.display.height();
+  glm::vec3 low(INFINITY), high(-INFINITY);
+  for (const Surfel& s : g.surfel.pixels) {
+    if (!s.is_surface()) continue;
+    low = glm::min(low, s.position), high = glm::max(high, s.position);
+  }
+  const double scene = glm::distance(low, high);
+  const auto warn = [&](std::string_view how, std::string_view effect) {
+    frame.report.warnings.push_back(fmt::format("--radius {:g}: is {}: {}; is it in the unit of P?",
+                                                *model.radius, how, effect));
+  };
+  if (*model.radius < pixel)
+    warn(fmt::format("less than a pixel, which is {:.3g} wide at the median depth {:.4g}", pixel,
+                     g.median_depth),
+         "next to nothing occludes");
+  else if (*model.radius > scene)
+    warn(fmt::format("more than all that the frame shows, which is {:.3g} across", scene),
+         "it is no limit");
+}
+
+void warn_of_idle_crop(Frame& frame, const OutputOptions& output) {
+  const ExrPart& part = frame.part();
+  if (output.crop && intersection(part.data_window, part.display_window) == part.data_window)
+    frame.report.warnings.push_back(
+        "--crop has no effect: the frame has no pixels beyond its display window");
+}
+
+/// Colours are not decoded: the outputs keep the header, which says how they are encoded.
+void warn_of_encoded_colors(Frame& frame) {
+  std::set<std::string> warned;
+  for (const Role role :
+       {Role::albedo, Role::beauty, Role::radiance, Role::ambient, Role::specular}) {
+    const auto& layer = frame.layers[role];
+    if (!layer) continue;
+    const ExrReader& file = frame.files[std::size_t(layer->file)];
+    const auto curve = curve_of(file.parts()[std::size_t(layer->part)].header);
+    if (!curve || !warned.insert(curve->space).second) continue;
+    frame.report.warnings.push_back(fmt::format(
+        "the header says that colours are {}, which is not linear, and {} is taken as linear: "
+        "convert its colours, or correct colorInteropID or oiio:ColorSpace",
+        curve->space, role_name(role)));
   }
 }
 
@@ -111,7 +180,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   frame.gbuffer = std::move(view.gbuffer);
   frame.report = std::move(view.report);
   frame.times.read = opening + view.read_ms;
-  hint_at_missing_layers(frame);
+  warn_of_encoded_colors(frame);
 
   Scene& scene = frame.scene;
   scene.geometry = std::move(view.geometry);
@@ -172,6 +241,9 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
                              options.output, options.memory);
     frame.plan.reasons.push_back(describe(*frame.bands, all));
   }
+  warn_of_missing_layers(frame, options.output);
+  warn_of_radius(frame, model);
+  warn_of_idle_crop(frame, options.output);
   const std::vector<std::string> idle =
       idle_for_composite(frame.plan, options.output, frame.gbuffer);
   frame.report.warnings.insert(frame.report.warnings.end(), idle.begin(), idle.end());

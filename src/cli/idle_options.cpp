@@ -18,7 +18,7 @@ using Condition = std::function<bool(const Options&)>;
 
 /// When an option has no effect, and what would give it one.
 struct IdleRule {
-  std::vector<std::string_view> options;
+  std::vector<std::string_view> options;  ///< as messages name them: a value may follow
   Condition idle;
   std::string_view reason;
 };
@@ -44,7 +44,7 @@ bool is_deep_picture(const std::string& path) {
   return is_picture(path) && ending.find_first_of("jJ") == ending.npos;
 }
 
-/// Whether a file holds one of these products; an EXR holds all if no products are named.
+/// Whether a file holds one of these products; an EXR holds the usual ones if none are named.
 bool asks_for(const Options& o, const std::vector<std::string_view>& products) {
   const OutputOptions& output = o.output;
   const auto is_one = [&](std::string_view name) {
@@ -53,7 +53,24 @@ bool asks_for(const Options& o, const std::vector<std::string_view>& products) {
   if (std::ranges::any_of(output.saves, is_one, &SaveRequest::product)) return true;
   if (output.files.empty() && !output.saves.empty()) return false;
   if (!output.products.empty()) return std::ranges::any_of(output.products, is_one);
-  return output.files.empty() || std::ranges::any_of(output.files, is_exr);
+  const auto is_usual = [](std::string_view name) { return find_product(name).usual; };
+  return std::ranges::any_of(products, is_usual) &&
+         (output.files.empty() || std::ranges::any_of(output.files, is_exr));
+}
+
+/// Whether a picture of -o shows the composite.
+bool shows_composite(const OutputOptions& output) {
+  return output.products.empty() && std::ranges::any_of(output.files, is_picture);
+}
+
+bool sets(const ModelOptions& model, std::string_view parameter) {
+  return std::ranges::any_of(model.set, [&](const std::string& setting) {
+    return setting.starts_with(parameter) && setting.substr(parameter.size()).starts_with('=');
+  });
+}
+
+bool has_specular(const std::vector<LayerRequest>& aovs) {
+  return std::ranges::any_of(aovs, [](const LayerRequest& a) { return a.role == Role::specular; });
 }
 
 /// Whether all that is made is as it is without these products: occlude takes how much of the light
@@ -84,6 +101,19 @@ const std::vector<IdleRule>& rules() {
       {{"--bounces"},
        occlude_without({"bounce", "error"}),
        "composite occlude does not use it, and no output has bounce"},
+      {{"--bounces"},
+       [](const Options& o) {
+         return o.command == Command::relight && o.model.bounces > 0 && !o.model.error &&
+                choose_compose(o.output, o.input.aovs) != Compose::occlude &&
+                !shows_composite(o.output) && !asks_for(o, {"bounce", "composite", "error"});
+       },
+       "no output has bounce or the composite"},
+      {{"--set roughness"},
+       [](const Options& o) {
+         return o.command == Command::relight && sets(o.model, "roughness") &&
+                !asks_for(o, {"reflection"}) && !has_specular(o.input.aovs);
+       },
+       "no output has reflection"},
       {{"--env-exposure"},
        occlude_without({"direct", "bounce", "error"}),
        "composite occlude takes the share of the light that arrives, and no output has light"},
@@ -118,7 +148,8 @@ std::vector<std::string> idle_options(const std::set<std::string>& given, const 
   std::vector<std::string> lines;
   for (const IdleRule& rule : rules()) {
     for (const std::string_view option : rule.options) {
-      if (given.contains(std::string(option)) && rule.idle(options))
+      const std::string_view name = option.substr(0, option.find(' '));
+      if (given.contains(std::string(name)) && rule.idle(options))
         lines.push_back(fmt::format("{} has no effect: {}", option, rule.reason));
     }
   }

@@ -39,6 +39,9 @@ TEST_F(IdleOptions, AreWarnedOf) {
       {{"--bits", "16"}, "--bits has no effect"},
       {{"--view", "Raw"}, "--view has no effect"},
       {{"--compose", "relight", "--products", "ao"}, "--compose has no effect: no output has"},
+      {{"--crop"}, "--crop has no effect: the frame has no pixels beyond"},
+      {{"--bounces", "2", "--products", "ao,direct"}, "--bounces has no effect: no output has"},
+      {{"--set", "roughness=0.3"}, "--set roughness has no effect: no output has reflection"},
   };
   for (const auto& [flags, says] : idle) {
     const Finished done = run("in.exr", flags);
@@ -115,7 +118,8 @@ TEST_F(IdleOptions, WithAnEffectAreNot) {
        {std::vector<std::string>{"--env", data("environments/sky.exr"), "--env-rotate", "30",
                                  "--env-up", "z"},
         {"-o", path("out.png"), "--bits", "16", "--view", "Raw", "--pixel-type", "float"},
-        {"--offscreen", "open", "--bounces", "2", "--seed", "1"}}) {
+        {"--offscreen", "open", "--bounces", "2", "--seed", "1"},
+        {"--set", "roughness=0.3", "--products", "reflection"}}) {
     const Finished done = run("in.exr", flags);
     EXPECT_EQ(done.code, 0);
     EXPECT_EQ(done.err, "");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What is said, where and how loudly.
+#include <ImfStringAttribute.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -55,6 +56,70 @@ TEST_F(Messages, AWarningIsOneLineOnStandardError) {
   EXPECT_THAT(failed.error_line(), HasSubstr("none.exr")) << "errors are said all the same";
 }
 
+/// A first run did not learn why there is no composite, nor that normals are not those of N.
+TEST_F(Messages, WhatFollowsFromMissingLayersIsSaid) {
+  const auto without = [&](const std::string& layer, const std::string& renamed) {
+    FramePart part = frame_of(small_picture());
+    std::map<std::string, Plane<float>> channels;
+    for (auto& [name, plane] : part.channels) {
+      if (name.find(layer) == name.npos)
+        channels[name] = std::move(plane);
+      else if (!renamed.empty())
+        channels[renamed + name.substr(name.rfind('.'))] = std::move(plane);
+    }
+    part.channels = std::move(channels);
+    write_frame(path("part.exr"), part);
+    return run("part.exr", {"--slices", "1", "--steps", "1"});
+  };
+  EXPECT_THAT(without("DiffCol", "").error_line(),
+              HasSubstr("no layer for albedo found by name: no bounce and no composite; name one "
+                        "with --aov albedo=LAYER"));
+  EXPECT_EQ(run("part.exr", {"--products", "ao"}).err, "") << "needs none";
+  EXPECT_EQ(run("part.exr", {"-q"}).err, "");
+  EXPECT_THAT(without("DiffCol", "my_alb_pass").error_line(), HasSubstr("if 'my_alb_pass' is"));
+  EXPECT_THAT(
+      without("Normal", "").error_line(),
+      HasSubstr("no layer for normal found by name: normals are rebuilt from the position"));
+}
+
+TEST_F(Messages, ARadiusInAnotherUnitIsWarnedOf) {
+  const auto warns = [&](const std::string& radius) {
+    return run("in.exr", {"--dry-run", "--radius", radius}).err;
+  };
+  EXPECT_THAT(warns("0.001"), HasSubstr("--radius 0.001: is less than a pixel, which is "));
+  EXPECT_THAT(warns("5000"), HasSubstr("--radius 5000: is more than all that the frame shows"));
+  for (const char* radius : {"0.5", "inf", "auto"})
+    EXPECT_THAT(warns(radius), Not(HasSubstr("warning   --radius"))) << radius;
+}
+
+/// Albedo in sRGB was taken as linear without a word.
+TEST_F(Messages, EncodedColoursOfAFrameAreWarnedOf) {
+  FramePart part = frame_of(small_picture());
+  part.extra.insert("oiio:ColorSpace", Imf::StringAttribute("sRGB"));
+  write_frame(path("part.exr"), part);
+  EXPECT_THAT(run("part.exr", {}).error_line(),
+              HasSubstr("colours are sRGB, which is not linear, and albedo is taken as linear"));
+}
+
+/// How much is guessed was said to those only who asked.
+TEST_F(Messages, APlainRunOfOneFrameSaysWhatIsGuessed) {
+  const std::vector<std::string> corner = {data("room_corner.exr"),
+                                           "-o",
+                                           path("out.exr"),
+                                           "--overwrite",
+                                           "--slices",
+                                           "1",
+                                           "--steps",
+                                           "1",
+                                           "--products",
+                                           "ao"};
+  const std::string said = run_on_terminal(corner).out;  // run_tool() takes the line away
+  EXPECT_THAT(said, HasSubstr("room_corner.exr: 0.69 of all directions are guessed; render"));
+  std::vector<std::string> quiet = corner;
+  quiet.push_back("-q");
+  EXPECT_EQ(run_on_terminal(quiet).out, "");
+}
+
 TEST_F(Messages, AVerboseRunNamesWhatItChose) {
   const Finished done =
       run("half.exr", {"-v", "-o", path("out.png"), "--env", data("environments/studio.exr")});
@@ -94,12 +159,12 @@ TEST_F(Messages, ATerminalSeesABarThatGoesAway) {
   EXPECT_EQ(seen.code, 0);
   EXPECT_THAT(seen.out, HasSubstr("[#"));
   EXPECT_THAT(seen.out, HasSubstr("%"));
-  EXPECT_THAT(seen.out, testing::EndsWith("\r\033[K")) << "the line is left empty";
+  EXPECT_THAT(seen.out, HasSubstr("\r\033[Kssdo: ")) << "the line is left empty for the next";
   for (const std::vector<std::string>& flags :
        {std::vector<std::string>{"-q"}, {"--progress", "none"}}) {
     std::vector<std::string> quiet = words;
     quiet.insert(quiet.end(), flags.begin(), flags.end());
-    EXPECT_EQ(run_on_terminal(quiet).out, "") << flags[0];
+    EXPECT_EQ(run_on_terminal(quiet).out.find('\033'), std::string::npos) << flags[0];
   }
 }
 

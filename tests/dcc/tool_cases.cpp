@@ -214,7 +214,8 @@ std::vector<Tool> film_renderers() {
                  {Role::albedo, channels("diffuse_color_noshading", "rgb"), grey()},
                  depth({"Pz"}, planar_depth())}},
        .flags = {"--aov", "albedo=diffuse_color_noshading"},
-       .hints = {"no layer for albedo found by name; if 'diffuse_color_noshading' is the albedo, "
+       .hints = {"no layer for albedo found by name: no bounce and no composite; if "
+                 "'diffuse_color_noshading' is the albedo, "
                  "say --aov \"albedo=diffuse_color_noshading\""}},
       {.name = "MoonRay",
        .shot = in_half({{beauty("", "RGBA"), position("WP", "xyz", world_position(kYUp)),
@@ -259,7 +260,8 @@ std::vector<Tool> gpu_renderers() {
        .warnings = {"depth contradicts P (it changes by 0.125 per unit of P"},
        .flags = {"--aov", "normal=Shading normal"},
        .hints = {"depth contradicts P",
-                 "no layer for normal found by name; if 'Shading normal' is "
+                 "no layer for normal found by name: normals are rebuilt from the position; "
+                 "if 'Shading normal' is "
                  "the normal, say --aov \"normal=Shading normal\""}},
       {.name = "Corona",
        .shot = {{beauty("", "RGBA"), position("CGeometry_WorldPosition", "RGB"),
