@@ -14,6 +14,7 @@
 #include "parallel/tiles.h"
 #include "scene/camera/find_camera.h"
 #include "scene/normals/normal_space.h"
+#include "scene/normals/normal_trust.h"
 #include "scene/normals/normals.h"
 #include "scene/normals/world_of_normals.h"
 #include "scene/silhouettes.h"
@@ -70,6 +71,12 @@ float median_depth(const Geometry& geometry) {
 
 /// A kind of depth fits normals clearly better if 1 - cosine is by this factor smaller on average.
 constexpr double kClearlyBetter = 0.5;
+
+/// Normals count as rebuilt where less than half of them is as stored.
+constexpr float kMostlyStored = 0.5f;
+
+/// Normals within 53 degrees of the opposite of what P shows are those of the back.
+constexpr float kOpposite = 0.6f;
 
 /// The world whose pose is given.
 std::string name_of_world(const GeometryReport& report) {
@@ -143,9 +150,9 @@ void check_depth_is_planar(const GBuffer& g, const Geometry& planar, const Norma
       "--depth-kind ray, or --depth-kind planar where it is not");
 }
 
-/// How the stored normals are to be used; nothing where they are not to be, and why in `report`.
-std::optional<NormalSpace> usable_normal_space(const GBuffer& g, const Geometry& out,
-                                               const std::string& file, GeometryReport& report) {
+/// The space of the stored normals; nothing where there are none.
+std::optional<NormalSpace> space_of_normals(const GBuffer& g, const Geometry& out,
+                                            const std::string& file, GeometryReport& report) {
   if (g.normal.empty()) return std::nullopt;
   if (g.space) return given_normal_space(g, out, file, report);
   NormalSpace space = find_normal_space(g.normal, out.surfel, spaces_of_normals(g, report),
@@ -153,62 +160,113 @@ std::optional<NormalSpace> usable_normal_space(const GBuffer& g, const Geometry&
   report.normal_agreement = space.share;
   const bool from_depth = g.position.empty();
   if (from_depth && g.depth_source.empty()) check_depth_is_planar(g, out, space, report);
-  if (space.smooth_pixels < NormalSpace::kFewestSmoothPixels && !from_depth) {
-    space.name += ", unchecked: P is nowhere smooth";
-    return space;
-  }
-  if (space.share >= NormalSpace::kLeastShare) return space;
-  report.warnings.push_back(
-      fmt::format("normals do not belong to {0}: whatever their space and axes, they agree with it "
-                  "in {1:.0f} % of the smooth pixels; rebuilt from {0}",
-                  from_depth ? "the depth" : "P", 100 * space.share));
-  return std::nullopt;
+  return space;
 }
 
-void place_normals(const GBuffer& g, const std::optional<glm::mat3>& to_camera, Geometry& out,
+/// How the stored normals are used: nothing of them without a way to camera space.
+struct UsedNormals {
+  std::optional<glm::mat3> to_camera;
+  NormalTrust trust = {};
+};
+
+/// Decides how far normals that disagree with P are used, and says so.
+UsedNormals judge_normals(const GBuffer& g, const Geometry& out, NormalSpace& space,
+                          GeometryReport& report) {
+  const std::string_view source = g.position.empty() ? "the depth" : "P";
+  if (space.smooth_pixels < NormalSpace::kFewestSmoothPixels && !g.position.empty()) {
+    space.name += ", unchecked: P is nowhere smooth";
+    return {space.to_camera};
+  }
+  NormalTrust trust = find_normal_trust(g.normal, out.surfel, space, out.camera.orthographic);
+  if (trust.least() < kMostlyStored) {
+    const bool nowhere = trust.most() == 0;
+    report.warnings.push_back(
+        fmt::format("normals do not belong to {0}: they agree with it in {1:.0f} % of the smooth "
+                    "pixels; rebuilt from {0}{2}",
+                    source, 100 * space.share, nowhere ? "" : " where they disagree"));
+    if (nowhere) return {};
+    space.name += ", rebuilt from P where they disagree";
+  } else if (space.share < NormalSpace::kLeastShare) {
+    report.warnings.push_back(
+        fmt::format("normals agree with {} in {:.0f} % of the smooth pixels only, and are used as "
+                    "they are: if they are not meant to lean away from the surface, name another "
+                    "layer with --aov normal=LAYER",
+                    source, 100 * space.share));
+  }
+  return {space.to_camera, std::move(trust)};
+}
+
+/// A normal as it is used, and what became of the stored one.
+struct PlacedNormal {
+  glm::vec3 normal;
+  enum class Fate : unsigned char { kept, rebuilt, turned } fate;
+};
+
+/// The normal at a pixel; `stored` is in camera space, of any length, and used as far as `trust`
+/// says. A smooth normal may lean away from the viewer at a silhouette. One that points below the
+/// surface too is turned where it is about opposite to what P shows, being that of the back, and
+/// else mirrored in the surface, as a leaf that is lit as a crown may need it.
+PlacedNormal placed_normal(const Plane<Surfel>& surfels, int x, int y, const glm::vec3& stored,
+                           float trust, bool orthographic) {
+  using Fate = PlacedNormal::Fate;
+  const glm::vec3& p = surfels(x, y).position;
+  const auto gradient = [&] {
+    const glm::vec3 view = direction_to_viewer(p, orthographic),
+                    found = gradient_normal(surfels, x, y, view);
+    return found == glm::vec3(0) ? view : found;
+  };
+  const float length = glm::length(stored);
+  if (!(length > 1e-4f && length < 1e4f)) return {gradient(), Fate::rebuilt};
+  PlacedNormal placed{stored / length, Fate::kept};
+  glm::vec3& n = placed.normal;
+  if (orthographic ? n.z < 0 : glm::dot(n, p) > 0) {
+    const glm::vec3 g = gradient();
+    const float along = glm::dot(n, g);
+    if (along < 0) {
+      n = along < -kOpposite ? -n : glm::normalize(n - 2 * along * g);
+      placed.fate = Fate::turned;
+    }
+  }
+  if (trust == 1) return placed;
+  const glm::vec3 g = gradient(), blend = glm::mix(g, n, trust);
+  const float size = glm::length(blend);
+  n = size > 1e-3f ? blend / size : g;
+  if (trust < kMostlyStored) placed.fate = Fate::rebuilt;
+  return placed;
+}
+
+void place_normals(const GBuffer& g, const UsedNormals& used, Geometry& out,
                    GeometryReport& report) {
-  const bool orthographic = out.camera.orthographic;
-  Plane<unsigned char> fate(out.surfel.width, out.surfel.height);  // 1 rebuilt, 2 turned
+  using Fate = PlacedNormal::Fate;
+  Plane<Fate> fates(out.surfel.width, out.surfel.height, Fate::kept);
   for_each_row(out.surfel.height, [&](int y) {
     for (int x = 0; x < out.surfel.width; ++x) {
       const std::size_t i = out.surfel.index(x, y);
       if (!out.is_surface(i)) continue;
-      const glm::vec3& p = out.surfel[i].position;
-      const auto gradient = [&] {
-        return gradient_normal(out.surfel, x, y, direction_to_viewer(p, orthographic));
-      };
-      glm::vec3 n = to_camera ? *to_camera * g.normal[i] : glm::vec3(0);
-      const float length = glm::length(n);
-      if (length > 1e-4f && length < 1e4f) {
-        n /= length;
-        // A smooth normal may lean away from the viewer at a silhouette; one that is opposite to
-        // what P shows is the back of the surface.
-        const bool leans_away = orthographic ? n.z < 0 : glm::dot(n, p) > 0;
-        if (leans_away && glm::dot(n, gradient()) < 0) {
-          n = -n;
-          fate[i] = 2;
-        }
-      } else {
-        n = gradient();
-        if (n == glm::vec3(0)) n = direction_to_viewer(p, orthographic);
-        fate[i] = 1;
-      }
-      out.surfel[i].normal = n;
+      const glm::vec3 stored = used.to_camera ? *used.to_camera * g.normal[i] : glm::vec3(0);
+      const PlacedNormal placed =
+          placed_normal(out.surfel, x, y, stored, used.trust.at(x, y), out.camera.orthographic);
+      out.surfel[i].normal = placed.normal;
+      fates[i] = placed.fate;
     }
   });
-  for (unsigned char f : fate.pixels) {
-    report.normals_rebuilt += f == 1;
-    report.normals_turned += f == 2;
+  for (const Fate fate : fates.pixels) {
+    report.normals_rebuilt += fate == Fate::rebuilt;
+    report.normals_turned += fate == Fate::turned;
   }
 }
 
-void find_normals(const GBuffer& g, const Geometry& out, const std::string& file,
-                  GeometryReport& report) {
+UsedNormals find_normals(const GBuffer& g, const Geometry& out, const std::string& file,
+                         GeometryReport& report) {
   if (g.space && g.position.empty() && g.normal.empty())
     report.warnings.push_back("--space has no effect: the frame has neither P nor N");
-  const std::optional<NormalSpace> space = usable_normal_space(g, out, file, report);
-  if (space) report.placement.normals_to_camera = space->to_camera;
-  report.normal_space = space ? space->name : "rebuilt from P";
+  std::optional<NormalSpace> space = space_of_normals(g, out, file, report);
+  UsedNormals used;
+  if (space) used = g.space ? UsedNormals{space->to_camera} : judge_normals(g, out, *space, report);
+  report.normal_space = used.to_camera ? space->name : "rebuilt from P";
+  // What is made of the frame in bands knows this alone, and uses all normals or none.
+  if (used.trust.mean() > kMostlyStored) report.placement.normals_to_camera = used.to_camera;
+  return used;
 }
 
 /// Where P is filtered, as edges of the whole frame tell, its averages go back to surfaces.
@@ -285,10 +343,10 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
     settle_world(g, out.surfel, readings, report);
     out.camera = to_grid(placement.camera, g.grid);
   }
-  if (!known) find_normals(g, out, file, report);
-  out.normals_to_camera =
-      placement.normals_to_camera.value_or(glm::mat3(placement.of_positions.rotation));
-  place_normals(g, placement.normals_to_camera, out, report);
+  const UsedNormals normals =
+      known ? UsedNormals{known->normals_to_camera} : find_normals(g, out, file, report);
+  out.normals_to_camera = normals.to_camera.value_or(glm::mat3(placement.of_positions.rotation));
+  place_normals(g, normals, out, report);
   mend(g, out, report, known);
   if (!known) {
     placement.median_depth = median_depth(out);

@@ -17,13 +17,21 @@ struct NormalSpace {
   std::string name;
   std::size_t smooth_pixels = 0;  ///< around which P is smooth: N is compared with P there
   double share = 0;               ///< of them, where N and the gradient are within 53 degrees
+  double close_share = 0;         ///< the same within 25 degrees
+  double turning_share = 0;       ///< of these, where N is not the prevailing one
   double mean_cosine = 0;         ///< between N and the gradient, over them, without their signs
   bool is_own = false;            ///< of none of the spaces that were given
 
-  bool is_known() const { return smooth_pixels >= kFewestSmoothPixels && share >= kLeastShare; }
+  /// Whether N agrees with P about everywhere, or closely in most of the frame, whatever other
+  /// objects of it do, such as leaves that are lit as a crown.
+  bool is_known() const {
+    return smooth_pixels >= kFewestSmoothPixels &&
+           (share >= kLeastShare ||
+            (close_share >= kLeastCloseShare && turning_share >= kLeastTurningShare));
+  }
 
   /// normal_space.cpp has what right and wrong normals reach.
-  static constexpr double kLeastShare = 0.95;
+  static constexpr double kLeastShare = 0.95, kLeastCloseShare = 0.5, kLeastTurningShare = 0.01;
   static constexpr std::size_t kFewestSmoothPixels = 16;  ///< below, nothing is known
 };
 
@@ -35,7 +43,8 @@ struct NamedRotation {
 
 /// Decides in which of `spaces` and by which axes the normals are stored, of any order and sign.
 /// What agrees best with the gradient of P where P is smooth is taken; the first space with its
-/// axes as they are, unless another is clearly better, or there is nothing to decide by. Spaces
+/// axes as they are, unless another is known and clearly better, or there is nothing to decide by.
+/// Leaves whose normals all point up agree with no axes, and with many by chance. Spaces
 /// that differ by a few degrees are told apart where normals are no rougher than that. Normals that
 /// agree with none, but with P once they are turned by one rotation, have a space of their own.
 NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
