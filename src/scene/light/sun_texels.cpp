@@ -141,7 +141,7 @@ std::optional<Sun> SunTexels::measure(const std::vector<Window>& windows, float 
 }
 
 std::vector<glm::vec3> SunTexels::remove(const std::vector<Window>& windows,
-                                         const Surroundings& around) {
+                                         const Surroundings& around, float part) {
   if (!copy_) {
     copy_ = std::make_shared<Plane<glm::vec3>>(Plane<glm::vec3>::like(*rest_));
     for_each_row(height(), [&](int y) { std::copy_n(&(*rest_)(0, y), width(), &(*copy_)(0, y)); });
@@ -151,7 +151,7 @@ std::vector<glm::vec3> SunTexels::remove(const std::vector<Window>& windows,
   for_each_texel(windows, around,
                  [&](std::size_t window, int x, int y, const glm::vec3&, const glm::vec3& sky) {
                    const glm::vec3 excess = (*copy_)(x, y) - sky;
-                   (*copy_)(x, y) = sky;
+                   (*copy_)(x, y) = part < 1 ? (*copy_)(x, y) - part * excess : sky;
                    lost[window] += whole_.gain() * whole_.texel_solid_angle(y) * excess;
                  });
   return lost;

@@ -29,9 +29,10 @@ class SunTexels {
   std::optional<Sun> measure(const std::vector<Window>& windows, float threshold,
                              const Surroundings& around) const;
 
-  /// Leaves the sky around in its place; returns what each window loses: radiance times solid
-  /// angle.
-  std::vector<glm::vec3> remove(const std::vector<Window>& windows, const Surroundings& around);
+  /// Leaves the sky around in place of a source, and all but `part` of the source, 0..1. Returns
+  /// what each window would lose with all of it: radiance times solid angle.
+  std::vector<glm::vec3> remove(const std::vector<Window>& windows, const Surroundings& around,
+                                float part);
 
  private:
   /// Calls `visit(window, x, y, direction, sky)` for every texel; the sky that is left in its place

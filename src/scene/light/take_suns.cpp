@@ -21,13 +21,27 @@ namespace {
 
 constexpr float kPi = glm::pi<float>();
 constexpr std::size_t kMostSuns = 8;
-constexpr int kMostTries = 24;               ///< bright places examined, whether sources or not
-constexpr int kFineColumns = 1024;           ///< patches of 0.35 degrees, of which regions consist
-constexpr int kCoarseColumns = 128;          ///< patches of 2.8 degrees, for harmonics
-constexpr float kMinShare = 0.05f;           ///< of the irradiance: how much darker its shadow is
+constexpr int kMostTries = 24;       ///< bright places examined, whether sources or not
+constexpr int kFineColumns = 1024;   ///< patches of 0.35 degrees, of which regions consist
+constexpr int kCoarseColumns = 128;  ///< patches of 2.8 degrees, for harmonics
+
+/// Shares of the irradiance, which is how much darker a shadow is: a source of the first stays in
+/// the map, one of the second is taken out whole. Between them a part is that grows evenly, so that
+/// no shadow appears at once where a sun comes out of the haze. What harmonics hold starts late.
+constexpr float kLeastShare = 0.02f, kLeastShareHeld = 0.045f, kWholeShare = 0.05f;
+constexpr float kLeastTaken = 0.001f;  ///< of the irradiance: less is not worth its rays
+
 const float kExamined = glm::radians(5.0f);  ///< around a place that is no source
 
 using Patch = Environment::Patch;
+
+/// The part of a source of this share of the irradiance that is taken out, 0..1. Harmonics hold
+/// `held` of its light.
+float part_taken(float share, float held) {
+  const float least = kLeastShare + held * (kLeastShareHeld - kLeastShare);
+  const float t = std::clamp((share - least) / (kWholeShare - least), 0.0f, 1.0f);
+  return t * t * (3 - 2 * t);
+}
 
 /// Looks for sources in a map and removes them from it.
 class SunSearch {
@@ -104,7 +118,7 @@ bool SunSearch::may_be_source(const glm::vec3& d) const {
     if (glm::dot(patch.direction, d) < std::cos(2 * kMostSunRadius)) continue;
     missing += std::max(0.0f, brightness(patch.power) - held_[i] * patch.solid_angle) / kPi;
   }
-  return missing > kMinShare * irradiance_towards(d);
+  return missing > kLeastShare * irradiance_towards(d);
 }
 
 std::size_t SunSearch::coarse_of(std::size_t fine) const {
@@ -143,8 +157,9 @@ Window SunSearch::texels_of(std::size_t patch) const {
           first(x + 1, fine_.columns, texels_.width()), first(y + 1, fine_.rows, texels_.height())};
 }
 
-/// Fills the map in the region of a source with the sky around it. What that takes away is the
-/// source, if it is enough of the irradiance there; otherwise the map stays.
+/// Takes what a region is brighter than the sky around it out of the map, or a part of it where it
+/// is little of the irradiance there; the search goes on without any of it. Otherwise the map
+/// stays.
 std::optional<Sun> SunSearch::take(const SunRegion& region) {
   const RegionAndRing parts = widen(fine_, region);
   if (parts.ring.empty()) return std::nullopt;
@@ -153,10 +168,14 @@ std::optional<Sun> SunSearch::take(const SunRegion& region) {
   for (const std::size_t patch : parts.patches) windows.push_back(texels_of(patch));
   std::optional<Sun> sun = texels_.measure(windows, region.threshold, around);
   if (!sun) return std::nullopt;
-  sun->share = brightness(sun->irradiance) / irradiance_towards(sun->direction);
-  if (!(sun->share > kMinShare)) return std::nullopt;
+  const float all = irradiance_towards(sun->direction);
+  const float light = std::min(brightness(sun->irradiance), region.missing);
   sun->held = std::clamp(1 - region.missing / region.light, 0.0f, 1.0f);
-  const std::vector<glm::vec3> lost = texels_.remove(windows, around);
+  const float part = part_taken(light / all, sun->held);
+  sun->irradiance *= part;
+  sun->share = brightness(sun->irradiance) / all;
+  if (!(sun->share > kLeastTaken)) return std::nullopt;
+  const std::vector<glm::vec3> lost = texels_.remove(windows, around, part);
   for (std::size_t i = 0; i < parts.patches.size(); ++i) {
     fine_.patches[parts.patches[i]].power -= lost[i];
     coarse_.patches[coarse_of(parts.patches[i])].power -= lost[i];
@@ -175,7 +194,7 @@ SunsAndRest SunSearch::run() {
     std::optional<SunRegion> region;
     if (may_be_source(d)) {
       region = growth.grow(brightest_in(*place), [&](const glm::vec3& middle) {
-        return kMinShare * irradiance_towards(middle);
+        return kLeastShare * irradiance_towards(middle);
       });
     }
     const std::optional<Sun> sun = region ? take(*region) : std::nullopt;

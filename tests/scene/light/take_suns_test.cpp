@@ -227,6 +227,36 @@ TEST(TakeSuns, ASmallSunHasItsTexelInAMapOfAnySize) {
   }
 }
 
+TEST(TakeSuns, ASourceIsTakenLittleByLittleAsItGrows) {
+  // A disc before a sky that gives 1.
+  constexpr float kStep = 0.0025f;
+  for (const float radius : {2.0f, 10.0f}) {
+    const glm::vec3 middle = direction_of(70, 40);
+    const float sine = std::sin(glm::radians(radius));
+    float before = 0, most = 0;
+    for (int i = 4; i <= 48; ++i) {
+      const float strength = kStep * float(i);
+      const Environment map = paint(128, [&](const glm::vec3& d) {
+        return glm::vec3(in_disc(d, middle, radius) ? 1 + strength / (sine * sine) : 1);
+      });
+      float taken = 0;
+      for (const Sun& sun : take_suns(map).suns) taken += brightness(sun.irradiance);
+      if (i == 4) {
+        EXPECT_EQ(taken, 0) << radius;
+      }
+      if (i == 48) {
+        EXPECT_NEAR(taken, strength, 0.15f * strength) << radius;
+        expect_whole(map);
+      }
+      if (i == 20) expect_whole(map);
+      most = std::max(most, std::abs(taken - before));
+      before = taken;
+    }
+    fmt::print("a source that grows by {}: what is taken grows by {:.4f} at most\n", kStep, most);
+    EXPECT_LT(most, 5 * kStep) << radius;
+  }
+}
+
 TEST(TakeSuns, LeavesWhatHarmonicsHold) {
   const auto smooth = [](float low, float high, float x) {
     const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
