@@ -17,6 +17,19 @@ const float kStep = 1 / std::sqrt(2.0f);  ///< from one threshold to the next
 constexpr float kLeastGrowth = 1.2f;      ///< of what is missing: steps that add less add glow
 constexpr int kIdleSteps = 2;             ///< that many steps halve the threshold
 
+/// How far a piece of something longer reaches from where it starts, and how often it starts anew
+/// from its middle: one that starts at an end of a band would be half as long.
+const float kPieceRadius = glm::radians(36.0f);
+constexpr int kNewStarts = 3;
+
+/// How many patches lie between a piece and the rest of what it is cut from: its fringe.
+constexpr int kBesidePiece = 4;
+
+/// The share of its light that harmonics miss: a piece stays where it is at the first, and is taken
+/// out whole at the second. Of bands along the horizon of 6, 11, 16 and 18 degrees they miss 0.82,
+/// 0.67, 0.51 and 0.44; direct light on low boxes under one of 22 is as good with harmonics alone.
+constexpr float kLeastMissing = 0.45f, kMostlyMissing = 0.65f;
+
 float radiance(const Environment::Patch& patch) {
   return brightness(patch.power) / patch.solid_angle;
 }
@@ -31,14 +44,15 @@ int step_of(float radiance, float peak) {
 }  // namespace
 
 SunGrowth::SunGrowth(const SkyGrid& grid, HeldRadiance held)
-    : grid_(grid), held_(std::move(held)), reached_(grid.patches.size()) {}
+    : grid_(grid),
+      held_(std::move(held)),
+      reached_(grid.patches.size()),
+      by_piece_(grid.patches.size()) {}
 
 /// Takes what the threshold of `step` reaches; whether it may still be a source.
-bool SunGrowth::flood(int step, std::size_t seed, Sums& sums) {
+bool SunGrowth::flood(int step, const glm::vec3& start, Sums& sums) {
   const double most = 2 * glm::pi<double>() * (1 - std::cos(double(kMostSunRadius)));
-  const float farthest = std::cos(2 * kMostSunRadius);
-  const glm::vec3 start = grid_.patches[seed].direction;
-  const float peak = radiance(grid_.patches[seed]);
+  const float farthest = std::cos(is_piece_ ? kPieceRadius : 2 * kMostSunRadius);
   std::vector<std::size_t>& open = border_[std::size_t(step)];
   while (!open.empty()) {
     const std::size_t at = open.back();
@@ -53,8 +67,9 @@ bool SunGrowth::flood(int step, std::size_t seed, Sums& sums) {
     if (sums.solid_angle > most || glm::dot(patch.direction, start) < farthest) return false;
     grid_.for_each_neighbour(at, [&](std::size_t next) {
       if (reached_[next]) return;
+      if (is_piece_ && glm::dot(grid_.patches[next].direction, start) < farthest) return;
       reached_[next] = true;
-      const int taken_by = step_of(radiance(grid_.patches[next]), peak);
+      const int taken_by = step_of(radiance(grid_.patches[next]), peak_);
       border_[std::size_t(std::max(step, taken_by))].push_back(next);
     });
   }
@@ -79,30 +94,81 @@ bool SunGrowth::is_wide(const glm::vec3& middle) const {
   });
 }
 
-std::optional<SunRegion> SunGrowth::grow(std::size_t seed,
-                                         const std::function<float(glm::vec3)>& least) {
-  const float peak = radiance(grid_.patches[seed]);
-  if (!(peak > 0)) return std::nullopt;
+std::optional<SunRegion> SunGrowth::grow(std::size_t seed, const LeastMissing& least) {
+  peak_ = radiance(grid_.patches[seed]);
+  if (!(peak_ > 0)) return std::nullopt;
+  is_piece_ = false;
+  std::optional<SunRegion> region = grow_from(seed, least);
+  if (!region) return too_wide_ ? grow_piece(seed, least) : region;
+  const auto& patches = region->patches;
+  if (std::any_of(patches.begin(), patches.end(), [&](std::size_t p) { return by_piece_[p]; }))
+    region->weight = piece_weight_;
+  return region;
+}
+
+void SunGrowth::mark_around(const SunRegion& piece) {
+  std::vector<std::size_t> edge = piece.patches, next;
+  for (const std::size_t patch : edge) by_piece_[patch] = true;
+  for (int i = 0; i < kBesidePiece; ++i, edge.swap(next)) {
+    next.clear();
+    for (const std::size_t from : edge) {
+      grid_.for_each_neighbour(from, [&](std::size_t to) {
+        if (!by_piece_[to]) next.push_back(to);
+        by_piece_[to] = true;
+      });
+    }
+  }
+}
+
+std::optional<SunRegion> SunGrowth::grow_piece(std::size_t seed, const LeastMissing& least) {
+  is_piece_ = true;
+  std::optional<SunRegion> region = grow_from(seed, least);
+  for (int i = 0; i < kNewStarts && region; ++i) {
+    const auto& patches = region->patches;
+    const std::size_t start =
+        *std::max_element(patches.begin(), patches.end(), [&](std::size_t a, std::size_t b) {
+          return glm::dot(grid_.patches[a].direction, region->middle) <
+                 glm::dot(grid_.patches[b].direction, region->middle);
+        });
+    region = grow_from(start, least);
+  }
+  if (!region) return region;
+  const float missing = region->missing / region->light;
+  region->weight =
+      std::clamp((missing - kLeastMissing) / (kMostlyMissing - kLeastMissing), 0.0f, piece_weight_);
+  // Harmonics hold less of each further piece, of which all are alike.
+  if (region->weight > 0) {
+    piece_weight_ = region->weight;
+    mark_around(*region);
+  }
+  return region;
+}
+
+std::optional<SunRegion> SunGrowth::grow_from(std::size_t start, const LeastMissing& least) {
+  too_wide_ = false;
   patches_.clear();
   border_.assign(kSteps + 1, {});
   reached_.assign(grid_.patches.size(), false);
-  reached_[seed] = true;
-  border_[0].push_back(seed);
+  reached_[start] = true;
+  border_[0].push_back(start);
   std::optional<SunRegion> best;
   std::size_t count = 0;
   float missing = 0;
   int idle = 0;
   Sums sums;
-  for (int step = 0; step < kSteps && flood(step, seed, sums); ++step) {
+  for (int step = 0; step < kSteps; ++step) {
+    too_wide_ = !flood(step, grid_.patches[start].direction, sums);
+    if (too_wide_) break;
     SunRegion region = region_of(sums);
     if (!best && region.missing < least(region.middle)) continue;
-    if (is_wide(region.middle)) break;
+    too_wide_ = is_wide(region.middle);
+    if (too_wide_) break;
     const bool grows = region.missing > kLeastGrowth * missing;
     if (!grows && ++idle > kIdleSteps) break;
     // Its dim parts belong to a source, but not a wide surface that it stands before.
     if (!grows && region.light > kLeastGrowth * best->light) break;
     if (grows) missing = region.missing, idle = 0;
-    region.threshold = grows ? peak * std::pow(kStep, float(step + 1)) : best->threshold;
+    region.threshold = grows ? peak_ * std::pow(kStep, float(step + 1)) : best->threshold;
     best = std::move(region);
     count = patches_.size();
   }

@@ -22,10 +22,14 @@ struct SunRegion {
   glm::vec3 middle{0};  ///< unit, of its light
   float light = 0;      ///< irradiance over pi of a surface that faces the middle
   float missing = 0;    ///< that part of it which harmonics do not hold
+  float weight = 1;     ///< 0..1, how much of a source it is: of a piece of something longer
 };
 
 /// Radiance that harmonics hold in a patch.
 using HeldRadiance = std::function<float(std::size_t patch)>;
+
+/// What a source with this middle has to be missing at least: irradiance over pi.
+using LeastMissing = std::function<float(const glm::vec3& middle)>;
 
 /// Finds the patches around a bright one that form a source.
 class SunGrowth {
@@ -33,16 +37,20 @@ class SunGrowth {
   SunGrowth(const SkyGrid& grid, HeldRadiance held);
 
   /// Lowers the threshold from the radiance of `seed` on, step by step, and adds what is connected.
-  /// Returns the region of the first step that is missing `least(its middle)` at least and that
-  /// half the threshold would hardly add to; nothing if there is none within kMostSunRadius.
-  std::optional<SunRegion> grow(std::size_t seed, const std::function<float(glm::vec3)>& least);
+  /// Returns the region of the first step that is missing `least` at least and that half the
+  /// threshold would hardly add to; nothing if there is none within kMostSunRadius. Of what is
+  /// longer and hardly held by harmonics, such as a bright band along the horizon, a piece.
+  std::optional<SunRegion> grow(std::size_t seed, const LeastMissing& least);
 
  private:
   struct Sums {
     glm::dvec3 light{0};
     double missing = 0, power = 0, solid_angle = 0;
   };
-  bool flood(int step, std::size_t seed, Sums& sums);
+  std::optional<SunRegion> grow_from(std::size_t start, const LeastMissing& least);
+  std::optional<SunRegion> grow_piece(std::size_t seed, const LeastMissing& least);
+  void mark_around(const SunRegion& piece);
+  bool flood(int step, const glm::vec3& start, Sums& sums);
   bool is_wide(const glm::vec3& middle) const;
   SunRegion region_of(const Sums& sums) const;
 
@@ -51,6 +59,11 @@ class SunGrowth {
   std::vector<std::size_t> patches_;              ///< of the region, as they were reached
   std::vector<std::vector<std::size_t>> border_;  ///< what touches it, by the step that takes it
   std::vector<bool> reached_;
+  float peak_ = 0;              ///< radiance of the seed
+  bool is_piece_ = false;       ///< what is farther than kPieceRadius from the start is left out
+  bool too_wide_ = false;       ///< how growth ended
+  float piece_weight_ = 1;      ///< of the pieces so far
+  std::vector<bool> by_piece_;  ///< what is in one of them or beside it
 };
 
 }  // namespace ssdo

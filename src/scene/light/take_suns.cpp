@@ -171,7 +171,7 @@ std::optional<Sun> SunSearch::take(const SunRegion& region) {
   const float all = irradiance_towards(sun->direction);
   const float light = std::min(brightness(sun->irradiance), region.missing);
   sun->held = std::clamp(1 - region.missing / region.light, 0.0f, 1.0f);
-  const float part = part_taken(light / all, sun->held);
+  const float part = region.weight * part_taken(light / all, sun->held);
   sun->irradiance *= part;
   sun->share = brightness(sun->irradiance) / all;
   if (!(sun->share > kLeastTaken)) return std::nullopt;

@@ -17,7 +17,8 @@ struct SunsAndRest {
 /// Takes out the sources that spherical harmonics cannot hold: connected bright texels, no farther
 /// than 40 degrees from their middle, whose light less that of harmonics in the same place is at
 /// least 5 % of the irradiance of a surface that faces it. Of 2 % nothing is taken out, and a
-/// growing part from there on. Not for a constant.
+/// growing part from there on. What is longer, and hardly held by harmonics, is taken in pieces.
+/// Not for a constant.
 SunsAndRest take_suns(const Environment& whole);
 
 }  // namespace ssdo

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <memory>
+
 #include "estimators/bitmask/closed_form.h"
 #include "math/spherical_harmonics.h"
 
@@ -116,6 +119,48 @@ TEST(BitmaskLight, BesideAWallItIsTheSumOverOpenDirections) {
           limit.z);
       EXPECT_LT(largest(limit), 3e-3) << x;
     }
+  }
+}
+
+TEST(BitmaskLight, ABandAlongTheHorizonIsHiddenByWhatIsLow) {
+  const Window window{0, 0, 96, 64};
+  const Surface scene =
+      all_of({plane({}, {0, 0, 1}), sphere({0, 0, 0.45}, 0.45), sphere({1.3, -0.4, 0.3}, 0.3)});
+  const Camera camera = tilted(camera_from_fov(35, window, 1), 55);
+  const Geometry g = geometry_of(scene, camera, window);
+  const Solids solids = guess_solids(g);
+  for (const int rows : {2, 4}) {
+    auto map = std::make_shared<Plane<glm::vec3>>(128, 64, glm::vec3(0.02f));
+    for (int y = 32 - rows; y < 32; ++y)
+      for (int x = 0; x < 128; ++x) (*map)(x, y) = glm::vec3(3);
+    const Environment environment(map, {.up = UpAxis::z});
+    const Products out = run(g, {.radius = kNoLimit,
+                                 .environment = environment,
+                                 .products = {.ao = true, .direct = true},
+                                 .slices = 32,
+                                 .steps = 32,
+                                 .solids = &solids});
+    double sum = 0, off = 0, squares = 0, count = 0;
+    for (int y = 1; y < window.height(); y += 4) {
+      for (int x = 2; x < window.width(); x += 6) {
+        const Point p = point_at(scene, camera, window, x, y);
+        double light = 0;
+        for (int v = 0; v < 64; ++v) {
+          for (int u = 0; u < 128; ++u) {
+            const glm::dvec3 d(environment.texel_direction(u, v));
+            const double cosine = glm::dot(d, p.normal);
+            if (cosine <= 0 || scene({p.position + 1e-6 * p.normal, d})) continue;
+            light += cosine * double((*map)(u, v).x * environment.texel_solid_angle(v)) / kPi;
+          }
+        }
+        const double error = double(out.direct(x, y).x) - light;
+        sum += light, off += error, squares += error * error, count += 1;
+      }
+    }
+    fmt::print("a band of {:.1f} degrees at the horizon: direct off by {:+.3f}, RMSE {:.3f}\n",
+               rows * 180 / 64.0, off / sum, std::sqrt(squares / count) * count / sum);
+    EXPECT_LT(std::abs(off / sum), 0.03) << rows;
+    EXPECT_LT(std::sqrt(squares / count) * count / sum, 0.12) << rows;
   }
 }
 

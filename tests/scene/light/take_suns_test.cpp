@@ -257,6 +257,51 @@ TEST(TakeSuns, ASourceIsTakenLittleByLittleAsItGrows) {
   }
 }
 
+/// A bright band of so many degrees along the great circle around a pole.
+Environment band(float width, const glm::vec3& pole) {
+  const float edge = std::sin(glm::radians(width / 2));
+  return paint(
+      256,
+      [&](const glm::vec3& d) {
+        return glm::vec3(std::abs(glm::dot(d, pole)) < edge ? 3.0f : 0.02f);
+      },
+      2);
+}
+
+TEST(TakeSuns, TakesALongBandInPieces) {
+  for (const glm::vec3& pole : {glm::vec3(0, 0, 1), direction_of(30, 20)}) {
+    for (const float width : {4.0f, 10.0f}) {
+      const Environment map = band(width, pole);
+      const SunsAndRest parts = take_suns(map);
+      EXPECT_GE(parts.suns.size(), 5u);
+      EXPECT_LE(parts.suns.size(), 6u);
+      for (const Sun& sun : parts.suns) EXPECT_LT(glm::degrees(sun.angular_radius), 42);
+      float most = 0;
+      for (const glm::vec3& left : parts.rest.map()->pixels) most = std::max(most, left.x);
+      EXPECT_LT(most, 0.03) << "all of it is taken";
+      expect_whole(map);
+      EXPECT_LT(unoccluded_error(map), 2e-3);
+    }
+  }
+}
+
+TEST(TakeSuns, TakesLessAndLessOfWiderBands) {
+  float before = 0;
+  for (float width = 10; width <= 20; width += 1) {
+    float most = 0;
+    for (const Sun& sun : take_suns(band(width, direction_of(30, 20))).suns)
+      most = std::max(most, sun.share);
+    fmt::print("a band of {} degrees: {:.3f} of the light of what faces it\n", width, most);
+    if (width == 10) {
+      EXPECT_GT(most, 0.5);
+    } else {
+      EXPECT_LT(before - most, 0.1);
+    }
+    before = most;
+  }
+  EXPECT_EQ(before, 0);
+}
+
 TEST(TakeSuns, LeavesWhatHarmonicsHold) {
   const auto smooth = [](float low, float high, float x) {
     const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
