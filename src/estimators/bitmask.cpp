@@ -207,7 +207,7 @@ class Bitmask {
       const auto find = [&](const Window& to, RaySet set) {
         const std::vector<RayDirections> directions =
             directions_to(sun, rays_to_sun(request_.slices), request_.seed, set);
-        return find_sun({march_, bounds, directions, &sun, pass}, raster_, to, progress_);
+        return find_sun({march_, bounds, directions, &sun, pass}, to, progress_);
       };
       suns_.push_back(find(lit_part(), RaySet::of_light));
       if (request_.products.error)

@@ -147,9 +147,6 @@ struct SunJob {
   const std::vector<RayDirections>& directions;  ///< of each ray; unit, to points of the sun
   const Sun* sun;
   PassBeyond pass;
-  /// Of the pixels whose rays go first, in pixels, where their ray is blocked; negative: nowhere;
-  /// not-a-number: they have none. Null: all rays go at once.
-  InterleavedPlane* first = nullptr;
   SunShares* found = nullptr;
 };
 
@@ -168,8 +165,6 @@ void march_visibility(const VisibilityJob& job, const Window& part);
 void march_bounce(const BounceJob& job, const Window& part);
 /// After march_bounce everywhere.
 void spread_bounce(const BounceJob& job, const Window& part);
-/// Fills SunJob::first. Before march_sun of the pixels around.
-void march_first_rays(const SunJob& job, const Window& part);
 void march_sun(const SunJob& job, const Window& part);
 void march_reflection(const ReflectionJob& job, const Window& part);
 void find_senders(const SenderJob& job, const Window& part);

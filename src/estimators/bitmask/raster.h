@@ -27,15 +27,6 @@ class Raster {
     return {InterleavedPlane(layout_), InterleavedPlane(layout_), InterleavedPlane(layout_)};
   }
 
-  /// Not-a-number everywhere, in the padding too.
-  InterleavedPlane unknown() const {
-    InterleavedPlane plane(layout_);
-    for_each_row(layout_.height(), [&](int y) {
-      plane.fill_row(layout_, y, std::numeric_limits<float>::quiet_NaN());
-    });
-    return plane;
-  }
-
   InterleavedVectors black() const {
     InterleavedVectors color = make_color();
     for_each_row(layout_.height(), [&](int y) {

@@ -7,18 +7,10 @@
 
 namespace ssdo {
 
-SunShares find_sun(SunJob job, const Raster& raster, const Window& to, const Progress& progress) {
+SunShares find_sun(SunJob job, const Window& to, const Progress& progress) {
   const Interleaving& layout = job.march.scene.layout;
   SunShares found(layout);
   job.found = &found;
-  InterleavedPlane first;
-  if (job.directions.size() == 1) {
-    first = raster.unknown();
-    job.first = &first;
-    for_each_tall_part_of(
-        layout, grown(layout, to, Interleaving::kPeriod),
-        [&](const Window& part) { march_first_rays(job, part); }, progress);
-  }
   for_each_tall_part_of(
       layout, to, [&](const Window& part) { march_sun(job, part); }, progress);
   return found;

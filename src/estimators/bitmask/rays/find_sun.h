@@ -10,9 +10,9 @@
 
 namespace ssdo {
 
-/// How much of a sun arrives at the pixels `to` of a raster. What the job leaves open, which rays
-/// go first and where the result goes, is set here.
-SunShares find_sun(SunJob job, const Raster& raster, const Window& to, const Progress& progress);
+/// How much of a sun arrives at the pixels `to` of a raster. Where the result of the job goes is
+/// set here.
+SunShares find_sun(SunJob job, const Window& to, const Progress& progress);
 
 /// Turns what was found of suns into pictures, as LightShares has them, and frees it.
 void hand_out_suns(std::vector<SunShares>& found, const Raster& raster,

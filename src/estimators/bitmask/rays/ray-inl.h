@@ -122,16 +122,12 @@ class WalkOverFrame {
     if (far_) far_->clear();
   }
 
-  HWY_INLINE void put(VI places, const MarchReceiver& p, const Ray& ray, M looks, V known) {
-    near_.put(places, p, ray.side, ray.in_slice, looks, known);
+  HWY_INLINE void put(VI places, const MarchReceiver& p, const Ray& ray, M looks) {
+    near_.put(places, p, ray.side, ray.in_slice, looks);
     if (far_) {
       far_->put(places, in_far_pixels(march_, p), in_far_pixels(ray.side),
-                in_far_pixels(ray.in_slice), looks, set(-1));
+                in_far_pixels(ray.in_slice), looks);
     }
-  }
-  HWY_INLINE void put_known(VI places, V blocked_px) {
-    near_.put_known(places, blocked_px);
-    if (far_) far_->put_known(places, set(-1));
   }
 
   HWY_INLINE void run() {

@@ -63,7 +63,7 @@ void reflection(const ReflectionJob& job, const Window& part) {
                                     sobol_point(std::uint32_t(sample), hash_of(job.seed, 0, 0)));
         shares[k] = m.share;
         rays[k] = make_ray(scene, p, m.to, hn::And(p.valid, m.share > set(0)));
-        walk.put(places(k), p, rays[k], rays[k].open, set(-1));
+        walk.put(places(k), p, rays[k], rays[k].open);
       }
       walk.run();
       for (int k = 0; k < count; ++k) {

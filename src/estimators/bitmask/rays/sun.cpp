@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The light of a sun, by rays from each pixel to points of it: one at few slices. Then most rays
-// would find what those around them find, so those of one pixel in four go first. Where all of them
-// in 4 x 4 pixels and in the eight such squares around see the sun, or none does, so do or do not
-// the others of the square. Compiled once for every instruction set.
+// The light of a sun, by rays from each pixel to points of it: one at few slices. Compiled once for
+// every instruction set.
+//
+// All pixels have rays of their own. Where those of some of them decide for their neighbours, thin
+// shadows are missed: with one in four, those of two pixels were not there in a third of the frames
+// of a slow pan, and a test that is sure of what lies between them costs as much as the rays.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/rays/sun.cpp"
 #include <hwy/foreach_target.h>
@@ -67,26 +69,10 @@ HWY_INLINE V penumbra_px(const SunJob& job, const MarchReceiver& p, V distance) 
   return hn::Clamp(px, set(1), set(float(4 * Interleaving::kPeriod)));
 }
 
-/// Side of the squares of pixels that rays go for, in the display window.
-constexpr int kSquare = 4;
-
-/// By row of a square, the column of the pixel whose ray goes first: no two in a row, a column or a
-/// diagonal, so that what throws a thin shadow is met.
-constexpr int kGoesFirst[kSquare] = {1, 3, 0, 2};
-
-HWY_INLINE int row_in_square(const MarchScene& scene, const Place& place) {
-  return (place.y + scene.first_y) & (kSquare - 1);
-}
-HWY_INLINE bool goes_first(const MarchScene& scene, const Place& place) {
-  return place.column_phase % kSquare == kGoesFirst[row_in_square(scene, place)];
-}
-
 /// Pixels whose rays are on their way together: a vector wide and kRows high, or what of that is in
-/// a part of the raster. Of kSpacing pixels beside each other one has a ray.
-template <int kSpacing>
+/// a part of the raster.
 struct Block {
-  static constexpr int kRows = kSquare * kSpacing, kWidth = Interleaving::kPeriod * kLanes,
-                       kPixels = kRows * kWidth / kSpacing;
+  static constexpr int kRows = 4, kWidth = Interleaving::kPeriod * kLanes, kPixels = kRows * kWidth;
 
   Window part;
 
@@ -95,18 +81,16 @@ struct Block {
     return ((at.y - part.y0) * Interleaving::kPeriod + at.column_phase) * kLanes;
   }
 
-  /// Numbers for the pixels of a vector; those of a square follow on each other.
+  /// Numbers for the pixels of a vector; those of squares of kRows x kRows follow on each other.
   HWY_INLINE VI places(const Place& at) const {
-    constexpr int kOfRow = kSquare / kSpacing;
-    const int in_lane = at.column_phase / kSquare * kRows * kOfRow + (at.y - part.y0) * kOfRow +
-                        at.column_phase % kSquare / kSpacing;
+    const int in_lane = at.column_phase / kRows * kRows * kRows + (at.y - part.y0) * kRows +
+                        at.column_phase % kRows;
     return hn::Iota(DI(), 0) * set_int(kPixels / kLanes) + set_int(in_lane);
   }
 };
 
 /// What the rays of the pixels of a block have found, by Block::first_of().
 struct BlockSums {
-  using Block = ssdo::HWY_NAMESPACE::Block<1>;
   alignas(64) float weight[Block::kPixels];    ///< the cosines of the rays
   alignas(64) float share[Block::kPixels];     ///< those of the rays that arrive
   alignas(64) float width_px[Block::kPixels];  ///< of penumbras, by the cosines of the others
@@ -123,7 +107,7 @@ struct BlockSums {
 };
 
 /// Calls `work(block)` for the blocks of a part of the raster.
-template <class Block, class Work>
+template <class Work>
 HWY_INLINE void for_each_block(const MarchScene& scene, const Window& part, const Work& work) {
   const int phase = scene.layout.phase(), first = ((part.x0 + phase) & -Block::kWidth) - phase;
   for (int y = part.y0; y < part.y1; y += Block::kRows) {
@@ -154,78 +138,19 @@ HWY_INLINE SunRays sun_rays(const SunJob& job, const RayDirections& directions,
   return rays;
 }
 
-/// Calls `visit(blocked_px, own)` with SunJob::first in and around the squares of a vector of
-/// pixels.
-template <class Visit>
-HWY_INLINE void for_each_first(const SunJob& job, const Place& place, const Visit& visit) {
-  const MarchScene& scene = job.march.scene;
-  const int top = place.y - row_in_square(scene, place), left = -(place.column_phase % kSquare);
-  for (int row = -kSquare; row < 2 * kSquare; ++row) {
-    const int y = top + row;
-    if (y < 0 || y >= scene.layout.height()) continue;
-    for (int column = -kSquare; column <= kSquare; column += kSquare) {
-      const int dx = left + column + kGoesFirst[row & (kSquare - 1)];
-      const std::ptrdiff_t i = place_beside(scene.layout, place, dx, row - (place.y - top)).index;
-      visit(load(*job.first, i), column == 0 && row >= 0 && row < kSquare);
-    }
-  }
-}
-
-/// What the rays of a vector of pixels find, as Walk::blocked_px() gives it; not-a-number where
-/// they have to look. Where all are blocked, the mean of those of the square.
-HWY_INLINE V known_from_first(const SunJob& job, const Place& place) {
-  const V unknown = hn::NaN(D()), zero = set(0), one = set(1);
-  if (!job.first) return unknown;
-  if (goes_first(job.march.scene, place)) return load(*job.first, place.index);
-  V blocked = zero, seen = zero, own = zero, count = zero;
-  for_each_first(job, place, [&](V px, bool is_own) HWY_ATTR {
-    const V meets = hn::IfThenElseZero(px >= zero, one), sees = hn::IfThenElseZero(px < zero, one);
-    blocked = blocked + meets, seen = seen + sees;
-    if (!is_own) return;
-    own = own + hn::IfThenElseZero(px >= zero, px);
-    count = count + meets + sees;
-  });
-  const V value = hn::IfThenElse(seen > zero, set(-1), own / count);
-  return hn::IfThenElse(hn::And(count > zero, hn::Min(blocked, seen) == zero), value, unknown);
-}
-
-template <bool kOrthographic>
-void first_rays(const SunJob& job, const Window& part) {
-  using First = Block<kSquare>;
-  const MarchScene& scene = job.march.scene;
-  WalkOverFrame<kOrthographic> walk(job.march, job.bounds, First::kPixels);
-  for_each_block<First>(scene, part, [&](const First& block) HWY_ATTR {
-    walk.clear();
-    for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
-      if (!goes_first(scene, place)) return;
-      const SunRays rays = sun_rays(job, job.directions.front(), place);
-      walk.put(block.places(place), rays.p, rays.ray, rays.ray.open, hn::NaN(D()));
-    });
-    walk.run();
-    for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
-      if (goes_first(scene, place))
-        store(walk.blocked_px(block.places(place)), *job.first, place.index);
-    });
-  });
-}
-
 template <bool kOrthographic>
 void sun(const SunJob& job, const Window& part) {
-  using Block = ssdo::HWY_NAMESPACE::Block<1>;
   const MarchScene& scene = job.march.scene;
   WalkOverFrame<kOrthographic> walk(job.march, job.bounds, Block::kPixels);
   BlockSums sums;
-  for_each_block<Block>(scene, part, [&](const Block& block) HWY_ATTR {
+  for_each_block(scene, part, [&](const Block& block) HWY_ATTR {
     for_each_vector(scene, block.part,
                     [&](const Place& place) HWY_ATTR { sums.clear(block.first_of(place)); });
     for (const RayDirections& directions : job.directions) {
       walk.clear();
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
-        const V known = known_from_first(job, place);
-        const M is_known = known == known;
-        if (all(is_known)) return walk.put_known(block.places(place), known);
         const SunRays rays = sun_rays(job, directions, place);
-        walk.put(block.places(place), rays.p, rays.ray, hn::AndNot(is_known, rays.ray.open), known);
+        walk.put(block.places(place), rays.p, rays.ray, rays.ray.open);
       });
       walk.run();
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
@@ -250,10 +175,6 @@ void sun(const SunJob& job, const Window& part) {
   });
 }
 
-void first_rays_of_pixels(const SunJob& job, const Window& part) {
-  job.march.scene.orthographic ? first_rays<true>(job, part) : first_rays<false>(job, part);
-}
-
 void sun_of_pixels(const SunJob& job, const Window& part) {
   job.march.scene.orthographic ? sun<true>(job, part) : sun<false>(job, part);
 }
@@ -264,12 +185,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace ssdo {
 
-HWY_EXPORT(first_rays_of_pixels);
 HWY_EXPORT(sun_of_pixels);
-
-void march_first_rays(const SunJob& job, const Window& part) {
-  HWY_DYNAMIC_DISPATCH(first_rays_of_pixels)(job, part);
-}
 
 void march_sun(const SunJob& job, const Window& part) {
   HWY_DYNAMIC_DISPATCH(sun_of_pixels)(job, part);

@@ -54,17 +54,15 @@ class Walk {
     for (int place = 0; place < most_; ++place) number(place, kEnd) = 0;
   }
 
-  /// What blocked_px() gives of rays that need not look.
-  HWY_INLINE void put_known(VI places, V blocked_px) {
-    hn::ScatterIndex(blocked_px, D(), numbers_.get() + kBlockedPx, places * set_int(kStride));
-  }
-
   /// Takes the lanes of `looks`, into places 0 to `most` - 1 of the queue. Rays that are close to
-  /// each other there should be so in the picture too: they visit the same cells. Of the other
-  /// lanes `known` is blocked_px().
+  /// each other there should be so in the picture too: they visit the same cells. The other lanes
+  /// meet nothing.
   HWY_INLINE void put(VI places, const MarchReceiver& p, const SideFrame& side,
-                      const RayInSlice& ray, M looks, V known) {
-    put_known(places, hn::IfThenElse(looks, set(-1), known));
+                      const RayInSlice& ray, M looks) {
+    const VI at = places * set_int(kStride);
+    const auto write = [&](Number which, V value)
+                           HWY_ATTR { hn::ScatterIndex(value, D(), numbers_.get() + which, at); };
+    write(kBlockedPx, set(-1));
     if (!any(looks)) return;
     const Interleaving& layout = march_.scene.layout;
     const V right = set(float(layout.width() - 1)), bottom = set(float(layout.height() - 1));
@@ -74,9 +72,6 @@ class Walk {
     // A ray along the view ray stays in its pixel.
     const M moves = hn::Max(hn::Abs(ray.step_x), hn::Abs(ray.step_y)) > set(0.5f);
     const V a = kOrthographic ? set(1) : p.plane;
-    const VI at = places * set_int(kStride);
-    const auto write = [&](Number which, V value)
-                           HWY_ATTR { hn::ScatterIndex(value, D(), numbers_.get() + which, at); };
     const V column = hn::Round(p.x), row = hn::Round(p.y);
     write(kX, column), write(kY, row);
     write(kAsideX, p.x - column), write(kAsideY, p.y - row);
