@@ -95,7 +95,13 @@ void load_image_codec() { codec(); }
 Image read_image(const fs::path& path) {
   check_exists(path);
   check_png_chunks(path);
-  return codec().read(path);
+  return codec().read(path, nullptr);
+}
+
+void read_image_rows(const fs::path& path, const TakeRows& take) {
+  check_exists(path);
+  check_png_chunks(path);
+  codec().read(path, &take);
 }
 
 std::vector<unsigned char> encode_image(const fs::path& name, const ImageSpec& spec,

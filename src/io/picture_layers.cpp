@@ -62,6 +62,12 @@ PictureName parse_picture_name(const std::string& text) {
   return {text.substr(0, colon), text.substr(colon + 1)};
 }
 
+bool reads_as_exr(const std::string& file) { return has_exr_ending(file) || begins_as_exr(file); }
+
+std::optional<TransferCurve> curve_of(const Image& image) {
+  return curve_of(image.color_space.empty() && image.integers ? "sRGB" : image.color_space);
+}
+
 std::string shown_name(const PictureLayer& layer) {
   if (!layer.name.empty()) return layer.name;
   return layer.part_name.empty() ? fmt::format("{}", fmt::join(layer.components, ","))
@@ -69,7 +75,7 @@ std::string shown_name(const PictureLayer& layer) {
 }
 
 LayeredPicture::LayeredPicture(const std::string& file) : file_(file) {
-  if (has_exr_ending(file) || begins_as_exr(file)) {
+  if (reads_as_exr(file)) {
     exr_.emplace(file);
     layers_ = layers_of(*exr_);
     if (layers_.empty()) {
@@ -146,7 +152,7 @@ Window LayeredPicture::display(const PictureLayer& layer) const {
 
 std::optional<TransferCurve> LayeredPicture::curve(const PictureLayer& layer) const {
   if (exr_) return curve_of(exr_->parts()[std::size_t(layer.part)].header);
-  return curve_of(image_.color_space.empty() && image_.integers ? "sRGB" : image_.color_space);
+  return curve_of(image_);
 }
 
 std::vector<Plane<float>> LayeredPicture::read(const PictureLayer& layer,

@@ -49,8 +49,7 @@ class LayeredPicture {
   /// Whether the image is no EXR and stores integers, which become 0..1.
   bool integers() const { return image_.integers; }
 
-  /// How the colours of a layer are encoded, where the file says that they are not linear. Integers
-  /// without a word about it are in sRGB, as in OpenImageIO and Nuke.
+  /// How the colours of a layer are encoded, where they are not linear.
   std::optional<TransferCurve> curve(const PictureLayer& layer) const;
 
   /// The layer of that name, or the one channel: by its full name ("ViewLayer.DiffDir", "Z"), also
@@ -71,6 +70,13 @@ class LayeredPicture {
   std::vector<PictureLayer> layers_;
   Image image_;  ///< of what is no EXR
 };
+
+/// Whether a file is read as an EXR: by its ending, or as it begins.
+bool reads_as_exr(const std::string& file);
+
+/// The curve of an image that is no EXR: of the space that it names; integers without one are in
+/// sRGB, as in OpenImageIO and Nuke.
+std::optional<TransferCurve> curve_of(const Image& image);
 
 /// How a layer is called in messages and tables.
 std::string shown_name(const PictureLayer& layer);

@@ -139,8 +139,16 @@ struct Channels {
         alpha(spec.alpha_channel >= colors ? spec.alpha_channel : -1) {}
 };
 
+/// How many rows are decoded at a time: whole tiles, or about 16 MB.
+int rows_at_a_time(const OIIO::ImageSpec& spec, const Channels& channels) {
+  if (spec.tile_height > 0) return std::min(spec.tile_height, spec.height);
+  const double line_bytes = sizeof(float) * double(spec.width) * channels.count;
+  return std::clamp(int((1 << 24) / line_bytes), 1, std::max(1, spec.height));
+}
+
+/// `in_pieces`: only the rows that are decoded at a time are kept.
 /// Errors: ExitCode::input for what is no picture, or claims more than the file can hold.
-void check_spec(const fs::path& path, const OIIO::ImageSpec& spec) {
+void check_spec(const fs::path& path, const OIIO::ImageSpec& spec, bool in_pieces) {
   if (spec.deep || spec.depth > 1 || spec.nchannels < 1) {
     fail(ExitCode::input, path, "is not a flat image (it is deep, a volume or has no channels)");
   }
@@ -158,7 +166,9 @@ void check_spec(const fs::path& path, const OIIO::ImageSpec& spec) {
   const double pixel_bytes = sizeof(glm::vec3) + 4.0 * Channels(spec).count,
                bytes = double(spec.width) * spec.height * pixel_bytes,
                tile_bytes = double(spec.tile_width) * spec.tile_height * pixel_bytes;
-  check_picture_size(path, std::max(bytes, tile_bytes), bytes + tile_bytes);
+  const double kept =
+      in_pieces ? bytes / spec.height * rows_at_a_time(spec, Channels(spec)) : bytes;
+  check_picture_size(path, std::max(bytes, tile_bytes), kept + tile_bytes);
 }
 
 /// A plane with memory for all of its rows, which is used when they come: a header claims much.
@@ -168,13 +178,6 @@ Plane<T> plane_without_rows(const OIIO::ImageSpec& spec) {
   plane.width = spec.width, plane.height = spec.height;
   plane.pixels.reserve(std::size_t(spec.width) * std::size_t(spec.height));
   return plane;
-}
-
-/// How many rows are decoded at a time: whole tiles, or about 16 MB.
-int rows_at_a_time(const OIIO::ImageSpec& spec, const Channels& channels) {
-  if (spec.tile_height > 0) return std::min(spec.tile_height, spec.height);
-  const double line_bytes = sizeof(float) * double(spec.width) * channels.count;
-  return std::clamp(int((1 << 24) / line_bytes), 1, std::max(1, spec.height));
 }
 
 /// Decodes the rows from `first` to before `end`, counted from the top.
@@ -194,40 +197,61 @@ void decode(OIIO::ImageInput& file, const fs::path& path, int first, int end,
        fmt::format("is damaged or cut short ({}); copy it again", one_line(file.geterror())));
 }
 
-Image read_rows(OIIO::ImageInput& file, const fs::path& path) {
+/// Adds decoded pixels, `value` being the first, at the end of the planes.
+void append(const float* value, std::size_t pixels, const Channels& channels,
+            Plane<glm::vec3>& color, Plane<float>& alpha) {
+  for (std::size_t i = 0; i < pixels; ++i, value += channels.count) {
+    color.pixels.push_back(channels.colors == 1 ? glm::vec3(*value)
+                                                : glm::vec3(value[0], value[1], value[2]));
+    if (channels.alpha >= 0) alpha.pixels.push_back(value[channels.alpha]);
+  }
+}
+
+/// Reads all rows into the image, or hands those of an image that is stored upright to `take`.
+Image read_rows(OIIO::ImageInput& file, const fs::path& path, const TakeRows* take) {
   const OIIO::ImageSpec& spec = file.spec();
-  check_spec(path, spec);
+  const Orientation orientation = orientation_of_radiance(path).value_or(
+      orientation_of_tiff(spec.get_int_attribute("Orientation", 1)));
+  const bool in_pieces = take && orientation == Orientation{};
+  check_spec(path, spec, in_pieces);
   const Channels channels(spec);
-  Image image{plane_without_rows<glm::vec3>(spec),
-              {},
-              !spec.format.is_floating_point(),
-              spec.get_string_attribute("oiio:ColorSpace")};
-  if (channels.alpha >= 0) image.alpha = plane_without_rows<float>(spec);
+  Image image;
+  image.color.width = spec.width, image.color.height = spec.height;
+  image.integers = !spec.format.is_floating_point();
+  image.color_space = spec.get_string_attribute("oiio:ColorSpace");
+  if (!in_pieces) {
+    image.color = plane_without_rows<glm::vec3>(spec);
+    if (channels.alpha >= 0) image.alpha = plane_without_rows<float>(spec);
+  }
   const int rows = rows_at_a_time(spec, channels);
   std::vector<float> values(std::size_t(spec.width) * std::size_t(rows) *
                             std::size_t(channels.count));
+  Plane<glm::vec3> piece;
+  Plane<float> unused;
   for (int y = 0; y < spec.height; y += rows) {
     const int end = std::min(y + rows, spec.height);
     decode(file, path, y, end, values);
-    const float* value = values.data();
-    for (std::size_t i = image.color.index(0, y); i < image.color.index(0, end); ++i) {
-      image.color.pixels.push_back(channels.colors == 1 ? glm::vec3(*value)
-                                                        : glm::vec3(value[0], value[1], value[2]));
-      if (channels.alpha >= 0) image.alpha.pixels.push_back(value[channels.alpha]);
-      value += channels.count;
+    const std::size_t pixels = std::size_t(spec.width) * std::size_t(end - y);
+    if (!in_pieces) {
+      append(values.data(), pixels, channels, image.color, image.alpha);
+      continue;
     }
+    piece.width = spec.width, piece.height = end - y;
+    piece.pixels.clear(), unused.pixels.clear();
+    append(values.data(), pixels, channels, piece, unused);
+    (*take)(image, y, piece);
   }
-  const Orientation orientation = orientation_of_radiance(path).value_or(
-      orientation_of_tiff(spec.get_int_attribute("Orientation", 1)));
+  if (in_pieces) return image;
   image.color = upright(std::move(image.color), orientation);
   image.alpha = upright(std::move(image.alpha), orientation);
+  if (take) (*take)(image, 0, image.color);
   return image;
 }
 
-Image read(const fs::path& path) {
+Image read(const fs::path& path, const TakeRows* take) {
   const auto file = open_image(path);
   try {
-    return read_rows(*file, path);
+    return read_rows(*file, path, take);
   } catch (const std::bad_alloc&) {
     fail(ExitCode::input, path,
          fmt::format("needs more memory than there is for its {} x {} pixels; reduce the image or "

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "io/image_file.h"
+#include "io/image_rows.h"
 
 namespace ssdo {
 
@@ -9,8 +9,8 @@ namespace ssdo {
 /// when the first image is read or written: Debian's OpenImageIO brings 250 libraries, which take
 /// longer to load than a small frame takes to relight, and EXR to EXR needs none of them.
 struct ImageCodec {
-  /// read_image() of a file that exists.
-  Image (*read)(const std::filesystem::path& path);
+  /// read_image() of a file that exists; with `take` read_image_rows(), which returns no pixels.
+  Image (*read)(const std::filesystem::path& path, const TakeRows* take);
   /// encode_image().
   std::vector<unsigned char> (*encode)(const std::filesystem::path& name, const ImageSpec& spec,
                                        std::span<const float> values);

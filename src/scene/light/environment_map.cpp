@@ -9,9 +9,11 @@
 #include <cmath>
 #include <cstdint>
 #include <string_view>
+#include <utility>
 
 #include "error.h"
 #include "io/cube_map.h"
+#include "io/image_rows.h"
 #include "io/picture_layers.h"
 #include "io/size_guard.h"
 #include "math/light_range.h"
@@ -115,46 +117,87 @@ void refuse_luminance_chroma(const ExrReader& exr, const PictureLayer& layer) {
   }
 }
 
-/// What was found in texels that is no light.
-struct NoLight {
-  std::size_t broken = 0, negative = 0;
-};
+/// Rows that are read at a time: whole chunks of every compression.
+constexpr int kRows = 256;
 
-/// Makes texels black that are no light.
-void clear_broken(Plane<glm::vec3>& texels, NoLight& found) {
-  for (glm::vec3& texel : texels.pixels) {
-    const glm::vec3 held = within_range(texel);
-    if (texel != held) {
-      texel = glm::vec3(0);
-      ++found.broken;
-    } else if (std::min({texel.x, texel.y, texel.z}) < 0) {
-      texel = glm::max(texel, glm::vec3(0));
-      ++found.negative;
-    }
-  }
-}
-
-/// The curve by which the layer is made linear, with a word about it; null where it is linear.
-std::optional<TransferCurve> choose_curve(const LayeredPicture& picture, const PictureLayer& layer,
+/// The curve that is undone, with a word about it; null where colours are linear or stay as they
+/// are.
+std::optional<TransferCurve> choose_curve(const std::string& file,
+                                          const std::optional<TransferCurve>& curve, bool integers,
                                           EnvironmentMap& map) {
-  const auto curve = picture.curve(layer);
-  if (!curve || layer.channels == std::vector<std::string>{"A"}) return std::nullopt;
+  if (!curve) return std::nullopt;
   if (curve->kind == TransferCurve::Kind::unknown) {
     map.warnings.push_back(fmt::format(
         "{}: says that its colours are {}, whose curve is not known; they are taken as linear "
         "light: convert the map to a linear space",
-        picture.file(), curve->space));
+        file, curve->space));
     return std::nullopt;
   }
   map.converted.push_back("decoded from " + curve->space);
-  if (picture.integers()) {
+  if (integers) {
     map.warnings.push_back(
         fmt::format("{}: stores integers, encoded as {}; decoded, they are light of at most 1: use "
                     "an EXR or Radiance HDR, which have the brightness of suns and lamps",
-                    picture.file(), curve->space));
+                    file, curve->space));
   }
   return curve;
 }
+
+/// Takes the rows of a file, from the top to the bottom: makes them linear, black where they are no
+/// light, and a map.
+class Intake {
+ public:
+  /// Rows of `window` that never come are black. Errors: those of check_picture_size().
+  Intake(const std::string& file, const Window& window, std::optional<TransferCurve> curve,
+         int most_columns = MapReduction::kColumns)
+      : file_(file),
+        area_(window.area()),
+        reduction_(window.width(), window.height(), most_columns),
+        curve_(std::move(curve)) {
+    constexpr double kTexel = sizeof(glm::vec3), kStored = 3 * sizeof(float);
+    const double strip = double(window.width()) * std::min(kRows, window.height());
+    check_picture_size(file, double(area_) * kTexel,
+                       double(reduction_.area()) * kTexel + strip * (kTexel + kStored));
+  }
+
+  void add(int first, Plane<glm::vec3> rows) {
+    for_each_row(curve_ ? rows.height : 0, [&](int row) {
+      for (int x = 0; x < rows.width; ++x)
+        for (int c = 0; c < 3; ++c) rows(x, row)[c] = curve_->to_linear(rows(x, row)[c]);
+    });
+    clear_broken(rows);
+    reduction_.add(first, rows);
+  }
+
+  void finish(EnvironmentMap& map) {
+    map.texels = reduction_.take();
+    const auto warn = [&](std::size_t count, std::string_view what) {
+      if (count == 0) return;
+      map.warnings.push_back(fmt::format("{}: {} of {} texels {}", file_, count, area_, what));
+    };
+    warn(broken_, fmt::format("are not finite or above {:g}, and are taken as black", kBrightest));
+    warn(negative_, "have negative channels, which are taken as 0");
+  }
+
+ private:
+  void clear_broken(Plane<glm::vec3>& texels) {
+    for (glm::vec3& texel : texels.pixels) {
+      const glm::vec3 held = within_range(texel);
+      if (texel != held) {
+        texel = glm::vec3(0);
+        ++broken_;
+      } else if (std::min({texel.x, texel.y, texel.z}) < 0) {
+        texel = glm::max(texel, glm::vec3(0));
+        ++negative_;
+      }
+    }
+  }
+
+  const std::string& file_;
+  std::size_t area_, broken_ = 0, negative_ = 0;  ///< in texels of the file
+  MapReduction reduction_;
+  std::optional<TransferCurve> curve_;
+};
 
 /// Rows of a layer that it has, over the columns of `rows`; black where it lacks these.
 Plane<glm::vec3> read_rows(const LayeredPicture& picture, const PictureLayer& layer,
@@ -173,40 +216,39 @@ Plane<glm::vec3> read_rows(const LayeredPicture& picture, const PictureLayer& la
   return out;
 }
 
-/// Reads the layer over a window into a map of at most about `most_columns`.
+/// Reads the layer over a window into a map of about `most_columns` at most.
 void read_texels(const LayeredPicture& picture, const PictureLayer& layer, const Window& window,
                  int most_columns, EnvironmentMap& map) {
-  constexpr int kRows = 256;  // whole chunks of every compression
   const Window data = picture.window(layer);
-  MapReduction reduction(window.width(), window.height(), most_columns);
-  const double texel_bytes = sizeof(glm::vec3),
-               row_bytes = (texel_bytes + sizeof(float) * double(layer.channels.size())) *
-                           std::max(window.width(), data.width());
-  check_picture_size(
-      picture.file(), double(window.area()) * texel_bytes,
-      double(reduction.area()) * texel_bytes + row_bytes * std::min(kRows, data.height()));
-  const auto curve = choose_curve(picture, layer, map);
-  NoLight found;
-  for (int y = data.y0; y < std::min(window.y1, data.y1); y += kRows) {
-    const int first = std::max(y, window.y0), end = std::min({y + kRows, window.y1, data.y1});
-    if (first >= end) continue;
-    Plane<glm::vec3> rows = read_rows(picture, layer, {window.x0, first, window.x1, end});
-    for_each_row(curve ? rows.height : 0, [&](int row) {
-      for (int x = 0; x < rows.width; ++x)
-        for (int c = 0; c < 3; ++c) rows(x, row)[c] = curve->to_linear(rows(x, row)[c]);
-    });
-    clear_broken(rows, found);
-    reduction.add(first - window.y0, rows);
+  const bool alpha = layer.channels == std::vector<std::string>{"A"};
+  Intake intake(picture.file(), window,
+                choose_curve(picture.file(), alpha ? std::nullopt : picture.curve(layer),
+                             picture.integers(), map),
+                most_columns);
+  for (int y = data.y0; y < data.y1; y += kRows) {
+    const int last = std::min(y + kRows, data.y1);
+    const int first = std::max(y, window.y0), end = std::min(last, window.y1);
+    if (first < end)
+      intake.add(first - window.y0, read_rows(picture, layer, {window.x0, first, window.x1, end}));
+    else
+      read_rows(picture, layer, {window.x0, y, window.x1, last});  // they may be damaged
   }
-  map.texels = reduction.take();
-  const auto warn = [&](std::size_t count, std::string_view what) {
-    if (count == 0) return;
-    map.warnings.push_back(
-        fmt::format("{}: {} of {} texels {}", picture.file(), count, window.area(), what));
-  };
-  warn(found.broken,
-       fmt::format("are not finite or above {:g}, and are taken as black", kBrightest));
-  warn(found.negative, "have negative channels, which are taken as 0");
+  intake.finish(map);
+}
+
+/// Reads the colours of a picture that is no EXR. Returns its window.
+Window read_picture(const std::string& file, EnvironmentMap& map) {
+  std::optional<Intake> intake;
+  Window window;
+  read_image_rows(file, [&](const Image& image, int first, const Plane<glm::vec3>& rows) {
+    if (!intake) {
+      window = {0, 0, image.color.width, image.color.height};
+      intake.emplace(file, window, choose_curve(file, curve_of(image), image.integers, map));
+    }
+    intake->add(first, rows);
+  });
+  intake->finish(map);
+  return window;
 }
 
 /// What a picture of a shape mostly is, and what to do.
@@ -220,11 +262,13 @@ constexpr Shape kFaces[] = {{1, 6, "six faces of a cube in a column"},
                             {4, 3, "six faces of a cube in a cross"}};
 
 /// Refuses pictures of all directions that are no lat-long map, and warns where one is likely. Any
-/// shape will do for a single colour.
+/// shape will do for a single colour. Notes how much smaller the map has become.
 /// Errors: ExitCode::input.
 void check_shape(const std::string& file, const Window& window, EnvironmentMap& map) {
   const Plane<glm::vec3>& texels = map.texels;
   const int width = window.width(), height = window.height();
+  if (texels.width < width)
+    map.converted.push_back(fmt::format("averaged from {} x {}", width, height));
   const auto is_near = [&](double w, double h) {
     constexpr double kTolerance = 0.1;  // panoramas are cropped and padded
     const double wanted = height * w / h;
@@ -266,27 +310,28 @@ void unfold(const std::string& file, EnvironmentMap& map) {
 
 EnvironmentMap read_environment_map(const std::string& text) {
   const PictureName name = parse_picture_name(text);
+  EnvironmentMap map;
+  if (name.layer.empty() && !reads_as_exr(name.file)) {
+    check_shape(name.file, read_picture(name.file, map), map);
+    return map;
+  }
   const LayeredPicture picture(name.file);
   const PictureLayer layer =
       name.layer.empty() ? choose_layer(picture) : find_layer(picture, name.layer);
-  EnvironmentMap map;
+  bool cube = false;
   if (const auto& exr = picture.exr()) {
     if (name.layer.empty()) refuse_luminance_chroma(*exr, layer);
-    map.primaries = chromaticities_of(exr->parts()[std::size_t(layer.part)].header);
+    const Imf::Header& header = exr->parts()[std::size_t(layer.part)].header;
+    map.primaries = chromaticities_of(header);
     map.layer = layer.name.empty() ? layer.part_name : layer.name;
+    cube = is_cube_map(header);
   }
-  const bool cube =
-      picture.exr() && is_cube_map(picture.exr()->parts()[std::size_t(layer.part)].header);
   const Window window = cube ? picture.window(layer) : picture.display(layer);
   read_texels(picture, layer, window, cube ? window.width() : MapReduction::kColumns, map);
-  if (cube) {
+  if (cube)
     unfold(name.file, map);
-    return map;
-  }
-  check_shape(name.file, window, map);
-  if (map.texels.width < window.width()) {
-    map.converted.push_back(fmt::format("averaged from {} x {}", window.width(), window.height()));
-  }
+  else
+    check_shape(name.file, window, map);
   return map;
 }
 
