@@ -17,18 +17,12 @@
 #include "estimators/registry.h"
 #include "io/transfer_curve.h"
 #include "known_geometry.h"
+#include "scene/camera/world_up.h"
 #include "scene/layers/advice.h"
 #include "stopwatch.h"
 
 namespace ssdo {
 namespace {
-
-/// The worlds of Blender and Unreal have z up.
-UpAxis up_axis_of(const GBuffer& g) {
-  const auto unreal = g.header.lower_bound("unreal/");
-  const bool by_unreal = unreal != g.header.end() && unreal->first.starts_with("unreal/");
-  return g.by_blender || by_unreal ? UpAxis::z : UpAxis::y;
-}
 
 bool wants_reflection(const OutputOptions& output, const std::vector<LayerRequest>& aovs) {
   return contains(output.products, "reflection") || contains(output.products, kAllProducts) ||
@@ -199,12 +193,16 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   if (known.deep.empty()) warn_of_idle_depth_options(frame, options.input.gbuffer);
   const bool world = scene.geometry.world_known;
   const Imf::Header& header = frame.part().header;
-  const FrameEnvironment around =
-      light.around(world ? up_axis_of(frame.gbuffer) : UpAxis::y, chromaticities_of(header));
+  const WorldUp up = world ? find_world_up(frame.gbuffer, scene.geometry) : WorldUp();
+  const FrameEnvironment around = light.around(up.axis, chromaticities_of(header));
   scene.light = model_light(around.environment, scene.geometry.world_to_camera);
   frame.light = around.description;
   frame.report.warnings.insert(frame.report.warnings.end(), around.warnings.begin(),
                                around.warnings.end());
+  if (!scene.light.is_constant() && world && !options.light.up) {
+    frame.light += "; up " + up.source;
+    if (!up.warning.empty()) frame.report.warnings.push_back(up.warning);
+  }
   if (!scene.light.is_constant() && !world) {
     frame.report.warnings.push_back(
         "the frame knows no world space; the environment is taken in "

@@ -170,8 +170,9 @@ TEST(Ambient, ShadowsOfColouredLightAreColoured) {
   const Picture picture = ball_on_table();
   const Environment environment = two_lights();
   write_frame(dir / "in.exr", rendered(picture));
-  compose(dir, kAmbientLayer + std::vector<std::string>{"--env", write_map(dir, environment),
-                                                        "--products", "direct,composite"});
+  compose(dir,
+          kAmbientLayer + std::vector<std::string>{"--env", write_map(dir, environment), "--env-up",
+                                                   "y", "--products", "direct,composite"});
   const Plane<glm::vec3> direct = colors(dir, "direct.");
   Plane<glm::vec3> share = direct;
   for (std::size_t i = 0; i < share.size(); ++i) {
@@ -199,9 +200,9 @@ TEST_P(AmbientByMethod, IsOccludedByDirectOverUnoccludedLight) {
   const Picture picture = ball_on_table();
   const Environment environment = two_lights();
   write_frame(dir / "in.exr", rendered(picture));
-  compose(dir,
-          kAmbientLayer + std::vector<std::string>{"--env", write_map(dir, environment), "--method",
-                                                   GetParam(), "--products", "direct,composite"});
+  compose(dir, kAmbientLayer + std::vector<std::string>{"--env", write_map(dir, environment),
+                                                        "--env-up", "y", "--method", GetParam(),
+                                                        "--products", "direct,composite"});
   const Plane<glm::vec3> direct = colors(dir, "direct.");
   const auto expected = [&](std::size_t i) {
     const glm::vec3 open(unoccluded(environment, picture.normal[i]));

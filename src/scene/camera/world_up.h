@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "scene/gbuffer.h"
+#include "scene/geometry.h"
+#include "scene/light/environment.h"
+
+namespace ssdo {
+
+/// Which axis of the world is up, and what says so.
+struct WorldUp {
+  UpAxis axis = UpAxis::y;
+  std::string source;   ///< "by the header", "by the camera, 160 to 1", "a guess"
+  std::string warning;  ///< where it is a guess, or header and camera disagree; else empty
+};
+
+/// The header decides where a renderer with one world wrote it: Blender and Unreal have z up. Else
+/// the camera and the surfaces do: a camera stands level, its right axis being perpendicular to up,
+/// looks up or down by little, and sees more floors than ceilings. Of y and z the likelier is
+/// taken.
+WorldUp find_world_up(const GBuffer& g, const Geometry& geometry);
+
+}  // namespace ssdo
