@@ -24,6 +24,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+using testing::StartsWith;
 
 const Window kWindow{0, 0, 120, 80};
 const glm::dvec3 kUp(0, 0, 1), kBall(0.9, 0.1, 0.35);
@@ -146,8 +147,7 @@ TEST(NormalTrust, LeavesBeforeTheSkyShowNoOtherAxes) {
                      [](const glm::vec3&, const glm::vec3&) { return glm::vec3(0, 0, 1); });
     GeometryReport report;
     build_geometry(g, {}, "test", report);
-    EXPECT_THAT(report.normal_space, Not(HasSubstr("axes"))) << height;
-    EXPECT_THAT(report.normal_space, Not(HasSubstr("of its own"))) << height;
+    EXPECT_THAT(report.normal_space, StartsWith("the space of P")) << height;
     EXPECT_THAT(report.normal_space, Not(HasSubstr("turned"))) << height;
   }
 }
