@@ -86,6 +86,13 @@ void explain_composite(Plan& plan, const OutputOptions& output, const GBuffer& g
                                             : "an ambient layer is given"));
 }
 
+void explain_albedo(Plan& plan, const GBuffer& gbuffer) {
+  const bool is_lit =
+      contains(plan.make, "composite") && plan.composition.compose != Compose::occlude;
+  if (!gbuffer.albedo_alpha.empty() && (is_lit || plan.request.products.bounce))
+    plan.reasons.push_back(gbuffer.albedo_alpha);
+}
+
 std::vector<std::string> idle_for_composite(const Plan& plan, const OutputOptions& output,
                                             const GBuffer& gbuffer) {
   const bool is_made = contains(plan.make, "composite");

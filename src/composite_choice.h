@@ -32,6 +32,9 @@ void check_rendered_layers(Compose compose, const GBuffer& gbuffer, const std::s
 /// Adds what the composite is, and why, to the reasons of a plan that makes it.
 void explain_composite(Plan& plan, const OutputOptions& output, const GBuffer& gbuffer);
 
+/// Adds how alpha is in the albedo, where it matters, to the reasons of a plan that uses it.
+void explain_albedo(Plan& plan, const GBuffer& gbuffer);
+
 /// A line for each of --compose and the layers for composites that changes nothing.
 std::vector<std::string> idle_for_composite(const Plan& plan, const OutputOptions& output,
                                             const GBuffer& gbuffer);

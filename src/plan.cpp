@@ -290,6 +290,7 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
   explain_reflection(plan, scene);
   check_multi_bounce(plan, scene, file);
   choose_bounces(plan, model.bounces, scene);
+  explain_albedo(plan, gbuffer);
   explain_light(plan, scene.light);
   choose_radius(plan, model, scene.geometry);
   explain_thickness(plan, model);

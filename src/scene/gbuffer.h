@@ -25,6 +25,7 @@ struct Encodings {
   std::optional<DepthModel> depth_of_position;  ///< where there are both
   bool normals_tell = false;                    ///< a normal of 0 means that there is no surface
   bool normals_are_colors = false;              ///< stored as n/2 + 1/2
+  float albedo_premultiplied = 1;               ///< 1 by alpha, 0 not; between: in doubt
 };
 
 /// The layers of one frame in the space and units of the file, with encodings undone. Every plane
@@ -50,9 +51,10 @@ struct GBuffer {
   Plane<glm::vec2> motion;    ///< pixels, x right and y down, to where it was in the frame before
   DepthKind depth_kind = DepthKind::planar;  ///< planar or ray: the others are undone
   std::string depth_source = {};             ///< what tells its kind, "P"; empty: it is assumed
-  std::optional<Space> space = {};           ///< of P and N, where the user says it
-  Plane<unsigned char> valid;                ///< 1 geometry, 0 background or broken
-  float position_step = 0;                   ///< relative rounding step of P (or depth) as stored
+  std::string albedo_alpha = {};    ///< how alpha was in the albedo; empty: it makes no difference
+  std::optional<Space> space = {};  ///< of P and N, where the user says it
+  Plane<unsigned char> valid;       ///< 1 geometry, 0 background or broken
+  float position_step = 0;          ///< relative rounding step of P (or depth) as stored
   std::size_t background_pixels = 0;
   std::size_t bad_pixels = 0;  ///< pixels with a NaN or infinity in a role that is used
   std::vector<std::string> warnings;

@@ -14,6 +14,7 @@
 #include "io/pixel_filter.h"
 #include "math/light_range.h"
 #include "parallel/tiles.h"
+#include "scene/albedo_alpha.h"
 #include "scene/background.h"
 #include "scene/depth_encoding.h"
 #include "scene/layers/groups.h"
@@ -277,6 +278,8 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   read_rendered(g, read, files, table, options.beauty);
   clear_negative(g.albedo);
   clear_negative(g.radiance);
+  if (const auto& albedo = table[Role::albedo])
+    undo_alpha_of_albedo(g, albedo->premultiplied, options.known);
   clear_broken(g, g.roughness);
   for (float& r : g.roughness.pixels) r = std::clamp(r, 0.0f, 1.0f);
   return g;

@@ -273,7 +273,8 @@ TEST(Compose, AddPutsLightOnABeautyThatHasNone) {
   const TempDir dir;
   const Picture picture = ball_on_table();
   write_frame(dir / "in.exr", rendered(picture, 0.5f));
-  compose(dir, {"--compose", "add", "--env", "0.5,1,2"});
+  compose(dir,
+          {"--compose", "add", "--env", "0.5,1,2", "--aov", "albedo:straight=ViewLayer.DiffCol"});
   const Plane<glm::vec3> direct = colors(dir, "direct."), bounce = colors(dir, "bounce.");
   const auto expected = [&](std::size_t i) {
     return 0.5f * (kLamp + kAmbient + 0.5f * (direct[i] + bounce[i]));

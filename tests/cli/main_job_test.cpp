@@ -185,9 +185,10 @@ TEST(MainJob, PicturesGoThroughTheColourPipeline) {
   const TempDir dir;
   FramePart part = frame_of(small_picture());
   part.channels["A"] = Plane<float>(64, 48, 0.5f);
+  part.add("ViewLayer.DiffCol", Plane<glm::vec3>(64, 48, glm::vec3(0.25f)), "RGB");
   for (const char* c : {"R", "G", "B"}) part.channels[c] = Plane<float>(64, 48, 0);
   write_frame(dir / "in.exr", part);
-  // Open ground of albedo 1/2 under 0.36 gives 0.18, whatever its alpha.
+  // Open ground of albedo 1/2, premultiplied, under 0.36 gives 0.18, whatever its alpha.
   const auto ground = [&](std::vector<std::string> flags) {
     flags.insert(flags.begin(), {dir / "in.exr", "-o", dir / "out.png", "--overwrite", "--env",
                                  "0.36", "--bounces", "0"});

@@ -217,6 +217,7 @@ class LayerFinder {
     if (found.empty()) found = layers_named(request.layer, request.role, groups_[file]);
     if (found.size() == 1) {
       found[0].by_request = true;
+      found[0].premultiplied = request.premultiplied;
       return found[0];
     }
     if (found.empty()) refuse_missing_file(request);
@@ -240,20 +241,37 @@ class LayerFinder {
   std::string prefix_;                           ///< of layers that are preferred; may be empty
 };
 
+/// Takes `:straight` or `:premultiplied` off the end of a role, and returns what it states.
+std::optional<bool> take_alpha(std::string& role, const std::string& text) {
+  const auto colon = role.find(':');
+  if (colon == std::string::npos) return std::nullopt;
+  const std::string alpha = role.substr(colon + 1);
+  role.resize(colon);
+  if (role == role_name(Role::albedo) && (alpha == "straight" || alpha == "premultiplied"))
+    return alpha == "premultiplied";
+  throw Error(
+      ExitCode::usage,
+      fmt::format("--aov {}: '{}:{}' is no role; with a colon there are albedo:straight and "
+                  "albedo:premultiplied",
+                  text, role, alpha));
+}
+
 }  // namespace
 
 LayerRequest parse_layer_request(const std::string& text) {
   const auto equals = text.find('=');
-  const auto role = role_from_name(text.substr(0, equals));
+  std::string name = text.substr(0, equals);
+  const std::optional<bool> premultiplied = take_alpha(name, text);
+  const auto role = role_from_name(name);
   if (equals == std::string::npos || !role || equals + 1 == text.size()) {
     const auto roles = role_names();
     throw Error(
         ExitCode::usage,
         fmt::format("--aov {}: {}expected ROLE=LAYER or ROLE=FILE:LAYER with ROLE one of {}", text,
-                    role ? "" : did_you_mean(text.substr(0, equals), {roles.begin(), roles.end()}),
+                    role ? "" : did_you_mean(name, {roles.begin(), roles.end()}),
                     fmt::join(roles, ", ")));
   }
-  LayerRequest request{*role, "", text.substr(equals + 1)};
+  LayerRequest request{*role, "", text.substr(equals + 1), premultiplied};
   // A layer name may contain a colon: it separates a file only where that file or sequence exists.
   const auto colon = request.layer.rfind(':');
   if (colon == std::string::npos) return request;

@@ -241,5 +241,18 @@ TEST(Layers, RequestsAreParsed) {
   EXPECT_EQ(request.layer, "P");
 }
 
+TEST(Layers, ARequestMayStateHowAlphaIsInTheAlbedo) {
+  EXPECT_EQ(parse_layer_request("albedo=x").premultiplied, std::nullopt);
+  EXPECT_EQ(parse_layer_request("albedo:straight=x").premultiplied, false);
+  const LayerRequest request = parse_layer_request("albedo:premultiplied=my:layer");
+  EXPECT_EQ(request.role, Role::albedo);
+  EXPECT_EQ(request.layer, "my:layer");
+  EXPECT_EQ(request.premultiplied, true);
+  for (const char* bad : {"albedo:linear=x", "normal:straight=x", "albedo:=x"}) {
+    EXPECT_THAT(error_of([&] { parse_layer_request(bad); }),
+                IsError(ExitCode::usage, "albedo:premultiplied"));
+  }
+}
+
 }  // namespace
 }  // namespace ssdo::test
