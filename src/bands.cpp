@@ -65,7 +65,7 @@ class BandJob {
       : job_(job),
         frame_(job.frame),
         bands_(*job.frame.bands),
-        all_(job.frame.part().data_window),
+        all_(job.frame.gbuffer.file_window),
         on_progress_(on_progress),
         relit_(relit) {}
 

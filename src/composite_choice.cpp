@@ -84,6 +84,13 @@ void explain_composite(Plan& plan, const OutputOptions& output, const GBuffer& g
                   output.compose            ? "as asked"
                   : gbuffer.ambient.empty() ? "no ambient layer is given"
                                             : "an ambient layer is given"));
+  if (gbuffer.lead_window) {
+    const Window& all = gbuffer.file_window;
+    plan.reasons.push_back(
+        fmt::format("the frame has {}x{} pixels, as its rendered layers have; those around the "
+                    "data window of the positions are background",
+                    all.width(), all.height()));
+  }
 }
 
 void explain_albedo(Plan& plan, const GBuffer& gbuffer) {

@@ -19,6 +19,7 @@
 #include "known_geometry.h"
 #include "scene/camera/world_up.h"
 #include "scene/layers/advice.h"
+#include "scene/layers/windows.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -106,6 +107,18 @@ void warn_of_encoded_colors(Frame& frame) {
         "convert its colours, or correct colorInteropID or oiio:ColorSpace",
         curve->space, role_name(role)));
   }
+}
+
+/// Bands have the rows of the frame.
+void check_bands(const Frame& frame, bool composites) {
+  std::vector<const ExrReader*> files;
+  for (const ExrReader& file : frame.files) files.push_back(&file);
+  if (window_of_outputs(files, frame.layers, composites, {}) == frame.gbuffer.file_window) return;
+  throw Error(ExitCode::usage,
+              fmt::format("{}: a rendered layer reaches beyond the display window, where the data "
+                          "window of P ends, and takes all of the frame at once: render P with the "
+                          "same overscan, or raise --mem-limit",
+                          frame.input));
 }
 
 void warn_of_idle_depth_options(Frame& frame, const GBufferOptions& options) {
@@ -234,7 +247,8 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   frame.further_losses = std::move(known.losses);
   frame.plan = make_plan(model, options.output, scene, frame.gbuffer, frame.input);
   if (frame.gbuffer.grid.is_coarse()) {
-    const Window& all = frame.part().data_window;
+    check_bands(frame, input.gbuffer.beauty);
+    const Window& all = frame.gbuffer.file_window;
     frame.bands = plan_bands(frame.input, all, frame.part().display_window, scene, frame.plan,
                              options.output, options.memory);
     frame.plan.reasons.push_back(describe(*frame.bands, all));

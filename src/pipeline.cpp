@@ -2,6 +2,7 @@
 #include "pipeline.h"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -10,7 +11,10 @@
 #include "io/image_file.h"
 #include "io/json_text.h"
 #include "io/size_guard.h"
+#include "parallel/tiles.h"
 #include "scene/layers/groups.h"
+#include "scene/layers/windows.h"
+#include "scene/read_gbuffer.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -43,6 +47,61 @@ std::vector<ChannelOfPart> geometry_channels(const Frame& frame) {
 std::string history_of(const Frame& frame, const std::string& made_by) {
   const std::string earlier = string_attribute(frame.part().header, "ssdo/history");
   return earlier.empty() ? made_by : earlier + "\n" + made_by;
+}
+
+/// Lays a plane over `from` onto a larger one.
+void lay_onto(Plane<float>& wide, const Window& to, const ChannelView& pixels, const Window& from) {
+  for_each_row(from.height(), [&](int y) {
+    for (int x = 0; x < from.width(); ++x)
+      wide(from.x0 - to.x0 + x, from.y0 - to.y0 + y) = *pixels.at(x, y);
+  });
+}
+
+/// Lays the planes of a view onto the window `all`, in pixels of the file. Around composites of a
+/// beauty, it goes on.
+void widen(ExrContents& contents, const Window& all, const Rendered* around = nullptr) {
+  ExrOutput& output = contents.output;
+  const Window to = output.downsampling.small(all),
+               from = output.downsampling.small(*output.window);
+  output.window = all;
+  if (to == from) return;
+  std::size_t plane = 0;
+  for (const NamedChannels& product : contents.products) {
+    const bool goes_on = around && std::holds_alternative<Composite>(product.made);
+    for (int c = 0; c < int(product.channels.size()); ++c) {
+      auto& [name, type, pixels, background] = output.planes[plane++];
+      Plane<float> wide(to.width(), to.height(), background);
+      if (goes_on) lay_onto(wide, to, c < 3 ? ChannelView(around->color, c) : &around->alpha, to);
+      lay_onto(wide, to, pixels, from);
+      contents.laid.push_back(std::move(wide));
+      pixels = &contents.laid.back();
+    }
+  }
+}
+
+/// The files of a frame.
+std::vector<const ExrReader*> files_of(const Frame& frame) {
+  std::vector<const ExrReader*> files;
+  for (const ExrReader& file : frame.files) files.push_back(&file);
+  return files;
+}
+
+/// What the outputs of a frame cover, in pixels of its files.
+Window window_of_outputs(const Frame& frame) {
+  const bool composites = frame.plan.composition.compose != Compose::relight;
+  return ssdo::window_of_outputs(files_of(frame), frame.layers, composites,
+                                 frame.gbuffer.downsampling);
+}
+
+/// Views that share a part share its window.
+void share_windows(std::vector<ExrContents>& views) {
+  std::map<int, Window> by_part;
+  for (const auto& [products, laid, output] : views) {
+    const Window& own = *output.window;
+    const auto [all, is_new] = by_part.try_emplace(output.part, own);
+    if (!is_new) all->second = hull(all->second, own);
+  }
+  for (ExrContents& view : views) widen(view, by_part.at(view.output.part));
 }
 
 /// What goes into the parts of a file: views that share a part stand side by side in it.
@@ -91,11 +150,13 @@ ExrContents exr_contents(const RelightJob& job, const Plan& plan, const Target& 
                          const Results& results) {
   const Frame& frame = job.frame;
   ExrContents contents;
-  for (const std::string& product : target.product ? std::vector{*target.product} : plan.write)
+  const auto names = target.product ? std::vector{*target.product} : plan.write;
+  for (const std::string& product : names)
     contents.products.push_back(product_channels(product, results));
   ExrOutput& output = contents.output;
   output.input = &frame.files[std::size_t(frame.lead().file)];
   output.part = frame.lead().part;
+  output.window = frame.gbuffer.file_window;
   output.keep_channels = job.options.output.keep_channels;
   output.crop = job.options.output.crop;
   output.downsampling = frame.gbuffer.downsampling;
@@ -111,10 +172,17 @@ ExrContents exr_contents(const RelightJob& job, const Plan& plan, const Target& 
                        {"ssdo/" + name("plan"), json_text(to_json(plan, frame.history))}};
   if (!job.options.output.made_by.empty())
     output.attributes.emplace_back("ssdo/history", history_of(frame, job.options.output.made_by));
-  for (const NamedChannels& product : contents.products) {
-    for (const NamedChannel& channel : product.channels)
-      output.planes.push_back({name(channel.name), job.options.output.pixel_type, channel.pixels});
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const float background = find_product(names[i]).background;
+    for (const NamedChannel& channel : contents.products[i].channels) {
+      output.planes.push_back(
+          {name(channel.name), job.options.output.pixel_type, channel.pixels, background});
+    }
   }
+  const Window all = window_of_outputs(frame);
+  if (all == *output.window) return contents;
+  const Rendered around = read_rendered(files_of(frame), frame.layers, all, output.downsampling);
+  widen(contents, all, &around);
   return contents;
 }
 
@@ -133,6 +201,7 @@ Written write_targets(const std::vector<Shown>& views,
       std::vector<ExrContents> contents;
       for (const Shown& view : shown)
         contents.push_back(exr_contents(view.job, view.plan, target, results_of(view)));
+      share_windows(contents);
       out.clamped_values += write_exr(file, by_part(contents));
     } else {
       const Shown& view = shown.front();

@@ -20,6 +20,7 @@ namespace ssdo {
 /// What goes into an EXR, and what holds the pixels.
 struct ExrContents {
   std::vector<NamedChannels> products;
+  std::vector<Plane<float>> laid;  ///< planes of a view that shares its part with a larger one
   ExrOutput output;
 };
 

@@ -189,7 +189,7 @@ json layers_json(const Frame& frame) {
 }  // namespace
 
 std::string describe(const Frame& frame) {
-  const Window &display = frame.part().display_window, &data = frame.part().data_window;
+  const Window &display = frame.part().display_window, &data = frame.gbuffer.file_window;
   std::string text =
       fmt::format("{}: {} x {}\n", printable(frame.input), display.width(), display.height());
   const auto line = [&](std::string_view key, const std::string& value) {
@@ -231,7 +231,7 @@ nlohmann::json to_json(const Frame& frame) {
           {"view", frame.view},
           {"width", part.display_window.width()},
           {"height", part.display_window.height()},
-          {"data_window", window_json(part.data_window)},
+          {"data_window", window_json(frame.gbuffer.file_window)},
           {"display_window", window_json(part.display_window)},
           {"parts", parts_json(frame.files.front())},
           {"layers", layers_json(frame)},

@@ -105,7 +105,12 @@ void find_background(GBuffer& g, std::optional<float> background_depth,
   std::atomic<std::size_t> background_pixels = 0, bad_pixels = 0;
   for_each_row(g.valid.height, [&](int y) {
     std::size_t background_in_row = 0, bad_in_row = 0;
-    for (std::size_t i = g.valid.index(0, y), end = g.valid.index(0, y + 1); i < end; ++i) {
+    for (int x = 0; x < g.valid.width; ++x) {
+      const std::size_t i = g.valid.index(x, y);
+      if (g.lead_window && !g.lead_window->contains(g.window.x0 + x, g.window.y0 + y)) {
+        ++background_in_row;
+        continue;
+      }
       const bool nothing_in_depth = !g.depth.empty() && shows_nothing(g.depth[i], far);
       bool background = nothing_in_depth || (!g.alpha.empty() && g.alpha[i] <= kLeastAlpha);
       const bool no_normal = found.normals_tell && g.normal[i] == glm::vec3(0);

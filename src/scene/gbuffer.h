@@ -29,13 +29,17 @@ struct Encodings {
 };
 
 /// The layers of one frame in the space and units of the file, with encodings undone. Every plane
-/// covers `window`, but those of the beauty, which cover that of the outputs; a role that the frame
-/// does not have is an empty plane.
+/// covers `window`, which holds P and the rendered layers that composites are made of, but those of
+/// the beauty, which cover that of the outputs; a role that the frame does not have is an empty
+/// plane.
 struct GBuffer {
-  PixelGrid grid = {};            ///< the pixels of the file that the planes hold
-  Window window, display;         ///< of them
-  Window file_display;            ///< of all, where the grid is coarser
-  std::optional<Window> part_of;  ///< the window of the frame, where this is some rows of it
+  PixelGrid grid = {};     ///< the pixels of the file that the planes hold
+  Window window, display;  ///< of them
+  Window file_window;      ///< that of the frame in pixels of the file, whatever the grid
+  Window file_display;     ///< of all, where the grid is coarser
+  std::optional<Window> lead_window;  ///< what P, or else the depth, covers, where that is less:
+                                      ///< around it is background
+  std::optional<Window> part_of;      ///< the window of the frame, where this is some rows of it
   Encodings encodings;
   Downsampling downsampling = {};  ///< from these windows to those of the outputs
   float pixel_aspect = 1;

@@ -7,11 +7,13 @@
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 #include <map>
 
 #include "error.h"
 #include "io/exr/header_numbers.h"
 #include "io/pixel_filter.h"
+#include "io/size_guard.h"
 #include "math/light_range.h"
 #include "parallel/tiles.h"
 #include "scene/albedo_alpha.h"
@@ -25,6 +27,9 @@ namespace {
 
 /// Relative rounding: float keeps 24 bits, PXR24 16 of them.
 constexpr float kStepFloat = 1.0f / 16777216, kStepPxr24 = 1.0f / 65536;
+
+/// Of a G-buffer and its geometry.
+constexpr double kBytesPerPixel = 100;
 
 bool is_finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -158,7 +163,7 @@ void clear_broken(GBuffer& g, Plane<T>& values) {
 }
 
 /// Reads beauty, ambient and specular, and brings them to the size of the outputs.
-void read_rendered(GBuffer& g, const LayerReader& read, const std::vector<const ExrReader*>& files,
+void take_rendered(GBuffer& g, const LayerReader& read, const std::vector<const ExrReader*>& files,
                    const LayerTable& table, bool has_beauty) {
   const auto take = [&](Role role, Plane<glm::vec3>& colors) {
     const std::optional<Layer>& layer = table[role];
@@ -221,15 +226,50 @@ void clear_negative(Plane<glm::vec3>& colors) {
   });
 }
 
-/// What is read of the part that the products are made from.
-PixelGrid grid_of(const GBufferOptions& options, const ExrPart& part) {
-  if (part.data_window.area() <= options.most_pixels) return options.grid;
-  return {.stride = kOverviewStride,
-          .origin_x = part.display_window.x0,
-          .origin_y = part.display_window.y0};
+/// Which pixels of a frame are read.
+PixelGrid grid_of(const GBufferOptions& options, const Window& frame, const Window& display) {
+  if (frame.area() <= options.most_pixels) return options.grid;
+  return {.stride = kOverviewStride, .origin_x = display.x0, .origin_y = display.y0};
+}
+
+/// Sets the windows and which of their pixels are read. `part` is that of the position or depth.
+void find_windows(GBuffer& g, const std::vector<const ExrReader*>& files, const LayerTable& table,
+                  const GBufferOptions& options, const ExrPart& part) {
+  g.file_display = part.display_window;
+  g.file_window = window_of_frame(
+      part, window_of_outputs(files, table, options.beauty, {options.downsample, g.file_display}));
+  g.grid = grid_of(options, g.file_window, g.file_display);
+  g.window = g.grid.of(g.file_window);
+  if (!g.grid.is_coarse() && g.window != g.file_window) g.part_of = g.file_window;
+  if (g.file_window != part.data_window) {
+    g.lead_window = g.grid.of(part.data_window);
+    // Each part fits into memory; what lies between parts far from each other need not.
+    check_decoded_size(files[0]->path(), 0, 0, kBytesPerPixel * double(g.window.area()));
+  }
+  g.display = g.grid.is_coarse() ? g.grid.of(part.display_window) : part.display_window;
 }
 
 }  // namespace
+
+Rendered read_rendered(const std::vector<const ExrReader*>& files, const LayerTable& table,
+                       const Window& window, const Downsampling& downsampling) {
+  check_decoded_size(files[0]->path(), 0, 0, sizeof(glm::vec4) * double(window.area()));
+  const Role role = table[Role::beauty] ? Role::beauty : Role::ambient;
+  const LayerReader read(files, table, {role, Role::alpha}, window, {}, nullptr);
+  const auto sane = [](auto values) {
+    for (auto& value : values.pixels)
+      if (!is_sane(value)) value = {};
+    return values;
+  };
+  const bool is_small = has_size_of_outputs(part_of(files, *table[role]), downsampling);
+  const Window small = downsampling.small(window);
+  Plane<float> alpha = sane(read.scalar(table[Role::alpha], 0));
+  if (alpha.empty()) alpha = Plane<float>(window.width(), window.height());
+  if (downsampling.is_identity()) return {sane(read.vector(table[role], 0)), std::move(alpha)};
+  return {is_small ? sane(read.vector_over(small, table[role], 0))
+                   : filter_pixels(sane(read.vector(table[role], 0)), window, downsampling),
+          filter_pixels(alpha, window, downsampling)};
+}
 
 GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTable& table,
                      const GBufferOptions& options, const Plane<float>* deep) {
@@ -237,11 +277,7 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   const auto& lead = table[Role::position] ? table[Role::position] : table[Role::depth];
   const ExrPart& part = part_of(files, *lead);
   GBuffer g;
-  g.grid = grid_of(options, part);
-  g.window = g.grid.of(part.data_window);
-  if (!g.grid.is_coarse() && g.window != part.data_window) g.part_of = part.data_window;
-  g.file_display = part.display_window;
-  g.display = g.grid.is_coarse() ? g.grid.of(part.display_window) : part.display_window;
+  find_windows(g, files, table, options, part);
   g.downsampling = make_downsampling(options.downsample, g.display, file);
   g.pixel_aspect = part.header.pixelAspectRatio();
   if (!(g.pixel_aspect > 0) || !std::isfinite(g.pixel_aspect)) g.pixel_aspect = 1;
@@ -275,7 +311,7 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   undo_normal_encoding(g, options.known);
   note_data_windows(files, table, roles, g);
   for (Plane<glm::vec3>* values : {&g.normal, &g.albedo, &g.radiance}) clear_broken(g, *values);
-  read_rendered(g, read, files, table, options.beauty);
+  take_rendered(g, read, files, table, options.beauty);
   clear_negative(g.albedo);
   clear_negative(g.radiance);
   if (const auto& albedo = table[Role::albedo])

@@ -29,10 +29,22 @@ struct GBufferOptions {
                                           ///< to the frame before, y up; 1 where not given
 };
 
+/// What rendered layers show.
+struct Rendered {
+  Plane<glm::vec3> color;  ///< the beauty, or else the ambient layer
+  Plane<float> alpha;      ///< 0 where the frame has none
+};
+
+/// Reads them over `window`, in pixels of the file, at the size of the outputs. What is not finite
+/// is 0. Errors: ExitCode::input for a window that does not fit into memory.
+Rendered read_rendered(const std::vector<const ExrReader*>& files, const LayerTable& table,
+                       const Window& window, const Downsampling& downsampling);
+
 /// Reads the layers of `table` and finds background and broken pixels: background where alpha is
 /// 0, or else by depth (>= 1e9, infinite, NaN, <= 0) where there is one, or else by P (0, >= 1e9,
 /// not finite) or a normal of 0.
-/// The table has a position or a depth, whose data window the planes have. Of a deep part, `deep`
+/// The table has a position or a depth, whose data window the planes have; with `options.beauty`
+/// they cover the rendered layers too. Of a deep part, `deep`
 /// is the depth, its encoding undone but for its kind. Beauty, ambient and specular may have the
 /// size of the outputs; if they have that of the other layers, they are filtered to it. Errors:
 /// ExitCode::layer when a layer is of another display window, or the depth has no unit;

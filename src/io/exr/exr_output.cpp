@@ -10,7 +10,9 @@ const ExrPart& part_of(const ExrOutput& output) {
 }
 
 Window known_window(const ExrOutput& output, const ExrPart& part) {
-  return output.downsampling.small(part.data_window);
+  const bool has_planes = part.index == output.part;
+  return output.downsampling.small(has_planes ? output.window.value_or(part.data_window)
+                                              : part.data_window);
 }
 
 Window written_window(const ExrOutput& output, const ExrPart& part) {

@@ -20,6 +20,7 @@ struct ExrPlane {
   std::string name;
   Imf::PixelType type = Imf::HALF;
   ChannelView pixels;
+  float background = 0;  ///< what it has where nothing is shown
 };
 
 /// A channel of a part of the input.
@@ -34,10 +35,12 @@ struct ChannelOfPart {
 struct ExrOutput {
   const ExrReader* input = nullptr;  ///< whose headers are kept
   int part = 0;                      ///< the part of the input that the planes were made from
-  std::vector<ExrPlane> planes;    ///< all over the data window of that part, at the output's size
-  bool keep_channels = false;      ///< pass the other channels and parts through unchanged
-  bool crop = false;               ///< of every flat part, write the display window only
-  Downsampling downsampling = {};  ///< from the input's windows to the output's
+  std::vector<ExrPlane> planes;      ///< all over `window`, at the output's size
+  std::optional<Window> window;      ///< in pixels of the input; the data window of the part, which
+                                     ///< it holds, where not given
+  bool keep_channels = false;        ///< pass the other channels and parts through unchanged
+  bool crop = false;                 ///< of every flat part, write the display window only
+  Downsampling downsampling = {};    ///< from the input's windows to the output's
   std::vector<ChannelOfPart> geometry;  ///< those that cannot be filtered, whatever their names
   std::optional<Imf::Compression> compression;  ///< the input's where not given
   std::optional<int> compression_level;  ///< of `compression`: ZIP and ZIPS 1 (fast) to 12 (small),
@@ -49,7 +52,7 @@ struct ExrOutput {
 /// The part of the input that the planes were made from.
 const ExrPart& part_of(const ExrOutput& output);
 
-/// The pixels of a part of the input that are known, at the output's size.
+/// The pixels of a part that are known, at the output's size.
 Window known_window(const ExrOutput& output, const ExrPart& part);
 
 /// Those that are written. Area 0 for a part that is cropped to nothing.

@@ -41,6 +41,31 @@ bool is_color(const ExrPart& part, const std::string& name) {
   return component == "r" || component == "g" || component == "b" || component == "a";
 }
 
+/// A channel over the window `from`, laid onto a window that holds it: 0 around, which is no
+/// surface in a position or depth. Errors: ExitCode::input where the subsampling of the channel
+/// does not divide `to`.
+StoredChannel laid_onto(const Window& to, const StoredChannel& stored, const Window& from,
+                        const ExrReader& input) {
+  const auto& [channel, pixels] = stored;
+  const int x = channel.x_sampling, y = channel.y_sampling;
+  if (to.x0 % x || to.width() % x || to.y0 % y || to.height() % y) {
+    throw Error(
+        ExitCode::input,
+        fmt::format("{}: channel '{}' is subsampled {}x{}, which does not divide the window "
+                    "of the outputs, {}; leave out --keep-channels",
+                    input.path().string(), channel.name, x, y, text_of(to)));
+  }
+  const std::size_t bytes = channel.type == Imf::HALF ? 2 : 4,
+                    row = bytes * std::size_t(from.width() / x),
+                    wide_row = bytes * std::size_t(to.width() / x);
+  StoredChannel laid{channel, std::vector<std::byte>(wide_row * std::size_t(to.height() / y))};
+  std::byte* first = laid.pixels.data() + wide_row * std::size_t((from.y0 - to.y0) / y) +
+                     bytes * std::size_t((from.x0 - to.x0) / x);
+  for (std::size_t i = 0; i < std::size_t(from.height() / y); ++i)
+    std::copy_n(pixels.data() + i * row, row, first + i * wide_row);
+  return laid;
+}
+
 /// Channels of a part, at the output's size.
 std::vector<StoredChannel> read_channels(const ExrOutput& output, const ExrPart& part,
                                          const std::vector<std::string>& names) {
@@ -70,8 +95,13 @@ std::vector<KeptChannel> kept_channels(const ExrOutput& output) {
     to.push_back(taken ? "input." + channel.name : channel.name);
   }
   std::vector<StoredChannel> stored = read_channels(output, part, from);
+  const Window own = output.downsampling.small(part.data_window),
+               known = known_window(output, part);
   std::vector<KeptChannel> kept;
-  for (std::size_t i = 0; i < to.size(); ++i) kept.push_back({to[i], std::move(stored[i])});
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    kept.push_back({to[i], own == known ? std::move(stored[i])
+                                        : laid_onto(known, stored[i], own, *output.input)});
+  }
   return kept;
 }
 

@@ -138,8 +138,8 @@ FoundCamera on_file(FoundCamera found, const PixelGrid& grid, const Camera* give
 
 /// The data window of a frame that is too large to be read at once is not known here.
 PictureWindows windows_of(const GBuffer& g) {
-  const Window& display = g.display_of_file();
-  return {display, g.grid.is_coarse() ? display : g.window, double(g.pixel_aspect)};
+  const Window &display = g.display_of_file(), data = g.lead_window.value_or(g.window);
+  return {display, g.grid.is_coarse() ? display : data, double(g.pixel_aspect)};
 }
 
 /// The camera where options give a projection. `given` is it on the grid of the G-buffer.

@@ -83,6 +83,24 @@ const ExrPart& part_of(const Files& files, const Layer& layer) {
   return files[std::size_t(layer.file)]->parts()[std::size_t(layer.part)];
 }
 
+Window window_of_outputs(const Files& files, const LayerTable& table, bool composites,
+                         const Downsampling& downsampling) {
+  Window all = part_of(files, *table[lead_of(table)]).data_window;
+  for (const Role role : composites ? kRendered : std::vector<Role>()) {
+    if (!table[role]) continue;
+    const ExrPart& part = part_of(files, *table[role]);
+    const Window& own = part.data_window;
+    all = hull(all, has_size_of_outputs(part, downsampling) ? downsampling.large(own) : own);
+  }
+  return all;
+}
+
+Window window_of_frame(const ExrPart& lead, const Window& outputs) {
+  const Window &own = lead.data_window, &display = lead.display_window;
+  return {own.x0 == display.x0 ? own.x0 : outputs.x0, own.y0 == display.y0 ? own.y0 : outputs.y0,
+          own.x1 == display.x1 ? own.x1 : outputs.x1, own.y1 == display.y1 ? own.y1 : outputs.y1};
+}
+
 bool has_size_of_outputs(const ExrPart& part, const Downsampling& downsampling) {
   return !downsampling.is_identity() &&
          part.display_window == downsampling.small(downsampling.display);
@@ -113,7 +131,8 @@ void note_data_windows(const Files& files, const LayerTable& table, const std::v
     if (!table[role]) continue;
     const ExrPart& part = part_of(files, *table[role]);
     const bool unused = role == Role::depth && g.depth.empty();  // it contradicts P
-    if (!unused && !(g.grid.of(part.data_window) == g.window))
+    const Window own_window = g.grid.of(part.data_window), lead = g.lead_window.value_or(g.window);
+    if (!unused && hull(own_window, lead) != own_window)
       note_data_window(files, role, *table[role], g);
     const float own = part.header.pixelAspectRatio();
     if (std::abs(own - aspect) <= kSameAspect * aspect || !noted.insert(&part).second) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "io/exr/exr_reader.h"
@@ -10,8 +11,26 @@
 
 namespace ssdo {
 
+/// The smallest window that holds both.
+inline Window hull(const Window& a, const Window& b) {
+  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
+
 /// The part that a layer is in.
 const ExrPart& part_of(const std::vector<const ExrReader*>& files, const Layer& layer);
+
+/// The layers that composites of a beauty are made of.
+inline const std::vector<Role> kRendered = {Role::beauty, Role::ambient, Role::specular};
+
+/// What the outputs of a frame cover, in pixels of its files: the data window of the position, or
+/// else of the depth, and for `composites` of a beauty those of its layers.
+Window window_of_outputs(const std::vector<const ExrReader*>& files, const LayerTable& table,
+                         bool composites, const Downsampling& downsampling);
+
+/// The window of a frame whose outputs cover `outputs`. Renderers crop layers to what they show:
+/// where the position ends before the others, there is background. But one that ends with the
+/// display window does not tell what lies beyond, and neither does the frame.
+Window window_of_frame(const ExrPart& lead, const Window& outputs);
 
 /// Whether a part is a picture of the small size.
 bool has_size_of_outputs(const ExrPart& part, const Downsampling& downsampling);

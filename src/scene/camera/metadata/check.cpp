@@ -92,7 +92,7 @@ bool is_plausible(const Camera& camera, const GBuffer& g) {
 
 /// Overscan: renders have it, or tools that widen the data window and leave the header as it was.
 bool exceeds_display(const GBuffer& g) {
-  const Window &data = g.window, &display = g.display;
+  const Window data = g.lead_window.value_or(g.window), &display = g.display;
   return data.x0 < display.x0 || data.y0 < display.y0 || data.x1 > display.x1 ||
          data.y1 > display.y1;
 }
