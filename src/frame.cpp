@@ -2,6 +2,7 @@
 #include "frame.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include "composite_choice.h"
 #include "error.h"
 #include "estimators/registry.h"
+#include "io/exr/kept_channels.h"
 #include "io/transfer_curve.h"
 #include "known_geometry.h"
 #include "scene/camera/world_up.h"
@@ -141,6 +143,18 @@ void warn_of_idle_light_options(Frame& frame, const LightOptions& options) {
   if (options.up) warn("--env-up");
 }
 
+/// What is in a file besides the render, as it is an output of ssdo.
+void explain_earlier_products(Frame& frame) {
+  const EarlierProducts earlier = earlier_products(frame.part());
+  if (earlier.empty()) return;
+  std::string text = "an earlier run of ssdo made ";
+  for (const auto& [name, moved] : earlier) text += name + ", ";
+  text += "which are taken for no layer of the render";
+  if (const auto& beauty = frame.layers[Role::beauty])
+    text += fmt::format("; its beauty is {}", fmt::join(beauty->channels, ", "));
+  frame.plan.reasons.push_back(text);
+}
+
 }  // namespace
 
 const Layer& Frame::lead() const {
@@ -259,6 +273,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   const std::vector<std::string> idle =
       idle_for_composite(frame.plan, options.output, frame.gbuffer);
   frame.report.warnings.insert(frame.report.warnings.end(), idle.begin(), idle.end());
+  explain_earlier_products(frame);
   explain_views(frame.plan, frame.views);
   frame.advice = explain_guessed(frame.plan, scene);
   frame.times.prepare = watch.lap() - view.read_ms - frame.times.known;

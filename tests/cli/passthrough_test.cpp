@@ -171,15 +171,10 @@ TEST(Passthrough, AnOutputCanBeAnInputAgain) {
   write_typed(dir / "in.exr", {frame_with_odd_channels()});
   relight({dir / "in.exr", "-o", dir / "once.exr", "--keep-channels"});
   relight({dir / "once.exr", "-o", dir / "twice.exr", "--keep-channels"});
-  // The composite of the first run is a beauty to the second, which keeps it.
-  expect_same_bits(dir / "once.exr", "R", dir / "twice.exr", "input.R");
-  expect_same_bits(dir / "once.exr", "ao.Y", dir / "twice.exr", "input.ao.Y");
+  EXPECT_EQ(channel_names(dir / "twice.exr"), channel_names(dir / "once.exr"))
+      << "products give way to those of their names";
   for (const char* name : {"R", "ao.Y", "bounce.G", "id"})
     expect_same_bits(dir / "once.exr", name, dir / "twice.exr", name);
-  relight({dir / "twice.exr", "-o", dir / "thrice.exr", "--keep-channels"});
-  EXPECT_EQ(channel_names(dir / "thrice.exr"), channel_names(dir / "twice.exr"))
-      << "the oldest input.NAME stays";
-  expect_same_bits(dir / "once.exr", "R", dir / "thrice.exr", "input.R");
 }
 
 }  // namespace

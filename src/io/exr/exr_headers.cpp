@@ -100,6 +100,10 @@ Imf::Header header_for(const ExrOutput& output, const std::vector<KeptChannel>& 
   for (const ExrPlane& plane : output.planes) {
     header.channels().insert(plane.name, Imf::Channel(plane.type));
   }
+  take_out(header, std::string(kEarlierProducts));
+  if (output.keep_channels) {
+    header.insert(std::string(kEarlierProducts), Imf::StringAttribute(products_text(output, kept)));
+  }
   for (const auto& [name, text] : output.attributes) {
     // That of an earlier run is replaced; one of another type has to go first.
     if (!header.findTypedAttribute<Imf::StringAttribute>(name)) take_out(header, name);

@@ -34,9 +34,9 @@ namespace ssdo {
 /// have the value next to the middle of a pixel, all of the same place. Other parts are decoded and
 /// come in scanlines.
 ///
-/// A kept channel whose name a plane takes moves to "input.NAME". If the input has an "input.NAME"
-/// already, it is an earlier output of this tool: its "input.NAME" stays, and its NAME, an earlier
-/// product, is dropped.
+/// A kept channel whose name a plane takes moves to "input.NAME", or to "input.input.NAME" where
+/// the input has a channel of that name. An earlier product of this tool is dropped in place of
+/// that; see EarlierProducts.
 ///
 /// Errors of all: ExitCode::output if the disk is full or the file cannot be written;
 /// ExitCode::input if what is kept of the input cannot be read, or cannot be cropped: a part that

@@ -2,13 +2,16 @@
 #include "io/exr/kept_channels.h"
 
 #include <ImfChannelList.h>
+#include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
+#include <nlohmann/json.hpp>
 
 #include "error.h"
 #include "io/exr/exr_parts.h"
+#include "io/json_text.h"
 #include "io/pixel_filter.h"
 
 namespace ssdo {
@@ -81,18 +84,73 @@ std::vector<StoredChannel> read_channels(const ExrOutput& output, const ExrPart&
   return channels;
 }
 
+/// The name of a channel whose own a plane takes: none of another channel.
+std::string moved_name(const ExrPart& part, const std::string& name) {
+  std::string moved = name;
+  do moved = "input." + moved;
+  while (has_channel(part, moved));
+  return moved;
+}
+
+/// The text of an attribute of ssdo, also where another program has put its own name before it.
+std::string text_by_ssdo(const ExrPart& part, std::string_view name) {
+  for (auto it = part.header.begin(); it != part.header.end(); ++it) {
+    const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
+    if (text && std::string_view(it.name()).ends_with(name)) return text->value();
+  }
+  return "";
+}
+
 }  // namespace
+
+EarlierProducts earlier_products(const ExrPart& part) {
+  EarlierProducts products;
+  const auto said = nlohmann::json::parse(text_by_ssdo(part, kEarlierProducts), nullptr, false);
+  if (said.is_object()) {
+    for (const auto& [name, moved] : said.items()) {
+      const std::string to = moved.is_string() ? moved.get<std::string>() : "";
+      if (has_channel(part, name)) products[name] = has_channel(part, to) ? to : "";
+    }
+  } else if (!text_by_ssdo(part, "ssdo/version").empty()) {
+    for (const ExrChannel& channel : part.channels) {
+      const std::string moved = "input." + channel.name;
+      if (has_channel(part, moved)) products[channel.name] = moved;
+    }
+  }
+  return products;
+}
+
+std::string products_text(const ExrOutput& output, const std::vector<KeptChannel>& kept) {
+  const EarlierProducts earlier = earlier_products(part_of(output));
+  EarlierProducts products;
+  const auto note_earlier = [&](const std::string& name) {
+    if (const auto found = earlier.find(name); found != earlier.end()) products.insert(*found);
+  };
+  for (const ExrPlane& plane : output.planes) {
+    note_earlier(plane.name);
+    products.try_emplace(plane.name);
+  }
+  for (const auto& [name, stored] : kept) {
+    note_earlier(name);
+    if (name != stored.channel.name) products[stored.channel.name] = name;
+  }
+  nlohmann::json text = nlohmann::json::object();
+  for (const auto& [name, moved] : products)
+    text[name] = moved.empty() ? nlohmann::json() : nlohmann::json(moved);
+  return json_text(text);
+}
 
 std::vector<KeptChannel> kept_channels(const ExrOutput& output) {
   const ExrPart& part = part_of(output);
   // Deep samples do not fit into a flat part.
   if (!output.keep_channels || part.deep) return {};
+  const EarlierProducts earlier = earlier_products(part);
   std::vector<std::string> from, to;
   for (const ExrChannel& channel : part.channels) {
     const bool taken = has_plane(output, channel.name);
-    if (taken && has_channel(part, "input." + channel.name)) continue;
+    if (taken && earlier.contains(channel.name)) continue;
     from.push_back(channel.name);
-    to.push_back(taken ? "input." + channel.name : channel.name);
+    to.push_back(taken ? moved_name(part, channel.name) : channel.name);
   }
   std::vector<StoredChannel> stored = read_channels(output, part, from);
   const Window own = output.downsampling.small(part.data_window),

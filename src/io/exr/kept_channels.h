@@ -3,7 +3,9 @@
 
 #include <ImfFrameBuffer.h>
 
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/exr/exr_output.h"
@@ -15,6 +17,19 @@ struct KeptChannel {
   std::string name;  ///< in the output
   StoredChannel stored;
 };
+
+/// The products that earlier runs of ssdo left among the channels of a part, by their names, and
+/// where they moved the part's own channel of that name; empty: there was none.
+using EarlierProducts = std::map<std::string, std::string>;
+
+/// As the attribute kEarlierProducts says, or by the names "input.NAME" where ssdo wrote none.
+EarlierProducts earlier_products(const ExrPart& part);
+
+/// A JSON object of an EarlierProducts; null: there was no such channel.
+inline constexpr std::string_view kEarlierProducts = "ssdo/channels";
+
+/// What the header of an output says of its products for later runs.
+std::string products_text(const ExrOutput& output, const std::vector<KeptChannel>& kept);
 
 /// The channels of the input that stand beside the planes, in their part: with `keep_channels`, all
 /// that a flat part has but for the earlier products that give way.

@@ -25,8 +25,8 @@ bool is_coordinate(const LayerGroup& group, const std::string& component) {
 
 /// A single channel as a scalar layer: a bare "Z", or "depth" without a component.
 Layer scalar_layer(const LayerGroup& group, const ExrChannel& channel) {
-  const std::string name =
-      group.name.empty() ? channel.name : group.name + "." + last_segment(channel.name);
+  const std::string component = last_segment(channel.name),
+                    name = group.name.empty() ? component : group.name + "." + component;
   return {group.file, group.part, name, {channel.name}, channel.type == Imf::HALF, false};
 }
 
@@ -91,6 +91,37 @@ void add_candidates(Role role, const LayerGroup& group, std::vector<Candidate>& 
   if (is_scalar(role) && role != Role::alpha) add_scalars(role, group, found);
 }
 
+/// layers_named() of products of an earlier run, or of all other groups.
+std::vector<Layer> layers_named(const std::string& wanted, Role role,
+                                const std::vector<LayerGroup>& groups, bool by_earlier_run) {
+  std::vector<Layer> exact, loose;
+  const auto note = [&](const std::set<std::string>& names, const Layer& layer) {
+    bool same = false, similar = false;
+    for (const std::string& name : names) {
+      same |= name == wanted;
+      similar |= lower(name) == lower(wanted);
+    }
+    if (same) exact.push_back(layer);
+    if (similar) loose.push_back(layer);
+  };
+  for (const LayerGroup& group : groups) {
+    if (group.by_earlier_run != by_earlier_run) continue;
+    const auto layer = as_layer(group, role);
+    const std::set<std::string> names = {group.name, group.layer, group.path, group.own_path,
+                                         group.path.empty() ? kNoLayer : group.path};
+    if (layer) note(names, *layer);
+    if (!is_scalar(role)) continue;
+    for (const auto& [component, channel] : group.components) {
+      const Layer scalar = scalar_layer(group, channel);
+      // A part "Z" with a channel "Z" is one layer, whichever of them is meant.
+      const bool noted = layer && layer->channels == scalar.channels && group.name == wanted;
+      const std::string own = last_segment(channel.name);
+      if (!noted) note({group.layer.empty() ? own : group.layer + "." + own, scalar.name}, scalar);
+    }
+  }
+  return exact.empty() ? loose : exact;
+}
+
 }  // namespace
 
 std::optional<Layer> as_layer(const LayerGroup& group, Role role) {
@@ -100,7 +131,8 @@ std::optional<Layer> as_layer(const LayerGroup& group, Role role) {
 
 std::vector<Candidate> best_candidates(Role role, const std::vector<LayerGroup>& groups) {
   std::vector<Candidate> all, best;
-  for (const LayerGroup& group : groups) add_candidates(role, group, all);
+  for (const LayerGroup& group : groups)
+    if (!group.by_earlier_run) add_candidates(role, group, all);
   for (const Candidate& c : all) {
     if (!best.empty() && c.rank > best[0].rank) continue;
     if (!best.empty() && c.rank < best[0].rank) best.clear();
@@ -115,30 +147,8 @@ std::string name_for_request(const LayerGroup& group) {
 
 std::vector<Layer> layers_named(const std::string& wanted, Role role,
                                 const std::vector<LayerGroup>& groups) {
-  std::vector<Layer> exact, loose;
-  const auto note = [&](const std::set<std::string>& names, const Layer& layer) {
-    bool same = false, similar = false;
-    for (const std::string& name : names) {
-      same |= name == wanted;
-      similar |= lower(name) == lower(wanted);
-    }
-    if (same) exact.push_back(layer);
-    if (similar) loose.push_back(layer);
-  };
-  for (const LayerGroup& group : groups) {
-    const auto layer = as_layer(group, role);
-    const std::set<std::string> names = {group.name, group.layer, group.path, group.own_path,
-                                         group.path.empty() ? kNoLayer : group.path};
-    if (layer) note(names, *layer);
-    if (!is_scalar(role)) continue;
-    for (const auto& [component, channel] : group.components) {
-      const Layer scalar = scalar_layer(group, channel);
-      // A part "Z" with a channel "Z" is one layer, whichever of them is meant.
-      const bool noted = layer && layer->channels == scalar.channels && group.name == wanted;
-      if (!noted) note({channel.name, scalar.name}, scalar);
-    }
-  }
-  return exact.empty() ? loose : exact;
+  const std::vector<Layer> found = layers_named(wanted, role, groups, false);
+  return found.empty() ? layers_named(wanted, role, groups, true) : found;
 }
 
 }  // namespace ssdo

@@ -27,7 +27,7 @@ std::vector<Candidate> best_candidates(Role role, const std::vector<LayerGroup>&
 std::string name_for_request(const LayerGroup& group);
 
 /// The layers whose name is `wanted`: exactly, else with the case ignored. Channels without a layer
-/// are "rgba".
+/// are "rgba". Products of an earlier run of ssdo are named last.
 std::vector<Layer> layers_named(const std::string& wanted, Role role,
                                 const std::vector<LayerGroup>& groups);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "io/exr/kept_channels.h"
 #include "scene/layers/names.h"
 
 namespace ssdo {
@@ -84,13 +85,20 @@ std::vector<LayerGroup> group_channels(const ExrReader& file, int file_index) {
   std::vector<LayerGroup> groups;
   for (const ExrPart& part : file.parts()) {
     if (part.deep) continue;
-    std::map<std::string, LayerGroup> by_layer;
+    const EarlierProducts earlier = earlier_products(part);
+    std::map<std::pair<std::string, bool>, LayerGroup> by_layer;
+    const auto add = [&](const std::string& name, const ExrChannel& channel, bool by_earlier_run) {
+      const auto [layer, component] = split_channel(name);
+      const auto [group, is_new] = by_layer.try_emplace({layer, by_earlier_run});
+      if (is_new) group->second = make_group(part, layer, views);
+      group->second.by_earlier_run = by_earlier_run;
+      group->second.components[lower(component)] = channel;
+    };
     for (const ExrChannel& channel : part.channels) {
       if (channel.x_sampling != 1 || channel.y_sampling != 1) continue;
-      const auto [layer, component] = split_channel(channel.name);
-      const auto [group, is_new] = by_layer.try_emplace(layer);
-      if (is_new) group->second = make_group(part, layer, views);
-      group->second.components[lower(component)] = channel;
+      add(channel.name, channel, earlier.contains(channel.name));
+      for (const auto& [name, moved] : earlier)
+        if (moved == channel.name) add(name, channel, false);
     }
     for (auto& [layer, group] : by_layer) {
       group.file = file_index;

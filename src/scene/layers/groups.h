@@ -21,12 +21,13 @@ std::pair<std::string, std::string> split_channel(const std::string& channel);
 /// The channels of a flat part that share a layer.
 struct LayerGroup {
   int file = 0, part = 0;
-  std::string name;       ///< part and layer as the file spells them, for messages and --aov
-  std::string layer;      ///< in the names of the channels
-  std::string view;       ///< "left", or empty
-  std::string path;       ///< name without the view
-  std::string own_path;   ///< layer without the view
-  bool only_part = true;  ///< of its file
+  std::string name;             ///< part and layer as the file spells them, for messages and --aov
+  std::string layer;            ///< in the names of the channels
+  std::string view;             ///< "left", or empty
+  std::string path;             ///< name without the view
+  std::string own_path;         ///< layer without the view
+  bool only_part = true;        ///< of its file
+  bool by_earlier_run = false;  ///< of ssdo, a product: no part of the render
   std::map<std::string, ExrChannel> components;  ///< by component in lower case
 
   const ExrChannel* find(std::string_view component) const {
@@ -39,6 +40,9 @@ struct LayerGroup {
 /// part's attribute `view`; else a word at the start or end of the part's name ("P.left",
 /// "P_main") or of the layer ("P.left.X", "left.P.X") that is left, right, main or a view of the
 /// file; else, in a part with the attribute `multiView`, the first view of that.
+///
+/// In an output of ssdo, channels that gave way to its products form the layers that they were
+/// before ("input.R" is the R of the file without a layer), and "input" as well.
 std::vector<LayerGroup> group_channels(const ExrReader& file, int file_index);
 
 /// Those of a view and those of none; all where `view` is empty or the file does not tell views
