@@ -50,6 +50,46 @@ void check_crop(const ExrOutput& output, const ExrPart& part,
 constexpr std::array<std::string_view, 4> kStorage = {"tiles", "chunkCount", "version",
                                                       "maxSamplesPerPixel"};
 
+/// Takes out what a header says of Cryptomattes and ids where no part of the output has their
+/// channels: those of a part with planes go without `keep_channels`, and those of deep ones anyway.
+void take_out_mattes(Imf::Header& header, const ExrOutput& output) {
+  if (output.keep_channels && !part_of(output).deep) return;
+  const auto is_kept = [&](const std::string& matte) {
+    const auto shows = [&](const ExrPart& part) {
+      return part.index != output.part &&
+             std::ranges::any_of(part.channels, [&](const ExrChannel& channel) {
+               return channel.name.starts_with(matte) ||
+                      (part.name + "." + channel.name).starts_with(matte);
+             });
+    };
+    return output.keep_channels && !matte.empty() &&
+           std::ranges::any_of(output.input->parts(), shows);
+  };
+  static constexpr std::string_view kFolder = "cryptomatte/";
+  std::vector<std::string> lost = {"idManifest"};
+  for (auto it = header.begin(); it != header.end(); ++it) {
+    const std::string name = it.name();
+    const auto folder = name.find(kFolder);
+    if (folder == name.npos) continue;
+    const auto id_end = name.find('/', folder + kFolder.size());
+    if (!is_kept(string_attribute(header, name.substr(0, id_end) + "/name"))) lost.push_back(name);
+  }
+  for (const std::string& name : lost) take_out(header, name);
+}
+
+/// The preview of an input is that of an output that shows the same picture.
+void take_out_preview(Imf::Header& header, const ExrOutput& output,
+                      const std::vector<KeptChannel>& kept) {
+  const ExrPart& part = part_of(output);
+  const bool has_all = kept.size() == part.channels.size() &&
+                       std::ranges::all_of(kept, [](const KeptChannel& channel) {
+                         return channel.name == channel.stored.channel.name;
+                       });
+  const bool makes_colors =
+      std::ranges::find(output.planes, "R", &ExrPlane::name) != output.planes.end();
+  if (!has_all || makes_colors) take_out(header, "preview");
+}
+
 /// The header of a part whose pixels are written anew, in scanlines.
 Imf::Header scanline_header(const ExrOutput& output, const ExrPart& part) {
   Imf::Header header;
@@ -59,6 +99,7 @@ Imf::Header scanline_header(const ExrOutput& output, const ExrPart& part) {
   header.setType(Imf::SCANLINEIMAGE);
   header.lineOrder() = Imf::INCREASING_Y;
   const Window window = written_window(output, part);
+  if (window != output.downsampling.small(part.data_window)) take_out(header, "preview");
   const Window display = output.downsampling.small(part.display_window);
   header.dataWindow() = {{window.x0, window.y0}, {window.x1 - 1, window.y1 - 1}};
   header.displayWindow() = {{display.x0, display.y0}, {display.x1 - 1, display.y1 - 1}};
@@ -100,6 +141,8 @@ Imf::Header header_for(const ExrOutput& output, const std::vector<KeptChannel>& 
   for (const ExrPlane& plane : output.planes) {
     header.channels().insert(plane.name, Imf::Channel(plane.type));
   }
+  take_out_mattes(header, output);
+  take_out_preview(header, output, kept);
   take_out(header, std::string(kEarlierProducts));
   if (output.keep_channels) {
     header.insert(std::string(kEarlierProducts), Imf::StringAttribute(products_text(output, kept)));

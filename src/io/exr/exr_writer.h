@@ -20,7 +20,9 @@ namespace ssdo {
 ///
 /// Planes go into one part of an input, or into several, such as those of its views. The header of
 /// such a part is kept: windows, pixel aspect, view, chromaticities and every attribute that does
-/// not describe the old file's storage. Without `keep_channels` the file has these parts alone, in
+/// not describe the old file's storage, Cryptomattes that are not in this one, or, as a preview, a
+/// picture that it does not show. A data window may be larger than the input's: kept channels are 0
+/// around it. Without `keep_channels` the file has these parts alone, in
 /// scanlines and flat. With it, their other channels keep type and bits (of a tiled part, its
 /// full-resolution level; those of a deep one are dropped), and the other parts are copied without
 /// being decoded.

@@ -45,18 +45,24 @@ Plane<float> ramp(const Window& window) {
   return plane;
 }
 
-/// Adds the plane "new" to a part of `input` and keeps all else.
-void pass_through(const ExrReader& input, const fs::path& output, Imf::PixelType type = Imf::HALF,
-                  int part = 0) {
+/// Adds the plane `name` to a part of `input`.
+void add_plane(const std::string& name, const ExrReader& input, const fs::path& output,
+               bool keep_channels, Imf::PixelType type = Imf::HALF, int part = 0) {
   const Plane<float> plane = ramp(input.parts()[std::size_t(part)].data_window);
   ExrOutput out;
   out.input = &input;
   out.part = part;
-  out.planes = {{"new", type, &plane}};
-  out.keep_channels = true;
+  out.planes = {{name, type, &plane}};
+  out.keep_channels = keep_channels;
   SafeFile file(output, {.overwrite = true});
   write_exr(file, {out});
   file.commit();
+}
+
+/// Adds the plane "new" to a part of `input` and keeps all else.
+void pass_through(const ExrReader& input, const fs::path& output, Imf::PixelType type = Imf::HALF,
+                  int part = 0) {
+  add_plane("new", input, output, true, type, part);
 }
 
 void expect_same_channels(const ExrReader& before, const ExrReader& after, int part) {
@@ -98,6 +104,48 @@ TEST(PassThrough, KeepsAttributesOfEveryType) {
   EXPECT_EQ(kept.typedAttribute<Imf::StringAttribute>(std::string(200, 'n')).value(),
             "a long name");
   EXPECT_EQ(Imf::multiView(kept), (Imf::StringVector{"left", "right"}));
+}
+
+TEST(PassThrough, DropsAttributesOfWhatIsNotInTheOutput) {
+  const TempDir dir;
+  Imf::Header header =
+      test_header(Box2i({0, 0}, {7, 7}), {{"R", Imf::HALF}, {"object00.R"}, {"object00.G"}});
+  const Imf::PreviewRgba green(1, 200, 3, 255);
+  header.setPreviewImage(Imf::PreviewImage(1, 1, &green));
+  const std::string matte = "cryptomatte/0a1b2c3/";
+  header.insert(matte + "name", Imf::StringAttribute("object"));
+  header.insert(matte + "manifest", Imf::StringAttribute("{}"));
+  write_test_exr(dir / "in.exr", {header});
+  const auto has = [&](const std::string& plane, bool keep_channels, const std::string& name) {
+    add_plane(plane, ExrReader(dir / "in.exr"), dir / "out.exr", keep_channels);
+    const ExrReader out(dir / "out.exr");
+    return out.parts()[0].header.find(name) != out.parts()[0].header.end();
+  };
+  for (const std::string& name : {matte + "name", matte + "manifest"}) {
+    EXPECT_TRUE(has("R", true, name)) << name;
+    EXPECT_FALSE(has("R", false, name)) << name;
+  }
+  EXPECT_TRUE(has("new", true, "preview"));
+  EXPECT_FALSE(has("new", false, "preview")) << "the picture is not in the output";
+  EXPECT_FALSE(has("R", true, "preview")) << "another picture has its place";
+}
+
+/// The matte of a deep part goes where flat planes take the place of its samples, while that of
+/// another part stays.
+TEST(PassThrough, DropsAttributesOfDeepMattes) {
+  const TempDir dir;
+  Imf::Header deep = named(test_header(Box2i({0, 0}, {7, 7}), {{"Z"}, {"deep00.R"}}), "deep"),
+              flat = named(test_header(Box2i({0, 0}, {7, 7}), {{"R"}}), "flat");
+  deep.setType(Imf::DEEPSCANLINE);
+  deep.compression() = Imf::ZIPS_COMPRESSION;
+  deep.insert("cryptomatte/1/name", Imf::StringAttribute("deep"));
+  deep.insert("cryptomatte/2/name", Imf::StringAttribute("flat"));
+  write_test_exr(dir / "in.exr", {deep, flat});
+  pass_through(ExrReader(dir / "in.exr"), dir / "out.exr");
+  const ExrReader out(dir / "out.exr");
+  const Imf::Header& written = out.parts()[0].header;
+  EXPECT_EQ(written.find("cryptomatte/1/name"), written.end());
+  EXPECT_NE(written.find("cryptomatte/2/name"), written.end());
 }
 
 TEST(PassThrough, AddsNoAttributeOfItsOwn) {
