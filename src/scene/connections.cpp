@@ -19,12 +19,14 @@ namespace ssdo::HWY_NAMESPACE {
 /// on_one_surface().
 HWY_INLINE M are_connected(const Surfels& a, const Surfels& b, const PixelFootprint& footprint) {
   const V3 step = b.position - a.position;
-  const V gap = hn::Max(hn::Abs(dot(step, a.normal)), hn::Abs(dot(step, b.normal)));
+  const V of_a = dot(step, a.normal), of_b = dot(step, b.normal),
+          gap = hn::Max(hn::Abs(of_a), hn::Abs(of_b)), above = hn::Max(of_a, hn::Neg(of_b));
   // A footprint is a multiple of the depth, or the same everywhere.
   const V nearer = hn::Neg(hn::Max(a.position.z, b.position.z));
   const float at_zero = footprint.at(0), per_depth = footprint.at(1) - at_zero;
-  const V most = set(kSurfaceGap) * hn::MulAdd(nearer, set(per_depth), set(at_zero));
-  return hn::And(hn::And(a.surface, b.surface), gap <= most);
+  const V width = hn::MulAdd(nearer, set(per_depth), set(at_zero));
+  const M ridge = hn::And(gap <= set(kRidgeGap) * width, above <= set(kAboveRidge) * width);
+  return hn::And(hn::And(a.surface, b.surface), hn::Or(gap <= set(kSurfaceGap) * width, ridge));
 }
 
 void connect_row(const Geometry& geometry, int y, Plane<unsigned char>& out) {

@@ -26,13 +26,19 @@ struct SurfacePoint {
 /// little.
 constexpr float kSurfaceGap = 4;
 
+/// The same across a ridge, whose one side may be seen at an angle of 4 degrees; and most that one
+/// neighbour is above the plane of the other there, which is 0 where normals are those of the step.
+constexpr float kRidgeGap = 16, kAboveRidge = 0.05f;
+
 /// Whether what two neighbouring pixels show belongs to one surface; `footprint` is that of the
-/// nearer one.
+/// nearer one. A ridge joins two sides however steep one of them is: there each of the points lies
+/// below the other's tangent plane, or on it, which a thing before something else never does.
 inline bool on_one_surface(const SurfacePoint& a, const SurfacePoint& b, float footprint) {
   const glm::vec3 step = b.position - a.position;
-  const float gap =
-      std::max(std::abs(glm::dot(step, a.normal)), std::abs(glm::dot(step, b.normal)));
-  return gap <= kSurfaceGap * footprint;
+  const float of_a = glm::dot(step, a.normal), of_b = glm::dot(step, b.normal);
+  const float gap = std::max(std::abs(of_a), std::abs(of_b)), above = std::max(of_a, -of_b);
+  return gap <= kSurfaceGap * footprint ||
+         (gap <= kRidgeGap * footprint && above <= kAboveRidge * footprint);
 }
 inline bool on_one_surface(const SurfacePoint& a, const SurfacePoint& b,
                            const PixelFootprint& footprint) {

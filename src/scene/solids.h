@@ -125,6 +125,9 @@ glm::vec3 normal_of_solid(const Geometry& geometry, const Solids& solids, int la
 /// Depth that a thing is guessed to have, over the width that the frame shows.
 inline constexpr float kDepthOfWidth = 0.85f;
 
+/// Lines to both sides of a pixel over which the width of what it shows is averaged.
+inline constexpr int kWidthReach = 16;
+
 /// A smaller picture of the frame that a geometry is some rows of, one pixel of every
 /// kOverviewStride x kOverviewStride, and what it suggests of how thick things are.
 struct SolidsOfOverview {
@@ -132,8 +135,8 @@ struct SolidsOfOverview {
   const Plane<float>& thickness;
 };
 
-/// What a frame alone suggests: how thick things are, and a second layer; see solids.cpp. Of some
-/// rows of a frame, an overview tells of the things that they cut.
+/// What a frame alone suggests: how thick things are, and a second layer; see solids.cpp.
+/// Of some rows of a frame, an overview tells of the things that they cut.
 Solids guess_solids(const Geometry& geometry,
                     const std::optional<SolidsOfOverview>& overview = std::nullopt);
 

@@ -47,5 +47,24 @@ TEST(Connections, AreThoseOfTheRule) {
   }
 }
 
+TEST(Connections, ARidgeJoinsASideThatIsSeenEdgeOn) {
+  // A pixel of the side is as deep as 12 of the front are wide.
+  const Surface box = Box{{-1, -2, -2}, {0, 0, 2}}.surface();
+  const Geometry g = geometry_of(box,
+                                 look_at(camera_from_ortho_width(0.83, kWindow, 1), {0.253, -3, 0},
+                                         {0.003, 0, 0}, {0.05, 0, 1}),
+                                 kWindow);
+  const Plane<unsigned char> connections = find_connections(g);
+  int ridges = 0;
+  for (int y = 0; y < kWindow.height(); ++y) {
+    for (int x = 0; x + 1 < kWindow.width(); ++x) {
+      if (!g.surfel(x + 1, y).is_surface()) continue;
+      EXPECT_TRUE(connections(x, y) & 1) << x << " " << y;
+      ridges += g.surfel(x, y).normal != g.surfel(x + 1, y).normal;
+    }
+  }
+  EXPECT_EQ(ridges, kWindow.height());
+}
+
 }  // namespace
 }  // namespace ssdo::test

@@ -4,11 +4,15 @@
 // behind.
 #include "scene/solids.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec2.hpp>
 #include <stdexcept>
 
 #include "math/pixel_grid.h"
@@ -16,6 +20,7 @@
 #include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
 #include "support/analytic_scene.h"
+#include "support/boxes.h"
 
 namespace ssdo::test {
 namespace {
@@ -39,6 +44,10 @@ Surface card(double x0, double a, double b) {
 Surface leaning_wall() {
   const double t = 0.349;
   return plane({0, 0, -1.3}, {std::sin(t), 0, std::cos(t)});
+}
+
+glm::dvec3 world(const Geometry& g, int x, int y) {
+  return glm::transpose(g.camera.rotation) * glm::dvec3(g.surfel(x, y).position) + g.camera.origin;
 }
 
 bool shows_card(const Geometry& g, std::size_t i) {
@@ -126,53 +135,130 @@ TEST(Solids, BehindACardAreTheTangentPlaneThatReachesIt) {
   }
 }
 
-/// What the runs through one pixel say, run by run and end by end, each looked for anew.
-struct PlainGuess {
-  float thickness = INFINITY, distance = INFINITY;
+/// The run of a direction through one pixel, end by end.
+struct PlainRun {
+  glm::ivec2 first{0}, last{0};
+  int unknown_ends = 0;
+  float depth = INFINITY;
+
+  int pixels() const {
+    return 1 + std::max(std::abs(last.x - first.x), std::abs(last.y - first.y));
+  }
+  glm::ivec2 middle(const glm::ivec2& step) const { return first + pixels() / 2 * step; }
+};
+
+/// What the runs through one pixel say, each looked for anew.
+class PlainGuess {
+ public:
+  PlainGuess(const Geometry& g, const Plane<unsigned char>& connections)
+      : g_(g), connections_(connections), footprint_(g.camera) {
+    for (std::size_t k = 0; k < kDirections.size(); ++k) {
+      runs_[k] = Plane<PlainRun>(g.surfel.width, g.surfel.height);
+      for (int y = 0; y < g.surfel.height; ++y)
+        for (int x = 0; x < g.surfel.width; ++x)
+          if (at({x, y})) runs_[k](x, y) = find_run({x, y}, k);
+    }
+  }
+
+  static glm::ivec2 step(std::size_t k) { return {kDirections[k].dx, kDirections[k].dy}; }
+
+  const Surfel* at(const glm::ivec2& p) const { return surface_at(g_.surfel, p.x, p.y); }
+
+  bool joined(const glm::ivec2& from, std::size_t k) const {
+    return at(from) && connections_(from.x, from.y) >> k & 1;
+  }
+
+  const PlainRun& run(const glm::ivec2& p, std::size_t k) const { return runs_[k](p.x, p.y); }
+
+  PlainRun find_run(const glm::ivec2& p, std::size_t k) const {
+    PlainRun run{p, p};
+    while (joined(run.first - step(k), k)) run.first -= step(k);
+    while (joined(run.last, k)) run.last += step(k);
+    const Surfel &a = *at(run.first), &b = *at(run.last);
+    run.unknown_ends = goes_on(run.first - step(k), a) + goes_on(run.last + step(k), b);
+    if (run.unknown_ends == 2) return run;
+    const float width =
+        glm::distance(a.position, b.position) +
+        0.5f * step_px(k) * (footprint_.at(-a.position.z) + footprint_.at(-b.position.z));
+    run.depth = kDepthOfWidth * width * (run.unknown_ends == 1 ? 3.0f : 1.0f);
+    return run;
+  }
+
+  static float step_px(std::size_t k) { return k < 2 ? 1 : 1.41421356f; }
+
+  float thickness(const glm::ivec2& p) const {
+    float least = INFINITY;
+    for (std::size_t k = 0; k < kDirections.size(); ++k) least = std::min(least, mean_depth(p, k));
+    return least;
+  }
+
+ private:
+  /// Whether the surface of an end of a run may go on to a pixel that is not of it.
+  bool goes_on(const glm::ivec2& to, const Surfel& end) const {
+    const bool outside =
+        to.x < 0 || to.y < 0 || to.x >= g_.surfel.width || to.y >= g_.surfel.height;
+    return outside || (at(to) && at(to)->position.z > end.position.z);
+  }
+
+  float mean_depth(const glm::ivec2& p, std::size_t k) const {
+    const PlainRun& own = run(p, k);
+    const bool whole = own.unknown_ends == 0;
+    const int reach = (whole ? 1 : 4) * kWidthReach;
+    double weights = whole ? 1 : 0.02, sum = weights / double(own.depth);
+    const std::size_t across = k ^ 1;
+    for (const int side : {-1, 1}) {
+      glm::ivec2 middle = own.middle(step(k));
+      for (int i = 1; i <= reach; ++i) {
+        const glm::ivec2 next = middle + side * step(across);
+        if (!at(next) || !joined(side > 0 ? middle : next, across)) break;
+        const PlainRun& beside = run(next, k);
+        const double more = beside.pixels() - own.pixels(), less = beside.unknown_ends ? 0 : -more;
+        double alike = std::min(1.0, (4 - less) / 3);
+        alike = std::min(alike, whole && !beside.unknown_ends ? (4 - more) / 3
+                                                              : 2 - more / (1.5 * own.pixels()));
+        if (alike <= 0) break;
+        middle = beside.middle(step(k));
+        if (beside.unknown_ends) continue;
+        const double weight = alike * (1 - i / (reach + 1.0));
+        weights += weight, sum += weight / double(beside.depth);
+      }
+    }
+    return float(weights / sum);
+  }
+
+  const Geometry& g_;
+  const Plane<unsigned char>& connections_;
+  PixelFootprint footprint_;
+  std::array<Plane<PlainRun>, kDirections.size()> runs_;
+};
+
+struct Behind {
+  float distance = INFINITY;
   int sender = -1;
 };
 
-PlainGuess plain_guess(const Geometry& g, const Plane<unsigned char>& connections, int x, int y) {
-  const PixelFootprint footprint(g.camera);
-  const Surfel& here = g.surfel(x, y);
-  PlainGuess guess;
+/// The surface that goes on behind a pixel.
+Behind plain_behind(const Geometry& g, const PlainGuess& guess, const glm::ivec2& p) {
+  Behind found;
   float nearest_px = INFINITY;
+  const glm::vec3& front = guess.at(p)->position;
+  const glm::vec3 along = -direction_to_viewer(front, g.camera.orthographic);
   for (std::size_t k = 0; k < kDirections.size(); ++k) {
-    const auto [dx, dy] = kDirections[k];
-    const float step_px = dx != 0 && dy != 0 ? 1.41421356f : 1.0f;
-    const auto at = [&, dx = dx, dy = dy](int i) {
-      return surface_at(g.surfel, x + i * dx, y + i * dy);
-    };
-    const auto joined = [&, dx = dx, dy = dy](int i) {
-      return connections(x + i * dx, y + i * dy) >> k & 1;
-    };
-    int first = 0, last = 0;
-    while (at(first - 1) && joined(first - 1)) --first;
-    while (joined(last)) ++last;
-    int unknown_ends = 0;
-    for (const int beyond : {first - 1, last + 1}) {
-      const int bx = x + beyond * dx, by = y + beyond * dy;
-      const Surfel *end = at(beyond < 0 ? first : last), *other = at(beyond);
-      const bool outside = bx < 0 || by < 0 || bx >= g.surfel.width || by >= g.surfel.height;
-      if (outside || (other && other->position.z > end->position.z)) ++unknown_ends;
-      if (!other || other->position.z > end->position.z) continue;
-      const float away_px = float(beyond < 0 ? -beyond : beyond) * step_px;
-      const glm::vec3 along = -direction_to_viewer(here.position, g.camera.orthographic);
+    const PlainRun& run = guess.run(p, k);
+    for (const bool after : {false, true}) {
+      const glm::ivec2 end = after ? run.last : run.first,
+                       to = end + (after ? 1 : -1) * PlainGuess::step(k), way = glm::abs(to - p);
+      const Surfel* other = guess.at(to);
+      if (!other || other->position.z > guess.at(end)->position.z) continue;
+      const float away_px = float(std::max(way.x, way.y)) * PlainGuess::step_px(k);
       const float distance =
-          glm::dot(other->normal, other->position - here.position) / glm::dot(other->normal, along);
+          glm::dot(other->normal, other->position - front) / glm::dot(other->normal, along);
       if (!(distance > 0 && distance < INFINITY) || away_px >= nearest_px) continue;
       nearest_px = away_px;
-      guess.distance = distance, guess.sender = int(g.surfel.index(bx, by));
+      found = {distance, int(g.surfel.index(to.x, to.y))};
     }
-    if (unknown_ends == 2) continue;
-    const Surfel &a = *at(first), &b = *at(last);
-    const float width =
-        glm::distance(a.position, b.position) +
-        0.5f * step_px * (footprint.at(-a.position.z) + footprint.at(-b.position.z));
-    guess.thickness =
-        std::min(guess.thickness, kDepthOfWidth * (width * (unknown_ends == 1 ? 3.0f : 1.0f)));
   }
-  return guess;
+  return found;
 }
 
 TEST(Solids, AreThoseOfTheRunsThroughEachPixel) {
@@ -185,21 +271,62 @@ TEST(Solids, AreThoseOfTheRunsThroughEachPixel) {
     for (int i = 0; i < 40; ++i) g.surfel(20 + i, 70 + i % 7) = {};  // nothing
     const Solids solids = guess_solids(g);
     const Plane<unsigned char> connections = find_connections(g);
+    const PlainGuess plain(g, connections);
     int behind = 0, thin = 0;
     for (int y = 0; y < window.height(); ++y) {
       for (int x = 0; x < window.width(); ++x) {
         if (!g.surfel(x, y).is_surface()) continue;
-        const PlainGuess expected = plain_guess(g, connections, x, y);
+        const Behind expected = plain_behind(g, plain, {x, y});
+        const float thickness = plain.thickness({x, y});
         const std::size_t i = g.surfel.index(x, y);
-        ASSERT_EQ(solids.thickness[i], expected.thickness) << x << ", " << y;
+        if (thickness < INFINITY)
+          ASSERT_NEAR(solids.thickness[i], thickness, 1e-5f * thickness) << x << ", " << y;
+        else
+          ASSERT_EQ(solids.thickness[i], thickness) << x << ", " << y;
         ASSERT_EQ(solids.at(1, i).distance, expected.distance) << x << ", " << y;
         ASSERT_EQ(solids.at(1, i).sender, expected.sender) << x << ", " << y;
-        behind += expected.sender >= 0, thin += expected.thickness < INFINITY;
+        behind += expected.sender >= 0, thin += thickness < INFINITY;
       }
     }
     EXPECT_GT(behind, 500);
     EXPECT_GT(thin, 500);
   }
+}
+
+/// Two legs of a table, one of which passes by the other at the distance of a pixel: rows that show
+/// ground between them alternate with others. A side of each is seen nearly edge-on.
+TEST(Solids, OfAStraightLegAreOfOneThicknessAlongIt) {
+  const Window window{0, 0, 120, 106};
+  const Box near_leg{{1, -0.6, 0}, {1.1, -0.5, 1}}, far_leg{{1, 0.5, 0}, {1.1, 0.6, 1}};
+  const Surface scene = all_of({plane({}, {0, 0, 1}), near_leg.surface(), far_leg.surface()});
+  const Geometry g = geometry_of(
+      scene,
+      look_at(camera_from_fov(5, window, 1), {1.505, -4.5, 2.2}, {1.05, 0, 0.45}, {0.02, 0, 1}),
+      window);
+  const Solids solids = guess_solids(g);
+  float least = INFINITY, most = 0, before = 0, step = 1;
+  int beside_ground = 0, beside_leg = 0;
+  const int foot = 102;  // from where on the leg and the ground are one surface
+  for (int y = 0; y < foot; ++y) {
+    // The front of the far leg: its first pixel, and the one behind its last.
+    int x = 0;
+    while (x < window.width() && !(std::abs(world(g, x, y).y - 0.5) < 1e-4)) ++x;
+    int last = x;
+    while (last < window.width() && std::abs(world(g, last, y).y - 0.5) < 1e-4) ++last;
+    if (x == 0 || last - x < 10) continue;
+    (world(g, x - 1, y).z < 1e-4 ? beside_ground : beside_leg) += 1;
+    const float thickness = solids.thickness[g.surfel.index((x + last) / 2, y)];
+    least = std::min(least, thickness), most = std::max(most, thickness);
+    if (before > 0) step = std::max({step, thickness / before, before / thickness});
+    before = thickness;
+  }
+  fmt::print("{} rows beside the ground, {} beside the leg: {:.4f} to {:.4f} thick\n",
+             beside_ground, beside_leg, least, most);
+  EXPECT_GT(beside_ground, 10);
+  EXPECT_GT(beside_leg, 10);
+  EXPECT_LT(step, 1.05) << "from a row to the next";
+  EXPECT_GT(least, 0.09);
+  EXPECT_LT(most, 0.12);
 }
 
 /// Two cards, of which some rows of the frame cut one: the overview knows how tall that is.
