@@ -30,11 +30,11 @@
 //   a gentle curve would show the sectors as bands.
 // - direct is a ratio to the exact unoccluded irradiance E(N), the ratio estimator of Heitz, Hill
 //   and McGuire (2018, Combining Analytic Direct Illumination and Stochastic Shadows): the noise
-//   of a few directions cancels. L is taken in spherical harmonics, of the environment without its suns; each sun is a
-//   direction of its own, tested along the slice that holds it (bitmask/rays/sun.cpp). So is what
-//   facets mirror (bitmask/rays/reflection.cpp).
+//   of a few directions cancels. L is taken in spherical harmonics, of the environment without its
+//   suns; each sun is a direction of its own, tested along the slice that holds it
+//   (bitmask/rays/sun.cpp). So is what facets mirror (bitmask/rays/reflection.cpp).
 // - bounce takes the radiance of the first surface in each sector; no 1/d^2, so no singularity
-//   (bitmask/bounce.cpp, and bitmask/senders.cpp for what is sent).
+//   (bitmask/bounce.cpp, bitmask/senders.cpp). Rays go to bright senders (bitmask/rays/emitters.h).
 // - A sampled pixel represents the stretch of the march up to halfway to the samples before and
 //   after it (bitmask/piece-inl.h). Treated as points, few samples miss too much: 16 steps that
 //   represent their stretches are nearer to the limit than 24 points.
@@ -47,13 +47,12 @@
 #include "estimators/bitmask.h"
 
 #include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
 #include <memory>
 #include <utility>
 
 #include "estimators/bitmask/basis_weights.h"
 #include "estimators/bitmask/beyond.h"
+#include "estimators/bitmask/border_light.h"
 #include "estimators/bitmask/march.h"
 #include "estimators/bitmask/parts.h"
 #include "estimators/bitmask/patterns.h"
@@ -296,17 +295,14 @@ class Bitmask {
       // What is lit reaches as far as the bounces that follow.
       const Window lit_part = with_senders(march_scene_.receivers, request_.bounces - pass + 1);
       InterleavedVectors light = sent_light(lit_part, pass > 1 ? &bounce : nullptr, two_sided);
-      BorderValues sent_border[3];
-      for (int c = 0; c < 3; ++c) {
-        sent_border[c] = march_scene_.border.gather([&](int x, int y) {
-          const float both = light[std::size_t(c)][layout_.index(x, y)];
-          return two_sided ? first_of_two(both) : both;
-        });
-      }
-      if (kept_light_in_) {
-        kept_light_.push_back({raster_.in_whole_rows(light, *kept_light_in_),
-                               {sent_border[0], sent_border[1], sent_border[2]}});
-      }
+      const FarLight* far_light = overview ? &overview->light[std::size_t(pass - 1)] : nullptr;
+      const Emitters emitters =
+          find_emitters({march_scene_, light, two_sided, lit_part, far_, far_light}, request_.seed);
+      const std::array<BorderValues, 3> sent_border =
+          light_beyond(march_scene_, light, two_sided, emitters.level);
+      if (kept_light_in_)
+        kept_light_.push_back(
+            {raster_.in_whole_rows(light, *kept_light_in_), sent_border, emitters.mean_sent});
       const bool wants_error = request_.products.error && pass == request_.bounces;
       GatheredLight gathered(bounce_march_, wants_error);
       const BounceJob job{bounce_march_,
@@ -314,11 +310,12 @@ class Bitmask {
                           &light,
                           two_sided,
                           scene_.solids,
-                          sent_border,
+                          sent_border.data(),
                           further_ ? &sent_further[std::size_t(pass - 1)] : nullptr,
                           lit_part,
                           overview,
-                          overview ? &overview->light[std::size_t(pass - 1)] : nullptr,
+                          far_light,
+                          emitters.points.empty() ? nullptr : &emitters,
                           &gathered,
                           wants_error ? &bounce_error_ : nullptr};
       // Light gathered in the last pass is not sent on: only receivers need it.
@@ -329,6 +326,14 @@ class Bitmask {
           grown(layout_, to, bounce_pattern_.spacing() - 1),
           [&](const Window& part) { march_bounce(job, part); }, progress_);
       for_each_band_of(to, [&](const Window& part) { spread_bounce(job, part); }, {});
+      if (job.emitters) {
+        const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
+        InterleavedVectors emitted = raster_.black();
+        const EmittedJob rays{bounce_march_, bounds, emitters, rays_to_sun(request_.slices),
+                              request_.seed, &light, &emitted, job.error};
+        for_each_tall_part_of(layout_, to, [&](const Window& w) { gather_emitted(rays, w); }, {});
+        if (pass == request_.bounces) out_.shares.emitted = raster_.picture(std::move(emitted));
+      }
       bounce = std::move(light);
     }
     return bounce;

@@ -41,6 +41,9 @@ struct LightShares {
   std::vector<ShadowDraw> draws;   ///< of each sun; empty where the shares are means of many rays
   std::vector<Plane<float>> suns_again;  ///< `suns` by rays to other points of them, for the error
   std::vector<ShadowDraw> draws_again;   ///< theirs; both are empty where no error is wanted
+  /// The part of `bounce` that small bright senders give, which ao does not bound: filters average
+  /// it apart. Empty: there is none.
+  Plane<glm::vec3> emitted;
   bool are_ao = false;  ///< light comes from everywhere alike, and ao is its share; no planes then
 };
 
@@ -185,8 +188,9 @@ void for_each_plane(const Visit& visit, All&... all) {
   }
 }
 
-/// Calls visit(plane of each of `all`) for what `direct` is made of: the sky's share, then each
-/// sun's, then those by other points; some planes may be empty. `all` have as many as the first.
+/// Calls visit(plane of each of `all`) for what light is made of: the sky's share, then each sun's,
+/// then those by other points, then what is emitted; some planes may be empty. `all` have as many
+/// as the first.
 template <class Visit, class First, class... Others>
 void for_each_share(const Visit& visit, First& first, Others&... others) {
   visit(first.shares.sky, others.shares.sky...);
@@ -194,6 +198,7 @@ void for_each_share(const Visit& visit, First& first, Others&... others) {
     visit(first.shares.suns[i], others.shares.suns[i]...);
   for (std::size_t i = 0; i < first.shares.suns_again.size(); ++i)
     visit(first.shares.suns_again[i], others.shares.suns_again[i]...);
+  visit(first.shares.emitted, others.shares.emitted...);
 }
 
 }  // namespace ssdo

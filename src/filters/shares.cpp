@@ -18,6 +18,9 @@
 // view axis. The rotation that takes N there by the shortest way is smooth over all normals that
 // the camera sees.
 //
+// Of the bounce, what small bright senders give is not held to ao (filters/geometry_filter.cpp):
+// few slices may have missed them. It is averaged apart.
+//
 // Where the share of all light is ao, there is nothing to be filtered but ao.
 //
 // ao is averaged as it is. What of ao is open by the normal alone would be divided out in
@@ -146,6 +149,12 @@ HWY_EXPORT(light_of_row);
 
 namespace {
 
+/// Adds what is emitted to the bounce `times` times.
+void add_emitted(Products& products, float times) {
+  const Plane<glm::vec3>& emitted = products.shares.emitted;
+  for (std::size_t i = 0; i < emitted.size(); ++i) products.bounce[i] += times * emitted[i];
+}
+
 Products without_shares(Products products) {
   products.shares = {};
   return products;
@@ -161,6 +170,7 @@ Products filter_shares(const Filter& filter, Products noisy, const Scene& scene,
 }
 
 Products to_shares(Products products, const Scene& scene) {
+  add_emitted(products, -1);
   if (!products.shares.sky.empty() || products.shares.are_ao) products.direct = {};
   if (products.direct.empty() && products.bent.empty()) return products;
   for_each_row(scene.geometry.surfel.height, [&](int y) {
@@ -170,6 +180,7 @@ Products to_shares(Products products, const Scene& scene) {
 }
 
 Products from_shares(Products products, const Scene& scene) {
+  add_emitted(products, 1);
   // The light of the sky's share takes its place.
   if (products.shares.are_ao) products.direct = Plane<glm::vec3>::like(scene.geometry.surfel);
   if (!products.direct.empty() || !products.shares.sky.empty() || !products.bent.empty()) {

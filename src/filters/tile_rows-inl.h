@@ -78,8 +78,12 @@ inline std::vector<Part> parts_of(const Products& noisy, Products& out) {
       },
       noisy, out);
   // Several passes are one mean: shares are clamped after the last (shares.cpp).
-  for_each_share([&](const auto& from, auto& to) { add(from, to, Finish::none, true); }, noisy,
-                 out);
+  for_each_share(
+      [&](const auto& from, auto& to) {
+        const bool emitted = static_cast<const void*>(&from) == &noisy.shares.emitted;
+        add(from, to, Finish::none, !emitted);
+      },
+      noisy, out);
   return parts;
 }
 

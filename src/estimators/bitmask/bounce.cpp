@@ -9,6 +9,8 @@
 #define HWY_TARGET_INCLUDE "estimators/bitmask/bounce.cpp"
 #include <hwy/foreach_target.h>
 
+#include <glm/gtc/constants.hpp>
+
 #include "estimators/bitmask/moments-inl.h"
 #include "estimators/bitmask/side-inl.h"
 
@@ -47,6 +49,38 @@ HWY_INLINE M faces(const MarchPlanes& planes, std::ptrdiff_t q, const SliceStep&
                    const MarchReceiver& p) {
   const V p_depth = set(0) - p.position.z, nearer = nearer_over(planes, q, step);
   return load(planes.depth(), q) > p_depth - (kOrthographic ? nearer : p_depth * nearer);
+}
+
+/// The pixels at index `q` that a march meets, a step away from the receivers.
+struct MetPixels {
+  const MarchPlanes& planes;
+  std::ptrdiff_t q;
+  const SliceStep& step;
+};
+
+/// What the march gathers of the light that pixels send: all but what rays do (rays/emitters.h).
+/// `seen`: they turn the side to the receivers that the camera sees.
+template <bool kOrthographic>
+HWY_INLINE V3 without_emitted(const BounceJob& job, const MarchReceiver& p, const MetPixels& met,
+                              M seen, const V3& sent) {
+  const MarchScene& scene = job.march.scene;
+  const V light = luminance(sent), above = light - set(job.emitters->level);
+  // An endless solid has no back that rays go to.
+  const V thickness = load(met.planes.layers.front().thickness, met.q);
+  const M ends = thickness < set(kOrthographic ? kEndlessLength : kEndlessShare),
+          exceeds = hn::And(above > set(0), hn::Or(seen, ends));
+  if (!any(exceeds)) return sent;
+  const float dx = met.step.dx, dy = met.step.dy;
+  const V depth = load(met.planes.depth(), met.q);
+  V3 there{p.slope_x + set(dx / scene.fx), p.slope_y - set(dy / scene.fy), set(-1)};
+  if constexpr (kOrthographic)
+    there.z = hn::Neg(depth);
+  else
+    there = there * depth;
+  const V3 way = there - p.position;
+  const V far = dot(way, way) * set(glm::pi<float>()) * above;
+  const V by_rays = above * far / (far + set(job.emitters->power));
+  return sent * hn::IfThenElse(exceeds, set(1) - by_rays / light, set(1));
 }
 
 /// The pixels of the overview that stand for pixels of the raster.
@@ -164,23 +198,26 @@ void gather_light(const BounceJob& job, const Window& part) {
             };
             march_side<kOrthographic>(
                 march, p, side, slice, forward,
-                [&](bool far, int layer, std::ptrdiff_t q, const SliceStep& step, VU bits)
-                    HWY_ATTR {
-                      receive(bits, [&]() HWY_ATTR {
-                        if (layer > 0) return sent_behind(job, far, layer, p.place, step, bits);
-                        const InterleavedVectors& sending = far ? job.far->sent : *job.light;
-                        for (const InterleavedPlane& channel : sending) prefetch_next(channel, q);
-                        const V3 sent = load(sending, q);
-                        if (!job.two_sided) return sent;
-                        const MarchPlanes& planes = far ? march.far->planes : march.scene;
-                        const M seen = faces<kOrthographic>(planes, q, step, p);
-                        return if_then_else(seen, front_of(sent), back_of(sent));
-                      });
-                    },
+                [&](bool far, int layer, std::ptrdiff_t q, const SliceStep& step,
+                    VU bits) HWY_ATTR {
+                  receive(bits, [&]() HWY_ATTR {
+                    if (layer > 0) return sent_behind(job, far, layer, p.place, step, bits);
+                    const InterleavedVectors& sending = far ? job.far->sent : *job.light;
+                    for (const InterleavedPlane& channel : sending) prefetch_next(channel, q);
+                    const V3 sent = load(sending, q);
+                    if (!job.two_sided && !job.emitters) return sent;
+                    const MarchPlanes& planes = far ? march.far->planes : march.scene;
+                    const M seen = faces<kOrthographic>(planes, q, step, p);
+                    const V3 light =
+                        job.two_sided ? if_then_else(seen, front_of(sent), back_of(sent)) : sent;
+                    if (!job.emitters) return light;
+                    return without_emitted<kOrthographic>(job, p, {planes, q, step}, seen, light);
+                  });
+                },
                 FromFurther<decltype(receive)>{job.sent_further, receive},
                 [&](bool far, const Border& border, VU bits) HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {
-                    const BorderValues* sent = far ? job.far->border : job.sent_border;
+                    const BorderValues* sent = far ? job.far->border.data() : job.sent_border;
                     return V3{border(sent[0]), border(sent[1]), border(sent[2])};
                   });
                 });

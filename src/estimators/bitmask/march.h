@@ -8,6 +8,7 @@
 #include "estimators/bitmask/beyond.h"
 #include "estimators/bitmask/march_scene.h"
 #include "estimators/bitmask/rays/depth_bounds.h"
+#include "estimators/bitmask/rays/emitters.h"
 #include "estimators/bitmask/rays/ray_pattern.h"
 #include "estimators/bitmask/slice_pattern.h"
 #include "estimators/further/further_light.h"
@@ -22,7 +23,8 @@ namespace ssdo {
 /// What an overview sends in one pass of bounces.
 struct FarLight {
   InterleavedVectors sent;  ///< in the order of FarRaster
-  BorderValues border[3];
+  std::array<BorderValues, 3> border;
+  float mean_sent;  ///< as Emitters has it, of the frame
 };
 
 /// All of a frame as an overview shows it, for rasters that are a part of the frame.
@@ -127,10 +129,23 @@ struct BounceJob {
   Window lit;                        ///< the pixels of the raster whose `sent` is known
   const FarScene* overview;          ///< tells that of others; null where all are lit
   const FarLight* far;               ///< what the overview sends
+  const Emitters* emitters;          ///< whose light rays gather; null: there are none
 
   GatheredLight* gathered;
   InterleavedPlane* error;  ///< standard error of the luminance of what arrives, signed; null: not
                             ///< wanted
+};
+
+/// The light of bright senders, which is added to that of the march.
+struct EmittedJob {
+  March march;
+  const std::vector<DepthBounds>& bounds;
+  const Emitters& emitters;
+  int rays;  ///< of each pixel, a power of two
+  unsigned seed;
+  InterleavedVectors* light;    ///< that has arrived so far
+  InterleavedVectors* emitted;  ///< the same alone; null: not wanted
+  InterleavedPlane* error;      ///< as BounceJob has it, to be added to; null: not wanted
 };
 
 /// The direct light of each pixel.
@@ -167,6 +182,8 @@ void march_bounce(const BounceJob& job, const Window& part);
 void spread_bounce(const BounceJob& job, const Window& part);
 void march_sun(const SunJob& job, const Window& part);
 void march_reflection(const ReflectionJob& job, const Window& part);
+/// After spread_bounce of the same pixels. Parts are as for_each_tall_part_of() makes them.
+void gather_emitted(const EmittedJob& job, const Window& part);
 void find_senders(const SenderJob& job, const Window& part);
 void find_direct(const DirectJob& job, const Window& part);
 

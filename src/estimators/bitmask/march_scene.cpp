@@ -32,21 +32,6 @@ struct Span {
   float depth = kNothing, thickness = kNothing;
 };
 
-/// Of the ray through a pixel, or its place where the camera is orthographic.
-glm::vec2 slope_of(const MarchScene& scene, int x, int y) {
-  return {(float(x + scene.first_x) - scene.axis_x) / scene.fx,
-          (scene.axis_y - float(y + scene.first_y)) / scene.fy};
-}
-
-/// Of the tangent plane of layer 0.
-glm::vec3 normal_of(const MarchScene& scene, int x, int y) {
-  const std::ptrdiff_t i = scene.layout.index(x, y);
-  const glm::vec2 tilt = whole_of_two(scene.tilt[i], scene.tilt_rest[i]),
-                  aside = tilt * glm::vec2(-scene.fx, scene.fy),
-                  slope = scene.orthographic ? glm::vec2(0) : slope_of(scene, x, y);
-  return glm::normalize(glm::vec3(aside, 1 + glm::dot(aside, slope)));
-}
-
 /// The cells of a raster.
 class Cells {
  public:
@@ -61,7 +46,7 @@ class Cells {
     Cell cell;
     const Surfel& s = g_.surfel(x, y);
     if (!s.is_usable()) return cell;
-    const glm::vec2 slope = cell.slope = slope_of(scene_, x, y);
+    const glm::vec2 slope = cell.slope = ray_slope(scene_, x, y);
     if (!scene_.orthographic) cell.ray_length = std::sqrt(1 + glm::dot(slope, slope));
     cell.normal = normal;
     cell.depth = depth_on_ray(s, cell.normal, slope, cell.ray_length);
@@ -113,6 +98,19 @@ class Cells {
 };
 
 }  // namespace
+
+glm::vec2 ray_slope(const MarchScene& scene, int x, int y) {
+  return {(float(x + scene.first_x) - scene.axis_x) / scene.fx,
+          (scene.axis_y - float(y + scene.first_y)) / scene.fy};
+}
+
+glm::vec3 tangent_normal(const MarchScene& scene, int x, int y) {
+  const std::ptrdiff_t i = scene.layout.index(x, y);
+  const glm::vec2 tilt = whole_of_two(scene.tilt[i], scene.tilt_rest[i]),
+                  aside = tilt * glm::vec2(-scene.fx, scene.fy),
+                  slope = scene.orthographic ? glm::vec2(0) : ray_slope(scene, x, y);
+  return glm::normalize(glm::vec3(aside, 1 + glm::dot(aside, slope)));
+}
 
 float reach_px(const Geometry& g, float radius) {
   constexpr float kMargin = 1.01f;  // a march puts surfaces onto the middles of their pixels
@@ -194,7 +192,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
       scene.border.gather([&](int x, int y) { return scene.depth()[layout.index(x, y)]; });
   for (int c = 0; c < 3; ++c) {
     scene.border_normal[c] =
-        scene.border.gather([&](int x, int y) { return normal_of(scene, x, y)[c]; });
+        scene.border.gather([&](int x, int y) { return tangent_normal(scene, x, y)[c]; });
   }
   scene.border_thickness = scene.border.gather([&](int x, int y) {
     return std::min(solids.at(0, g.surfel.index(x, y)).thickness, kEndlessLength);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cmath>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "math/two_in_one.h"
@@ -101,6 +103,12 @@ struct MarchScene : MarchPlanes {
   bool shows_surface(std::ptrdiff_t i) const { return holds_solid(depth()[i]); }
   Window raster() const { return {0, 0, layout.width(), layout.height()}; }
 };
+
+/// Slope of the ray through the middle of a pixel, or its place where the camera is orthographic.
+glm::vec2 ray_slope(const MarchScene& scene, int x, int y);
+
+/// The unit normal of the tangent plane of what a pixel shows.
+glm::vec3 tangent_normal(const MarchScene& scene, int x, int y);
 
 /// How far away in the picture something within the radius of any surface may be, in pixels: as
 /// reach_px() of lanes-inl.h for the nearest. Infinite where that is within the radius itself.

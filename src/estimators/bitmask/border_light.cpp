@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/bitmask/border_light.h"
+
+#include "math/luminance.h"
+#include "math/two_in_one.h"
+
+namespace ssdo {
+
+std::array<BorderValues, 3> light_beyond(const MarchScene& scene,
+                                         const InterleavedVectors& radiance, bool two_sided,
+                                         float level) {
+  std::array<BorderValues, 3> beyond;
+  for (std::size_t c = 0; c < 3; ++c) {
+    beyond[c] = scene.border.gather([&](int x, int y) {
+      const float both = radiance[c][scene.layout.index(x, y)];
+      return two_sided ? first_of_two(both) : both;
+    });
+  }
+  for (std::size_t i = 0; i < beyond[0].size(); ++i) {
+    const float light = luminance({beyond[0][i], beyond[1][i], beyond[2][i]});
+    if (!(light > level)) continue;
+    for (BorderValues& channel : beyond) channel[i] *= level / light;
+  }
+  return beyond;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/bitmask/rays/emitters.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+
+#include "estimators/bitmask/march.h"
+#include "math/luminance.h"
+#include "math/sobol.h"
+#include "math/two_in_one.h"
+#include "parallel/tiles.h"
+
+namespace ssdo {
+namespace {
+
+/// How much brighter than its surroundings a sender is that rays go to: a march finds the light of
+/// what is less so with less noise than that of their shadows.
+constexpr float kBright = 4;
+
+constexpr int kMembers = Interleaving::kPeriod * Interleaving::kPeriod;
+constexpr int kTile = 16;  ///< pixels
+
+/// Depth that a body may gain from a pixel to the next, in pixels of its width.
+constexpr float kMostSlope = 8;
+
+/// Growth of u^2 from which on a body is round: at the rim of a ball 200 pixels wide.
+constexpr float kLeastGrowth = 0.02f;
+
+/// Least cosine to the viewer by which the depth of a body is divided: beside its rim a pixel tells
+/// it too roughly.
+constexpr float kLeastOfRound = 0.25f;
+
+/// One side of what a pixel shows: what it sends above the level.
+struct Side {
+  Emitter point;  ///< as if it stood for the pixel alone
+  float light;    ///< luminance of the radiance
+
+  double power() const { return double(light) * double(point.area); }
+};
+
+/// The pixels of a raster that send.
+class Senders {
+ public:
+  Senders(const MarchScene& scene, const InterleavedVectors& radiance, bool two_sided, float level)
+      : scene_(scene), radiance_(radiance), two_sided_(two_sided), level_(level) {}
+
+  /// Calls `visit(side)` for the sides of a pixel that send more than the level. `i` is the index
+  /// of its radiance.
+  template <class Visit>
+  void for_each_side(int x, int y, std::ptrdiff_t i, const Visit& visit) const {
+    const std::ptrdiff_t at = scene_.layout.index(x, y);
+    if (!scene_.shows_surface(at)) return;
+    const glm::vec3 both(radiance_[0][i], radiance_[1][i], radiance_[2][i]);
+    const glm::vec3 front = two_sided_ ? each(first_of_two, both) : both,
+                    back = two_sided_ ? each(second_of_two, both) : both;
+    if (luminance(front) > level_) visit(side(front, x, y, at, false));
+    const float thickness = scene_.layers.front().thickness[at];
+    const bool ends = thickness < (scene_.orthographic ? kEndlessLength : kEndlessShare);
+    if (ends && luminance(back) > level_) visit(side(back, x, y, at, true));
+  }
+
+ private:
+  static glm::vec3 each(float (*of)(float), const glm::vec3& v) {
+    return {of(v.x), of(v.y), of(v.z)};
+  }
+
+  glm::vec3 to_viewer(int x, int y) const {
+    return scene_.orthographic ? glm::vec3(0, 0, 1)
+                               : glm::normalize(glm::vec3(-ray_slope(scene_, x, y), 1));
+  }
+
+  /// How a body curves away from the camera at a pixel.
+  struct Rim {
+    float growth;  ///< of u^2 per pixel towards its inside, u the cosine to the viewer
+    bool is_last;  ///< pixels beside it are not on the body
+  };
+
+  Rim rim(int x, int y, float u2) const {
+    const Interleaving& layout = scene_.layout;
+    const float depth = scene_.depth()[layout.index(x, y)], width = scene_.orthographic ? 1 : depth,
+                most = kMostSlope * width / std::min(scene_.fx, scene_.fy);
+    Rim rim{0, false};
+    const auto more_at = [&](int dx, int dy) {
+      const int qx = x + dx, qy = y + dy;
+      if (qx < 0 || qy < 0 || qx >= layout.width() || qy >= layout.height()) return 0.0f;
+      if (!(std::abs(scene_.depth()[layout.index(qx, qy)] - depth) < most)) {
+        rim.is_last = true;
+        return 0.0f;
+      }
+      const float u = glm::dot(tangent_normal(scene_, qx, qy), to_viewer(qx, qy));
+      return std::max(u * std::abs(u) - u2, 0.0f);
+    };
+    rim.growth = std::hypot(std::max(more_at(-1, 0), more_at(1, 0)),
+                            std::max(more_at(0, -1), more_at(0, 1)));
+    return rim;
+  }
+
+  /// What a pixel shows of a body.
+  struct Patch {
+    float over_cosine;  ///< its area over that of a plane across its ray
+    float width_px;     ///< of the body, in pixels, at its rim; else 0
+  };
+
+  /// The area is the mean of 1 / u, where u^2 changes linearly. On a ball of R pixels u^2 is
+  /// 1 - (d / R)^2, and grows by 2 / R per pixel at the rim. The last pixel has all up to there,
+  /// and of what lies beyond it, which the camera sees less of the nearer it is, r^2 / distance for
+  /// each unit of the rim's length.
+  Patch patch(int x, int y, float u) const {
+    constexpr float kFrontal = 0.8f;  // 1 / u hardly changes within a pixel
+    if (u > kFrontal) return {1 / u, 0};
+    const float u2 = u * u;
+    auto [growth, is_last] = rim(x, y, u2);
+    if ((is_last && growth > kLeastGrowth) || u2 < growth) {
+      growth += 0.5f * growth * growth;  // at the rim, a pixel further out than where it is found
+      const float beyond = scene_.orthographic ? 0 : 4 / (growth * std::min(scene_.fx, scene_.fy));
+      return {(2 * std::sqrt(u2 + 0.5f * growth) + beyond) / growth, 4 / growth};
+    }
+    const float half = 0.5f * growth;
+    return {2 / (std::sqrt(u2 + half) + std::sqrt(std::max(u2 - half, 0.0f))), 0};
+  }
+
+  Side side(const glm::vec3& radiance, int x, int y, std::ptrdiff_t at, bool is_back) const {
+    const float depth = scene_.depth()[at], thickness = scene_.layers.front().thickness[at];
+    const glm::vec3 normal = tangent_normal(scene_, x, y), view = to_viewer(x, y);
+    const float width = scene_.orthographic ? 1 : depth, per_depth = 1 / view.z,
+                u = std::max(glm::dot(normal, view), kLeastFacing);
+    const glm::vec2 slope = ray_slope(scene_, x, y);
+    const glm::vec3 front =
+        scene_.orthographic ? glm::vec3(slope, -depth) : depth * glm::vec3(slope, -1);
+    const Patch shown = patch(x, y, u);
+    const float area = width * width * shown.over_cosine / (per_depth * scene_.fx * scene_.fy),
+                pixel = width * per_depth / std::min(scene_.fx, scene_.fy);
+    const float length = thickness * width * per_depth, light = luminance(radiance);
+    // Through a round body, whose depth is its width times u. Depths are guessed from runs of
+    // pixels, from the middle of the first to that of the last.
+    const float guessed = (length / kDepthOfWidth + 0.5f * pixel) / std::max(u, kLeastOfRound),
+                through = std::max(guessed, shown.width_px * pixel);
+    Side out;
+    out.light = light - level_;
+    out.point.position = is_back ? front - through * normal : front;
+    out.point.normal = is_back ? -normal : normal;
+    out.point.power = out.light / light * area * radiance;
+    out.point.area = area;
+    constexpr float kBeside = 1.5f;  // what hides a point is not the pixel beside it
+    out.point.solid = kBeside * pixel + (is_back ? 0.5f * through : 0);
+    return out;
+  }
+
+  const MarchScene& scene_;
+  const InterleavedVectors& radiance_;
+  bool two_sided_;
+  float level_;
+};
+
+/// Luminance of what pixels show.
+struct Brightness {
+  double roots = 0, surfaces = 0;
+  float most = 0;
+
+  float mean() const {
+    const double root = surfaces > 0 ? roots / surfaces : 0;
+    return float(root * root);
+  }
+};
+
+Brightness brightness_of(const SentLight& sent) {
+  const MarchScene& scene = sent.scene;
+  std::vector<Brightness> rows(std::size_t(sent.lit.height()));
+  for_each_row(sent.lit.height(), [&](int row) {
+    Brightness& b = rows[std::size_t(row)];
+    const int y = sent.lit.y0 + row, width = scene.layout.width();
+    for (int first = 0; first < std::min(Interleaving::kPeriod, width); ++first) {
+      std::ptrdiff_t i = scene.layout.index(first, y);
+      for (int x = first; x < width; x += Interleaving::kPeriod, ++i) {
+        if (!scene.shows_surface(i)) continue;
+        const glm::vec3 both(sent.radiance[0][i], sent.radiance[1][i], sent.radiance[2][i]);
+        float light = 0, most = 0;
+        if (sent.two_sided) {
+          light = luminance({first_of_two(both.x), first_of_two(both.y), first_of_two(both.z)});
+          most = luminance({second_of_two(both.x), second_of_two(both.y), second_of_two(both.z)});
+        } else {
+          light = luminance(both);
+        }
+        b.roots += double(std::sqrt(std::max(light, 0.0f)));
+        b.surfaces += 1;
+        b.most = std::max({b.most, light, most});
+      }
+    }
+  });
+  Brightness all;
+  for (const Brightness& b : rows) {
+    all.roots += b.roots, all.surfaces += b.surfaces;
+    all.most = std::max(all.most, b.most);
+  }
+  return all;
+}
+
+/// The pixels of a raster, tile by tile, in an order that seldom leaps.
+class Tiles {
+ public:
+  explicit Tiles(const Window& window)
+      : window_(window),
+        columns_((window.width() + kTile - 1) / kTile),
+        rows_((window.height() + kTile - 1) / kTile) {}
+
+  std::size_t count() const { return std::size_t(columns_) * std::size_t(rows_); }
+
+  /// Calls `visit(x, y)` for the pixels of a tile.
+  template <class Visit>
+  void for_each_pixel(std::size_t tile, const Visit& visit) const {
+    const int row = int(tile) / columns_, in_row = int(tile) % columns_,
+              column = row % 2 ? columns_ - 1 - in_row : in_row;
+    const int x0 = window_.x0 + column * kTile, x1 = std::min(x0 + kTile, window_.x1),
+              y0 = window_.y0 + row * kTile, y1 = std::min(y0 + kTile, window_.y1);
+    for (int y = y0; y < y1; ++y) {
+      for (int k = 0; k < x1 - x0; ++k) visit((y - y0) % 2 ? x1 - 1 - k : x0 + k, y);
+    }
+  }
+
+ private:
+  Window window_;
+  int columns_, rows_;
+};
+
+/// Some rows of a raster that send light.
+struct Part {
+  Senders senders;
+  Tiles tiles;
+  const Interleaving& layout;
+  const FarRaster* far;  ///< the order of the radiance, if that is not `layout`
+
+  template <class Visit>
+  void for_each_side(std::size_t tile, const Visit& visit) const {
+    tiles.for_each_pixel(tile, [&](int x, int y) {
+      senders.for_each_side(x, y, far ? far->index(x, y) : layout.index(x, y), visit);
+    });
+  }
+};
+
+/// The lit rows of the raster and, where it is a band of a frame, the others as the overview shows
+/// them.
+std::vector<Part> parts_of(const SentLight& sent, float level) {
+  std::vector<Part> parts;
+  const auto add = [&](const MarchScene& scene, const InterleavedVectors& radiance,
+                       const Window& rows, const FarRaster* far) {
+    if (rows.height() > 0)
+      parts.push_back({{scene, radiance, sent.two_sided, level}, Tiles(rows), scene.layout, far});
+  };
+  add(sent.scene, sent.radiance, sent.lit, nullptr);
+  if (!sent.far) return parts;
+  const FarRaster& far = sent.far->raster;
+  const auto far_row = [&](int y) {
+    const int of_frame =
+        (y + sent.scene.first_y + Interleaving::kPeriod / 2) >> Interleaving::kShift;
+    return std::clamp(of_frame - far.first_y, 0, far.height);
+  };
+  const MarchScene& overview = sent.far->scene;
+  add(overview, sent.far_light->sent, {0, 0, far.width, far_row(sent.lit.y0)}, &far);
+  add(overview, sent.far_light->sent, {0, far_row(sent.lit.y1), far.width, far.height}, &far);
+  return parts;
+}
+
+/// Where the k-th of all points belongs.
+class Order {
+ public:
+  explicit Order(unsigned seed) {
+    for (int m = 0; m < kMembers; ++m) {
+      const glm::vec2 u = sobol_point(std::uint32_t(SlicePattern::rank(m)), hash_of(seed, 0, 7));
+      members_[std::size_t(int(u.x * kMembers))] = m;
+    }
+  }
+  std::size_t place(std::size_t k) const {
+    const auto member = std::size_t(members_[k % kMembers]);
+    return member * Emitters::kPoints + k / kMembers;
+  }
+
+ private:
+  std::array<int, kMembers> members_{};
+};
+
+/// Spreads points over the power of everything that sends, which comes tile by tile.
+class Points {
+ public:
+  Points(double power, const Order& order, Emitters& out)
+      : order_(order), each_(power / double(out.points.size())), out_(out) {}
+
+  /// The sides of a tile; `before`: the power of all that come before it.
+  template <class ForEachSide>
+  void add(double before, double power, const ForEachSide& for_each_side) const {
+    auto next = std::size_t(std::max(0.0, std::ceil(before / each_ - 0.5)));
+    const auto end = std::min(
+        out_.points.size(), std::size_t(std::max(0.0, std::ceil((before + power) / each_ - 0.5))));
+    double reached = before;
+    const auto take = [&](const Side& s) {
+      Emitter& point = out_.points[order_.place(next++)];
+      point = s.point;
+      // As much power as every other point has, in the colour of this one.
+      const double times = each_ * kMembers / s.power();
+      point.power *= float(times), point.area *= float(times);
+    };
+    const Side* last = nullptr;
+    Side kept;
+    for_each_side([&](const Side& s) {
+      reached += s.power();
+      kept = s, last = &kept;
+      while (next < end && (double(next) + 0.5) * each_ < reached) take(s);
+    });
+    while (last && next < end) take(*last);  // rounding
+  }
+
+ private:
+  const Order& order_;
+  double each_;
+  Emitters& out_;
+};
+
+}  // namespace
+
+Emitters find_emitters(const SentLight& sent, unsigned seed) {
+  Emitters out;
+  const Brightness b = brightness_of(sent);
+  out.mean_sent = sent.far_light ? sent.far_light->mean_sent : b.mean();
+  out.level = kBright * out.mean_sent;
+  if (b.most <= out.level && !sent.far) return out;
+  const std::vector<Part> parts = parts_of(sent, out.level);
+  std::vector<std::vector<double>> power;
+  double all = 0;
+  for (const Part& part : parts) {
+    std::vector<double>& of_part = power.emplace_back(part.tiles.count());
+    for_each_task(of_part.size(), [&](std::size_t tile) {
+      double sum = 0;
+      part.for_each_side(tile, [&](const Side& s) { sum += s.power(); });
+      of_part[tile] = sum;
+    });
+    for (const double of_tile : of_part) all += of_tile;
+  }
+  if (!(all > 0)) return out;
+  out.points.resize(std::size_t(kMembers * Emitters::kPoints));
+  out.power = float(all / Emitters::kPoints);
+  const Order order(seed);
+  const Points points(all, order, out);
+  double before = 0;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    std::vector<double> starts;
+    for (const double of_tile : power[k]) starts.push_back(before), before += of_tile;
+    for_each_task(starts.size(), [&](std::size_t tile) {
+      if (power[k][tile] > 0) {
+        points.add(starts[tile], power[k][tile],
+                   [&](const auto& visit) { parts[k].for_each_side(tile, visit); });
+      }
+    });
+  }
+  return out;
+}
+
+}  // namespace ssdo

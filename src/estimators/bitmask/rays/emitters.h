@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Small bright senders: what they send that a march of few steps would miss or meet by chance.
+//
+// Of the radiance L that a pixel sends, in luminance, the part above a level that the frame sets is
+// gathered by rays (rays/emitted_light.cpp), the rest by the march (bitmask/bounce.cpp):
+//
+//   level = 4 (mean of sqrt(L) over the frame's surfaces)^2
+//
+// A mean of roots is the level of what is around: a lamp in 1 % of a black frame has a share of
+// 1e-4 in it. Where half of the frame is bright, as a lawn in the sun is, nothing exceeds it. Light
+// goes over from one part to the other without a step, and both find the same.
+//
+// Rays go to points that stand for equal shares of the power that exceeds. Nearer than the size of
+// its share, a point is no picture of it, and the march sees it well: of a point of area A at
+// distance d, rays gather the part pi d^2 / (pi d^2 + A), which bounds what a point can give as the
+// form factor of a disc is bounded, and the march the rest.
+//
+// A solid sends from its back as well, as it does to the march: from the point of a round body
+// opposite to that of the front, as far away as its guessed thickness says, with the normal
+// reversed. Of a body that is symmetric about its middle this is all of its hidden half.
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "estimators/bitmask/march_scene.h"
+#include "simd/interleaved.h"
+
+namespace ssdo {
+
+struct FarScene;
+struct FarLight;
+
+/// A point that light leaves from, in camera space.
+struct Emitter {
+  glm::vec3 position, normal;  ///< it sends to the side of the normal, unit
+  glm::vec3 power;             ///< radiance times the area that it stands for
+  float area;                  ///< that area
+  float solid;  ///< how far before the point, on a ray to it, its own solid may begin
+};
+
+/// What of the light that the pixels of a frame send is gathered by rays.
+struct Emitters {
+  /// Points that each pixel looks at: a member of the pattern has points of its own, which lie
+  /// between those of the others.
+  static constexpr int kPoints = 32;
+
+  float mean_sent = 0;          ///< luminance, by roots
+  float level = 0;              ///< luminance from which on light is gathered by rays
+  float power = 0;              ///< luminance times area that each point stands for
+  std::vector<Emitter> points;  ///< kPoints of each member; empty: nothing exceeds the level
+
+  const Emitter* of_member(int member) const { return &points[std::size_t(member * kPoints)]; }
+};
+
+/// The light that is sent in a pass of bounces.
+struct SentLight {
+  const MarchScene& scene;
+  const InterleavedVectors& radiance;
+  bool two_sided;                 ///< as SenderJob has it
+  Window lit;                     ///< the pixels whose radiance is known
+  const FarScene* far = nullptr;  ///< the frame around; null: the raster is all that sends
+  const FarLight* far_light = nullptr;
+};
+
+/// `seed` exchanges the points of the members.
+Emitters find_emitters(const SentLight& sent, unsigned seed);
+
+}  // namespace ssdo
