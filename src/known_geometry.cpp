@@ -14,6 +14,7 @@
 #include "scene/deep/measured_solids.h"
 #include "scene/further/back_faces.h"
 #include "scene/further/carve.h"
+#include "scene/further/registration.h"
 
 namespace ssdo {
 namespace {
@@ -63,6 +64,21 @@ std::vector<MergeCounts> use_back_faces(std::vector<FurtherView>& views, Scene& 
   views = std::move(others);
   end_at_back_faces(scene.solids, distances);
   return counts;
+}
+
+/// Leaves out the files of --also that don't fit the frame, or changes them so that they do.
+void register_views(KnownGeometry& known, const Geometry& frame) {
+  std::vector<FurtherView> fitting;
+  for (FurtherView& view : known.views) {
+    if (view.is_neighbour) {
+      fitting.push_back(std::move(view));
+      continue;
+    }
+    Registration found = register_view(std::move(view), frame);
+    if (found.view) fitting.push_back(std::move(*found.view));
+    if (!found.warning.empty()) known.warnings.push_back(std::move(found.warning));
+  }
+  known.views = std::move(fitting);
 }
 
 /// Of what a view and the frame should both see: what differs by more has moved, or the view is of
@@ -195,6 +211,7 @@ std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
                                             const GBufferOptions& reading) {
   scene.solids = find_solids(scene.geometry, known.deep, thickness, reading, known.warnings);
   std::vector<MergeCounts> of_backs = use_back_faces(known.views, scene), counts;
+  register_views(known, scene.geometry);
   if (known.views.empty()) return of_backs;
   scene.further = merge_views(known.views, scene.geometry, scene.senders.albedo, counts);
   std::vector<FurtherView> of_scene;

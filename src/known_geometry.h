@@ -33,9 +33,8 @@ KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
 
 /// Fills the solids and the further surfaces of a scene: measured where deep images or further
 /// views show them, guessed elsewhere, or as thick as `thickness`. Gives what each view added,
-/// those of back faces last, which are taken out of `known`; of neighbours of another scene,
-/// warnings tell. Errors: ExitCode::layer for a view of another scene, and a deep image of another
-/// frame.
+/// those of back faces last, which are taken out of `known`; of views of another scene, unit or
+/// axes, warnings tell. Errors: ExitCode::layer for a deep image of another frame.
 std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
                                             std::optional<float> thickness,
                                             const GBufferOptions& reading);

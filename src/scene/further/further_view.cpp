@@ -7,17 +7,13 @@
 #include "parallel/tiles.h"
 
 namespace ssdo {
-namespace {
 
-/// The camera that takes points of the frame's camera space to those of `view`'s.
 Camera seen_from(const Camera& view, const Camera& frame) {
   Camera camera = view;
   camera.rotation = view.rotation * glm::transpose(frame.rotation);
   camera.origin = frame.to_camera(view.origin);
   return camera;
 }
-
-}  // namespace
 
 FurtherView place(FurtherView::Picture picture, const Geometry& frame) {
   const Camera camera = seen_from(picture->camera, frame.camera);

@@ -46,6 +46,10 @@ struct FurtherView {
   }
 };
 
+/// The camera that takes points of the frame's camera space to those of `view`'s, which are both in
+/// one world.
+Camera seen_from(const Camera& view, const Camera& frame);
+
 /// Places a picture in the camera space of a frame whose world is known.
 FurtherView place(FurtherView::Picture picture, const Geometry& frame);
 

@@ -13,8 +13,6 @@
 // pixels of a small view, and would be lost between triangles.
 #include "scene/further/merge.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -22,7 +20,6 @@
 #include <limits>
 #include <numeric>
 
-#include "error.h"
 #include "parallel/tiles.h"
 #include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
@@ -37,10 +34,10 @@ constexpr float kSurfaceTolerance = 3;
 /// The frame among the surfaces that light further views: with so many columns at most.
 constexpr int kFrameColumns = 320;
 
-/// A view whose pixels nearly all contradict the frame, and so many of them, is of another scene.
-/// Between frames of a sequence where half has changed there is a cut, as --temporal has it.
+/// Between frames of a sequence where half has changed, of so many pixels, there is a cut, as
+/// --temporal has it.
 constexpr std::size_t kFewestInCommon = 50;
-constexpr double kLeastInCommon = 0.02, kLeastOfNeighbour = 0.5;
+constexpr double kLeastInCommon = 0.5;
 
 /// A frame of the same sequence or pair sees of what the frame sees too, unless it is of another
 /// scene, place or unit.
@@ -297,21 +294,12 @@ Plane<Fate> judge(const Plane<Surfel>& surfel, const Merger& merger, MergeCounts
   return fates;
 }
 
-[[noreturn]] void refuse(const MergeCounts& counts) {
-  throw Error(ExitCode::layer,
-              fmt::format("{}: of {} pixels that show what the frame should see too, {} lie where "
-                          "the frame shows a surface; give a view of the same scene, with P in the "
-                          "same world space and unit",
-                          counts.file, counts.in_common(), counts.seen));
-}
-
 }  // namespace
 
 bool MergeCounts::is_of_another_scene() const {
-  const double least = is_neighbour ? kLeastOfNeighbour : kLeastInCommon;
-  if (is_neighbour && double(seen) < kLeastSeenByNeighbour * double(added + in_common()))
-    return true;
-  return in_common() >= kFewestInCommon && double(seen) < least * double(in_common());
+  if (!is_neighbour) return false;
+  if (double(seen) < kLeastSeenByNeighbour * double(added + in_common())) return true;
+  return in_common() >= kFewestInCommon && double(seen) < kLeastInCommon * double(in_common());
 }
 
 FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometry& frame,
@@ -339,8 +327,6 @@ FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometr
     if (!counts[k].is_of_another_scene()) {
       judged.push_back({&view, std::move(fates)});
       rivals.emplace_back(view);
-    } else if (!view.is_neighbour) {
-      refuse(counts[k]);
     }
   }
   for (std::size_t k = 0; k < judged.size(); ++k) {

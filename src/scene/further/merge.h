@@ -26,13 +26,13 @@ struct MergeCounts {
   /// Pixels that show what the frame should see too.
   std::size_t in_common() const { return seen + contradictory; }
 
-  /// Whether too little lies where the frame shows it: the view is of another scene.
+  /// Whether too little of a neighbour lies where the frame shows it: there is a cut between them.
   bool is_of_another_scene() const;
 };
 
 /// Joins what further views show. The views' order does not matter. `albedo` is the frame's.
 /// `counts` has a row for each view, in their order. Neighbours of another scene, as they are
-/// before and after a cut, are left out. Errors: ExitCode::layer for another view of such a scene.
+/// before and after a cut, are left out.
 FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometry& frame,
                             const Plane<HalfColor>& albedo, std::vector<MergeCounts>& counts);
 
