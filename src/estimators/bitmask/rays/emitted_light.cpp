@@ -135,10 +135,6 @@ HWY_INLINE V3 send_rays(const EmittedJob& job, const MarchReceiver& p, const Cho
   const V zero = set(0);
   const Chosen to = choose(job, p, choice);
   const M lit = luminance(to.light) > zero;
-  if (!any(lit)) {
-    walk.put_known(places, set(-1));
-    return to.light;
-  }
   const V3 way = to.position - p.position;
   const V distance = hn::Sqrt(dot(way, way));
   const V3 unit = way / hn::Max(distance, set(1e-20f));
@@ -159,7 +155,7 @@ HWY_INLINE V3 send_rays(const EmittedJob& job, const MarchReceiver& p, const Cho
   const V end_px =
       pixels_to<kOrthographic>(scene, p, ray.in_slice, mul_add(unit, free, p.position));
   ray.in_slice.end_px = hn::Min(ray.in_slice.end_px, end_px);
-  walk.put(places, p, ray, hn::And(ray.open, end_px > zero), set(-1));
+  walk.put(places, p, ray, hn::And(ray.open, end_px > zero));
   return if_then_else_zero(ray.open, to.light);
 }
 
