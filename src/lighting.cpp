@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <glm/gtc/constants.hpp>
 #include <string_view>
 
 #include "color/color_space.h"
@@ -64,6 +65,29 @@ constexpr float kSmallestHalf = 5.9604645e-08f;
 
 float brightest_channel(const glm::vec3& c) { return std::max({c.x, c.y, c.z}); }
 
+/// What no surface gets more of, as irradiance over pi: the light of all directions as if from one,
+/// or the brightest texel from everywhere if that is less. Of the brightest channels.
+double most_light(const Plane<glm::vec3>& map) {
+  double sum = 0, weights = 0, brightest = 0;
+  for (int y = 0; y < map.height; ++y) {
+    const double weight = std::sin((y + 0.5) / map.height * glm::pi<double>());
+    for (int x = 0; x < map.width; ++x) {
+      const double light = brightest_channel(map(x, y));
+      sum += weight * light, weights += weight;
+      brightest = std::max(brightest, light);
+    }
+  }
+  return std::min(brightest, 4 * sum / weights);
+}
+
+void warn_if_dim(double light, std::vector<std::string>& warnings) {
+  if (!(light > 0 && light < kSmallestHalf)) return;
+  warnings.push_back(
+      fmt::format("surfaces get a light of {:.2g} at most, less than half floats hold ({:.2g}): "
+                  "colours in 16 bits are black; give more --env-exposure",
+                  light, kSmallestHalf));
+}
+
 /// The texels in other primaries; colours outside their gamut get negative channels.
 Plane<glm::vec3> convert(const Plane<glm::vec3>& map, const glm::mat3& matrix) {
   auto out = Plane<glm::vec3>::like(map);
@@ -89,6 +113,7 @@ Lighting::Lighting(const LightOptions& options) : options_(options) {
   }
   check_exposure(brightest_channel(*color));
   constant_ = *color * float(std::exp2(options.exposure_stops));
+  warn_if_dim(brightest_channel(constant_), warnings_);
   description_ = fmt::format("constant {:g},{:g},{:g}", constant_.x, constant_.y, constant_.z);
 }
 
@@ -100,6 +125,7 @@ void Lighting::read_map() {
   for (const glm::vec3& texel : map.texels.pixels)
     brightest = std::max(brightest, brightest_channel(texel));
   check_exposure(brightest);
+  warn_if_dim(most_light(map.texels) * std::exp2(options_.exposure_stops), warnings_);
   if (brightest == 0) {
     warnings_.push_back(fmt::format("{}: is black: it lights nothing", options_.env));
   }
@@ -119,12 +145,6 @@ void Lighting::check_exposure(float brightest) {
                     "{:g} is the most; give {:.0f} stops or less",
                     options_.exposure_stops, options_.env, exposed, kBrightest,
                     std::floor(std::log2(kBrightest / brightest))));
-  }
-  if (exposed > 0 && exposed < kSmallestHalf) {
-    warnings_.push_back(
-        fmt::format("the brightest light is {:.2g}, less than half floats hold ({:.2g}): colours "
-                    "in 16 bits are black; give more --env-exposure",
-                    exposed, kSmallestHalf));
   }
 }
 

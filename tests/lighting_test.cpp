@@ -89,6 +89,16 @@ TEST_F(LightRange, ExposureEndsWhereLightDoes) {
   EXPECT_THAT(warnings(light("1", -20)), IsEmpty());
 }
 
+TEST_F(LightRange, DimIsTheLightAndNotTheBrightestTexel) {
+  FramePart part{"", kWindow, kWindow, {}, Imf::FLOAT, {}};
+  Plane<float> star(16, 8, 0.0f);
+  star(3, 3) = 1e-6f;  // holds in half, and gives surfaces 3e-8 at most
+  for (const char* c : {"R", "G", "B"}) part.channels[c] = star;
+  write_frame(dir_ / "star.exr", part);
+  EXPECT_THAT(warnings(light(dir_ / "star.exr")), ElementsAre(HasSubstr("more --env-exposure")));
+  EXPECT_THAT(warnings(light(dir_ / "star.exr", 3)), IsEmpty());
+}
+
 TEST_F(LightRange, ABlackMapIsMentioned) {
   EXPECT_THAT(warnings(light(map(0))), ElementsAre(HasSubstr("map.exr: is black")));
   EXPECT_THAT(warnings(light(map(0.1f))), IsEmpty());

@@ -86,6 +86,24 @@ void hold_depth_to_position(GBuffer& g) {
                                    unwritten ? "it is empty" : relation_to_position(g, counts)));
 }
 
+/// Whether P, or the depth where there is no P, has a surface at a pixel, whatever alpha says.
+bool shows_surface(const GBuffer& g, std::size_t i) {
+  if (!g.normal.empty() && g.normal[i] == glm::vec3(0)) return false;
+  if (!g.depth.empty() && shows_nothing(g.depth[i], kEmptyDepth)) return false;
+  return g.position.empty() ||
+         (g.position[i] != glm::vec3(0) && !is_missing(g.position[i], empty_from(g)));
+}
+
+/// Whether alpha is 0 in all pixels, also where other layers show a surface: it was never written.
+bool is_alpha_unwritten(const GBuffer& g) {
+  bool shown = false;
+  for (std::size_t i = 0; i < g.alpha.size(); ++i) {
+    if (g.alpha[i] > kLeastAlpha) return false;
+    shown = shown || shows_surface(g, i);
+  }
+  return shown;
+}
+
 }  // namespace
 
 void find_background(GBuffer& g, std::optional<float> background_depth,
@@ -94,6 +112,7 @@ void find_background(GBuffer& g, std::optional<float> background_depth,
   if (known) {
     found = *known;
   } else {
+    if (is_alpha_unwritten(g)) g.alpha = {};
     hold_depth_to_position(g);
     found.normals_tell = has_normals(g);
   }

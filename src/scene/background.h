@@ -22,6 +22,8 @@ inline constexpr float kStepHalf = 1.0f / 2048;
 ///
 /// Encodings `known` from all of a frame hold for a part of it; else they are found here.
 ///
+/// An alpha of 0 everywhere is left out, and its plane emptied, where other layers show surfaces.
+///
 /// Where there is P, a depth that contradicts it (depth_model.h) is left out with a warning, and
 /// the plane is emptied. A P that is not finite counts as broken where a depth shows a surface.
 void find_background(GBuffer& g, std::optional<float> background_depth,

@@ -13,6 +13,7 @@
 #include "math/order_statistics.h"
 #include "parallel/tiles.h"
 #include "scene/camera/find_camera.h"
+#include "scene/normals/lens_of_normals.h"
 #include "scene/normals/normal_space.h"
 #include "scene/normals/normal_trust.h"
 #include "scene/normals/normals.h"
@@ -134,20 +135,37 @@ NormalSpace given_normal_space(const GBuffer& g, const Geometry& out, const std:
 }
 
 /// Of a depth that is taken as planar because nothing tells its kind, the normals tell it: surfaces
-/// made from a distance along the rays are bent. Warns where those of the other kind fit better.
-void check_depth_is_planar(const GBuffer& g, const Geometry& planar, const NormalSpace& of_planar,
-                           GeometryReport& report) {
-  if (planar.camera.orthographic) return;
+/// made from a distance along the rays are bent. Warns where those of the other kind fit better,
+/// and returns whether they do not.
+bool is_depth_planar(const GBuffer& g, const Geometry& planar, const NormalSpace& of_planar,
+                     GeometryReport& report) {
+  if (planar.camera.orthographic) return true;
   Geometry by_rays;
   by_rays.surfel = Plane<Surfel>::like(planar.surfel);
   place_positions(g, to_grid(report.placement.of_positions, g.grid), DepthKind::ray, by_rays);
   const NormalSpace of_rays =
       find_normal_space(g.normal, by_rays.surfel, spaces_of_normals(g, report), false);
   const bool clearly = 1 - of_rays.mean_cosine < kClearlyBetter * (1 - of_planar.mean_cosine);
-  if (!clearly || of_rays.smooth_pixels < NormalSpace::kFewestSmoothPixels) return;
+  if (!clearly || of_rays.smooth_pixels < NormalSpace::kFewestSmoothPixels) return true;
   report.warnings.push_back(
       "the depth is taken as planar, and by the normals it is the distance along the rays: give "
       "--depth-kind ray, or --depth-kind planar where it is not");
+  return false;
+}
+
+/// Warns where the normals fit the surfaces of a planar depth better under another lens.
+void check_lens(const GBuffer& g, const Geometry& out, GeometryReport& report) {
+  if (out.camera.orthographic || out.camera.panorama || g.depth_kind != DepthKind::planar) return;
+  const auto lens = find_lens_of_normals(g.normal, out);
+  if (!lens) return;
+  Camera other = out.camera;
+  other.fx *= lens->focal_ratio;
+  const int width = out.display.width();
+  report.warnings.push_back(fmt::format(
+      "the normals disagree with the depth under the camera ({}, {:.1f} degrees) by {:.2g} degrees "
+      "in half of the pixels, and by {:.2g} under --fov {:.1f}",
+      report.camera_source, out.camera.hfov_degrees(width), lens->miss_before, lens->miss,
+      other.hfov_degrees(width)));
 }
 
 /// The space of the stored normals; nothing where there are none.
@@ -159,7 +177,8 @@ std::optional<NormalSpace> space_of_normals(const GBuffer& g, const Geometry& ou
                                         out.camera.orthographic);
   report.normal_agreement = space.share;
   const bool from_depth = g.position.empty();
-  if (from_depth && g.depth_source.empty()) check_depth_is_planar(g, out, space, report);
+  if (from_depth && (!g.depth_source.empty() || is_depth_planar(g, out, space, report)))
+    check_lens(g, out, report);
   return space;
 }
 

@@ -21,6 +21,7 @@
 #include "scene/depth_encoding.h"
 #include "scene/layers/groups.h"
 #include "scene/layers/windows.h"
+#include "scene/normal_encoding.h"
 
 namespace ssdo {
 namespace {
@@ -30,10 +31,6 @@ constexpr float kStepFloat = 1.0f / 16777216, kStepPxr24 = 1.0f / 65536;
 
 /// Of a G-buffer and its geometry.
 constexpr double kBytesPerPixel = 100;
-
-bool is_finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 bool is_sane(float v) { return std::isfinite(v); }
 
@@ -127,30 +124,20 @@ class LayerReader {
   std::map<Part, std::map<std::string, Plane<float>>> planes_;
 };
 
-/// Normals stored as n/2 + 1/2 have no negative component, and are of unit length after decoding.
-bool normals_are_colors(const GBuffer& g) {
-  double as_stored = 0, decoded = 0;
-  for (std::size_t i = 0; i < g.normal.size(); ++i) {
-    const glm::vec3 n = g.normal[i];
-    if (!g.valid[i] || !is_finite(n)) continue;
-    if (std::min({n.x, n.y, n.z}) < -1e-3f) return false;
-    as_stored += std::abs(glm::length(n) - 1);
-    decoded += std::abs(glm::length(2.0f * n - 1.0f) - 1);
-  }
-  return decoded < as_stored;
-}
+/// From this share of the surfaces on, a warning counts pixels whose values cannot be right.
+constexpr double kManyPixels = 0.01;
 
-void undo_normal_encoding(GBuffer& g, const std::optional<Encodings>& known) {
-  g.encodings.normals_are_colors = known ? known->normals_are_colors : normals_are_colors(g);
-  if (!g.encodings.normals_are_colors) return;
-  for (glm::vec3& n : g.normal.pixels) n = 2.0f * n - 1.0f;
-  g.warnings.push_back("normals are encoded as 0..1; decoded with 2n - 1");
+/// "1234 pixels (44 % of the surfaces)"; nothing for few of them.
+std::optional<std::string> many_pixels(const GBuffer& g, std::size_t count) {
+  const double all = double(g.valid.size() - g.background_pixels);
+  if (double(count) < kManyPixels * all || count == 0) return std::nullopt;
+  return fmt::format("{} pixels ({:.0f} % of the surfaces)", count, 100 * double(count) / all);
 }
 
 /// Values that are not finite or out of range become 0: black, smooth, or a normal to be rebuilt.
-/// The pixel counts as broken.
+/// The pixel counts as broken; a warning says what became of many of them.
 template <class T>
-void clear_broken(GBuffer& g, Plane<T>& values) {
+void clear_broken(GBuffer& g, Plane<T>& values, std::string_view name, std::string_view fate) {
   std::atomic<std::size_t> bad = 0;
   for_each_row(values.height, [&](int y) {
     for (std::size_t i = values.index(0, y), end = values.index(0, y + 1); i < end; ++i) {
@@ -159,7 +146,44 @@ void clear_broken(GBuffer& g, Plane<T>& values) {
       values[i] = T(0);
     }
   });
+  if (const auto many = many_pixels(g, bad))
+    g.warnings.push_back(fmt::format("{} is not finite in {}: {}", name, *many, fate));
   g.bad_pixels += bad;
+}
+
+/// Warns of surfaces that send more light than they get.
+void note_bright_albedo(GBuffer& g) {
+  constexpr float kRounding = 1.01f;
+  std::size_t bright = 0;
+  float most = 0;
+  for (std::size_t i = 0; i < g.albedo.size(); ++i) {
+    const float albedo = std::max({g.albedo[i].x, g.albedo[i].y, g.albedo[i].z});
+    if (!g.valid[i] || albedo <= kRounding) continue;
+    ++bright, most = std::max(most, albedo);
+  }
+  if (const auto many = many_pixels(g, bright)) {
+    g.warnings.push_back(fmt::format(
+        "albedo is above 1 in {}, {:.3g} at most: surfaces that send more light than they get; is "
+        "this a layer of light?",
+        *many, most));
+  }
+}
+
+/// Warns where more than all light of the beauty is ambient: occlusion makes that black.
+void note_bright_ambient(GBuffer& g) {
+  constexpr float kRounding = 0.02f;
+  if (g.beauty.empty() || g.ambient.size() != g.beauty.size()) return;
+  std::size_t brighter = 0, lit = 0;
+  for (std::size_t i = 0; i < g.ambient.size(); ++i) {
+    const glm::vec3 over = g.ambient[i] - (1 + kRounding) * g.beauty[i];
+    lit += g.ambient[i] != glm::vec3(0);
+    brighter += std::max({over.x, over.y, over.z}) > 1e-4f;
+  }
+  if (brighter == 0 || double(brighter) < kManyPixels * double(lit)) return;
+  g.warnings.push_back(fmt::format(
+      "ambient is brighter than the beauty in {} pixels ({:.0f} % of those that it lights), which "
+      "occlusion may turn black: is it a part of this beauty, in the same exposure?",
+      brighter, 100 * double(brighter) / double(lit)));
 }
 
 /// Reads beauty, ambient and specular, and brings them to the size of the outputs.
@@ -174,12 +198,13 @@ void take_rendered(GBuffer& g, const LayerReader& read, const std::vector<const 
       return;
     }
     colors = read.vector(layer, 0);
-    clear_broken(g, colors);
+    clear_broken(g, colors, role_name(role), "black there");
     colors = filter_pixels(colors, g.window, g.downsampling);
   };
   if (has_beauty) take(Role::beauty, g.beauty);
   take(Role::ambient, g.ambient);
   take(Role::specular, g.specular);
+  note_bright_ambient(g);
 }
 
 /// Errors: ExitCode::usage where the factor does not divide the size of the display window.
@@ -310,13 +335,16 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   find_background(g, options.background_depth, options.known);
   undo_normal_encoding(g, options.known);
   note_data_windows(files, table, roles, g);
-  for (Plane<glm::vec3>* values : {&g.normal, &g.albedo, &g.radiance}) clear_broken(g, *values);
+  clear_broken(g, g.normal, "normal", "rebuilt there");
+  clear_broken(g, g.albedo, "albedo", "black there");
+  clear_broken(g, g.radiance, "radiance", "black there");
+  note_bright_albedo(g);
   take_rendered(g, read, files, table, options.beauty);
   clear_negative(g.albedo);
   clear_negative(g.radiance);
   if (const auto& albedo = table[Role::albedo])
     undo_alpha_of_albedo(g, albedo->premultiplied, options.known);
-  clear_broken(g, g.roughness);
+  clear_broken(g, g.roughness, "roughness", "smooth there");
   for (float& r : g.roughness.pixels) r = std::clamp(r, 0.0f, 1.0f);
   return g;
 }

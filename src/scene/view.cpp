@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -65,11 +66,33 @@ Camera camera_of_positions(const View& view) {
   return to_grid(view.report.placement.of_positions, view.gbuffer.grid);
 }
 
+/// Layers that were never written, which are 0 everywhere, are not used of any part of the frame.
+/// The G-buffer has left out such an alpha.
+void leave_out_unwritten_layers(View& view) {
+  GBuffer& g = view.gbuffer;
+  const auto leave_out = [&](Role role, std::string_view where) {
+    std::optional<Layer>& layer = view.layers[role];
+    g.warnings.push_back(fmt::format("{} '{}' is 0 everywhere{}, and is left out", role_name(role),
+                                     layer->name.empty() ? layer->channels[0] : layer->name,
+                                     where));
+    layer.reset();
+  };
+  if (view.layers[Role::alpha] && g.alpha.empty())
+    leave_out(Role::alpha, ", also where other layers show surfaces");
+  const auto is_0 = [](const glm::vec3& n) { return n == glm::vec3(0); };
+  const bool shows = std::ranges::find(g.valid.pixels, 1) != g.valid.pixels.end();
+  if (view.layers[Role::normal] && shows && std::ranges::all_of(g.normal.pixels, is_0)) {
+    g.normal = {};
+    leave_out(Role::normal, "");
+  }
+}
+
 /// Fills the G-buffer and the geometry.
 void read_surfaces(const Reading& reading, View& view) {
   Stopwatch watch;
   view.gbuffer = read_gbuffer(reading.files, view.layers, reading.options, &reading.deep);
   view.read_ms += watch.lap();
+  leave_out_unwritten_layers(view);
   view.report = {};
   const std::string file = view.files.front().path().string();
   try {
@@ -170,6 +193,7 @@ View read_view(std::deque<ExrReader> opened, const std::vector<LayerRequest>& ao
     if (view.layers[Role::position] || error.code != ExitCode::layer) throw;
     throw with_hint(error, view, options.view);
   }
+  if (view.deep) view.gbuffer.bad_pixels += broken_pixels(*view.deep);
   view.gbuffer.warnings.insert(view.gbuffer.warnings.begin(), warnings.begin(), warnings.end());
   // From here on there is one position, one normal and one kind of pixel: those of the geometry.
   view.gbuffer.position = {};  // on their own lines: an assignment of a plane keeps memory

@@ -65,6 +65,17 @@ class Deep : public testing::Test {
   TempDir dir_;
 };
 
+TEST_F(Deep, CountsSamplesThatAreNoNumbers) {
+  DeepPixels pixels = deep();
+  for (std::size_t i = 0; i < 30; ++i)
+    for (DeepSample& s : pixels.samples[10 * i]) s.front = NAN;
+  write_deep(path("broken.exr"), {{.pixels = pixels}});
+  const Finished done = run({"info", path("broken.exr"), "--fov", "40"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("deep samples have a Z or alpha that is no number"));
+  EXPECT_THAT(done.out, HasSubstr(", 30 broken)"));
+}
+
 TEST_F(Deep, BesideAFrameMeasuresWhatIsHidden) {
   ASSERT_EQ(run({path("in.exr")}).code, 0);
   const Plane<float> alone = channel(path("out.exr"), "ao.Y");

@@ -8,12 +8,8 @@
 #include <fstream>
 #include <glm/gtc/constants.hpp>
 #include <limits>
-#include <nlohmann/json.hpp>
 
-#include "support/info_warnings.h"
-#include "support/parse_json.h"
-#include "support/run_tool.h"
-#include "support/stored_shot.h"
+#include "dcc/data_checks.h"
 
 namespace ssdo::test {
 namespace {
@@ -24,68 +20,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-const glm::mat3 kMirror{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-
-/// A rotation about no axis of any space.
-const glm::mat3 kTurn = [] {
-  const double a = 0.6, b = 0.9;
-  const glm::dmat3 x{{1, 0, 0}, {0, std::cos(a), std::sin(a)}, {0, -std::sin(a), std::cos(a)}},
-      z{{std::cos(b), std::sin(b), 0}, {-std::sin(b), std::cos(b), 0}, {0, 0, 1}};
-  return glm::mat3(z * x);
-}();
-
-class DataChecks : public testing::Test {
- protected:
-  json info(const StoredShot& shot, std::vector<std::string> flags = {}) {
-    write_shot(input_, shot);
-    flags.insert(flags.begin(), {"info", input_, "--json"});
-    const Finished done = run_tool(flags);
-    EXPECT_EQ(done.code, 0) << done.err;
-    return parse_json(done.out);
-  }
-
-  /// A channel of the result; `said_` has the warnings.
-  Plane<float> result(const StoredShot& shot, const std::string& product,
-                      std::vector<std::string> flags = {}) {
-    write_shot(input_, shot);
-    flags.insert(flags.begin(), {input_, "-o", dir_ / "out.exr", "--overwrite", "--products",
-                                 product.substr(0, product.find('.')), "--pixel-type", "float"});
-    const Finished done = run_tool(flags);
-    EXPECT_EQ(done.code, 0) << done.err;
-    said_ = done.err;
-    return channel(dir_ / "out.exr", product);
-  }
-
-  double rmse(const Plane<float>& a, const Plane<float>& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(double(a[i]) - double(b[i]), 2);
-    return std::sqrt(sum / double(a.size()));
-  }
-
-  double off(const StoredShot& shot, const std::vector<std::string>& flags = {}) {
-    static const Plane<float> expected = result(plain_shot(), "ao.Y");
-    return rmse(result(shot, "ao.Y", flags), expected);
-  }
-
-  /// The plain shot with another layer for one role.
-  static StoredShot with(Role role, const Content& content, Imf::PixelType type = Imf::FLOAT) {
-    StoredShot shot = plain_shot();
-    for (StoredLayer& layer : shot.layers) {
-      if (layer.role != role) continue;
-      layer.content = content;
-      layer.type = type;
-    }
-    return shot;
-  }
-
-  static void drop(StoredShot& shot, Role role) {
-    std::erase_if(shot.layers, [&](const StoredLayer& layer) { return layer.role == role; });
-  }
-
-  TempDir dir_;
-  std::string input_ = dir_ / "frame.exr", said_;
-};
 
 TEST_F(DataChecks, NormalsOfAnySpaceAndEncodingAreThoseOfP) {
   const std::vector<std::pair<Content, std::string>> spaces = {
@@ -150,52 +84,6 @@ TEST_F(DataChecks, ADepthOfAnotherMeaningIsLeftOutWithWhatItIs) {
   }
   EXPECT_LT(off(with(Role::depth, inverse_depth()), {"--depth-kind", "inverse"}), 1e-6);
   EXPECT_EQ(said_, "") << "as it is said what it is";
-}
-
-TEST_F(DataChecks, ADepthThatIsAnotherFunctionOfPIsLeftOut) {
-  const auto of_world = [](float (*depth)(const glm::vec3&)) {
-    return [=](const ShotPixel& p) {
-      return glm::vec4(p.surface ? depth(p.position) : 1e10f, 0, 0, 0);
-    };
-  };
-  const std::vector<std::pair<Content, std::string>> wrong = {
-      {of_world([](const glm::vec3& p) { return p.y; }), "it is the y of P"},
-      {of_world([](const glm::vec3& p) { return glm::length(p); }),
-       "it is the distance from the origin of P"},
-      {[](const ShotPixel& p) { return planar_depth(1e10f)(p) - glm::vec4(p.surface ? 4 : 0); },
-       "it is the distance from the camera - 4"}};
-  const json expected = info(plain_shot())["surface_pixels"];
-  for (const auto& [depth, text] : wrong) {
-    const StoredShot shot = with(Role::depth, depth);
-    const json found = info(shot);
-    EXPECT_EQ(found["depth"]["used"], false);
-    EXPECT_EQ(found["surface_pixels"], expected);
-    EXPECT_THAT(warnings_of(found),
-                ElementsAre("depth contradicts P (" + text + ") and is left out"));
-    EXPECT_LT(off(shot), 1e-6);
-  }
-}
-
-TEST_F(DataChecks, APThatNoCameraHasSeenIsRefused) {
-  const auto root = [](const ShotPixel& p) {
-    const glm::vec3 v = p.position;
-    return glm::vec4(glm::sign(v) * glm::sqrt(glm::abs(v)), 0);
-  };
-  const std::vector<std::pair<Content, std::string>> wrong = {
-      {[](const ShotPixel& p) { return glm::max(world_position()(p), glm::vec4(0)); },
-       "looks clipped at 0"},
-      {root, "looks gamma-encoded: P^2 fits a camera"},
-      {world_normal(), "has length 1 everywhere: looks like normals"}};
-  for (const auto& [position, text] : wrong) {
-    write_shot(input_, with(Role::position, position));
-    for (const std::vector<std::string>& flags : {std::vector<std::string>{}, {"--fov", "40"}}) {
-      std::vector<std::string> words = {input_, "-o", dir_ / "none.exr"};
-      words.insert(words.end(), flags.begin(), flags.end());
-      const Finished done = run_tool(words);
-      EXPECT_EQ(done.code, 4) << text;
-      EXPECT_THAT(done.error_line(), HasSubstr(input_ + ": position 'P' " + text));
-    }
-  }
 }
 
 TEST_F(DataChecks, BackgroundOfAnyValueIsBackground) {

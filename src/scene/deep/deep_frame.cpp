@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "parallel/tiles.h"
@@ -12,6 +13,11 @@
 #include "scene/depth_encoding.h"
 
 namespace ssdo {
+namespace {
+
+bool is_broken(const DeepSample& s) { return std::isnan(s.front) || std::isnan(s.alpha); }
+
+}  // namespace
 
 DeepImage read_deep_frame(const ExrReader& file, const DeepChannels& channels,
                           const GBufferOptions& options, std::vector<std::string>& warnings) {
@@ -24,6 +30,12 @@ DeepImage read_deep_frame(const ExrReader& file, const DeepChannels& channels,
     s.front = decoded_depth(s.front, options);
     s.back = decoded_depth(s.back, options);
   }
+  if (const auto broken = std::ranges::count_if(image.samples, is_broken)) {
+    warnings.push_back(
+        fmt::format("{}: {} of {} deep samples have a Z or alpha that is no number, "
+                    "and are left out",
+                    image.file, broken, image.samples.size()));
+  }
   const auto is_positive = [](const DeepSample& s) { return !(s.front < 0); };
   if (std::any_of(image.samples.begin(), image.samples.end(), is_positive)) return image;
   for (DeepSample& s : image.samples) s.front = -s.front, s.back = -s.back;
@@ -32,6 +44,14 @@ DeepImage read_deep_frame(const ExrReader& file, const DeepChannels& channels,
                   "-z; their sign is turned",
                   image.file));
   return image;
+}
+
+std::size_t broken_pixels(const DeepImage& image) {
+  std::size_t count = 0;
+  for (int y = image.window.y0; y < image.window.y1; ++y)
+    for (int x = image.window.x0; x < image.window.x1; ++x)
+      count += std::ranges::any_of(image.at(x, y), is_broken);
+  return count;
 }
 
 float farthest_sample(const GBufferOptions& options) {
