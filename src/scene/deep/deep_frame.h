@@ -11,9 +11,8 @@ namespace ssdo {
 
 /// Reads a deep image and undoes the encoding of its depths: they are planar or ray depths in scene
 /// units from here on. Depths that are negative throughout are coordinates along the axis: their
-/// sign is turned. Samples whose depth or alpha is no number are counted, and show nothing. Warnings
-/// go to `warnings`.
-/// Errors: those of read_deep.
+/// sign is turned. Samples whose depth or alpha is no number are counted, and show nothing.
+/// Warnings go to `warnings`. Errors: those of read_deep.
 DeepImage read_deep_frame(const ExrReader& file, const DeepChannels& channels,
                           const GBufferOptions& options, std::vector<std::string>& warnings);
 
