@@ -18,11 +18,15 @@ namespace {
 /// overview keeps as much for each pixel of its own.
 constexpr double kBytes = 60e6, kBytesPerPixel = 120, kBytesOfSun = 11, kBytesOfMore = 18;
 
+/// What bright senders add, which a layer of radiance may hold.
+constexpr double kBytesOfSenders = 20;
+
 /// Suns of a map that are allowed for before it is known.
 constexpr int kUsualSuns = 3;
 
-double bytes_per_pixel(const ProductSet& products, std::size_t suns) {
-  return kBytesPerPixel + kBytesOfSun * double(suns) +
+double bytes_per_pixel(const ProductSet& products, const Scene& scene) {
+  return kBytesPerPixel + kBytesOfSun * double(scene.light.suns.size()) +
+         kBytesOfSenders * int(!scene.senders.radiance.empty()) +
          kBytesOfMore * (int(products.bent) + int(products.reflection));
 }
 
@@ -42,7 +46,7 @@ class Planner {
   Planner(const Window& frame, const Window& display, const Scene& overview, const Plan& plan,
           std::size_t memory)
       : frame_(frame), plan_(plan) {
-    const double of_pixel = bytes_per_pixel(plan.request.products, overview.light.suns.size());
+    const double of_pixel = bytes_per_pixel(plan.request.products, overview);
     bytes_of_row_ = of_pixel * frame.width();
     bytes_ = kBytes + of_pixel * double(overview.geometry.surfel.size());
     rows_ = int(std::clamp((double(memory) - bytes_) / bytes_of_row_, 0.0, 1e9));
@@ -117,8 +121,7 @@ BandPlan plan_bands(const std::string& file, const Window& frame, const Window& 
                 fmt::format("{} take {} of memory, and may take {}; {} needs all of the frame at "
                             "once: leave that out, or raise --mem-limit",
                             size,
-                            in_gigabytes(kBytes + bytes_per_pixel(plan.request.products,
-                                                                  overview.light.suns.size()) *
+                            in_gigabytes(kBytes + bytes_per_pixel(plan.request.products, overview) *
                                                       double(frame.area())),
                             in_gigabytes(double(memory)), what));
   }

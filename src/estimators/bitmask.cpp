@@ -230,6 +230,7 @@ class Bitmask {
   /// sky, whose planes are the largest: theirs lay between those of the bounce.
   void hand_out(InterleavedVectors bounce) {
     if (request_.products.bounce) out_.bounce = raster_.picture(std::move(bounce));
+    if (emitted_[0].data()) out_.shares.emitted = raster_.picture(std::move(emitted_));
     if (wants_light() && !request_.shares_suffice) out_.direct = raster_.picture(direct_light());
     if (request_.products.error) {
       const bool bounces = bounce_error_.data() != nullptr;
@@ -304,20 +305,14 @@ class Bitmask {
         kept_light_.push_back(
             {raster_.in_whole_rows(light, *kept_light_in_), sent_border, emitters.mean_sent});
       const bool wants_error = request_.products.error && pass == request_.bounces;
+      InterleavedPlane* const error = wants_error ? &bounce_error_ : nullptr;
+      const Emitters* const bright = emitters.points.empty() ? nullptr : &emitters;
+      const FurtherLight* const further = further_ ? &sent_further[std::size_t(pass - 1)] : nullptr;
       GatheredLight gathered(bounce_march_, wants_error);
-      const BounceJob job{bounce_march_,
-                          &ao_,
-                          &light,
-                          two_sided,
-                          scene_.solids,
-                          sent_border.data(),
-                          further_ ? &sent_further[std::size_t(pass - 1)] : nullptr,
-                          lit_part,
-                          overview,
-                          far_light,
-                          emitters.points.empty() ? nullptr : &emitters,
-                          &gathered,
-                          wants_error ? &bounce_error_ : nullptr};
+      const BounceJob job{
+          bounce_march_, &ao_,     &light,   two_sided, scene_.solids, sent_border.data(),
+          further,       lit_part, overview, far_light, bright,        &gathered,
+          error};
       // Light gathered in the last pass is not sent on: only receivers need it.
       const Window to = lit && pass < request_.bounces
                             ? with_senders(march_scene_.receivers, request_.bounces - pass)
@@ -326,13 +321,13 @@ class Bitmask {
           grown(layout_, to, bounce_pattern_.spacing() - 1),
           [&](const Window& part) { march_bounce(job, part); }, progress_);
       for_each_band_of(to, [&](const Window& part) { spread_bounce(job, part); }, {});
+      emitted_ = {};
       if (job.emitters) {
+        emitted_ = raster_.black();
         const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
-        InterleavedVectors emitted = raster_.black();
-        const EmittedJob rays{bounce_march_, bounds, emitters, rays_to_sun(request_.slices),
-                              request_.seed, &light, &emitted, job.error};
+        const EmittedJob rays{bounce_march_, bounds, emitters,  rays_to_sun(request_.slices),
+                              request_.seed, &light, &emitted_, job.error};
         for_each_tall_part_of(layout_, to, [&](const Window& w) { gather_emitted(rays, w); }, {});
-        if (pass == request_.bounces) out_.shares.emitted = raster_.picture(std::move(emitted));
       }
       bounce = std::move(light);
     }
@@ -350,7 +345,8 @@ class Bitmask {
   std::unique_ptr<FurtherRays> further_;  ///< null: there are no further views
   March march_, bounce_march_;
   InterleavedPlane ao_, error_, bounce_error_;
-  InterleavedColorShares sky_share_;          ///< empty where that is ao
+  InterleavedVectors emitted_;        ///< the part of the bounce that rays have found; empty: none
+  InterleavedColorShares sky_share_;  ///< empty where that is ao
   std::vector<SunShares> suns_, suns_again_;  ///< by sun
   const FarRaster* kept_light_in_ = nullptr;  ///< where bands of the frame need what is sent
   std::vector<FarLight> kept_light_;          ///< that, by pass

@@ -198,22 +198,24 @@ void gather_light(const BounceJob& job, const Window& part) {
             };
             march_side<kOrthographic>(
                 march, p, side, slice, forward,
-                [&](bool far, int layer, std::ptrdiff_t q, const SliceStep& step,
-                    VU bits) HWY_ATTR {
-                  receive(bits, [&]() HWY_ATTR {
-                    if (layer > 0) return sent_behind(job, far, layer, p.place, step, bits);
-                    const InterleavedVectors& sending = far ? job.far->sent : *job.light;
-                    for (const InterleavedPlane& channel : sending) prefetch_next(channel, q);
-                    const V3 sent = load(sending, q);
-                    if (!job.two_sided && !job.emitters) return sent;
-                    const MarchPlanes& planes = far ? march.far->planes : march.scene;
-                    const M seen = faces<kOrthographic>(planes, q, step, p);
-                    const V3 light =
-                        job.two_sided ? if_then_else(seen, front_of(sent), back_of(sent)) : sent;
-                    if (!job.emitters) return light;
-                    return without_emitted<kOrthographic>(job, p, {planes, q, step}, seen, light);
-                  });
-                },
+                [&](bool far, int layer, std::ptrdiff_t q, const SliceStep& step, VU bits)
+                    HWY_ATTR {
+                      receive(bits, [&]() HWY_ATTR {
+                        if (layer > 0) return sent_behind(job, far, layer, p.place, step, bits);
+                        const InterleavedVectors& sending = far ? job.far->sent : *job.light;
+                        for (const InterleavedPlane& channel : sending) prefetch_next(channel, q);
+                        const V3 sent = load(sending, q);
+                        if (!job.two_sided && !job.emitters) return sent;
+                        const MarchPlanes& planes = far ? march.far->planes : march.scene;
+                        const M seen = faces<kOrthographic>(planes, q, step, p);
+                        const V3 from_side = job.two_sided
+                                                 ? if_then_else(seen, front_of(sent), back_of(sent))
+                                                 : sent;
+                        if (!job.emitters) return from_side;
+                        return without_emitted<kOrthographic>(job, p, {planes, q, step}, seen,
+                                                              from_side);
+                      });
+                    },
                 FromFurther<decltype(receive)>{job.sent_further, receive},
                 [&](bool far, const Border& border, VU bits) HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {

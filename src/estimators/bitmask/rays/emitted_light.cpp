@@ -155,7 +155,7 @@ HWY_INLINE V3 send_rays(const EmittedJob& job, const MarchReceiver& p, const Cho
   const V end_px =
       pixels_to<kOrthographic>(scene, p, ray.in_slice, mul_add(unit, free, p.position));
   ray.in_slice.end_px = hn::Min(ray.in_slice.end_px, end_px);
-  walk.put(places, p, ray, hn::And(ray.open, end_px > zero));
+  walk.put(places, p, ray, hn::And(ray.open, end_px > set(1)));
   return if_then_else_zero(ray.open, to.light);
 }
 

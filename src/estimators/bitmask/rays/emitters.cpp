@@ -44,8 +44,14 @@ struct Side {
 /// The pixels of a raster that send.
 class Senders {
  public:
-  Senders(const MarchScene& scene, const InterleavedVectors& radiance, bool two_sided, float level)
-      : scene_(scene), radiance_(radiance), two_sided_(two_sided), level_(level) {}
+  /// What hides a point is not what lies within `beside_px` of it.
+  Senders(const MarchScene& scene, const InterleavedVectors& radiance, bool two_sided, float level,
+          float beside_px)
+      : scene_(scene),
+        radiance_(radiance),
+        two_sided_(two_sided),
+        level_(level),
+        beside_px_(beside_px) {}
 
   /// Calls `visit(side)` for the sides of a pixel that send more than the level. `i` is the index
   /// of its radiance.
@@ -144,15 +150,14 @@ class Senders {
     out.point.normal = is_back ? -normal : normal;
     out.point.power = out.light / light * area * radiance;
     out.point.area = area;
-    constexpr float kBeside = 1.5f;  // what hides a point is not the pixel beside it
-    out.point.solid = kBeside * pixel + (is_back ? 0.5f * through : 0);
+    out.point.solid = beside_px_ * pixel + (is_back ? 0.5f * through : 0);
     return out;
   }
 
   const MarchScene& scene_;
   const InterleavedVectors& radiance_;
   bool two_sided_;
-  float level_;
+  float level_, beside_px_;
 };
 
 /// Luminance of what pixels show.
@@ -244,10 +249,15 @@ struct Part {
 /// them.
 std::vector<Part> parts_of(const SentLight& sent, float level) {
   std::vector<Part> parts;
+  constexpr float kBeside = 1.5f;  // the pixel beside it
   const auto add = [&](const MarchScene& scene, const InterleavedVectors& radiance,
                        const Window& rows, const FarRaster* far) {
-    if (rows.height() > 0)
-      parts.push_back({{scene, radiance, sent.two_sided, level}, Tiles(rows), scene.layout, far});
+    // Rays that come from afar see pixels of the overview.
+    const float beside_px = sent.far && !far ? kBeside * Interleaving::kPeriod : kBeside;
+    if (rows.height() > 0) {
+      parts.push_back(
+          {{scene, radiance, sent.two_sided, level, beside_px}, Tiles(rows), scene.layout, far});
+    }
   };
   add(sent.scene, sent.radiance, sent.lit, nullptr);
   if (!sent.far) return parts;

@@ -81,7 +81,8 @@ class Walk {
     write(kGrowth,
           hn::MulAdd(a, ray.nearing, hn::MulAdd(p.rise_x, ray.step_x, p.rise_y * ray.step_y)));
     write(kAcrossX, side.across.x), write(kAcrossY, side.across.y), write(kSlope, side.slope);
-    write(kEnd, hn::IfThenElseZero(hn::And(looks, moves), end));
+    const M has_way = hn::And(hn::And(looks, moves), end > set(from_px_));
+    write(kEnd, hn::IfThenElseZero(has_way, end));
   }
 
   /// Sends all rays that have been put.
