@@ -230,6 +230,7 @@ void write_difference(const std::string& path, const OutputPolicy& policy, const
 struct Comparison {
   std::vector<Compared> layers;
   std::vector<std::string> only_in_a, only_in_b;  ///< channels without a counterpart
+  bool lacks_layers = false;                      ///< which fails the gate
 };
 
 nlohmann::json to_json(const CompareOptions& options, const Comparison& all) {
@@ -260,7 +261,8 @@ nlohmann::json to_json(const CompareOptions& options, const Comparison& all) {
           {"b", options.b},
           {"layers", layers},
           {"only_in_a", all.only_in_a},
-          {"only_in_b", all.only_in_b}};
+          {"only_in_b", all.only_in_b},
+          {"lacks_layers", all.lacks_layers}};
 }
 
 /// "only in B: a, b, c and 7 more", or nothing.
@@ -290,6 +292,8 @@ std::string to_table(const Comparison& all) {
         "outside the window of one)\n",
         name, left_out.without_counterpart(), left_out.in_one, left_out.outside);
   }
+  if (all.lacks_layers)
+    notes += "fails: a layer is in one file only; name the layers to compare, FILE:LAYER\n";
   return text + notes + list_channels("A", all.only_in_a) + list_channels("B", all.only_in_b);
 }
 
@@ -332,9 +336,9 @@ CompareReport compare(const CompareOptions& options) {
   if (name_a.layer.empty() && name_b.layer.empty()) {
     all.only_in_a = unpaired(a, pairs, &Pair::a);
     all.only_in_b = unpaired(b, pairs, &Pair::b);
-    if (options.fail_above &&
-        (lacks_counterpart(a, pairs, &Pair::a) || lacks_counterpart(b, pairs, &Pair::b)))
-      report.code = ExitCode::failed;
+    all.lacks_layers = options.fail_above && (lacks_counterpart(a, pairs, &Pair::a) ||
+                                              lacks_counterpart(b, pairs, &Pair::b));
+    if (all.lacks_layers) report.code = ExitCode::failed;
   }
   if (!options.diff.empty()) write_difference(options.diff, options.policy, a, all.layers);
   report.text = options.json ? json_text(to_json(options, all), 2) + "\n" : to_table(all);

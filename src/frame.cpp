@@ -67,7 +67,8 @@ void warn_of_missing_layers(Frame& frame, const OutputOptions& output) {
 void warn_of_radius(Frame& frame, const ModelOptions& model) {
   const Geometry& g = frame.scene.geometry;
   if (!model.radius || std::isinf(*model.radius) || g.median_depth <= 0) return;
-  const double pixel = double(g.frame_height_at(g.median_depth)) / g.display.height();
+  const double pixel =
+      double(g.frame_height_at(g.median_depth)) / frame.gbuffer.display_of_file().height();
   glm::vec3 low(INFINITY), high(-INFINITY);
   for (const Surfel& s : g.surfel.pixels) {
     if (!s.is_surface()) continue;
@@ -75,8 +76,8 @@ void warn_of_radius(Frame& frame, const ModelOptions& model) {
   }
   const double scene = glm::distance(low, high);
   const auto warn = [&](std::string_view how, std::string_view effect) {
-    frame.report.warnings.push_back(fmt::format("--radius {:g}: is {}: {}; is it in the unit of P?",
-                                                *model.radius, how, effect));
+    frame.report.warnings.push_back(fmt::format(
+        "--radius {:g} is {}, and {}; is it in the unit of P?", *model.radius, how, effect));
   };
   if (*model.radius < pixel)
     warn(fmt::format("less than a pixel, which is {:.3g} wide at the median depth {:.4g}", pixel,
@@ -84,12 +85,25 @@ void warn_of_radius(Frame& frame, const ModelOptions& model) {
          "next to nothing occludes");
   else if (*model.radius > scene)
     warn(fmt::format("more than all that the frame shows, which is {:.3g} across", scene),
-         "it is no limit");
+         "limits nothing");
 }
 
+/// Outputs cover rendered layers too, and kept parts are cropped as well.
 void warn_of_idle_crop(Frame& frame, const OutputOptions& output) {
-  const ExrPart& part = frame.part();
-  if (output.crop && intersection(part.data_window, part.display_window) == part.data_window)
+  const Window& display = frame.part().display_window;
+  const auto reaches_beyond = [&](const ExrPart& part) {
+    return intersection(part.data_window, display) != part.data_window;
+  };
+  bool has_effect = reaches_beyond(frame.part());
+  for (const Role role : kRendered) {
+    const auto& layer = frame.layers[role];
+    if (layer)
+      has_effect |=
+          reaches_beyond(frame.files[std::size_t(layer->file)].parts()[std::size_t(layer->part)]);
+  }
+  for (const ExrPart& part : frame.files.front().parts())
+    has_effect |= output.keep_channels && reaches_beyond(part);
+  if (output.crop && !has_effect)
     frame.report.warnings.push_back(
         "--crop has no effect: the frame has no pixels beyond its display window");
 }
@@ -149,7 +163,7 @@ void explain_earlier_products(Frame& frame) {
   if (earlier.empty()) return;
   std::string text = "an earlier run of ssdo made ";
   for (const auto& [name, moved] : earlier) text += name + ", ";
-  text += "which are taken for no layer of the render";
+  text += "which are not used as layers of the render";
   if (const auto& beauty = frame.layers[Role::beauty])
     text += fmt::format("; its beauty is {}", fmt::join(beauty->channels, ", "));
   frame.plan.reasons.push_back(text);

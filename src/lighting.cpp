@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <glm/gtc/constants.hpp>
 #include <string_view>
+#include <system_error>
 
 #include "color/color_space.h"
 #include "error.h"
@@ -33,8 +34,10 @@ bool is_like_numbers(const std::string& text) {
     for (auto at = rest.find(word); at != rest.npos; at = rest.find(word))
       rest.erase(at, word.size());
   }
-  return !std::filesystem::exists(text) &&
-         rest.find_first_not_of("0123456789.,;+-e \t") == rest.npos;
+  std::error_code ignored;  // of a name that is too long for a file
+  return rest.find_first_not_of("0123456789.,;+-e \t") == rest.npos &&
+         (rest.empty() || rest.find_first_of("0123456789,;") != rest.npos) &&
+         !std::filesystem::exists(text, ignored);
 }
 
 /// "0.2,0.3,0.5", or one number for grey; blanks do not count. Nothing for what may be a file.

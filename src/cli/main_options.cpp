@@ -97,7 +97,9 @@ void add_input(CLI::App& app, InputOptions& o) {
   Group group(app, "Input");
   group.each(
       "--aov", "ROLE=LAYER", [&](const Text& text) { o.aovs.push_back(parse_layer_request(text)); },
-      fmt::format("ROLE=LAYER or ROLE=FILE:LAYER, roles {}", fmt::join(role_names(), " ")));
+      fmt::format("ROLE=LAYER or ROLE=FILE:LAYER, roles {}; albedo:straight=LAYER or "
+                  "albedo:premultiplied=LAYER states how alpha is in it",
+                  fmt::join(role_names(), " ")));
   group.repeatable("--also", "FILE", o.also,
                    "a further G-buffer of the same scene with P in world space: another camera, a "
                    "panorama, or a deep image of this frame");
@@ -147,13 +149,14 @@ void add_camera(CLI::App& app, CameraOptions& o) {
 
 void add_light(CLI::App& app, LightOptions& o) {
   Group group(app, "Light");
-  group.value("--env", "FILE[:LAYER]|R,G,B", o.env, "lat-long map, or a constant colour");
+  group.value("--env", "FILE[:LAYER]|R,G,B", o.env, "lat-long or cube map, or a constant colour");
   group
       .value("--env-rotate", "DEG", o.rotate_degrees,
              "turn the map about the up axis, counter-clockwise from above")
       ->check(between(-1e6, 1e6));
-  group.choice("--env-up", o.up, {{"auto", std::nullopt}, {"y", UpAxis::y}, {"z", UpAxis::z}},
-               "axis that points up; auto is z for files of Blender and Unreal, else y");
+  group.choice(
+      "--env-up", o.up, {{"auto", std::nullopt}, {"y", UpAxis::y}, {"z", UpAxis::z}},
+      "axis that points up; auto: by the header of Blender or Unreal, else by the camera, else y");
   group.value("--env-exposure", "STOPS", o.exposure_stops, "brighten the environment")
       ->check(between(-100, 100));
 }

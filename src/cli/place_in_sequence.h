@@ -2,9 +2,9 @@
 #pragma once
 
 #include <optional>
-#include "estimate.h"
 
 #include "cli/options.h"
+#include "estimate.h"
 #include "frame.h"
 
 namespace ssdo {

@@ -97,9 +97,11 @@ void add_vote(const GBuffer& g, int x, int y, Votes& votes) {
   }
   const float apart = (1 - alpha) * sum(rho.low + rho.high) / 2;
   if (!(apart > 0)) return;
-  const float vote =
-      std::clamp((rho.distance(a, 1) - rho.distance(a, alpha)) / apart, -1.0f, 1.0f) *
-      std::min(apart / kClear, 1.0f);
+  const float straight = rho.distance(a, 1), premultiplied = rho.distance(a, alpha);
+  // Glass and smoke are partly covered too, and have the albedo of neither.
+  const float fits = std::max(0.0f, 1 - std::min(straight, premultiplied) / apart);
+  const float vote = fits * std::clamp((straight - premultiplied) / apart, -1.0f, 1.0f) *
+                     std::min(apart / kClear, 1.0f);
   (vote > 0 ? votes.premultiplied : votes.straight) += std::abs(vote);
 }
 
@@ -148,6 +150,12 @@ void undo_alpha_of_albedo(GBuffer& g, std::optional<bool> stated,
     share = *stated;
     g.albedo_alpha =
         fmt::format("albedo is {}premultiplied by alpha: by --aov", *stated ? "" : "not ");
+  } else if (g.grid.is_coarse()) {
+    g.warnings.push_back(
+        "albedo is taken as premultiplied by alpha, as rendered layers are: the overview of a "
+        "frame "
+        "that is made in bands shows too few edges to tell; --aov albedo:straight=LAYER or "
+        "albedo:premultiplied=LAYER states it");
   } else if (const Votes votes = count_votes(g); votes.pixels > 0) {
     share = premultiplied_share(votes);
     g.albedo_alpha = describe(votes, share);

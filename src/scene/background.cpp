@@ -87,8 +87,8 @@ void hold_depth_to_position(GBuffer& g) {
 }
 
 /// Whether P, or the depth where there is no P, has a surface at a pixel, whatever alpha says.
-bool shows_surface(const GBuffer& g, std::size_t i) {
-  if (!g.normal.empty() && g.normal[i] == glm::vec3(0)) return false;
+bool shows_surface(const GBuffer& g, std::size_t i, bool has_normals) {
+  if (has_normals && g.normal[i] == glm::vec3(0)) return false;
   if (!g.depth.empty() && shows_nothing(g.depth[i], kEmptyDepth)) return false;
   return g.position.empty() ||
          (g.position[i] != glm::vec3(0) && !is_missing(g.position[i], empty_from(g)));
@@ -96,10 +96,13 @@ bool shows_surface(const GBuffer& g, std::size_t i) {
 
 /// Whether alpha is 0 in all pixels, also where other layers show a surface: it was never written.
 bool is_alpha_unwritten(const GBuffer& g) {
+  // Normals that are 0 everywhere were not written either, and tell nothing.
+  const bool has_normals =
+      std::ranges::any_of(g.normal.pixels, [](const glm::vec3& n) { return n != glm::vec3(0); });
   bool shown = false;
   for (std::size_t i = 0; i < g.alpha.size(); ++i) {
     if (g.alpha[i] > kLeastAlpha) return false;
-    shown = shown || shows_surface(g, i);
+    shown = shown || shows_surface(g, i, has_normals);
   }
   return shown;
 }

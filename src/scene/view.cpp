@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <utility>
 
 #include "error.h"
@@ -118,14 +119,14 @@ bool knows_camera_of_positions(const View& view) {
 /// The same without a depth that contradicts the camera of P. A wrong depth may take so many
 /// surfaces for background that no camera is found: then there is one without it.
 void read_surfaces_by_right_depth(Reading reading, View& view) {
-  std::optional<Error> failure;
+  std::exception_ptr failure;
   try {
     read_surfaces(reading, view);
-  } catch (const Error& error) {
-    failure = error;
+  } catch (const Error&) {
+    failure = std::current_exception();
   }
   const bool has_both = !view.gbuffer.depth.empty() && !view.gbuffer.position.empty();
-  if (!has_both && failure) throw *failure;
+  if (!has_both && failure) std::rethrow_exception(failure);
   if (!has_both || (!failure && !knows_camera_of_positions(view))) return;
   const auto instead = [&](const GBuffer& g) {
     return what_depth_is_instead(g, camera_of_positions(view));
@@ -142,7 +143,7 @@ void read_surfaces_by_right_depth(Reading reading, View& view) {
   } catch (const Error&) {
     if (!failure) throw;
   }
-  if (found.empty()) throw *failure;
+  if (found.empty()) std::rethrow_exception(failure);
   view.gbuffer.warnings.push_back(fmt::format("depth contradicts P ({}) and is left out", found));
 }
 

@@ -185,8 +185,9 @@ TEST_F(Examples, WorkWhenPasted) {
     const Finished done = paste(text, folder);
     EXPECT_EQ(done.code, 0) << done.err;
     // The frame of the examples has no overscan to crop.
-    if (text.find("--crop") == text.npos)
+    if (text.find("--crop") == text.npos) {
       EXPECT_THAT(done.err, testing::Not(HasSubstr("has no effect")));
+    }
     for (const std::string& file : outputs(text)) EXPECT_TRUE(fs::exists(folder / file)) << file;
   }
   for (const auto& [begin, reason] : kNotRun)

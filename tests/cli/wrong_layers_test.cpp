@@ -105,9 +105,9 @@ TEST_F(WrongLayers, NormalsOfOtherAxesAreBroughtToThoseOfP) {
   change(y_up, kNormal, [](const glm::vec3& n, std::size_t) { return glm::vec3(n.x, n.z, -n.y); });
   change(mirrored, kNormal,
          [](const glm::vec3& n, std::size_t) { return n * glm::vec3(-1, 1, 1); });
-  EXPECT_LT(off(opencv), 1e-3);
-  EXPECT_LT(off(y_up), 1e-3);
-  EXPECT_LT(off(mirrored), 1e-3);
+  EXPECT_LT(off(opencv), 2e-3);
+  EXPECT_LT(off(y_up), 2e-3);
+  EXPECT_LT(off(mirrored), 2e-3);
 }
 
 TEST_F(WrongLayers, NormalsOfAShiftedFrameAreRebuiltWithAWarning) {
@@ -151,7 +151,7 @@ TEST_F(WrongLayers, PInCameraSpaceIsSoBesideACameraFile) {
       if (part.channels.at(kDepth)[i] > 1e9f) return glm::vec3(0);
       return signs * glm::vec3(camera.rotation * glm::dvec3(p) + camera.translation);
     });
-    EXPECT_LT(off(part, {"--camera", data("still_life.camera.json")}), 1e-3);
+    EXPECT_LT(off(part, {"--camera", data("still_life.camera.json")}), 2e-3);
     EXPECT_EQ(said_, "");
   }
 }

@@ -21,7 +21,7 @@ struct RecordedErrors {
 };
 
 inline const std::vector<RecordedErrors> kRecordedErrors = {
-    {"bitmask", {0.0423, 0.0414, 0.1232, 0.3580}, {0.0330, 0.0278, 0.0931, 0.3098}},
+    {"bitmask", {0.0423, 0.0414, 0.1231, 0.3586}, {0.0330, 0.0278, 0.0931, 0.3077}},
     {"trace", {0.0581, 0.0764, 0.1279, 0.5716}, {0.0372, 0.0556, 0.0560, 0.2073}},
     {"ssdo", {0.1199, 0.2273, 0.2538, 1.1029}, {0.0665, 0.1286, 0.1787, 0.7191}},
     {"ssao", {0.1547, 0.2154, 0.2518}, {0.1028, 0.2074, 0.2021}},
@@ -34,7 +34,7 @@ inline const std::vector<RecordedErrors> kRecordedErrors = {
 };
 
 /// Of the default method on the room corner with 25 % of overscan on each side.
-inline constexpr TruthErrors kRecordedRoomCornerOverscan = {0.0329, 0.0250, 0.0232, 0.1431};
+inline constexpr TruthErrors kRecordedRoomCornerOverscan = {0.0329, 0.0249, 0.0231, 0.1403};
 
 /// Means over five further scenes of what the default method is wrong by when it knows this much,
 /// in the units of TruthErrors; `white` is ao without a radius. `rank_guessed`: rank correlation of
@@ -48,8 +48,8 @@ struct RecordedKnownGeometry {
 };
 
 inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometry = {
-    {"the frame alone", "gbuffer.exr", {}, 0.0648, 0.0826, 0.1188, 0.2702, 0.4789, 0.30},
-    {"with overscan", "overscan.exr", {}, 0.0618, 0.0538, 0.0786, 0.3126, 0.3095, 0.73},
+    {"the frame alone", "gbuffer.exr", {}, 0.0648, 0.0826, 0.1188, 0.2702, 0.4714, 0.29},
+    {"with overscan", "overscan.exr", {}, 0.0615, 0.0536, 0.0726, 0.2945, 0.3012, 0.73},
     {"with a panorama",
      "gbuffer.exr",
      {"also_pano.exr"},
@@ -57,16 +57,16 @@ inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometry = {
      0.0608,
      0.0543,
      0.1479,
-     0.2425,
+     0.2412,
      0.73},
     {"with overscan and four views",
      "overscan.exr",
      {"also_left.exr", "also_pano.exr", "also_right.exr", "also_top.exr"},
-     0.0553,
-     0.0482,
-     0.0386,
-     0.1357,
-     0.2466,
+     0.0552,
+     0.0476,
+     0.0360,
+     0.1264,
+     0.2438,
      0.77},
 };
 

@@ -56,6 +56,12 @@ bool is_ratio(const Subject& s) {
   return s.method() == "bitmask" || s.method() == "trace" || s.method() == "ssdo";
 }
 
+Measured lost_by_next_bounce(const Subject& s, Lost lost) {
+  Plan next = s.frame.plan;
+  if (next.request.bounces++ == 0 || !s.shot.has_energy_of_nature()) return std::nullopt;
+  return lost(relit(s.frame.scene, s.frame.plan), relit(s.frame.scene, next));
+}
+
 /// Half of the texels become brighter.
 Measured lost_by_brighter_texels(const Subject& s, Lost lost) {
   if (s.shot.map.empty() || !s.shot.has_energy_of_nature()) return std::nullopt;
@@ -99,9 +105,13 @@ Measured light_gained(const Subject& s) {
 }
 
 Measured lost_by_a_bounce(const Subject& s) {
-  Plan next = s.frame.plan;
-  if (next.request.bounces++ == 0 || !s.shot.has_energy_of_nature()) return std::nullopt;
-  return lost_light(relit(s.frame.scene, s.frame.plan), relit(s.frame.scene, next));
+  return s.method() == "bitmask" ? std::nullopt : lost_by_next_bounce(s, lost_light);
+}
+
+/// There, what more light makes brighter is gathered by other rays: a pixel may lose what they miss
+/// by chance, and the frame their noise. 0.113 was the worst of 1200, of 14 x 9 pixels.
+Measured lost_by_a_bounce_of_rays(const Subject& s) {
+  return s.method() == "bitmask" ? lost_by_next_bounce(s, lost_in_all) : std::nullopt;
 }
 
 Measured lost_by_more_light_of_one_color(const Subject& s) {

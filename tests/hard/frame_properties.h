@@ -56,6 +56,7 @@ Measured bad_files(const Subject& s);
 // Energy: energy_properties_cases.cpp.
 Measured light_gained(const Subject& s);
 Measured lost_by_a_bounce(const Subject& s);
+Measured lost_by_a_bounce_of_rays(const Subject& s);
 Measured lost_by_more_light_of_one_color(const Subject& s);
 Measured lost_by_more_light_in_a_map(const Subject& s);
 Measured lost_by_more_light_of_a_ratio(const Subject& s);

@@ -122,7 +122,7 @@ TEST(AlbedoAlpha, OfFewPixelsTurnsByDegrees) {
       for (int x = 0; x < kSize; ++x) g.valid(x, y) = 0;
     undo_alpha_of_albedo(g, std::nullopt, std::nullopt);
     const float share = g.encodings.albedo_premultiplied;
-    EXPECT_LE(share, before);
+    EXPECT_LE(share, before + 0.05f) << rows << " rows";  // a row may end between full pixels
     EXPECT_GE(share, before - 0.35f) << rows << " rows";
     if (rows < 6) {
       EXPECT_EQ(share, 1) << rows << " rows";

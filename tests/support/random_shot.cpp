@@ -124,6 +124,12 @@ void draw_broken(RandomNumbers& random, RandomShot& shot) {
   }
 }
 
+/// Six faces of a cube in a row, a column or a cross are no lat-long map, and are refused.
+bool has_shape_of_faces(const Plane<glm::vec3>& map) {
+  const int w = map.width, h = map.height;
+  return w == 6 * h || h == 6 * w || 4 * w == 3 * h || 3 * w == 4 * h;
+}
+
 void draw_light(RandomNumbers& random, RandomShot& shot) {
   LightOptions& light = shot.options.light;
   if (random.chance(0.4)) {
@@ -132,6 +138,7 @@ void draw_light(RandomNumbers& random, RandomShot& shot) {
     return;
   }
   shot.map = Plane<glm::vec3>(random.whole(1, 16), random.whole(1, 8));
+  if (has_shape_of_faces(shot.map)) shot.map = Plane<glm::vec3>(16, 8);
   const double low = random.chance(0.05) ? -1 : random.between(0, 1);
   for (glm::vec3& texel : shot.map.pixels)
     for (int c = 0; c < 3; ++c) texel[c] = float(random.between(low, 1));

@@ -109,11 +109,11 @@ Imf::Header scanline_header(const ExrOutput& output, const ExrPart& part) {
 /// That of another part than the one with the planes.
 Imf::Header other_header(const ExrOutput& output, const ExrPart& part) {
   if (!Imf::isSupportedType(part.header.type())) {
-    throw Error(ExitCode::input,
-                fmt::format("{}: {} is of the type '{}', which no EXR of pixels has, and cannot be "
-                            "kept; leave out --keep-channels",
-                            output.input->path().string(), label(part),
-                            printable(part.header.type())));
+    throw Error(
+        ExitCode::input,
+        fmt::format("{}: {} is of the type '{}', which no EXR of pixels has, and cannot be "
+                    "kept; leave out --keep-channels",
+                    output.input->path().string(), label(part), printable(part.header.type())));
   }
   if (!is_changed(output, part)) {
     check_copy(*output.input, part);

@@ -18,8 +18,8 @@ struct WorldUp {
 
 /// The header decides where a renderer with one world wrote it: Blender and Unreal have z up. Else
 /// the camera and the surfaces do: a camera stands level, its right axis being perpendicular to up,
-/// looks up or down by little, and sees more floors than ceilings. Of y and z the likelier is
-/// taken.
+/// looks up or down by little, and sees more floors than ceilings. Where they do not tell surely
+/// between y and z, as under a camera that looks along an axis and steeply down, y is up.
 WorldUp find_world_up(const GBuffer& g, const Geometry& geometry);
 
 }  // namespace ssdo

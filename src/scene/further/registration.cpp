@@ -205,6 +205,13 @@ std::vector<glm::dmat3> all_axes() {
 }
 
 /// "(x, -z, y)"
+/// Whether axes are turned by 180 degrees. No two tools differ by that, and in a room that is the
+/// same to both sides a view of the other side would fit.
+bool is_half_turn(const glm::dmat3& axes) {
+  const bool keeps_axes = axes[0][0] != 0 && axes[1][1] != 0 && axes[2][2] != 0;
+  return keeps_axes && axes != glm::dmat3(1) && glm::determinant(axes) > 0;
+}
+
 std::string describe(const glm::dmat3& axes) {
   std::string text;
   for (int row = 0; row < 3; ++row) {
@@ -255,10 +262,11 @@ int Agreement::known_sides() const {
 }
 
 double Agreement::share() const {
+  if (known_sides() == 0) return double(shared()) / double(std::max<std::size_t>(all(), 1));
   double sum = 0;
   for (const Side& side : sides)
     if (side.all() >= kFewestOfSide) sum += double(side.shared) / double(side.all());
-  return sum / std::max(1, known_sides());
+  return sum / known_sides();
 }
 
 Registration register_view(FurtherView view, const Geometry& frame) {
@@ -269,6 +277,7 @@ Registration register_view(FurtherView view, const Geometry& frame) {
   Agreement best;
   std::optional<OtherWorld> fits;
   for (const glm::dmat3& axes : all_axes()) {
+    if (is_half_turn(axes)) continue;
     for (const double unit : kUnits) {
       const OtherWorld world{unit, axes};
       const Camera camera = seen_from(in_world(view.picture->camera, world), frame.camera);
@@ -280,8 +289,8 @@ Registration register_view(FurtherView view, const Geometry& frame) {
   }
   if (fits) {
     return {place(in_world(*view.picture, *fits), frame),
-            fmt::format("{}: {}: so {:.0f} % of what it and the frame should both show fits, as "
-                        "it is {:.0f} %; render it in the frame's unit and axes",
+            fmt::format("{}: {}: {:.0f} % of what it and the frame should both show then agrees, "
+                        "{:.0f} % as stored; render it in the unit and axes of the frame",
                         file, describe(*fits), 100 * best.share(), 100 * own.share())};
   }
   if (!contradicts(own)) return {std::move(view), {}};

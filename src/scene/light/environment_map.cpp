@@ -151,14 +151,9 @@ class Intake {
   Intake(const std::string& file, const Window& window, std::optional<TransferCurve> curve,
          int most_columns = MapReduction::kColumns)
       : file_(file),
-        area_(window.area()),
+        area_(checked_area(file, window, most_columns)),
         reduction_(window.width(), window.height(), most_columns),
-        curve_(std::move(curve)) {
-    constexpr double kTexel = sizeof(glm::vec3), kStored = 3 * sizeof(float);
-    const double strip = double(window.width()) * std::min(kRows, window.height());
-    check_picture_size(file, double(area_) * kTexel,
-                       double(reduction_.area()) * kTexel + strip * (kTexel + kStored));
-  }
+        curve_(std::move(curve)) {}
 
   void add(int first, Plane<glm::vec3> rows) {
     for_each_row(curve_ ? rows.height : 0, [&](int row) {
@@ -180,6 +175,16 @@ class Intake {
   }
 
  private:
+  /// Texels of the window, before memory is taken for them.
+  static std::size_t checked_area(const std::string& file, const Window& window, int most_columns) {
+    constexpr double kTexel = sizeof(glm::vec3), kStored = 3 * sizeof(float);
+    const double strip = double(window.width()) * std::min(kRows, window.height());
+    const glm::ivec2 out = MapReduction::size(window.width(), window.height(), most_columns);
+    check_picture_size(file, double(window.area()) * kTexel,
+                       double(out.x) * double(out.y) * kTexel + strip * (kTexel + kStored));
+    return window.area();
+  }
+
   void clear_broken(Plane<glm::vec3>& texels) {
     for (glm::vec3& texel : texels.pixels) {
       const glm::vec3 held = within_range(texel);

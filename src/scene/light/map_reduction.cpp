@@ -10,9 +10,14 @@
 
 namespace ssdo {
 
-MapReduction::MapReduction(int width, int height, int columns) : width_(width), height_(height) {
+glm::ivec2 MapReduction::size(int width, int height, int columns) {
   const int factor = std::max(1, width / columns);
-  out_ = Plane<glm::vec3>(width / factor, factor == 1 ? height : std::max(1, height / factor));
+  return {width / factor, factor == 1 ? height : std::max(1, height / factor)};
+}
+
+MapReduction::MapReduction(int width, int height, int columns) : width_(width), height_(height) {
+  const glm::ivec2 reduced = size(width, height, columns);
+  out_ = Plane<glm::vec3>(reduced.x, reduced.y);
   if (is_identity()) return;
   const std::int64_t from = width, to = out_.width;
   for (std::int64_t x = 0; x < from; ++x) {

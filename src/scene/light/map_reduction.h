@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <utility>
 #include <vector>
@@ -21,8 +22,8 @@ class MapReduction {
   /// The size of the map that is to come. Rows that never come are black.
   MapReduction(int width, int height, int columns = kColumns);
 
-  /// Texels of the result.
-  std::size_t area() const { return out_.size(); }
+  /// Columns and rows of the result.
+  static glm::ivec2 size(int width, int height, int columns = kColumns);
 
   /// The next rows, which begin at row `first` of the map.
   void add(int first, const Plane<glm::vec3>& rows);

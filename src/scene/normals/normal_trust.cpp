@@ -198,17 +198,23 @@ Plane<double> agreements_of(const Plane<Sums>& cells) {
 }  // namespace
 
 float NormalTrust::least() const {
-  return cells.empty() ? 1.0f : *std::min_element(cells.pixels.begin(), cells.pixels.end());
+  float least = 1;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (smooth[i] > 0) least = std::min(least, cells[i]);
+  return least;
 }
 
 float NormalTrust::most() const {
-  return cells.empty() ? 1.0f : *std::max_element(cells.pixels.begin(), cells.pixels.end());
+  float most = cells.empty() ? 1.0f : 0.0f;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (smooth[i] > 0) most = std::max(most, cells[i]);
+  return most;
 }
 
 float NormalTrust::mean() const {
-  return cells.empty() ? 1.0f
-                       : std::accumulate(cells.pixels.begin(), cells.pixels.end(), 0.0f) /
-                             float(cells.size());
+  float sum = 0, pixels = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) sum += smooth[i] * cells[i], pixels += smooth[i];
+  return pixels > 0 ? sum / pixels : 1.0f;
 }
 
 float NormalTrust::at(int x, int y) const {
@@ -247,10 +253,11 @@ NormalTrust find_normal_trust(const Plane<glm::vec3>& stored, const Plane<Surfel
       kFollowsP.at(agreeing / std::max(pixels, 1.0)) * kTurnsWithP.at(space.turning_share);
   NormalTrust trust;
   if (belongs == 1 && elsewhere == 1) return trust;
-  trust.cells = Plane<float>(columns, rows);
+  trust.cells = trust.smooth = Plane<float>(columns, rows);
   for (std::size_t i = 0; i < trust.cells.size(); ++i) {
     const double used = belongs * std::max(elsewhere, agreements[i]);
     trust.cells[i] = float(1 - doubt * (1 - used));
+    trust.smooth[i] = sums[i].pixels;
   }
   trust.cell_size = size;
   return trust;

@@ -13,13 +13,14 @@ struct NormalSpace;
 /// How far the stored normals are used: 1 as they are, 0 rebuilt from P, a blend between; at the
 /// centres of square cells, about 24 over the width of the frame.
 struct NormalTrust {
-  Plane<float> cells = {};  ///< empty: all normals are used as they are
-  int cell_size = 1;        ///< in pixels
+  Plane<float> cells = {};   ///< empty: all normals are used as they are
+  Plane<float> smooth = {};  ///< pixels of each cell that tell: where P is smooth
+  int cell_size = 1;         ///< in pixels
 
   /// At a pixel, between the four cells around it.
   float at(int x, int y) const;
 
-  /// Of all cells.
+  /// Of the cells with pixels that tell, and the mean by these.
   float least() const;
   float mean() const;
   float most() const;

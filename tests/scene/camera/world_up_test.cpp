@@ -71,6 +71,21 @@ TEST(WorldUp, IsFoundUnderACameraHeldByHand) {
   }
 }
 
+/// A camera that turns about an axis of the world alone has no roll about the other one either.
+TEST(WorldUp, OfATiltingCameraIsYWhereItIsNotSurelyZ) {
+  for (int down = 0; down <= 85; down += 5) {
+    SCOPED_TRACE(down);
+    EXPECT_EQ(find_world_up({}, seen({0, double(down)}, kToYUp)).axis, UpAxis::y);
+    const WorldUp z = find_world_up({}, seen({0, double(down)}));
+    if (down <= 30) {
+      EXPECT_EQ(z.axis, UpAxis::z);
+    }
+    if (z.axis == UpAxis::y && down < 60) {
+      EXPECT_THAT(z.warning, HasSubstr("--env-up z"));
+    }
+  }
+}
+
 TEST(WorldUp, IsFoundInALeftHandedWorld) {
   const glm::mat3 mirror{{1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
   EXPECT_EQ(find_world_up({}, seen({30, 10}, mirror)).axis, UpAxis::z);

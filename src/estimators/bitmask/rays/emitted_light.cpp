@@ -67,8 +67,8 @@ HWY_INLINE V seen_size(const March& march, const MarchReceiver& p, const Emitter
   const V3 to = set(e.position) - p.position;
   const V distance2 = dot(to, to), cosine = hn::Max(dot(p.shading, to), zero),
           cosine_there = hn::Max(zero - dot(set(e.normal), to), zero);
-  const V size = cosine * cosine_there /
-                 (distance2 * hn::MulAdd(distance2, set(glm::pi<float>()), set(e.area)));
+  const V size = (cosine / distance2) *
+                 (cosine_there / hn::MulAdd(distance2, set(glm::pi<float>()), set(e.area)));
   const M meets = hn::And(hn::And(p.valid, dot(p.normal, to) > zero),
                           hn::And(distance2 <= set(march.radius * march.radius), size > zero));
   return hn::IfThenElseZero(meets, size);
