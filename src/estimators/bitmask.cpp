@@ -300,10 +300,10 @@ class Bitmask {
       const Emitters emitters =
           find_emitters({march_scene_, light, two_sided, lit_part, far_, far_light}, request_.seed);
       const std::array<BorderValues, 3> sent_border =
-          light_beyond(march_scene_, light, two_sided, emitters.level);
+          light_beyond(march_scene_, light, two_sided, emitters.bright);
       if (kept_light_in_)
-        kept_light_.push_back(
-            {raster_.in_whole_rows(light, *kept_light_in_), sent_border, emitters.mean_sent});
+        kept_light_.push_back({raster_.in_whole_rows(light, *kept_light_in_), sent_border,
+                               emitters.bright, emitters.level});
       const bool wants_error = request_.products.error && pass == request_.bounces;
       InterleavedPlane* const error = wants_error ? &bounce_error_ : nullptr;
       const Emitters* const bright = emitters.points.empty() ? nullptr : &emitters;

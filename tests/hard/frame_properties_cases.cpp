@@ -104,7 +104,7 @@ std::span<const FrameProperty> frame_properties() {
       FrameProperty{"values in files that are not finite", 0, 0, bad_files},
       FrameProperty{"light gained in a white furnace", 1e-5, 1e-5, light_gained},
       FrameProperty{"light lost by another bounce", 1e-5, 1e-5, lost_by_a_bounce},
-      FrameProperty{"light lost by another bounce, of rays", 0.3, 2e-3, lost_by_a_bounce_of_rays},
+      FrameProperty{"light lost by another bounce, of rays", 0.4, 5e-3, lost_by_a_bounce_of_rays},
       FrameProperty{"light lost by more light of one colour", 1e-5, 1e-5,
                     lost_by_more_light_of_one_color},
       FrameProperty{"light lost by more light in a map", 0.1, 1e-3, lost_by_more_light_in_a_map},

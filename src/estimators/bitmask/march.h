@@ -24,7 +24,7 @@ namespace ssdo {
 struct FarLight {
   InterleavedVectors sent;  ///< in the order of FarRaster
   std::array<BorderValues, 3> border;
-  float mean_sent;  ///< as Emitters has it, of the frame
+  float bright, level;  ///< as Emitters has them, of the frame
 };
 
 /// All of a frame as an overview shows it, for rasters that are a part of the frame.

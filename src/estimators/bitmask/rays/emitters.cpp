@@ -8,6 +8,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "estimators/bitmask/march.h"
+#include "estimators/bitmask/rays/bright_level.h"
 #include "math/luminance.h"
 #include "math/sobol.h"
 #include "math/two_in_one.h"
@@ -15,10 +16,6 @@
 
 namespace ssdo {
 namespace {
-
-/// How much brighter than its surroundings a sender is that rays go to: a march finds the light of
-/// what is less so with less noise than that of their shadows.
-constexpr float kBright = 4;
 
 constexpr int kMembers = Interleaving::kPeriod * Interleaving::kPeriod;
 constexpr int kTile = 16;  ///< pixels
@@ -160,49 +157,6 @@ class Senders {
   float level_, beside_px_;
 };
 
-/// Luminance of what pixels show.
-struct Brightness {
-  double roots = 0, surfaces = 0;
-  float most = 0;
-
-  float mean() const {
-    const double root = surfaces > 0 ? roots / surfaces : 0;
-    return float(root * root);
-  }
-};
-
-Brightness brightness_of(const SentLight& sent) {
-  const MarchScene& scene = sent.scene;
-  std::vector<Brightness> rows(std::size_t(sent.lit.height()));
-  for_each_row(sent.lit.height(), [&](int row) {
-    Brightness& b = rows[std::size_t(row)];
-    const int y = sent.lit.y0 + row, width = scene.layout.width();
-    for (int first = 0; first < std::min(Interleaving::kPeriod, width); ++first) {
-      std::ptrdiff_t i = scene.layout.index(first, y);
-      for (int x = first; x < width; x += Interleaving::kPeriod, ++i) {
-        if (!scene.shows_surface(i)) continue;
-        const glm::vec3 both(sent.radiance[0][i], sent.radiance[1][i], sent.radiance[2][i]);
-        float light = 0, most = 0;
-        if (sent.two_sided) {
-          light = luminance({first_of_two(both.x), first_of_two(both.y), first_of_two(both.z)});
-          most = luminance({second_of_two(both.x), second_of_two(both.y), second_of_two(both.z)});
-        } else {
-          light = luminance(both);
-        }
-        b.roots += double(std::sqrt(std::max(light, 0.0f)));
-        b.surfaces += 1;
-        b.most = std::max({b.most, light, most});
-      }
-    }
-  });
-  Brightness all;
-  for (const Brightness& b : rows) {
-    all.roots += b.roots, all.surfaces += b.surfaces;
-    all.most = std::max(all.most, b.most);
-  }
-  return all;
-}
-
 /// The pixels of a raster, tile by tile, in an order that seldom leaps.
 class Tiles {
  public:
@@ -331,10 +285,9 @@ class Points {
 
 Emitters find_emitters(const SentLight& sent, unsigned seed) {
   Emitters out;
-  const Brightness b = brightness_of(sent);
-  out.mean_sent = sent.far_light ? sent.far_light->mean_sent : b.mean();
-  out.level = kBright * out.mean_sent;
-  if (b.most <= out.level && !sent.far) return out;
+  const BrightLevel bright = bright_level(sent);
+  out.bright = bright.bright, out.level = bright.level;
+  if (std::isinf(out.level)) return out;
   const std::vector<Part> parts = parts_of(sent, out.level);
   std::vector<std::vector<double>> power;
   double all = 0;

@@ -5,7 +5,10 @@
 // Of the radiance L that a pixel sends, in luminance, the part above a level that the frame sets is
 // gathered by rays (rays/emitted_light.cpp), the rest by the march (bitmask/bounce.cpp):
 //
-//   level = 4 (mean of sqrt(L) over the frame's surfaces)^2
+//   level = 4 (mean of sqrt(L) over the frame's surfaces)^2 / smoothstep(0.05, 0.15, s)
+//
+// with s the share of the light shown that exceeds this level without the divisor: highlights that
+// are little of it stay with the march, whatever it misses of them.
 //
 // A mean of roots is the level of what is around: a lamp in 1 % of a black frame has a share of
 // 1e-4 in it. Where half of the frame is bright, as a lawn in the sun is, nothing exceeds it. Light
@@ -47,7 +50,7 @@ struct Emitters {
   /// between those of the others.
   static constexpr int kPoints = 32;
 
-  float mean_sent = 0;          ///< luminance, by roots
+  float bright = 0;             ///< luminance that is bright in the frame: 4 (mean of sqrt(L))^2
   float level = 0;              ///< luminance from which on light is gathered by rays
   float power = 0;              ///< luminance times area that each point stands for
   std::vector<Emitter> points;  ///< kPoints of each member; empty: nothing exceeds the level

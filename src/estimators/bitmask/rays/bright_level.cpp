@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/bitmask/rays/bright_level.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <vector>
+
+#include "estimators/bitmask/march.h"
+#include "math/luminance.h"
+#include "math/two_in_one.h"
+#include "parallel/tiles.h"
+
+namespace ssdo {
+namespace {
+
+/// How much brighter than its surroundings a sender is that rays go to: a march finds the light of
+/// what is less so with less noise than that of their shadows.
+constexpr float kBright = 4;
+
+/// Shares of the light that the frame shows: where less exceeds the level, nothing is gathered by
+/// rays, which cost half of the estimate; where more does, all of it is.
+constexpr double kLeastShare = 0.05, kFullShare = 0.15;
+
+/// Luminance of what pixels show.
+struct Brightness {
+  double roots = 0, surfaces = 0;
+  float most = 0;
+
+  void operator+=(const Brightness& other) {
+    roots += other.roots, surfaces += other.surfaces;
+    most = std::max(most, other.most);
+  }
+  float mean() const {
+    const double root = surfaces > 0 ? roots / surfaces : 0;
+    return float(root * root);
+  }
+};
+
+/// Light as the frame shows it.
+struct Excess {
+  double above = 0, all = 0;  ///< a level
+
+  void operator+=(const Excess& other) { above += other.above, all += other.all; }
+  double share() const { return all > 0 ? above / all : 0; }
+};
+
+/// Sums over the surfaces of the lit rows: `add(sums, front, back)` has the luminance of both
+/// sides. Added by rows: the same bits for any number of threads.
+template <class Sums, class Add>
+Sums sum_of(const SentLight& sent, const Add& add) {
+  const MarchScene& scene = sent.scene;
+  std::vector<Sums> rows(std::size_t(sent.lit.height()));
+  for_each_row(sent.lit.height(), [&](int row) {
+    const int y = sent.lit.y0 + row, width = scene.layout.width();
+    for (int first = 0; first < std::min(Interleaving::kPeriod, width); ++first) {
+      std::ptrdiff_t i = scene.layout.index(first, y);
+      for (int x = first; x < width; x += Interleaving::kPeriod, ++i) {
+        if (!scene.shows_surface(i)) continue;
+        const glm::vec3 both(sent.radiance[0][i], sent.radiance[1][i], sent.radiance[2][i]);
+        const auto side = [&](float (*of)(float)) {
+          return luminance({of(both.x), of(both.y), of(both.z)});
+        };
+        const float front = sent.two_sided ? side(first_of_two) : luminance(both);
+        add(rows[std::size_t(row)], front, sent.two_sided ? side(second_of_two) : front);
+      }
+    }
+  });
+  Sums all;
+  for (const Sums& of_row : rows) all += of_row;
+  return all;
+}
+
+Brightness brightness_of(const SentLight& sent) {
+  return sum_of<Brightness>(sent, [](Brightness& b, float front, float back) {
+    b.roots += double(std::sqrt(std::max(front, 0.0f)));
+    b.surfaces += 1;
+    b.most = std::max({b.most, front, back});
+  });
+}
+
+/// Level of a frame in which `bright` is bright: higher
+/// the less of its light that is, and endless where the march may as well have it.
+float level_of(const SentLight& sent, float bright) {
+  const Excess excess = sum_of<Excess>(sent, [=](Excess& e, float front, float) {
+    e.above += double(std::max(front - bright, 0.0f));
+    e.all += double(std::max(front, 0.0f));
+  });
+  const double t =
+      std::clamp((excess.share() - kLeastShare) / (kFullShare - kLeastShare), 0.0, 1.0);
+  return float(bright / (t * t * (3 - 2 * t)));
+}
+
+}  // namespace
+
+BrightLevel bright_level(const SentLight& sent) {
+  if (sent.far_light) return {sent.far_light->bright, sent.far_light->level};
+  const Brightness b = brightness_of(sent);
+  const float bright = kBright * b.mean();
+  if (b.most <= bright) return {bright, std::numeric_limits<float>::infinity()};
+  return {bright, level_of(sent, bright)};
+}
+
+}  // namespace ssdo
