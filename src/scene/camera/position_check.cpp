@@ -312,7 +312,7 @@ std::string find_fault_of_positions(const GBuffer& g, const Camera* camera) {
   if (is_in_8_bits(g))
     return "has steps of 1/255: looks stored in 8 bits; export P in 32-bit float";
   const double miss_px = camera ? median_miss_px(*camera, g.position, g.valid, g.window) : INFINITY;
-  const bool fits = miss_px < 0.5 || (camera && explains(*camera, g.position, g.valid, g.window,
+  const bool fits = camera && (miss_px < 0.5 || explains(*camera, g.position, g.valid, g.window,
                                                          rounding_of_positions(g)));
   const std::string clipping =
       find_clipping(g, fits ? Fitted{*camera, miss_px} : Fitted{std::nullopt, INFINITY});

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
+#include <utility>
 
 #include "estimators/bitmask/march.h"
 #include "estimators/bitmask/rays/bright_level.h"
@@ -292,13 +293,14 @@ Emitters find_emitters(const SentLight& sent, unsigned seed) {
   std::vector<std::vector<double>> power;
   double all = 0;
   for (const Part& part : parts) {
-    std::vector<double>& of_part = power.emplace_back(part.tiles.count());
+    std::vector<double> of_part(part.tiles.count());
     for_each_task(of_part.size(), [&](std::size_t tile) {
       double sum = 0;
       part.for_each_side(tile, [&](const Side& s) { sum += s.power(); });
       of_part[tile] = sum;
     });
     for (const double of_tile : of_part) all += of_tile;
+    power.push_back(std::move(of_part));
   }
   if (!(all > 0)) return out;
   out.points.resize(std::size_t(kMembers * Emitters::kPoints));
