@@ -120,6 +120,8 @@ void find_background(GBuffer& g, std::optional<float> background_depth,
     found.normals_tell = has_normals(g);
   }
   if (found.depth_is_wrong) g.depth = {};
+  // A layer that was left out after a first reading is not there in the next.
+  if (g.normal.empty()) found.normals_tell = false;
   const std::optional<DepthModel>& depth_of_position = found.depth_of_position;
   const float empty = empty_from(g), empty_depth = g.position.empty() ? empty : kEmptyDepth,
               far = background_depth ? *background_depth * (1 - 1e-6f) : empty_depth;
