@@ -25,7 +25,7 @@ constexpr std::size_t kMostPixels = 20000, kFewestPixels = 16;
 /// Of right depths, as in depth_model.cpp: silhouettes that are averages are off.
 constexpr double kTolerance = 0.05, kLeastShare = 0.5;
 
-/// What a wrong depth is, is said where it is that in nearly all pixels.
+/// A wrong depth is named where the quantity that is named matches in nearly all pixels.
 constexpr double kExact = 1e-3, kNearlyAll = 0.9;
 
 /// A share of the pixels with a P that is as good as none.

@@ -222,9 +222,9 @@ struct PlacedNormal {
 };
 
 /// The normal at a pixel; `stored` is in camera space, of any length, and used as far as `trust`
-/// says. A smooth normal may lean away from the viewer at a silhouette. One that points below the
-/// surface too is turned where it is about opposite to what P shows, being that of the back, and
-/// else mirrored in the surface, as a leaf that is lit as a crown may need it.
+/// says. A smooth normal may lean away from the viewer at a silhouette. One below the surface is
+/// negated if it is nearly opposite to the geometric normal (a back face); otherwise it is mirrored
+/// in the surface (a leaf that is lit as a crown).
 PlacedNormal placed_normal(const Plane<Surfel>& surfels, int x, int y, const glm::vec3& stored,
                            float trust, bool orthographic) {
   using Fate = PlacedNormal::Fate;
@@ -283,7 +283,7 @@ UsedNormals find_normals(const GBuffer& g, const Geometry& out, const std::strin
   UsedNormals used;
   if (space) used = g.space ? UsedNormals{space->to_camera} : judge_normals(g, out, *space, report);
   report.normal_space = used.to_camera ? space->name : "rebuilt from P";
-  // What is made of the frame in bands knows this alone, and uses all normals or none.
+  // Bands know only this transform, so they use all stored normals or none.
   if (used.trust.mean() > kMostlyStored) report.placement.normals_to_camera = used.to_camera;
   return used;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/solids.h"
 
+#include <limits>
 #include <stdexcept>
 #include <utility>
 

@@ -5,9 +5,9 @@
 // A surface at the frame's border may go on (bitmask/extension-inl.h) or end there. For ao and for
 // light that bounces it goes on: in the mean of five scenes that has less error than an end there,
 // though walls that end just outside of the picture make a room too dark. For light from outside,
-// of a map that is not the same from everywhere, neither holds: a corner, a lawn and a room that is open in
-// front have less error with open borders, a street and a court with surfaces that go on. The mean
-// ao of the frame did not tell them apart. So half of the light comes through.
+// of a map that is not the same from everywhere, neither holds: a corner, a lawn and a room that is
+// open in front have less error with open borders, a street and a court with surfaces that go on.
+// The mean ao of the frame did not tell them apart. So half of the light comes through.
 //
 // A sun is all or nothing, and there the frame does tell: a ray that leaves it meets about as much
 // beyond it as rays meet in it, even where the border shows sky. Dense frames go on as streets and

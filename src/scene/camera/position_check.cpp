@@ -26,8 +26,8 @@ namespace {
 /// Pixels that a camera is fitted to here, and the fewest that tell anything.
 constexpr std::size_t kMostPixels = 4000, kFewestPixels = 32;
 
-/// Of a clipped coordinate, the fewest pixels and their share of all that count, and by how much at
-/// least half of them miss their places.
+/// A coordinate counts as clipped from this many pixels on, from this share of all, and if half of
+/// them miss their places by this much.
 constexpr double kFewestClipped = 16, kLeastClipped = 1e-3, kClippedMissPx = 2;
 
 /// What was done to P is found where undoing it brings P this much nearer to its pixels.

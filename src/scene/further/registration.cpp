@@ -44,13 +44,13 @@ constexpr double kCoarsest = 10;
 /// Least cosine between a surface and the way to a camera that sees it.
 constexpr float kLeastFacing = 0.2f;
 
-/// Fewer samples that tell something tell nothing; so many of a side.
+/// Fewest samples in all, and on one side, from which agreement is judged.
 constexpr std::size_t kFewest = 30, kFewestOfSide = 20;
 
 /// A view fits if so much of what tells is shared, and another world for it if so much is, of two
 /// sides at least, and of so much of all samples of the frame. Views of five scenes of Cycles share
-/// 0.95 and more, panoramas of the other scenes 0.02 to 0.71, and one 0.90. Where most of all fits,
-/// what does not has moved.
+/// 0.95 and more, panoramas of the other scenes 0.02 to 0.71, and one 0.90. Where 0.9 of all
+/// samples fit, the rest is taken for things that have moved.
 constexpr double kLeastShared = 0.75, kLeastOfAll = 0.9, kLeastOfOtherWorld = 0.9,
                  kLeastOfFrame = 0.5;
 
@@ -204,7 +204,6 @@ std::vector<glm::dmat3> all_axes() {
   return all;
 }
 
-/// "(x, -z, y)"
 /// Whether axes are turned by 180 degrees. No two tools differ by that, and in a room that is the
 /// same to both sides a view of the other side would fit.
 bool is_half_turn(const glm::dmat3& axes) {
@@ -212,6 +211,7 @@ bool is_half_turn(const glm::dmat3& axes) {
   return keeps_axes && axes != glm::dmat3(1) && glm::determinant(axes) > 0;
 }
 
+/// "(x, -z, y)"
 std::string describe(const glm::dmat3& axes) {
   std::string text;
   for (int row = 0; row < 3; ++row) {

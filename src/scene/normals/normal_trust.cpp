@@ -14,7 +14,6 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>

@@ -14,7 +14,6 @@
 #include <hwy/foreach_target.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
