@@ -48,6 +48,21 @@ TEST_F(DataChecks, LayersThatWereNeverWrittenAreLeftOut) {
   EXPECT_EQ(off(shot), 0);
   EXPECT_THAT(said_, HasSubstr("alpha 'A' is 0 everywhere, also where other layers show surfaces"));
   EXPECT_EQ(info(shot)["surface_pixels"], info(plain_shot())["surface_pixels"]);
+  // Neither hides the other.
+  StoredShot both = with(Role::normal, nothing);
+  both.layers.push_back({Role::beauty, {"R", "G", "B", "A"}, nothing});
+  EXPECT_EQ(info(both)["surface_pixels"], info(plain_shot())["surface_pixels"]);
+}
+
+/// The frame is read again without the depth, and without the normals that the first reading left
+/// out.
+TEST_F(DataChecks, NormalsWithoutANumberBesideAWrongDepthAreRebuilt) {
+  StoredShot shot = with(Role::normal, [](const ShotPixel&) { return glm::vec4(NAN); });
+  for (auto& layer : shot.layers)
+    if (layer.role == Role::depth)
+      layer.content = [](const ShotPixel& p) { return glm::vec4(std::abs(p.position.y)); };
+  EXPECT_LT(off(shot), 0.05);
+  EXPECT_THAT(said_, HasSubstr("depth contradicts P"));
 }
 
 TEST_F(DataChecks, ColoursThatCannotBeRightAreCounted) {

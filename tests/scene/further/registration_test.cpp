@@ -113,6 +113,20 @@ TEST_F(Registers, NoViewOfAnotherScene) {
   EXPECT_THAT(found.warning, HasSubstr("left out"));
 }
 
+/// Turned by 180 degrees it would fit what the frame shows of a room that is the same to both
+/// sides.
+TEST_F(Registers, TheOtherSideOfARoomAsItIs) {
+  const Surface room = all_of({plane({}, {0, 0, 1}), plane({0, 0, 2.6}, {0, 0, -1}),
+                               plane({0, 4, 0}, {0, -1, 0}), plane({0, -4, 0}, {0, 1, 0}),
+                               plane({3, 0, 0}, {-1, 0, 0}), plane({-3, 0, 0}, {1, 0, 0})});
+  const glm::dvec3 eye(0, 0, 1.4);
+  frame_ = geometry_of(room, pinhole(kFrame, eye, {0, 1, 1.3}), kFrame);
+  frame_.world_known = true;
+  const Registration found = registered(room, pinhole(kView, eye, {0, -1, 1.3}), kView);
+  EXPECT_TRUE(found.view);
+  EXPECT_EQ(found.warning, "");
+}
+
 TEST_F(Registers, AViewThatSharesLittleAsItIs) {
   // The other side of the wall.
   const Registration found = registered(scene_, pinhole(kView, {0, 6, 1.5}, {0, 3.2, 1}), kView);
