@@ -10,8 +10,8 @@
 namespace ssdo {
 namespace {
 
-/// Shares of the time that the overview takes, and the mean ao of the frame, for progress.
-constexpr double kOverviewShare = 0.02, kMeanShare = 0.3;
+/// Shares of the time that the overview takes, and the openness of the frame, for progress.
+constexpr double kOverviewShare = 0.02, kOpennessShare = 0.3;
 
 Solids solids_of(const Geometry& geometry, const ModelOptions& model, const Scene& overview) {
   if (model.thickness) return constant_thickness(geometry, float(*model.thickness));
@@ -71,7 +71,7 @@ class BandJob {
 
   std::vector<std::unique_ptr<SafeFile>> run() {
     look_around();
-    if (needs_mean_ao()) find_mean_ao();
+    if (needs_openness()) find_openness();
     std::vector<std::unique_ptr<SafeFile>> files;
     for (const Target& target : job_.targets)
       files.push_back(std::make_unique<SafeFile>(target.path, job_.policy));
@@ -102,26 +102,26 @@ class BandJob {
     on_progress_(begun_);
   }
 
-  bool needs_mean_ao() const {
+  bool needs_openness() const {
     Request request = frame_.plan.request;
     request.around_band = around_;
-    return !bands_.marches_on && frame_.plan.method->bands.needs_mean_ao(frame_.scene, request);
+    return !bands_.marches_on && frame_.plan.method->bands.needs_openness(frame_.scene, request);
   }
 
   /// The overview does not show it to the bit: bands are read once more for it.
-  void find_mean_ao() {
-    AoSum sum;
+  void find_openness() {
+    Openness sum;
     for_each_band([&](const Window& rows) {
       const Band band = read(rows);
       Stopwatch watch;
       Request request = frame_.plan.request;
       request.receivers = rows;
-      frame_.plan.method->bands.add_ao(band.scene, request, sum);
+      frame_.plan.method->bands.add_openness(band.scene, request, sum);
       relit_.times.estimate += watch.lap();
-      on_progress_(kOverviewShare + kMeanShare * double(rows.y1 - all_.y0) / all_.height());
+      on_progress_(kOverviewShare + kOpennessShare * double(rows.y1 - all_.y0) / all_.height());
     });
-    around_.mean_ao = sum.mean();
-    begun_ += kMeanShare;
+    around_.openness = sum;
+    begun_ += kOpennessShare;
   }
 
   /// Calls `work(rows)` for the rows of each band.

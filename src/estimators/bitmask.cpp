@@ -40,8 +40,8 @@
 //   represent their stretches are nearer to the limit than 24 points.
 // - Backs, layers of solids behind what is seen (scene/solids.cpp) and surfaces beyond the frame
 //   (bitmask/extension-inl.h) are guesses that GTAO does not make. Half of a map's light
-//   comes through those beyond, and the more of a sun's, the more open the frame is
-//   (bitmask/beyond.h).
+//   comes through those beyond. They hide a sun as far as they are likely to go on
+//   (bitmask/rays/border_extents.h), and what is closed is dimmer (bitmask/beyond.h).
 // - What only further views show may be anywhere, behind the camera too: rays ask it for the
 //   sectors that the march leaves open (bitmask/further-inl.h).
 #include "estimators/bitmask.h"
@@ -115,9 +115,11 @@ class Bitmask {
     kept_light_in_ = nullptr;
     MarchPlanes planes = raster_.in_whole_rows(s, raster);
     std::vector<DepthBounds> bounds = depth_bounds(s);
-    const float ao = mean_ao(s, scene_.geometry.display, request_.radius);
-    return {std::move(march_scene_), raster, std::move(planes),     std::move(bounds),
-            scene_.solids,           ao,     std::move(kept_light_)};
+    CutSurfaces cut = find_cut_surfaces(s, up_in_camera(scene_), request_.radius);
+    const Openness open = openness_of(s, scene_, request_.radius);
+    return {
+        std::move(march_scene_), raster, std::move(planes),     std::move(bounds), scene_.solids,
+        std::move(cut),          open,   std::move(kept_light_)};
   }
 
  private:
@@ -188,25 +190,25 @@ class Bitmask {
     if (request_.products.bent) out_.bent = raster_.picture(std::move(bent));
   }
 
+  /// A march of rays. In a band that marches on, the overview tells what they leave the frame by.
+  March march_of_rays() {
+    March march = march_;
+    if (march.extend) march.cut = &cut_;
+    if (march.extend && !far_) cut_ = find_cut_surfaces(march_scene_, up_in_camera(scene_), request_.radius);
+    return march;
+  }
+
+  /// Finds where suns are seen, and once more by other rays where the error is wanted.
   void gather_suns() {
-    march_suns(needs_mean_ao(scene_, request_) ? sun_past_beyond(mean_ao_of_frame()) : 1);
-  }
-
-  float mean_ao_of_frame() const {
-    if (const auto& band = request_.around_band) return band->mean_ao.value_or(band->far->mean_ao);
-    return mean_ao(march_scene_, scene_.geometry.display, request_.radius);
-  }
-
-  /// Finds where suns are seen, and once more by other rays where the error is wanted. `past` is
-  /// sun_past_beyond(). Members of the pattern look at different points of a sun's disc.
-  void march_suns(float past) {
     const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
+    const March march = march_of_rays();
+    const float past = sun_past_beyond(march_scene_, scene_, request_);
     for (const Sun& sun : scene_.light.suns) {
       const PassBeyond pass = pass_beyond(past, sun.held);
       const auto find = [&](const Window& to, RaySet set) {
         const std::vector<RayDirections> directions =
             directions_to(sun, rays_to_sun(request_.slices), request_.seed, set);
-        return find_sun({march_, bounds, directions, &sun, pass}, to, progress_);
+        return find_sun({march, bounds, directions, &sun, pass}, to, progress_);
       };
       suns_.push_back(find(lit_part(), RaySet::of_light));
       if (request_.products.error)
@@ -262,8 +264,8 @@ class Bitmask {
           y, [&](std::size_t pixel, std::ptrdiff_t i) { roughness[i] = scene_.roughness[pixel]; });
     });
     const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
-    const ReflectionJob job{march_,        bounds, &roughness, kReflectionRays * request_.slices,
-                            request_.seed, &open};
+    const ReflectionJob job{march_of_rays(), bounds, &roughness, kReflectionRays * request_.slices,
+                            request_.seed,   &open};
     for_each_band_of(
         march_scene_.receivers, [&](const Window& part) { march_reflection(job, part); },
         progress_);
@@ -344,6 +346,7 @@ class Bitmask {
   SlicePattern pattern_, bounce_pattern_;
   std::unique_ptr<FurtherRays> further_;  ///< null: there are no further views
   March march_, bounce_march_;
+  CutSurfaces cut_;
   InterleavedPlane ao_, error_, bounce_error_;
   InterleavedVectors emitted_;        ///< the part of the bounce that rays have found; empty: none
   InterleavedColorShares sky_share_;  ///< empty where that is ao
@@ -385,7 +388,7 @@ Method bitmask_method() {
       .parameters = {kRoughness},
       .samples_per_pixel = [](const Request& r) { return 2 * r.slices * r.steps; },
       .estimate = estimate,
-      .bands = {overview, reach_rows, band_needs_mean_ao, add_ao},
+      .bands = {overview, reach_rows, band_needs_openness, add_openness},
       .ladder = {.rungs = {slices_and_steps(1, 6), slices_and_steps(2, 8), slices_and_steps(2, 16),
                            slices_and_steps(2, 24), slices_and_steps(4, 32),
                            slices_and_steps(6, 48), slices_and_steps(12, 64)},

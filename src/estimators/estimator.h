@@ -40,20 +40,21 @@ using MapFilter = std::function<Plane<float>(Plane<float> map, Plane<Surfel> sur
 /// method that works on bands has its own.
 struct FarScene;
 
+/// What a frame shows of how open the place is, added up over its pixels.
+struct Openness {
+  double ao = 0, surfaces = 0;  ///< the ao of surfaces, and their number
+  /// Of pixels that look above the horizon, the squared sines of their elevation: of those
+  /// that show surfaces, and of those that show sky.
+  double walls = 0, sky = 0;
+  double above = 0, pixels = 0;  ///< the number of those pixels, and of all
+};
+
 /// Beside a band, what is known of the frame that it is some rows of.
 struct AroundBand {
   std::shared_ptr<const FarScene> far;  ///< of the whole frame
   bool marches_on = false;  ///< in `far`, beyond `reach_rows`; else nothing there is in reach
   int reach_rows = 0;       ///< above and below a pixel: those that block what it gathers
-  std::optional<float> mean_ao = {};  ///< of the frame's surfaces; not known: that of `far`
-};
-
-/// The ao of surfaces, added up.
-struct AoSum {
-  double ao = 0, surfaces = 0;
-
-  /// 1 without surfaces.
-  float mean() const { return surfaces > 0 ? float(ao / surfaces) : 1.0f; }
+  std::optional<Openness> openness = {};  ///< of the frame; not known: that of `far`
 };
 
 /// What is asked of a method.
@@ -106,11 +107,11 @@ struct BandSupport {
   /// of every `stride` x `stride`.
   int (*reach_rows)(const Geometry& some, int stride, const Window& frame, const Window& display,
                     const Request&) = nullptr;
-  /// Whether light depends on the mean ao of the frame, more than Request::around_band tells.
-  bool (*needs_mean_ao)(const Scene& overview, const Request&) = nullptr;
-  /// Adds the ao of the receivers in a band, to the bits of the frame in one piece if bands come
+  /// Whether light depends on the openness of the frame, more than Request::around_band tells.
+  bool (*needs_openness)(const Scene& overview, const Request&) = nullptr;
+  /// Adds that of the receivers in a band, to the bits of the frame in one piece if bands come
   /// from top to bottom.
-  void (*add_ao)(const Scene& band, const Request&, AoSum&) = nullptr;
+  void (*add_openness)(const Scene& band, const Request&, Openness&) = nullptr;
 };
 
 /// A row in the table of methods.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
 #include "estimators/bitmask/march.h"
 #include "estimators/bitmask/parts.h"
@@ -15,14 +17,28 @@ constexpr int kPeriod = Interleaving::kPeriod, kSlices = 8, kSteps = 16;
 /// The mean ao of a frame from which on all of a sun comes past the border.
 constexpr float kOpenFrame = 0.6f;
 
+/// How much more sky tells than walls do, and the share of a frame above the horizon that tells
+/// all.
+constexpr double kSkyTells = 10, kAboveTellsAll = 1 / 3.0;
+
+/// Sine of the elevation from which on a pixel is all above the horizon: not at once, for all
+/// pixels of an orthographic camera pass the horizon together.
+constexpr double kAllAbove = 0.1;
+
+/// The sine of elevation at which a pixel looks, where that is above the horizon; else 0.
+float sine_above_horizon(const MarchScene& scene, int x, int y, const glm::vec3& up) {
+  const glm::vec2 slope = scene.orthographic ? glm::vec2(0) : ray_slope(scene, x, y);
+  return std::max(0.0f, glm::dot(glm::normalize(glm::vec3(slope, -1)), up));
+}
+
 }  // namespace
 
 SlicePattern mean_ao_pattern(const Interleaving& layout, const Window& display) {
   return {layout, display, kSlices, kSteps, 0, kPeriod};
 }
 
-void add_ao(const MarchScene& scene, const Window& display, float radius, const Window& rows,
-            AoSum& sum) {
+void add_openness(const MarchScene& scene, const Window& display, const glm::vec3& up, float radius,
+                  const Window& rows, Openness& sum) {
   const Interleaving& layout = scene.layout;
   const SlicePattern sparse = mean_ao_pattern(layout, display);
   InterleavedPlane ao(layout);
@@ -33,19 +49,31 @@ void add_ao(const MarchScene& scene, const Window& display, float radius, const 
   for (int y = first_y; y < rows.y1; y += kPeriod) {
     for (int x = -layout.phase() & (kPeriod - 1); x < layout.width(); x += kPeriod) {
       const std::ptrdiff_t i = layout.index(x, y);
-      if (std::isnan(scene.depth()[i])) continue;
+      const double sine = double(sine_above_horizon(scene, x, y, up)), weight = sine * sine;
+      sum.pixels += 1;
+      sum.above += std::min(1.0, sine / kAllAbove);
+      if (!scene.shows_surface(i)) {
+        sum.sky += weight;
+        continue;
+      }
+      sum.walls += weight;
       sum.ao += double(ao[i]);
       sum.surfaces += 1;
     }
   }
 }
 
-void add_ao(const Scene& band, const Request& request, AoSum& sum) {
+void add_openness(const Scene& band, const Request& request, Openness& sum) {
   const MarchScene scene = make_march_scene(band.geometry, band.solids, request.receivers);
-  add_ao(scene, band.geometry.display, request.radius, scene.receivers, sum);
+  add_openness(scene, band.geometry.display, up_in_camera(band), request.radius, scene.receivers,
+               sum);
 }
 
-bool needs_mean_ao(const Scene& scene, const Request& request) {
+glm::vec3 up_in_camera(const Scene& scene) {
+  return scene.geometry.world_to_camera[scene.light.environment.frame().up == UpAxis::z ? 2 : 1];
+}
+
+bool needs_openness(const Scene& scene, const Request& request) {
   const ProductSet& products = request.products;
   // A panorama shows what stands beyond the border, and rays have asked it.
   const bool all_is_shown =
@@ -55,19 +83,34 @@ bool needs_mean_ao(const Scene& scene, const Request& request) {
          request.extend_offscreen && !all_is_shown;
 }
 
-bool band_needs_mean_ao(const Scene& overview, const Request& request) {
+bool band_needs_openness(const Scene& overview, const Request& request) {
   // The mean of an overview is off by less.
-  constexpr float kOff = 0.1f;
-  return needs_mean_ao(overview, request) && request.around_band->far->mean_ao < kOpenFrame + kOff;
+  constexpr double kOff = 0.1;
+  const Openness& frame = request.around_band->far->openness;
+  return needs_openness(overview, request) && frame.ao < (kOpenFrame + kOff) * frame.surfaces;
 }
 
-float mean_ao(const MarchScene& scene, const Window& display, float radius) {
-  AoSum sum;
-  add_ao(scene, display, radius, scene.raster(), sum);
-  return sum.mean();
+Openness openness_of(const MarchScene& scene, const Scene& frame, float radius) {
+  Openness sum;
+  add_openness(scene, frame.geometry.display, up_in_camera(frame), radius, scene.raster(), sum);
+  return sum;
 }
 
-float sun_past_beyond(float mean_ao) { return std::min(1.0f, mean_ao / kOpenFrame); }
+float sun_past_beyond(const MarchScene& scene, const Scene& frame, const Request& request) {
+  if (!needs_openness(frame, request)) return 1;
+  if (const auto& band = request.around_band)
+    return sun_past_beyond(band->openness.value_or(band->far->openness));
+  return sun_past_beyond(openness_of(scene, frame, request.radius));
+}
+
+float sun_past_beyond(const Openness& frame) {
+  if (frame.surfaces == 0) return 1;
+  const double open = std::min(1.0, frame.ao / frame.surfaces / double(kOpenFrame)),
+               told = std::min(1.0, frame.above / (kAboveTellsAll * frame.pixels)),
+               walls = frame.walls / std::max(frame.walls + kSkyTells * frame.sky, 1e-30),
+               closed = told * walls;
+  return float(1 - closed * (1 - open * open));
+}
 
 PassBeyond pass_beyond(float sun_past, float held) {
   constexpr float kSky = 0.25f;

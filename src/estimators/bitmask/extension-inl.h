@@ -16,6 +16,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
+/// Which borders of the frame marches go to.
+struct MarchTowards {
+  M right, bottom;  ///< else the left one, and the top one
+};
+
 /// Where the marches of the lanes leave the frame.
 struct Border {
   V dx, dy;  ///< pixels from the receiver to the last pixel inside
@@ -23,21 +28,39 @@ struct Border {
   bool in_one_row;       ///< all lanes leave through the first row, or all through the last
   std::ptrdiff_t first;  ///< in one row: index of lane 0 in BorderValues; the others follow
   VI index;              ///< otherwise: index of each lane in BorderValues
+  MarchTowards to;
+  M in_side;  ///< of the first or last column
 
   HWY_INLINE V operator()(const BorderValues& values) const {
     return in_one_row ? load(values.data() + first) : gather(values.data(), index);
   }
 };
 
+/// Indices in BorderValues of pixels in the first or last column (`in_side`), or row.
+HWY_INLINE VI border_index(const MarchScene& scene, V x, V y, M in_side, const MarchTowards& to) {
+  const DI di;
+  const Interleaving& layout = scene.layout;
+  const VI shifted = hn::ConvertTo(di, x) + set_int(layout.phase());
+  const auto offset = [&](M later, std::ptrdiff_t first, std::ptrdiff_t second) HWY_ATTR {
+    return hn::IfThenElse(hn::RebindMask(di, later), set_int(int(second)), set_int(int(first)));
+  };
+  const VI in_row =
+      hn::And(shifted, set_int(Interleaving::kPeriod - 1)) * set_int(int(layout.stride())) +
+      hn::ShiftRight<Interleaving::kShift>(shifted) +
+      offset(to.bottom, scene.border.in_row(false, 0, 0), scene.border.in_row(true, 0, 0));
+  const VI in_column = hn::ConvertTo(di, y) + offset(to.right, scene.border.in_column(false, 0),
+                                                     scene.border.in_column(true, 0));
+  return hn::IfThenElse(hn::RebindMask(di, in_side), in_column, in_row);
+}
+
 /// Where marches along (dx, dy), a unit vector in pixels, leave the frame. `shared`: all lanes have
 /// the same direction. Else the result may be moved by `aside_px`, a whole number, along the
 /// border.
 HWY_INLINE Border border_along(const MarchScene& scene, const MarchReceiver& p, V dx, V dy,
                                bool shared, float aside_px = 0) {
-  const DI di;
   const Interleaving& layout = scene.layout;
   constexpr int kPeriod = Interleaving::kPeriod;
-  const int w = layout.width(), h = layout.height(), phase = layout.phase();
+  const int w = layout.width(), h = layout.height();
   const V zero = set(0), right = set(float(w - 1)), bottom = set(float(h - 1)), tiny = set(1e-5f);
   const M rightwards = dx > zero, downwards = dy > zero;
   const V to_side = hn::IfThenElse(rightwards, right - p.x, p.x) / hn::Max(hn::Abs(dx), tiny),
@@ -45,6 +68,8 @@ HWY_INLINE Border border_along(const MarchScene& scene, const MarchReceiver& p, 
   const M through_side = to_side < to_end;
   const V aside = hn::Round(to_end * dx);
   Border border;
+  border.to = {rightwards, downwards};
+  border.in_side = through_side;
   border.distance_px = hn::Min(to_side, to_end);
   border.in_one_row = shared && !any(hn::And(through_side, p.valid));
   if (border.in_one_row) {
@@ -63,18 +88,7 @@ HWY_INLINE Border border_along(const MarchScene& scene, const MarchReceiver& p, 
               hn::Clamp(hn::Round(p.y + hn::Round(to_side * dy)) + beside, zero, bottom),
               hn::IfThenElse(downwards, bottom, zero));
   border.dx = edge_x - p.x, border.dy = edge_y - p.y;
-  const VI shifted = hn::ConvertTo(di, edge_x) + set_int(phase);
-  const auto offset = [&](M later, std::ptrdiff_t first, std::ptrdiff_t second) HWY_ATTR {
-    return hn::IfThenElse(hn::RebindMask(di, later), set_int(int(second)), set_int(int(first)));
-  };
-  const VI in_row =
-      hn::And(shifted, set_int(kPeriod - 1)) * set_int(int(layout.stride())) +
-      hn::ShiftRight<Interleaving::kShift>(shifted) +
-      offset(downwards, scene.border.in_row(false, 0, 0), scene.border.in_row(true, 0, 0));
-  const VI in_column =
-      hn::ConvertTo(di, edge_y) +
-      offset(rightwards, scene.border.in_column(false, 0), scene.border.in_column(true, 0));
-  border.index = hn::IfThenElse(hn::RebindMask(di, through_side), in_column, in_row);
+  border.index = border_index(scene, edge_x, edge_y, through_side, border.to);
   return border;
 }
 
@@ -93,12 +107,10 @@ struct Extension {
   M exists;
 };
 
-/// Extends the surface at the border along its tangent plane, within the radius and by at most
-/// `widths` times its own thickness (things are taken to be about as thick as wide,
-/// scene/solids.cpp).
+/// Extends the surface at the border along its tangent plane, within the radius.
 template <bool kOrthographic>
 HWY_INLINE Extension extend(const March& march, const MarchReceiver& p, const SideFrame& side,
-                            const Border& border, float widths) {
+                            const Border& border) {
   const MarchScene& scene = march.scene;
   const V depth = border(scene.border_depth);
   const V rise = hn::MulAdd(border.dx, p.rise_x, hn::MulAdd(border.dy, p.rise_y, p.rise));
@@ -122,7 +134,6 @@ HWY_INLINE Extension extend(const March& march, const MarchReceiver& p, const Si
                                               float(scene.frame_height) / scene.fy));
   V length = kOrthographic ? frame : frame * depth;
   const V thickness = border(scene.border_thickness);
-  length = hn::Min(length, thickness * set(widths));
   if (!scene.border_beyond.empty()) length = hn::Min(length, border(scene.border_beyond));
   e.depth = thickness;
   if constexpr (!kOrthographic) {
@@ -144,7 +155,7 @@ template <bool kOrthographic>
 HWY_INLINE VU extend_side(const March& march, const MarchReceiver& p, const SideFrame& side,
                           const Border& border) {
   const DU du;
-  const Extension e = extend<kOrthographic>(march, p, side, border, 1e9f);
+  const Extension e = extend<kOrthographic>(march, p, side, border);
   if (!any(e.exists)) return set_bits(0);
   const VU here = sector_of(e.start.v, e.distance2, side.start);
   const VU leans_across = hn::VecFromMask(du, hn::RebindMask(du, e.end.s < set(0)));

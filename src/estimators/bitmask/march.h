@@ -7,6 +7,7 @@
 
 #include "estimators/bitmask/beyond.h"
 #include "estimators/bitmask/march_scene.h"
+#include "estimators/bitmask/rays/border_extents.h"
 #include "estimators/bitmask/rays/depth_bounds.h"
 #include "estimators/bitmask/rays/emitters.h"
 #include "estimators/bitmask/rays/ray_pattern.h"
@@ -34,7 +35,8 @@ struct FarScene {
   MarchPlanes planes;                ///< those of `scene` in that order
   std::vector<DepthBounds> bounds;   ///< by layer
   const Solids& solids;              ///< of the overview
-  float mean_ao;                     ///< of the frame: see bitmask/beyond.h
+  CutSurfaces cut;                   ///< by the border of the overview
+  Openness openness;                 ///< of the frame: see bitmask/beyond.h
   std::vector<FarLight> light = {};  ///< by pass
 };
 
@@ -49,6 +51,7 @@ struct March {
   const FurtherRays* further = nullptr;  ///< what only further views show; null: nothing
   const FarScene* far = nullptr;  ///< where the raster is a part of a frame without its reach: what
                                   ///< marches meet beyond far->raster.from_px
+  const CutSurfaces* cut = nullptr;  ///< what rays that leave the frame may meet; null: nothing
 };
 
 /// The visibility of each pixel, and how much of the light reaches it.

@@ -32,18 +32,19 @@ class BorderLayout {
   std::ptrdiff_t in_row(bool last, int column_phase, int column) const {
     return (last ? row_ : 0) + frame_.index(0, column_phase, column);
   }
+  std::ptrdiff_t in_row(bool last, int x) const { return (last ? row_ : 0) + frame_.index(x, 0); }
   std::ptrdiff_t in_column(bool last, int y) const {
     return 2 * row_ + (last ? frame_.height() : 0) + y;
   }
+  std::size_t size() const { return std::size_t(2 * (row_ + frame_.height())); }
 
   /// `value(x, y)` of all pixels at the border.
   template <class Value>
   std::vector<float> gather(const Value& value) const {
     const int w = frame_.width(), h = frame_.height();
-    std::vector<float> values(std::size_t(2 * (row_ + h)));
+    std::vector<float> values(size());
     for (const bool last : {false, true}) {
-      for (int x = 0; x < w; ++x)
-        values[std::size_t((last ? row_ : 0) + frame_.index(x, 0))] = value(x, last ? h - 1 : 0);
+      for (int x = 0; x < w; ++x) values[std::size_t(in_row(last, x))] = value(x, last ? h - 1 : 0);
       for (int y = 0; y < h; ++y)
         values[std::size_t(in_column(last, y))] = value(last ? w - 1 : 0, y);
     }

@@ -65,7 +65,9 @@ HWY_INLINE Sampled in_overview(const March& march, const Place& place) {
 
 /// A march over the raster of an overview in place of its own.
 inline March march_in_overview(const March& march) {
-  return {march.far->scene, march.pattern, march.radius, march.extend};
+  March far{march.far->scene, march.pattern, march.radius, march.extend};
+  if (march.cut) far.cut = &march.far->cut;
+  return far;
 }
 
 /// The receiver and the frame of a slice as they are in that raster.

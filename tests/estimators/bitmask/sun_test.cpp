@@ -83,23 +83,23 @@ TEST(BitmaskSun, WhatGoesOnBeyondTheFrameIsNotDrawnAcrossIt) {
                                .slices = 2,
                                .steps = 64,
                                .solids = &solids});
-  // On the floor, where the way to the sun passes the fence above the frame's upper edge.
+  // On the floor, where the way to the sun passes the fence up to 17 cm above the frame's upper
+  // edge.
   float most = 0;
   for (const glm::vec3& light : out.direct.pixels) most = std::max(most, light.x);
-  double pixels = 0, between = 0, mean = 0;
+  double pixels = 0, least = 1, mean = 0;
   for (int y = 0; y < window.height(); ++y) {
     for (int x = 40; x < 152; ++x) {
       const Point p = point_at(scene, camera, window, x, y);
-      if (p.normal.z < 0.5 || p.position.y < 0.05 || p.position.y > 0.35) continue;
+      if (p.normal.z < 0.5 || p.position.y < 0.3 || p.position.y > 0.4) continue;
       const double seen = out.direct(x, y).x / most;
-      pixels += 1, mean += seen, between += seen > 0.1 && seen < 0.9;
+      pixels += 1, mean += seen, least = std::min(least, seen);
     }
   }
-  fmt::print("beyond the frame: {:.2f} of a sun, {:.0f} % of {:.0f} pixels neither lit nor dark\n",
-             mean / pixels, 100 * between / pixels, pixels);
-  EXPECT_GT(pixels, 500);
-  EXPECT_NEAR(mean / pixels, 0.5, 0.2);
-  EXPECT_GT(between / pixels, 0.8);
+  fmt::print("beyond the frame: {:.2f} of a sun, at least {:.2f}\n", mean / pixels, least);
+  EXPECT_GT(pixels, 200);
+  EXPECT_LT(mean / pixels, 0.97);
+  EXPECT_GT(least, 0.6) << "the shadow of a slat";
 }
 
 }  // namespace

@@ -18,51 +18,124 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// How far a surface may continue beyond the frame and hide a sun, in multiples of its thickness. A
-/// sun is hidden or not by a single assumed surface, while slices average many of them; so the
-/// assumption here is a more cautious one.
-constexpr float kSunWidths = 8;
-
-/// How many pixels of the border are extended, and how far they lie on both sides of the place
-/// where the ray leaves the frame, in diagonals of it. A single one may show a ledge, or the
-/// gap beside it, and cast a wrong shadow across the frame. Relative error of direct light with one
-/// and with five: a street 0.994 and 0.946, things on a table 0.121 and 0.113; more pixels, or
-/// pixels farther away, change little.
+/// How many pixels of the border are asked, and how far they lie on both sides of the place where
+/// the ray leaves the frame, in diagonals of it. A single one may show a ledge, or the gap beside
+/// it, and cast a wrong shadow across the frame. Relative error of direct light with one and with
+/// five: a street 0.994 and 0.946, things on a table 0.121 and 0.113; more pixels, or pixels
+/// farther away, change little.
 constexpr int kWitnesses = 5;
 constexpr float kWitnessReach = 0.05f;
 
-/// The share of the rays that pass what is beyond the frame, 0..1: `through` of those that a
-/// surface that goes on hides, `past` of the others that leave the frame within the radius, and all
-/// that end in it. `turn` in 0..1 differs from member to member of the pattern.
+/// A ray that leaves through the top may be hidden by what stands at the side: as many pixels there
+/// are asked, next to the corner. They tell less of where the ray goes. RMSE of direct light of ten
+/// made streets with 0, 0.5, 0.7 and 1: 0.169, 0.169, 0.170 and 0.177, with 0.28, 0.27, 0.24 and
+/// 0.20 of the sun where there is none.
+constexpr float kCornerTrust = 0.5f;
+
+/// How far away something of which no more is known is.
+constexpr float kFarAway = 1e30f;
+
+/// How likely it is, 0..1, that a surface is there so far along an axis of its plane, of which
+/// BorderExtent tells at k and k + 1.
+HWY_INLINE V is_there(V way, const V* seen, const V* most) {
+  const M ahead = way >= set(0);
+  const V beyond = hn::Abs(way) - hn::IfThenElse(ahead, seen[0], seen[1]);
+  const V share = saturate(set(1) - beyond / hn::IfThenElse(ahead, most[0], most[1]));
+  return share * share;
+}
+
+/// Sines over the plane of a surface from which on it hides nothing of a receiver, and all.
+constexpr float kBehindPlane = 0.02f, kInFrontOfPlane = 0.1f;
+
+/// How likely it is, 0..1, that rays which leave the frame at `leaves` meet the surface of a pixel
+/// at the border beyond it.
 template <bool kOrthographic>
-HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const SideFrame& side,
-                         const RayInSlice& ray, M open, float turn, const PassBeyond& pass) {
-  const V zero = set(0);
+HWY_INLINE V meets_beyond(const March& march, const MarchReceiver& p, const V3& to, V leaves,
+                          const Border& border) {
+  const MarchScene& scene = march.scene;
+  const V zero = set(0), depth = border(scene.border_depth);
+  V3 pixel{hn::MulAdd(border.dx, set(1 / scene.fx), p.slope_x),
+           hn::NegMulAdd(border.dy, set(1 / scene.fy), p.slope_y), set(-1)};
+  if constexpr (kOrthographic) pixel.z = hn::Neg(depth);
+  const V3 at_border = kOrthographic ? pixel : pixel * depth;
+  const V3 normal{border(scene.border_normal[0]), border(scene.border_normal[1]),
+                  border(scene.border_normal[2])};
+  const V3 to_border = at_border - p.position;
+  const V way = dot(to_border, normal) / dot(to, normal);
+  const M meets = hn::And(way > leaves, way < set(march.radius));
+  const M in_reach = dot(to_border, to_border) < set(march.radius * march.radius);
+  const M may_meet = hn::And(meets, in_reach);
+  if (!any(may_meet)) return zero;
+
+  const V3 right = unit_across(cross(set(march.cut->up), normal) + set(kAxisOfLevelPlanes), normal),
+           beyond = mul_add(to, way, -to_border);
+  const float* extents = march.cut->extents.front().seen;
+  const VI at = hn::ShiftLeft<3>(border.index);
+  V seen[4], most[4];
+  for (int k = 0; k < 4; ++k)
+    seen[k] = gather(extents + k, at), most[k] = gather(extents + 4 + k, at);
+  V likely = is_there(dot(beyond, right), seen, most) *
+             is_there(dot(beyond, cross(normal, right)), seen + 2, most + 2);
+  if (!scene.border_beyond.empty()) {
+    const V end = border(scene.border_beyond);
+    likely = hn::IfThenElseZero(dot(beyond, beyond) <= end * end, likely);
+  }
+  // What curves away, as a hill does, has its own surface behind the planes of its border: they
+  // hide what is well in front of them.
+  const V distance = hn::Sqrt(dot(to_border, to_border)),
+          sine = hn::Neg(dot(to_border, normal)) / distance;
+  likely = likely * smoothstep(set(kBehindPlane), set(kInFrontOfPlane), sine);
+  return hn::IfThenElseZero(may_meet, likely);
+}
+
+/// A pixel of the other border that rays go to once they have left the frame, `inward_px` from the
+/// corner between both: they pass beside it.
+HWY_INLINE Border beside_corner(const MarchScene& scene, const MarchReceiver& p, Border border,
+                                float inward_px) {
+  const V zero = set(0), right = set(float(scene.layout.width() - 1)),
+          bottom = set(float(scene.layout.height() - 1));
+  const auto from = [&](M last, V end, float px) HWY_ATTR {
+    return hn::Clamp(hn::IfThenElse(last, end - set(px), set(px)), zero, end);
+  };
+  const V x = hn::IfThenElse(border.in_side, from(border.to.right, right, inward_px),
+                             from(border.to.right, right, 0)),
+          y = hn::IfThenElse(border.in_side, from(border.to.bottom, bottom, 0),
+                             from(border.to.bottom, bottom, inward_px));
+  border.in_side = hn::Not(border.in_side);
+  border.dx = x - p.x, border.dy = y - p.y;
+  border.index = border_index(scene, x, y, border.in_side, border.to);
+  return border;
+}
+
+/// The share of the rays that pass what is beyond the frame, 0..1: all that end in it, `through` of
+/// those that a surface which goes on is likely to hide, and `past` of the others that leave it
+/// within the radius. `turn` in 0..1 differs from member to member of the pattern.
+template <bool kOrthographic>
+HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const V3& to,
+                         const RayInSlice& ray, float turn, const PassBeyond& pass) {
   const MarchScene& scene = march.scene;
   const float apart_px = 2 * kWitnessReach *
                          std::hypot(float(scene.frame_width), float(scene.frame_height)) /
                          kWitnesses;
-  V passed = zero;
+  const Border exit = border_along(scene, p, ray.step_x, ray.step_y, false);
+  const M leaves_frame =
+      hn::And(exit.distance_px < ray.end_px, exit.distance_px <= set(p.reach_px));
+  if (!any(leaves_frame)) return set(1);
+  const V leaves = hn::IfThenElse(leaves_frame, way_along<kOrthographic>(ray, p, exit.distance_px),
+                                  set(kFarAway));
+  V near_exit = set(0), near_corner = set(0);
   for (int k = 0; k < kWitnesses; ++k) {
-    const float aside_px = std::round((float(k) + turn - 0.5f * kWitnesses) * apart_px);
+    const float aside_px = std::round((float(k) + turn - 0.5f * kWitnesses) * apart_px),
+                inward_px = std::round((float(k) + turn) * apart_px);
     const Border border = border_along(scene, p, ray.step_x, ray.step_y, false, aside_px);
-    const Extension e = extend<kOrthographic>(march, p, side, border, kSunWidths);
-    // The ray meets the piece where its ends lie on different sides of it, if that is ahead of the
-    // receiver.
-    const SlicePoint to = ray.along;
-    const V here = e.start.s * to.v - e.start.v * to.s, there = e.end.s * to.v - e.end.v * to.s;
-    const M leaves_frame = border.distance_px < ray.end_px,
-            leaves = hn::And(e.exists, leaves_frame);
-    const V part = hn::IfThenElseZero(here != there, here / (here - there));
-    const SlicePoint met{hn::MulAdd(part, e.end.s - e.start.s, e.start.s),
-                         hn::MulAdd(part, e.end.v - e.start.v, e.start.v)};
-    const M crosses = hn::And(hn::And(leaves, here * there <= zero), dot(met, to) > zero);
-    const M may_meet = hn::And(leaves_frame, border.distance_px <= set(p.reach_px));
-    const V passes = hn::IfThenElse(may_meet, set(pass.past / kWitnesses), set(1.0f / kWitnesses));
-    passed = passed + hn::IfThenElseZero(
-                          open, hn::IfThenElse(crosses, set(pass.through / kWitnesses), passes));
+    near_exit = near_exit + meets_beyond<kOrthographic>(march, p, to, leaves, border);
+    near_corner =
+        near_corner + meets_beyond<kOrthographic>(march, p, to, leaves,
+                                                  beside_corner(scene, p, border, inward_px));
   }
-  return passed;
+  const V hidden = hn::Max(near_exit, near_corner * set(kCornerTrust)) * set(1.0f / kWitnesses);
+  return hn::IfThenElse(leaves_frame,
+                        hn::MulAdd(hidden, set(pass.through - pass.past), set(pass.past)), set(1));
 }
 
 /// Which open lanes see past what further views show.
@@ -83,9 +156,6 @@ HWY_INLINE float turn_of_member(int member) {
   constexpr int kPeriod = Interleaving::kPeriod;
   return (float(SlicePattern::rank(member)) + 0.5f) / (kPeriod * kPeriod);
 }
-
-/// How far away something of which no more is known is.
-constexpr float kFarAway = 1e30f;
 
 /// A ray from each receiver, of those lanes that look for what is in its way.
 struct Ray {
@@ -168,15 +238,14 @@ HWY_INLINE Arrival arrival(const March& march, const MarchReceiver& p, const Ray
                      way_along<kOrthographic>(ray.in_slice, p, blocked_px), set(kFarAway));
   M open = hn::AndNot(meets, ray.open);
   if (march.further && any(open)) open = open_past_further(march, p, ray.to, open);
-  if (!march.extend || !any(open)) {
-    a.share = hn::IfThenElseZero(open, set(1));
-  } else if (march.far) {
-    a.share = open_beyond<kOrthographic>(march_in_overview(march), in_far_pixels(march, p),
-                                         in_far_pixels(ray.side), in_far_pixels(ray.in_slice), open,
-                                         turn, pass);
-  } else {
-    a.share = open_beyond<kOrthographic>(march, p, ray.side, ray.in_slice, open, turn, pass);
+  V share = set(1);
+  if (march.cut && any(open)) {
+    share = march.far
+                ? open_beyond<kOrthographic>(march_in_overview(march), in_far_pixels(march, p),
+                                             ray.to, in_far_pixels(ray.in_slice), turn, pass)
+                : open_beyond<kOrthographic>(march, p, ray.to, ray.in_slice, turn, pass);
   }
+  a.share = hn::IfThenElseZero(open, share);
   return a;
 }
 
