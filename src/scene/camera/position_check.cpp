@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include "math/straight.h"
 #include "scene/camera/find_camera.h"
 #include "scene/camera/fit.h"
 
@@ -209,9 +210,8 @@ bool fills_unit_cube(const GBuffer& g) {
 Plane<unsigned char> smooth_pixels(const GBuffer& g) {
   Plane<unsigned char> smooth(g.valid.width, g.valid.height);
   const auto is_straight = [&](std::size_t before, std::size_t i, std::size_t after) {
-    const glm::vec3 step = g.position[after] - g.position[before],
-                    bend = g.position[after] + g.position[before] - 2.0f * g.position[i];
-    return g.valid[before] && g.valid[after] && glm::length(bend) < kStraight * glm::length(step);
+    return g.valid[before] && g.valid[after] &&
+           ssdo::is_straight(g.position[before], g.position[i], g.position[after], kStraight);
   };
   for (int y = 1; y + 1 < g.valid.height; ++y) {
     for (int x = 1; x + 1 < g.valid.width; ++x) {

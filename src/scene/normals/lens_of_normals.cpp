@@ -17,18 +17,16 @@
 #include <glm/trigonometric.hpp>
 #include <vector>
 
+#include "math/straight.h"
 #include "scene/camera/projection_model.h"
 #include "scene/normals/normals.h"
+#include "scene/normals/smooth_gradient.h"
 
 namespace ssdo {
 namespace {
 
 constexpr std::size_t kMostPixels = 40000, kPrimeStride = 1000003, kFewestNormals = 64;
 constexpr std::size_t kCells = 5, kMostInCell = 60;
-
-/// A pixel is smooth where it is nearer to the middle of its neighbours than this share of their
-/// distance.
-constexpr float kStraight = 0.1f;
 
 /// Ratios of focal lengths that are tried, in steps of 5 %, then halved until 0.1 %.
 constexpr double kMostRatio = 8, kStep = 0.05, kSmallestStep = 0.001;
@@ -55,9 +53,8 @@ std::size_t cell_of(const Eigen::Vector3d& n) {
 /// The step over a pixel between its neighbours, if the three are nearly on a line.
 std::optional<glm::vec3> straight_step(const Surfel& p, const Surfel* before, const Surfel* after) {
   if (!before || !after) return std::nullopt;
-  const glm::vec3 step = after->position - before->position,
-                  bend = after->position + before->position - 2.0f * p.position;
-  return glm::length(bend) < kStraight * glm::length(step) ? std::optional(step) : std::nullopt;
+  if (!is_straight(before->position, p.position, after->position, kStraight)) return std::nullopt;
+  return after->position - before->position;
 }
 
 /// The unit normal of the surface through a pixel that faces the viewer; 0 where it is not smooth.

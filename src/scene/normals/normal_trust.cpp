@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "math/straight.h"
 #include "parallel/tiles.h"
 #include "scene/normals/normal_space.h"
 #include "scene/normals/normals.h"
@@ -55,8 +56,6 @@ constexpr float kFewestPixels = 8;
 
 /// Cosines: N is quiet along a patch, and jumps at an edge; it follows P, or contradicts it.
 constexpr float kQuiet = 0.985f, kJump = 0.866f, kFollows = 0.94f, kContradicts = 0.6f;
-/// Three positions are on a line where the middle one is off by this share of their distance.
-constexpr float kStraight = 0.1f;
 
 class Comparison {
  public:
@@ -111,7 +110,7 @@ class Comparison {
     for (int k = 1; k <= 2; ++k) {
       const glm::vec3 a = surfels_(x - k * dx, y - k * dy).position,
                       b = surfels_(x + k * dx, y + k * dy).position;
-      if (glm::length(a + b - 2.0f * here->position) > kStraight * glm::length(b - a)) return false;
+      if (!is_straight(a, here->position, b, kStraight)) return false;
     }
     return true;
   }

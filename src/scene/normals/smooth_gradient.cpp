@@ -3,13 +3,11 @@
 
 #include <glm/geometric.hpp>
 
+#include "math/straight.h"
 #include "scene/normals/normals.h"
 
 namespace ssdo {
 namespace {
-
-/// Three positions are on a line where the middle one is off by this share of their distance.
-constexpr float kStraight = 0.1f;
 
 /// Distance of two positions over the rounding of P from which on their direction is known to a
 /// sixteenth.
@@ -25,9 +23,8 @@ std::optional<glm::vec3> smooth_step(const Plane<Surfel>& surfels, int x, int y,
     const Surfel* b = surface_at(surfels, x + pixels * dx, y + pixels * dy);
     if (!a || !b) continue;
     const glm::vec3 before(a->position), after(b->position), step = after - before;
-    const float length = glm::length(step);
-    if (!(length > kOverRounding * s.rounding)) continue;
-    if (glm::length(before + after - 2.0f * p) > kStraight * length) return std::nullopt;
+    if (!(glm::length(step) > kOverRounding * s.rounding)) continue;
+    if (!is_straight(before, p, after, kStraight)) return std::nullopt;
     return step;
   }
   return std::nullopt;

@@ -9,6 +9,9 @@
 
 namespace ssdo {
 
+/// P is smooth where three neighbours are on a line to this: see is_straight().
+constexpr float kStraight = 0.1f;
+
 /// The unit normal of the geometry at a pixel around which P is smooth: three pixels in a row and
 /// three in a column lie on a line each, over distances that the precision of P can tell. Turned to
 /// the viewer, who is along `view` from the surface. Nothing elsewhere.
