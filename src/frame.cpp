@@ -234,7 +234,11 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherP
   if (known.deep.empty()) warn_of_idle_depth_options(frame, options.input.gbuffer);
   const bool world = scene.geometry.world_known;
   const Imf::Header& header = frame.part().header;
-  const WorldUp up = world ? find_world_up(frame.gbuffer, scene.geometry) : WorldUp();
+  WorldUp up;
+  if (world && light.needs_up()) {
+    const bool asks = options.up_of_shot && !header_tells_up(frame.gbuffer);
+    up = find_world_up(frame.gbuffer, scene.geometry, asks ? options.up_of_shot() : std::nullopt);
+  }
   const FrameEnvironment around = light.around(up.axis, chromaticities_of(header));
   scene.light = model_light(around.environment, scene.geometry.world_to_camera);
   frame.light = around.description;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "lighting.h"
 #include "outputs.h"
 #include "plan.h"
+#include "scene/camera/world_up.h"
 #include "scene/further/further_pictures.h"
 #include "scene/further/merge.h"
 #include "scene/gbuffer.h"
@@ -31,6 +33,9 @@ struct FrameOptions {
   ModelOptions model;
   OutputOptions output;
   ColorOptions color;
+  /// Which axis is up by other frames of the sequence too, asked where nothing but P tells it; for
+  /// a frame alone it is empty.
+  std::function<std::optional<UpEvidence>()> up_of_shot = {};
   std::size_t memory = std::numeric_limits<std::size_t>::max();  ///< bytes that a frame may take
 };
 

@@ -34,6 +34,9 @@ class Lighting {
   /// exposure that makes light brighter than kBrightest.
   explicit Lighting(const LightOptions& options);
 
+  /// Whether the axis that is up makes a difference, and the user gives none.
+  bool needs_up() const { return map_ && !options_.up; }
+
   /// The environment of a frame. `up_of_frame` is used where the user gives no axis. A map that
   /// says which primaries its colours have is converted to `primaries` of the frame, if it has any.
   FrameEnvironment around(UpAxis up_of_frame, const std::optional<Chromaticities>& primaries) const;

@@ -26,6 +26,7 @@
 #include "cli/memory.h"
 #include "cli/place_in_sequence.h"
 #include "cli/progress.h"
+#include "cli/sequence_frames.h"
 #include "cli/statistics.h"
 #include "frame.h"
 #include "io/one_line.h"
@@ -71,6 +72,7 @@ class Batch {
         // A temporal frame hands its surfaces to the next one, which therefore waits.
         writes_behind_(overlaps_ && !options.model.temporal),
         pictures_(options.input.allow_partial),
+        frames_(options_, pictures_),
         progress_(options.batch.progress, options.verbosity.quiet),
         info_(options.verbosity.json, progress_) {
     const std::size_t views = std::max(std::size_t(1), options.input.views.size());
@@ -182,10 +184,9 @@ class Batch {
 
   /// Errors name the view where there are several.
   Frame prepare_view(const Job& job, const FrameFiles& files) {
-    if (job.views.size() == 1)
-      return prepare_in_sequence(options_, *light_, pictures_, files, job.frame);
+    if (job.views.size() == 1) return frames_.prepare(*light_, files, job.frame);
     try {
-      Frame frame = prepare_in_sequence(options_, *light_, pictures_, files, job.frame);
+      Frame frame = frames_.prepare(*light_, files, job.frame);
       if (!frame.bands) return frame;
     } catch (const Error& e) {
       throw Error(e.code, fmt::format("{} (view {})", e.what(), files.view));
@@ -199,7 +200,8 @@ class Batch {
   void note_changes(Work& work) {
     std::vector<FrameLooks> before = std::exchange(looks_, {});
     for (const WorkOnView& view : work.views) {
-      looks_.push_back(looks_of(view.frame, jobs_[work.index].frame.value_or(0)));
+      const Job& job = jobs_[work.index];
+      looks_.push_back(looks_of(view.frame, job.views[looks_.size()], job.frame.value_or(0)));
       if (looks_.size() <= before.size())
         add_warnings(work, changes(before[looks_.size() - 1], looks_.back()), view.frame.view);
     }
@@ -373,6 +375,7 @@ class Batch {
   const bool writes_behind_;       ///< not only read
   std::optional<Lighting> light_;  ///< read after the first listing of `info`
   FurtherPictures pictures_;       ///< of all frames
+  SequenceFrames frames_;
   ProgressLine progress_;
   InfoReport info_;
   nlohmann::json statistics_ = nlohmann::json::array();

@@ -14,11 +14,15 @@ struct FrameLooks {
   int number = 0;
   std::array<std::string, kRoleCount> layers;  ///< by role, without their view; empty: none
   int width = 0, height = 0;                   ///< of the display window
+  std::string normal_space;                    ///< empty: there are no normals to use
+  std::vector<std::string> also;               ///< files of --also
+  std::vector<bool> fits;                      ///< which of these are views that are used
 };
 
-FrameLooks looks_of(const Frame& frame, int number);
+FrameLooks looks_of(const Frame& frame, const FrameFiles& files, int number);
 
-/// A line for each layer that comes, goes or has another name, and for another size.
+/// A line for each layer that comes, goes or has another name, for another size, for normals of
+/// another space, and for a view of --also that is used in one of them only.
 std::vector<std::string> changes(const FrameLooks& before, const FrameLooks& now);
 
 /// What differs between the views of a stereo frame, as warnings. Errors: ExitCode::layer where

@@ -15,12 +15,6 @@ struct FrameBefore {
   glm::vec2 motion_scale;        ///< --motion-scale
 };
 
-/// prepare_frame(). Where P leaves the camera of a frame of a sequence open, its lens is that of
-/// the nearest frame on disk whose P tells it, so that it does not matter which frames are in the
-/// run; the pose is fitted from its own P. Errors: those of prepare_frame().
-Frame prepare_in_sequence(const Options& options, const Lighting& light, FurtherPictures& pictures,
-                          const FrameFiles& files, std::optional<int> number);
-
 /// Decides for a frame of a temporal run what counts of `past`, whose history is that of the frame
 /// before, where there is one. Moves the frame's motion into `past`, clears the history after a
 /// cut, and says in the frame what was decided.

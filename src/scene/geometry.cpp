@@ -170,12 +170,14 @@ void check_lens(const GBuffer& g, const Geometry& out, GeometryReport& report) {
 
 /// The space of the stored normals; nothing where there are none.
 std::optional<NormalSpace> space_of_normals(const GBuffer& g, const Geometry& out,
-                                            const std::string& file, GeometryReport& report) {
+                                            const std::string& of_shot, const std::string& file,
+                                            GeometryReport& report) {
   if (g.normal.empty()) return std::nullopt;
   if (g.space) return given_normal_space(g, out, file, report);
   NormalSpace space = find_normal_space(g.normal, out.surfel, spaces_of_normals(g, report),
-                                        out.camera.orthographic);
+                                        out.camera.orthographic, of_shot);
   report.normal_agreement = space.share;
+  report.normals_known = space.is_known();
   const bool from_depth = g.position.empty();
   if (from_depth && (!g.depth_source.empty() || is_depth_planar(g, out, space, report)))
     check_lens(g, out, report);
@@ -275,11 +277,11 @@ void place_normals(const GBuffer& g, const UsedNormals& used, Geometry& out,
   }
 }
 
-UsedNormals find_normals(const GBuffer& g, const Geometry& out, const std::string& file,
-                         GeometryReport& report) {
+UsedNormals find_normals(const GBuffer& g, const Geometry& out, const std::string& of_shot,
+                         const std::string& file, GeometryReport& report) {
   if (g.space && g.position.empty() && g.normal.empty())
     report.warnings.push_back("--space has no effect: the frame has neither P nor N");
-  std::optional<NormalSpace> space = space_of_normals(g, out, file, report);
+  std::optional<NormalSpace> space = space_of_normals(g, out, of_shot, file, report);
   UsedNormals used;
   if (space) used = g.space ? UsedNormals{space->to_camera} : judge_normals(g, out, *space, report);
   report.normal_space = used.to_camera ? space->name : "rebuilt from P";
@@ -362,8 +364,8 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
     settle_world(g, out.surfel, readings, report);
     out.camera = to_grid(placement.camera, g.grid);
   }
-  const UsedNormals normals =
-      known ? UsedNormals{known->normals_to_camera} : find_normals(g, out, file, report);
+  const UsedNormals normals = known ? UsedNormals{known->normals_to_camera}
+                                    : find_normals(g, out, options.shot.normal_space, file, report);
   out.normals_to_camera = normals.to_camera.value_or(glm::mat3(placement.of_positions.rotation));
   place_normals(g, normals, out, report);
   mend(g, out, report, known);

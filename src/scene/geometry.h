@@ -14,11 +14,25 @@
 
 namespace ssdo {
 
+/// The camera of another frame of the sequence, in the pixels of its file and the space of its P.
+struct CameraBeside {
+  Camera camera;
+  Window display;
+  std::string file;
+};
+
+/// What other frames of a sequence tell, for a frame that leaves it open.
+struct FromShot {
+  std::optional<CameraBeside> camera;
+  std::string normal_space;  ///< as in GeometryReport; empty: not known
+};
+
 /// What the user says about the camera. Empty: fit it from P.
 struct CameraOptions {
   std::string file;             ///< --camera: JSON with projection and pose
   std::optional<double> fov;    ///< --fov: horizontal, degrees
   std::optional<double> ortho;  ///< --ortho: width of the frame in scene units
+  FromShot shot = {};           ///< what stands in for P and N where they do not tell enough
 };
 
 /// The visible surfaces in camera space, in the scene's unit. Every stage after this one knows one
@@ -68,6 +82,7 @@ struct GeometryReport {
   std::optional<HeaderFinding> header;
   std::optional<Residual> residual;
   std::string normal_space;     ///< "the space of P", "camera space", "rebuilt from P"
+  bool normals_known = true;    ///< whether P tells the space of N, where there are both
   double normal_agreement = 0;  ///< share of the smooth pixels where N follows the gradient of P
   std::size_t normals_rebuilt = 0, normals_turned = 0;
   std::vector<std::string> warnings;

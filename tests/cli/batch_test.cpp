@@ -127,6 +127,7 @@ TEST_F(Shot, AFlatFrameTakesTheLensOfAFrameBeside) {
   EXPECT_TRUE(read_file(file("out", 3)) == first) << "however the shot is cut";
   const Finished info = run_tool({"info", dir_ / "in.####.exr", "--frames", "3"});
   EXPECT_THAT(info.out, HasSubstr("fitted from P with the lens of " + file("in", 2)));
+  EXPECT_THAT(whole.err, HasSubstr("in.0003.exr: warning: P does not tell the camera"));
 }
 
 /// Layers came and went in silence, and with them bounce and composite.

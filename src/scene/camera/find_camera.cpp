@@ -11,6 +11,7 @@
 
 #include "error.h"
 #include "scene/camera/fit.h"
+#include "scene/camera/fit_pose.h"
 #include "scene/camera/metadata/check.h"
 #include "scene/camera/panorama.h"
 
@@ -126,6 +127,22 @@ std::optional<FoundCamera> pose_by_positions(const GBuffer& g, const Camera& giv
   return posed ? std::optional(FoundCamera{*posed, *posed, false}) : std::nullopt;
 }
 
+/// The camera of another frame of the sequence, moved to where P projects to its own pixels.
+std::optional<Camera> pose_beside(const GBuffer& g, const std::optional<CameraBeside>& beside,
+                                  GeometryReport& report) {
+  if (!beside || !(beside->display == g.display_of_file())) return std::nullopt;
+  const auto posed = fit_pose_beside(to_grid(beside->camera, g.grid), g.position, g.valid, g.window,
+                                     rounding_of_positions(g));
+  if (!posed) return std::nullopt;
+  report.camera_source = fmt::format(
+      "fitted from P with the lens of {}, and its pose where P leaves that open", beside->file);
+  report.warnings.push_back(
+      fmt::format("P does not tell the camera, which has the lens of {}, and the pose that is "
+                  "nearest to that one's under which P fits",
+                  beside->file));
+  return posed;
+}
+
 /// What was found on a grid in the pixels of the file, with the projection of `given` if any.
 FoundCamera on_file(FoundCamera found, const PixelGrid& grid, const Camera* given) {
   for (Camera* camera : {&found.camera, &found.of_positions}) {
@@ -157,14 +174,20 @@ FoundCamera find_under_options(const GBuffer& g, const Camera& given, const Came
     return {*fitted, *fitted, false};
   }
   if (by_file) return {given, given, true};
-  throw Error(ExitCode::layer, fmt::format("{}: P does not project to its own pixels under {}; "
-                                           "give --camera FILE.json",
-                                           file, report.camera_source));
+  if (const auto beside = pose_beside(g, options.shot.camera, report)) {
+    is_fitted = true;
+    return {*beside, *beside, false};
+  }
+  throw UndeterminedCamera(ExitCode::layer,
+                           fmt::format("{}: P does not project to its own pixels under {}; "
+                                       "give --camera FILE.json",
+                                       file, report.camera_source));
 }
 
 /// The camera that P and the header tell.
 FoundCamera find_without_options(const GBuffer& g, const std::vector<HeaderCamera>& header,
-                                 const std::string& file, GeometryReport& report) {
+                                 const std::optional<CameraBeside>& beside, const std::string& file,
+                                 GeometryReport& report) {
   if (const auto fitted = fit_camera(g, false)) {
     report.camera_source = "fitted from P";
     append(report.warnings, unused_of(g, true));
@@ -173,6 +196,10 @@ FoundCamera find_without_options(const GBuffer& g, const std::vector<HeaderCamer
   if (const auto found = find_by_positions(g, header, report)) {
     append(report.warnings, unused_of(g, false));
     return *found;
+  }
+  if (const auto posed = pose_beside(g, beside, report)) {
+    append(report.warnings, unused_of(g, true));
+    return check_against_fit(*posed, g, header, report);
   }
   throw_undetermined(g, header, file);
 }
@@ -203,7 +230,7 @@ FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const st
   bool is_fitted = !given;
   const FoundCamera found =
       given ? find_under_options(g, to_grid(*given, g.grid), options, file, report, is_fitted)
-            : find_without_options(g, header, file, report);
+            : find_without_options(g, header, options.shot.camera, file, report);
   report.residual = measure_residual(found.of_positions, g.position, g.valid, g.window);
   if (report.residual->median_px > 0.5) {
     report.warnings.push_back(

@@ -12,7 +12,8 @@
 
 namespace ssdo {
 
-/// P leaves the camera open: its pixels lie in one plane, or are too few. A lens would settle it.
+/// P leaves the camera open: its pixels lie in one plane, or are too few. The camera of another
+/// frame of the sequence would settle it.
 struct UndeterminedCamera : Error {
   using Error::Error;
 };
@@ -31,7 +32,7 @@ struct FoundCamera {
 /// Decides by projection. The camera of the options is used if P projects to its own pixels under
 /// it, or if no camera fits better; else the camera fitted from P, with a warning. Without options,
 /// the camera is that fitted from P, and the header's where P or its lens agrees with it or where P
-/// leaves the camera open.
+/// leaves the camera open. Where none of them tells it, it is that beside, moved to fit P.
 /// Errors: ExitCode::layer where neither P nor the options nor the header determine the camera;
 /// UndeterminedCamera where there is a P.
 FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,

@@ -19,6 +19,12 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+/// Positions are never better than about this, however well a few of them agree.
+constexpr double kPrecisionPx = 1e-4;
+
+/// The axes of an orthographic camera are known to about a degree, or not.
+constexpr double kMostUncertainAxes = 0.02;
+
 Vector3d eigen(const glm::dvec3& v) { return Vector3d(glm::value_ptr(v)); }
 Matrix3d eigen(const glm::dmat3& m) { return Matrix3d(glm::value_ptr(m)); }
 
@@ -129,69 +135,31 @@ ProjectionModel fit_affine(const Samples& samples) {
   return model;
 }
 
-/// Computer-vision axes and normalised samples to the tool's camera in the space of P.
-Camera to_camera(const ProjectionModel& model, const Samples& samples, const Window& window) {
-  Camera camera;
-  camera.orthographic = model.orthographic;
-  const double per_unit = model.orthographic ? 1 / samples.scale : 1;
-  camera.fx = model.fx * per_unit;
-  camera.fy = model.fy * per_unit;
-  camera.cx = model.cx;
-  camera.cy = model.cy;
-  const Matrix3d axes = eigen(model.rotation);
-  Vector3d translation = eigen(model.translation) * samples.scale;
-  if (model.orthographic) {
-    // The axis may run anywhere: through the middle of the frame, and behind every sample.
-    camera.cx = 0.5 * (window.x0 + window.x1);
-    camera.cy = 0.5 * (window.y0 + window.y1);
-    double nearest = 0;
-    for (const Sample& s : samples.items) {
-      nearest = std::min(nearest, (axes.row(2) * eigen(s.p)).value());
-    }
-    translation = {(model.cx - camera.cx) / camera.fx, (model.cy - camera.cy) / camera.fy,
-                   samples.scale * (1 - nearest)};
-  }
-  const Vector3d origin = eigen(samples.centre) - axes.transpose() * translation;
-  const Matrix3d rotation = Vector3d(1, -1, -1).asDiagonal() * axes;
-  for (int row = 0; row < 3; ++row) {
-    camera.origin[row] = origin[row];
-    for (int column = 0; column < 3; ++column) camera.rotation[column][row] = rotation(row, column);
-  }
-  return camera;
-}
+/// Relative standard error of the axes of an affine camera: by the residuals that are left, and by
+/// the perspective that the samples do not rule out. A lens at distance d divides a pixel's place
+/// B p by 1 + z/d, which moves it by B p z/d; what of that an affine camera can follow turns its
+/// axes, as on a few pixels of a ball, and the rest tells d. No lens is taken to be stronger than
+/// one whose focal length is the diagonal of the picture.
+double axes_uncertainty(const ProjectionModel& affine, const Samples& samples,
+                        const Window& window) {
+  const auto count = double(samples.items.size());
+  const double freedom = 2 * count / (2 * count - 8),  // less the eight numbers of the camera
+      sigma = std::max(reprojection_rms(affine, samples) * std::sqrt(freedom), kPrecisionPx);
+  const double scale = std::min(affine.fx, affine.fy);
+  const double by_residuals = sigma / (std::sqrt(count) * samples.spread[0] * scale);
 
-/// A plane seen by a known projection: the homography from the plane to directions holds two
-/// columns of the rotation and the translation (Zhang 2000, section 3.1).
-ProjectionModel pose_of_plane(const Samples& samples, const Camera& projection) {
-  const Vector3d e1 = eigen(samples.axes[2]), e2 = eigen(samples.axes[1]);
-  Eigen::MatrixXd ata = Eigen::MatrixXd::Zero(9, 9);
-  for (const Sample& s : samples.items) {
-    const Vector3d h(e1.dot(eigen(s.p)), e2.dot(eigen(s.p)), 1);
-    const double u = (s.pixel.x - projection.cx) / projection.fx;
-    const double v = (s.pixel.y - projection.cy) / projection.fy;
-    Eigen::Matrix<double, 2, 9> rows = Eigen::Matrix<double, 2, 9>::Zero();
-    rows.block<1, 3>(0, 0) = h.transpose();
-    rows.block<1, 3>(0, 6) = -u * h.transpose();
-    rows.block<1, 3>(1, 3) = h.transpose();
-    rows.block<1, 3>(1, 6) = -v * h.transpose();
-    ata += rows.transpose() * rows;
+  Eigen::MatrixXd places(samples.items.size(), 4), moves(samples.items.size(), 2);
+  for (std::size_t i = 0; i < samples.items.size(); ++i) {
+    const Vector3d p = eigen(samples.items[i].p), turned = eigen(affine.rotation) * p;
+    const auto row = Eigen::Index(i);
+    places.row(row) << p.transpose(), 1;
+    moves.row(row) << affine.fx * turned.x() * turned.z(), affine.fy * turned.y() * turned.z();
   }
-  const Eigen::VectorXd m = null_vector(ata);
-  Matrix3d h;
-  for (int i = 0; i < 3; ++i) h.row(i) = m.segment<3>(3 * i).transpose();
-  h *= (h(2, 2) < 0 ? -2 : 2) / (h.col(0).norm() + h.col(1).norm());
-
-  Matrix3d on_plane, in_space;
-  on_plane << h.col(0), h.col(1), h.col(0).cross(h.col(1));
-  in_space << e1, e2, e1.cross(e2);
-  const Eigen::JacobiSVD<Matrix3d> svd(on_plane, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  ProjectionModel model;
-  const Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose() * in_space.transpose();
-  model.rotation = glm::make_mat3(rotation.data());
-  model.translation = {h(0, 2), h(1, 2), h(2, 2)};
-  model.fx = projection.fx, model.fy = projection.fy;
-  model.cx = projection.cx, model.cy = projection.cy;
-  return model;
+  const Eigen::MatrixXd followed =
+      (places.transpose() * places).ldlt().solve(places.transpose() * moves);
+  const double told = (moves - places * followed).norm();
+  const double nearness = std::min(sigma / told, scale / (2 * PictureScale(window).half));
+  return std::hypot(by_residuals, followed.topRows(3).norm() * nearness / scale);
 }
 
 double median_miss_px(const Camera& camera, const Samples& samples) {
@@ -224,26 +192,12 @@ std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
   }
   // Perspective contains the affine camera as a limit, so it fits an orthographic frame as well,
   // with a focal length that means nothing.
-  if (affine_rms < 0.02 || affine_rms <= 1.02 * reprojection_rms(model, used)) {
-    return to_camera(affine, samples, window);
+  if ((affine_rms < 0.02 || affine_rms <= 1.02 * reprojection_rms(model, used)) &&
+      axes_uncertainty(affine, samples, window) < kMostUncertainAxes) {
+    return camera_of(affine, samples, window);
   }
   if (is_flat(model, used) || !(focal_uncertainty(model, used) < 0.01)) return std::nullopt;
-  return to_camera(model, samples, window);
-}
-
-std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>& positions,
-                               const Plane<unsigned char>& valid, const Window& window,
-                               double step) {
-  if (const auto own = in_own_space(projection, positions, valid, window)) return own;
-  const Samples samples = collect_samples(positions, valid, window);
-  if (projection.orthographic || samples.items.size() < 4 ||
-      samples.spread[1] < 1e-5 * samples.spread[2]) {
-    return std::nullopt;
-  }
-  ProjectionModel model = pose_of_plane(samples, projection);
-  refine(model, samples, true);
-  const Camera camera = to_camera(model, samples, window);
-  return explains(camera, positions, valid, window, step) ? std::optional(camera) : std::nullopt;
+  return camera_of(model, samples, window);
 }
 
 bool explains(const Camera& camera, const Plane<glm::vec3>& positions,

@@ -18,16 +18,9 @@ namespace ssdo {
 ///
 /// `positions` are over `window`; a pixel takes part where `valid` is not 0. Returns nothing where
 /// P leaves the camera undetermined: fewer than six pixels, all of them in a plane, or a focal
-/// length that the pixels do not pin down to 1 %.
+/// length that the pixels do not pin down to 1 %, or axes of an orthographic camera not to 2 %.
 std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
                                  const Plane<unsigned char>& valid, const Window& window);
-
-/// Finds the pose of a camera whose projection is known, from positions that may lie in a plane.
-/// Returns nothing for fewer than four pixels or pixels in a line, or where no pose brings the
-/// positions within half a pixel and `step`, by which P may have been rounded, in scene units.
-std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>& positions,
-                               const Plane<unsigned char>& valid, const Window& window,
-                               double step = 0);
 
 /// Whether the positions lie before the camera and half of them project to within half a pixel of
 /// their own, and `step`, by which P

@@ -43,9 +43,10 @@ NormalEquations linearise(const ProjectionModel& model, const Samples& samples) 
   const Vector3d translation = eigen(model.translation);
   for (const Sample& s : samples.items) {
     const Vector3d turned = rotation * eigen(s.p), q = turned + translation;
-    const double iz = 1 / q.z(), x = q.x() * iz, y = q.y() * iz;
+    const double iz = model.orthographic ? 1 : 1 / q.z(), x = q.x() * iz, y = q.y() * iz;
+    const double by_z = model.orthographic ? 0 : -iz;
     Eigen::Matrix<double, 2, 3> by_point;
-    by_point << model.fx * iz, 0, -model.fx * x * iz, 0, model.fy * iz, -model.fy * y * iz;
+    by_point << model.fx * iz, 0, model.fx * x * by_z, 0, model.fy * iz, model.fy * y * by_z;
     // A small rotation w moves the turned point by w x turned = -[turned]x w.
     Matrix3d by_rotation;
     by_rotation << 0, turned.z(), -turned.y(), -turned.z(), 0, turned.x(), turned.y(), -turned.x(),
@@ -60,6 +61,16 @@ NormalEquations linearise(const ProjectionModel& model, const Samples& samples) 
     eq.jtr += j.transpose() * Eigen::Vector2d(miss.x, miss.y);
   }
   return eq;
+}
+
+/// The rotation vector and the translation that lead from a prior to a model, in the axes of the
+/// camera.
+Eigen::Matrix<double, 6, 1> way_from(const PosePrior& prior, const ProjectionModel& model) {
+  const Eigen::AngleAxisd turn(
+      Matrix3d(eigen(model.rotation) * eigen(prior.pose.rotation).transpose()));
+  Eigen::Matrix<double, 6, 1> way;
+  way << turn.angle() * turn.axis(), eigen(model.translation) - eigen(prior.pose.translation);
+  return way;
 }
 
 }  // namespace
@@ -110,6 +121,50 @@ Samples collect_samples(const Plane<glm::vec3>& positions, const Plane<unsigned 
   return samples;
 }
 
+Camera camera_of(const ProjectionModel& model, const Samples& samples, const Window& window) {
+  Camera camera;
+  camera.orthographic = model.orthographic;
+  const double per_unit = model.orthographic ? 1 / samples.scale : 1;
+  camera.fx = model.fx * per_unit;
+  camera.fy = model.fy * per_unit;
+  camera.cx = model.cx;
+  camera.cy = model.cy;
+  const Matrix3d axes = eigen(model.rotation);
+  Vector3d translation = eigen(model.translation) * samples.scale;
+  if (model.orthographic) {
+    // The axis may run anywhere: through the middle of the frame, and behind every sample.
+    camera.cx = 0.5 * (window.x0 + window.x1);
+    camera.cy = 0.5 * (window.y0 + window.y1);
+    double nearest = 0;
+    for (const Sample& s : samples.items) {
+      nearest = std::min(nearest, (axes.row(2) * eigen(s.p)).value());
+    }
+    const glm::dvec2 centre = model.project(glm::dvec3(0));
+    translation = {(centre.x - camera.cx) / camera.fx, (centre.y - camera.cy) / camera.fy,
+                   samples.scale * (1 - nearest)};
+  }
+  const Vector3d origin = eigen(samples.centre) - axes.transpose() * translation;
+  const Matrix3d rotation = Vector3d(1, -1, -1).asDiagonal() * axes;
+  for (int row = 0; row < 3; ++row) {
+    camera.origin[row] = origin[row];
+    for (int column = 0; column < 3; ++column) camera.rotation[column][row] = rotation(row, column);
+  }
+  return camera;
+}
+
+ProjectionModel model_of(const Camera& camera, const Samples& samples) {
+  const Matrix3d axes = Vector3d(1, -1, -1).asDiagonal() * eigen(camera.rotation);
+  const Vector3d translation = axes * eigen(samples.centre - camera.origin) / samples.scale;
+  const double scale = camera.orthographic ? samples.scale : 1;
+  return {camera.orthographic,
+          glm::make_mat3(axes.data()),
+          glm::make_vec3(translation.data()),
+          camera.fx * scale,
+          camera.fy * scale,
+          camera.cx,
+          camera.cy};
+}
+
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) return 0;
   const std::size_t k = std::min(values.size() - 1, std::size_t(q * double(values.size())));
@@ -137,11 +192,25 @@ double reprojection_rms(const ProjectionModel& model, const Samples& samples) {
   return std::sqrt(sum / double(std::max<std::size_t>(1, samples.items.size())));
 }
 
-void refine(ProjectionModel& model, const Samples& samples, bool pose_only) {
-  const int n = pose_only ? 6 : kParameters;
-  double rms = reprojection_rms(model, samples);
+double pose_cost(const ProjectionModel& model, const Samples& samples, const PosePrior& prior) {
+  const double rms = reprojection_rms(model, samples);
+  return rms * rms + prior.weight * way_from(prior, model).squaredNorm() /
+                         double(std::max<std::size_t>(1, samples.items.size()));
+}
+
+void refine(ProjectionModel& model, const Samples& samples, bool pose_only,
+            const PosePrior* prior) {
+  const int n = pose_only || prior ? 6 : kParameters;
+  const auto cost_of = [&](const ProjectionModel& m) {
+    return prior ? pose_cost(m, samples, *prior) : reprojection_rms(m, samples);
+  };
+  double cost = cost_of(model);
   for (int iteration = 0; iteration < 8; ++iteration) {
-    const NormalEquations eq = linearise(model, samples);
+    NormalEquations eq = linearise(model, samples);
+    if (prior) {
+      eq.jtj.diagonal().head<6>().array() += prior->weight;
+      eq.jtr.head<6>() -= prior->weight * way_from(*prior, model);
+    }
     const Eigen::VectorXd step = eq.jtj.topLeftCorner(n, n).ldlt().solve(eq.jtr.head(n));
     if (!step.allFinite()) return;
     ProjectionModel next = model;
@@ -152,12 +221,12 @@ void refine(ProjectionModel& model, const Samples& samples, bool pose_only) {
       next.rotation = glm::make_mat3(turned.data());
     }
     next.translation += glm::dvec3(step(3), step(4), step(5));
-    if (!pose_only) {
+    if (n == kParameters) {
       next.fx += step(6), next.fy += step(7), next.cx += step(8), next.cy += step(9);
     }
-    const double next_rms = reprojection_rms(next, samples);
-    if (!(next_rms < rms)) return;
-    model = next, rms = next_rms;
+    const double next_cost = cost_of(next);
+    if (!(next_cost < cost)) return;
+    model = next, cost = next_cost;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "math/plane.h"
+#include "scene/camera/camera.h"
 
 namespace ssdo {
 
@@ -41,15 +42,33 @@ struct ProjectionModel {
   glm::dvec2 project(const glm::dvec3& p) const;
 };
 
+/// The tool's camera in the space of P, of a model of normalised samples. The axis of an
+/// orthographic one, which may run anywhere, goes through the middle of `window`, and begins before
+/// all samples.
+Camera camera_of(const ProjectionModel& model, const Samples& samples, const Window& window);
+
+/// A camera as a model of normalised samples; no panorama.
+ProjectionModel model_of(const Camera& camera, const Samples& samples);
+
 /// Root mean square of the reprojection error, in pixels.
 double reprojection_rms(const ProjectionModel& model, const Samples& samples);
 
 /// The samples that agree with the model to within three robust standard deviations.
 Samples inliers(const ProjectionModel& model, const Samples& samples);
 
-/// Gauss-Newton on the reprojection error of a perspective model: on all ten parameters (rotation,
-/// translation, fx, fy, cx, cy), or on the pose alone.
-void refine(ProjectionModel& model, const Samples& samples, bool pose_only);
+/// A pose that a fit stays near to where the samples leave it open.
+struct PosePrior {
+  ProjectionModel pose;
+  double weight;  ///< in square pixels: of a radian of rotation and of a unit of translation
+};
+
+/// The sum of the square of reprojection_rms() and of what the prior adds per sample.
+double pose_cost(const ProjectionModel& model, const Samples& samples, const PosePrior& prior);
+
+/// Gauss-Newton on the reprojection error: of a perspective model on all ten parameters (rotation,
+/// translation, fx, fy, cx, cy), or on the pose alone; with a prior, of any model on its pose.
+void refine(ProjectionModel& model, const Samples& samples, bool pose_only,
+            const PosePrior* prior = nullptr);
 
 /// Relative standard error of the focal length, from the residuals that are left.
 double focal_uncertainty(const ProjectionModel& model, const Samples& samples);

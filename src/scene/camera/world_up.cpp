@@ -77,29 +77,38 @@ double likelihood_of(const glm::dvec3& up, const Geometry& geometry) {
 }
 
 /// The six directions that may be up, y and z first.
-std::array<Candidate, 6> candidates_of(const Geometry& geometry) {
+std::array<Candidate, 6> directions_of(const Geometry& geometry) {
   const glm::dmat3 world(geometry.world_to_camera);
-  std::array<Candidate, 6> all = {{{"y", world[1]},
-                                   {"z", world[2]},
-                                   {"x", world[0]},
-                                   {"-y", -world[1]},
-                                   {"-z", -world[2]},
-                                   {"-x", -world[0]}}};
-  for (Candidate& candidate : all) candidate.likelihood = likelihood_of(candidate.axis, geometry);
-  all[0].likelihood *= kOddsOfY;
-  return all;
-}
-
-/// Blender and Unreal have one world.
-bool header_says_z(const GBuffer& g) {
-  const auto unreal = g.header.lower_bound("unreal/");
-  return g.by_blender || (unreal != g.header.end() && unreal->first.starts_with("unreal/"));
+  return {{{"y", world[1]},
+           {"z", world[2]},
+           {"x", world[0]},
+           {"-y", -world[1]},
+           {"-z", -world[2]},
+           {"-x", -world[0]}}};
 }
 
 }  // namespace
 
-WorldUp find_world_up(const GBuffer& g, const Geometry& geometry) {
-  const std::array<Candidate, 6> all = candidates_of(geometry);
+UpEvidence up_evidence(const Geometry& geometry) {
+  UpEvidence evidence;
+  const auto all = directions_of(geometry);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    evidence[i] = std::log(likelihood_of(all[i].axis, geometry));
+  return evidence;
+}
+
+/// Blender and Unreal have one world.
+bool header_tells_up(const GBuffer& g) {
+  const auto unreal = g.header.lower_bound("unreal/");
+  return g.by_blender || (unreal != g.header.end() && unreal->first.starts_with("unreal/"));
+}
+
+WorldUp find_world_up(const GBuffer& g, const Geometry& geometry,
+                      const std::optional<UpEvidence>& of_shot) {
+  const UpEvidence evidence = of_shot ? *of_shot : up_evidence(geometry);
+  std::array<Candidate, 6> all = directions_of(geometry);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].likelihood = std::exp(evidence[i]);
+  all[0].likelihood *= kOddsOfY;
   const Candidate &y = all[0], &z = all[1];
   const Candidate& best = *std::max_element(
       all.begin(), all.end(),
@@ -107,7 +116,7 @@ WorldUp find_world_up(const GBuffer& g, const Geometry& geometry) {
   const auto is_surely = [&](const Candidate& other, const Candidate& than) {
     return other.likelihood > kLeastOdds * than.likelihood;
   };
-  if (header_says_z(g)) {
+  if (header_tells_up(g)) {
     WorldUp up{UpAxis::z, "by the header", ""};
     // A view from far above may have any direction to its right.
     if (is_surely(best, z) && std::abs(z.axis.z) < kFarAbove) {
@@ -129,9 +138,9 @@ WorldUp find_world_up(const GBuffer& g, const Geometry& geometry) {
        {std::tuple{UpAxis::z, &z, &y}, std::tuple{UpAxis::y, &y, &z}}) {
     if (!is_surely(*taken, *other)) continue;
     const double odds = std::min(taken->likelihood / other->likelihood, kLargestOdds);
-    return {axis, fmt::format("by the camera, {:.0f} to 1", odds), ""};
+    return {axis, fmt::format("by the camera{}, {:.0f} to 1", of_shot ? " of the shot" : "", odds),
+            ""};
   }
-  // A camera that tilts has no say of its own: frames of its shot would differ.
   return {
       UpAxis::y, "a guess",
       "the camera does not surely tell whether y or z is up in the world of P: taken as y; give "

@@ -114,6 +114,8 @@ std::vector<Axes> maps_of_axes() {
   return all;
 }
 
+constexpr const char* kTurnedRound = ", turned round";
+
 /// A map of stored normals to camera space.
 struct Candidate {
   std::string space;
@@ -130,6 +132,9 @@ struct Candidate {
   }
 
   std::string name() const { return space + axes.text(); }
+  std::string turned_name() const {
+    return space + (axes.text().empty() ? kTurnedRound : axes.turned().text());
+  }
 
   /// Share of the witnesses whose normal, without its sign, is nearer than this cosine.
   double share_within(float cosine) const {
@@ -206,7 +211,7 @@ NormalSpace described(const Candidate& found, const std::vector<Witness>& witnes
   const bool as_they_are = found.axes.text().empty();
   if (double(positive) < (as_they_are ? kMostPositive : 0.5) * double(count)) {
     space.to_camera = -space.to_camera;
-    space.name = found.space + (as_they_are ? ", turned round" : found.axes.turned().text());
+    space.name = found.turned_name();
   }
   return space;
 }
@@ -225,6 +230,23 @@ Candidate named_space(const std::vector<NamedRotation>& spaces,
     Candidate other(space, {}, witnesses);
     if (is_known(other, witnesses) && is_clearly_nearer(other, found, witnesses))
       found = std::move(other);
+  }
+  return found;
+}
+
+/// The space and axes whose name `text` begins with, whichever way the normals point; else `rule`.
+Candidate named_in(const std::string& text, const std::vector<NamedRotation>& spaces,
+                   const std::vector<Witness>& witnesses, const Candidate& rule) {
+  Candidate found = rule;
+  std::size_t longest = 0;
+  for (const NamedRotation& space : spaces) {
+    for (const Axes& axes : maps_of_axes()) {
+      Candidate candidate(space, axes, witnesses);
+      for (const std::string& name : {candidate.name(), candidate.turned_name()}) {
+        if (name.size() <= longest || !text.starts_with(name)) continue;
+        longest = name.size(), found = candidate;
+      }
+    }
   }
   return found;
 }
@@ -284,9 +306,11 @@ Candidate turned_to_gradients(Candidate candidate, const std::vector<Witness>& w
 }  // namespace
 
 NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
-                              const std::vector<NamedRotation>& spaces, bool orthographic) {
+                              const std::vector<NamedRotation>& spaces, bool orthographic,
+                              const std::string& of_shot) {
   const std::vector<Witness> witnesses = collect_witnesses(stored, surfels, orthographic);
-  const Candidate rule = named_space(spaces, witnesses);
+  Candidate rule = named_space(spaces, witnesses);
+  if (!of_shot.empty()) rule = named_in(of_shot, spaces, witnesses, rule);
   Candidate best = rule;
   for (const NamedRotation& space : spaces) {
     for (const Axes& axes : maps_of_axes()) {

@@ -47,8 +47,11 @@ struct NamedRotation {
 /// Leaves whose normals all point up agree with no axes, and with many by chance. Spaces
 /// that differ by a few degrees are told apart where normals are no rougher than that. Normals that
 /// agree with none, but with P once they are turned by one rotation, have a space of their own.
+/// `of_shot` is the name of what other frames of the sequence have, which may go on with more: it
+/// takes the place of the first space, so that a frame that does not tell goes with them.
 NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
-                              const std::vector<NamedRotation>& spaces, bool orthographic);
+                              const std::vector<NamedRotation>& spaces, bool orthographic,
+                              const std::string& of_shot = "");
 
 /// How far the stored normals agree with the gradient of P if they are in `space`, with its axes.
 NormalSpace measure_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,

@@ -4,9 +4,12 @@
 #include <Imath/half.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <glm/trigonometric.hpp>
 #include <random>
 
+#include "scene/camera/fit_pose.h"
 #include "support/analytic_scene.h"
 
 namespace ssdo::test {
@@ -159,6 +162,79 @@ TEST(PoseFit, RefusesAProjectionThatCannotBe) {
   const Picture flat =
       take_picture(plane({}, {0, 0, 1}), above(camera_from_fov(50, kWindow, 1)), kWindow);
   EXPECT_FALSE(fit_pose(camera_from_fov(20, kWindow, 1), flat.position, flat.valid, kWindow));
+}
+
+/// A picture that shows a surface in some of its pixels only.
+Picture with_pixels(Picture picture, const std::vector<glm::ivec2>& pixels) {
+  Plane<unsigned char> valid(kWindow.width(), kWindow.height(), 0);
+  for (const glm::ivec2& at : pixels) valid(at.x, at.y) = picture.valid(at.x, at.y);
+  picture.valid = valid;
+  return picture;
+}
+
+/// The angle between two cameras' axes, in radians.
+double turn_between(const Camera& a, const Camera& b) {
+  const glm::dmat3 turn = a.rotation * glm::transpose(b.rotation);
+  return std::acos(std::clamp(0.5 * (turn[0][0] + turn[1][1] + turn[2][2] - 1), -1.0, 1.0));
+}
+
+TEST(PoseBeside, BringsFewPixelsToTheirPlaces) {
+  Camera shifted = camera_from_fov(50, kWindow, 1);
+  shifted.cx += 20, shifted.cy -= 9;
+  std::vector<glm::ivec2> line;
+  for (int x = 20; x < 140; ++x) line.emplace_back(x, 80);
+  for (const Camera& lens : {shifted, camera_from_ortho_width(8, kWindow, 1)}) {
+    const Camera beside = above(lens);
+    for (const auto& pixels : {std::vector<glm::ivec2>{{80, 50}},
+                               {{80, 50}, {60, 70}},
+                               {{80, 50}, {60, 70}, {120, 60}},
+                               line}) {
+      SCOPED_TRACE(testing::Message() << lens.orthographic << " " << pixels.size());
+      const Picture still = with_pixels(take_picture(still_life(), beside, kWindow), pixels);
+      const auto same = fit_pose_beside(beside, still.position, still.valid, kWindow);
+      ASSERT_TRUE(same);
+      EXPECT_LT(turn_between(*same, beside), 1e-5);
+      Camera other =
+          look_at(lens, beside.origin + glm::dvec3(0.2, 0.1, 0), {0.1, 0, 0.5}, {0, 0, 1});
+      const Picture moved = with_pixels(take_picture(still_life(), other, kWindow), pixels);
+      const auto found = fit_pose_beside(beside, moved.position, moved.valid, kWindow);
+      ASSERT_TRUE(found);
+      EXPECT_LT(measure_residual(*found, moved.position, moved.valid, kWindow).max_px, 0.01);
+      EXPECT_LT(turn_between(*found, other), 1.2 * turn_between(beside, other));
+      EXPECT_EQ(found->orthographic, lens.orthographic);
+      EXPECT_NEAR(found->fx / lens.fx, 1, 1e-12);
+    }
+  }
+}
+
+/// A plane tells the pose under a known lens; from far away too, and of two that an orthographic
+/// camera may have, it is the one nearer to the camera beside.
+TEST(PoseBeside, OfAPlaneIsThatOfItsOwnPixels) {
+  for (const Camera& lens :
+       {camera_from_fov(50, kWindow, 1), camera_from_ortho_width(8, kWindow, 1)}) {
+    const Picture flat = take_picture(plane({}, {0, 0, 1}), above(lens), kWindow);
+    const Camera beside =
+        look_at(lens, flat.camera.origin + glm::dvec3(1, 0.5, -0.3), {0.4, 0, 0.2}, {0, 0, 1});
+    const auto found = fit_pose_beside(beside, flat.position, flat.valid, kWindow);
+    ASSERT_TRUE(found);
+    EXPECT_LT(turn_between(*found, flat.camera), 1e-3) << lens.orthographic;
+  }
+}
+
+TEST(PoseBeside, IsNoneWhereTheLensIsAnother) {
+  const Picture flat =
+      take_picture(plane({}, {0, 0, 1}), above(camera_from_fov(50, kWindow, 1)), kWindow);
+  EXPECT_FALSE(
+      fit_pose_beside(above(camera_from_fov(20, kWindow, 1)), flat.position, flat.valid, kWindow));
+}
+
+/// Six pixels of a ball fit an orthographic camera that looks elsewhere; a hundred tell their own.
+TEST(CameraFit, TakesNoOrthographicCameraThatFewPixelsLeaveOpen) {
+  const Camera lens = camera_from_fov(50, kWindow, 1);
+  std::vector<glm::ivec2> block;
+  for (int i = 0; i < 6; ++i) block.emplace_back(78 + i % 3, 38 + i / 3);
+  const Picture six = with_pixels(take_picture(still_life(), above(lens), kWindow), block);
+  EXPECT_FALSE(fit_camera(six.position, six.valid, kWindow));
 }
 
 TEST(FitCamera, TheResidualIsThatOfAllPixels) {

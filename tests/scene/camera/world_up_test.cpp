@@ -87,6 +87,19 @@ TEST(WorldUp, OfATiltingCameraIsYWhereItIsNotSurelyZ) {
   }
 }
 
+TEST(WorldUp, OfAShotIsThatOfItsFramesTogether) {
+  const Geometry level = seen({17, 12}), tilted = seen({0, 70, 25});
+  EXPECT_EQ(find_world_up({}, tilted).source, "a guess");
+  UpEvidence both = up_evidence(level);
+  const UpEvidence other = up_evidence(tilted);
+  for (std::size_t i = 0; i < both.size(); ++i) both[i] = (both[i] + other[i]) / 2;
+  for (const Geometry& frame : {level, tilted}) {
+    const WorldUp up = find_world_up({}, frame, both);
+    EXPECT_EQ(up.axis, UpAxis::z);
+    EXPECT_THAT(up.source, StartsWith("by the camera of the shot, "));
+  }
+}
+
 TEST(WorldUp, IsFoundInALeftHandedWorld) {
   const glm::mat3 mirror{{1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
   EXPECT_EQ(find_world_up({}, seen({30, 10}, mirror)).axis, UpAxis::z);

@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "scene/camera/fit.h"
+#include "scene/camera/fit_pose.h"
 #include "scene/camera/projection_model.h"
 
 namespace ssdo {
