@@ -26,6 +26,7 @@
 #include "cli/memory.h"
 #include "cli/place_in_sequence.h"
 #include "cli/progress.h"
+#include "cli/repeated_warnings.h"
 #include "cli/sequence_frames.h"
 #include "cli/statistics.h"
 #include "frame.h"
@@ -49,18 +50,12 @@ struct Work {
   std::size_t index = 0;               ///< of the job
   OutputPolicy policy = {};            ///< of its outputs
   std::vector<WorkOnView> views = {};  ///< while there is something left to do with them
-  std::string lines = {};              ///< to be printed
+  std::vector<Line> lines = {};        ///< to be printed
   std::string advice = {};             ///< to be printed once the outputs are made
   nlohmann::json statistics = {};      ///< of its views; null unless the outputs were made
   std::set<std::string> losses = {};   ///< what --allow-partial has taken as background
   std::optional<Error> error = {};
 };
-
-/// Not in a folder that may not be looked into: that is for the reader to say.
-bool is_missing(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::status(path, ignored).type() == std::filesystem::file_type::not_found;
-}
 
 class Batch {
  public:
@@ -85,6 +80,8 @@ class Batch {
     ExitCode code = ExitCode::done;
     try {
       code = run_jobs();
+      for (const std::string& line : repeated_.summary())
+        print(line_of(options_.input_file + line));
     } catch (const Error& e) {
       info_.note(e);
       info_.finish();
@@ -168,11 +165,7 @@ class Batch {
     attempt(work, [&] {
       if (may_skip(work)) return;
       const Job& job = jobs_[i];
-      if (job.frame && is_missing(job.input())) {
-        throw Error(ExitCode::input, fmt::format("{}: frame {} of the range is missing; render it "
-                                                 "or leave it out of --frames",
-                                                 job.input(), *job.frame));
-      }
+      check_input(job);
       for (const FrameFiles& files : job.views) work.views.push_back({prepare_view(job, files)});
       if (work.views.size() > 1)
         add_warnings(work, compare_views(work.views[0].frame, work.views[1].frame), "");
@@ -203,7 +196,8 @@ class Batch {
       const Job& job = jobs_[work.index];
       looks_.push_back(looks_of(view.frame, job.views[looks_.size()], job.frame.value_or(0)));
       if (looks_.size() <= before.size())
-        add_warnings(work, changes(before[looks_.size() - 1], looks_.back()), view.frame.view);
+        add_warnings(work, changes(before[looks_.size() - 1], looks_.back()), view.frame.view,
+                     true);
     }
   }
 
@@ -242,7 +236,7 @@ class Batch {
     if (options_.command == Command::info || options_.verbosity.dry_run) note_losses(work, frame);
     if (options_.command == Command::info) return info_.show(frame);
     if (options_.verbosity.dry_run || options_.verbosity.verbose)
-      work.lines += describe(frame);
+      work.lines.push_back({describe(frame)});
     else {
       add_warnings(work, frame.warnings(), frame.view);
       if (!jobs_[work.index].frame && !options_.verbosity.quiet) work.advice = frame.advice;
@@ -343,14 +337,18 @@ class Batch {
 
   static std::string line_of(const std::string& text) { return "ssdo: " + printable(text) + "\n"; }
 
-  static void add(Work& work, const std::string& line) { work.lines += line_of(line); }
+  static void add(Work& work, const std::string& line) { work.lines.push_back({line_of(line)}); }
 
-  void add_warnings(Work& work, const std::vector<std::string>& warnings,
-                    const std::string& view) const {
+  /// Those of `every` frame are no repetitions, whatever their wording.
+  void add_warnings(Work& work, const std::vector<std::string>& warnings, const std::string& view,
+                    bool every = false) const {
     if (options_.verbosity.quiet) return;
     const std::string of_view = view.empty() ? "" : " (" + view + ")";
-    for (const std::string& warning : warnings)
-      add(work, fmt::format("{}{}: warning: {}", jobs_[work.index].input(), of_view, warning));
+    for (const std::string& warning : warnings) {
+      const std::string text = fmt::format("{}: warning: {}", of_view, warning);
+      work.lines.push_back({line_of(jobs_[work.index].input() + text),
+                            every || options_.verbosity.verbose ? "" : text});
+    }
   }
 
   /// Prints on standard error; if that is closed, the work goes on.
@@ -360,7 +358,9 @@ class Batch {
   }
 
   void print_lines(Work& work) {
-    if (!work.lines.empty()) print(std::exchange(work.lines, {}));
+    const int number = jobs_[work.index].frame.value_or(0);
+    for (const Line& line : std::exchange(work.lines, {}))
+      if (line.warning.empty() || repeated_.add(work.index, number, line.warning)) print(line.text);
   }
 
   /// Statistics are about products, which `info` does not make.
@@ -378,6 +378,7 @@ class Batch {
   SequenceFrames frames_;
   ProgressLine progress_;
   InfoReport info_;
+  RepeatedWarnings repeated_;
   nlohmann::json statistics_ = nlohmann::json::array();
   ExitCode code_ = ExitCode::done;
   bool stopped_ = false;

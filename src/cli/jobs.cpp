@@ -187,6 +187,16 @@ std::set<std::filesystem::path> output_folders(const std::vector<Job>& jobs) {
   return folders;
 }
 
+void check_input(const Job& job) {
+  std::error_code ignored;
+  // Of a folder that may not be looked into, the reader tells.
+  const auto kind = std::filesystem::status(job.input(), ignored).type();
+  if (!job.frame || kind != std::filesystem::file_type::not_found) return;
+  throw Error(ExitCode::input, fmt::format("{}: frame {} of the range is missing; render it or "
+                                           "leave it out of --frames",
+                                           job.input(), *job.frame));
+}
+
 bool is_done(const Job& job) {
   for (const Target& target : job.targets) {
     std::error_code ignored;

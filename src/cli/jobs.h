@@ -30,6 +30,9 @@ std::vector<Job> plan_jobs(const Options& options);
 /// The folders that the outputs of all jobs go to.
 std::set<std::filesystem::path> output_folders(const std::vector<Job>& jobs);
 
+/// Errors: ExitCode::input for a frame of a sequence that does not exist.
+void check_input(const Job& job);
+
 /// Whether all outputs of a job exist and can be read.
 bool is_done(const Job& job);
 

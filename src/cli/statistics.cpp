@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "io/checked_file.h"
 #include "io/json_text.h"
@@ -26,6 +27,8 @@ nlohmann::json statistics_of(const Frame& frame, const Job& job, const Resources
   const Plan& plan = relit.plan;
   nlohmann::json outputs = nlohmann::json::array();
   for (const Target& target : job.targets) outputs.push_back(target.path);
+  std::vector<std::string> warnings = frame.warnings();
+  warnings.insert(warnings.end(), relit.warnings.begin(), relit.warnings.end());
   nlohmann::json out = {
       {"frame", job.frame ? nlohmann::json(*job.frame) : nlohmann::json()},
       {"input", frame.input},
@@ -52,6 +55,7 @@ nlohmann::json statistics_of(const Frame& frame, const Job& job, const Resources
       {"pixels", frame.gbuffer.file_window.area()},
       {"background_pixels", frame.gbuffer.background_pixels},
       {"bad_pixels", frame.gbuffer.bad_pixels},
+      {"warnings", warnings},
       {"missing", frame.losses()},
       {"plan", to_json(plan, frame.history)},
   };

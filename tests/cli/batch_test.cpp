@@ -16,8 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using testing::AllOf;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 /// A shot of frames 1, 2, 4 and 5: the third is missing, as happens.
 class Shot : public testing::Test {
@@ -154,6 +157,34 @@ TEST_F(Shot, WhatChangesFromFrameToFrameIsSaidOnce) {
   write_frame(file("in", 5), frame_of(small_picture(small, small)));
   EXPECT_THAT(lines_with(run({"--dry-run"}), "the size changes"),
               ElementsAre(HasSubstr("frame 4 has 64 x 48 pixels, frame 5 32 x 24")));
+}
+
+/// Every frame repeated the warnings of the one before.
+TEST_F(Shot, AWarningThatRepeatsIsSaidOnce) {
+  FramePart part = frame_of(small_picture());
+  for (const char* c : {"R", "G", "B"}) part.channels.erase("ViewLayer.DiffCol." + std::string(c));
+  for (const int frame : {2, 4, 5}) write_frame(file("in", frame), part);
+  const Finished done = run({"--radius", "1e-5", "--stats", dir_ / "stats.json"});
+  EXPECT_EQ(done.code, 0);
+  const std::string pattern = "ssdo: " + (dir_ / "in.####.exr").string();
+  std::vector<std::string> lines;
+  std::istringstream in(done.err);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  EXPECT_THAT(lines,
+              ElementsAre(StartsWith("ssdo: " + file("in", 1) + ": warning: --radius 1e-05 is"),
+                          HasSubstr("in.0002.exr: warning: albedo is gone"),
+                          StartsWith("ssdo: " + file("in", 2) + ": warning: no layer for albedo"),
+                          AllOf(StartsWith(pattern + ": warning: --radius 1e-05 is"),
+                                EndsWith("is it in the unit of P?: frames 1 to 5")),
+                          AllOf(StartsWith(pattern + ": warning: no layer for albedo"),
+                                EndsWith(": frames 2 to 5"))));
+  for (const json& frame : stats()) {
+    const std::string all = frame["warnings"].dump();
+    EXPECT_THAT(all, HasSubstr("--radius 1e-05")) << "each frame has its own here";
+    EXPECT_EQ(all.find("albedo") == all.npos, frame["frame"] == 1);
+  }
+  const Finished alone = run({"--radius", "1e-5", "--frames", "4", "--overwrite"});
+  EXPECT_EQ(std::count(alone.err.begin(), alone.err.end(), '\n'), 2) << alone.err;
 }
 
 TEST_F(Shot, ManyFramesDoNotGoToOneFile) {
