@@ -20,14 +20,14 @@
 #include <utility>
 
 #include "cli/describe.h"
-#include "cli/frame_changes.h"
 #include "cli/info_report.h"
 #include "cli/jobs.h"
 #include "cli/memory.h"
-#include "cli/place_in_sequence.h"
 #include "cli/progress.h"
-#include "cli/repeated_warnings.h"
-#include "cli/sequence_frames.h"
+#include "cli/sequence/frame_changes.h"
+#include "cli/sequence/place_in_sequence.h"
+#include "cli/sequence/repeated_warnings.h"
+#include "cli/sequence/sequence_frames.h"
 #include "cli/statistics.h"
 #include "frame.h"
 #include "io/one_line.h"

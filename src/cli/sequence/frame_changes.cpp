@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/frame_changes.h"
+#include "cli/sequence/frame_changes.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "cli/options.h"
 #include "frame.h"
@@ -27,24 +28,19 @@ class SequenceFrames {
   Frame prepare(const Lighting& light, const FrameFiles& files, std::optional<int> number);
 
  private:
-  /// What a frame says of those of its sequence.
-  struct Evidence {
-    std::optional<UpEvidence> up;
-    std::string normal_space;  ///< empty: not known
-    double normal_agreement = 0;
-  };
-
   Frame prepare(const FrameOptions& options, const Lighting& light, const FrameFiles& files,
                 int number);
-  const std::vector<Evidence>& evidence(const std::string& view);
+  std::optional<View> read(const FrameFiles& files, std::size_t most_pixels) const;
+  std::optional<CameraBeside> camera_of(const FrameFiles& files) const;
+  void look(const std::string& view, std::size_t most_pixels,
+            const std::function<void(const View&)>& at) const;
   std::optional<UpEvidence> up(const std::string& view);
   std::string normal_space(const std::string& view);
-  std::optional<View> read(const FrameFiles& files) const;
-  std::optional<CameraBeside> camera_of(const FrameFiles& files) const;
 
   const Options& options_;
   FurtherPictures& pictures_;
-  std::optional<std::vector<Evidence>> evidence_;  ///< of the first, the middle and the last frame
+  std::optional<std::optional<UpEvidence>> up_;  ///< of the shot, once it was asked for
+  std::optional<std::string> normal_space_;      ///< the same; empty: no frame is sure
 };
 
 }  // namespace ssdo

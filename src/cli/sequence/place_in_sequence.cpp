@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/place_in_sequence.h"
+#include "cli/sequence/place_in_sequence.h"
 
 #include <fmt/format.h>
 

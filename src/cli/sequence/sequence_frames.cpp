@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/sequence_frames.h"
+#include "cli/sequence/sequence_frames.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <set>
-#include <string>
 #include <utility>
+#include <vector>
 
 #include "band_plan.h"
 #include "cli/jobs.h"
@@ -19,6 +20,10 @@ namespace {
 /// How far a frame is looked for whose P tells its camera.
 constexpr int kMostFramesAway = 8;
 
+/// The camera and samples of the surfaces tell which axis is up: an overview of larger frames has
+/// enough of them.
+constexpr std::size_t kEnoughForUp = 500000, kAllPixels = std::numeric_limits<std::size_t>::max();
+
 /// None where the folder cannot be listed.
 std::vector<int> frames_on_disk(const std::string& pattern) try {
   return find_frames(pattern);
@@ -29,7 +34,8 @@ std::vector<int> frames_on_disk(const std::string& pattern) try {
 }  // namespace
 
 /// The surfaces of another frame; nothing where it cannot be read by itself.
-std::optional<View> SequenceFrames::read(const FrameFiles& files) const try {
+std::optional<View> SequenceFrames::read(const FrameFiles& files, std::size_t most_pixels) const
+    try {
   std::error_code ignored;
   if (!std::filesystem::exists(files.input, ignored)) return std::nullopt;
   const std::vector<Role> unused = {Role::albedo,   Role::beauty,    Role::radiance, Role::ambient,
@@ -39,7 +45,7 @@ std::optional<View> SequenceFrames::read(const FrameFiles& files) const try {
     return std::ranges::find(unused, request.role) != unused.end();
   });
   InputOptions input = for_view(options_.input, files);
-  input.gbuffer.most_pixels = most_pixels_in(options_.memory);
+  input.gbuffer.most_pixels = std::min(most_pixels, most_pixels_in(options_.memory));
   return read_view(open_view(files.input, aovs, input.allow_partial), aovs, input, options_.camera,
                    unused);
 } catch (const Error&) {
@@ -47,47 +53,49 @@ std::optional<View> SequenceFrames::read(const FrameFiles& files) const try {
 }
 
 std::optional<CameraBeside> SequenceFrames::camera_of(const FrameFiles& files) const {
-  const std::optional<View> view = read(files);
+  const std::optional<View> view = read(files, kAllPixels);
   if (!view) return std::nullopt;
   const Placement& placement = view->report.placement;
   if (placement.of_positions.panorama || placement.median_depth <= 0) return std::nullopt;
   return CameraBeside{placement.of_positions, view->gbuffer.display_of_file(), files.input};
 }
 
-const std::vector<SequenceFrames::Evidence>& SequenceFrames::evidence(const std::string& name) {
-  if (evidence_) return *evidence_;
-  evidence_.emplace();
+/// Calls `at` for the first, the middle and the last frame on disk that show surfaces.
+void SequenceFrames::look(const std::string& name, std::size_t most_pixels,
+                          const std::function<void(const View&)>& at) const {
   const std::vector<int> frames = frames_on_disk(options_.input_file);
-  if (frames.size() < 2) return *evidence_;
+  if (frames.size() < 2) return;
   for (const int number : std::set{frames.front(), frames[frames.size() / 2], frames.back()}) {
-    const std::optional<View> view = read(in_view(files_at(options_, number), name));
-    if (!view || view->report.placement.median_depth <= 0) continue;
-    Evidence& found = evidence_->emplace_back();
-    const GeometryReport& report = view->report;
-    if (view->geometry.world_known) found.up = up_evidence(view->geometry);
-    if (report.normal_agreement > 0 && report.normals_known)
-      found.normal_space = report.normal_space, found.normal_agreement = report.normal_agreement;
+    const auto view = read(in_view(files_at(options_, number), name), most_pixels);
+    if (view && view->report.placement.median_depth > 0) at(*view);
   }
-  return *evidence_;
 }
 
 /// The mean over frames, whose cameras are no independent witnesses.
-std::optional<UpEvidence> SequenceFrames::up(const std::string& view) {
+std::optional<UpEvidence> SequenceFrames::up(const std::string& name) {
+  if (up_) return *up_;
   UpEvidence mean{};
   double count = 0;
-  for (const Evidence& frame : evidence(view)) {
-    if (!frame.up) continue;
+  look(name, kEnoughForUp, [&](const View& view) {
+    if (!view.geometry.world_known) return;
+    const UpEvidence found = up_evidence(view.geometry);
     count += 1;
-    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += ((*frame.up)[i] - mean[i]) / count;
-  }
-  return count > 0 ? std::optional(mean) : std::nullopt;
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += (found[i] - mean[i]) / count;
+  });
+  return up_.emplace(count > 0 ? std::optional(mean) : std::nullopt);
 }
 
-/// What agrees best with P.
-std::string SequenceFrames::normal_space(const std::string& view) {
-  const auto& frames = evidence(view);
-  const auto best = std::ranges::max_element(frames, {}, &Evidence::normal_agreement);
-  return best == frames.end() ? "" : best->normal_space;
+/// That of the frame whose N agrees best with P.
+std::string SequenceFrames::normal_space(const std::string& name) {
+  if (normal_space_) return *normal_space_;
+  double best = 0;
+  normal_space_.emplace();
+  look(name, kAllPixels, [&](const View& view) {
+    const GeometryReport& report = view.report;
+    if (!report.normals_known || report.normal_agreement <= best) return;
+    best = report.normal_agreement, normal_space_ = report.normal_space;
+  });
+  return *normal_space_;
 }
 
 Frame SequenceFrames::prepare(const FrameOptions& options, const Lighting& light,
