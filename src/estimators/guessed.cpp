@@ -97,7 +97,8 @@ class Guesses {
 
   /// All pixels of a window as large as the pattern together cover the hemisphere evenly.
   Samples samples_at(int x, int y, unsigned seed) const {
-    constexpr int kPeriod = Interleaving::kPeriod;
+    constexpr int kPeriod = kGuessedPattern;
+    static_assert(kPeriod == Interleaving::kPeriod);
     const Window &window = scene_.geometry.window, &display = scene_.geometry.display;
     const int column = (window.x0 - display.x0 + x) & (kPeriod - 1),
               row = (window.y0 - display.y0 + y) & (kPeriod - 1);
@@ -294,10 +295,12 @@ Plane<float> guessed_shares(const Scene& scene, const Window& part, float radius
         for (int y = tile.y0; y < tile.y1; ++y) {
           for (int x = tile.x0; x < tile.x1; ++x) {
             if (!scene.geometry.surfel(part.x0 + x, part.y0 + y).is_usable()) continue;
-            int count = 0;
+            float sum = 0;
             const int px = part.x0 + x, py = part.y0 + y;
-            guesses.gather(px, py, guesses.samples_at(px, py, seed), [&](Unseen) { ++count; });
-            shares(x, y) = float(count) / kRays;
+            guesses.gather(px, py, guesses.samples_at(px, py, seed), [&](Unseen at) {
+              sum += at == Unseen::behind_things ? kGuessBehindThings : 1;
+            });
+            shares(x, y) = sum / kRays;
           }
         }
       },

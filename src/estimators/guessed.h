@@ -5,9 +5,19 @@
 // are followed until they meet a surface that a picture shows, or the radius ends. A ray is
 // guessed if it meets none and has passed a place that no picture shows; whether the method took
 // it for open or for hidden is then its guess.
+//
+// A guess costs little where its answer is plain. So the product weighs the share of guesses by how
+// far the hemisphere is from being all open or all hidden:
+//
+//   guessed = G sqrt(0.99 4 ao (1 - ao) + 0.01 G^4),   G = 1/n sum of w over the guessed of n rays
+//
+// 4 ao (1 - ao) is the variance of the visibility of single rays over its greatest. That ao is
+// itself a guess: where nothing is known, 0.1 is left of the weight. w is 1, and less behind
+// things, where most rays are hidden and methods take them to be.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "estimators/estimator.h"
@@ -31,13 +41,26 @@ inline constexpr std::array<UnseenPlace, 6> kUnseenPlaces = {
      {"behind the camera", "a panorama"},
      {"behind things", "views from other sides"}}};
 
-/// The share of each pixel's hemisphere that is guessed, weighed by the cosine, 0..1; 0 where there
-/// is no surface. Of the pixels of `part`, which are numbered from the first of the geometry's
-/// window. `radius` in scene units, or infinity.
+/// w behind things. With 1, the rank correlation of the product with the error of ao in 120 made
+/// scenes is 0.25 without a radius and 0.73 at a large one, with 1/2 it is 0.35 and 0.70, and with
+/// less it falls at the large radius and hardly rises without one.
+inline constexpr float kGuessBehindThings = 0.5f;
+
+/// The rays of so many pixels in a row and in a column together cover the hemisphere.
+inline constexpr int kGuessedPattern = 8;
+
+/// G of each pixel, 0..1; 0 where there is no surface. Of
+/// the pixels of `part`, which are numbered from the first of the geometry's window. `radius` in
+/// scene units, or infinity. filter_shares() makes the product of it.
 Plane<float> guessed_shares(const Scene& scene, const Window& part, float radius, unsigned seed,
                             const Progress& progress);
 
-/// The mean of these over a frame.
+/// The product, of G and ao where noise is filtered out of both.
+inline float guessed_product(float g, float ao) {
+  return g * std::sqrt(0.99f * 4 * ao * (1 - ao) + 0.01f * g * g * g * g);
+}
+
+/// The share of guesses among all rays of a frame, by where; w is 1.
 struct GuessedMean {
   float all = 0;
   std::array<float, kUnseenPlaces.size()> at{};  ///< by Unseen; their sum is all

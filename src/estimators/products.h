@@ -55,7 +55,7 @@ struct Products {
   Plane<glm::vec3> bent;    ///< unit, camera space
   Plane<float> reflection;  ///< share of a reflection that is not occluded
   Plane<float> error;  ///< of the luminance of direct + bounce, with the sign of one draw of noise
-  Plane<float> guessed;  ///< share of the hemisphere that no picture shows
+  Plane<float> guessed;  ///< G of estimators/guessed.h; the product once it is filtered
   LightShares shares;    ///< what `direct` is made of, where the method knows
 };
 

@@ -32,6 +32,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "estimators/guessed.h"
 #include "filters/sun_errors.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -160,13 +161,40 @@ Products without_shares(Products products) {
   return products;
 }
 
-}  // namespace
-
-Products filter_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size) {
+Products filter_found(const Filter& filter, Products noisy, const Scene& scene, int pattern_size) {
   if (filter.apply)
     noisy = apply_filter(filter, to_shares(std::move(noisy), scene), scene.geometry, pattern_size);
   add_sun_errors(noisy, scene);
   return filter.apply ? from_shares(std::move(noisy), scene) : without_shares(std::move(noisy));
+}
+
+/// What guessed is made of, after a mean over its own pattern, whatever that of the method is.
+Products mean_of_guesses(const Filter& filter, Plane<float> guessed, Plane<float> ao,
+                         const Geometry& geometry) {
+  Products both;
+  both.guessed = std::move(guessed);
+  both.ao = std::move(ao);
+  return apply_filter(filter, std::move(both), geometry, kGuessedPattern);
+}
+
+}  // namespace
+
+Products filter_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size) {
+  Products guesses;
+  const bool have_guesses = !noisy.guessed.empty(), apart = pattern_size != kGuessedPattern;
+  if (have_guesses && apart)
+    guesses = mean_of_guesses(filter, std::exchange(noisy.guessed, {}), noisy.ao, scene.geometry);
+  Products found = filter_found(filter, std::move(noisy), scene, pattern_size);
+  if (!have_guesses) return found;
+  if (!apart) guesses.guessed = std::move(found.guessed), guesses.ao = found.ao;
+  // One mean leaves steps, eight pixels apart, where a ray of one pixel passes other things than
+  // that of its neighbour.
+  guesses =
+      mean_of_guesses(filter, std::move(guesses.guessed), std::move(guesses.ao), scene.geometry);
+  for (std::size_t i = 0; i < guesses.ao.size(); ++i)
+    guesses.guessed[i] = guessed_product(guesses.guessed[i], std::clamp(guesses.ao[i], 0.0f, 1.0f));
+  found.guessed = std::move(guesses.guessed);
+  return found;
 }
 
 Products to_shares(Products products, const Scene& scene) {

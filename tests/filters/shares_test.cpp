@@ -323,5 +323,39 @@ TEST(Shares, BackgroundStaysBlackWhateverItHolds) {
   }
 }
 
+/// A ball on the ground, seen from above: what is guessed beside and on it is the same on every
+/// side, and the sampling pattern is not.
+TEST(Shares, GuessesHaveNoPattern) {
+  const Scene scene = scene_of(
+      geometry_of(all_of({plane({}, {0, 0, 1}), sphere({0, 0, 0.8}, 0.6)}), camera(), kWindow));
+  const int width = kWindow.width(), height = kWindow.height();
+  for (const char* name : {"bitmask", "trace"}) {
+    const Method& method = find_method(name);
+    const Plane<float> guessed =
+        through_filter(method, scene, estimated(method, scene, {.guessed = true})).guessed;
+    double sum = 0, sum2 = 0;
+    int count = 0;
+    for (int v = 0; v < height / 2; ++v) {
+      for (int u = 0; u <= v; ++u) {
+        if (std::hypot(u + 0.5, v + 0.5) > 16) continue;
+        double all = 0, all2 = 0;
+        for (const auto& [x, y] : {std::pair(u, v), std::pair(v, u)}) {
+          for (const int column : {width / 2 + x, width / 2 - 1 - x}) {
+            for (const int row : {height / 2 + y, height / 2 - 1 - y}) {
+              const double g = double(guessed(column, row));
+              all += g, all2 += g * g;
+            }
+          }
+        }
+        sum += all / 8, sum2 += all2 / 8 - all * all / 64, ++count;
+      }
+    }
+    const double deviation = std::sqrt(sum2 / count);
+    fmt::print("{}: {:.3f} guessed, deviation {:.4f}\n", name, sum / count, deviation);
+    EXPECT_GT(sum / count, 0.04) << name;
+    EXPECT_LT(deviation, 0.005) << name;
+  }
+}
+
 }  // namespace
 }  // namespace ssdo::test
