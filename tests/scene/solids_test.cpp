@@ -18,7 +18,7 @@
 #include "math/pixel_grid.h"
 #include "scene/connections.h"
 #include "scene/normals/normals.h"
-#include "scene/pixel_footprint.h"
+#include "scene/plain_guess.h"
 #include "support/analytic_scene.h"
 #include "support/boxes.h"
 
@@ -135,132 +135,6 @@ TEST(Solids, BehindACardAreTheTangentPlaneThatReachesIt) {
   }
 }
 
-/// The run of a direction through one pixel, end by end.
-struct PlainRun {
-  glm::ivec2 first{0}, last{0};
-  int unknown_ends = 0;
-  float depth = INFINITY;
-
-  int pixels() const {
-    return 1 + std::max(std::abs(last.x - first.x), std::abs(last.y - first.y));
-  }
-  glm::ivec2 middle(const glm::ivec2& step) const { return first + pixels() / 2 * step; }
-};
-
-/// What the runs through one pixel say, each looked for anew.
-class PlainGuess {
- public:
-  PlainGuess(const Geometry& g, const Plane<unsigned char>& connections)
-      : g_(g), connections_(connections), footprint_(g.camera) {
-    for (std::size_t k = 0; k < kDirections.size(); ++k) {
-      runs_[k] = Plane<PlainRun>(g.surfel.width, g.surfel.height);
-      for (int y = 0; y < g.surfel.height; ++y)
-        for (int x = 0; x < g.surfel.width; ++x)
-          if (at({x, y})) runs_[k](x, y) = find_run({x, y}, k);
-    }
-  }
-
-  static glm::ivec2 step(std::size_t k) { return {kDirections[k].dx, kDirections[k].dy}; }
-
-  const Surfel* at(const glm::ivec2& p) const { return surface_at(g_.surfel, p.x, p.y); }
-
-  bool joined(const glm::ivec2& from, std::size_t k) const {
-    return at(from) && connections_(from.x, from.y) >> k & 1;
-  }
-
-  const PlainRun& run(const glm::ivec2& p, std::size_t k) const { return runs_[k](p.x, p.y); }
-
-  PlainRun find_run(const glm::ivec2& p, std::size_t k) const {
-    PlainRun run{p, p};
-    while (joined(run.first - step(k), k)) run.first -= step(k);
-    while (joined(run.last, k)) run.last += step(k);
-    const Surfel &a = *at(run.first), &b = *at(run.last);
-    run.unknown_ends = goes_on(run.first - step(k), a) + goes_on(run.last + step(k), b);
-    if (run.unknown_ends == 2) return run;
-    const float width =
-        glm::distance(a.position, b.position) +
-        0.5f * step_px(k) * (footprint_.at(-a.position.z) + footprint_.at(-b.position.z));
-    run.depth = kDepthOfWidth * width * (run.unknown_ends == 1 ? 3.0f : 1.0f);
-    return run;
-  }
-
-  static float step_px(std::size_t k) { return k < 2 ? 1 : 1.41421356f; }
-
-  float thickness(const glm::ivec2& p) const {
-    float least = INFINITY;
-    for (std::size_t k = 0; k < kDirections.size(); ++k) least = std::min(least, mean_depth(p, k));
-    return least;
-  }
-
- private:
-  /// Whether the surface of an end of a run may go on to a pixel that is not of it.
-  bool goes_on(const glm::ivec2& to, const Surfel& end) const {
-    const bool outside =
-        to.x < 0 || to.y < 0 || to.x >= g_.surfel.width || to.y >= g_.surfel.height;
-    return outside || (at(to) && at(to)->position.z > end.position.z);
-  }
-
-  float mean_depth(const glm::ivec2& p, std::size_t k) const {
-    const PlainRun& own = run(p, k);
-    const bool whole = own.unknown_ends == 0;
-    const int reach = (whole ? 1 : 4) * kWidthReach;
-    double weights = whole ? 1 : 0.02, sum = weights / double(own.depth);
-    const std::size_t across = k ^ 1;
-    for (const int side : {-1, 1}) {
-      glm::ivec2 middle = own.middle(step(k));
-      for (int i = 1; i <= reach; ++i) {
-        const glm::ivec2 next = middle + side * step(across);
-        if (!at(next) || !joined(side > 0 ? middle : next, across)) break;
-        const PlainRun& beside = run(next, k);
-        const double more = beside.pixels() - own.pixels(), less = beside.unknown_ends ? 0 : -more;
-        double alike = std::min(1.0, (4 - less) / 3);
-        alike = std::min(alike, whole && !beside.unknown_ends ? (4 - more) / 3
-                                                              : 2 - more / (1.5 * own.pixels()));
-        if (alike <= 0) break;
-        middle = beside.middle(step(k));
-        if (beside.unknown_ends) continue;
-        const double weight = alike * (1 - i / (reach + 1.0));
-        weights += weight, sum += weight / double(beside.depth);
-      }
-    }
-    return float(weights / sum);
-  }
-
-  const Geometry& g_;
-  const Plane<unsigned char>& connections_;
-  PixelFootprint footprint_;
-  std::array<Plane<PlainRun>, kDirections.size()> runs_;
-};
-
-struct Behind {
-  float distance = INFINITY;
-  int sender = -1;
-};
-
-/// The surface that goes on behind a pixel.
-Behind plain_behind(const Geometry& g, const PlainGuess& guess, const glm::ivec2& p) {
-  Behind found;
-  float nearest_px = INFINITY;
-  const glm::vec3& front = guess.at(p)->position;
-  const glm::vec3 along = -direction_to_viewer(front, g.camera.orthographic);
-  for (std::size_t k = 0; k < kDirections.size(); ++k) {
-    const PlainRun& run = guess.run(p, k);
-    for (const bool after : {false, true}) {
-      const glm::ivec2 end = after ? run.last : run.first,
-                       to = end + (after ? 1 : -1) * PlainGuess::step(k), way = glm::abs(to - p);
-      const Surfel* other = guess.at(to);
-      if (!other || other->position.z > guess.at(end)->position.z) continue;
-      const float away_px = float(std::max(way.x, way.y)) * PlainGuess::step_px(k);
-      const float distance =
-          glm::dot(other->normal, other->position - front) / glm::dot(other->normal, along);
-      if (!(distance > 0 && distance < INFINITY) || away_px >= nearest_px) continue;
-      nearest_px = away_px;
-      found = {distance, int(g.surfel.index(to.x, to.y))};
-    }
-  }
-  return found;
-}
-
 TEST(Solids, AreThoseOfTheRunsThroughEachPixel) {
   // Lines beside each other are walked together, 64 at a time.
   const Window window{0, 0, 150, 97};
@@ -280,7 +154,7 @@ TEST(Solids, AreThoseOfTheRunsThroughEachPixel) {
         const float thickness = plain.thickness({x, y});
         const std::size_t i = g.surfel.index(x, y);
         if (thickness < INFINITY)
-          ASSERT_NEAR(solids.thickness[i], thickness, 1e-5f * thickness) << x << ", " << y;
+          ASSERT_NEAR(solids.thickness[i], thickness, 1e-3f * thickness) << x << ", " << y;
         else
           ASSERT_EQ(solids.thickness[i], thickness) << x << ", " << y;
         ASSERT_EQ(solids.at(1, i).distance, expected.distance) << x << ", " << y;
@@ -324,7 +198,7 @@ TEST(Solids, OfAStraightLegAreOfOneThicknessAlongIt) {
              beside_ground, beside_leg, least, most);
   EXPECT_GT(beside_ground, 10);
   EXPECT_GT(beside_leg, 10);
-  EXPECT_LT(step, 1.05) << "from a row to the next";
+  EXPECT_LT(step, 1.07) << "from a row to the next";
   EXPECT_GT(least, 0.09);
   EXPECT_LT(most, 0.12);
 }
@@ -348,7 +222,7 @@ TEST(Solids, OfSomeRowsOfAFrameAreThoseOfTheFrame) {
   EXPECT_NEAR(of_whole.thickness[on_cut], kDepthOfWidth * 0.8, 0.02);
   EXPECT_NEAR(of_band.thickness[on_cut], of_whole.thickness[on_cut], 0.1);
   EXPECT_GT(guess_solids(band).thickness[on_cut], 1.1 * of_whole.thickness[on_cut]);
-  EXPECT_NEAR(of_whole.thickness[on_other], kDepthOfWidth * 0.6, 0.02);
+  EXPECT_LT(of_whole.thickness[on_other], 0.05) << "its lower side would be seen";
   EXPECT_EQ(of_band.thickness[on_other], of_whole.thickness[on_other]);
 }
 

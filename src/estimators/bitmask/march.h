@@ -47,7 +47,7 @@ struct March {
   float radius;              ///< scene units, or infinity
   bool extend;               ///< surfaces go on beyond the frame
   bool may_be_thin = false;  ///< solids may be thinner than neighbours on a surface are apart;
-                             ///< guessed ones are about as deep as they appear wide
+                             ///< guessed ones seldom are
   const FurtherRays* further = nullptr;  ///< what only further views show; null: nothing
   const FarScene* far = nullptr;  ///< where the raster is a part of a frame without its reach: what
                                   ///< marches meet beyond far->raster.from_px
