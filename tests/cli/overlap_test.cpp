@@ -77,11 +77,11 @@ TEST_F(Overlap, FilesAreThoseOfRunsOfOneFrame) {
   }
 }
 
-/// A frame has a warning before it is estimated, and one after it was written.
+/// A frame is described before it is estimated, and has a warning after it was written.
 TEST_F(Overlap, LinesComeInTheOrderOfTheFrames) {
   for (const std::string threads : {"1", "2"}) {
-    const Finished done = run(
-        "out", {"--env", "1e9,1e9,1e9", "--env-rotate", "10", "--overwrite", "--threads", threads});
+    const Finished done =
+        run("out", {"--env", "1e9,1e9,1e9", "-v", "--overwrite", "--threads", threads});
     EXPECT_EQ(done.code, 0);
     EXPECT_THAT(frames_of_lines(done.err), ElementsAre(1, 1, 2, 2, 3, 3, 4, 4, 5, 5)) << done.err;
   }
@@ -89,8 +89,8 @@ TEST_F(Overlap, LinesComeInTheOrderOfTheFrames) {
 
 TEST_F(Overlap, AFrameThatCannotBeWrittenFailsInItsPlace) {
   ASSERT_EQ(run("whole", {"--threads", "2"}).code, 0);
-  const Finished went_on = run_with_failure(
-      "out", {"--on-error", "continue", "--env-rotate", "10", "--stats", dir_ / "stats.json"});
+  const Finished went_on =
+      run_with_failure("out", {"--on-error", "continue", "-v", "--stats", dir_ / "stats.json"});
   EXPECT_EQ(went_on.code, 5);
   EXPECT_THAT(went_on.err, HasSubstr("out.3.exr: cannot be written"));
   EXPECT_THAT(frames_of_lines(went_on.err), ElementsAre(1, 2, 3, 3, 4, 5)) << went_on.err;
@@ -105,7 +105,7 @@ TEST_F(Overlap, AFrameThatCannotBeWrittenFailsInItsPlace) {
 
 TEST_F(Overlap, AFrameThatCannotBeWrittenStopsTheRun) {
   ASSERT_EQ(run("whole", {"--threads", "2"}).code, 0);
-  const Finished stopped = run_with_failure("out", {"--env-rotate", "10"});
+  const Finished stopped = run_with_failure("out", {"-v"});
   EXPECT_EQ(stopped.code, 5);
   EXPECT_THAT(frames_of_lines(stopped.err), ElementsAre(1, 2, 3, 3)) << stopped.err;
   EXPECT_THAT(outputs_of("out"), ElementsAre("out.1.exr", "out.2.exr"));

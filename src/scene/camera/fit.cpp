@@ -25,6 +25,10 @@ constexpr double kPrecisionPx = 1e-4;
 /// The axes of an orthographic camera are known to about a degree, or not.
 constexpr double kMostUncertainAxes = 0.02;
 
+/// Samples that miss their pixels by more do not leave their camera open: they have none, and the
+/// nearest is for messages.
+constexpr double kNoCameraPx = 0.5;
+
 Vector3d eigen(const glm::dvec3& v) { return Vector3d(glm::value_ptr(v)); }
 Matrix3d eigen(const glm::dmat3& m) { return Matrix3d(glm::value_ptr(m)); }
 
@@ -193,7 +197,8 @@ std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
   // Perspective contains the affine camera as a limit, so it fits an orthographic frame as well,
   // with a focal length that means nothing.
   if ((affine_rms < 0.02 || affine_rms <= 1.02 * reprojection_rms(model, used)) &&
-      axes_uncertainty(affine, samples, window) < kMostUncertainAxes) {
+      (affine_rms > kNoCameraPx ||
+       axes_uncertainty(affine, samples, window) < kMostUncertainAxes)) {
     return camera_of(affine, samples, window);
   }
   if (is_flat(model, used) || !(focal_uncertainty(model, used) < 0.01)) return std::nullopt;
