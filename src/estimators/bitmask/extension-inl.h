@@ -25,9 +25,10 @@ struct MarchTowards {
 struct Border {
   V dx, dy;  ///< pixels from the receiver to the last pixel inside
   V distance_px;
-  bool in_one_row;       ///< all lanes leave through the first row, or all through the last
-  std::ptrdiff_t first;  ///< in one row: index of lane 0 in BorderValues; the others follow
-  VI index;              ///< otherwise: index of each lane in BorderValues
+  bool in_one_row;  ///< all lanes leave through the first row, or all through the last
+  /// In one row: index of lane 0 in BorderValues; the others follow.
+  std::ptrdiff_t first = 0;
+  VI index;  ///< otherwise: index of each lane in BorderValues
   MarchTowards to;
   M in_side;  ///< of the first or last column
 
