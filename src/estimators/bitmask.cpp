@@ -39,9 +39,8 @@
 //   after it (bitmask/piece-inl.h). Treated as points, few samples miss too much: 16 steps that
 //   represent their stretches are nearer to the limit than 24 points.
 // - Backs, layers of solids behind what is seen (scene/solids.cpp) and surfaces beyond the frame
-//   (bitmask/extension-inl.h) are guesses that GTAO does not make. Half of a map's light
-//   comes through those beyond. They hide a sun as far as they are likely to go on
-//   (bitmask/rays/border_extents.h), and what is closed is dimmer (bitmask/beyond.h).
+//   (bitmask/extension-inl.h) are guesses that GTAO does not make. How much light comes through what
+//   is beyond: bitmask/beyond.h, bitmask/rays/border_extents.h.
 // - What only further views show may be anywhere, behind the camera too: rays ask it for the
 //   sectors that the march leaves open (bitmask/further-inl.h).
 #include "estimators/bitmask.h"
@@ -194,7 +193,8 @@ class Bitmask {
   March march_of_rays() {
     March march = march_;
     if (march.extend) march.cut = &cut_;
-    if (march.extend && !far_) cut_ = find_cut_surfaces(march_scene_, up_in_camera(scene_), request_.radius);
+    if (march.extend && !far_)
+      cut_ = find_cut_surfaces(march_scene_, up_in_camera(scene_), request_.radius);
     return march;
   }
 
