@@ -39,8 +39,8 @@
 //   after it (bitmask/piece-inl.h). Treated as points, few samples miss too much: 16 steps that
 //   represent their stretches are nearer to the limit than 24 points.
 // - Backs, layers of solids behind what is seen (scene/solids.cpp) and surfaces beyond the frame
-//   (bitmask/extension-inl.h) are guesses that GTAO does not make. How much light comes through what
-//   is beyond: bitmask/beyond.h, bitmask/rays/border_extents.h.
+//   (bitmask/extension-inl.h) are guesses that GTAO does not make. How much light comes through
+//   what is beyond: bitmask/beyond.h, bitmask/rays/border_extents.h.
 // - What only further views show may be anywhere, behind the camera too: rays ask it for the
 //   sectors that the march leaves open (bitmask/further-inl.h).
 #include "estimators/bitmask.h"
