@@ -135,7 +135,9 @@ BandPlan plan_bands(const std::string& file, const Window& frame, const Window& 
 }
 
 int halo_rows(const Plan& plan, int reach_rows) {
-  return plan.filter->reach + (1 + plan.request.bounces) * reach_rows;
+  // What goes on beyond the border is measured within the radius of what rays meet there.
+  const int reaches = 1 + plan.request.bounces + int(plan.request.extend_offscreen);
+  return plan.filter->reach + reaches * reach_rows;
 }
 
 std::string describe(const BandPlan& bands, const Window& frame) {

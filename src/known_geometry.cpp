@@ -152,8 +152,10 @@ class ViewReader {
   }
 
  private:
-  /// Without the warnings of reading it: they are those of the frame.
-  void add_alike(const FrameFiles& files, const CameraOptions& camera, std::string_view role) {
+  /// Without the warnings of reading it: they are those of the frame. The picture is kept for other
+  /// frames: nothing that this one takes from its shot may decide how it is read.
+  void add_alike(const FrameFiles& files, CameraOptions camera, std::string_view role) {
+    camera.shot = {};
     try {
       FurtherView view =
           place(pictures_.alike(files, options_.input, camera), frame_.scene.geometry);

@@ -212,8 +212,9 @@ void explain_thickness(Plan& plan, const ModelOptions& model) {
   plan.reasons.push_back(
       model.thickness
           ? fmt::format("thickness {:.4g}: as given", *model.thickness)
-          : std::string("thickness: solids are 0.85 times as thick as they appear wide, "
-                        "and surfaces continue behind them"));
+          : std::string(
+                "thickness: solids are 0.85 times as thick as they appear wide, or less "
+                "where the sides that they show say so, and surfaces continue behind them"));
 }
 
 void choose_march(Plan& plan, const ModelOptions& model) {

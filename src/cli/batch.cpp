@@ -270,11 +270,12 @@ class Batch {
       for (WorkOnView& view : work.views) relit.push_back({job_of(work, view), &view.relit});
       write_outputs(relit, on_progress);
       if (const std::size_t clamped = work.views.front().relit.clamped_values) {
-        add_warnings(work,
-                     {fmt::format("{} values were beyond the range of half and clamped to "
-                                  "65504; keep them with --pixel-type float",
-                                  clamped)},
-                     "");
+        const std::string warning = fmt::format(
+            "{} values were beyond the range of half and clamped to 65504; keep them "
+            "with --pixel-type float",
+            clamped);
+        add_warnings(work, {warning}, "");
+        work.views.front().relit.warnings.push_back(warning);
       }
       for (WorkOnView& view : work.views) {
         note_losses(work, view.frame);

@@ -193,7 +193,7 @@ class Bitmask {
   March march_of_rays() {
     March march = march_;
     if (march.extend) march.cut = &cut_;
-    if (march.extend && !far_)
+    if (march.extend && !far_ && cut_.extents.empty())
       cut_ = find_cut_surfaces(march_scene_, up_in_camera(scene_), request_.radius);
     return march;
   }

@@ -24,8 +24,8 @@ struct WholeRun {
 /// shown_depth.cpp.
 float shown_depth(const Geometry& geometry, const WholeRun& run);
 
-/// The least depth along the view ray of what a pixel shows: its surface is closed between this
-/// pixel and the next, in scene units.
+/// The least depth along the view ray of what a pixel shows, in scene units: its surface is closed
+/// between this pixel and the next, up to a depth of kSurfaceGap pixels.
 float least_depth(const Geometry& geometry, std::size_t pixel);
 
 }  // namespace ssdo

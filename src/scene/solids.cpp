@@ -18,7 +18,7 @@
 //   up to kWidthReach to each side, and those that are seen whole tell it for those that are not.
 //
 //   Some things show more (scene/shown_depth.h): a board whose side should be seen, and is not, is
-//   thin, and a box is as deep as its side. Between a pixel and the next every surface is closed.
+//   thin, and a box is as deep as its side. Between a pixel and the next a surface is closed.
 //
 // - Surfaces go on as a second layer. Where a run ends and something farther begins, the farther
 //   surface continues behind the run as its tangent plane. Each pixel takes the surface that

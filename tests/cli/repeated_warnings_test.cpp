@@ -33,6 +33,16 @@ TEST(RepeatedWarnings, AreOneKindWithOtherNumbers) {
                   "numbers of their own"));
 }
 
+TEST(RepeatedWarnings, KeepNamesThatHaveNumbersApart) {
+  RepeatedWarnings warnings;
+  EXPECT_TRUE(warnings.add(0, 1, "s01/other.exr: left out"));
+  EXPECT_FALSE(warnings.add(1, 2, "s01/other.exr: left out"));
+  EXPECT_TRUE(warnings.add(0, 1, "--also 010_side.exr: left out"));
+  EXPECT_TRUE(warnings.add(1, 2, "--also 020_side.exr: left out")) << "another view";
+  EXPECT_TRUE(warnings.add(0, -3, "in.-0003.exr has 2 pixels"));
+  EXPECT_FALSE(warnings.add(1, -2, "in.-0002.exr has 3 pixels"));
+}
+
 /// Two views of one frame may both be left out.
 TEST(RepeatedWarnings, OfOneFrameAreAllPrinted) {
   RepeatedWarnings warnings;

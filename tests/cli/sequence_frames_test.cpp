@@ -228,6 +228,26 @@ TEST_F(SequenceFrames, HaveOneSpaceOfNormals) {
   EXPECT_TRUE(read_file(file("out", 2)) == second) << "however the shot is cut";
 }
 
+/// That N points the other way is of the shot too.
+TEST_F(SequenceFrames, TurnNormalsRoundAlike) {
+  const Camera lens = camera_from_fov(40, kWindow, 1);
+  std::vector<glm::ivec2> apart;
+  std::mt19937 random(1);
+  for (int i = 0; i < 250; ++i) apart.emplace_back(random() % 64, random() % 48);
+  std::string plain;
+  for (const bool turned : {false, true}) {
+    for (int frame = 1; frame <= 3; ++frame) {
+      Picture picture = take_picture(court(), camera_at(lens, 0.1 * frame), kWindow);
+      if (turned)
+        for (glm::vec3& n : picture.normal.pixels) n = -n;
+      write(frame, frame == 2 ? only(picture, apart) : picture);
+    }
+    ASSERT_EQ(run({"--products", "direct,bounce,ao"}).code, 0);
+    if (!turned) std::filesystem::copy_file(file("out", 2), plain = dir_ / "plain.exr");
+  }
+  EXPECT_LT(largest_difference(file("out", 2), plain), 1e-5);
+}
+
 /// Where frames differ all the same, it is said.
 TEST_F(SequenceFrames, ThatDifferSaySo) {
   const Camera lens = camera_from_fov(40, kWindow, 1);

@@ -18,7 +18,8 @@ namespace {
 std::string normal_space_of(const Frame& frame) {
   if (!frame.layers[Role::normal] || !frame.report.placement.normals_to_camera) return "";
   const std::string& name = frame.report.normal_space;
-  for (const std::string_view end : {", unchecked", ", rebuilt", ", by", " of its own"})
+  if (name.starts_with("a space of its own")) return "a space of its own";
+  for (const std::string_view end : {", unchecked", ", rebuilt", ", by"})
     if (const auto at = name.find(end); at != name.npos) return name.substr(0, at);
   return name;
 }

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdlib>
 #include <iterator>
 #include <string_view>
 
@@ -20,23 +22,28 @@ bool is_number_at(std::string_view text, std::size_t at) {
 }
 
 /// What warnings of one kind have in common: the text without its numbers, and without that of the
-/// frame in names.
+/// frame in names of files.
 std::string kind_of(std::string_view text, int number) {
-  const std::string own = fmt::format("{}", number);
+  const std::string own = fmt::format("{}", std::abs(std::int64_t(number)));
   const auto end_of = [&](std::size_t at, std::string_view characters) {
     return std::min(text.find_first_not_of(characters, at), text.size());
   };
   std::string kind;
   for (std::size_t i = 0, end; i < text.size(); i = end) {
-    const bool counts = is_number_at(text, i);
-    end = end_of(i, counts ? "0123456789.eE+-" : "0123456789");
+    const std::size_t past = end_of(i, "0123456789.eE+-");
+    const bool is_whole_word = past == text.size() || std::string_view(" ,;:)%").find(text[past]) !=
+                                                          std::string_view::npos;
+    const bool counts = is_whole_word && is_number_at(text, i);
+    end = counts ? past : end_of(i, "0123456789");
     if (end == i) {
       kind += text[end++];
       continue;
     }
     std::string_view digits = text.substr(i, end - i);
-    const bool is_own =
-        digits.substr(std::min(digits.find_first_not_of('0'), digits.size() - 1)) == own;
+    const std::string_view rest = text.substr(end, text.find(' ', end) - end);
+    const bool in_file_name = rest.find('.') != rest.npos && rest.find('/') == rest.npos;
+    const bool is_own = in_file_name && digits.substr(std::min(digits.find_first_not_of('0'),
+                                                               digits.size() - 1)) == own;
     kind += counts || is_own ? "#" : digits;
   }
   return kind;

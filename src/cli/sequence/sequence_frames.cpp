@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <limits>
 #include <set>
-#include <utility>
 #include <vector>
 
 #include "band_plan.h"
@@ -102,7 +101,6 @@ Frame SequenceFrames::prepare(const FrameOptions& options, const Lighting& light
                               const FrameFiles& files, int number) try {
   return prepare_frame(options, light, pictures_, files, number);
 } catch (const UndeterminedCamera&) {
-  if (options.camera.shot.camera) throw;
   for (int i = 2; i < 2 * (kMostFramesAway + 1); ++i) {
     const std::int64_t other = std::int64_t(number) + (i % 2 == 0 ? -i / 2 : i / 2);
     if (std::int64_t(int(other)) != other) continue;

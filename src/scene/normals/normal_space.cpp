@@ -123,6 +123,7 @@ struct Candidate {
   glm::mat3 to_camera;
   std::vector<float> cosines;  ///< of the witnesses, signed
   bool is_own = false;
+  bool is_turned = false;  ///< points the other way in the rest of the shot
 
   Candidate(const NamedRotation& in_space, const Axes& by_axes,
             const std::vector<Witness>& witnesses)
@@ -209,7 +210,8 @@ NormalSpace described(const Candidate& found, const std::vector<Witness>& witnes
   space.is_own = found.is_own;
   // The normals of leaves below a crown may point away from the viewer, all being as they should.
   const bool as_they_are = found.axes.text().empty();
-  if (double(positive) < (as_they_are ? kMostPositive : 0.5) * double(count)) {
+  const bool by_shot = found.is_turned && count < NormalSpace::kFewestSmoothPixels;
+  if (by_shot || double(positive) < (as_they_are ? kMostPositive : 0.5) * double(count)) {
     space.to_camera = -space.to_camera;
     space.name = found.turned_name();
   }
@@ -234,7 +236,7 @@ Candidate named_space(const std::vector<NamedRotation>& spaces,
   return found;
 }
 
-/// The space and axes whose name `text` begins with, whichever way the normals point; else `rule`.
+/// The space and axes whose name `text` begins with; else `rule`.
 Candidate named_in(const std::string& text, const std::vector<NamedRotation>& spaces,
                    const std::vector<Witness>& witnesses, const Candidate& rule) {
   Candidate found = rule;
@@ -242,9 +244,10 @@ Candidate named_in(const std::string& text, const std::vector<NamedRotation>& sp
   for (const NamedRotation& space : spaces) {
     for (const Axes& axes : maps_of_axes()) {
       Candidate candidate(space, axes, witnesses);
-      for (const std::string& name : {candidate.name(), candidate.turned_name()}) {
+      for (const bool turned : {false, true}) {
+        const std::string name = turned ? candidate.turned_name() : candidate.name();
         if (name.size() <= longest || !text.starts_with(name)) continue;
-        longest = name.size(), found = candidate;
+        longest = name.size(), found = candidate, found.is_turned = turned;
       }
     }
   }

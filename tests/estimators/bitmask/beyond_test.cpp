@@ -186,7 +186,6 @@ TEST(BitmaskBeyond, ExtentsAreThoseThatTheFrameShows) {
     EXPECT_NEAR(e.seen[0], 6 - p.position.y, 0.3) << y;
     EXPECT_NEAR(e.seen[1], p.position.y - nearest, 0.3) << y;
     EXPECT_NEAR(e.seen[2], 2 - p.position.z, 0.15) << y;
-    EXPECT_LT(e.most[2], 0.2 * e.most[1]) << "the frame shows the top, and not the near end";
     ++found;
   }
   EXPECT_GT(found, 5);

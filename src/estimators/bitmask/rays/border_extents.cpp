@@ -35,8 +35,8 @@ constexpr float kSameWay = 0.7f;
 /// it, it goes on if it is seen again before it would be twice as long, or this share of its depth.
 constexpr float kGapPx = 3, kGapShare = 0.15f, kHiddenShare = 0.15f;
 
-/// Pixels of a walk across the frame, at most: of larger frames some are skipped. Walks across
-/// another one.
+/// A walk across the frame looks at about this many pixels: of larger frames some are skipped. So
+/// many others start from each walk, at right angles, to both sides.
 constexpr int kMostPixels = 128, kWalksAcross = 3;
 
 constexpr glm::ivec2 kWays[4] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};

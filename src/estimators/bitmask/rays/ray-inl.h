@@ -118,11 +118,11 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const V3& t
                          std::hypot(float(scene.frame_width), float(scene.frame_height)) /
                          kWitnesses;
   const Border exit = border_along(scene, p, ray.step_x, ray.step_y, false);
-  const M leaves_frame =
-      hn::And(exit.distance_px < ray.end_px, exit.distance_px <= set(p.reach_px));
+  const V exit_at = way_along<kOrthographic>(ray, p, exit.distance_px);
+  // By lane: reach_px is that of the nearest receiver of the vector.
+  const M leaves_frame = hn::And(exit.distance_px < ray.end_px, exit_at < set(march.radius));
   if (!any(leaves_frame)) return set(1);
-  const V leaves = hn::IfThenElse(leaves_frame, way_along<kOrthographic>(ray, p, exit.distance_px),
-                                  set(kFarAway));
+  const V leaves = hn::IfThenElse(leaves_frame, exit_at, set(kFarAway));
   V near_exit = set(0), near_corner = set(0);
   for (int k = 0; k < kWitnesses; ++k) {
     const float aside_px = std::round((float(k) + turn - 0.5f * kWitnesses) * apart_px),
@@ -134,8 +134,9 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const V3& t
                                                   beside_corner(scene, p, border, inward_px));
   }
   const V hidden = hn::Max(near_exit, near_corner * set(kCornerTrust)) * set(1.0f / kWitnesses);
-  return hn::IfThenElse(leaves_frame,
-                        hn::MulAdd(hidden, set(pass.through - pass.past), set(pass.past)), set(1));
+  // The more of the radius the frame shows, the less is left to meet beyond it.
+  const V past = hn::MulAdd(exit_at / set(march.radius), set(1 - pass.past), set(pass.past));
+  return hn::IfThenElse(leaves_frame, hn::MulAdd(hidden, set(pass.through) - past, past), set(1));
 }
 
 /// Which open lanes see past what further views show.
