@@ -22,12 +22,13 @@
 // looks down tells nothing. Sky low in a frame is that of a window. All of it changes smoothly with
 // the camera.
 //
-// Where a panorama shows what stands there, all that it does not hide comes through.
+// With a panorama nothing is dimmed past the border: only surfaces that go on hide, as far as it
+// does not show their end.
 //
 // Fitted to small scenes that were made for it, two rooms, a courtyard, five streets and five
 // alleys, each under several suns, against a ray caster: RMSE of direct light over its largest
 // value, with A / 0.6 for all frames and surfaces that go on without end, with nothing but those of
-// border_extents.h, and so:
+// border_extents.h, and with both:
 //
 //   open set    0.229 0.106 0.103      with overscan   courtyard 0.078 - 0.059
 //   courtyard   0.153 0.139 0.135                      streets   0.172 - 0.159
@@ -55,16 +56,16 @@ SlicePattern mean_ao_pattern(const Interleaving& layout, const Window& display);
 void add_openness(const MarchScene& scene, const Window& display, const glm::vec3& up, float radius,
                   const Window& rows, Openness& sum);
 
-/// That of the receivers of a band.
+/// Adds what the receivers of a band show.
 void add_openness(const Scene& band, const Request& request, Openness& sum);
 
 /// The way up in camera space, unit.
 glm::vec3 up_in_camera(const Scene& scene);
 
-/// Whether it counts for the light that is asked for.
+/// Whether the openness of the frame changes the light that is asked for.
 bool needs_openness(const Scene& scene, const Request& request);
 
-/// Whether the overview around a band does not tell it well enough.
+/// Whether bands have to be read once more for it: the overview does not show it to the bit.
 bool band_needs_openness(const Scene& overview, const Request& request);
 
 /// That of all of a frame.
