@@ -110,6 +110,11 @@ TEST(BitmaskBeyond, OnlyAClosedPlaceDimsASun) {
   EXPECT_EQ(sun_past_beyond(openness_of(room, 1)), 1)
       << "nothing of the walls is above the horizon";
   EXPECT_EQ(sun_past_beyond(Openness{}), 1) << "no surfaces";
+  // Walls alone, and sky over them: W / (W + 10 S) of 1 - (A / 0.6)^2 is lost.
+  Openness dense{.ao = 20, .surfaces = 100, .walls = 1, .above = 50, .pixels = 100};
+  EXPECT_NEAR(sun_past_beyond(dense), 0.1111, 1e-4);
+  dense.sky = 0.5;
+  EXPECT_NEAR(sun_past_beyond(dense), 0.8519, 1e-4);
   // The frame decides, not who asks.
   EXPECT_EQ(sun_past_beyond(openness_of(room, 0, {10, 20, 30, 40})), float(in_room));
 }
