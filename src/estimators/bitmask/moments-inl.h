@@ -152,81 +152,82 @@ struct CircleDirections {
   }
 };
 
-/// How far outside of 0..1 a share of light may be.
-constexpr float kShareBeyond = 1;
+/// How far outside of 0..1 the visible part of the light may be.
+constexpr float kPartBeyond = 1;
 
-/// Sums over slices: of the sectors that are closed, in bands 0 and 1, of what is hidden from the
-/// light, and of all sectors above the tangent plane.
+/// The sums of the equations in visibility.cpp, over slices and by spherical harmonic: `hidden`, in
+/// bands 0 and 1, `lost` and `all`.
 template <int kOrder>
 struct Moments {
   static constexpr int kCount = (kOrder + 1) * (kOrder + 1);
   static constexpr int kLowCount = kOrder > 0 ? 4 : 1;
 
-  V closed[kLowCount], hidden[kCount], whole[kCount];
+  V hidden[kLowCount], lost[kCount], all[kCount];
 
   HWY_INLINE Moments() {
-    for (int i = 0; i < kLowCount; ++i) closed[i] = set(0);
-    for (int i = 0; i < kCount; ++i) hidden[i] = whole[i] = set(0);
+    for (int i = 0; i < kLowCount; ++i) hidden[i] = set(0);
+    for (int i = 0; i < kCount; ++i) lost[i] = all[i] = set(0);
   }
 
   /// Bands 0 and 1 are taken from the moments directly, so that ao and the bent normal have the
   /// same bits at every order.
   HWY_INLINE void add(const MarchReceiver& p, const SliceFrame& f,
-                      const CircleMoments<kOrder>& closed_of_slice,
                       const CircleMoments<kOrder>& hidden_of_slice,
-                      const CircleMoments<kOrder>& whole_of_slice) {
-    add_low_bands(p, f, closed_of_slice, closed);
+                      const CircleMoments<kOrder>& lost_of_slice,
+                      const CircleMoments<kOrder>& all_of_slice) {
     add_low_bands(p, f, hidden_of_slice, hidden);
-    add_low_bands(p, f, whole_of_slice, whole);
+    add_low_bands(p, f, lost_of_slice, lost);
+    add_low_bands(p, f, all_of_slice, all);
     if constexpr (kOrder > 1) {
       static const CircleDirections<kOrder> directions;
       for (int j = 0; j < CircleDirections<kOrder>::kCount; ++j) {
         const float *cosines = directions.cosine[j], *sines = directions.sine[j];
         const V c = set(cosines[1]), s = set(sines[1]);
-        V h[2], w[2];
-        hidden_of_slice.at(cosines, sines, h[0], h[1]);
-        whole_of_slice.at(cosines, sines, w[0], w[1]);
-        for (int k = 0; k < 2; ++k) h[k] = h[k] * f.weight, w[k] = w[k] * f.weight;
+        V l[2], a[2];
+        lost_of_slice.at(cosines, sines, l[0], l[1]);
+        all_of_slice.at(cosines, sines, a[0], a[1]);
+        for (int k = 0; k < 2; ++k) l[k] = l[k] * f.weight, a[k] = a[k] * f.weight;
         const V3 direction = mul_add(p.to_viewer, c, f.t * s);
         for_each_sh_polynomial<2, kOrder>(
             direction.x, direction.y, direction.z, [](float value) HWY_ATTR { return set(value); },
             [&](int i, V value) HWY_ATTR {
               const int odd = i >= 9 && i < 16;  // band 3
-              hidden[i] = hn::MulAdd(h[odd], value, hidden[i]);
-              whole[i] = hn::MulAdd(w[odd], value, whole[i]);
+              lost[i] = hn::MulAdd(l[odd], value, lost[i]);
+              all[i] = hn::MulAdd(a[odd], value, all[i]);
             });
       }
     }
   }
 
-  /// Share of the hemisphere, weighted by the cosine, that is open.
-  HWY_INLINE V open_share() const {
+  /// 1 - M(hidden) / M(all): the visibility of the hemisphere, weighted by the cosine.
+  HWY_INLINE V ao() const {
     const V zero = set(0), one = set(1);
-    return hn::IfThenElse(whole[0] > zero, hn::Clamp(one - closed[0] / whole[0], zero, one), one);
+    return hn::IfThenElse(all[0] > zero, hn::Clamp(one - hidden[0] / all[0], zero, one), one);
   }
 
-  /// Visible part of the light with these weights. Both sums are over the same directions, so that
-  /// noise cancels and an open surface receives exactly all of it. `otherwise` where there is none.
-  /// Noise may lead out of 0..1, so that means among pixels are right, but not far: few slices may
-  /// hold next to no light.
-  HWY_INLINE V share_of_light(const float* light, V otherwise) const {
-    V lost = set(0), total = set(0);
+  /// 1 - int_lost L dM / int_all L dM, for the light L with these weights. Both sums are over the
+  /// same directions, so that noise cancels and an open surface receives exactly all of it.
+  /// `otherwise` where there is no light. Noise may lead out of 0..1, so that means among pixels
+  /// are right, but not far: few slices may hold next to no light.
+  HWY_INLINE V visible_part(const float* light, V otherwise) const {
+    V light_lost = set(0), light_of_all = set(0);
     for (int i = 0; i < kCount; ++i) {
       const V l = set(light[i]);
-      lost = hn::MulAdd(l, hidden[i], lost);
-      total = hn::MulAdd(l, whole[i], total);
+      light_lost = hn::MulAdd(l, lost[i], light_lost);
+      light_of_all = hn::MulAdd(l, all[i], light_of_all);
     }
-    const V share = hn::Clamp(set(1) - lost / total, set(-kShareBeyond), set(1 + kShareBeyond));
-    return hn::IfThenElse(total > set(0), share, otherwise);
+    const V part =
+        hn::Clamp(set(1) - light_lost / light_of_all, set(-kPartBeyond), set(1 + kPartBeyond));
+    return hn::IfThenElse(light_of_all > set(0), part, otherwise);
   }
 
   /// The mean open direction; `otherwise` where nothing is open. The error of the slices, the
   /// normal less their sum over all directions, is added times the openness, so that an open
   /// surface gives exactly its normal.
   HWY_INLINE V3 bent_normal(const MarchReceiver& p, V ao, const V3& otherwise) const {
-    const V full = set(2.0f / 3) * whole[0];
+    const V full = set(2.0f / 3) * all[0];
     const auto along = [&](V normal, int band) HWY_ATTR {  // bands of order 1 are y, z, x
-      return hn::MulAdd(ao, hn::MulSub(full, normal, whole[band]), whole[band] - closed[band]);
+      return hn::MulAdd(ao, hn::MulSub(full, normal, all[band]), all[band] - hidden[band]);
     };
     const V3 mean{along(p.shading.x, 3), along(p.shading.y, 1), along(p.shading.z, 2)};
     return if_then_else(dot(mean, mean) > set(0), normalise(mean), otherwise);
@@ -234,10 +235,10 @@ struct Moments {
 
   HWY_INLINE Moments minus(const Moments& other) const {
     Moments rest = *this;
-    for (int i = 0; i < kLowCount; ++i) rest.closed[i] = closed[i] - other.closed[i];
+    for (int i = 0; i < kLowCount; ++i) rest.hidden[i] = hidden[i] - other.hidden[i];
     for (int i = 0; i < kCount; ++i) {
-      rest.hidden[i] = hidden[i] - other.hidden[i];
-      rest.whole[i] = whole[i] - other.whole[i];
+      rest.lost[i] = lost[i] - other.lost[i];
+      rest.all[i] = all[i] - other.all[i];
     }
     return rest;
   }

@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The visibility of each pixel and its share of the light by method bitmask; see bitmask.cpp.
+// Visibility and direct light by method bitmask (see bitmask.cpp), for vectors of pixels:
+//
+//   M(S)   = int_S (n_v cos t + n_t sin t) d cos t     over sectors S of one side of a slice
+//   ao     = 1 - sum w M(hidden) / sum w M(all)        over both sides of all slices
+//   direct = E(N)/pi (1 - sum w int_lost L dM / sum w int_all L dM)     channel by channel
+//
+// all:    sectors above the plane across the shading normal
+// hidden: those of them that solids hide, found by a march over each side
+// lost:   `hidden`, less the share `through_beyond` of what only surfaces beyond the border hide
+// w:      SliceFrame::weight
+// L:      light in spherical harmonics, so that moments of the sectors suffice (moments-inl.h);
+//         E(N)/pi is multiplied later: here is the visible part of the light, in brackets
+//
 // Compiled once for every instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/visibility.cpp"
@@ -20,12 +32,12 @@ void visibility(const VisibilityJob& job, const Window& part) {
       march, part, [&](const MarchReceiver& p, const std::vector<Slice>& slices) HWY_ATTR {
         const auto ignore = [](auto&&...) HWY_ATTR {};
         const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
-        Moments<kOrder> sum, first_half;
+        Moments<kOrder> sum, first_half;  // over slices, by w
         for (int k = 0; k < count_of_slices; ++k) {
           if (k == firsts) first_half = sum;
           const Slice& slice = slices[std::size_t(slice_at(k, count_of_slices))];
           const SliceFrame f = slice_frame(march.scene, p, slice);
-          CircleMoments<kOrder> hidden, beyond, whole;
+          CircleMoments<kOrder> hidden, beyond, all;
           for (const bool forward : {true, false}) {
             const SideFrame side =
                 side_frame(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
@@ -35,38 +47,38 @@ void visibility(const VisibilityJob& job, const Window& part) {
                 [&](bool, const Border&, VU bits)
                     HWY_ATTR { hidden_beyond = hn::Or(hidden_beyond, bits); });
             const VU bits = hn::AndNot(open, side.above);
-            whole.add(moments_of_first<kOrder + 1>(side.above_count), p.shading_v, side.shading_t,
-                      forward);
+            all.add(moments_of_first<kOrder + 1>(side.above_count), p.shading_v, side.shading_t,
+                    forward);
             if (none(bits)) continue;
             hidden.add(moments_of_bits<kOrder + 1>(bits), p.shading_v, side.shading_t, forward);
             if (job.through_beyond == 0 || none(hidden_beyond)) continue;
             beyond.add(moments_of_bits<kOrder + 1>(hidden_beyond), p.shading_v, side.shading_t,
                        forward);
           }
-          CircleMoments<kOrder> hidden_from_light = hidden;
-          if (job.through_beyond > 0) hidden_from_light.subtract(beyond, set(job.through_beyond));
-          sum.add(p, f, hidden, hidden_from_light, whole);
+          CircleMoments<kOrder> lost = hidden;
+          if (job.through_beyond > 0) lost.subtract(beyond, set(job.through_beyond));
+          sum.add(p, f, hidden, lost, all);
         }
         const std::ptrdiff_t i = p.place.index;
-        const V ao = sum.open_share();
+        const V ao = sum.ao();
         store(hn::IfThenElse(p.valid, ao, set(1)), *job.ao, i);
         if (!job.bent && !job.sky_share && !job.difference) return;
         const V3 normals = usable(load_shading(march.scene, p.place).normal, p.valid);
         if constexpr (kOrder > 0) {
           if (job.bent) store(sum.bent_normal(p, ao, normals), *job.bent, i);
         }
-        const auto share_of = [&](const Moments<kOrder>& moments) HWY_ATTR {
+        const auto visible = [&](const Moments<kOrder>& moments) HWY_ATTR {
           if (!job.light) return V3{ao, ao, ao};
-          const auto share = [&](int c) HWY_ATTR {
-            return moments.share_of_light(job.light + c * Moments<kOrder>::kCount, ao);
+          const auto of_channel = [&](int c) HWY_ATTR {
+            return moments.visible_part(job.light + c * Moments<kOrder>::kCount, ao);
           };
-          return V3{share(0), share(1), share(2)};
+          return V3{of_channel(0), of_channel(1), of_channel(2)};
         };
-        if (job.sky_share) store(share_of(sum) - V3{ao, ao, ao}, *job.sky_share, i);
+        if (job.sky_share) store(visible(sum) - V3{ao, ao, ao}, *job.sky_share, i);
         if (job.difference) {
           const V3 unoccluded = look_up(*job.irradiance, normals);
           const auto brightness = [&](const Moments<kOrder>& moments) HWY_ATTR {
-            return luminance(unoccluded * saturate(share_of(moments)));
+            return luminance(unoccluded * saturate(visible(moments)));
           };
           const V difference = brightness(first_half) - brightness(sum.minus(first_half));
           const V scale = set(error_of_difference(march, p.place, firsts, count_of_slices));
