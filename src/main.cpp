@@ -12,19 +12,19 @@
 #include <string>
 #include <string_view>
 
-#include "cli/batch.h"
-#include "cli/memory.h"
-#include "cli/options.h"
-#include "cli/resources.h"
-#include "cli/run_bench.h"
-#include "cli/threads.h"
-#include "compare.h"
+#include "bench/run_bench.h"
+#include "cli/parse_options.h"
 #include "error.h"
 #include "estimators/registry.h"
 #include "io/one_line.h"
 #include "io/safe_file.h"
 #include "io/standard_output.h"
 #include "io/temporary_table.h"
+#include "jobs/batch.h"
+#include "jobs/machine/memory.h"
+#include "jobs/machine/resources.h"
+#include "jobs/machine/threads.h"
+#include "metrics/compare.h"
 
 namespace {
 
@@ -53,7 +53,7 @@ ssdo::ExitCode run(int argc, char** argv) {
     return report.code;
   }
   if (parsed.options.command == ssdo::Command::bench)
-    return ssdo::run_bench(parsed.options, resources);
+    return ssdo::run_bench(parsed.options, parsed.options.bench, resources);
   return ssdo::run_batch(parsed.options, resources);
 }
 

@@ -2,7 +2,7 @@
 //
 // The range of light and its primaries. Issue 12, number 11: light beyond the range of numbers made
 // pictures of NaN, black ones, and a crash.
-#include "lighting.h"
+#include "relight/lighting.h"
 
 #include <ImfChromaticitiesAttribute.h>
 #include <gtest/gtest.h>

@@ -2,13 +2,14 @@
 //
 // What is asked for, and what is planned: products and the planes that a method is asked for, the
 // options that methods take, and the reasons.
-#include "plan.h"
+#include "plan/plan.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <memory>
 
+#include "plan/make_plan.h"
 #include "support/error_matchers.h"
 #include "support/scene_of.h"
 

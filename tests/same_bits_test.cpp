@@ -13,9 +13,9 @@
 #include <limits>
 #include <span>
 
-#include "estimate.h"
 #include "filters/registry.h"
 #include "parallel/task_order.h"
+#include "relight/estimate.h"
 #include "support/chosen_isa.h"
 #include "support/crop.h"
 #include "support/fixed_frame.h"

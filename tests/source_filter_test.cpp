@@ -5,8 +5,9 @@
 
 #include <cmath>
 
-#include "estimate.h"
 #include "estimators/slow_ssao_fade.h"
+#include "plan/make_plan.h"
+#include "relight/estimate.h"
 
 namespace ssdo::test {
 namespace {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Includes point down: main, cli, bench, the flow of a frame, stages, and below them mathematics,
-// lanes and threads. Light transport never sees a file or an option.
+// Includes point down: main, cli, bench, many frames, the flow of one frame, its stages, and below
+// them mathematics, lanes and threads. Light transport never sees a file or an option. No two files
+// need each other, at any depth.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <regex>
 #include <set>
 #include <string>
@@ -19,30 +22,32 @@ namespace fs = std::filesystem;
 
 const fs::path kSource = fs::path(SSDO_SOURCE_DIR) / "src";
 
-/// What the files of a folder, with all that is in it, may include. "flow" stands for the files
-/// right in src/ that lead a frame through the stages.
+/// What the files of a folder, with all that is in it, may include.
 const std::map<std::string, std::set<std::string>> kBelow = {
+    {"base", {}},
     {"math", {}},
     {"simd", {"math"}},
     {"parallel", {"math"}},
     {"io", {"math", "parallel"}},
-    {"metrics", {"math"}},
+    {"metrics", {"io", "math", "parallel"}},
     {"scene", {"io", "math", "simd", "parallel"}},
     {"estimators", {"scene", "math", "simd", "parallel"}},
     {"filters", {"estimators", "scene", "math", "simd", "parallel"}},
     {"color", {"estimators", "scene", "io", "math", "parallel"}},
-    {"flow",
-     {"filters", "estimators", "scene", "color", "io", "metrics", "math", "simd", "parallel"}},
-    {"bench",
-     {"flow", "filters", "estimators", "scene", "color", "io", "metrics", "math", "parallel"}},
-    {"cli",
-     {"bench", "flow", "filters", "estimators", "scene", "color", "io", "metrics", "math", "simd",
+    {"plan", {"filters", "estimators", "scene", "color", "io", "math"}},
+    {"relight",
+     {"plan", "filters", "estimators", "scene", "color", "io", "math", "simd", "parallel"}},
+    {"jobs",
+     {"relight", "plan", "filters", "estimators", "scene", "color", "io", "math", "simd",
       "parallel"}},
-    {"main", {"cli", "bench", "flow", "estimators", "io"}},
+    {"bench",
+     {"jobs", "relight", "plan", "filters", "estimators", "scene", "color", "io", "metrics", "math",
+      "parallel"}},
+    {"cli",
+     {"bench", "jobs", "relight", "plan", "filters", "estimators", "scene", "color", "io",
+      "metrics", "math", "simd", "parallel"}},
+    {"main", {"cli", "bench", "jobs", "metrics", "estimators", "io"}},
 };
-
-/// What every folder may include.
-const std::set<std::string> kEverywhere = {"error.h", "nearest_name.h", "stopwatch.h"};
 
 /// Libraries whose headers stay in some folders.
 const std::vector<std::pair<std::regex, std::set<std::string>>> kLibraries = {
@@ -57,10 +62,51 @@ const std::vector<std::pair<std::regex, std::set<std::string>>> kLibraries = {
 /// Libraries that are slow to compile stay out of headers.
 const std::regex kNotInHeaders("^<(CLI/|nlohmann/json.hpp|Eigen/|toml|OpenImageIO|embree)");
 
+/// The folder in src/ that a file is in; of those right in it, "main", or "base" of what every
+/// folder may include.
 std::string folder_of(const std::string& path) {
   const auto slash = path.find('/');
-  if (slash != std::string::npos) return path.substr(0, slash);
-  return path.starts_with("main.") ? "main" : "flow";
+  if (slash != path.npos) return path.substr(0, slash);
+  return path.starts_with("main.") ? "main" : "base";
+}
+
+/// The files of one module: NAME.h, NAME-inl.h and NAME.cpp.
+std::string module_of(const std::string& path) {
+  const std::string stem = path.substr(0, path.rfind('.'));
+  return stem.ends_with("-inl") ? stem.substr(0, stem.size() - 4) : stem;
+}
+
+/// The folders of two files below the innermost one that holds both; nothing where a file is right
+/// in that.
+std::optional<std::pair<std::string, std::string>> siblings_of(const std::string& a,
+                                                               const std::string& b) {
+  const auto end = std::mismatch(a.begin(), a.end(), b.begin(), b.end());
+  const std::size_t common = a.substr(0, std::size_t(end.first - a.begin())).rfind('/') + 1;
+  const std::size_t in_a = a.find('/', common), in_b = b.find('/', common);
+  if (in_a == a.npos || in_b == b.npos) return std::nullopt;
+  return std::pair(a.substr(0, in_a), b.substr(0, in_b));
+}
+
+using Graph = std::map<std::string, std::set<std::string>>;
+
+/// What can be reached from `from`, by one step or more.
+std::set<std::string> reached(const Graph& graph, const std::string& from) {
+  std::set<std::string> all;
+  std::vector<std::string> ahead = {from};
+  while (!ahead.empty()) {
+    const auto next = graph.find(ahead.back());
+    ahead.pop_back();
+    if (next == graph.end()) continue;
+    for (const std::string& name : next->second)
+      if (all.insert(name).second) ahead.push_back(name);
+  }
+  return all;
+}
+
+void expect_no_cycle(const Graph& graph) {
+  for (const auto& [name, included] : graph)
+    EXPECT_FALSE(reached(graph, name).contains(name))
+        << name << " includes itself by way of others";
 }
 
 /// What `file` includes, as it is written: <...> or "...".
@@ -105,24 +151,30 @@ TEST(Structure, IncludesPointDown) {
     for (const std::string& include : includes) {
       if (include[0] != '"' || include.ends_with(".inc\"")) continue;
       const std::string name = unquoted(include), other = folder_of(name);
-      EXPECT_TRUE(other == folder || kEverywhere.contains(name) ||
-                  kBelow.at(folder).contains(other))
+      EXPECT_TRUE(other == folder || other == "base" || kBelow.at(folder).contains(other))
           << path << " includes " << name;
     }
   });
   EXPECT_GT(files, 200);
 }
 
-TEST(Structure, NoFolderIncludesOneThatIncludesIt) {
-  for (const auto& [folder, below] : kBelow) {
-    std::set<std::string> reached = below;
-    for (bool grown = true; grown;) {
-      grown = false;
-      for (const std::string& name : std::set<std::string>(reached))
-        for (const std::string& next : kBelow.at(name)) grown |= reached.insert(next).second;
+TEST(Structure, NoFolderIncludesOneThatIncludesIt) { expect_no_cycle(kBelow); }
+
+TEST(Structure, NoTwoFilesNeedEachOther) {
+  Graph modules, folders;
+  for_each_file([&](const std::string& path, const auto& includes) {
+    for (const std::string& include : includes) {
+      if (include[0] != '"' || include.ends_with(".inc\"")) continue;
+      const std::string name = unquoted(include);
+      if (module_of(name) != module_of(path)) modules[module_of(path)].insert(module_of(name));
+      const auto beside = siblings_of(path, name);
+      if (beside && beside->first != beside->second) folders[beside->first].insert(beside->second);
     }
-    EXPECT_FALSE(reached.contains(folder)) << folder;
-  }
+  });
+  EXPECT_GT(modules.size(), 100u);
+  EXPECT_GT(folders.size(), 20u);
+  expect_no_cycle(modules);
+  expect_no_cycle(folders);
 }
 
 TEST(Structure, LightTransportSeesNoFiles) {
@@ -150,7 +202,7 @@ TEST(Structure, LibrariesStayInTheirFolders) {
 }
 
 TEST(Structure, FilesAndFoldersStaySmall) {
-  constexpr int kMostLines = 400, kMostModules = 22;
+  constexpr int kMostLines = 400, kMostModules = 22, kMostOnTop = 12;
   std::map<fs::path, std::set<std::string>> modules;
   for_each_file([&](const std::string& path, const auto&) {
     const fs::path file = kSource / path;
@@ -160,6 +212,7 @@ TEST(Structure, FilesAndFoldersStaySmall) {
     for (std::string line; std::getline(in, line);) ++lines;
     EXPECT_LE(lines, kMostLines) << path;
   });
+  EXPECT_LE(modules.at(kSource).size(), std::size_t(kMostOnTop));
   for (const auto& [folder, names] : modules)
     EXPECT_LE(names.size(), std::size_t(kMostModules)) << folder;
 }

@@ -17,7 +17,8 @@
 #include "bench/report_files.h"
 #include "error.h"
 #include "estimators/registry.h"
-#include "pipeline.h"
+#include "plan/make_plan.h"
+#include "relight/targets.h"
 #include "stopwatch.h"
 
 namespace ssdo {

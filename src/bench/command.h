@@ -5,7 +5,7 @@
 
 #include "bench/ladder.h"
 #include "bench/options.h"
-#include "plan.h"
+#include "plan/plan.h"
 
 namespace ssdo {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "estimators/estimator.h"
-#include "plan.h"
+#include "plan/plan.h"
 
 namespace ssdo {
 

@@ -5,8 +5,8 @@
 #include <ctime>
 
 #include "color/compose.h"
-#include "estimate.h"
 #include "filters/shares.h"
+#include "relight/estimate.h"
 #include "stopwatch.h"
 
 namespace ssdo {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "frame.h"
 #include "metrics/difference.h"
+#include "relight/frame.h"
 
 namespace ssdo {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "frame.h"
+#include "relight/frame.h"
 
 namespace ssdo {
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "color/color.h"
-#include "frame.h"
 #include "metrics/difference.h"
+#include "relight/frame.h"
 
 namespace ssdo {
 

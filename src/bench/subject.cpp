@@ -11,6 +11,7 @@
 #include "error.h"
 #include "estimators/registry.h"
 #include "nearest_name.h"
+#include "relight/relight.h"
 
 namespace ssdo {
 namespace {

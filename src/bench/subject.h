@@ -7,8 +7,8 @@
 
 #include "bench/options.h"
 #include "bench/truth.h"
-#include "frame.h"
 #include "io/run_files.h"
+#include "relight/frame.h"
 
 namespace ssdo {
 

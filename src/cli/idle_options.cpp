@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <functional>
 
-#include "composite_choice.h"
 #include "estimators/registry.h"
 #include "io/image_file.h"
+#include "plan/composite_choice.h"
 
 namespace ssdo {
 namespace {

@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "cli/option_values.h"
-#include "cli/threads.h"
 #include "estimators/products.h"
 #include "estimators/registry.h"
 #include "filters/registry.h"
 #include "io/sequence.h"
+#include "jobs/machine/threads.h"
 #include "nearest_name.h"
 #include "scene/layers/groups.h"
 

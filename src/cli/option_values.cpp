@@ -11,8 +11,8 @@
 #include <limits>
 #include <utility>
 
-#include "cli/memory.h"
 #include "error.h"
+#include "jobs/machine/memory.h"
 #include "math/number.h"
 #include "nearest_name.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "color/color.h"
+#include "color/color_options.h"
 
 namespace ssdo {
 

@@ -140,17 +140,6 @@ Plane<float> rendered_alpha(const Results& r, Plane<float> alpha) {
 
 }  // namespace
 
-Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer) {
-  const Geometry& geometry = scene.geometry;
-  Plane<float> alpha(geometry.surfel.width, geometry.surfel.height, 0.0f);
-  for (std::size_t i = 0; i < alpha.size(); ++i) {
-    if (!geometry.is_surface(i)) continue;
-    const float a = gbuffer.alpha.empty() ? 1.0f : gbuffer.alpha[i];
-    alpha[i] = std::isfinite(a) ? std::clamp(a, 0.0f, 1.0f) : 1.0f;
-  }
-  return alpha;
-}
-
 Composite composite(const Results& r) {
   Plane<float> alpha = coverage(r.scene, r.gbuffer);
   const Compose compose = r.composition.compose;

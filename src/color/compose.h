@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "color/composition.h"
+#include "color/results.h"
 #include "estimators/estimator.h"
 #include "math/channel_view.h"
 #include "math/plane.h"
@@ -14,14 +15,6 @@
 #include "scene/scene.h"
 
 namespace ssdo {
-
-/// A frame and what was found for it: what outputs are made from.
-struct Results {
-  const Scene& scene;
-  const GBuffer& gbuffer;
-  const Products& products;
-  Composition composition = {};
-};
 
 /// Scene-linear colours, premultiplied by alpha.
 struct Composite {
@@ -44,10 +37,6 @@ struct NamedChannels {
   /// Those of them that were made for the output; the others are views of the products.
   std::variant<std::monostate, Plane<float>, Plane<glm::vec3>, Composite> made;
 };
-
-/// Coverage of the pixels of the G-buffer: the input's alpha where there is one, else 1 on
-/// surfaces; 0 outside the geometry.
-Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer);
 
 /// The composite that `results.composition` asks for, over the window of the outputs; see
 /// compose.cpp. The layers and products that it is made of have to be there.

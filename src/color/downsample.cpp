@@ -9,6 +9,8 @@
 // F[a rho E] / F[a rho], channel by channel; light passes that were divided by colour are the same.
 #include "color/downsample.h"
 
+#include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "io/pixel_filter.h"
@@ -61,6 +63,17 @@ Plane<T> at_output_size(Plane<T> values, const GBuffer& gbuffer) {
 }
 template Plane<float> at_output_size(Plane<float>, const GBuffer&);
 template Plane<glm::vec3> at_output_size(Plane<glm::vec3>, const GBuffer&);
+
+Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer) {
+  const Geometry& geometry = scene.geometry;
+  Plane<float> alpha(geometry.surfel.width, geometry.surfel.height, 0.0f);
+  for (std::size_t i = 0; i < alpha.size(); ++i) {
+    if (!geometry.is_surface(i)) continue;
+    const float a = gbuffer.alpha.empty() ? 1.0f : gbuffer.alpha[i];
+    alpha[i] = std::isfinite(a) ? std::clamp(a, 0.0f, 1.0f) : 1.0f;
+  }
+  return alpha;
+}
 
 Plane<float> weights_by_coverage(const Results& r) {
   Plane<float> weights = coverage(r.scene, r.gbuffer);

@@ -3,11 +3,15 @@
 
 #include <glm/vec3.hpp>
 
-#include "color/compose.h"
+#include "color/results.h"
 #include "estimators/products.h"
 #include "math/plane.h"
 
 namespace ssdo {
+
+/// Coverage of the pixels of the G-buffer: the input's alpha where there is one, else 1 on
+/// surfaces; 0 outside the geometry.
+Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer);
 
 /// A colour for every pixel of the G-buffer, premultiplied or a weight, over the window of outputs:
 /// the mean under the pixel filter.

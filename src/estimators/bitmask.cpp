@@ -8,15 +8,13 @@
 // along T, a unit vector perpendicular to V, a direction at angle t from V has the cosine
 // n_v cos t + n_t sin t to the normal and, as slices turn about V, the measure |sin t| dt:
 //
-//   M(S) = int_S (n_v c + n_t s) dc,   c = cos t, s = sin t
+//   M(S) = int_S (n_v cos t + n_t sin t) d cos t
 //
-// 32 sectors divide a side equally in c, which is in solid angle. A solid of a pixel hides those
-// between its front and its back, which lies behind it on its own view ray; a mask gathers them
-// near to far. Then
-//
-//   ao      = 1 - sum w M(hidden) / sum w M(all)               over the sides of all slices
-//   direct  = E(N)/pi * (1 - sum w int_hidden L dM / sum w int_all L dM)    channel by channel
-//   bounce  = (1 - ao) * sum w sum_q M(newly hidden by q) L_out(q) / sum w M(hidden)
+// 32 sectors divide a side equally in cos t, which is in solid angle. A solid of a pixel hides
+// those between its front and its back, which lies behind it on its own view ray; a mask gathers
+// them near to far. Then M(hidden) of the sectors that are hidden gives ao and direct light, by the
+// equations at the head of bitmask/visibility.cpp, where visibility() computes them; bounce light
+// is in bitmask/bounce.cpp.
 //
 // What differs from the sources, and why:
 // - w = 1 / |T~|^2, T~ the part of the slice's picture direction that is perpendicular to V. Slices
@@ -24,7 +22,7 @@
 //   0.5 reads from 0.41 to 0.60 at 45 degrees.
 // - Sums are divided by what they are for an open surface, so that this reads exactly 1.
 // - Sectors of equal angle that count alike read a pit of 0.75 as 0.38 when seen from the side.
-//   Here they count by the integral of the cosine over them. Equal steps of c are cheap to find
+//   Here they count by the integral of the cosine over them. Equal steps of cos t are cheap to find
 //   (no arc function) and the same for all pixels, so that moments of masks come from tables
 //   (bitmask/slice_sectors.cpp). The point that stands for a sector differs from slice to slice, or
 //   a gentle curve would show the sectors as bands.
@@ -38,7 +36,8 @@
 // - A sampled pixel represents the stretch of the march up to halfway to the samples before and
 //   after it (bitmask/piece-inl.h). Treated as points, few samples miss too much: 16 steps that
 //   represent their stretches are nearer to the limit than 24 points.
-// - Backs, layers of solids behind what is seen (scene/solids.cpp) and surfaces beyond the frame
+// - Backs, layers of solids behind what is seen (scene/solids/solids.cpp) and surfaces beyond the
+// frame
 //   (bitmask/extension-inl.h) are guesses that GTAO does not make. How much light comes through
 //   what is beyond: bitmask/beyond.h, bitmask/rays/border_extents.h.
 // - What only further views show may be anywhere, behind the camera too: rays ask it for the

@@ -50,7 +50,9 @@ struct Geometry {
   bool is_surface(std::size_t i) const { return surfel[i].is_surface(); }
 
   /// Height of the display window at depth `depth`, in scene units.
-  float frame_height_at(float depth) const;
+  float frame_height_at(float depth) const {
+    return float(display.height() / camera.fy * (camera.orthographic ? 1.0 : depth));
+  }
 };
 
 /// How a frame lies in camera space, as all of its pixels say together.
@@ -88,14 +90,5 @@ struct GeometryReport {
   std::vector<std::string> warnings;
   Placement placement;
 };
-
-/// Finds the camera and brings the frame into camera space, computing in double and rounding once.
-/// P comes from depth where there is none; N from P where it is missing or not usable; normals
-/// that are the back of what P shows are turned to the viewer. With `known`, the placement of the
-/// frame that the G-buffer is some rows of, nothing is found anew.
-/// Errors: ExitCode::layer where neither P nor the options nor the header determine the camera.
-Geometry build_geometry(const GBuffer& gbuffer, const CameraOptions& options,
-                        const std::string& file, GeometryReport& report,
-                        const Placement* known = nullptr);
 
 }  // namespace ssdo

@@ -10,7 +10,7 @@
 #include "scene/further/further_view.h"
 #include "scene/geometry.h"
 #include "scene/light/light.h"
-#include "scene/solids.h"
+#include "scene/solids/solids.h"
 
 namespace ssdo {
 

@@ -9,10 +9,11 @@
 #include <utility>
 
 #include "error.h"
+#include "scene/build_geometry.h"
 #include "scene/camera/position_check.h"
 #include "scene/deep/channels.h"
 #include "scene/deep/deep_frame.h"
-#include "scene/depth_check.h"
+#include "scene/gbuffer/depth_check.h"
 #include "scene/layers/advice.h"
 #include "scene/layers/groups.h"
 #include "stopwatch.h"

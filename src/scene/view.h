@@ -10,9 +10,9 @@
 #include "io/exr/deep_reader.h"
 #include "io/exr/exr_reader.h"
 #include "scene/gbuffer.h"
+#include "scene/gbuffer/read_gbuffer.h"
 #include "scene/geometry.h"
 #include "scene/layers/layers.h"
-#include "scene/read_gbuffer.h"
 
 namespace ssdo {
 

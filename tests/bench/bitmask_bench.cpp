@@ -14,7 +14,7 @@
 #include "bench/bare_loads.h"
 #include "estimators/bitmask.h"
 #include "filters/geometry_filter.h"
-#include "scene/solids.h"
+#include "scene/solids/solids.h"
 #include "simd/isa.h"
 #include "support/scene_of.h"
 

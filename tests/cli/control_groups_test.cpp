@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What control groups say, in made-up /proc and /sys.
-#include "cli/control_groups.h"
+#include "jobs/machine/control_groups.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the command line sets and refuses, on parse_options() itself.
-#include "cli/options.h"
+#include "cli/parse_options.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/sequence/repeated_warnings.h"
+#include "jobs/sequence/repeated_warnings.h"
 
 #include <gmock/gmock.h>
 

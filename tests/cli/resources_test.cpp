@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Which threads, how much memory and which instruction set a run takes.
-#include "cli/resources.h"
+#include "jobs/machine/resources.h"
 
 #include <ImfThreading.h>
 #include <gmock/gmock.h>
@@ -17,9 +17,9 @@
 #include <fstream>
 #include <thread>
 
-#include "cli/memory.h"
-#include "cli/threads.h"
 #include "io/size_guard.h"
+#include "jobs/machine/memory.h"
+#include "jobs/machine/threads.h"
 #include "simd/isa.h"
 #include "support/chosen_isa.h"
 #include "support/error_matchers.h"

@@ -17,8 +17,9 @@
 #include "estimators/recorded_errors.h"
 #include "estimators/registry.h"
 #include "filters/shares.h"
-#include "frame.h"
 #include "io/exr/exr_reader.h"
+#include "relight/frame.h"
+#include "relight/relight.h"
 #include "support/crop.h"
 
 namespace ssdo::test {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "cli/options.h"
+#include "cli/parse_options.h"
 #include "fuzz/target.h"
 #include "io/picture_layers.h"
 #include "io/sequence.h"

@@ -3,8 +3,9 @@
 #include <glm/geometric.hpp>
 #include <random>
 
-#include "frame.h"
 #include "hard/hard_cases.h"
+#include "relight/frame.h"
+#include "relight/relight.h"
 #include "support/temp_dir.h"
 
 namespace ssdo::test {

@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "estimate.h"
+#include "relight/estimate.h"
 #include "support/random_shot.h"
 
 namespace ssdo::test {

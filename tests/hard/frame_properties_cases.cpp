@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "color/compose.h"
-#include "pipeline.h"
+#include "relight/relight.h"
 #include "support/frame_file.h"
 #include "support/temp_dir.h"
 
@@ -69,12 +69,12 @@ Measured bad_files(const Subject& s) {
   const TempDir dir;
   const StoredFrame stored = store(s.shot, dir.path());
   FurtherPictures pictures;
-  const Frame frame =
+  Frame frame =
       prepare_frame(stored.options, Lighting(stored.options.light), pictures, stored.files);
   const std::vector<Target> targets = {{(dir / "out.exr").string(), {}}};
   const RelightJob job{stored.options, frame, targets, {}};
   const auto silent = [](double) {};
-  Relit made = relight(job, silent, {});
+  Relit made = relight(job, frame.scene, silent, {});
   write_outputs({{job, &made}}, silent);
   Worst worst;
   for (const std::string& name : channel_names(dir / "out.exr")) {

@@ -8,11 +8,12 @@
 
 #include <cmath>
 
-#include "estimate.h"
 #include "filters/registry.h"
 #include "filters/temporal.h"
 #include "hard/every_method.h"
 #include "parallel/tiles.h"
+#include "plan/make_plan.h"
+#include "relight/estimate.h"
 #include "support/random_frame.h"
 
 namespace ssdo::test {

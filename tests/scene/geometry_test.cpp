@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "scene/build_geometry.h"
 #include "support/analytic_scene.h"
 #include "support/gbuffer_of.h"
 #include "support/temp_dir.h"

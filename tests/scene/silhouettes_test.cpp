@@ -8,6 +8,7 @@
 #include <random>
 
 #include "hard/hard_cases.h"
+#include "scene/build_geometry.h"
 #include "support/analytic_scene.h"
 #include "support/gbuffer_of.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "frame.h"
+#include "relight/frame.h"
 #include "support/random_view.h"
 
 namespace ssdo::test {

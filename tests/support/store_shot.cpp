@@ -5,6 +5,7 @@
 #include <glm/matrix.hpp>
 #include <iterator>
 
+#include "relight/relight.h"
 #include "support/frame_file.h"
 #include "support/random_shot.h"
 #include "support/temp_dir.h"

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Light that bounces, by method bitmask; see bitmask.cpp. Compiled once for every instruction set.
+// Light that bounces, by method bitmask (see bitmask.cpp and, for M and w, visibility.cpp):
+//
+//   bounce = (1 - ao) sum w M(met by q) L_out(q) / sum w M(hidden)
+//
+// over both sides of all slices, and over the solids q that the march of a side meets, each with
+// the sectors that no nearer one hides. Compiled once for every instruction set.
 //
 // The radiance around a pixel changes slowly along a surface; how much of it reaches the pixel is
 // known from ao. So where slices are few, one pixel of 2 x 2 marches, and the others take the mean
@@ -34,7 +39,7 @@ struct Gathered {
 
 HWY_INLINE Gathered no_light() { return {set(glm::vec3(0)), set(0)}; }
 
-/// Of what both sides send.
+/// Both sides of a surface, from what they send.
 HWY_INLINE V3 front_of(const V3& sides) {
   return {first_of_two(sides.x), first_of_two(sides.y), first_of_two(sides.z)};
 }
@@ -132,7 +137,7 @@ HWY_INLINE V3 sent_behind(const BounceJob& job, bool far, int layer, const Place
   return if_then_else_zero(hn::RebindMask(D(), shown), job.two_sided ? front_of(sent) : sent);
 }
 
-/// Measure of a set of sectors: the integral of the cosine to the shading normal.
+/// M of a set of sectors: the integral of the cosine to the shading normal.
 HWY_INLINE V measure_of(const MarchReceiver& p, const SideFrame& side, VU bits) {
   const VU one = set_bits(1), last = set_bits(31);
   const VU first = hn::PopulationCount(hn::AndNot(bits, bits - one));

@@ -8,7 +8,7 @@
 
 #include "math/two_in_one.h"
 #include "scene/geometry.h"
-#include "scene/solids.h"
+#include "scene/solids/solids.h"
 #include "scene/surfel.h"
 #include "simd/interleaved.h"
 

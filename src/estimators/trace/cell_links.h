@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "scene/solids.h"
+#include "scene/solids/solids.h"
 
 namespace ssdo {
 

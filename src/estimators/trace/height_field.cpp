@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A node is the front of a solid in one pixel: in layer 0 what the pixel shows (scene/solids.h).
-// Nodes of neighbouring pixels are joined where they are on one surface (scene/same_surface.h).
-// Four pixels around a corner make a cell:
+// A node is the front of a solid in one pixel: in layer 0 what the pixel shows
+// (scene/solids/solids.h). Nodes of neighbouring pixels are joined where they are on one surface
+// (scene/same_surface.h). Four pixels around a corner make a cell:
 //
 //   a---b   All four joined: two triangles from centre to centre, and two between their backs.
 //   |   |   Else each group of joined nodes has the quarters of its own pixels, which end halfway

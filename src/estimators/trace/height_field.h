@@ -8,7 +8,7 @@
 
 #include "estimators/trace/picture_space.h"
 #include "scene/geometry.h"
-#include "scene/solids.h"
+#include "scene/solids/solids.h"
 
 namespace ssdo {
 

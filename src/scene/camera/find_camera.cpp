@@ -14,6 +14,7 @@
 #include "scene/camera/fit_pose.h"
 #include "scene/camera/metadata/check.h"
 #include "scene/camera/panorama.h"
+#include "scene/camera/position_rounding.h"
 
 namespace ssdo {
 namespace {
@@ -205,16 +206,6 @@ FoundCamera find_without_options(const GBuffer& g, const std::vector<HeaderCamer
 }
 
 }  // namespace
-
-double rounding_of_positions(const GBuffer& g) {
-  float largest = 0;
-  for (std::size_t i = 0; i < g.position.size(); ++i) {
-    if (!g.valid[i]) continue;
-    const glm::vec3 p = glm::abs(g.position[i]);
-    largest = std::max({largest, p.x, p.y, p.z});
-  }
-  return double(largest) * g.position_step;
-}
 
 FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,
                         GeometryReport& report) {

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "error.h"
-#include "scene/camera/camera.h"
-#include "scene/camera/metadata/candidates.h"
+#include "scene/camera/found_camera.h"
 #include "scene/gbuffer.h"
 #include "scene/geometry.h"
 
@@ -18,17 +16,6 @@ struct UndeterminedCamera : Error {
   using Error::Error;
 };
 
-/// The camera of the frame, and the transform from stored P to camera space. They are the same
-/// unless P is stored in camera space and a file or the header gives the pose. Both are in the
-/// pixels of the file, whatever the grid of the G-buffer.
-struct FoundCamera {
-  Camera camera, of_positions;
-  bool world_given = false;  ///< --camera or the header gave the pose, and so the world
-  /// Where the header gave it and P cannot prove it: that reading first, then the others that
-  /// normals may decide for.
-  std::vector<HeaderCamera> readings = {};
-};
-
 /// Decides by projection. The camera of the options is used if P projects to its own pixels under
 /// it, or if no camera fits better; else the camera fitted from P, with a warning. Without options,
 /// the camera is that fitted from P, and the header's where P or its lens agrees with it or where P
@@ -37,8 +24,5 @@ struct FoundCamera {
 /// UndeterminedCamera where there is a P.
 FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,
                         GeometryReport& report);
-
-/// The most by which storing P may have moved it along one axis, in scene units.
-double rounding_of_positions(const GBuffer& g);
 
 }  // namespace ssdo

@@ -20,6 +20,7 @@
 #include "math/straight.h"
 #include "scene/camera/find_camera.h"
 #include "scene/camera/fit.h"
+#include "scene/camera/position_rounding.h"
 
 namespace ssdo {
 namespace {

@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "parallel/tiles.h"
-#include "scene/background.h"
 #include "scene/deep/ray_solids.h"
-#include "scene/depth_encoding.h"
+#include "scene/gbuffer/background.h"
+#include "scene/gbuffer/depth_encoding.h"
 
 namespace ssdo {
 namespace {

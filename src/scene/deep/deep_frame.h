@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/exr/deep_reader.h"
-#include "scene/read_gbuffer.h"
+#include "scene/gbuffer/read_gbuffer.h"
 
 namespace ssdo {
 

@@ -5,7 +5,7 @@
 
 #include "scene/deep/measured_solids.h"
 #include "scene/geometry.h"
-#include "scene/solids.h"
+#include "scene/solids/solids.h"
 
 namespace ssdo {
 

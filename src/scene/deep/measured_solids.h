@@ -7,7 +7,7 @@
 
 #include "io/exr/deep_reader.h"
 #include "scene/geometry.h"
-#include "scene/solids.h"
+#include "scene/solids/solids.h"
 
 namespace ssdo {
 

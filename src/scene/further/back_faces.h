@@ -8,7 +8,7 @@
 #include "math/plane.h"
 #include "scene/further/further_view.h"
 #include "scene/geometry.h"
-#include "scene/solids.h"
+#include "scene/solids/solids.h"
 
 namespace ssdo {
 

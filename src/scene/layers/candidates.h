@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scene/layers/groups.h"
-#include "scene/layers/layers.h"
+#include "scene/layers/layer_table.h"
 
 namespace ssdo {
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/solids.h"
+#include "scene/solids/solids.h"
 #include "support/analytic_scene.h"
 
 namespace ssdo::test {

@@ -9,7 +9,7 @@
 
 #include "estimators/bitmask.h"
 #include "scene/light/light.h"
-#include "scene/solids.h"
+#include "scene/solids/solids.h"
 #include "support/analytic_scene.h"
 #include "support/scene_of.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "estimators/bitmask/request.h"
-#include "scene/solids.h"
+#include "scene/solids/solids.h"
 #include "support/boxes.h"
 
 namespace ssdo::test {

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "estimators/bitmask/request.h"
-#include "scene/solids.h"
+#include "scene/solids/solids.h"
 
 namespace ssdo::test {
 namespace {

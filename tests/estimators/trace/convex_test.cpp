@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "estimators/trace_request.h"
-#include "scene/solids.h"
+#include "scene/solids/solids.h"
 
 namespace ssdo::test {
 namespace {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "scene/build_geometry.h"
 #include "scene/camera/fit.h"
 #include "support/analytic_scene.h"
 #include "support/gbuffer_of.h"

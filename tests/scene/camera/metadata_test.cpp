@@ -10,6 +10,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "error.h"
+#include "scene/build_geometry.h"
 #include "scene/camera/metadata/unreal.h"
 #include "scene/geometry.h"
 #include "support/gbuffer_of.h"

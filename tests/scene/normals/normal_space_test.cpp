@@ -11,6 +11,7 @@
 #include <glm/trigonometric.hpp>
 #include <random>
 
+#include "scene/build_geometry.h"
 #include "scene/geometry.h"
 #include "support/analytic_scene.h"
 #include "support/gbuffer_of.h"

@@ -13,6 +13,7 @@
 #include <glm/trigonometric.hpp>
 #include <random>
 
+#include "scene/build_geometry.h"
 #include "scene/geometry.h"
 #include "scene/normals/normal_space.h"
 #include "support/analytic_scene.h"

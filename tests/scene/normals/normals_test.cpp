@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
+#include "scene/build_geometry.h"
 #include "scene/normals/geometric_normal.h"
 #include "support/analytic_scene.h"
 

@@ -14,6 +14,7 @@
 #include "math/sobol.h"
 #include "math/two_in_one.h"
 #include "parallel/tiles.h"
+#include "scene/solids/width_of_run.h"
 
 namespace ssdo {
 namespace {

@@ -13,6 +13,7 @@
 
 #include "scene/camera/fit.h"
 #include "scene/camera/fit_pose.h"
+#include "scene/camera/position_rounding.h"
 #include "scene/camera/projection_model.h"
 
 namespace ssdo {

@@ -4,8 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "scene/camera/find_camera.h"
+#include "scene/camera/found_camera.h"
 #include "scene/camera/metadata/candidates.h"
+#include "scene/gbuffer.h"
+#include "scene/geometry.h"
 
 namespace ssdo {
 

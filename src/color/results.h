@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "color/composition.h"
+#include "estimators/estimator.h"
+#include "scene/gbuffer.h"
+#include "scene/scene.h"
+
+namespace ssdo {
+
+/// A frame and what was found for it: what outputs are made from.
+struct Results {
+  const Scene& scene;
+  const GBuffer& gbuffer;
+  const Products& products;
+  Composition composition = {};
+};
+
+}  // namespace ssdo

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What a sequence does at one time, with two threads or more:
+//
+//   estimate and filter frame n, and beside it
+//   compose and write frame n - 1, then read and prepare frame n + 1
+//
+// The frame before is written and freed before the next one is read, so that no more than two are
+// in memory. Lines, errors and statistics of a frame wait until those of the frame before are out.
+#include "jobs/batch.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "io/stale_temporaries.h"
+#include "io/standard_output.h"
+#include "jobs/describe.h"
+#include "jobs/info_report.h"
+#include "jobs/jobs.h"
+#include "jobs/machine/memory.h"
+#include "jobs/messages.h"
+#include "jobs/progress.h"
+#include "jobs/sequence/frame_changes.h"
+#include "jobs/sequence/place_in_sequence.h"
+#include "jobs/sequence/sequence_frames.h"
+#include "jobs/statistics.h"
+#include "parallel/background.h"
+#include "relight/frame.h"
+#include "relight/relight.h"
+#include "relight/targets.h"
+
+namespace ssdo {
+namespace {
+
+/// A view of a job on its way.
+struct WorkOnView {
+  Frame frame;
+  Relit relit = {};
+};
+
+/// A job on its way from its files to its outputs.
+struct Work {
+  std::size_t index = 0;               ///< of the job
+  OutputPolicy policy;                 ///< of its outputs
+  std::vector<WorkOnView> views = {};  ///< while there is something left to do with them
+  Messages messages;                   ///< to be printed
+  std::string advice = {};             ///< to be printed once the outputs are made
+  nlohmann::json statistics = {};      ///< of its views; null unless the outputs were made
+  std::set<std::string> losses = {};   ///< what --allow-partial has taken as background
+  std::optional<Error> error = {};
+};
+
+class Batch {
+ public:
+  Batch(const RunOptions& options, const Resources& resources)
+      : options_(options),
+        resources_(resources),
+        jobs_(plan_jobs(options)),
+        overlaps_(resources.threads() > 1 && jobs_.size() > 1),
+        // A temporal frame hands its surfaces to the next one, which therefore waits.
+        writes_behind_(overlaps_ && !options.model.temporal),
+        pictures_(options.input.allow_partial),
+        frames_(options_, pictures_),
+        progress_(options.batch.progress, options.verbosity.quiet),
+        info_(options.verbosity.json, progress_),
+        printer_(progress_) {
+    const std::size_t views = std::max(std::size_t(1), options.input.views.size());
+    options_.memory = resources.memory() / ((overlaps_ ? 2 : 1) * views);
+    for (const Job& job : jobs_)
+      for (const FrameFiles& files : job.views) pictures_.expect(files);
+  }
+
+  ExitCode run() {
+    ExitCode code = ExitCode::done;
+    try {
+      code = run_jobs();
+      printer_.print_summary(options_.input_file);
+    } catch (const Error& e) {
+      info_.note(e);
+      info_.finish();
+      throw;
+    }
+    info_.finish();
+    if (has_statistics() && !options_.verbosity.dry_run)
+      write_statistics(options_.verbosity.stats, policy_of_statistics(options_.output.policy),
+                       statistics_);
+    return code;
+  }
+
+ private:
+  ExitCode run_jobs() {
+    if (has_statistics())
+      check_output(options_.verbosity.stats, policy_of_statistics(options_.output.policy));
+    if (options_.command == Command::relight && !options_.verbosity.dry_run) clean_folders();
+    for (std::size_t i = 0; i < jobs_.size() && !stopped_; ++i) {
+      if (options_.command == Command::info) info_.list(jobs_[i].views.front());
+      if (!light_) light_.emplace(options_.light);
+      run_job(i);
+    }
+    if (behind_ && !stopped_) {
+      write(*behind_, progress_of(behind_->index));
+      conclude(*behind_);
+    }
+    return code_;
+  }
+
+  /// Removes what killed runs have left in the folders of the outputs.
+  void clean_folders() {
+    for (const std::filesystem::path& folder : output_folders(jobs_)) {
+      for (const std::filesystem::path& file : remove_stale_temporaries(folder)) {
+        if (options_.verbosity.verbose)
+          printer_.print(file.string() + ": removed; the run that wrote it was killed");
+      }
+    }
+  }
+
+  void run_job(std::size_t i) {
+    Work now = ahead_ ? std::move(*ahead_) : prepare(i);
+    ahead_.reset();
+    if (overlaps_) {
+      beside_.start([this, i] {
+        if (behind_) write(*behind_, [](double) {});
+        if (i + 1 < jobs_.size()) ahead_ = prepare(i + 1);
+      });
+    }
+    compute(now);
+    if (!writes_behind_) write(now, progress_of(i));
+    beside_.wait();
+    if (behind_) conclude(*behind_);
+    behind_.reset();
+    if (stopped_) return;
+    if (now.views.empty())
+      conclude(now);
+    else
+      behind_ = std::move(now);
+  }
+
+  /// Calls `step`; what it throws becomes the error of the job.
+  template <class Step>
+  void attempt(Work& work, const Step& step) {
+    const std::string& input = jobs_[work.index].input();
+    try {
+      step();
+      return;
+    } catch (const Error& e) {
+      work.error = e;
+    } catch (const std::bad_alloc&) {
+      work.error = Error(ExitCode::failed, fmt::format("{}: {}", input, kNoMemory));
+    } catch (const std::exception& e) {
+      work.error = Error(ExitCode::failed, fmt::format("{}: {}", input, e.what()));
+    }
+    work.views.clear();
+  }
+
+  /// Up to the plan; there are no views where the job is skipped.
+  Work prepare(std::size_t i) {
+    Work work{.index = i,
+              .policy = options_.output.policy,
+              .messages = Messages(jobs_[i].input(), options_.verbosity)};
+    attempt(work, [&] {
+      if (may_skip(work)) return;
+      const Job& job = jobs_[i];
+      check_input(job);
+      for (const FrameFiles& files : job.views) work.views.push_back({prepare_view(job, files)});
+      if (work.views.size() > 1)
+        work.messages.warn(compare_views(work.views[0].frame, work.views[1].frame), "");
+      note_changes(work);
+    });
+    for (const FrameFiles& files : jobs_[i].views) pictures_.release(files);
+    return work;
+  }
+
+  /// Errors name the view where there are several.
+  Frame prepare_view(const Job& job, const FrameFiles& files) {
+    if (job.views.size() == 1) return frames_.prepare(*light_, files, job.frame);
+    try {
+      Frame frame = frames_.prepare(*light_, files, job.frame);
+      if (!frame.bands) return frame;
+    } catch (const Error& e) {
+      throw Error(e.code, fmt::format("{} (view {})", e.what(), files.view));
+    }
+    throw Error(ExitCode::usage, fmt::format("{}: two views of this size need more memory than "
+                                             "there is; give --stereo left, then right",
+                                             files.input));
+  }
+
+  /// Says what the frame before had otherwise; frames are prepared one after the other.
+  void note_changes(Work& work) {
+    std::vector<FrameLooks> before = std::exchange(looks_, {});
+    for (const WorkOnView& view : work.views) {
+      const Job& job = jobs_[work.index];
+      looks_.push_back(looks_of(view.frame, job.views[looks_.size()], job.frame.value_or(0)));
+      if (looks_.size() <= before.size())
+        work.messages.warn(changes(before[looks_.size() - 1], looks_.back()), view.frame.view,
+                           true);
+    }
+  }
+
+  /// Whether the outputs are there. Errors: those of check_output().
+  bool may_skip(Work& work) const {
+    if (options_.command != Command::relight) return false;
+    const Job& job = jobs_[work.index];
+    if (options_.batch.skip_existing) {
+      if (is_done(job)) {
+        if (options_.verbosity.verbose || options_.verbosity.dry_run)
+          work.messages.add(job.input() + ": skipped, its outputs exist");
+        return true;
+      }
+      work.policy.overwrite = true;  // some of its files are missing or incomplete
+    }
+    for (const Target& target : job.targets) check_output(target.path, work.policy);
+    return false;
+  }
+
+  /// Estimates and filters, or shows what would be done.
+  void compute(Work& work) {
+    std::vector<std::optional<History>> before = std::exchange(histories_, {});
+    before.resize(work.views.size());
+    attempt(work, [&] {
+      for (std::size_t v = 0; v < work.views.size(); ++v)
+        compute(work, work.views[v], before[v], share_of(work, v));
+      if (options_.command == Command::info || options_.verbosity.dry_run) work.views.clear();
+    });
+  }
+
+  void compute(Work& work, WorkOnView& view, std::optional<History>& before,
+               const std::function<void(double)>& on_progress) {
+    Frame& frame = view.frame;
+    Past past{std::move(before), {}};
+    if (options_.model.temporal) place_in_sequence(frame, past, before_of(work.index));
+    if (options_.command == Command::info || options_.verbosity.dry_run) note_losses(work, frame);
+    if (options_.command == Command::info) return info_.show(frame);
+    if (options_.verbosity.dry_run || options_.verbosity.verbose)
+      work.messages.add_text(describe(frame));
+    else {
+      work.messages.warn(frame.warnings(), frame.view);
+      if (!jobs_[work.index].frame && !options_.verbosity.quiet) work.advice = frame.advice;
+    }
+    const RelightJob job = job_of(work, view);
+    if (options_.verbosity.dry_run) {
+      // The last checks that come before the work of a real run.
+      if (const auto display = make_display(job)) work.messages.add(display->description());
+      return;
+    }
+    if (!behind_) print(work);
+    view.relit = relight(job, frame.scene, on_progress, past);
+    if (options_.verbosity.verbose)
+      for (const std::string& note : view.relit.notes) work.messages.add(note);
+    work.messages.warn(view.relit.warnings, frame.view);
+  }
+
+  /// Makes the outputs of a frame that was computed, and frees it.
+  void write(Work& work, const std::function<void(double)>& on_progress) {
+    if (work.views.empty()) return;
+    attempt(work, [&] {
+      std::vector<RelitFrame> relit;
+      for (WorkOnView& view : work.views) relit.push_back({job_of(work, view), &view.relit});
+      write_outputs(relit, on_progress);
+      if (const std::size_t clamped = work.views.front().relit.clamped_values) {
+        const std::string warning = fmt::format(
+            "{} values were beyond the range of half and clamped to 65504; keep them "
+            "with --pixel-type float",
+            clamped);
+        work.messages.warn({warning}, "");
+        work.views.front().relit.warnings.push_back(warning);
+      }
+      for (WorkOnView& view : work.views) {
+        note_losses(work, view.frame);
+        work.statistics.push_back(
+            statistics_of(view.frame, jobs_[work.index], resources_, view.relit));
+        if (!options_.model.temporal) continue;
+        History& history = *histories_.emplace_back(std::move(view.relit.history));
+        history.geometry = std::move(view.frame.scene.geometry);
+        history.albedo = std::move(view.frame.scene.senders.albedo);
+      }
+    });
+    work.views.clear();
+  }
+
+  static void note_losses(Work& work, const Frame& frame) {
+    for (const std::string& loss : frame.losses()) work.losses.insert(loss);
+  }
+
+  /// Says what became of a job, once all those before it are concluded.
+  void conclude(Work& work) {
+    for (const std::string& loss : work.losses) work.messages.add(loss + "; taken as background");
+    if (!work.losses.empty() && code_ == ExitCode::done) code_ = ExitCode::input;
+    if (!work.error && !work.advice.empty())
+      work.messages.add(jobs_[work.index].input() + ": " + work.advice);
+    print(work);
+    for (nlohmann::json& view : work.statistics) statistics_.push_back(std::move(view));
+    if (work.error) {
+      // A job of one frame fails if that frame fails.
+      if (jobs_.size() == 1) throw *work.error;
+      info_.note(*work.error);
+      printer_.print(work.error->what());
+      if (code_ == ExitCode::done) code_ = work.error->code;
+      stopped_ = options_.batch.on_error == OnError::stop;
+      if (stopped_) return;
+    }
+    progress_of(work.index)(1);
+  }
+
+  RelightJob job_of(const Work& work, const WorkOnView& view) const {
+    return {options_, view.frame, jobs_[work.index].targets, work.policy};
+  }
+
+  FrameBefore before_of(std::size_t i) const {
+    return {i > 0 && std::int64_t(*jobs_[i - 1].frame) + 1 == *jobs_[i].frame,
+            options_.input.gbuffer.motion_scale.value_or(glm::vec2(1))};
+  }
+
+  std::function<void(double)> progress_of(std::size_t i) {
+    return [this, i](double done) {
+      progress_.tell((double(i) + done) / double(jobs_.size()), jobs_[i].input());
+    };
+  }
+
+  /// The share of a job's time that one of its views takes.
+  std::function<void(double)> share_of(const Work& work, std::size_t view) {
+    return [tell = progress_of(work.index), view, count = double(work.views.size())](double done) {
+      tell((double(view) + done) / count);
+    };
+  }
+
+  void print(Work& work) {
+    printer_.print(work.messages, work.index, jobs_[work.index].frame.value_or(0));
+  }
+
+  /// Statistics are about products, which `info` does not make.
+  bool has_statistics() const {
+    return options_.command == Command::relight && !options_.verbosity.stats.empty();
+  }
+
+  RunOptions options_;
+  const Resources& resources_;
+  std::vector<Job> jobs_;
+  const bool overlaps_;            ///< frames are read and written beside the one that is estimated
+  const bool writes_behind_;       ///< not only read
+  std::optional<Lighting> light_;  ///< read after the first listing of `info`
+  FurtherPictures pictures_;       ///< of all frames
+  SequenceFrames frames_;
+  ProgressLine progress_;
+  InfoReport info_;
+  Printer printer_;
+  nlohmann::json statistics_ = nlohmann::json::array();
+  ExitCode code_ = ExitCode::done;
+  bool stopped_ = false;
+  std::vector<FrameLooks> looks_;  ///< of the views of the last frame that was prepared
+  std::vector<std::optional<History>> histories_;  ///< of the frame before's views, for --temporal
+  std::optional<Work> ahead_;                      ///< the next job, prepared
+  std::optional<Work> behind_;                     ///< the last one, computed and not concluded
+  Background beside_;                              ///< is waited for before any of the above goes
+};
+
+}  // namespace
+
+ExitCode run_batch(const RunOptions& options, const Resources& resources) {
+  return Batch(options, resources).run();
+}
+
+}  // namespace ssdo

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "jobs/info_report.h"
+
+#include <nlohmann/json.hpp>
+
+#include "io/json_text.h"
+#include "io/standard_output.h"
+#include "jobs/describe.h"
+#include "jobs/listing.h"
+
+namespace ssdo {
+
+InfoReport::InfoReport(bool as_json, ProgressLine& progress)
+    : as_json_(as_json), progress_(progress) {}
+
+InfoReport::~InfoReport() = default;
+
+void InfoReport::list(const FrameFiles& files) {
+  const std::deque<ExrReader> opened = open_files(files);
+  entries_.push_back(listing_json(files.input, opened));
+  print(list_layers(opened));
+}
+
+void InfoReport::show(const Frame& frame) {
+  if (entries_.back().contains("view") && entries_.back()["view"] != frame.view)
+    entries_.push_back(entries_.back());
+  entries_.back().update(to_json(frame));
+  print(describe(frame));
+}
+
+void InfoReport::note(const Error& error) {
+  if (entries_.empty()) return;
+  entries_.back()["error"] = {{"code", int(error.code)}, {"message", error.what()}};
+}
+
+void InfoReport::finish() const {
+  if (!as_json_ || entries_.empty()) return;
+  print_out(json_text(entries_.size() == 1 ? entries_[0] : nlohmann::json(entries_), 2) + "\n");
+}
+
+void InfoReport::print(const std::string& text) {
+  if (as_json_) return;
+  progress_.clear();
+  print_out(text);
+}
+
+}  // namespace ssdo

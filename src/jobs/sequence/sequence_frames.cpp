@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "jobs/sequence/sequence_frames.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <set>
+#include <vector>
+
+#include "io/sequence.h"
+#include "jobs/jobs.h"
+#include "plan/band_plan.h"
+#include "relight/relight.h"
+#include "scene/camera/find_camera.h"
+
+namespace ssdo {
+namespace {
+
+/// How far a frame is looked for whose P tells its camera.
+constexpr int kMostFramesAway = 8;
+
+/// The camera and samples of the surfaces tell which axis is up: an overview of larger frames has
+/// enough of them.
+constexpr std::size_t kEnoughForUp = 500000, kAllPixels = std::numeric_limits<std::size_t>::max();
+
+/// None where the folder cannot be listed.
+std::vector<int> frames_on_disk(const std::string& pattern) try {
+  return find_frames(pattern);
+} catch (const Error&) {
+  return {};
+}
+
+}  // namespace
+
+/// The surfaces of another frame; nothing where it cannot be read by itself.
+std::optional<View> SequenceFrames::read(const FrameFiles& files, std::size_t most_pixels) const
+    try {
+  std::error_code ignored;
+  if (!std::filesystem::exists(files.input, ignored)) return std::nullopt;
+  const std::vector<Role> unused = {Role::albedo,   Role::beauty,    Role::radiance, Role::ambient,
+                                    Role::specular, Role::roughness, Role::motion};
+  std::vector<LayerRequest> aovs = files.aovs;
+  std::erase_if(aovs, [&](const LayerRequest& request) {
+    return std::ranges::find(unused, request.role) != unused.end();
+  });
+  InputOptions input = for_view(options_.input, files);
+  input.gbuffer.most_pixels = std::min(most_pixels, most_pixels_in(options_.memory));
+  return read_view(open_view(files.input, aovs, input.allow_partial), aovs, input, options_.camera,
+                   unused);
+} catch (const Error&) {
+  return std::nullopt;
+}
+
+std::optional<CameraBeside> SequenceFrames::camera_of(const FrameFiles& files) const {
+  const std::optional<View> view = read(files, kAllPixels);
+  if (!view) return std::nullopt;
+  const Placement& placement = view->report.placement;
+  if (placement.of_positions.panorama || placement.median_depth <= 0) return std::nullopt;
+  return CameraBeside{placement.of_positions, view->gbuffer.display_of_file(), files.input};
+}
+
+/// Calls `at` for the first, the middle and the last frame on disk that show surfaces.
+void SequenceFrames::look(const std::string& name, std::size_t most_pixels,
+                          const std::function<void(const View&)>& at) const {
+  const std::vector<int> frames = frames_on_disk(options_.input_file);
+  if (frames.size() < 2) return;
+  for (const int number : std::set{frames.front(), frames[frames.size() / 2], frames.back()}) {
+    const auto view = read(in_view(files_at(options_, number), name), most_pixels);
+    if (view && view->report.placement.median_depth > 0) at(*view);
+  }
+}
+
+/// The mean over frames, whose cameras are no independent witnesses.
+std::optional<UpEvidence> SequenceFrames::up(const std::string& name) {
+  if (up_) return *up_;
+  UpEvidence mean{};
+  double count = 0;
+  look(name, kEnoughForUp, [&](const View& view) {
+    if (!view.geometry.world_known) return;
+    const UpEvidence found = up_evidence(view.geometry);
+    count += 1;
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += (found[i] - mean[i]) / count;
+  });
+  return up_.emplace(count > 0 ? std::optional(mean) : std::nullopt);
+}
+
+/// That of the frame whose N agrees best with P.
+std::string SequenceFrames::normal_space(const std::string& name) {
+  if (normal_space_) return *normal_space_;
+  double best = 0;
+  normal_space_.emplace();
+  look(name, kAllPixels, [&](const View& view) {
+    const GeometryReport& report = view.report;
+    if (!report.normals_known || report.normal_agreement <= best) return;
+    best = report.normal_agreement, normal_space_ = report.normal_space;
+  });
+  return *normal_space_;
+}
+
+Frame SequenceFrames::prepare(const FrameOptions& options, const Lighting& light,
+                              const FrameFiles& files, int number) try {
+  return prepare_frame(options, light, pictures_, files, number);
+} catch (const UndeterminedCamera&) {
+  for (int i = 2; i < 2 * (kMostFramesAway + 1); ++i) {
+    const std::int64_t other = std::int64_t(number) + (i % 2 == 0 ? -i / 2 : i / 2);
+    if (std::int64_t(int(other)) != other) continue;
+    FrameOptions with_camera = options;
+    with_camera.camera.shot.camera = camera_of(in_view(files_at(options_, int(other)), files.view));
+    if (!with_camera.camera.shot.camera) continue;
+    try {
+      return prepare_frame(with_camera, light, pictures_, files, number);
+    } catch (const UndeterminedCamera&) {
+      continue;  // its P lies elsewhere, as after a cut
+    }
+  }
+  throw;
+}
+
+Frame SequenceFrames::prepare(const Lighting& light, const FrameFiles& files,
+                              std::optional<int> number) {
+  if (!number) return prepare_frame(options_, light, pictures_, files);
+  FrameOptions options = options_;
+  options.up_of_shot = [this, &files] { return up(files.view); };
+  Frame frame = prepare(options, light, files, *number);
+  if (frame.report.normals_known) return frame;
+  options.camera.shot.normal_space = normal_space(files.view);
+  if (frame.report.normal_space.starts_with(options.camera.shot.normal_space)) return frame;
+  frame = Frame();
+  return prepare(options, light, files, *number);
+}
+
+}  // namespace ssdo

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "jobs/run_options.h"
+#include "relight/frame.h"
+
+namespace ssdo {
+
+/// Prepares the frames of a run. What a frame of a sequence does not tell, others on disk do, so
+/// that a shot is of one kind however it is cut into runs:
+///
+///   the camera, where P leaves it open: that of the nearest frame whose P tells it, moved to fit P
+///   which axis is up, where no header tells it: by the first, the middle and the last frame
+///   the space of N, where the frame does not tell it: that which N of these has, if one is sure
+class SequenceFrames {
+ public:
+  /// The arguments have to outlive it.
+  SequenceFrames(const RunOptions& options, FurtherPictures& pictures)
+      : options_(options), pictures_(pictures) {}
+
+  /// prepare_frame(), of the frame `number` of a sequence or of one alone. Not for several threads
+  /// at once. Errors: those of prepare_frame().
+  Frame prepare(const Lighting& light, const FrameFiles& files, std::optional<int> number);
+
+ private:
+  Frame prepare(const FrameOptions& options, const Lighting& light, const FrameFiles& files,
+                int number);
+  std::optional<View> read(const FrameFiles& files, std::size_t most_pixels) const;
+  std::optional<CameraBeside> camera_of(const FrameFiles& files) const;
+  void look(const std::string& view, std::size_t most_pixels,
+            const std::function<void(const View&)>& at) const;
+  std::optional<UpEvidence> up(const std::string& view);
+  std::string normal_space(const std::string& view);
+
+  const RunOptions& options_;
+  FurtherPictures& pictures_;
+  std::optional<std::optional<UpEvidence>> up_;  ///< of the shot, once it was asked for
+  std::optional<std::string> normal_space_;      ///< the same; empty: no frame is sure
+};
+
+}  // namespace ssdo

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/band_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "error.h"
+#include "io/image_file.h"
+#include "math/pixel_grid.h"
+
+namespace ssdo {
+namespace {
+
+/// Bytes of a process without a frame, of each pixel at the peak of ao, direct, bounce and
+/// composite, and what a sun adds, and bent and reflection, each. Measured, with a margin. An
+/// overview keeps as much for each pixel of its own.
+constexpr double kBytes = 60e6, kBytesPerPixel = 120, kBytesOfSun = 11, kBytesOfMore = 18;
+
+/// What bright senders add, which a layer of radiance may hold.
+constexpr double kBytesOfSenders = 20;
+
+/// Suns of a map that are allowed for before it is known.
+constexpr int kUsualSuns = 3;
+
+double bytes_per_pixel(const ProductSet& products, const Scene& scene) {
+  return kBytesPerPixel + kBytesOfSun * double(scene.light.suns.size()) +
+         kBytesOfSenders * int(!scene.senders.radiance.empty()) +
+         kBytesOfMore * (int(products.bent) + int(products.reflection));
+}
+
+/// Bands end where chunks of every compression do.
+constexpr int kRowsAtOnce = 256;
+
+/// Where marches may end in a band if nothing is out of their reach: the farther, the nearer to
+/// what the frame would be in one piece, but rows that are read for several bands cost time.
+constexpr int kMarches[] = {512, 256, 128};
+
+/// Rows beyond the end of a march that are looked at: samples lie in blocks of pixels, and light
+/// comes from pixels around them.
+constexpr int kBeside = 16;
+
+class Planner {
+ public:
+  Planner(const Window& frame, const Window& display, const Scene& overview, const Plan& plan,
+          std::size_t memory)
+      : frame_(frame), plan_(plan) {
+    const double of_pixel = bytes_per_pixel(plan.request.products, overview);
+    bytes_of_row_ = of_pixel * frame.width();
+    bytes_ = kBytes + of_pixel * double(overview.geometry.surfel.size());
+    rows_ = int(std::clamp((double(memory) - bytes_) / bytes_of_row_, 0.0, 1e9));
+    exact_ = plan.method->bands.reach_rows(overview.geometry, kOverviewStride, frame, display,
+                                           plan.request);
+  }
+
+  /// Without rows where memory is too little.
+  BandPlan choose() const {
+    const int height = frame_.height();
+    if (rows_ >= height) return {height, height, height, 0, false};
+    BandPlan bands = with_reach(exact_, false);
+    for (const int reach : kMarches) {
+      if (bands.rows > 0 && (!bands.marches_on || bands.rows >= bands.halo_rows)) break;
+      bands = with_reach(reach, true);
+    }
+    return bands;
+  }
+
+  double least_bytes() const {
+    const BandPlan least = with_reach(*std::rbegin(kMarches), true);
+    return bytes_ + bytes_of_row_ * std::min(kRowsAtOnce + 2 * least.halo_rows, frame_.height());
+  }
+
+ private:
+  BandPlan with_reach(int px, bool marches_on) const {
+    const int reach = marches_on ? px + kBeside : px;
+    const int halo = halo_rows(plan_, reach),
+              rows = std::max(0, rows_ - 2 * halo) / kRowsAtOnce * kRowsAtOnce;
+    return {rows, reach, px, halo, marches_on};
+  }
+
+  const Window& frame_;
+  const Plan& plan_;
+  double bytes_of_row_, bytes_;
+  int rows_;   ///< that fit into memory beside the overview
+  int exact_;  ///< rows of the reach of the radius
+};
+
+std::string in_gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / double(1 << 30)); }
+
+/// What needs a whole frame; empty: nothing does.
+std::string needs_whole_frame(const Scene& overview, const Plan& plan,
+                              const OutputOptions& output) {
+  if (!plan.method->bands.overview) return fmt::format("method {}", plan.method->name);
+  if (plan.request.products.guessed) return "the product guessed";
+  if (plan.request.products.error || plan.error) return "the error";
+  if (plan.temporal) return "--temporal";
+  if (!overview.views.empty() || !overview.further.empty()) return "--also and --neighbours";
+  if (output.keep_channels) return "--keep-channels";
+  if (output.downsample > 1) return "--downsample";
+  for (const std::string& path : output.files)
+    if (!has_exr_ending(path)) return path;
+  for (const SaveRequest& save : output.saves)
+    if (!has_exr_ending(save.path)) return save.path;
+  return "";
+}
+
+}  // namespace
+
+std::size_t most_pixels_in(std::size_t memory) {
+  const double most = kBytesPerPixel + kUsualSuns * kBytesOfSun + 2 * kBytesOfMore;
+  return std::size_t(std::max(0.0, double(memory) - kBytes) / most);
+}
+
+BandPlan plan_bands(const std::string& file, const Window& frame, const Window& display,
+                    const Scene& overview, const Plan& plan, const OutputOptions& output,
+                    std::size_t memory) {
+  const std::string size = fmt::format("{}: {} x {} pixels", file, frame.width(), frame.height());
+  if (const std::string what = needs_whole_frame(overview, plan, output); !what.empty()) {
+    throw Error(ExitCode::usage,
+                fmt::format("{} take {} of memory, and may take {}; {} needs all of the frame at "
+                            "once: leave that out, or raise --mem-limit",
+                            size,
+                            in_gigabytes(kBytes + bytes_per_pixel(plan.request.products, overview) *
+                                                      double(frame.area())),
+                            in_gigabytes(double(memory)), what));
+  }
+  const Planner planner(frame, display, overview, plan, memory);
+  const BandPlan bands = planner.choose();
+  if (bands.rows > 0) return bands;
+  throw Error(ExitCode::usage, fmt::format("{} take {} of memory in bands of {} rows, and may take "
+                                           "{}; raise --mem-limit",
+                                           size, in_gigabytes(planner.least_bytes()), kRowsAtOnce,
+                                           in_gigabytes(double(memory))));
+}
+
+int halo_rows(const Plan& plan, int reach_rows) {
+  // What goes on beyond the border is measured within the radius of what rays meet there.
+  const int reaches = 1 + plan.request.bounces + int(plan.request.extend_offscreen);
+  return plan.filter->reach + reaches * reach_rows;
+}
+
+std::string describe(const BandPlan& bands, const Window& frame) {
+  const int count = (frame.height() + bands.rows - 1) / bands.rows;
+  if (count == 1) return "1 band of all rows";
+  std::string text =
+      fmt::format("{} bands of {} rows, with {} above and below that their light comes from", count,
+                  bands.rows, bands.halo_rows);
+  if (bands.marches_on)
+    text += fmt::format("; beyond {} pixels marches go on in one pixel of {} x {}", bands.march_px,
+                        kOverviewStride, kOverviewStride);
+  return text;
+}
+
+}  // namespace ssdo

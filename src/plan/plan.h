@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "color/composition.h"
+#include "estimators/registry.h"
+#include "filters/registry.h"
+#include "plan/outputs.h"
+
+namespace ssdo {
+
+enum class Quality { draft, standard, final };
+
+/// What --quality means.
+struct QualityLevel {
+  std::string_view name;
+  Quality quality;
+  int slices;  ///< per pixel
+  int steps;   ///< on each side of a slice, out to the frame's diagonal
+};
+inline constexpr std::array<QualityLevel, 3> kQualities = {{{"draft", Quality::draft, 2, 8},
+                                                            {"standard", Quality::standard, 2, 16},
+                                                            {"final", Quality::final, 6, 48}}};
+constexpr int slices_of(Quality quality) { return kQualities[std::size_t(quality)].slices; }
+constexpr int steps_of(Quality quality) { return kQualities[std::size_t(quality)].steps; }
+
+/// What the user says about the method.
+struct ModelOptions {
+  std::string method{methods().front().name};
+  std::optional<double> radius;     ///< scene units or infinity; chosen from the frame if not given
+  std::optional<double> thickness;  ///< scene units or infinity; found in the frame if not given
+  bool extend_offscreen = true;     ///< surfaces go on beyond the frame
+  Quality quality = Quality::standard;
+  std::optional<int> slices, steps;  ///< in place of those of the quality
+  std::optional<double> error;       ///< largest standard error of direct + bounce
+  int bounces = 1;                   ///< 0 to 8
+  unsigned seed = 0;
+  std::vector<std::string> set;     ///< NAME=VALUE of the method
+  std::string filter = "geometry";  ///< may be kSourceFilter
+  bool temporal = false;            ///< frames of a sequence share what they find
+};
+
+/// What will be computed for a frame, and why.
+struct Plan {
+  const Method* method = nullptr;
+  Request request;                 ///< what the method is asked for
+  std::optional<double> error;     ///< to stay below
+  const Filter* filter = nullptr;  ///< after the estimate
+  /// Of the map at half resolution, by Request::filter_half; null where there is none.
+  const Filter* half_filter = nullptr;
+  bool temporal = false;             ///< then the mean with the frames before
+  std::vector<std::string> make;     ///< products for any of the outputs
+  std::vector<std::string> write;    ///< those that every EXR of -o holds, in their order there
+  std::string show;                  ///< the one that every picture of -o holds
+  Composition composition;           ///< how the composite is made, where it is
+  int downsample = 1;                ///< how many times as large as the outputs the frame is
+  std::vector<std::string> reasons;  ///< one line per decision
+
+  int samples_per_pixel() const;
+  /// Of the filter that takes away the noise of the pattern, wherever that happens.
+  std::string_view filter_name() const { return (half_filter ? half_filter : filter)->name; }
+};
+
+/// `history` is what a temporal plan takes from the frame before, and why: it ends the reasons.
+nlohmann::json to_json(const Plan& plan, const std::vector<std::string>& history = {});
+
+}  // namespace ssdo

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimators/estimator.h"
+#include "filters/temporal.h"
+#include "plan/plan.h"
+#include "scene/scene.h"
+
+namespace ssdo {
+
+/// Root mean square of the product `error` over the surfaces, and of the two parts whose squares
+/// add up to it.
+struct ErrorFound {
+  double all = 0;
+  double noise = 0;  ///< of so many slices: another seed changes the light by this much
+  double steps = 0;  ///< of so many steps: no seed changes it
+};
+
+/// The products of a frame after the filter.
+struct Estimate {
+  Products products;
+  Request request;                  ///< of the plan, with the slices and steps that were needed
+  std::optional<ErrorFound> error;  ///< where the plan asks for it
+  History history;                  ///< of a temporal plan, for the next frame; without a geometry
+  double estimate_ms = 0, filter_ms = 0;  ///< by the clock
+  std::vector<std::string> notes, warnings;
+};
+
+/// What a temporal plan takes from the frame before, both of them where there is one.
+struct Past {
+  std::optional<History> history;
+  Plane<glm::vec2> motion;  ///< pixels to where it was there; may be empty
+};
+
+/// Estimates and filters, with more and more slices and steps until the error is what the plan asks
+/// for, if it does. `on_progress` is called with the share that is done, 0..1.
+Estimate estimate(const Scene& scene, const Plan& plan,
+                  const std::function<void(double)>& on_progress, const Past& past);
+
+/// The same, of a scene whose occluders serve for this only: solids, views and further surfaces are
+/// freed before the filter. What outputs are made of stays.
+Estimate estimate_and_free(Scene& scene, const Plan& plan,
+                           const std::function<void(double)>& on_progress, const Past& past);
+
+}  // namespace ssdo

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "color/color.h"
+#include "io/exr/exr_reader.h"
+#include "plan/band_plan.h"
+#include "plan/outputs.h"
+#include "plan/plan.h"
+#include "relight/lighting.h"
+#include "scene/camera/world_up.h"
+#include "scene/further/further_pictures.h"
+#include "scene/further/merge.h"
+#include "scene/gbuffer.h"
+#include "scene/layers/layers.h"
+#include "scene/scene.h"
+#include "scene/view.h"
+
+namespace ssdo {
+
+/// All that the user says about the result.
+struct FrameOptions {
+  InputOptions input;
+  CameraOptions camera;
+  LightOptions light;
+  ModelOptions model;
+  OutputOptions output;
+  ColorOptions color;
+  /// Which axis is up by other frames of the sequence too, asked where nothing but P tells it; for
+  /// a frame alone it is empty.
+  std::function<std::optional<UpEvidence>()> up_of_shot = {};
+  std::size_t memory = std::numeric_limits<std::size_t>::max();  ///< bytes that a frame may take
+};
+
+/// Milliseconds of wall time per stage; `known` is what --also and --neighbours take, with the
+/// solids that they change.
+struct StageTimes {
+  double read = 0, known = 0, prepare = 0, estimate = 0, filter = 0, compose = 0, write = 0;
+};
+
+/// A frame that has been read and understood: all that stands before the first estimate.
+struct Frame {
+  std::string input;
+  std::string view;             ///< of a stereo file; empty: it shows one
+  std::deque<ExrReader> files;  ///< the frame, then the files that --aov names
+  LayerTable layers;
+  Scene scene;
+  GBuffer gbuffer;  ///< what the scene has not taken: layers as rendered, alpha, motion
+  GeometryReport report;
+  /// What further views add: those of --also, then neighbours, then back faces.
+  std::vector<MergeCounts> views;
+  std::string light;  ///< one line
+  Plan plan;
+  std::string advice;                ///< what to render where much is guessed: see explain_guessed
+  std::vector<std::string> history;  ///< what a temporal plan takes from the frame before, and why
+  std::vector<std::string> further_losses;  ///< of further views; see ExrReader::losses()
+  StageTimes times;                         ///< of the stages up to here
+  /// Set for a frame that is larger than memory: the scene and what is left of the G-buffer then
+  /// are an overview of it, one pixel of kOverviewStride x kOverviewStride.
+  std::optional<BandPlan> bands;
+
+  /// The layer that the products are made from: position, or depth where there is none.
+  const Layer& lead() const;
+  const ExrPart& part() const;
+  std::vector<const ExrReader*> readers() const;  ///< of all its files, in their order
+  std::vector<std::string> warnings() const;
+  void warn(const std::vector<std::string>& lines);  ///< adds to the warnings
+
+  /// What --allow-partial has found missing so far, in files of the frame and of further views: a
+  /// line each. Rows may be read, and channels kept, until the outputs are written.
+  std::vector<std::string> losses() const;
+};
+
+/// What a scene takes of a G-buffer with this geometry: albedo and radiance of the senders, and the
+/// roughness, which are moved. What lies behind the surfaces, and the light, are left to be found.
+Scene take_scene(GBuffer& gbuffer, Geometry geometry);
+
+/// What the header of the frame's part says about colour.
+ColorTags color_tags(const Frame& frame);
+
+}  // namespace ssdo

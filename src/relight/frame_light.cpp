@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "relight/frame_light.h"
+
+#include <fmt/format.h>
+
+#include <glm/matrix.hpp>
+#include <string_view>
+
+namespace ssdo {
+namespace {
+
+void warn_of_idle_options(Frame& frame, const LightOptions& options) {
+  if (!frame.scene.light.is_constant()) return;
+  const auto warn = [&](std::string_view option) {
+    frame.report.warnings.push_back(
+        fmt::format("{} has no effect: the light is the same from everywhere", option));
+  };
+  if (options.rotate_degrees != 0) warn("--env-rotate");
+  if (options.up) warn("--env-up");
+}
+
+WorldUp find_up(const Frame& frame, const FrameOptions& options) {
+  const bool asks = options.up_of_shot && !header_tells_up(frame.gbuffer);
+  return find_world_up(frame.gbuffer, frame.scene.geometry,
+                       asks ? options.up_of_shot() : std::nullopt);
+}
+
+}  // namespace
+
+void light_frame(Frame& frame, const Lighting& lighting, const FrameOptions& options) {
+  Scene& scene = frame.scene;
+  const bool world = scene.geometry.world_known;
+  WorldUp up;
+  if (world && lighting.needs_up()) up = find_up(frame, options);
+  const FrameEnvironment around = lighting.around(up.axis, chromaticities_of(frame.part().header));
+  scene.light = model_light(around.environment, scene.geometry.world_to_camera);
+  frame.light = around.description;
+  frame.warn(around.warnings);
+  const bool has_directions = !scene.light.is_constant();
+  if (has_directions && world && !options.light.up) {
+    frame.light += "; up " + up.source;
+    if (!up.warning.empty()) frame.warn({up.warning});
+  }
+  if (has_directions && !world) {
+    frame.warn(
+        {"the frame knows no world space; the environment is taken in "
+         "camera space: give --camera FILE.json to place it"});
+  }
+  if (has_directions && world && glm::determinant(scene.geometry.world_to_camera) < 0)
+    frame.warn({"the world of P is left-handed: the map lies in its axes, and appears mirrored"});
+  warn_of_idle_options(frame, options.light);
+}
+
+}  // namespace ssdo

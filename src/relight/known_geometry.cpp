@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "relight/known_geometry.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "error.h"
+#include "scene/deep/channels.h"
+#include "scene/deep/deep_frame.h"
+#include "scene/deep/join_measured.h"
+#include "scene/deep/measured_solids.h"
+#include "scene/further/back_faces.h"
+#include "scene/further/carve.h"
+#include "scene/further/registration.h"
+
+namespace ssdo {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The samples of a deep file. Those of several views show the frame's.
+DeepImage read_deep_image(const ExrReader& file, const std::string& view,
+                          const GBufferOptions& options, std::vector<std::string>& warnings) {
+  auto channels = view.empty() ? std::nullopt : find_deep_channels(file, view);
+  if (!channels) channels = find_deep_channels(file, "");
+  if (!channels) {  // an earlier frame has found them
+    throw Error(ExitCode::input, fmt::format("{}: was a deep image and is none any more; leave the "
+                                             "files of --also alone while they are read",
+                                             file.path().string()));
+  }
+  return read_deep_frame(file, *channels, options, warnings);
+}
+
+/// The solids of a frame, measured where deep images show them and guessed elsewhere.
+Solids find_solids(const Geometry& geometry, const std::vector<DeepImage>& images,
+                   std::optional<float> thickness, const GBufferOptions& reading,
+                   std::vector<std::string>& warnings) {
+  if (images.empty())
+    return thickness ? constant_thickness(geometry, *thickness) : guess_solids(geometry);
+  DeepDepths depths{std::nullopt, farthest_sample(reading)};
+  if (reading.depth_kind)
+    depths.kind = *reading.depth_kind == DepthKind::ray ? DepthKind::ray : DepthKind::planar;
+  return join_measured(geometry, measure_solids(geometry, images, depths, warnings), thickness);
+}
+
+/// Takes the views of back faces out of `views`: they tell how thick things are, and as surfaces
+/// they would be seen from the inside.
+std::vector<MergeCounts> use_back_faces(std::vector<FurtherView>& views, Scene& scene) {
+  std::vector<MergeCounts> counts;
+  std::vector<FurtherView> others;
+  std::vector<Plane<float>> distances;
+  for (FurtherView& view : views) {
+    auto found = find_back_faces(view, scene.geometry);
+    if (!found) {
+      others.push_back(std::move(view));
+      continue;
+    }
+    counts.push_back({.file = view.picture->file, .backs = count_back_faces(*found)});
+    distances.push_back(std::move(*found));
+  }
+  views = std::move(others);
+  end_at_back_faces(scene.solids, distances);
+  return counts;
+}
+
+/// Leaves out the files of --also that don't fit the frame, or changes them so that they do.
+void register_views(KnownGeometry& known, const Geometry& frame) {
+  std::vector<FurtherView> fitting;
+  for (FurtherView& view : known.views) {
+    if (view.is_neighbour) {
+      fitting.push_back(std::move(view));
+      continue;
+    }
+    Registration found = register_view(std::move(view), frame);
+    if (found.view) fitting.push_back(std::move(*found.view));
+    if (!found.warning.empty()) known.warnings.push_back(std::move(found.warning));
+  }
+  known.views = std::move(fitting);
+}
+
+/// Of what a view and the frame should both see: what differs by more has moved, or the view is of
+/// another scene on the same ground. Views of one still scene reach 4 % where leaves are finer than
+/// their pixels.
+constexpr double kMostContradiction = 0.1;
+
+void warn_of(const MergeCounts& view, std::vector<std::string>& warnings) {
+  if (view.is_neighbour) {
+    // What moves in a shot contradicts its frames, and needs no warning.
+    if (!view.is_of_another_scene()) return;
+    warnings.push_back(fmt::format(
+        "{}: left out: of {} pixels, {} show what the frame shows too, and {} lie before "
+        "it, as after a cut or in another unit",
+        view.file, view.added + view.in_common(), view.seen, view.contradictory));
+    return;
+  }
+  if (double(view.contradictory) <= kMostContradiction * double(view.in_common())) return;
+  warnings.push_back(
+      fmt::format("{}: {:.0f} % of what the frame should see too lies before what it shows, and is "
+                  "left out; is this the same scene, at the same time?",
+                  view.file, 100.0 * double(view.contradictory) / double(view.in_common())));
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return a == b || fs::equivalent(a, b, ignored);
+}
+
+/// Reads the views of one frame.
+class ViewReader {
+ public:
+  ViewReader(const Frame& frame, const FrameOptions& options, FurtherPictures& pictures,
+             KnownGeometry& known)
+      : frame_(frame), options_(options), pictures_(pictures), known_(known) {}
+
+  void add_also(const std::string& path) {
+    const FurtherPictures::Picture picture = pictures_.also(path);
+    if (!picture) {
+      const ExrReader file(path, options_.input.allow_partial ? Salvage::done : Salvage::offered);
+      known_.deep.push_back(
+          read_deep_image(file, frame_.part().view, options_.input.gbuffer, known_.warnings));
+      for (const std::string& line : file.losses()) known_.losses.push_back(line);
+      return;
+    }
+    if (!knows_place("--also " + path)) return;
+    add(place(picture, frame_.scene.geometry));
+    known_.warnings.insert(known_.warnings.end(), picture->warnings.begin(),
+                           picture->warnings.end());
+  }
+
+  void add_neighbour(const FrameFiles& files) {
+    std::error_code ignored;
+    if (!fs::exists(files.input, ignored) || !knows_place("--neighbours")) return;
+    add_alike(files, options_.camera, "a neighbour");
+  }
+
+  /// Nobody has asked for it: where it is of no use, it is left out.
+  void add_other_eye(const FrameFiles& files) {
+    const Geometry& geometry = frame_.scene.geometry;
+    if (geometry.median_depth <= 0 || frame_.gbuffer.grid.is_coarse()) return;
+    if (!geometry.world_known) {
+      known_.warnings.push_back(
+          "the other eye shows nothing more: no world space is known to place "
+          "it in; render P in world space");
+      return;
+    }
+    CameraOptions camera = options_.camera;
+    camera.file.clear();  // has the pose of one eye
+    add_alike(other_eye(files), camera, "the other eye");
+  }
+
+ private:
+  /// Without the warnings of reading it: they are those of the frame. The picture is kept for other
+  /// frames: nothing that this one takes from its shot may decide how it is read.
+  void add_alike(const FrameFiles& files, CameraOptions camera, std::string_view role) {
+    camera.shot = {};
+    try {
+      FurtherView view =
+          place(pictures_.alike(files, options_.input, camera), frame_.scene.geometry);
+      view.is_neighbour = true;
+      add(std::move(view));
+    } catch (const Error& e) {
+      known_.warnings.push_back(fmt::format("left out as {}: {}", role, e.what()));
+    }
+  }
+
+  void add(FurtherView view) {
+    const std::vector<std::string>& losses = view.picture->losses;
+    known_.losses.insert(known_.losses.end(), losses.begin(), losses.end());
+    known_.views.push_back(std::move(view));
+  }
+
+  /// False for a frame without surfaces, to which no view can add anything.
+  bool knows_place(const std::string& option) const {
+    const Geometry& geometry = frame_.scene.geometry;
+    if (geometry.world_known || geometry.median_depth <= 0) return geometry.world_known;
+    throw Error(ExitCode::layer,
+                fmt::format("{}: knows no world space to place {} in; render P in "
+                            "world space, or give --camera FILE.json with its pose",
+                            frame_.input, option));
+  }
+
+  const Frame& frame_;
+  const FrameOptions& options_;
+  FurtherPictures& pictures_;
+  KnownGeometry& known_;
+};
+
+}  // namespace
+
+KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
+                                  const FrameOptions& options, FurtherPictures& pictures,
+                                  const std::optional<DeepImage>& own) {
+  KnownGeometry known;
+  ViewReader reader(frame, options, pictures, known);
+  for (const std::string& path : files.also) reader.add_also(path);
+  const bool uses_views = find_method(options.model.method).takes.thickness;
+  for (const FrameFiles& neighbour : files.neighbours) {
+    const bool is_given =
+        std::any_of(files.also.begin(), files.also.end(),
+                    [&](const std::string& path) { return is_same_file(path, neighbour.input); });
+    if (uses_views && !is_given) reader.add_neighbour(neighbour);
+  }
+  if (uses_views && !files.view.empty()) reader.add_other_eye(files);
+  if (own) known.deep.push_back(*own);
+  return known;
+}
+
+std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
+                                            std::optional<float> thickness,
+                                            const GBufferOptions& reading) {
+  scene.solids = find_solids(scene.geometry, known.deep, thickness, reading, known.warnings);
+  std::vector<MergeCounts> of_backs = use_back_faces(known.views, scene), counts;
+  register_views(known, scene.geometry);
+  if (known.views.empty()) return of_backs;
+  scene.further = merge_views(known.views, scene.geometry, scene.senders.albedo, counts);
+  std::vector<FurtherView> of_scene;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    warn_of(counts[i], known.warnings);
+    if (!counts[i].is_of_another_scene()) of_scene.push_back(known.views[i]);
+  }
+  std::erase_if(counts, [](const MergeCounts& view) { return view.is_of_another_scene(); });
+  if (!thickness) carve(scene.solids, scene.geometry, of_scene);
+  scene.views = std::move(of_scene);
+  counts.insert(counts.end(), of_backs.begin(), of_backs.end());
+  return counts;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "relight/job.h"
+#include "relight/lighting.h"
+#include "scene/further/further_pictures.h"
+
+namespace ssdo {
+
+/// Reads the files of a frame and decides what to do with them: read, layers, gbuffer, camera,
+/// geometry, plan. `files` has the place of those that `options` names; `pictures` are those of
+/// the run. `number` is the frame's in its sequence: a temporal plan has another sampling pattern
+/// in every frame. Errors: those of the stages; ExitCode::input for a file of --also that is
+/// missing or no EXR.
+Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherPictures& pictures,
+                    const FrameFiles& files, int number = 0);
+
+/// The main job up to its files: estimate and filter. `scene` is that of the job's frame: what only
+/// the estimate needs of it is freed (estimate_and_free). `on_progress` is called with the share
+/// that is done, 0..1. Errors: those of the stages.
+Relit relight(const RelightJob& job, Scene& scene, const std::function<void(double)>& on_progress,
+              const Past& past);
+
+/// The rest of it: compose, colour, write. `views` are those of one frame, usually one. All targets
+/// appear, or none. Adds to the times and clamped values of the first. Errors: those of the stages.
+void write_outputs(const std::vector<RelitFrame>& views,
+                   const std::function<void(double)>& on_progress);
+
+}  // namespace ssdo

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/solids/solids.h"
+
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "parallel/tiles.h"
+#include "scene/normals/normals.h"
+
+namespace ssdo {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+SolidLayer::SolidLayer(int width, int height, Origin of_all)
+    : origin(width, height, of_all),
+      distance(width, height, kInfinity),
+      thickness(width, height, kInfinity),
+      sender(width, height, -1) {}
+
+void check_layers(const Solids& solids) {
+  if (solids.layers() > kMostLayers)
+    throw std::logic_error("more layers of solids than kMostLayers of scene/solids/solids.h");
+}
+
+void Solids::separate_thicknesses() {
+  for (std::size_t k = 0; k < behind.size(); ++k) {
+    SolidLayer& layer = behind[k];
+    if (!layer.thickness.empty()) continue;
+    auto own = Plane<float>::like(layer.sender);
+    for_each_row(own.height, [&](int y) {
+      for (std::size_t i = own.index(0, y); i < own.index(0, y + 1); ++i)
+        own[i] = thickness_seen(layer.sender[i]);
+    });
+    layer.thickness = std::move(own);
+  }
+}
+
+glm::vec3 point_behind(const Geometry& geometry, std::size_t pixel, float distance) {
+  const glm::vec3 p(geometry.surfel[pixel].position);
+  return p - distance * direction_to_viewer(p, geometry.camera.orthographic);
+}
+
+glm::vec3 normal_of_solid(const Geometry& geometry, const Solids& solids, int layer,
+                          std::size_t pixel) {
+  const int sender = solids.at(layer, pixel).sender;
+  if (sender >= 0) return geometry.surfel[std::size_t(sender)].normal;
+  const Plane<glm::vec3>& normal = solids.behind[std::size_t(layer - 1)].normal;
+  if (!normal.empty()) return normal[pixel];
+  return direction_to_viewer(geometry.surfel[pixel].position, geometry.camera.orthographic);
+}
+
+Solids constant_thickness(const Geometry& geometry, float thickness) {
+  const int w = geometry.surfel.width, h = geometry.surfel.height;
+  return {Plane<float>(w, h, thickness), Plane<Origin>(w, h, Origin::given), {}, {}};
+}
+
+}  // namespace ssdo

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "math/plane.h"
+#include "scene/geometry.h"
+
+namespace ssdo {
+
+/// How it is known that a solid is where it is.
+enum class Origin : std::uint8_t {
+  seen,      ///< the pixel shows its front
+  guessed,   ///< the pixels around suggest it
+  measured,  ///< another picture shows it
+  given,     ///< the user says so
+};
+
+/// Most solids of one pixel, with the one that is seen. Every march tests all layers at each step.
+constexpr int kMostLayers = 4;
+
+/// A solid on the view ray of a pixel. Lengths are in scene units along that ray, infinite where
+/// there is no end.
+struct Solid {
+  /// From the surface that the pixel shows to this solid's front; infinite: there is no solid.
+  float distance = std::numeric_limits<float>::infinity();
+  float thickness = 0;  ///< from its front to its back
+  int sender = -1;      ///< the pixel of the raster that shows its surface, whose light it sends;
+                        ///< -1: it sends nothing
+
+  bool exists() const { return distance < std::numeric_limits<float>::infinity(); }
+};
+
+/// At most one solid behind the surface that each pixel shows; planes as large as the geometry's.
+struct SolidLayer {
+  /// No solid anywhere.
+  SolidLayer(int width, int height, Origin of_all);
+
+  Plane<Origin> origin;
+  Plane<float> distance;
+  Plane<float> thickness;  ///< empty: that of each sender where it is seen
+  Plane<int> sender;
+  Plane<glm::vec3> normal;  ///< unit, camera space, of solids without a sender, on the viewer's
+                            ///< side; empty: they face the viewer
+};
+
+/// A value for each pixel at the border of a picture; those in the corners have one.
+template <class T>
+class BorderOf {
+ public:
+  BorderOf() = default;
+  BorderOf(int width, int height, T value)
+      : width_(width), height_(height), values_(std::size_t(2 * (width + height)), value) {}
+
+  bool empty() const { return values_.empty(); }
+  T& at(int x, int y) { return values_[index(x, y)]; }
+  const T& at(int x, int y) const { return values_[index(x, y)]; }
+
+ private:
+  std::size_t index(int x, int y) const {
+    if (y == 0 || y == height_ - 1) return std::size_t(y == 0 ? x : width_ + x);
+    return std::size_t(2 * width_ + (x == 0 ? y : height_ + y));
+  }
+
+  int width_ = 0, height_ = 0;
+  std::vector<T> values_;
+};
+
+/// The solids on the view ray of every pixel of a geometry, near to far: layer 0 is what the pixel
+/// shows, the others are behind it. Without planes everything that is seen is endless.
+struct Solids {
+  Plane<float> thickness;          ///< of layer 0, from front to back; empty: infinite
+  Plane<Origin> end;               ///< how it is known where layer 0 ends; empty: guessed
+  std::vector<SolidLayer> behind;  ///< layers 1, 2, ..., kMostLayers - 1 at most
+  BorderOf<float> beyond;  ///< how far what the border shows may go on beyond it, in scene units;
+                           ///< empty: without limit
+
+  int layers() const { return 1 + int(behind.size()); }
+
+  Origin origin(int layer, std::size_t pixel) const {
+    return layer == 0 ? Origin::seen : behind[std::size_t(layer - 1)].origin[pixel];
+  }
+
+  /// Whether another picture shows where layer 0 ends.
+  bool end_is_measured(std::size_t pixel) const {
+    return !end.empty() && end[pixel] == Origin::measured;
+  }
+
+  /// The solid of a layer at a pixel that shows a surface.
+  Solid at(int layer, std::size_t pixel) const {
+    if (layer > 0) {
+      const SolidLayer& of = behind[std::size_t(layer - 1)];
+      const int sender = of.sender[pixel];
+      return {of.distance[pixel],
+              of.thickness.empty() ? thickness_seen(sender) : of.thickness[pixel], sender};
+    }
+    return {0, thickness_seen(int(pixel)), int(pixel)};
+  }
+
+  /// Of layer 0 at a pixel; infinite where there is none, or `pixel` is -1.
+  float thickness_seen(int pixel) const {
+    return thickness.empty() || pixel < 0 ? std::numeric_limits<float>::infinity()
+                                          : thickness[std::size_t(pixel)];
+  }
+
+  /// Gives every layer thicknesses of its own, which do not change with those of its senders.
+  void separate_thicknesses();
+};
+
+/// Throws std::logic_error where there are more than kMostLayers: whoever reads solids has room for
+/// so many.
+void check_layers(const Solids& solids);
+
+/// The point at this distance behind the surface that a pixel shows, on its view ray.
+glm::vec3 point_behind(const Geometry& geometry, std::size_t pixel, float distance);
+
+/// The normal of the solid of a layer at a pixel: that of its sender where it has one.
+glm::vec3 normal_of_solid(const Geometry& geometry, const Solids& solids, int layer,
+                          std::size_t pixel);
+
+/// A smaller picture of the frame that a geometry is some rows of, one pixel of every
+/// kOverviewStride x kOverviewStride, and what it suggests of how thick things are.
+struct SolidsOfOverview {
+  const Geometry& geometry;
+  const Plane<float>& thickness;
+};
+
+/// What a frame alone suggests: how thick things are, and a second layer; see solids.cpp.
+/// Of some rows of a frame, an overview tells of the things that they cut.
+Solids guess_solids(const Geometry& geometry,
+                    const std::optional<SolidsOfOverview>& overview = std::nullopt);
+
+/// Everything that is seen is as thick as `thickness`, which may be infinite; one layer.
+Solids constant_thickness(const Geometry& geometry, float thickness);
+
+}  // namespace ssdo
