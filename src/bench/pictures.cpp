@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "color/display_image.h"
-#include "io/image_file.h"
+#include "io/images/image_file.h"
 #include "math/luminance.h"
 
 namespace ssdo {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "error.h"
-#include "io/checked_file.h"
+#include "io/files/checked_file.h"
 #include "io/json_text.h"
 
 namespace ssdo {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "bench/report.h"
-#include "io/run_files.h"
-#include "io/safe_file.h"
+#include "io/files/run_files.h"
+#include "io/files/safe_file.h"
 
 namespace ssdo {
 

@@ -7,7 +7,7 @@
 
 #include "bench/options.h"
 #include "bench/truth.h"
-#include "io/run_files.h"
+#include "io/files/run_files.h"
 #include "relight/frame.h"
 
 namespace ssdo {

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "error.h"
-#include "io/picture_layers.h"
+#include "io/pictures/picture_layers.h"
 
 namespace ssdo {
 namespace {

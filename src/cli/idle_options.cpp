@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "estimators/registry.h"
-#include "io/image_file.h"
+#include "io/images/image_file.h"
 #include "plan/composite_choice.h"
 
 namespace ssdo {

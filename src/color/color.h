@@ -9,7 +9,7 @@
 #include <string>
 
 #include "color/color_options.h"
-#include "io/primaries.h"
+#include "io/pictures/primaries.h"
 
 namespace ssdo {
 

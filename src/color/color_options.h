@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "io/primaries.h"
+#include "io/pictures/primaries.h"
 
 namespace ssdo {
 

@@ -6,7 +6,7 @@
 
 #include "color/color.h"
 #include "color/compose.h"
-#include "io/image_file.h"
+#include "io/images/image_file.h"
 
 namespace ssdo {
 

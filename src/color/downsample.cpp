@@ -13,7 +13,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "io/pixel_filter.h"
+#include "io/exr/pixel_filter.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {

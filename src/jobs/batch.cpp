@@ -18,7 +18,7 @@
 #include <set>
 #include <utility>
 
-#include "io/stale_temporaries.h"
+#include "io/files/stale_temporaries.h"
 #include "io/standard_output.h"
 #include "jobs/describe.h"
 #include "jobs/info_report.h"

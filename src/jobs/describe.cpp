@@ -8,7 +8,7 @@
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 
-#include "io/exr/exr_parts.h"
+#include "io/exr/file/exr_parts.h"
 #include "io/one_line.h"
 #include "jobs/listing.h"
 

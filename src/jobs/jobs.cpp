@@ -8,8 +8,8 @@
 
 #include "error.h"
 #include "io/exr/exr_reader.h"
-#include "io/image_file.h"
-#include "io/picture_layers.h"
+#include "io/images/image_file.h"
+#include "io/pictures/picture_layers.h"
 #include "io/sequence.h"
 #include "jobs/machine/environment.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/run_files.h"
+#include "io/files/run_files.h"
 #include "jobs/run_options.h"
 #include "relight/job.h"
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "error.h"
-#include "io/exr/exr_parts.h"
+#include "io/exr/file/exr_parts.h"
 #include "io/one_line.h"
 #include "scene/layers/groups.h"
 

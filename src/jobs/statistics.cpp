@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/checked_file.h"
+#include "io/files/checked_file.h"
 #include "io/json_text.h"
 
 namespace ssdo {

@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "io/exr/exr_writer.h"
-#include "io/image_file.h"
+#include "io/files/run_files.h"
+#include "io/images/image_file.h"
 #include "io/json_text.h"
 #include "io/one_line.h"
-#include "io/picture_layers.h"
-#include "io/run_files.h"
+#include "io/pictures/picture_layers.h"
 #include "metrics/difference.h"
 #include "nearest_name.h"
 #include "scene/layers/names.h"

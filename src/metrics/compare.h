@@ -5,7 +5,7 @@
 #include <string>
 
 #include "error.h"
-#include "io/safe_file.h"
+#include "io/files/safe_file.h"
 
 namespace ssdo {
 

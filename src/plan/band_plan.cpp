@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "error.h"
-#include "io/image_file.h"
+#include "io/images/image_file.h"
 #include "math/pixel_grid.h"
 
 namespace ssdo {

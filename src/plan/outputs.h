@@ -7,7 +7,7 @@
 
 #include "color/composition.h"
 #include "io/exr/exr_writer.h"
-#include "io/safe_file.h"
+#include "io/files/safe_file.h"
 
 namespace ssdo {
 

@@ -10,7 +10,7 @@
 
 #include "error.h"
 #include "estimators/registry.h"
-#include "io/image_file.h"
+#include "io/images/image_file.h"
 #include "plan/composite_choice.h"
 
 namespace ssdo {

@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "io/exr/kept_channels.h"
-#include "io/transfer_curve.h"
+#include "io/pictures/transfer_curve.h"
 #include "plan/composite_choice.h"
 #include "scene/layers/advice.h"
 #include "scene/layers/windows.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "color/color.h"
-#include "io/safe_file.h"
+#include "io/files/safe_file.h"
 #include "plan/outputs.h"
 #include "relight/estimate.h"
 #include "relight/frame.h"

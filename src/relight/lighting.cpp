@@ -12,7 +12,7 @@
 
 #include "color/color_space.h"
 #include "error.h"
-#include "io/picture_layers.h"
+#include "io/pictures/picture_layers.h"
 #include "math/light_range.h"
 #include "math/number.h"
 #include "parallel/tiles.h"

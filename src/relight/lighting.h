@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/primaries.h"
+#include "io/pictures/primaries.h"
 #include "scene/light/environment.h"
 
 namespace ssdo {

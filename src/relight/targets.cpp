@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "color/display_image.h"
-#include "io/image_file.h"
+#include "io/images/image_file.h"
 #include "io/json_text.h"
 #include "io/size_guard.h"
 #include "parallel/tiles.h"

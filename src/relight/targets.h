@@ -9,7 +9,7 @@
 #include "color/color.h"
 #include "color/compose.h"
 #include "io/exr/exr_writer.h"
-#include "io/safe_file.h"
+#include "io/files/safe_file.h"
 #include "relight/job.h"
 
 namespace ssdo {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "io/image_file.h"
+#include "io/images/image_file.h"
 #include "support/frame_file.h"
 #include "support/parse_json.h"
 #include "support/run_tool.h"

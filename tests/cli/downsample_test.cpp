@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "io/pixel_filter.h"
+#include "io/exr/pixel_filter.h"
 #include "support/crop.h"
 #include "support/frame_file.h"
 #include "support/parse_json.h"

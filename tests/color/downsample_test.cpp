@@ -11,7 +11,7 @@
 #include <random>
 
 #include "color/display_image.h"
-#include "io/pixel_filter.h"
+#include "io/exr/pixel_filter.h"
 #include "support/scene_of.h"
 
 namespace ssdo::test {

@@ -6,7 +6,7 @@
 #include "fuzz/exr_mutation.h"
 #include "fuzz/real_files.h"
 #include "fuzz/target.h"
-#include "io/image_file.h"
+#include "io/images/image_file.h"
 #include "scene/light/environment_map.h"
 #include "scene/light/light.h"
 

@@ -15,10 +15,10 @@
 #include "fuzz/real_files.h"
 #include "fuzz/target.h"
 #include "fuzz/written_back.h"
-#include "io/exr/exr_parts.h"
+#include "io/exr/chunks/zip_chunk.h"
 #include "io/exr/exr_reader.h"
+#include "io/exr/file/exr_parts.h"
 #include "io/exr/header_numbers.h"
-#include "io/exr/zip_chunk.h"
 #include "scene/layers/groups.h"
 #include "scene/layers/layers.h"
 

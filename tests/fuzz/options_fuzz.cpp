@@ -8,7 +8,7 @@
 
 #include "cli/parse_options.h"
 #include "fuzz/target.h"
-#include "io/picture_layers.h"
+#include "io/pictures/picture_layers.h"
 #include "io/sequence.h"
 #include "scene/layers/layers.h"
 #include "support/temp_dir.h"

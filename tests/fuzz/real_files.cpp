@@ -10,8 +10,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "io/exr/exr_parts.h"
 #include "io/exr/exr_reader.h"
+#include "io/exr/file/exr_parts.h"
 
 namespace ssdo::fuzz {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "io/exr/exr_parts.h"
+#include "io/exr/file/exr_parts.h"
 #include "support/boxes.h"
 #include "support/typed_frame.h"
 

@@ -12,11 +12,11 @@
 #include <utility>
 
 #include "error.h"
-#include "io/exr/chunk_sizes.h"
-#include "io/exr/deep_chunks.h"
-#include "io/exr/exr_chunks.h"
-#include "io/exr/exr_parts.h"
-#include "io/exr/packed_chunks.h"
+#include "io/exr/chunks/chunk_sizes.h"
+#include "io/exr/chunks/deep_chunks.h"
+#include "io/exr/chunks/exr_chunks.h"
+#include "io/exr/chunks/packed_chunks.h"
+#include "io/exr/file/exr_parts.h"
 #include "io/size_guard.h"
 
 namespace ssdo {

@@ -13,8 +13,8 @@
 #include <fmt/format.h>
 
 #include "error.h"
-#include "io/exr/chunk_sizes.h"
-#include "io/exr/exr_parts.h"
+#include "io/exr/chunks/chunk_sizes.h"
+#include "io/exr/file/exr_parts.h"
 #include "io/one_line.h"
 #include "io/size_guard.h"
 

@@ -13,7 +13,7 @@
 #include "error.h"
 #include "io/exr/compression.h"
 #include "io/exr/exr_copy.h"
-#include "io/exr/exr_parts.h"
+#include "io/exr/file/exr_parts.h"
 #include "io/one_line.h"
 
 namespace ssdo {

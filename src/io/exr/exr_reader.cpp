@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/exr/exr_reader.h"
 
-#include <ImfChannelList.h>
-#include <ImfIntAttribute.h>
-#include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
-#include <ImfStandardAttributes.h>
-#include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,12 +11,9 @@
 #include <string_view>
 
 #include "error.h"
-#include "io/exr/attribute_sizes.h"
-#include "io/exr/chunk_tables.h"
-#include "io/exr/exr_chunks.h"
-#include "io/exr/exr_parts.h"
-#include "io/exr/exr_stream.h"
-#include "io/exr/zip_lines.h"
+#include "io/exr/chunks/exr_chunks.h"
+#include "io/exr/chunks/zip_lines.h"
+#include "io/exr/file/exr_parts.h"
 #include "io/one_line.h"
 #include "io/size_guard.h"
 #include "parallel/tiles.h"
@@ -184,27 +176,6 @@ std::vector<Plane<float>> read_blocks(const ExrReader& reader, const ExrPart& pa
 
 }  // namespace
 
-ExrReader::ExrReader(const std::filesystem::path& path, Salvage salvage)
-    : input_(open_exr(path)),
-      tables_(check_attribute_sizes(*input_)),
-      salvage_(salvage),
-      stream_(std::make_unique<ExrInputStream>(*input_)) {
-  try {
-    file_ = std::make_unique<Imf::MultiPartInputFile>(*stream_);
-    for (int i = 0; i < file_->parts(); ++i) parts_.push_back(describe_part(*file_, i));
-  } catch (const std::bad_alloc&) {
-    throw;  // nothing is wrong with the file
-  } catch (const Error&) {
-    throw;  // its disk cannot be read
-  } catch (const std::exception& error) {
-    fail(*this, fmt::format("is damaged or cut short in its header ({}); render or copy it again",
-                            one_line(error.what())));
-  }
-}
-
-ExrReader::~ExrReader() = default;
-ExrReader::ExrReader(ExrReader&&) noexcept = default;
-
 std::vector<Plane<float>> ExrReader::read(int index, Names names, const PixelGrid& grid) const {
   const ExrPart& part = flat_part(*this, index);
   check_size(*this, part, names, grid);
@@ -238,8 +209,8 @@ std::vector<StoredChannel> ExrReader::read_stored(int index, Names names) const 
 const MissingChunks& ExrReader::missing(int index) const {
   const auto known = missing_.find(index);
   if (known != missing_.end()) return known->second;
-  const ExrPart& part = parts_[std::size_t(index)];
-  const bool looks = salvage_ == Salvage::done;
+  const ExrPart& part = parts()[std::size_t(index)];
+  const bool looks = salvage() == Salvage::done;
   return missing_[index] = looks ? find_missing_chunks(*this, part) : MissingChunks();
 }
 
@@ -247,36 +218,11 @@ std::vector<std::string> ExrReader::losses() const {
   std::vector<std::string> lines;
   for (const auto& [index, missing] : missing_) {
     if (missing.windows.empty()) continue;
-    const ExrPart& part = parts_[std::size_t(index)];
+    const ExrPart& part = parts()[std::size_t(index)];
     lines.push_back(
         fmt::format("{}: {}: {}", path().string(), label(part), describe(missing, part)));
   }
   return lines;
-}
-
-const ChunkTables& ExrReader::chunk_tables() const {
-  if (!chunk_tables_)
-    chunk_tables_ = std::make_unique<ChunkTables>(*input_, *file_, parts_, tables_);
-  return *chunk_tables_;
-}
-
-void ExrReader::recover() const {
-  stream_->clear();
-  file_->flushPartCache();  // which holds where the stream stood
-}
-
-std::string string_attribute(const Imf::Header& header, const std::string& name) {
-  const auto* found = header.findTypedAttribute<Imf::StringAttribute>(name);
-  return found ? found->value() : "";
-}
-
-int int_attribute(const Imf::Header& header, const std::string& name) {
-  const auto* found = header.findTypedAttribute<Imf::IntAttribute>(name);
-  return found ? found->value() : 0;
-}
-
-std::vector<std::string> views_of(const Imf::Header& header) {
-  return Imf::hasMultiView(header) ? Imf::multiView(header) : std::vector<std::string>();
 }
 
 }  // namespace ssdo

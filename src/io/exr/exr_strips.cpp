@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "error.h"
-#include "io/exr/zip_chunk.h"
+#include "io/exr/chunks/zip_chunk.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {

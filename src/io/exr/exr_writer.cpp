@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "error.h"
-#include "io/checked_file.h"
 #include "io/exr/exr_copy.h"
 #include "io/exr/exr_headers.h"
-#include "io/exr/exr_stream.h"
 #include "io/exr/exr_strips.h"
+#include "io/exr/file/exr_stream.h"
 #include "io/exr/kept_channels.h"
 #include "io/exr/zip_output.h"
+#include "io/files/checked_file.h"
 #include "io/one_line.h"
 
 namespace ssdo {

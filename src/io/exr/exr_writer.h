@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/exr/exr_output.h"
-#include "io/safe_file.h"
+#include "io/files/safe_file.h"
 
 namespace ssdo {
 

@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "error.h"
-#include "io/exr/exr_parts.h"
+#include "io/exr/file/exr_parts.h"
+#include "io/exr/pixel_filter.h"
 #include "io/json_text.h"
-#include "io/pixel_filter.h"
 
 namespace ssdo {
 namespace {

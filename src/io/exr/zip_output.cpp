@@ -11,7 +11,7 @@
 #include <memory>
 #include <new>
 
-#include "io/exr/zip_chunk.h"
+#include "io/exr/chunks/zip_chunk.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {
@@ -22,7 +22,8 @@ void write_number(Imf::OStream& stream, Number number) {
   stream.write(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
-/// Puts the bytes with even places before the others, as differences: see io/exr/zip_chunk.h.
+/// Puts the bytes with even places before the others, as differences: see
+/// io/exr/chunks/zip_chunk.h.
 void split_into_differences(const std::vector<std::byte>& bytes, std::vector<std::byte>& out) {
   const std::size_t evens = (bytes.size() + 1) / 2;
   std::vector<std::byte> split(bytes.size());

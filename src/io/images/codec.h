@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "io/image_rows.h"
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "io/images/image.h"
 
 namespace ssdo {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "error.h"
-#include "io/exr/exr_parts.h"
+#include "io/exr/file/exr_parts.h"
 #include "scene/layers/groups.h"
 #include "scene/layers/names.h"
 

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "error.h"
-#include "io/exr/exr_parts.h"
+#include "io/exr/file/exr_parts.h"
 #include "parallel/tiles.h"
 #include "scene/deep/ray_solids.h"
 #include "scene/normals/normals.h"

@@ -12,7 +12,7 @@
 
 #include "error.h"
 #include "io/exr/header_numbers.h"
-#include "io/pixel_filter.h"
+#include "io/exr/pixel_filter.h"
 #include "io/size_guard.h"
 #include "math/light_range.h"
 #include "parallel/tiles.h"

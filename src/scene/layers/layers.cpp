@@ -10,7 +10,7 @@
 #include <set>
 
 #include "error.h"
-#include "io/exr/exr_parts.h"
+#include "io/exr/file/exr_parts.h"
 #include "io/sequence.h"
 #include "nearest_name.h"
 #include "scene/layers/advice.h"

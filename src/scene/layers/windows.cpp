@@ -7,7 +7,7 @@
 #include <set>
 
 #include "error.h"
-#include "io/exr/exr_parts.h"
+#include "io/exr/file/exr_parts.h"
 
 namespace ssdo {
 namespace {

@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "error.h"
-#include "io/cube_map.h"
-#include "io/image_rows.h"
-#include "io/picture_layers.h"
+#include "io/images/image_file.h"
+#include "io/pictures/cube_map.h"
+#include "io/pictures/picture_layers.h"
 #include "io/size_guard.h"
 #include "math/light_range.h"
 #include "nearest_name.h"

@@ -20,6 +20,7 @@
 #include <optional>
 
 #include "io/exr/exr_writer.h"
+#include "io/files/temporary_table.h"
 #include "io/threads.h"
 #include "support/error_matchers.h"
 #include "support/exr_bytes.h"

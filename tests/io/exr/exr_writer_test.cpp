@@ -12,7 +12,7 @@
 #include <fstream>
 #include <glm/vec3.hpp>
 
-#include "io/safe_file.h"
+#include "io/files/safe_file.h"
 #include "support/error_matchers.h"
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"

@@ -13,7 +13,7 @@
 #include <limits>
 #include <utility>
 
-#include "io/image_file.h"
+#include "io/images/image_file.h"
 #include "support/error_matchers.h"
 #include "support/exr_fixture.h"
 #include "support/frame_file.h"

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "io/exr/file/exr_parts.h"
+#include "io/files/input_file.h"
+
+namespace ssdo {
+
+class ChunkTables;
+class ExrInputStream;
+
+/// What becomes of flat parts with missing chunks.
+enum class Salvage {
+  none,     ///< they are errors
+  offered,  ///< errors, which name --allow-partial
+  done,     ///< their other chunks are read; a part without any is an error
+};
+
+/// An EXR that is open, of which the headers have been read.
+class ExrFile {
+ public:
+  /// Errors: ExitCode::input for a file that is missing, is no EXR, or is damaged in its header.
+  explicit ExrFile(const std::filesystem::path& path, Salvage salvage = Salvage::none);
+  ~ExrFile();
+  ExrFile(ExrFile&&) noexcept;
+
+  const InputFile& input() const { return *input_; }
+  const std::filesystem::path& path() const { return input_->path(); }
+  const std::vector<ExrPart>& parts() const { return parts_; }
+  Salvage salvage() const { return salvage_; }
+
+  /// Makes the file readable again after a chunk that could not be read. No part may be open.
+  void recover() const;
+
+  /// Where the chunks of all parts stand. Looks for those whose places are missing when it is first
+  /// asked for.
+  const ChunkTables& chunk_tables() const;
+
+  /// OpenEXR's file, for reading chunks, and for copying whole parts without decoding them.
+  Imf::MultiPartInputFile& file() const { return *file_; }
+
+ private:
+  std::unique_ptr<InputFile> input_;
+  std::uint64_t tables_;  ///< where the headers end and the tables of chunks begin, in bytes
+  Salvage salvage_;
+  std::unique_ptr<ExrInputStream> stream_;
+  std::unique_ptr<Imf::MultiPartInputFile> file_;
+  std::vector<ExrPart> parts_;
+  mutable std::unique_ptr<ChunkTables> chunk_tables_;
+};
+
+/// Whether `file` is a plain file that begins as an EXR does, whatever its name.
+bool begins_as_exr(const std::filesystem::path& file);
+
+/// Throws `error` itself where nothing is wrong with the file: of memory, or of its disk.
+void throw_unless_of_file(const std::exception& error);
+
+/// Throws ExitCode::input for a part whose pixels could not be read.
+[[noreturn]] void throw_damaged(const ExrFile& file, const ExrPart& part,
+                                const std::exception& error);
+
+}  // namespace ssdo
