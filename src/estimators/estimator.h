@@ -33,8 +33,8 @@ inline constexpr Parameter kRoughness = {
 
 using ParameterValues = std::map<std::string, double, std::less<>>;
 
-/// A filter of a map of ao. `surfel` has the size of the map: what each of its pixels shows.
-using MapFilter = std::function<Plane<float>(Plane<float> map, Plane<Surfel> surfel)>;
+/// A filter of a map of ao. `guide` has the size of the map: what each of its pixels shows.
+using MapFilter = std::function<Plane<float>(Plane<float> map, const Plane<Surfel>& guide)>;
 
 /// What a method keeps of an overview of a frame whose rows come one band after the other: each
 /// method that works on bands has its own.

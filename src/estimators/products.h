@@ -59,12 +59,26 @@ struct Products {
   LightShares shares;    ///< what `direct` is made of, where the method knows
 };
 
-/// What the values of a product are. It decides how filters, --temporal and pictures treat them.
+/// What the values of a product are. It decides how --temporal and pictures treat them.
 enum class ProductKind {
-  share,      ///< 0..1: means are clamped to it; grey in a picture
+  share,      ///< 0..1; grey in a picture
   light,      ///< a colour: goes through the display transform
-  direction,  ///< a unit vector: means are normalised; written in the space of the input's normals
+  direction,  ///< a unit vector; written in the space of the input's normals
   deviation,  ///< of any sign; grey in a picture
+};
+
+/// What is done to the mean of a plane.
+enum class Finish { none, clamp, normalise };
+
+/// Planes whose means belong together: light of occluders is their radiance times 1 - visibility.
+enum class Coupling { none, visibility, occluders };
+
+/// What a plane needs of a filter beside the mean over its neighbours.
+struct Filtering {
+  Finish finish = Finish::none;  ///< to 0..1, or to unit length, zero staying zero
+  bool shadowed = false;         ///< steps of it are edges of shadows, which filters keep; without
+                          ///< occlusion each channel is about 1, `direct` where it is a share
+  Coupling coupling = Coupling::none;
 };
 
 /// A row in the table of products.
@@ -81,8 +95,7 @@ struct Product {
   std::string_view all_needs = "";  ///< role of a layer without which --products all leaves it out
   float background = 0;             ///< its value where there is no surface
   bool usual = false;               ///< made where --products is not given
-  bool shadowed = false;      ///< steps of it are edges of shadows, which filters keep; without
-                              ///< occlusion each channel is about 1, `direct` where it is a share
+  Filtering filtering = {};
   bool measured = false;      ///< by bench
   std::string_view aka = "";  ///< names that renderers give such a layer, in lower case
 };
@@ -97,7 +110,7 @@ inline constexpr std::array<Product, 8> kProducts = {{
      .made_of = {.ao = true},
      .background = 1,
      .usual = true,
-     .shadowed = true,
+     .filtering = {.finish = Finish::clamp, .shadowed = true, .coupling = Coupling::visibility},
      .measured = true,
      .aka = "ambientocclusion occlusion"},
     {.name = "bent",
@@ -105,7 +118,8 @@ inline constexpr std::array<Product, 8> kProducts = {{
      .channels = "XYZ",
      .in = &ProductSet::bent,
      .plane = &Products::bent,
-     .made_of = {.bent = true}},
+     .made_of = {.bent = true},
+     .filtering = {.finish = Finish::normalise}},
     // Without a layer of it, roughness is a parameter that only the user knows.
     {.name = "reflection",
      .kind = ProductKind::share,
@@ -115,7 +129,7 @@ inline constexpr std::array<Product, 8> kProducts = {{
      .made_of = {.reflection = true},
      .all_needs = "roughness",
      .background = 1,
-     .shadowed = true},
+     .filtering = {.finish = Finish::clamp, .shadowed = true}},
     {.name = "direct",
      .kind = ProductKind::light,
      .channels = "RGB",
@@ -123,7 +137,7 @@ inline constexpr std::array<Product, 8> kProducts = {{
      .plane = &Products::direct,
      .made_of = {.direct = true},
      .usual = true,
-     .shadowed = true,
+     .filtering = {.shadowed = true},
      .measured = true,
      .aka = "diffdir diffusedirect"},
     {.name = "bounce",
@@ -134,6 +148,7 @@ inline constexpr std::array<Product, 8> kProducts = {{
      .made_of = {.bounce = true},
      .needs = "albedo",
      .usual = true,
+     .filtering = {.coupling = Coupling::occluders},
      .measured = true,
      .aka = "diffind diffuseindirect"},
     {.name = "error",
@@ -148,7 +163,8 @@ inline constexpr std::array<Product, 8> kProducts = {{
      .channels = "Y",
      .in = &ProductSet::guessed,
      .plane = &Products::guessed,
-     .made_of = {.guessed = true}},
+     .made_of = {.guessed = true},
+     .filtering = {.finish = Finish::clamp}},
     // As relight makes it; other composites change the row: src/composite_choice.cpp.
     {.name = "composite",
      .kind = ProductKind::light,

@@ -27,9 +27,9 @@ struct BothSurfaces {
   }
 };
 
-void box_tile(const Products& noisy, const Geometry& geometry, const std::vector<Tap>& taps,
-              const Tile& tile, Products& out) {
-  WindowAverage<BothSurfaces>(noisy, geometry, taps, {}, tile, out).run();
+void box_tile(const FilterPlanes& noisy, const Plane<Surfel>& guide, const std::vector<Tap>& taps,
+              const Tile& tile, FilterPlanes& out) {
+  WindowAverage<BothSurfaces>(noisy, guide, taps, {}, tile, out).run();
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -40,16 +40,17 @@ namespace ssdo {
 
 HWY_EXPORT(box_tile);
 
-Products filter_box(Products noisy, const Geometry& geometry, int pattern_size) {
+FilterPlanes filter_box(FilterPlanes noisy, const Plane<Surfel>& guide, int pattern_size) {
   std::vector<Tap> window;
   const int first = -(pattern_size / 2);
   for (int dy = first; dy < first + pattern_size; ++dy) {
     for (int dx = first; dx < first + pattern_size; ++dx) window.push_back({dx, dy, 1});
   }
-  return in_passes(std::move(noisy), geometry, {window},
-                   [&](const Products& from, const auto& taps, const Tile& tile, Products& to) {
-                     HWY_DYNAMIC_DISPATCH(box_tile)(from, geometry, taps, tile, to);
-                   });
+  return in_passes(
+      std::move(noisy), guide, {window},
+      [&](const FilterPlanes& from, const auto& taps, const Tile& tile, FilterPlanes& to) {
+        HWY_DYNAMIC_DISPATCH(box_tile)(from, guide, taps, tile, to);
+      });
 }
 
 }  // namespace ssdo

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "estimators/estimator.h"
-#include "scene/geometry.h"
+#include "filters/filter_planes.h"
 
 namespace ssdo {
 
-/// The mean of the T x T pixels of the sampling pattern, across edges; see box_filter.cpp. What is
-/// done to each product is as with filter_geometry().
-Products filter_box(Products noisy, const Geometry& geometry, int pattern_size);
+/// The mean of the T x T pixels of the sampling pattern, across edges; see box_filter.cpp. Means
+/// are finished as with filter_geometry().
+FilterPlanes filter_box(FilterPlanes noisy, const Plane<Surfel>& guide, int pattern_size);
 
 }  // namespace ssdo

@@ -38,9 +38,9 @@ struct DepthsAlike {
   }
 };
 
-void depth_tile(const Products& noisy, const Geometry& geometry, const std::vector<Tap>& taps,
-                const Tile& tile, Products& out) {
-  WindowAverage<DepthsAlike>(noisy, geometry, taps, {}, tile, out).run();
+void depth_tile(const FilterPlanes& noisy, const Plane<Surfel>& guide, const std::vector<Tap>& taps,
+                const Tile& tile, FilterPlanes& out) {
+  WindowAverage<DepthsAlike>(noisy, guide, taps, {}, tile, out).run();
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -51,16 +51,17 @@ namespace ssdo {
 
 HWY_EXPORT(depth_tile);
 
-Products filter_depth(Products noisy, const Geometry& geometry, int /*pattern_size*/) {
+FilterPlanes filter_depth(FilterPlanes noisy, const Plane<Surfel>& guide, int /*pattern_size*/) {
   constexpr std::array<double, 5> kWeights = {0.15317, 0.444893, 0.422649, 0.392902, 0.36297};
   constexpr int kSpacing = 2;
   std::vector<Tap> row;
   for (int i = -4; i <= 4; ++i)
     row.push_back({kSpacing * i, 0, float(kWeights[std::size_t(std::abs(i))])});
-  return in_passes(std::move(noisy), geometry, {row, transposed(row)},
-                   [&](const Products& from, const auto& taps, const Tile& tile, Products& to) {
-                     HWY_DYNAMIC_DISPATCH(depth_tile)(from, geometry, taps, tile, to);
-                   });
+  return in_passes(
+      std::move(noisy), guide, {row, transposed(row)},
+      [&](const FilterPlanes& from, const auto& taps, const Tile& tile, FilterPlanes& to) {
+        HWY_DYNAMIC_DISPATCH(depth_tile)(from, guide, taps, tile, to);
+      });
 }
 
 }  // namespace ssdo

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "estimators/estimator.h"
-#include "scene/geometry.h"
+#include "filters/filter_planes.h"
 
 namespace ssdo {
 
 /// Nine taps, two pixels apart, along rows and then columns, weighted by how near they are in
-/// depth; see depth_filter.cpp. The size of the pattern does not count. What is done to each
-/// product is as with filter_geometry(), after every pass.
-Products filter_depth(Products noisy, const Geometry& geometry, int pattern_size);
+/// depth; see depth_filter.cpp. The size of the pattern does not count. Means are finished as
+/// with filter_geometry(), after every pass.
+FilterPlanes filter_depth(FilterPlanes noisy, const Plane<Surfel>& guide, int pattern_size);
 
 }  // namespace ssdo

@@ -36,9 +36,9 @@ struct SameSurface {
   }
 };
 
-void gaussian_tile(const Products& noisy, const Geometry& geometry, const std::vector<Tap>& taps,
-                   const Tile& tile, Products& out) {
-  WindowAverage<SameSurface>(noisy, geometry, taps, {}, tile, out).run();
+void gaussian_tile(const FilterPlanes& noisy, const Plane<Surfel>& guide,
+                   const std::vector<Tap>& taps, const Tile& tile, FilterPlanes& out) {
+  WindowAverage<SameSurface>(noisy, guide, taps, {}, tile, out).run();
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -49,7 +49,7 @@ namespace ssdo {
 
 HWY_EXPORT(gaussian_tile);
 
-Products filter_gaussian(Products noisy, const Geometry& geometry, int /*pattern_size*/) {
+FilterPlanes filter_gaussian(FilterPlanes noisy, const Plane<Surfel>& guide, int /*pattern_size*/) {
   constexpr int kRadius = 5, kRounds = 3;
   constexpr double kSigma = 2.5;
   std::vector<Tap> row;
@@ -58,10 +58,11 @@ Products filter_gaussian(Products noisy, const Geometry& geometry, int /*pattern
   std::vector<std::vector<Tap>> windows;
   for (int round = 0; round < kRounds; ++round)
     windows.insert(windows.end(), {row, transposed(row)});
-  return in_passes(std::move(noisy), geometry, windows,
-                   [&](const Products& from, const auto& taps, const Tile& tile, Products& to) {
-                     HWY_DYNAMIC_DISPATCH(gaussian_tile)(from, geometry, taps, tile, to);
-                   });
+  return in_passes(
+      std::move(noisy), guide, windows,
+      [&](const FilterPlanes& from, const auto& taps, const Tile& tile, FilterPlanes& to) {
+        HWY_DYNAMIC_DISPATCH(gaussian_tile)(from, guide, taps, tile, to);
+      });
 }
 
 }  // namespace ssdo

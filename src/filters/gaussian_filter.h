@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "estimators/estimator.h"
-#include "scene/geometry.h"
+#include "filters/filter_planes.h"
 
 namespace ssdo {
 
 /// A separable Gaussian that leaves out other depths and normals; see gaussian_filter.cpp. The size
-/// of the pattern does not count. What is done to each product is as with filter_geometry(), after
-/// every pass.
-Products filter_gaussian(Products noisy, const Geometry& geometry, int pattern_size);
+/// of the pattern does not count. Means are finished as with filter_geometry(), after every
+/// pass.
+FilterPlanes filter_gaussian(FilterPlanes noisy, const Plane<Surfel>& guide, int pattern_size);
 
 }  // namespace ssdo

@@ -45,9 +45,6 @@
 #include <utility>
 #include <vector>
 
-#include "filters/shadow_filter.h"
-#include "filters/tap.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/geometry_filter.cpp"
 #include <hwy/foreach_target.h>
@@ -62,11 +59,12 @@ constexpr float kStepTolerance = 0.15f;  ///< r; measured, with the 1/4
 
 class TileFilter {
  public:
-  TileFilter(const Products& noisy, const Geometry& geometry, int pattern_size, const Tile& tile,
-             Products& out)
+  TileFilter(const FilterPlanes& noisy, const Plane<Surfel>& guide, int pattern_size,
+             const Tile& tile, FilterPlanes& out)
       : half_(pattern_size / 2),
         tile_(tile),
-        rows_(noisy, geometry.surfel, tile, half_, window() + 1, out),
+        rows_(views_of(noisy), guide, tile, half_, window() + 1),
+        out_(out),
         weights_(zeros((window() + 1) * window() * 2 * kLanes)),
         averages_(zeros(2 * (rows_.components() + 1) * rows_.stride())) {}
 
@@ -75,8 +73,8 @@ class TileFilter {
     for (int y = tile_.y0; y < tile_.y1; y += 2) {
       for (; gathered <= y + 1 + half_; ++gathered) rows_.gather(gathered);
       for (int x = 0; x < tile_.x1 - tile_.x0; x += kLanes) filter(x, y);
-      rows_.write(y, average(0, 0), weight_sum(0));
-      if (y + 1 < tile_.y1) rows_.write(y + 1, average(1, 0), weight_sum(1));
+      rows_.write(y, average(0, 0), weight_sum(0), out_);
+      if (y + 1 < tile_.y1) rows_.write(y + 1, average(1, 0), weight_sum(1), out_);
     }
   }
 
@@ -171,6 +169,7 @@ class TileFilter {
   const int half_;
   const Tile tile_;
   TileRows rows_;
+  FilterPlanes& out_;
   AlignedFloats weights_;   ///< by neighbour and row, a vector each
   AlignedFloats averages_;  ///< by row, component and column; last component: sum of the weights
 };
@@ -198,17 +197,19 @@ HWY_INLINE V average(V own, const Corners& weights, const Corners& values) {
 /// The second pass.
 class CornerFilter {
  public:
-  CornerFilter(const Products& means, const Geometry& geometry, int offset, const Tile& tile,
-               Products& out)
+  CornerFilter(const FilterPlanes& means, const Plane<Surfel>& guide, int offset, const Tile& tile,
+               FilterPlanes& out)
       : offset_(offset),
         tile_(tile),
-        rows_(means, geometry.surfel, tile, offset, 2 * offset + 1, out),
+        means_(means),
+        rows_(views_of(means), guide, tile, offset, 2 * offset + 1),
+        out_(out),
         results_(zeros((rows_.components() + 1) * rows_.stride())) {
     int c = 0;
-    for (const Part& part : rows_.parts()) {
-      if (part.noisy == means.ao.pixels.data()) ao_ = c;
-      if (part.noisy == reinterpret_cast<const float*>(means.bounce.pixels.data())) bounce_ = c;
-      c += part.components;
+    for (const FilterPlane& mean : means) {
+      if (mean.filtering.coupling == Coupling::visibility) ao_ = c;
+      if (mean.filtering.coupling == Coupling::occluders) bounce_ = c;
+      c += mean.components();
     }
   }
 
@@ -217,7 +218,7 @@ class CornerFilter {
     for (int y = tile_.y0; y < tile_.y1; ++y) {
       for (; gathered <= y + offset_; ++gathered) rows_.gather(gathered);
       for (int x = 0; x < tile_.x1 - tile_.x0; x += kLanes) filter(x, y);
-      rows_.write(y, results_.get(), is_surface());
+      rows_.write(y, results_.get(), is_surface(), out_);
     }
   }
 
@@ -270,11 +271,11 @@ class CornerFilter {
   HWY_INLINE void filter(int x, int y) {
     const Corners weights = weigh(x, y);
     int c = 0;
-    for (const Part& part : rows_.parts()) {
-      const Corners of_part =
-          part.shadowed ? weigh_shadowed(c, part.components, x, y, weights) : weights;
-      for (const int end = c + part.components; c < end; ++c)
-        store(average(mean(c, x, y), of_part, means_around(c, x, y)), result(c) + x);
+    for (const FilterPlane& plane : means_) {
+      const Corners of_plane =
+          plane.filtering.shadowed ? weigh_shadowed(c, plane.components(), x, y, weights) : weights;
+      for (const int end = c + plane.components(); c < end; ++c)
+        store(average(mean(c, x, y), of_plane, means_around(c, x, y)), result(c) + x);
     }
     if (ao_ && bounce_) hold_bounce_to_ao(x, y, weights);
   }
@@ -294,19 +295,21 @@ class CornerFilter {
 
   const int offset_;
   const Tile tile_;
+  const FilterPlanes& means_;
   TileRows rows_;
+  FilterPlanes& out_;
   std::optional<int> ao_, bounce_;  ///< their first components
   AlignedFloats results_;  ///< by component and column; last component: 0 without a surface
 };
 
-void filter_tile(const Products& noisy, const Geometry& geometry, int pattern_size,
-                 const Tile& tile, Products& out) {
-  TileFilter(noisy, geometry, pattern_size, tile, out).run();
+void filter_tile(const FilterPlanes& noisy, const Plane<Surfel>& guide, int pattern_size,
+                 const Tile& tile, FilterPlanes& out) {
+  TileFilter(noisy, guide, pattern_size, tile, out).run();
 }
 
-void filter_corners(const Products& means, const Geometry& geometry, int offset, const Tile& tile,
-                    Products& out) {
-  CornerFilter(means, geometry, offset, tile, out).run();
+void filter_corners(const FilterPlanes& means, const Plane<Surfel>& guide, int offset,
+                    const Tile& tile, FilterPlanes& out) {
+  CornerFilter(means, guide, offset, tile, out).run();
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -318,43 +321,19 @@ namespace ssdo {
 HWY_EXPORT(filter_tile);
 HWY_EXPORT(filter_corners);
 
-namespace {
-
-Products filter_all(Products noisy, const Geometry& geometry, int pattern_size) {
+FilterPlanes filter_geometry(FilterPlanes noisy, const Plane<Surfel>& guide, int pattern_size) {
   constexpr int kMostAtOnce = 4;
-  const int width = geometry.surfel.width, height = geometry.surfel.height;
   const bool twice = pattern_size > kMostAtOnce;
-  Products means = like(noisy);
-  for_each_tile(width, height, [&](const Tile& tile) {
+  FilterPlanes means = like(noisy);
+  for_each_tile(guide.width, guide.height, [&](const Tile& tile) {
     HWY_DYNAMIC_DISPATCH(filter_tile)
-    (noisy, geometry, twice ? pattern_size / 2 : pattern_size, tile, means);
+    (noisy, guide, twice ? pattern_size / 2 : pattern_size, tile, means);
   });
   if (!twice) return means;
-  for_each_tile(width, height, [&](const Tile& tile) {
-    HWY_DYNAMIC_DISPATCH(filter_corners)(means, geometry, pattern_size / 4, tile, noisy);
+  for_each_tile(guide.width, guide.height, [&](const Tile& tile) {
+    HWY_DYNAMIC_DISPATCH(filter_corners)(means, guide, pattern_size / 4, tile, noisy);
   });
   return noisy;
-}
-
-}  // namespace
-
-Products filter_geometry(Products noisy, const Geometry& geometry, int pattern_size) {
-  if (noisy.shares.draws.empty()) return filter_all(std::move(noisy), geometry, pattern_size);
-  const auto shadows = [&](std::vector<Plane<float>>& shares, std::vector<ShadowDraw>& draws) {
-    std::vector<Plane<float>> filtered;
-    for (std::size_t k = 0; k < shares.size(); ++k) {
-      filtered.push_back(
-          filter_shadow(std::move(shares[k]), std::move(draws[k]), geometry, pattern_size));
-    }
-    shares.clear(), draws.clear();
-    return filtered;
-  };
-  LightShares& shares = noisy.shares;
-  std::vector<Plane<float>> suns = shadows(shares.suns, shares.draws),
-                            again = shadows(shares.suns_again, shares.draws_again);
-  Products out = filter_all(std::move(noisy), geometry, pattern_size);
-  out.shares.suns = std::move(suns), out.shares.suns_again = std::move(again);
-  return out;
 }
 
 }  // namespace ssdo

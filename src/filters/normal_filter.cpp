@@ -33,9 +33,9 @@ struct NormalsAlike {
   }
 };
 
-void normal_tile(const Products& noisy, const Geometry& geometry, const std::vector<Tap>& taps,
-                 const Tile& tile, Products& out) {
-  WindowAverage<NormalsAlike>(noisy, geometry, taps, {}, tile, out).run();
+void normal_tile(const FilterPlanes& noisy, const Plane<Surfel>& guide,
+                 const std::vector<Tap>& taps, const Tile& tile, FilterPlanes& out) {
+  WindowAverage<NormalsAlike>(noisy, guide, taps, {}, tile, out).run();
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -46,15 +46,16 @@ namespace ssdo {
 
 HWY_EXPORT(normal_tile);
 
-Products filter_normal(Products noisy, const Geometry& geometry, int /*pattern_size*/) {
+FilterPlanes filter_normal(FilterPlanes noisy, const Plane<Surfel>& guide, int /*pattern_size*/) {
   constexpr std::array<double, 4> kWeights = {0.37004405286, 0.31718061674, 0.19823788546,
                                               0.11453744493};
   std::vector<Tap> row;
   for (int i = -3; i <= 3; ++i) row.push_back({i, 0, float(kWeights[std::size_t(std::abs(i))])});
-  return in_passes(std::move(noisy), geometry, {row, transposed(row)},
-                   [&](const Products& from, const auto& taps, const Tile& tile, Products& to) {
-                     HWY_DYNAMIC_DISPATCH(normal_tile)(from, geometry, taps, tile, to);
-                   });
+  return in_passes(
+      std::move(noisy), guide, {row, transposed(row)},
+      [&](const FilterPlanes& from, const auto& taps, const Tile& tile, FilterPlanes& to) {
+        HWY_DYNAMIC_DISPATCH(normal_tile)(from, guide, taps, tile, to);
+      });
 }
 
 }  // namespace ssdo

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "estimators/estimator.h"
-#include "scene/geometry.h"
+#include "filters/filter_planes.h"
 
 namespace ssdo {
 
 /// Seven taps along rows and then columns, weighted by how alike the normals are; see
-/// normal_filter.cpp. The size of the pattern does not count. What is done to each product is as
-/// with filter_geometry(), after every pass.
-Products filter_normal(Products noisy, const Geometry& geometry, int pattern_size);
+/// normal_filter.cpp. The size of the pattern does not count. Means are finished as with
+/// filter_geometry(), after every pass.
+FilterPlanes filter_normal(FilterPlanes noisy, const Plane<Surfel>& guide, int pattern_size);
 
 }  // namespace ssdo

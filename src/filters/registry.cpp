@@ -23,7 +23,7 @@ std::span<const Filter> filters() {
       {"gaussian", "Gaussian within a depth and a cone of normals", filter_gaussian, 15},
       {"normal", "seven taps, by normals", filter_normal, 3},
       {"depth", "nine taps two pixels apart, by depth", filter_depth, 8},
-      {"geometry", "mean over the pattern on one surface", filter_geometry, 8},
+      {"geometry", "mean over the pattern on one surface", filter_geometry, 8, filter_shadow},
   }};
   return all;
 }
@@ -43,9 +43,12 @@ const Filter& find_filter(std::string_view name, const Method& method) {
   return find_filter(name == kSourceFilter ? method.source_filter.name : name);
 }
 
-Products apply_filter(const Filter& filter, Products noisy, const Geometry& geometry,
-                      int pattern_size) {
-  return filter.apply ? filter.apply(std::move(noisy), geometry, pattern_size) : std::move(noisy);
+Plane<float> apply_filter(const Filter& filter, Plane<float> noisy, const Filtering& filtering,
+                          const Plane<Surfel>& guide, int pattern_size) {
+  if (!filter.apply) return noisy;
+  FilterPlanes planes;
+  planes.push_back({std::move(noisy), filtering});
+  return std::get<Plane<float>>(filter.apply(std::move(planes), guide, pattern_size).front().plane);
 }
 
 }  // namespace ssdo

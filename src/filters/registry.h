@@ -6,16 +6,21 @@
 #include <string_view>
 
 #include "estimators/estimator.h"
-#include "scene/geometry.h"
+#include "filters/filter_planes.h"
+#include "filters/shadow_filter.h"
 
 namespace ssdo {
 
 /// A row in the table of filters.
 struct Filter {
   std::string_view name, summary;
-  /// Takes away the noise of a T x T sampling pattern; null: leaves the products as they are.
-  Products (*apply)(Products noisy, const Geometry& geometry, int pattern_size);
+  /// Takes away the noise of a T x T sampling pattern; `guide` is what each pixel shows. Null:
+  /// leaves the planes as they are.
+  FilterPlanes (*apply)(FilterPlanes noisy, const Plane<Surfel>& guide, int pattern_size);
   int reach = 0;  ///< pixels on each side that a pixel depends on, for patterns of up to 8 x 8
+  /// The same for shares of suns by one ray of each pixel; null: `apply` takes them as other
+  /// planes.
+  Plane<float> (*shadow)(NoisyShadow noisy, const Plane<Surfel>& guide, int pattern_size) = nullptr;
 };
 
 /// In place of the name of a filter: that of each method's own source.
@@ -30,8 +35,8 @@ const Filter& find_filter(std::string_view name);
 /// What the name, which may be kSourceFilter, means for a method. Errors: as above.
 const Filter& find_filter(std::string_view name, const Method& method);
 
-/// The products after the filter.
-Products apply_filter(const Filter& filter, Products noisy, const Geometry& geometry,
-                      int pattern_size);
+/// One plane alone after the filter.
+Plane<float> apply_filter(const Filter& filter, Plane<float> noisy, const Filtering& filtering,
+                          const Plane<Surfel>& guide, int pattern_size);
 
 }  // namespace ssdo

@@ -40,21 +40,21 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
+inline PlaneView view_of(const Plane<float>& plane) { return {plane.pixels.data(), 1}; }
+
 class ShadowTile {
  public:
-  /// `noisy` has the share, the weight and the width in place of shares of suns; of `out` the share
-  /// and the width are written.
-  ShadowTile(const Products& noisy, const Geometry& geometry, int pattern_size, const Tile& tile,
-             Products& out)
+  ShadowTile(const NoisyShadow& noisy, const Plane<Surfel>& guide, int pattern_size,
+             const Tile& tile, ShadowFound& out)
       : half_(pattern_size / 2),
         most_(float(pattern_size)),
         tile_(tile),
-        rows_(noisy, geometry.surfel, tile, half_, window(), out),
+        rows_({view_of(noisy.share), view_of(noisy.draw.weight), view_of(noisy.draw.width_px)},
+              guide, tile, half_, window()),
         extremes_(zeros(2 * window() * rows_.stride())),
         likeness_(zeros(window() * window() * kLanes)),
         result_(zeros(2 * rows_.stride())),
-        share_out_(out.shares.suns[0]),
-        width_out_(out.shares.suns[2]) {}
+        out_(out) {}
 
   void run() {
     int gathered = tile_.y0 - half_;
@@ -69,8 +69,8 @@ class ShadowTile {
         const Filtered found = filtered(x, y);
         store(found.share, share + x), store(found.penumbra, of_penumbra + x);
       }
-      std::copy_n(share, width, &share_out_(tile_.x0, y));
-      std::copy_n(of_penumbra, width, &width_out_(tile_.x0, y));
+      std::copy_n(share, width, &out_.share(tile_.x0, y));
+      std::copy_n(of_penumbra, width, &out_.penumbra(tile_.x0, y));
     }
   }
 
@@ -170,21 +170,20 @@ class ShadowTile {
   AlignedFloats extremes_;  ///< by row modulo the window: least, then largest
   AlignedFloats likeness_;  ///< w of each neighbour of a vector of pixels
   AlignedFloats result_;    ///< share, then W
-  Plane<float>&share_out_, &width_out_;
+  ShadowFound& out_;
 };
 
 /// The second pass: the mean of four windows around each pixel, as far as its penumbra is wider
 /// than one.
 class WidePenumbraTile {
  public:
-  /// `found` has the share and W in place of shares of suns; the first of `out` is written.
-  WidePenumbraTile(const Products& found, const Geometry& geometry, int pattern_size,
-                   const Tile& tile, Products& out)
+  WidePenumbraTile(const ShadowFound& found, const Plane<Surfel>& guide, int pattern_size,
+                   const Tile& tile, Plane<float>& out)
       : half_(pattern_size / 2),
         tile_(tile),
-        rows_(found, geometry.surfel, tile, half_, 2 * half_ + 1, out),
+        rows_({view_of(found.share), view_of(found.penumbra)}, guide, tile, half_, 2 * half_ + 1),
         result_(zeros(rows_.stride())),
-        out_(out.shares.suns[0]) {}
+        out_(out) {}
 
   void run() {
     int gathered = tile_.y0 - half_;
@@ -224,14 +223,14 @@ class WidePenumbraTile {
   Plane<float>& out_;
 };
 
-void shadow_of_tile(const Products& noisy, const Geometry& geometry, int pattern_size,
-                    const Tile& tile, Products& out) {
-  ShadowTile(noisy, geometry, pattern_size, tile, out).run();
+void shadow_of_tile(const NoisyShadow& noisy, const Plane<Surfel>& guide, int pattern_size,
+                    const Tile& tile, ShadowFound& out) {
+  ShadowTile(noisy, guide, pattern_size, tile, out).run();
 }
 
-void wide_penumbra_of_tile(const Products& found, const Geometry& geometry, int pattern_size,
-                           const Tile& tile, Products& out) {
-  WidePenumbraTile(found, geometry, pattern_size, tile, out).run();
+void wide_penumbra_of_tile(const ShadowFound& found, const Plane<Surfel>& guide, int pattern_size,
+                           const Tile& tile, Plane<float>& out) {
+  WidePenumbraTile(found, guide, pattern_size, tile, out).run();
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
@@ -243,27 +242,17 @@ namespace ssdo {
 HWY_EXPORT(shadow_of_tile);
 HWY_EXPORT(wide_penumbra_of_tile);
 
-Plane<float> filter_shadow(Plane<float> share, ShadowDraw draw, const Geometry& geometry,
-                           int pattern_size) {
-  const int width = share.width, height = share.height;
-  const auto planes = [](auto... of_them) {
-    std::vector<Plane<float>> all;
-    (all.push_back(std::move(of_them)), ...);
-    return all;
-  };
-  Products noisy, found, out;
-  found.shares.suns = planes(Plane<float>::like(share), Plane<float>(), Plane<float>::like(share));
-  noisy.shares.suns = planes(std::move(share), std::move(draw.weight), std::move(draw.width_px));
-  for_each_tile(width, height, [&](const Tile& tile) {
-    HWY_DYNAMIC_DISPATCH(shadow_of_tile)(noisy, geometry, pattern_size, tile, found);
+Plane<float> filter_shadow(NoisyShadow noisy, const Plane<Surfel>& guide, int pattern_size) {
+  ShadowFound found{Plane<float>::like(noisy.share), Plane<float>::like(noisy.share)};
+  for_each_tile(guide.width, guide.height, [&](const Tile& tile) {
+    HWY_DYNAMIC_DISPATCH(shadow_of_tile)(noisy, guide, pattern_size, tile, found);
   });
-  found.shares.suns.erase(found.shares.suns.begin() + 1);
-  out.shares.suns = planes(std::move(noisy.shares.suns.front()), Plane<float>());
+  Plane<float> out = std::move(noisy.share);
   noisy = {};
-  for_each_tile(width, height, [&](const Tile& tile) {
-    HWY_DYNAMIC_DISPATCH(wide_penumbra_of_tile)(found, geometry, pattern_size, tile, out);
+  for_each_tile(guide.width, guide.height, [&](const Tile& tile) {
+    HWY_DYNAMIC_DISPATCH(wide_penumbra_of_tile)(found, guide, pattern_size, tile, out);
   });
-  return std::move(out.shares.suns.front());
+  return out;
 }
 
 }  // namespace ssdo

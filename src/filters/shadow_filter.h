@@ -2,14 +2,25 @@
 #pragma once
 
 #include "estimators/products.h"
-#include "scene/geometry.h"
+#include "scene/surfel.h"
 
 namespace ssdo {
+
+/// The share of a sun by one ray of each pixel.
+struct NoisyShadow {
+  Plane<float> share;
+  ShadowDraw draw;
+};
+
+/// What the first pass leaves: the share, and W of shadow_filter.cpp in pixels, 0 where all
+/// neighbours see as much of the sun.
+struct ShadowFound {
+  Plane<float> share, penumbra;
+};
 
 /// The mean share of a sun that neighbours of a pixel on its surface have found, each by a ray to
 /// another point of it, as far as the penumbra there is wide: see shadow_filter.cpp. `pattern_size`
 /// is the most. Background pixels keep their values.
-Plane<float> filter_shadow(Plane<float> share, ShadowDraw draw, const Geometry& geometry,
-                           int pattern_size);
+Plane<float> filter_shadow(NoisyShadow noisy, const Plane<Surfel>& guide, int pattern_size);
 
 }  // namespace ssdo

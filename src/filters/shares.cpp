@@ -33,6 +33,7 @@
 #include <utility>
 
 #include "estimators/guessed.h"
+#include "filters/filter_products.h"
 #include "filters/sun_errors.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -163,34 +164,42 @@ Products without_shares(Products products) {
 
 Products filter_found(const Filter& filter, Products noisy, const Scene& scene, int pattern_size) {
   if (filter.apply)
-    noisy = apply_filter(filter, to_shares(std::move(noisy), scene), scene.geometry, pattern_size);
+    noisy = filter_products(filter, to_shares(std::move(noisy), scene), scene.geometry.surfel,
+                            pattern_size);
   add_sun_errors(noisy, scene);
   return filter.apply ? from_shares(std::move(noisy), scene) : without_shares(std::move(noisy));
 }
 
-/// What guessed is made of, after a mean over its own pattern, whatever that of the method is.
-Products mean_of_guesses(const Filter& filter, Plane<float> guessed, Plane<float> ao,
-                         const Geometry& geometry) {
-  Products both;
-  both.guessed = std::move(guessed);
-  both.ao = std::move(ao);
-  return apply_filter(filter, std::move(both), geometry, kGuessedPattern);
+/// What the product `guessed` is made of.
+struct Guesses {
+  Plane<float> guessed, ao;
+};
+
+/// Their mean over a pattern of their own, whatever that of the method is.
+Guesses mean_of_guesses(const Filter& filter, Guesses noisy, const Plane<Surfel>& guide) {
+  if (!filter.apply) return noisy;
+  FilterPlanes planes;
+  planes.push_back({std::move(noisy.guessed), find_product("guessed").filtering});
+  planes.push_back({std::move(noisy.ao), find_product("ao").filtering});
+  planes = filter.apply(std::move(planes), guide, kGuessedPattern);
+  return {std::get<Plane<float>>(std::move(planes[0].plane)),
+          std::get<Plane<float>>(std::move(planes[1].plane))};
 }
 
 }  // namespace
 
 Products filter_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size) {
-  Products guesses;
+  Guesses guesses;
+  const Plane<Surfel>& guide = scene.geometry.surfel;
   const bool have_guesses = !noisy.guessed.empty(), apart = pattern_size != kGuessedPattern;
   if (have_guesses && apart)
-    guesses = mean_of_guesses(filter, std::exchange(noisy.guessed, {}), noisy.ao, scene.geometry);
+    guesses = mean_of_guesses(filter, {std::exchange(noisy.guessed, {}), noisy.ao}, guide);
   Products found = filter_found(filter, std::move(noisy), scene, pattern_size);
   if (!have_guesses) return found;
   if (!apart) guesses.guessed = std::move(found.guessed), guesses.ao = found.ao;
   // One mean leaves steps, eight pixels apart, where a ray of one pixel passes other things than
   // that of its neighbour.
-  guesses =
-      mean_of_guesses(filter, std::move(guesses.guessed), std::move(guesses.ao), scene.geometry);
+  guesses = mean_of_guesses(filter, std::move(guesses), guide);
   for (std::size_t i = 0; i < guesses.ao.size(); ++i)
     guesses.guessed[i] = guessed_product(guesses.guessed[i], std::clamp(guesses.ao[i], 0.0f, 1.0f));
   found.guessed = std::move(guesses.guessed);

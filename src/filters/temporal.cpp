@@ -84,13 +84,13 @@ void mix_products(Products& mean, std::size_t i, const Products& old, const Pixe
       mean, old);
 }
 
-/// What rounding, or the mean of directions, has left of a product's kind.
-float within_its_kind(float value, ProductKind kind) {
-  return kind == ProductKind::share ? std::clamp(value, 0.0f, 1.0f) : value;
+/// A mean over frames is finished as one over neighbours is.
+float finished(float value, Finish finish) {
+  return finish == Finish::clamp ? std::clamp(value, 0.0f, 1.0f) : value;
 }
 
-glm::vec3 within_its_kind(const glm::vec3& value, ProductKind kind) {
-  if (kind != ProductKind::direction) return value;
+glm::vec3 finished(const glm::vec3& value, Finish finish) {
+  if (finish != Finish::normalise) return value;
   const float length = glm::length(value);
   return length > 0 ? value / length : glm::vec3(0);
 }
@@ -129,7 +129,7 @@ Products products_of(const History& history) {
   Products products = history.mean;
   for_each_plane(
       [](const Product& product, auto& plane) {
-        for (auto& value : plane.pixels) value = within_its_kind(value, product.kind);
+        for (auto& value : plane.pixels) value = finished(value, product.filtering.finish);
       },
       products);
   return products;

@@ -15,9 +15,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "estimators/estimator.h"
+#include "filters/filter_planes.h"
 #include "parallel/tiles.h"
-#include "scene/geometry.h"
 #include "scene/surfel-inl.h"
 #include "simd/lanes-inl.h"
 
@@ -47,44 +46,16 @@ HWY_INLINE void cover(int count, const Whole& whole, const Single& single) {
   }
 }
 
-/// What is done to an average.
-enum class Finish { none, clamp, normalise };
-
-/// A plane of one or three components per pixel.
-struct Part {
-  const float* noisy;
-  float* out;
+/// A plane that is read: the components of one pixel after the other.
+struct PlaneView {
+  const float* values;
   int components;
-  Finish finish;
-  bool shadowed;  ///< steps of it are edges of shadows
 };
 
-/// Those planes that exist.
-inline std::vector<Part> parts_of(const Products& noisy, Products& out) {
-  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-  std::vector<Part> parts;
-  const auto add = [&](const auto& from, auto& to, Finish finish, bool shadowed) {
-    if (from.empty()) return;
-    parts.push_back({reinterpret_cast<const float*>(from.pixels.data()),
-                     reinterpret_cast<float*>(to.pixels.data()),
-                     int(sizeof(from[0]) / sizeof(float)), finish, shadowed});
-  };
-  for_each_plane(
-      [&](const Product& product, const auto& from, auto& to) {
-        const Finish finish = product.kind == ProductKind::share       ? Finish::clamp
-                              : product.kind == ProductKind::direction ? Finish::normalise
-                                                                       : Finish::none;
-        add(from, to, finish, product.shadowed);
-      },
-      noisy, out);
-  // Several passes are one mean: shares are clamped after the last (shares.cpp).
-  for_each_share(
-      [&](const auto& from, auto& to) {
-        const bool emitted = static_cast<const void*>(&from) == &noisy.shares.emitted;
-        add(from, to, Finish::none, !emitted);
-      },
-      noisy, out);
-  return parts;
+inline std::vector<PlaneView> views_of(const FilterPlanes& planes) {
+  std::vector<PlaneView> views;
+  for (const FilterPlane& plane : planes) views.push_back({plane.values(), plane.components()});
+  return views;
 }
 
 /// What pixels side by side show. What is not a surface has no normal.
@@ -94,28 +65,27 @@ struct Shown {
 };
 
 /// The latest rows of a tile and its halo. Channels 0 to 6 are the position, the normal and the
-/// rounding of Surfel, the others are the components of the products; all are 0 for what is not a
+/// rounding of Surfel, the others are the components of the planes; all are 0 for what is not a
 /// surface, be it outside the picture.
 class TileRows {
  public:
   static constexpr int kSurfelChannels = 7;
 
   /// Holds `height` rows; the halo is `half` pixels wide.
-  TileRows(const Products& noisy, const Plane<Surfel>& surfel, const Tile& tile, int half,
-           int height, Products& out)
-      : surfel_(surfel),
+  TileRows(std::vector<PlaneView> noisy, const Plane<Surfel>& guide, const Tile& tile, int half,
+           int height)
+      : guide_(guide),
         tile_(tile),
         half_(half),
         height_(height),
-        parts_(parts_of(noisy, out)),
+        planes_(std::move(noisy)),
         stride_(round_up(round_up(tile.x1 - tile.x0, kLanes) + 2 * half, kLine)) {
-    for (const Part& part : parts_) components_ += part.components;
+    for (const PlaneView& plane : planes_) components_ += plane.components;
     rows_ = zeros(height_ * channels() * stride_);
     surface_ = zeros(stride_);
   }
 
-  const std::vector<Part>& parts() const { return parts_; }
-  int components() const { return components_; }  ///< of all products
+  int components() const { return components_; }  ///< of all planes
   int stride() const { return stride_; }          ///< from a channel to the next
 
   /// Channel `c` of picture row `y`; its entry 0 lies half a window left of the tile.
@@ -131,32 +101,34 @@ class TileRows {
   /// Takes row `y` in, in place of the row that was taken in `height` rows ago.
   void gather(int y) {
     float* to = rows_.get() + offset(y, 0);
-    if (y < 0 || y >= surfel_.height) {
+    if (y < 0 || y >= guide_.height) {
       std::fill_n(to, channels() * stride_, 0.0f);
       return;
     }
     const int left = tile_.x0 - half_, x0 = std::max(left, 0),
-              count = std::min(tile_.x1 + half_, surfel_.width) - x0;
-    const std::size_t first = surfel_.index(x0, y);
-    if (y + kAhead < surfel_.height) fetch(surfel_.index(x0, y + kAhead), count);
+              count = std::min(tile_.x1 + half_, guide_.width) - x0;
+    const std::size_t first = guide_.index(x0, y);
+    if (y + kAhead < guide_.height) fetch(guide_.index(x0, y + kAhead), count);
     to += x0 - left;
-    gather_surfels(&surfel_[first], count, to);
+    gather_surfels(&guide_[first], count, to);
     to += kSurfelChannels * stride_;
-    for (const Part& part : parts_) {
-      gather_part(part, first, count, to);
-      to += part.components * stride_;
+    for (const PlaneView& plane : planes_) {
+      gather_plane(plane, first, count, to);
+      to += plane.components * stride_;
     }
   }
 
   /// Writes row `y` of the tile from averages by component, which it finishes, and what is noisy
-  /// where `weight` is 0.
-  void write(int y, float* averages, const float* weight) const {
-    const std::size_t first = surfel_.index(tile_.x0, y);
+  /// where `weight` is 0, to the planes `out`, which are like those that are read.
+  void write(int y, float* averages, const float* weight, FilterPlanes& out) const {
+    const std::size_t first = guide_.index(tile_.x0, y);
     const int count = tile_.x1 - tile_.x0;
-    for (const Part& part : parts_) {
-      finish(part.finish, averages, count);
-      write_part(part, first, count, averages, weight);
-      averages += part.components * stride_;
+    for (std::size_t k = 0; k < planes_.size(); ++k) {
+      const std::size_t at = first * std::size_t(planes_[k].components);
+      finish(out[k].filtering.finish, averages, count);
+      write_plane({planes_[k].values + at, planes_[k].components}, out[k].values() + at, count,
+                  averages, weight);
+      averages += planes_[k].components * stride_;
     }
   }
 
@@ -175,9 +147,9 @@ class TileRows {
     const auto each_line = [](const float* from, int floats) {
       for (int i = 0; i < floats; i += kLine) hwy::Prefetch(from + i);
     };
-    each_line(&surfel_[first].position.x, count * int(sizeof(Surfel) / sizeof(float)));
-    for (const Part& part : parts_)
-      each_line(part.noisy + first * std::size_t(part.components), count * part.components);
+    each_line(&guide_[first].position.x, count * int(sizeof(Surfel) / sizeof(float)));
+    for (const PlaneView& plane : planes_)
+      each_line(plane.values + first * std::size_t(plane.components), count * plane.components);
   }
 
   void gather_surfels(const Surfel* from, int count, float* to) {
@@ -198,18 +170,18 @@ class TileRows {
     cover(count, whole, single);
   }
 
-  void gather_part(const Part& part, std::size_t first, int count, float* to) const {
-    const float* from = part.noisy + first * std::size_t(part.components);
+  void gather_plane(const PlaneView& plane, std::size_t first, int count, float* to) const {
+    const float* from = plane.values + first * std::size_t(plane.components);
     const auto whole = [&](int i) HWY_ATTR {
       const M surface = load(surface_.get() + i) != set(0);
       float* at = to + i;
-      if (part.components == 1) return store(hn::IfThenElseZero(surface, load(from + i)), at);
+      if (plane.components == 1) return store(hn::IfThenElseZero(surface, load(from + i)), at);
       store_apart(if_then_else_zero(surface, load3(from + 3 * i)), stride_, at);
     };
     cover(count, whole, [&](int i) {
       const bool surface = surface_[std::size_t(i)] != 0;
-      for (int c = 0; c < part.components; ++c)
-        to[c * stride_ + i] = surface ? from[i * part.components + c] : 0.0f;
+      for (int c = 0; c < plane.components; ++c)
+        to[c * stride_ + i] = surface ? from[i * plane.components + c] : 0.0f;
     });
   }
 
@@ -225,20 +197,18 @@ class TileRows {
     }
   }
 
-  void write_part(const Part& part, std::size_t first, int count, const float* from,
-                  const float* weight) const {
-    const float* noisy = part.noisy + first * std::size_t(part.components);
-    float* to = part.out + first * std::size_t(part.components);
+  void write_plane(const PlaneView& noisy, float* to, int count, const float* from,
+                   const float* weight) const {
     const auto single = [&](int i) {
-      for (int c = 0; c < part.components; ++c) {
-        const int at = i * part.components + c;
-        to[at] = weight[i] > 0 ? from[c * stride_ + i] : noisy[at];
+      for (int c = 0; c < noisy.components; ++c) {
+        const int at = i * noisy.components + c;
+        to[at] = weight[i] > 0 ? from[c * stride_ + i] : noisy.values[at];
       }
     };
     const auto whole = [&](int i) HWY_ATTR {
       if (!all(load(weight + i) > set(0))) {
         for (int k = i; k < i + kLanes; ++k) single(k);
-      } else if (part.components == 1) {
+      } else if (noisy.components == 1) {
         store(load(from + i), to + i);
       } else {
         store3(load_apart(from + i, stride_), to + 3 * i);
@@ -247,10 +217,10 @@ class TileRows {
     cover(count, whole, single);
   }
 
-  const Plane<Surfel>& surfel_;
+  const Plane<Surfel>& guide_;
   const Tile tile_;
   const int half_, height_;
-  const std::vector<Part> parts_;
+  const std::vector<PlaneView> planes_;
   const int stride_;
   int components_ = 0;
   AlignedFloats rows_;     ///< by row modulo the height, channel and column

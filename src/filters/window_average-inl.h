@@ -17,7 +17,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "filters/tap.h"
+#include "filters/filter_planes.h"
 #include "filters/tile_rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -30,15 +30,16 @@ constexpr float kLeastCosine = 0.8f;
 template <class Similarity>
 class WindowAverage {
  public:
-  WindowAverage(const Products& noisy, const Geometry& geometry, const std::vector<Tap>& taps,
-                const Similarity& similarity, const Tile& tile, Products& out)
+  WindowAverage(const FilterPlanes& noisy, const Plane<Surfel>& guide, const std::vector<Tap>& taps,
+                const Similarity& similarity, const Tile& tile, FilterPlanes& out)
       : taps_(taps),
         similarity_(similarity),
         tile_(tile),
         half_(reach(taps,
                     [](const Tap& tap) { return std::max(std::abs(tap.dx), std::abs(tap.dy)); })),
         half_rows_(reach(taps, [](const Tap& tap) { return std::abs(tap.dy); })),
-        rows_(noisy, geometry.surfel, tile, half_, 2 * half_ + 1, out),
+        rows_(views_of(noisy), guide, tile, half_, 2 * half_ + 1),
+        out_(out),
         weights_(zeros(int(taps.size()) * kLanes)),
         averages_(zeros((rows_.components() + 1) * rows_.stride())) {}
 
@@ -47,7 +48,7 @@ class WindowAverage {
     for (int y = tile_.y0; y < tile_.y1; ++y) {
       for (; gathered <= y + half_rows_; ++gathered) rows_.gather(gathered);
       for (int x = 0; x < tile_.x1 - tile_.x0; x += kLanes) average(x, y);
-      rows_.write(y, averages_.get(), weight_sum());
+      rows_.write(y, averages_.get(), weight_sum(), out_);
     }
   }
 
@@ -94,6 +95,7 @@ class WindowAverage {
   const Tile tile_;
   const int half_, half_rows_;  ///< reach of the window, and of its rows
   TileRows rows_;
+  FilterPlanes& out_;
   AlignedFloats weights_;   ///< by tap, a vector each
   AlignedFloats averages_;  ///< by component and column; after the components the weights' sum
 };

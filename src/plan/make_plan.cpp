@@ -68,17 +68,6 @@ void set_by_option(Plan& plan, const std::string& name, std::optional<int> value
   plan.request.parameters[name] = *value;
 }
 
-/// A filter that averages a map alone, as products with the surfaces that the map shows.
-MapFilter map_filter(const Filter& filter, int pattern_size) {
-  return [&filter, pattern_size](Plane<float> map, Plane<Surfel> surfel) {
-    Geometry shown;
-    shown.surfel = std::move(surfel);
-    Products products;
-    products.ao = std::move(map);
-    return apply_filter(filter, std::move(products), shown, pattern_size).ao;
-  };
-}
-
 void choose_filter(Plan& plan, const std::string& name) {
   plan.filter = &find_filter(name, *plan.method);
   if (name != kSourceFilter) return;
@@ -89,7 +78,10 @@ void choose_filter(Plan& plan, const std::string& name) {
                                      half ? ", on the map at half resolution" : ""));
   if (!half) return;
   plan.half_filter = std::exchange(plan.filter, &find_filter("none"));
-  plan.request.filter_half = map_filter(*plan.half_filter, plan.method->pattern_size / 2);
+  plan.request.filter_half = [filter = plan.half_filter, of_half = plan.method->pattern_size / 2](
+                                 Plane<float> ao, const Plane<Surfel>& guide) {
+    return apply_filter(*filter, std::move(ao), find_product("ao").filtering, guide, of_half);
+  };
 }
 
 void explain_reflection(Plan& plan, const Scene& scene) {

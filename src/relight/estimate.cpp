@@ -45,13 +45,6 @@ double rms_over_surfaces(const Plane<float>& plane, const Geometry& geometry) {
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-/// Products that hold this plane alone, for a filter.
-Products as_error(Plane<float> plane) {
-  Products products;
-  products.error = std::move(plane);
-  return products;
-}
-
 /// Products of the receivers as planes of the whole geometry, as filters and outputs take them; the
 /// pixels around them are as those without a surface.
 Products over_geometry(Products found, const Geometry& geometry, const Window& receivers) {
@@ -79,7 +72,7 @@ Plane<float> size_of(Plane<float> draw, const Geometry& geometry) {
   constexpr int kNeighbours = 2;
   for (float& e : draw.pixels) e *= e;
   Plane<float> size =
-      apply_filter(find_filter("geometry"), as_error(std::move(draw)), geometry, kNeighbours).error;
+      apply_filter(find_filter("geometry"), std::move(draw), {}, geometry.surfel, kNeighbours);
   for (float& e : size.pixels) e = std::sqrt(std::max(e, 0.0f));
   return size;
 }
@@ -143,14 +136,17 @@ class Round {
     if (spent_) free_occluders(*spent_);
     out.estimate_ms = watch.lap();
     scale_to_noise(products.error, *plan_.method);
-    products = filtered(std::move(products));
+    const int pattern = plan_.method->pattern_size;
+    products = filter_shares(*plan_.filter, std::move(products), scene_, pattern);
     if (plan_.temporal) {
       out.history = accumulate(past.history ? &*past.history : nullptr, scene_.geometry, products,
                                past.motion);
       products = products_of(out.history);
     }
     if (request_.products.error) {
-      if (compares_steps_) change = filtered(as_error(std::move(change))).error;
+      if (compares_steps_)
+        change =
+            apply_filter(*plan_.filter, std::move(change), {}, scene_.geometry.surfel, pattern);
       out.error = measure(products.error, std::move(change));
     }
     out.products = std::move(products);
@@ -162,10 +158,6 @@ class Round {
   void tell(std::size_t done, std::size_t count) {
     on_progress_(std::min((finished_ + double(done) / double(count)) / passes_, 1.0));
     if (done == count) finished_ += 1;
-  }
-
-  Products filtered(Products products) const {
-    return filter_shares(*plan_.filter, std::move(products), scene_, plan_.method->pattern_size);
   }
 
   /// Turns the difference of halves into the product `error`.

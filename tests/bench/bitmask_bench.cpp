@@ -13,7 +13,8 @@
 #include "bench/ball_frame.h"
 #include "bench/bare_loads.h"
 #include "estimators/bitmask.h"
-#include "filters/geometry_filter.h"
+#include "filters/filter_products.h"
+#include "filters/registry.h"
 #include "scene/solids/solids.h"
 #include "simd/isa.h"
 #include "support/scene_of.h"
@@ -89,7 +90,8 @@ void filter(benchmark::State& state, const std::string& isa, const Size& size, i
   products.bent = products.direct = products.bounce =
       Plane<glm::vec3>(size.width, size.height, glm::vec3(0.5f));
   for (auto _ : state)
-    products = filter_geometry(std::move(products), g, bitmask_method().pattern_size);
+    products = filter_products(find_filter("geometry"), std::move(products), g.surfel,
+                               bitmask_method().pattern_size);
   using benchmark::Counter;
   state.counters["ns/pixel"] = Counter(double(g.surfel.size()) * 1e-9,
                                        Counter::kIsIterationInvariantRate | Counter::kInvert);

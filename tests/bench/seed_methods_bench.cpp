@@ -9,6 +9,7 @@
 
 #include "bench/ball_frame.h"
 #include "estimators/registry.h"
+#include "filters/filter_products.h"
 #include "filters/registry.h"
 #include "support/scene_of.h"
 
@@ -74,7 +75,8 @@ void filter(benchmark::State& state, const std::string& isa, const FilterRow& ro
   const Geometry& g = frame_of(1920, 1080);
   Products noisy;
   noisy.ao = Plane<float>(g.surfel.width, g.surfel.height, 0.5f);
-  for (auto _ : state) benchmark::DoNotOptimize(apply_filter(find_filter(row.name), noisy, g, 4));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(filter_products(find_filter(row.name), noisy, g.surfel, 4));
   count_samples(state, double(g.surfel.size()) * row.taps);
 }
 

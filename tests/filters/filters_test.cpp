@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "filters/filter_products.h"
 #include "filters/registry.h"
 #include "parallel/tiles.h"
 #include "support/chosen_isa.h"
@@ -17,7 +18,7 @@ namespace ssdo::test {
 namespace {
 
 Products filtered(std::string_view name, const Products& in, const Geometry& g) {
-  return apply_filter(find_filter(name), in, g, 4);
+  return filter_products(find_filter(name), in, g.surfel, 4);
 }
 
 /// All that change anything.
@@ -54,6 +55,19 @@ TEST_P(EveryFilter, AgreesAmongInstructionSets) {
       EXPECT_LT(difference(vector.bent[i], scalar.bent[i]), 1e-5);
     }
   }
+}
+
+/// Planes have nothing to do with each other, but for ao and bounce.
+TEST_P(EveryFilter, GivesAPlaneAloneWhatItGivesAmongOthers) {
+  const Geometry g = random_geometry(60, 40, 7);
+  const Products in = random_products(g, 8), all = filtered(GetParam(), in, g);
+  const auto alone = [&](const Plane<float>& plane, const char* product) {
+    return apply_filter(find_filter(GetParam()), plane, find_product(product).filtering, g.surfel,
+                        4);
+  };
+  EXPECT_EQ(alone(in.ao, "ao").pixels, all.ao.pixels);
+  EXPECT_EQ(alone(in.error, "error").pixels, all.error.pixels);
+  EXPECT_EQ(alone(in.reflection, "reflection").pixels, all.reflection.pixels);
 }
 
 TEST_P(EveryFilter, GivesTheSameBitsInACropAndOnAnyNumberOfThreads) {

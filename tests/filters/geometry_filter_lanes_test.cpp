@@ -7,7 +7,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "filters/geometry_filter.h"
+#include "filters/filter_products.h"
+#include "filters/registry.h"
 #include "support/random_frame.h"
 
 namespace ssdo::test {
@@ -99,7 +100,7 @@ TEST(GeometryFilterLanes, AreTheReference) {
     const Geometry g = random_geometry(size.width, size.height, 1);
     const Products in = random_products(g, 2);
     for (const int pattern_size : {2, 4, 8}) {
-      const Products out = filter_geometry(in, g, pattern_size);
+      const Products out = filter_products(find_filter("geometry"), in, g.surfel, pattern_size);
       for (int y = 0; y < size.height; ++y) {
         for (int x = 0; x < size.width; ++x) {
           SCOPED_TRACE(testing::Message() << size.width << "x" << size.height << " T "
@@ -143,8 +144,10 @@ TEST(GeometryFilter, IsOddInTheErrorAndLinear) {
   minus = sum = a;
   for (float& e : minus.error.pixels) e = -e;
   for (std::size_t i = 0; i < sum.error.size(); ++i) sum.error[i] += b.error[i];
-  const Products of_a = filter_geometry(a, g, 4), of_b = filter_geometry(b, g, 4),
-                 of_minus = filter_geometry(minus, g, 4), of_sum = filter_geometry(sum, g, 4);
+  const Products of_a = filter_products(find_filter("geometry"), a, g.surfel, 4),
+                 of_b = filter_products(find_filter("geometry"), b, g.surfel, 4),
+                 of_minus = filter_products(find_filter("geometry"), minus, g.surfel, 4),
+                 of_sum = filter_products(find_filter("geometry"), sum, g.surfel, 4);
   for (std::size_t i = 0; i < a.error.size(); ++i) {
     EXPECT_EQ(of_minus.error[i], -of_a.error[i]);
     EXPECT_NEAR(of_sum.error[i], of_a.error[i] + of_b.error[i], 1e-5);
@@ -156,7 +159,7 @@ TEST(GeometryFilter, LeavesNoDirectionWithoutLength) {
   const Geometry g = random_geometry(40, 30, 10);
   Products p;
   p.bent = Plane<glm::vec3>(40, 30);
-  const Products out = filter_geometry(p, g, 4);
+  const Products out = filter_products(find_filter("geometry"), p, g.surfel, 4);
   for (const glm::vec3& bent : out.bent.pixels) EXPECT_EQ(bent, glm::vec3(0));
 }
 

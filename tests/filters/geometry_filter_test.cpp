@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/geometry_filter.h"
+#include "filters/filter_products.h"
+#include "filters/registry.h"
 
 #include <gtest/gtest.h>
 
@@ -36,8 +37,10 @@ TEST(GeometryFilter, RemovesThePatternOnAPlaneExactly) {
                 {0, -5 * std::sin(glm::radians(tilt)), 5 * std::cos(glm::radians(tilt))}, {0, 0, 0},
                 {0, 1, 0.1});
     const Geometry g = geometry_of(plane({}, {0, 0, 1}), camera, kWindow);
-    const Products out = filter_geometry(noise_of_a_pattern(g), g, 4),
-                   of_wide = filter_geometry(noise_of_a_pattern(g, 8, 0.3f), g, 8);
+    const Products out =
+                       filter_products(find_filter("geometry"), noise_of_a_pattern(g), g.surfel, 4),
+                   of_wide = filter_products(find_filter("geometry"),
+                                             noise_of_a_pattern(g, 8, 0.3f), g.surfel, 8);
     for (int y = 4; y < kWindow.height() - 4; ++y) {
       for (int x = 4; x < kWindow.width() - 4; ++x) {
         EXPECT_NEAR(out.ao(x, y), 0.5, 1e-5);
@@ -61,7 +64,7 @@ TEST(GeometryFilter, KeepsTheEdgeOfAShadow) {
   }
   p.shares.suns = {p.ao};
   // Averaged over 8 x 8, these would have 0.56 and 0.74 of ao.
-  const Products out = filter_geometry(p, g, 8);
+  const Products out = filter_products(find_filter("geometry"), p, g.surfel, 8);
   EXPECT_LT(out.shares.suns[0](28, 24), 0.47);
   EXPECT_GT(out.shares.suns[0](31, 24), 0.83);
   EXPECT_LT(out.ao(28, 24), 0.47);
@@ -83,7 +86,7 @@ TEST(GeometryFilter, ABounceBelongsToItsAo) {
   }
   p.bounce = Plane<glm::vec3>(kWindow.width(), kWindow.height());
   for (std::size_t i = 0; i < p.ao.size(); ++i) p.bounce[i] = glm::vec3(1 - p.ao[i]);
-  const Products out = filter_geometry(p, g, 8);
+  const Products out = filter_products(find_filter("geometry"), p, g.surfel, 8);
   for (std::size_t i = 0; i < p.ao.size(); ++i)
     EXPECT_LT(difference(out.bounce[i], glm::dvec3(1 - out.ao[i])), 1e-4);
   EXPECT_EQ(out.bounce(60, 20), glm::vec3(0));
@@ -92,7 +95,7 @@ TEST(GeometryFilter, ABounceBelongsToItsAo) {
 TEST(GeometryFilter, LeavesLittleOfThePatternOnACurvedSurface) {
   const Geometry g = geometry_of(
       sphere({}, 2), look_at(camera_from_fov(40, kWindow, 1), {0, 0, 8}, {}, {0, 1, 0}), kWindow);
-  const Products out = filter_geometry(noise_of_a_pattern(g), g, 4);
+  const Products out = filter_products(find_filter("geometry"), noise_of_a_pattern(g), g.surfel, 4);
   for (int y = 16; y < 32; ++y) {
     for (int x = 24; x < 40; ++x) EXPECT_NEAR(out.ao(x, y), 0.5, 0.02);
   }
@@ -107,7 +110,7 @@ TEST(GeometryFilter, FollowsACoarseMeshUnderSmoothNormals) {
     const double lean = glm::radians(40.0);
     s.normal = glm::vec3(0, std::sin(lean), std::cos(lean));
   }
-  const Products out = filter_geometry(noise_of_a_pattern(g), g, 4);
+  const Products out = filter_products(find_filter("geometry"), noise_of_a_pattern(g), g.surfel, 4);
   for (int y = 4; y < kWindow.height() - 4; ++y) {
     for (int x = 4; x < kWindow.width() - 4; ++x) EXPECT_NEAR(out.ao(x, y), 0.5, 1e-5);
   }
@@ -125,7 +128,7 @@ TEST(GeometryFilter, DoesNotCrossEdges) {
   step.ao = Plane<float>(kWindow.width(), kWindow.height());
   for (std::size_t i = 0; i < step.ao.size(); ++i)
     step.ao[i] = g.surfel[i].position.z > -4.75f ? 1.0f : 0.0f;
-  const Products out = filter_geometry(step, g, 4);
+  const Products out = filter_products(find_filter("geometry"), step, g.surfel, 4);
   for (std::size_t i = 0; i < step.ao.size(); ++i) EXPECT_EQ(out.ao[i], step.ao[i]);
 
   // Two planes that meet at a right angle: near the edge the distance is small, the normals differ.
@@ -134,7 +137,7 @@ TEST(GeometryFilter, DoesNotCrossEdges) {
                   look_at(camera_from_fov(40, kWindow, 1), {0, -4, 4}, {}, {0, 0, 1}), kWindow);
   for (std::size_t i = 0; i < step.ao.size(); ++i)
     step.ao[i] = corner.surfel[i].normal.y > 0.5f ? 1.0f : 0.0f;
-  const Products walls = filter_geometry(step, corner, 4);
+  const Products walls = filter_products(find_filter("geometry"), step, corner.surfel, 4);
   for (std::size_t i = 0; i < step.ao.size(); ++i) EXPECT_EQ(walls.ao[i], step.ao[i]);
 }
 
@@ -144,7 +147,7 @@ TEST(GeometryFilter, LeavesTheBackgroundAlone) {
   Products p;
   p.ao = Plane<float>(kWindow.width(), kWindow.height());
   for (std::size_t i = 0; i < p.ao.size(); ++i) p.ao[i] = g.is_surface(i) ? 0.25f : 1.0f;
-  const Products out = filter_geometry(p, g, 4);
+  const Products out = filter_products(find_filter("geometry"), p, g.surfel, 4);
   for (std::size_t i = 0; i < p.ao.size(); ++i) EXPECT_FLOAT_EQ(out.ao[i], p.ao[i]);
 }
 

@@ -10,7 +10,8 @@
 #include <limits>
 
 #include "estimators/bitmask.h"
-#include "filters/geometry_filter.h"
+#include "filters/filter_products.h"
+#include "filters/registry.h"
 #include "parallel/tiles.h"
 #include "support/analytic_scene.h"
 #include "support/random_frame.h"
@@ -435,9 +436,11 @@ TEST(Temporal, TakesTheFlickerOfNoiseAwayUnderAMovingCamera) {
     // Without --temporal every frame has the same pattern.
     const Products alone = occlusion(g, 0), turned = occlusion(g, unsigned(n));
     noisy.add(g, alone.ao);
-    noisy_filtered.add(g, filter_geometry(alone, g, 4).ao);
+    noisy_filtered.add(g, filter_products(find_filter("geometry"), alone, g.surfel, 4).ao);
     steady.add(g, sequence.feed(g, turned).mean.ao);
-    steady_filtered.add(g, filtered_sequence.feed(g, filter_geometry(turned, g, 4)).mean.ao);
+    steady_filtered.add(
+        g, filtered_sequence.feed(g, filter_products(find_filter("geometry"), turned, g.surfel, 4))
+               .mean.ao);
   }
   EXPECT_LT(steady.rms(), noisy.rms() / 2.5) << noisy.rms();
   // What the filter leaves is for a good part no noise: shadows that move over the pixel grid.

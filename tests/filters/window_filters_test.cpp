@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 
+#include "filters/filter_products.h"
 #include "filters/registry.h"
 #include "support/analytic_scene.h"
 #include "support/random_frame.h"
@@ -21,7 +22,7 @@ constexpr int kPattern = 4;
 const char* const kFilters[] = {"box", "gaussian", "normal", "depth"};
 
 Products filtered(std::string_view name, const Products& in, const Geometry& g) {
-  return apply_filter(find_filter(name), in, g, kPattern);
+  return filter_products(find_filter(name), in, g.surfel, kPattern);
 }
 
 using Weight = std::function<double(const Surfel& p, const Surfel& q, int dx, int dy)>;

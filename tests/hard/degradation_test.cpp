@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "estimators/bitmask/request.h"
+#include "filters/filter_products.h"
 #include "filters/registry.h"
 #include "hard/every_method.h"
 #include "hard/recorded_degradation.h"
@@ -49,7 +50,8 @@ Geometry averaged_still_life(Plane<unsigned char>& averaged) {
 Plane<float> ao_of(const Method& method, const Geometry& g) {
   const HardFrame frame{g, Plane<HalfColor>(g.surfel.width, g.surfel.height, glm::vec3(0.5f)),
                         Environment::constant(glm::vec3(1)), kRadius, 0};
-  return apply_filter(find_filter("geometry"), run_method(method, frame), g, method.pattern_size)
+  return filter_products(find_filter("geometry"), run_method(method, frame), g.surfel,
+                         method.pattern_size)
       .ao;
 }
 

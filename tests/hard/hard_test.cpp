@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+#include "filters/filter_products.h"
 #include "filters/registry.h"
 #include "filters/temporal.h"
 #include "hard/every_method.h"
@@ -132,7 +133,7 @@ TEST_P(HardCases, ThroughEveryFilter) {
     EXPECT_EQ(find_fault(*first, frame_.geometry), "");
   };
   for (const Filter& filter : filters())
-    check(filter.name, [&] { return apply_filter(filter, clean, frame_.geometry, 4); });
+    check(filter.name, [&] { return filter_products(filter, clean, frame_.geometry.surfel, 4); });
   check(kSourceFilter, [&] { return fade_with_its_filter(frame_); });
   check("temporal", [&] {
     History history = accumulate(nullptr, frame_.geometry, clean);
