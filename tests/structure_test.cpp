@@ -201,6 +201,15 @@ TEST(Structure, LibrariesStayInTheirFolders) {
   });
 }
 
+TEST(Structure, OneTableDecidesWhichOptionsHaveNoEffect) {
+  for_each_file([](const std::string& path, const auto&) {
+    if (fs::path(path).stem() == "idle_options") return;
+    std::ifstream in(kSource / path);
+    for (std::string line; std::getline(in, line);)
+      EXPECT_EQ(line.find("has no effect:"), line.npos) << path << ": " << line;
+  });
+}
+
 TEST(Structure, FilesAndFoldersStaySmall) {
   constexpr int kMostLines = 400, kMostModules = 22, kMostOnTop = 12;
   std::map<fs::path, std::set<std::string>> modules;

@@ -13,12 +13,12 @@
 #include "cli/help/completions.h"
 #include "cli/help/short_help.h"
 #include "cli/help/unknown_words.h"
-#include "cli/idle_options.h"
 #include "cli/made_by.h"
 #include "cli/main_options.h"
 #include "cli/option_values.h"
 #include "error.h"
 #include "io/one_line.h"
+#include "relight/idle_options.h"
 
 namespace ssdo {
 namespace {
@@ -196,7 +196,10 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   if (o.command == Command::bench) finish_bench(app, o.bench);
   check(o, app);
   if (history) o.output.made_by = made_by({argv, std::size_t(argc)});
-  o.warnings = idle_options(given, o);
+  const Purpose purpose = o.command == Command::relight ? Purpose::relight
+                          : o.command == Command::bench ? Purpose::bench
+                                                        : Purpose::other;
+  o.warnings = idle_options(given, o, purpose);
   return parsed;
 }
 

@@ -100,21 +100,4 @@ void explain_albedo(Plan& plan, const GBuffer& gbuffer) {
     plan.reasons.push_back(gbuffer.albedo_alpha);
 }
 
-std::vector<std::string> idle_for_composite(const Plan& plan, const OutputOptions& output,
-                                            const GBuffer& gbuffer) {
-  const bool is_made = contains(plan.make, "composite");
-  const Compose compose = plan.composition.compose;
-  const std::string reason = is_made ? fmt::format("composite {} does not use it", name_of(compose))
-                                     : "no output has the composite";
-  const bool used = is_made && compose == Compose::occlude;
-  std::vector<std::string> lines;
-  const auto add = [&](std::string_view option) {
-    lines.push_back(fmt::format("{} has no effect: {}", option, reason));
-  };
-  if (output.compose && !is_made) add("--compose");
-  if (!gbuffer.ambient.empty() && !used) add("--aov ambient");
-  if (!gbuffer.specular.empty() && !used) add("--aov specular");
-  return lines;
-}
-
 }  // namespace ssdo

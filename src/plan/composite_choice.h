@@ -35,8 +35,4 @@ void explain_composite(Plan& plan, const OutputOptions& output, const GBuffer& g
 /// Adds how alpha is in the albedo, where it matters, to the reasons of a plan that uses it.
 void explain_albedo(Plan& plan, const GBuffer& gbuffer);
 
-/// A line for each of --compose and the layers for composites that changes nothing.
-std::vector<std::string> idle_for_composite(const Plan& plan, const OutputOptions& output,
-                                            const GBuffer& gbuffer);
-
 }  // namespace ssdo

@@ -3,8 +3,6 @@
 
 #include <cstddef>
 #include <deque>
-#include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +12,7 @@
 #include "plan/band_plan.h"
 #include "plan/outputs.h"
 #include "plan/plan.h"
+#include "relight/frame_options.h"
 #include "relight/lighting.h"
 #include "scene/camera/world_up.h"
 #include "scene/further/further_pictures.h"
@@ -24,20 +23,6 @@
 #include "scene/view.h"
 
 namespace ssdo {
-
-/// All that the user says about the result.
-struct FrameOptions {
-  InputOptions input;
-  CameraOptions camera;
-  LightOptions light;
-  ModelOptions model;
-  OutputOptions output;
-  ColorOptions color;
-  /// Which axis is up by other frames of the sequence too, asked where nothing but P tells it; for
-  /// a frame alone it is empty.
-  std::function<std::optional<UpEvidence>()> up_of_shot = {};
-  std::size_t memory = std::numeric_limits<std::size_t>::max();  ///< bytes that a frame may take
-};
 
 /// Milliseconds of wall time per stage; `known` is what --also and --neighbours take, with the
 /// solids that they change.

@@ -4,20 +4,9 @@
 #include <fmt/format.h>
 
 #include <glm/matrix.hpp>
-#include <string_view>
 
 namespace ssdo {
 namespace {
-
-void warn_of_idle_options(Frame& frame, const LightOptions& options) {
-  if (!frame.scene.light.is_constant()) return;
-  const auto warn = [&](std::string_view option) {
-    frame.report.warnings.push_back(
-        fmt::format("{} has no effect: the light is the same from everywhere", option));
-  };
-  if (options.rotate_degrees != 0) warn("--env-rotate");
-  if (options.up) warn("--env-up");
-}
 
 WorldUp find_up(const Frame& frame, const FrameOptions& options) {
   const bool asks = options.up_of_shot && !header_tells_up(frame.gbuffer);
@@ -48,7 +37,6 @@ void light_frame(Frame& frame, const Lighting& lighting, const FrameOptions& opt
   }
   if (has_directions && world && glm::determinant(scene.geometry.world_to_camera) < 0)
     frame.warn({"the world of P is left-handed: the map lies in its axes, and appears mirrored"});
-  warn_of_idle_options(frame, options.light);
 }
 
 }  // namespace ssdo

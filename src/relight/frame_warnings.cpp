@@ -12,7 +12,7 @@
 
 #include "io/exr/kept_channels.h"
 #include "io/pictures/transfer_curve.h"
-#include "plan/composite_choice.h"
+#include "relight/idle_options.h"
 #include "scene/layers/advice.h"
 #include "scene/layers/windows.h"
 
@@ -71,24 +71,23 @@ void warn_of_radius(Frame& frame, const ModelOptions& model) {
          "limits nothing");
 }
 
-/// Outputs cover rendered layers too, and kept parts are cropped as well.
-void warn_of_idle_crop(Frame& frame, const OutputOptions& output) {
+/// Whether --crop leaves anything out. Outputs cover rendered layers too, and kept parts are
+/// cropped as well.
+bool has_overscan(const Frame& frame, const OutputOptions& output) {
   const Window& display = frame.part().display_window;
   const auto reaches_beyond = [&](const ExrPart& part) {
     return intersection(part.data_window, display) != part.data_window;
   };
-  bool has_effect = reaches_beyond(frame.part());
+  bool found = reaches_beyond(frame.part());
   for (const Role role : kRendered) {
     const auto& layer = frame.layers[role];
     if (layer)
-      has_effect |=
+      found |=
           reaches_beyond(frame.files[std::size_t(layer->file)].parts()[std::size_t(layer->part)]);
   }
   for (const ExrPart& part : frame.files.front().parts())
-    has_effect |= output.keep_channels && reaches_beyond(part);
-  if (output.crop && !has_effect)
-    frame.report.warnings.push_back(
-        "--crop has no effect: the frame has no pixels beyond its display window");
+    found |= output.keep_channels && reaches_beyond(part);
+  return found;
 }
 
 }  // namespace
@@ -109,21 +108,17 @@ void warn_of_encoded_colors(Frame& frame) {
   }
 }
 
-void warn_of_idle_depth_options(Frame& frame, const GBufferOptions& options) {
-  if (frame.layers[Role::depth]) return;
-  const auto warn = [&](std::string_view option) {
-    frame.report.warnings.push_back(
-        fmt::format("{} has no effect: the frame has no depth layer", option));
-  };
-  if (options.depth_kind) warn("--depth-kind");
-  if (options.background_depth) warn("--background-depth");
-}
-
-void warn_of_plan(Frame& frame, const FrameOptions& options) {
+void warn_of_plan(Frame& frame, const FrameOptions& options, bool has_deep_pixels) {
   warn_of_missing_layers(frame, options.output);
   warn_of_radius(frame, options.model);
-  warn_of_idle_crop(frame, options.output);
-  frame.warn(idle_for_composite(frame.plan, options.output, frame.gbuffer));
+  frame.warn(idle_options(options, {.plan = frame.plan,
+                                    .depth = has_deep_pixels || frame.layers[Role::depth],
+                                    .position = frame.layers[Role::position].has_value(),
+                                    .normal = frame.layers[Role::normal].has_value(),
+                                    .ambient = !frame.gbuffer.ambient.empty(),
+                                    .specular = !frame.gbuffer.specular.empty(),
+                                    .constant_light = frame.scene.light.is_constant(),
+                                    .overscan = has_overscan(frame, options.output)}));
 }
 
 void explain_earlier_products(Frame& frame) {

@@ -10,11 +10,9 @@ namespace ssdo {
 /// Colours are not decoded: the outputs keep the header, which says how they are encoded.
 void warn_of_encoded_colors(Frame& frame);
 
-/// Options for the depth, of a frame that has none.
-void warn_of_idle_depth_options(Frame& frame, const GBufferOptions& options);
-
 /// Missing layers, a radius in another unit, and options that change nothing of a planned frame.
-void warn_of_plan(Frame& frame, const FrameOptions& options);
+/// `has_deep_pixels`: a deep image of the frame is known.
+void warn_of_plan(Frame& frame, const FrameOptions& options, bool has_deep_pixels);
 
 /// What is in a file besides the render, as it is an output of ssdo: a reason of the plan.
 void explain_earlier_products(Frame& frame);

@@ -86,20 +86,11 @@ Frame read_frame(const FrameOptions& options, const FrameFiles& files,
 }
 
 /// Finds the solids behind the surfaces, and takes what further views add.
-void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& options,
-                    const FrameFiles& files) {
-  const ModelOptions& model = options.model;
-  if (find_method(model.method).takes.thickness) {
+void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& options) {
+  if (find_method(options.model.method).takes.thickness) {
     std::optional<float> thickness;
-    if (model.thickness) thickness = float(*model.thickness);
+    if (options.model.thickness) thickness = float(*options.model.thickness);
     frame.views = use_known_geometry(known, frame.scene, thickness, options.input.gbuffer);
-  } else {
-    const auto warn = [&](std::string_view option) {
-      known.warnings.push_back(fmt::format(
-          "{} has no effect: method {} does not look behind what is seen", option, model.method));
-    };
-    if (!files.also.empty()) warn("--also");
-    if (!files.neighbours.empty()) warn("--neighbours");
   }
   frame.warn(known.warnings);
   frame.further_losses = std::move(known.losses);
@@ -118,7 +109,7 @@ void check_bands(const Frame& frame) {
 }
 
 /// Decides what is computed, and says why.
-void plan_frame(Frame& frame, const FrameOptions& options, int number) {
+void plan_frame(Frame& frame, const KnownGeometry& known, const FrameOptions& options, int number) {
   ModelOptions model = options.model;
   if (model.temporal) model.seed += unsigned(number);
   frame.plan = make_plan(model, options.output, frame.scene, frame.gbuffer, frame.input);
@@ -129,7 +120,7 @@ void plan_frame(Frame& frame, const FrameOptions& options, int number) {
                              options.output, options.memory);
     frame.plan.reasons.push_back(describe(*frame.bands, all));
   }
-  warn_of_plan(frame, options);
+  warn_of_plan(frame, options, !known.deep.empty());
   explain_earlier_products(frame);
   explain_views(frame.plan, frame.views);
   frame.advice = explain_guessed(frame.plan, frame.scene);
@@ -149,13 +140,12 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& lighting,
   Stopwatch watch;
   KnownGeometry known = read_known_geometry(frame, files, options, pictures, own);
   frame.times.known = watch.lap();
-  if (known.deep.empty()) warn_of_idle_depth_options(frame, options.input.gbuffer);
   light_frame(frame, lighting, options);
   frame.times.prepare += watch.lap();
-  find_occluders(frame, known, options, files);
+  find_occluders(frame, known, options);
   const bool is_known = !files.also.empty() || !files.neighbours.empty();
   (is_known ? frame.times.known : frame.times.prepare) += watch.lap();
-  plan_frame(frame, options, number);
+  plan_frame(frame, known, options, number);
   frame.times.prepare += watch.lap();
   return frame;
 }

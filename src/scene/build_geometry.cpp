@@ -279,8 +279,6 @@ void place_normals(const GBuffer& g, const UsedNormals& used, Geometry& out,
 
 UsedNormals find_normals(const GBuffer& g, const Geometry& out, const std::string& of_shot,
                          const std::string& file, GeometryReport& report) {
-  if (g.space && g.position.empty() && g.normal.empty())
-    report.warnings.push_back("--space has no effect: the frame has neither P nor N");
   std::optional<NormalSpace> space = space_of_normals(g, out, of_shot, file, report);
   UsedNormals used;
   if (space) used = g.space ? UsedNormals{space->to_camera} : judge_normals(g, out, *space, report);
