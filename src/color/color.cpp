@@ -18,6 +18,7 @@
 #include "error.h"
 #include "io/one_line.h"
 #include "io/size_guard.h"
+#include "math/half_color.h"
 #include "nearest_name.h"
 
 namespace ssdo {
@@ -34,7 +35,7 @@ constexpr const char* kBuiltInConfig =
 constexpr int kFirstVersionWithUris = 0x02020000;
 
 /// Of a half float. The ACES transforms take values far beyond it for black, infinite ones for NaN.
-constexpr float kLargest = 65504.0f;
+constexpr float kLargest = HalfColor::kMost;
 
 /// Of an OpenColorIO config; that of ACES has 0.3 MiB.
 constexpr std::size_t kMostConfigBytes = 4 << 20;

@@ -14,6 +14,7 @@
 #include "math/luminance.h"
 #include "plan/composite_choice.h"
 #include "plan/product_choice.h"
+#include "scene/solids/solids.h"
 
 namespace ssdo {
 namespace {
@@ -197,9 +198,9 @@ void explain_thickness(Plan& plan, const ModelOptions& model) {
   plan.reasons.push_back(
       model.thickness
           ? fmt::format("thickness {:.4g}: as given", *model.thickness)
-          : std::string(
-                "thickness: solids are 0.85 times as thick as they appear wide, or less "
-                "where the sides that they show say so, and surfaces continue behind them"));
+          : fmt::format("thickness: solids are {:g} times as thick as they appear wide, or less "
+                        "where the sides that they show say so, and surfaces continue behind them",
+                        kDepthOfWidth));
 }
 
 void choose_march(Plan& plan, const ModelOptions& model) {

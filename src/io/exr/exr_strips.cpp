@@ -11,6 +11,7 @@
 
 #include "error.h"
 #include "io/exr/chunks/zip_chunk.h"
+#include "math/half_color.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {
@@ -20,7 +21,7 @@ namespace {
 // keep the thread pool busy.
 constexpr int kStripRows = 256;
 
-constexpr float kLargestHalf = 65504.0f;
+constexpr float kLargestHalf = HalfColor::kMost;
 
 /// Clamps and rounds `count` values that are `step` apart. Returns how many were clamped.
 std::size_t round_to_half(const float* values, int step, std::size_t count, half* rounded) {

@@ -13,6 +13,7 @@
 #include "io/exr/file/exr_parts.h"
 #include "parallel/tiles.h"
 #include "scene/deep/ray_solids.h"
+#include "scene/gbuffer/background.h"
 #include "scene/normals/normals.h"
 #include "scene/same_surface.h"
 
@@ -21,9 +22,6 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t kMostBehind = kMostLayers - 1;
-
-/// Relative rounding of 16 bits.
-constexpr float kStepHalf = 1.0f / 2048;
 
 /// Solids that are looked for on one ray: what is seen, some in front that contradict, those
 /// behind.

@@ -21,15 +21,13 @@
 #include <numeric>
 
 #include "parallel/tiles.h"
+#include "scene/further/sight.h"
 #include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
 #include "scene/same_surface.h"
 
 namespace ssdo {
 namespace {
-
-/// Distance from the plane of what the frame shows, in footprints of its pixels.
-constexpr float kSurfaceTolerance = 3;
 
 /// The frame among the surfaces that light further views: with so many columns at most.
 constexpr int kFrameColumns = 320;

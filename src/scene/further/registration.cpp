@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "scene/further/back_faces.h"
+#include "scene/further/sight.h"
 #include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
 
@@ -33,9 +34,6 @@ namespace {
 
 /// About so many pixels of a picture are looked at.
 constexpr int kSamples = 1500;
-
-/// Distance from the plane of what the other picture shows, in footprints of its pixels.
-constexpr float kTolerance = 3;
 
 /// Pixels that show so many times as much as those of the other picture tell nothing: from far
 /// enough away everything is in one place.
@@ -85,7 +83,7 @@ struct Shown {
     const double px = std::floor(at.x - window.x0), py = std::floor(at.y - window.y0);
     if (!(px >= 0 && py >= 0 && px < surfel.width && py < surfel.height)) return Sees::nothing;
     if (double(footprint(depth)) > kCoarsest * width) return Sees::nothing;
-    const double tolerance = double(kTolerance * footprint(depth)) + rounding;
+    const double tolerance = double(kSurfaceTolerance * footprint(depth)) + rounding;
     bool past = true;
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {

@@ -9,6 +9,9 @@
 
 namespace ssdo {
 
+/// Points within so many footprints of the plane of what a picture shows are on that surface.
+inline constexpr float kSurfaceTolerance = 3;
+
 /// What a further view knows about a point.
 enum class Sight {
   unknown,  ///< outside of its picture, or behind what it shows

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <glm/geometric.hpp>
 
+#include "math/half_color.h"
 #include "parallel/tiles.h"
 #include "scene/depth_model.h"
 
@@ -16,7 +17,7 @@ namespace {
 constexpr float kLeastAlpha = 1e-4f;
 
 /// Where half floats end: what is stored in 16 bits and is this or more had no room.
-constexpr float kLargestHalf = 65504;
+constexpr float kLargestHalf = HalfColor::kMost;
 
 /// From where on coordinates, or the depth that they are made from, show nothing.
 float empty_from(const GBuffer& g) {
