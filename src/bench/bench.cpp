@@ -221,7 +221,8 @@ class Bench {
     const std::vector<Target> targets = {
         {fs::temp_directory_path() / fmt::format("ssdo_bench_{}.exr", getpid()), std::nullopt}};
     const RelightJob job{job_.frame, frame_, targets, {.overwrite = true}};
-    report_.stages.write = write_targets({{job, plan, products, nullptr}}, [](double) {}).write_ms;
+    report_.stages.write =
+        write_targets({{job, frame_.scene, plan, products, nullptr}}, [](double) {}).write_ms;
   }
 
   /// Drops pictures except of rows on a front, defaults of methods and the recommended row.

@@ -249,7 +249,7 @@ class Batch {
       return;
     }
     if (!behind_) print(work);
-    view.relit = relight(job, frame.scene, on_progress, past);
+    view.relit = relight(job, std::move(frame.scene), on_progress, past);
     if (options_.verbosity.verbose)
       for (const std::string& note : view.relit.notes) work.messages.add(note);
     work.messages.warn(view.relit.warnings, frame.view);
@@ -276,8 +276,8 @@ class Batch {
             statistics_of(view.frame, jobs_[work.index], resources_, view.relit));
         if (!options_.model.temporal) continue;
         History& history = *histories_.emplace_back(std::move(view.relit.history));
-        history.geometry = std::move(view.frame.scene.geometry);
-        history.albedo = std::move(view.frame.scene.senders.albedo);
+        history.geometry = std::move(view.relit.scene.geometry);
+        history.albedo = std::move(view.relit.scene.senders.albedo);
       }
     });
     work.views.clear();

@@ -25,7 +25,9 @@ struct Band {
   Scene scene;
 };
 
-Band read_band(const RelightJob& job, const Window& rows, StageTimes& times) {
+/// `overview` is the scene of the frame.
+Band read_band(const RelightJob& job, const Scene& overview, const Window& rows,
+               StageTimes& times) {
   const Frame& frame = job.frame;
   Stopwatch watch;
   GBufferOptions reading = job.options.input.gbuffer;
@@ -42,8 +44,8 @@ Band read_band(const RelightJob& job, const Window& rows, StageTimes& times) {
   band.gbuffer.position = {};
   band.gbuffer.normal = {};
   band.gbuffer.depth = {};
-  band.scene.solids = solids_of(band.scene.geometry, job.options.model, frame.scene);
-  band.scene.light = frame.scene.light;
+  band.scene.solids = solids_of(band.scene.geometry, job.options.model, overview);
+  band.scene.light = overview.light;
   times.prepare += watch.lap();
   return band;
 }
@@ -91,7 +93,7 @@ class BandJob {
   void look_around() {
     Stopwatch watch;
     const Plan& plan = frame_.plan;
-    around_ = {plan.method->bands.overview(frame_.scene, plan.request, float(bands_.march_px),
+    around_ = {plan.method->bands.overview(relit_.scene, plan.request, float(bands_.march_px),
                                            [&](std::size_t, std::size_t) {}),
                bands_.marches_on, bands_.reach_rows};
     relit_.times.estimate += watch.lap();
@@ -101,7 +103,7 @@ class BandJob {
   bool needs_openness() const {
     Request request = frame_.plan.request;
     request.around_band = around_;
-    return !bands_.marches_on && frame_.plan.method->bands.needs_openness(frame_.scene, request);
+    return !bands_.marches_on && frame_.plan.method->bands.needs_openness(relit_.scene, request);
   }
 
   /// The overview does not show it to the bit: bands are read once more for it.
@@ -130,7 +132,8 @@ class BandJob {
   /// A band with the rows around it that it needs. How near surfaces come, the overview may not
   /// have shown.
   Band read(const Window& rows) {
-    Band band = read_band(job_, with_rows_around(rows, bands_.halo_rows), relit_.times);
+    Band band =
+        read_band(job_, relit_.scene, with_rows_around(rows, bands_.halo_rows), relit_.times);
     around_.reach_rows = bands_.reach_rows;
     while (!bands_.marches_on) {
       const int needed = frame_.plan.method->bands.reach_rows(
@@ -138,7 +141,8 @@ class BandJob {
       if (needed <= around_.reach_rows) break;
       around_.reach_rows = needed;
       band = {};
-      band = read_band(job_, with_rows_around(rows, halo_rows(frame_.plan, needed)), relit_.times);
+      band = read_band(job_, relit_.scene, with_rows_around(rows, halo_rows(frame_.plan, needed)),
+                       relit_.times);
     }
     return band;
   }
@@ -147,6 +151,7 @@ class BandJob {
     return intersection(all_, {all_.x0, rows.y0 - around, all_.x1, rows.y1 + around});
   }
 
+  /// `scene` is left with what outputs need.
   Products estimate_band(Scene& scene, const Window& rows) {
     Plan plan = frame_.plan;
     plan.request.receivers = with_rows_around(rows, plan.filter->reach);
@@ -156,7 +161,8 @@ class BandJob {
     const auto tell = [&](double done) {
       on_progress_(begun_ + (1 - begun_) * (before + share * done));
     };
-    Estimate found = estimate_and_free(scene, plan, tell, {});
+    Estimate found = estimate(std::move(scene), plan, tell, {});
+    scene = std::move(found.scene);
     relit_.times.estimate += found.estimate_ms;
     relit_.times.filter += found.filter_ms;
     return std::move(found.products);

@@ -13,9 +13,10 @@
 
 namespace ssdo {
 
-/// Estimates, filters, composes and writes a frame with Frame::bands, band by band. Adds times and
-/// clamped values to `relit`. Returns the files, for the caller to commit. `on_progress` is called
-/// with the share that is done, 0..1. Errors: those of the stages.
+/// Estimates, filters, composes and writes a frame with Frame::bands, band by band. `relit` has the
+/// overview for its scene; times and clamped values are added to it. Returns the files, for the
+/// caller to commit. `on_progress` is called with the share that is done, 0..1. Errors: those of
+/// the stages.
 std::vector<std::unique_ptr<SafeFile>> relight_in_bands(
     const RelightJob& job, const std::function<void(double)>& on_progress, Relit& relit);
 

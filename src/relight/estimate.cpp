@@ -104,53 +104,51 @@ Plane<float> change_by_steps(const Scene& scene, const Method& method, Request f
   return change;
 }
 
-/// What only estimators look at.
-void free_occluders(Scene& scene) {
-  scene.solids = {};
-  scene.views = {};
-  scene.further = {};
-}
+/// What a method has found, before the filter.
+struct Noisy {
+  Products products;
+  Plane<float> change;  ///< by steps; empty where they are not compared
+};
 
 /// Estimates and filters once.
 class Round {
  public:
-  /// The occluders of `spent`, which is `scene` or null, are freed between estimate and filter.
-  Round(const Scene& scene, Scene* spent, const Plan& plan, const Request& request,
-        const std::function<void(double)>& on_progress)
-      : scene_(scene), spent_(spent), plan_(plan), request_(request), on_progress_(on_progress) {
+  Round(const Plan& plan, const Request& request, const std::function<void(double)>& on_progress)
+      : plan_(plan), request_(request), on_progress_(on_progress) {
     compares_steps_ = request.products.error && plan.method->takes.march;
     passes_ = (compares_steps_ ? 2.0 : 1.0) * (1.0 + request.bounces);
   }
 
-  Estimate run(const Past& past) {
+  Noisy estimate(const Scene& scene) {
     const auto progress = [this](std::size_t done, std::size_t count) { tell(done, count); };
-    Stopwatch watch;
-    Estimate out;
     Request request = request_;
     request.shares_suffice = plan_.filter->apply && !compares_steps_;
-    Products products = over_geometry(plan_.method->estimate(scene_, request, progress),
-                                      scene_.geometry, request.receivers);
-    Plane<float> change;
+    Noisy out{over_geometry(plan_.method->estimate(scene, request, progress), scene.geometry,
+                            request.receivers),
+              {}};
     if (compares_steps_)
-      change = change_by_steps(scene_, *plan_.method, request_, products, progress);
-    if (spent_) free_occluders(*spent_);
-    out.estimate_ms = watch.lap();
-    scale_to_noise(products.error, *plan_.method);
+      out.change = change_by_steps(scene, *plan_.method, request_, out.products, progress);
+    return out;
+  }
+
+  Estimate filter(Noisy noisy, const Scene& scene, const Past& past) const {
+    Estimate out;
+    const Geometry& geometry = scene.geometry;
     const int pattern = plan_.method->pattern_size;
-    products = filter_shares(*plan_.filter, std::move(products), scene_, pattern);
+    Products& products = out.products = std::move(noisy.products);
+    scale_to_noise(products.error, *plan_.method);
+    products = filter_shares(*plan_.filter, std::move(products), scene, pattern);
     if (plan_.temporal) {
-      out.history = accumulate(past.history ? &*past.history : nullptr, scene_.geometry, products,
-                               past.motion);
+      out.history =
+          accumulate(past.history ? &*past.history : nullptr, geometry, products, past.motion);
       products = products_of(out.history);
     }
     if (request_.products.error) {
       if (compares_steps_)
-        change =
-            apply_filter(*plan_.filter, std::move(change), {}, scene_.geometry.surfel, pattern);
-      out.error = measure(products.error, std::move(change));
+        noisy.change =
+            apply_filter(*plan_.filter, std::move(noisy.change), {}, geometry.surfel, pattern);
+      out.error = measure(products.error, std::move(noisy.change), geometry);
     }
-    out.products = std::move(products);
-    out.filter_ms = watch.lap();
     return out;
   }
 
@@ -161,27 +159,35 @@ class Round {
   }
 
   /// Turns the difference of halves into the product `error`.
-  ErrorFound measure(Plane<float>& error, Plane<float> change) const {
+  static ErrorFound measure(Plane<float>& error, Plane<float> change, const Geometry& geometry) {
     ErrorFound found;
-    error = size_of(std::move(error), scene_.geometry);
-    found.noise = rms_over_surfaces(error, scene_.geometry);
+    error = size_of(std::move(error), geometry);
+    found.noise = rms_over_surfaces(error, geometry);
     if (!change.empty()) {
-      change = size_of(std::move(change), scene_.geometry);
-      found.steps = rms_over_surfaces(change, scene_.geometry);
+      change = size_of(std::move(change), geometry);
+      found.steps = rms_over_surfaces(change, geometry);
       for (std::size_t i = 0; i < error.size(); ++i) error[i] = std::hypot(error[i], change[i]);
     }
-    found.all = rms_over_surfaces(error, scene_.geometry);
+    found.all = rms_over_surfaces(error, geometry);
     return found;
   }
 
-  const Scene& scene_;
-  Scene* const spent_;
   const Plan& plan_;
   const Request& request_;
   const std::function<void(double)>& on_progress_;
   bool compares_steps_;
   double passes_, finished_ = 0;
 };
+
+/// The scene without what only methods look at.
+Scene seen_by_filters(Scene scene) {
+  Scene seen;
+  seen.geometry = std::move(scene.geometry);
+  seen.senders = std::move(scene.senders);
+  seen.light = std::move(scene.light);
+  seen.roughness = std::move(scene.roughness);
+  return seen;
+}
 
 /// Raises slices and steps towards the error `wanted`. False if they are at their most.
 bool refine(Request& request, double wanted, const ErrorFound& found) {
@@ -206,39 +212,33 @@ std::string describe(const ErrorFound& found, const Method& method, const Reques
   return text;
 }
 
-/// The occluders of `spent`, which is `scene` or null, are freed once no round looks at them.
-Estimate in_rounds(const Scene& scene, Scene* spent, const Plan& plan,
-                   const std::function<void(double)>& on_progress, const Past& past) {
+}  // namespace
+
+Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double)>& on_progress,
+                  const Past& past) {
   Request request = plan.request;
   double estimate_ms = 0, filter_ms = 0;
   for (;;) {
-    // With --error, another round may follow.
-    Estimate out = Round(scene, plan.error ? nullptr : spent, plan, request, on_progress).run(past);
-    out.estimate_ms = estimate_ms += out.estimate_ms;
-    out.filter_ms = filter_ms += out.filter_ms;
+    Stopwatch watch;
+    Round round(plan, request, on_progress);
+    Noisy noisy = round.estimate(scene);
+    estimate_ms += watch.lap();
+    // With --error another round may follow.
+    if (!plan.error) scene = seen_by_filters(std::move(scene));
+    Estimate out = round.filter(std::move(noisy), scene, past);
+    filter_ms += watch.lap();
     if (plan.error && out.error->all > *plan.error) {
       if (refine(request, *plan.error, *out.error)) continue;
       out.warnings.push_back(
           fmt::format("--error {:g} is not reached: it is {:.2g} with {} slices and {} steps",
                       *plan.error, out.error->all, request.slices, request.steps));
     }
-    if (plan.error && spent) free_occluders(*spent);
     if (out.error) out.notes.push_back(describe(*out.error, *plan.method, request));
+    out.scene = seen_by_filters(std::move(scene));
     out.request = request;
+    out.estimate_ms = estimate_ms, out.filter_ms = filter_ms;
     return out;
   }
-}
-
-}  // namespace
-
-Estimate estimate(const Scene& scene, const Plan& plan,
-                  const std::function<void(double)>& on_progress, const Past& past) {
-  return in_rounds(scene, nullptr, plan, on_progress, past);
-}
-
-Estimate estimate_and_free(Scene& scene, const Plan& plan,
-                           const std::function<void(double)>& on_progress, const Past& past) {
-  return in_rounds(scene, &scene, plan, on_progress, past);
 }
 
 }  // namespace ssdo

@@ -24,7 +24,8 @@ struct ErrorFound {
 /// The products of a frame after the filter.
 struct Estimate {
   Products products;
-  Request request;                  ///< of the plan, with the slices and steps that were needed
+  Scene scene;      ///< what is left of it: without solids, views and further surfaces
+  Request request;  ///< of the plan, with the slices and steps that were needed
   std::optional<ErrorFound> error;  ///< where the plan asks for it
   History history;                  ///< of a temporal plan, for the next frame; without a geometry
   double estimate_ms = 0, filter_ms = 0;  ///< by the clock
@@ -38,13 +39,9 @@ struct Past {
 };
 
 /// Estimates and filters, with more and more slices and steps until the error is what the plan asks
-/// for, if it does. `on_progress` is called with the share that is done, 0..1.
-Estimate estimate(const Scene& scene, const Plan& plan,
-                  const std::function<void(double)>& on_progress, const Past& past);
-
-/// The same, of a scene whose occluders serve for this only: solids, views and further surfaces are
-/// freed before the filter. What outputs are made of stays.
-Estimate estimate_and_free(Scene& scene, const Plan& plan,
-                           const std::function<void(double)>& on_progress, const Past& past);
+/// for, if it does. `on_progress` is called with the share that is done, 0..1. What only methods
+/// look at is freed before the last filter.
+Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double)>& on_progress,
+                  const Past& past);
 
 }  // namespace ssdo

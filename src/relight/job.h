@@ -26,6 +26,7 @@ struct RelightJob {
 /// What came of a job.
 struct Relit {
   Plan plan;          ///< of the frame, with the slices and steps that were needed
+  Scene scene;        ///< as estimate() leaves it; of a frame in bands, its overview
   Products products;  ///< after the filter
   std::optional<DisplayTransform> display;  ///< where a target is a picture that shows colours
   StageTimes times;                         ///< of all stages up to here

@@ -150,7 +150,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& lighting,
   return frame;
 }
 
-Relit relight(const RelightJob& job, Scene& scene, const std::function<void(double)>& on_progress,
+Relit relight(const RelightJob& job, Scene scene, const std::function<void(double)>& on_progress,
               const Past& past) {
   const Frame& frame = job.frame;
   Relit relit;
@@ -163,11 +163,13 @@ Relit relight(const RelightJob& job, Scene& scene, const std::function<void(doub
   relit.plan = frame.plan;
   relit.times = frame.times;
   if (frame.bands) {
+    relit.scene = std::move(scene);
     relit.written = relight_in_bands(job, on_progress, relit);
     return relit;
   }
-  Estimate found = estimate_and_free(
-      scene, frame.plan, [&](double done) { on_progress(kEstimateShare * done); }, past);
+  Estimate found = estimate(
+      std::move(scene), frame.plan, [&](double done) { on_progress(kEstimateShare * done); }, past);
+  relit.scene = std::move(found.scene);
   relit.plan.request = std::move(found.request);
   relit.products = std::move(found.products);
   relit.history = std::move(found.history);
@@ -191,7 +193,8 @@ void write_outputs(const std::vector<RelitFrame>& views,
   std::vector<Shown> shown;
   for (const auto& [job, of_view] : views) {
     const auto& display = of_view->display;
-    shown.push_back({job, of_view->plan, of_view->products, display ? &*display : nullptr});
+    shown.push_back(
+        {job, of_view->scene, of_view->plan, of_view->products, display ? &*display : nullptr});
   }
   const Written written = write_targets(
       shown, [&](double done) { on_progress(kEstimateShare + (1 - kEstimateShare) * done); });

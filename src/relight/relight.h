@@ -18,10 +18,10 @@ namespace ssdo {
 Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherPictures& pictures,
                     const FrameFiles& files, int number = 0);
 
-/// The main job up to its files: estimate and filter. `scene` is that of the job's frame: what only
-/// the estimate needs of it is freed (estimate_and_free). `on_progress` is called with the share
+/// The main job up to its files: estimate and filter. `scene` is that of the job's frame, which has
+/// none from then on. `on_progress` is called with the share
 /// that is done, 0..1. Errors: those of the stages.
-Relit relight(const RelightJob& job, Scene& scene, const std::function<void(double)>& on_progress,
+Relit relight(const RelightJob& job, Scene scene, const std::function<void(double)>& on_progress,
               const Past& past);
 
 /// The rest of it: compose, colour, write. `views` are those of one frame, usually one. All targets

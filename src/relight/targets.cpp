@@ -24,8 +24,7 @@ const std::string& product_of_picture(const Target& target, const Plan& plan) {
 }
 
 Results results_of(const Shown& view) {
-  const Frame& frame = view.job.frame;
-  return {frame.scene, frame.gbuffer, view.products, view.plan.composition};
+  return {view.scene, view.job.frame.gbuffer, view.products, view.plan.composition};
 }
 
 /// The channels of the input that say where surfaces are and how they move.

@@ -42,6 +42,7 @@ struct Written {
 /// What targets show of a frame. `display` may be null where no target is a picture of a colour.
 struct Shown {
   const RelightJob& job;
+  const Scene& scene;
   const Plan& plan;
   const Products& products;
   const DisplayTransform* display;

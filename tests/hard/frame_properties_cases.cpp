@@ -74,7 +74,7 @@ Measured bad_files(const Subject& s) {
   const std::vector<Target> targets = {{(dir / "out.exr").string(), {}}};
   const RelightJob job{stored.options, frame, targets, {}};
   const auto silent = [](double) {};
-  Relit made = relight(job, frame.scene, silent, {});
+  Relit made = relight(job, std::move(frame.scene), silent, {});
   write_outputs({{job, &made}}, silent);
   Worst worst;
   for (const std::string& name : channel_names(dir / "out.exr")) {
