@@ -137,7 +137,7 @@ std::array<ChordPair, 18> checkerboard() {
 
 Products estimate(const Scene& scene, const Request& request, const Progress& progress) {
   const auto parameter = [&](const char* name) { return request.parameters.find(name)->second; };
-  const ViewPlanes planes = make_depth_planes(scene.geometry);
+  const ViewPlanes planes = make_view_planes(scene.geometry);
   std::vector<DepthScale> scales = make_depth_scales(planes, kCoarsest);
   for (int k = 1; k <= kCoarsest; ++k) {
     DepthScale& scale = scales[std::size_t(k)];

@@ -150,10 +150,9 @@ void shape(const ParameterValues& parameters, const ViewPlanes& planes, Plane<fl
 Products estimate_ssao_fade(const Scene& scene, const Request& request, const Progress& progress) {
   const auto value = [&](const char* name) { return float(request.parameters.at(name)); };
   const int upsampling = int(request.parameters.at("upsampling"));
-  const ViewPlanes planes = upsampling == kBilinear ? make_depth_planes(scene.geometry)
-                                                    : make_view_planes(scene.geometry);
+  const ViewPlanes planes = make_view_planes(scene.geometry);
   std::optional<HalfResolution> half;
-  if (upsampling != kNone) half.emplace(scene.geometry, planes);
+  if (upsampling != kNone) half.emplace(planes);
   const ViewPlanes& receivers = half ? half->receivers() : planes;
   const auto noise = fade_noise(request.seed);
   const FadeJob job{receivers,

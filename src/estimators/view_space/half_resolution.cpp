@@ -106,13 +106,12 @@ HalfResolution::Taps make_taps(int count, int first) {
 
 }  // namespace
 
-HalfResolution::HalfResolution(const Geometry& geometry, const ViewPlanes& full)
-    : geometry_(geometry),
-      full_(full),
+HalfResolution::HalfResolution(const ViewPlanes& full)
+    : full_(full),
       columns_(make_taps(full.width(), full.first_column)),
       rows_(make_taps(full.height(), full.first_row)),
-      receivers_(half_count(full.width(), full.first_column),
-                 half_count(full.height(), full.first_row)) {
+      surfels_(sampled_surfels()),
+      receivers_(surfels_) {
   const int width = receivers_.width(), height = receivers_.height();
   receivers_.orthographic = full.orthographic;
   receivers_.first_column = full.first_column >> 1;
@@ -123,10 +122,6 @@ HalfResolution::HalfResolution(const Geometry& geometry, const ViewPlanes& full)
     receivers_.rays_x[std::size_t(x + PaddedLayout::kPad)] = full.ray_x()[column(x)];
   for (int y = 0; y < height; ++y)
     receivers_.rays_y[std::size_t(y + PaddedLayout::kPad)] = full.ray_y()[row(y)];
-  for_each_row(height, [&](int y) {
-    receivers_.clear_row(y);
-    for (int x = 0; x < width; ++x) receivers_.set(x, y, geometry.surfel(column(x), row(y)));
-  });
 }
 
 int HalfResolution::column(int x) const {
@@ -135,10 +130,11 @@ int HalfResolution::column(int x) const {
 
 int HalfResolution::row(int y) const { return sampled_pixel(y, full_.height(), full_.first_row); }
 
-Plane<Surfel> HalfResolution::surfels() const {
-  Plane<Surfel> out(receivers_.width(), receivers_.height());
+Plane<Surfel> HalfResolution::sampled_surfels() const {
+  Plane<Surfel> out(half_count(full_.width(), full_.first_column),
+                    half_count(full_.height(), full_.first_row));
   for_each_row(out.height, [&](int y) {
-    for (int x = 0; x < out.width; ++x) out(x, y) = geometry_.surfel(column(x), row(y));
+    for (int x = 0; x < out.width; ++x) out(x, y) = full_.surfel(column(x), row(y));
   });
   return out;
 }

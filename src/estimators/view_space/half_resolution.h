@@ -12,15 +12,17 @@ namespace ssdo {
 /// ends before it, its neighbour in the window.
 class HalfResolution {
  public:
-  /// `full` are planes of the frame; both have to live as long as this.
-  HalfResolution(const Geometry& geometry, const ViewPlanes& full);
+  /// `full` are planes of the frame, which have to live as long as this.
+  explicit HalfResolution(const ViewPlanes& full);
+  HalfResolution(const HalfResolution&) = delete;  // receivers_ points into it
+  HalfResolution& operator=(const HalfResolution&) = delete;
 
   /// The pixels that are evaluated, with their own rays. Only receivers: points are projected to
   /// the full planes.
   const ViewPlanes& receivers() const { return receivers_; }
 
   /// What those pixels show, for filters of values at half resolution.
-  Plane<Surfel> surfels() const;
+  const Plane<Surfel>& surfels() const { return surfels_; }
 
   /// Bilinear upsampling of values at half resolution, as textures have it: it takes a value to
   /// lie in the middle of its 2 x 2 pixels and knows nothing of edges. Background: 1.
@@ -42,10 +44,11 @@ class HalfResolution {
   /// The column, and the row, of the frame that one of the half frame is evaluated at.
   int column(int x) const;
   int row(int y) const;
+  Plane<Surfel> sampled_surfels() const;
 
-  const Geometry& geometry_;
   const ViewPlanes& full_;
   Taps columns_, rows_;
+  Plane<Surfel> surfels_;
   ViewPlanes receivers_;
 };
 

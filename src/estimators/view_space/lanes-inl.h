@@ -13,6 +13,7 @@
 #include "estimators/view_space/tiled_noise.h"
 #include "estimators/view_space/view_planes.h"
 #include "parallel/tiles.h"
+#include "scene/surfel-inl.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -40,8 +41,9 @@ HWY_INLINE ViewReceiver load_receiver(const ViewPlanes& planes, int x, int y) {
   p.valid = shows_surface(z);
   p.ray_x = load(planes.ray_x() + x), p.ray_y = set(planes.ray_y()[y]);
   p.position = along_ray(planes, p.ray_x, p.ray_y, hn::IfThenElse(p.valid, z, set(-1)));
-  p.normal = {load(planes.nx.row(y) + x), load(planes.ny.row(y) + x), load(planes.nz.row(y) + x)};
-  p.rounding = load(planes.rounding.row(y) + x);
+  const Surfels shown = surfels_at(planes.surfel, x, y);
+  p.normal = if_then_else_zero(p.valid, shown.normal);
+  p.rounding = hn::IfThenElseZero(p.valid, shown.rounding);
   p.x = iota(float(x)), p.y = set(float(y));
   return p;
 }
@@ -97,11 +99,17 @@ HWY_INLINE V gather_depth(const ViewPlanes& planes, const Pixels& at) {
   return hn::IfThenElse(at.inside, z, set(kBackgroundDepth));
 }
 
-/// The normals that pixels show; those of the pixel (0, 0) outside the frame.
+/// The normals that pixels show; those of the pixel (0, 0) outside the frame, and of any value
+/// where there is no surface.
 HWY_INLINE V3 gather_normal(const ViewPlanes& planes, const Pixels& at) {
-  const VI index = index_of(planes, at);
-  return {gather(planes.nx.row(0), index), gather(planes.ny.row(0), index),
-          gather(planes.nz.row(0), index)};
+  alignas(64) std::int32_t column[kLanes], row[kLanes];
+  alignas(64) float x[kLanes], y[kLanes], z[kLanes];
+  hn::Store(at.column, DI(), column), hn::Store(at.row, DI(), row);
+  for (int k = 0; k < kLanes; ++k) {
+    const glm::vec3& n = planes.surfel(column[k], row[k]).normal;
+    x[k] = n.x, y[k] = n.y, z[k] = n.z;
+  }
+  return {load(x), load(y), load(z)};
 }
 
 /// From each receiver to the surface at depth `z` so many pixels away. From differences, which

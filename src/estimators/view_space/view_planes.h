@@ -33,9 +33,8 @@ struct ViewPlanes {
   /// The pixel (0, 0) in the display window, which patterns are fixed to. May be negative.
   int first_column, first_row;
 
-  PaddedPlane z;           ///< camera space, negative in front of the viewer; or kBackgroundDepth
-  PaddedPlane nx, ny, nz;  ///< unit normal, on the viewer's side; 0 on background
-  PaddedPlane rounding;    ///< distance by which storing P may have moved it; 0 on background
+  PaddedPlane z;  ///< camera space, negative in front of the viewer; or kBackgroundDepth
+  const Plane<Surfel>& surfel;        ///< normals and rounding; they count where z shows a surface
   std::vector<float> rays_x, rays_y;  ///< by column and by row, padded as planes are
 
   const float* ray_x() const { return rays_x.data() + PaddedLayout::kPad; }
@@ -43,18 +42,11 @@ struct ViewPlanes {
   int width() const { return layout.width; }
   int height() const { return layout.height; }
 
-  /// Planes of a size, not initialised, without a camera.
-  ViewPlanes(int width, int height);
-
-  /// Makes a row background.
-  void clear_row(int y);
-  /// Has a pixel of such a row show a surface, if that is usable.
-  void set(int x, int y, const Surfel& surfel);
+  /// Without a camera. `shown` has to live as long as this.
+  explicit ViewPlanes(const Plane<Surfel>& shown);
 };
 
+/// `geometry` has to live as long as the planes.
 ViewPlanes make_view_planes(const Geometry& geometry);
-
-/// The same without normals and rounding, for methods that receive elsewhere.
-ViewPlanes make_depth_planes(const Geometry& geometry);
 
 }  // namespace ssdo

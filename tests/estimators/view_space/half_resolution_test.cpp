@@ -33,7 +33,7 @@ TEST(HalfResolution, TakesTheLowerRightOfEveryFourPixelsOfTheDisplayWindow) {
   for (const int first : {0, 1, -3}) {
     g.display = {-first, -first, 30, 30};
     const ViewPlanes planes = make_view_planes(g);
-    const HalfResolution half(g, planes);
+    const HalfResolution half(planes);
     const ViewPlanes& r = half.receivers();
     for (int y = 0; y < r.height(); ++y) {
       for (int x = 0; x < r.width(); ++x) {
@@ -41,7 +41,7 @@ TEST(HalfResolution, TakesTheLowerRightOfEveryFourPixelsOfTheDisplayWindow) {
         const int k = int(std::floor(first / 2.0)) + x, l = int(std::floor(first / 2.0)) + y;
         const int column = std::min(2 * k + 1 - first, 20), row = std::min(2 * l + 1 - first, 12);
         ASSERT_GE(column, 0);
-        EXPECT_EQ(r.rounding.row(y)[x], float(row * 21 + column));
+        EXPECT_EQ(half.surfels()(x, y).rounding, float(row * 21 + column));
         EXPECT_EQ(r.ray_x()[x], planes.ray_x()[column]);
         EXPECT_EQ(r.ray_y()[y], planes.ray_y()[row]);
         EXPECT_EQ(r.z.row(y)[x], planes.z.row(row)[column]);
@@ -53,7 +53,7 @@ TEST(HalfResolution, TakesTheLowerRightOfEveryFourPixelsOfTheDisplayWindow) {
 TEST(HalfResolution, AlongSurfacesNothingCrossesAnEdge) {
   const Geometry g = step({0, 0, 42, 10}, 50);
   const ViewPlanes planes = make_view_planes(g);
-  const HalfResolution half(g, planes);
+  const HalfResolution half(planes);
   Plane<float> values(half.receivers().width(), half.receivers().height());
   for (int y = 0; y < values.height; ++y) {
     for (int x = 0; x < values.width; ++x)
@@ -76,7 +76,7 @@ TEST(HalfResolution, OnOnePlaneBothAreBilinear) {
   const Geometry g =
       geometry_of(plane({}, {0, 0, 1}), tilted(camera_from_fov(40, window, 1), 70), window);
   const ViewPlanes planes = make_view_planes(g);
-  const HalfResolution half(g, planes);
+  const HalfResolution half(planes);
   Plane<float> values(half.receivers().width(), half.receivers().height());
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = float(i * 37 % 11) / 11;
   const Plane<float> along = half.upsample_along_surfaces(values),
@@ -90,7 +90,7 @@ TEST(HalfResolution, APixelAloneOnItsSurfaceHasTheValueNearestInDepth) {
   g.surfel(6, 6).position.z = -90;
   g.surfel(7, 7).position.z = -91;
   const ViewPlanes planes = make_view_planes(g);
-  const HalfResolution half(g, planes);
+  const HalfResolution half(planes);
   Plane<float> values(4, 4, 0.2f);
   values(3, 3) = 0.6f;
   EXPECT_NEAR(half.upsample_along_surfaces(values)(6, 6), 0.6f, 1e-6);
@@ -101,7 +101,7 @@ TEST(HalfResolution, WorksForFramesOfOnePixel) {
   const Geometry g =
       geometry_of(plane({}, {0, 0, 1}), tilted(camera_from_fov(40, one, 1), 20), one);
   const ViewPlanes planes = make_view_planes(g);
-  const HalfResolution half(g, planes);
+  const HalfResolution half(planes);
   const Plane<float> value(1, 1, 0.5f);
   EXPECT_EQ(half.upsample_bilinear(value)[0], 0.5f);
   EXPECT_EQ(half.upsample_along_surfaces(value)[0], 0.5f);

@@ -32,7 +32,6 @@ TEST(ViewPlanes, DepthTimesRayIsThePosition) {
         const float z = planes.z.row(y)[x];
         if (!s.is_surface()) {
           EXPECT_EQ(z, kBackgroundDepth);
-          EXPECT_EQ(planes.nz.row(y)[x], 0);
           continue;
         }
         ++surfaces;
@@ -40,8 +39,6 @@ TEST(ViewPlanes, DepthTimesRayIsThePosition) {
         EXPECT_NEAR(planes.ray_x()[x] * w, s.position.x, 2e-6);
         EXPECT_NEAR(planes.ray_y()[y] * w, s.position.y, 2e-6);
         EXPECT_EQ(z, s.position.z);
-        EXPECT_EQ(planes.nx.row(y)[x], s.normal.x);
-        EXPECT_EQ(planes.rounding.row(y)[x], s.rounding);
       }
     }
     EXPECT_GT(surfaces, 50);
