@@ -91,7 +91,7 @@ ssdo::ExitCode fail() {
     std::fprintf(stderr, "ssdo: %s\n", ssdo::kNoMemory);  // without allocating
     return ssdo::ExitCode::failed;
   } catch (const std::exception& e) {
-    // Of the standard library and of TBB, where no thread starts.
+    // The standard library and TBB throw this where no thread starts.
     const bool no_thread =
         std::string_view(e.what()).find(std::strerror(EAGAIN)) != std::string_view::npos;
     return fail(ssdo::ExitCode::failed, no_thread ? ssdo::kNoThread : e.what());

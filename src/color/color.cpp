@@ -34,10 +34,11 @@ constexpr const char* kBuiltInConfig =
 
 constexpr int kFirstVersionWithUris = 0x02020000;
 
-/// Of a half float. The ACES transforms take values far beyond it for black, infinite ones for NaN.
+/// The largest half float. The ACES transforms turn values far beyond it into black, and infinite
+/// ones into NaN.
 constexpr float kLargest = HalfColor::kMost;
 
-/// Of an OpenColorIO config; that of ACES has 0.3 MiB.
+/// Largest file of an OpenColorIO config, in bytes; that of ACES has 0.3 MiB.
 constexpr std::size_t kMostConfigBytes = 4 << 20;
 
 struct LabelledConfig {

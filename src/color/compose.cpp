@@ -61,7 +61,7 @@ Plane<glm::vec3> sent_light(const Results& r, const Plane<float>& alpha) {
   return at_output_size(std::move(sent), r.gbuffer);
 }
 
-/// Of the environment's light at the surfaces of a pixel, what arrives, and all of it.
+/// Light of the environment at the surfaces of a pixel: the visible part, and all of it.
 struct Arriving {
   Plane<glm::vec3> part, whole;
 };

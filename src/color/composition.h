@@ -28,8 +28,8 @@ constexpr std::string_view name_of(Compose compose) {
 /// How the composite of a frame is made.
 struct Composition {
   Compose compose = Compose::relight;
-  /// Of occlude: ao is the share of the ambient light that arrives, the same in every channel.
-  /// Otherwise that share is direct over the direct light without occluders.
+  /// For occlude: the visible part of the ambient light is ao in every channel. Otherwise it is
+  /// `direct` over the direct light without occluders.
   bool share_is_ao = false;
 };
 

@@ -27,7 +27,7 @@ struct Parameter {
   std::string_view words = "";  ///< names of the values 0, 1, ..., between blanks, to write them by
 };
 
-/// Of every method that makes reflections.
+/// The parameter `roughness`, which every method with reflections has.
 inline constexpr Parameter kRoughness = {
     "roughness", 0.5, 0, 1, "", "of what mirrors, where there is no layer of it"};
 
@@ -65,11 +65,12 @@ struct Request {
   unsigned seed = 0;             ///< of the sampling pattern
   ParameterValues parameters{};  ///< every one that the method has
 
-  // Of methods that march through slices of the frame.
+  // For methods that march through slices of the frame.
   int slices = 2;                ///< per pixel
   int steps = 16;                ///< per side of a slice, from one pixel to the frame's diagonal
   bool extend_offscreen = true;  ///< surfaces go on beyond the frame
-  /// Of a method that makes ao at half resolution: between that and the upsampling. May be empty.
+  /// Filter between ao at half resolution and its upsampling, for methods that work so. May be
+  /// empty.
   MapFilter filter_half = {};
   bool shares_suffice = false;  ///< `direct` may stay empty where Products::shares make it up
   /// Pixels that gather, within the geometry's window: products have its size, and all of the
@@ -98,8 +99,8 @@ struct SourceFilter {
 
 /// What a method needs to work on the bands of a frame.
 struct BandSupport {
-  /// Of an overview of the frame; marches of bands go on in it `from_px` pixels of the frame away.
-  /// Null: the method works on whole frames only.
+  /// Prepares an overview of the frame, in which marches of bands continue from `from_px` pixels of
+  /// the frame on. Null: the method works on whole frames only.
   std::shared_ptr<const FarScene> (*overview)(const Scene&, const Request&, float from_px,
                                               const Progress&) = nullptr;
   /// How many rows above and below the pixels of a frame hold what blocks their light within the

@@ -89,7 +89,7 @@ class Guesses {
     depth_ = std::move(depth);
   }
 
-  /// Of one sequence, the points that the rays of a pixel are.
+  /// The points of a sequence that give the rays of a pixel.
   struct Samples {
     int first, count;
     std::uint32_t seed;

@@ -64,12 +64,12 @@ struct SsdoJob {
   const ViewPlanes& planes;
   std::vector<PatternPoint> points;
 
-  // Of direct light. Lengths in scene units.
+  // Direct light; lengths in scene units.
   float bias, singularity, strength;
   std::optional<Sky> sky;  ///< none: the same radiance from everywhere
   glm::vec3 constant_radiance;
 
-  // Of the bounce.
+  // Bounce light.
   float radius, gain;        ///< what the sum is multiplied by
   float bounce_singularity;  ///< F_max
 };

@@ -21,14 +21,15 @@ struct TriangleHit {
   int corner;               ///< 0, 1 or 2: the one that counts most there
   double distance;          ///< in lengths of the ray's direction, not negative
 
-  /// Of triangles that are equally far, that with the lower number is first.
+  /// Orders by distance; equally distant triangles by their number.
   bool is_before(const TriangleHit& other) const {
     return std::tie(distance, mesh, triangle) <
            std::tie(other.distance, other.mesh, other.triangle);
   }
 };
 
-/// Of a hit that Embree has found, from the triangle alone. Source: Moeller, Trumbore 1997.
+/// Recomputes a hit that Embree has found from the ray and the triangle alone, so that it does not
+/// depend on the acceleration structure. Source: Moeller, Trumbore 1997.
 TriangleHit hit_of(const RTCRay& ray, const RTCHit& hit, const std::array<glm::vec3, 3>& corners);
 
 }  // namespace ssdo

@@ -18,8 +18,8 @@
 // view axis. The rotation that takes N there by the shortest way is smooth over all normals that
 // the camera sees.
 //
-// Of the bounce, what small bright senders give is not held to ao (filters/geometry_filter.cpp):
-// few slices may have missed them. It is averaged apart.
+// Bounce light of small bright senders is averaged apart and not limited by ao
+// (filters/geometry_filter.cpp), since few slices may have missed the senders.
 //
 // Where the share of all light is ao, there is nothing to be filtered but ao.
 //

@@ -15,7 +15,7 @@ namespace ssdo {
 /// block of 64 pixels: no codec goes further than their product, 66048:1 in half, twice in float.
 inline constexpr double kLargestRatio = 1 << 18;
 
-/// Of the machine, in bytes.
+/// Memory of the machine, in bytes.
 double physical_memory();
 
 /// Sets the bytes that the run may use (--mem-limit), and tells them: those of the machine at

@@ -189,7 +189,7 @@ std::set<std::filesystem::path> output_folders(const std::vector<Job>& jobs) {
 
 void check_input(const Job& job) {
   std::error_code ignored;
-  // Of a folder that may not be looked into, the reader tells.
+  // If the folder is not accessible, opening the file reports it later.
   const auto kind = std::filesystem::status(job.input(), ignored).type();
   if (!job.frame || kind != std::filesystem::file_type::not_found) return;
   throw Error(ExitCode::input, fmt::format("{}: frame {} of the range is missing; render it or "

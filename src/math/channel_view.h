@@ -25,7 +25,7 @@ struct ChannelView {
         height(plane.height),
         step(sizeof(T) / sizeof(float)) {}
 
-  /// Of a pixel by its index in the plane.
+  /// The value of a pixel, by its index in the plane.
   float operator[](std::size_t pixel) const { return first[pixel * std::size_t(step)]; }
 
   const float* at(int x, int y) const { return first + (std::ptrdiff_t(y) * width + x) * step; }

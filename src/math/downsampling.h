@@ -8,8 +8,8 @@ namespace ssdo {
 /// How a picture becomes one with N times fewer pixels in a row and in a column. Both have the
 /// upper left corner of their display windows in common.
 struct Downsampling {
-  /// Of the pixel filter, in pixels of the small picture: Blackman-Harris as Cycles has it, whose
-  /// default width of 1.5 is how far it reaches to each side (measured).
+  /// Width of the pixel filter in pixels of the small picture. It is the Blackman-Harris filter of
+  /// Cycles, whose default "width" of 1.5 is its reach to each side (measured).
   static constexpr int kFilterWidth = 3;
 
   int factor = 1;  ///< N; 1: both are the same

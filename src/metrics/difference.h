@@ -20,7 +20,7 @@ struct Difference {
   double psnr() const;           ///< decibels, to the peak; infinite without any error
 };
 
-/// Of two lists of finite numbers, as long as each other.
+/// The difference of two lists of finite numbers of the same length.
 Difference measure_difference(const std::vector<float>& a, const std::vector<float>& b);
 
 /// Channels over a window.
@@ -45,7 +45,7 @@ struct LeftOut {
   std::size_t all() const { return in_both + without_counterpart(); }
 };
 
-/// Of two pictures, where both have finite values.
+/// The difference of two pictures over the pixels where both have finite values.
 struct ChannelsDifference {
   Difference figures;
   std::size_t pixels = 0;  ///< that count

@@ -19,9 +19,9 @@
 namespace ssdo {
 namespace {
 
-/// The radius of methods that need a limit, as a share of the frame's height at the median depth.
-/// Of the shares 0.1 to 2, this one has the least error of direct light against a path tracer on
-/// five of seven frames.
+/// The radius of methods that need a limit, relative to the frame's height at the median depth.
+/// Among 0.1 to 2 this value has the least error of direct light against a path tracer on five of
+/// seven frames.
 constexpr float kAutoRadius = 0.3f;
 
 /// A bounce from surfaces that are darker than this everywhere is below 1 % of the light.
@@ -223,7 +223,7 @@ void choose_march(Plan& plan, const ModelOptions& model) {
 /// where their error counts, or where a later frame may show what they show.
 void choose_receivers(Plan& plan, const OutputOptions& output, const Geometry& geometry,
                       const GBuffer& gbuffer, const std::string& file) {
-  // Of an overview, windows are not those of the outputs.
+  // The windows of an overview are not those of the outputs.
   if (!output.crop || gbuffer.grid.is_coarse()) return;
   const Window &data = geometry.window, shown = intersection(data, geometry.display);
   if (shown.area() == 0) {

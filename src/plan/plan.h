@@ -52,7 +52,7 @@ struct Plan {
   Request request;                 ///< what the method is asked for
   std::optional<double> error;     ///< to stay below
   const Filter* filter = nullptr;  ///< after the estimate
-  /// Of the map at half resolution, by Request::filter_half; null where there is none.
+  /// The filter of a map at half resolution (Request::filter_half); null where there is none.
   const Filter* half_filter = nullptr;
   bool temporal = false;             ///< then the mean with the frames before
   std::vector<std::string> make;     ///< products for any of the outputs
@@ -63,7 +63,7 @@ struct Plan {
   std::vector<std::string> reasons;  ///< one line per decision
 
   int samples_per_pixel() const;
-  /// Of the filter that takes away the noise of the pattern, wherever that happens.
+  /// The name of the filter that removes the noise of the pattern, at full or half resolution.
   std::string_view filter_name() const { return (half_filter ? half_filter : filter)->name; }
 };
 

@@ -81,9 +81,9 @@ void register_views(KnownGeometry& known, const Geometry& frame) {
   known.views = std::move(fitting);
 }
 
-/// Of what a view and the frame should both see: what differs by more has moved, or the view is of
-/// another scene on the same ground. Views of one still scene reach 4 % where leaves are finer than
-/// their pixels.
+/// Largest share of the surfaces seen by both a view and the frame that may contradict each other.
+/// More means that things have moved, or that the view shows another scene on the same ground.
+/// Views of one still scene reach 4 % where leaves are finer than their pixels.
 constexpr double kMostContradiction = 0.1;
 
 void warn_of(const MergeCounts& view, std::vector<std::string>& warnings) {

@@ -11,22 +11,16 @@
 // the other: relight/bands.h.
 #include "relight/relight.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <utility>
 
-#include "error.h"
 #include "estimators/registry.h"
-#include "plan/composite_choice.h"
-#include "plan/explain.h"
-#include "plan/make_plan.h"
 #include "relight/bands.h"
 #include "relight/frame_light.h"
 #include "relight/frame_warnings.h"
 #include "relight/known_geometry.h"
+#include "relight/plan_frame.h"
+#include "relight/read_frame.h"
 #include "relight/targets.h"
-#include "scene/layers/windows.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -34,56 +28,6 @@ namespace {
 
 /// The share of a job's time that estimate and filter take, for progress.
 constexpr double kEstimateShare = 0.85;
-
-bool wants_reflection(const OutputOptions& output, const std::vector<LayerRequest>& aovs) {
-  const auto is_reflection = [](const SaveRequest& save) { return save.product == "reflection"; };
-  const auto is_specular = [](const LayerRequest& aov) { return aov.role == Role::specular; };
-  return contains(output.products, "reflection") || contains(output.products, kAllProducts) ||
-         std::ranges::any_of(output.saves, is_reflection) ||
-         (choose_compose(output, aovs) == Compose::occlude &&
-          std::ranges::any_of(aovs, is_specular));
-}
-
-/// Names that nothing asks for are no reason to refuse a frame.
-std::vector<Role> unused_roles(const FrameOptions& options, const FrameFiles& files) {
-  std::vector<Role> unused;
-  if (!wants_reflection(options.output, files.aovs)) unused.push_back(Role::roughness);
-  if (!options.model.temporal) unused.push_back(Role::motion);
-  return unused;
-}
-
-/// Layers, G-buffer, camera and geometry of a frame. The samples of a deep file that it is read
-/// from are in `own`.
-Frame read_frame(const FrameOptions& options, const FrameFiles& files,
-                 std::optional<DeepImage>& own) {
-  Stopwatch watch;
-  std::deque<ExrReader> opened = open_view(files.input, files.aovs, options.input.allow_partial);
-  const double opening = watch.lap();
-  InputOptions input = for_view(options.input, files);
-  input.gbuffer.downsample = options.output.downsample;
-  input.gbuffer.beauty = choose_compose(options.output, files.aovs) != Compose::relight;
-  input.gbuffer.most_pixels = most_pixels_in(options.memory);
-  View view =
-      read_view(std::move(opened), files.aovs, input, options.camera, unused_roles(options, files));
-  if (view.geometry.camera.panorama) {
-    throw Error(ExitCode::layer,
-                fmt::format("{}: is a lat-long panorama, which shows no frame; give it with --also "
-                            "to a frame of the same scene",
-                            files.input));
-  }
-  Frame frame;
-  frame.input = files.input;
-  frame.view = files.view;
-  frame.files = std::move(view.files);
-  frame.layers = std::move(view.layers);
-  frame.gbuffer = std::move(view.gbuffer);
-  frame.report = std::move(view.report);
-  frame.scene = take_scene(frame.gbuffer, std::move(view.geometry));
-  own = std::move(view.deep);
-  frame.times.read = opening + view.read_ms;
-  frame.times.prepare = watch.lap() - view.read_ms;
-  return frame;
-}
 
 /// Finds the solids behind the surfaces, and takes what further views add.
 void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& options) {
@@ -94,36 +38,6 @@ void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& opti
   }
   frame.warn(known.warnings);
   frame.further_losses = std::move(known.losses);
-}
-
-/// Bands have the rows of the frame.
-void check_bands(const Frame& frame) {
-  const bool composites = frame.plan.composition.compose != Compose::relight;
-  if (window_of_outputs(frame.readers(), frame.layers, composites, {}) == frame.gbuffer.file_window)
-    return;
-  throw Error(ExitCode::usage,
-              fmt::format("{}: a rendered layer reaches beyond the display window, where the data "
-                          "window of P ends, and takes all of the frame at once: render P with the "
-                          "same overscan, or raise --mem-limit",
-                          frame.input));
-}
-
-/// Decides what is computed, and says why.
-void plan_frame(Frame& frame, const KnownGeometry& known, const FrameOptions& options, int number) {
-  ModelOptions model = options.model;
-  if (model.temporal) model.seed += unsigned(number);
-  frame.plan = make_plan(model, options.output, frame.scene, frame.gbuffer, frame.input);
-  if (frame.gbuffer.grid.is_coarse()) {
-    check_bands(frame);
-    const Window& all = frame.gbuffer.file_window;
-    frame.bands = plan_bands(frame.input, all, frame.part().display_window, frame.scene, frame.plan,
-                             options.output, options.memory);
-    frame.plan.reasons.push_back(describe(*frame.bands, all));
-  }
-  warn_of_plan(frame, options, !known.deep.empty());
-  explain_earlier_products(frame);
-  explain_views(frame.plan, frame.views);
-  frame.advice = explain_guessed(frame.plan, frame.scene);
 }
 
 void append(std::vector<std::string>& lines, const std::vector<std::string>& more) {
@@ -145,7 +59,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& lighting,
   find_occluders(frame, known, options);
   const bool is_known = !files.also.empty() || !files.neighbours.empty();
   (is_known ? frame.times.known : frame.times.prepare) += watch.lap();
-  plan_frame(frame, known, options, number);
+  plan_frame(frame, options, number, !known.deep.empty());
   frame.times.prepare += watch.lap();
   return frame;
 }

@@ -134,9 +134,9 @@ NormalSpace given_normal_space(const GBuffer& g, const Geometry& out, const std:
   return space;
 }
 
-/// Of a depth that is taken as planar because nothing tells its kind, the normals tell it: surfaces
-/// made from a distance along the rays are bent. Warns where those of the other kind fit better,
-/// and returns whether they do not.
+/// Checks by the normals that a depth is planar where nothing states its kind: read as planar, a
+/// distance along the rays gives bent surfaces. Warns if surfaces from a distance along the rays
+/// fit the normals better; returns whether planar depth fits.
 bool is_depth_planar(const GBuffer& g, const Geometry& planar, const NormalSpace& of_planar,
                      GeometryReport& report) {
   if (planar.camera.orthographic) return true;

@@ -13,7 +13,7 @@ class PixelFootprint {
   explicit PixelFootprint(const Camera& camera)
       : orthographic_(camera.orthographic), per_depth_(float(1 / std::min(camera.fx, camera.fy))) {}
 
-  /// Of a surface at this depth along the axis that faces the viewer.
+  /// Width of a pixel on a surface that faces the viewer at this depth along the axis.
   float at(float depth) const { return orthographic_ ? per_depth_ : depth * per_depth_; }
 
  private:

@@ -68,7 +68,7 @@ class SparseInterleaving {
            Interleaving::kPad;
   }
 
-  /// Of the entry that Interleaving::index() has for these.
+  /// The index here of the pixel that Interleaving::index() has for the same arguments.
   std::ptrdiff_t index(int y, int column_phase, int column) const {
     return (std::ptrdiff_t(y / spacing_) * rows() + column_phase / spacing_) * stride_ +
            Interleaving::kPad + column;

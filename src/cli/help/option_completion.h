@@ -23,7 +23,7 @@ struct Completion {
   std::vector<std::string> words;
 };
 
-/// Of the value of this option.
+/// How the value of this option is completed.
 Completion completion_of(const CLI::Option& option);
 
 /// What --set takes with a method: "NAME=", or "NAME=WORD" for each word of a parameter.
@@ -32,7 +32,7 @@ struct MethodSettings {
   std::vector<std::string> settings;
 };
 
-/// Of every method; the first is the default.
+/// The settings of every method; the first method is the default.
 std::vector<MethodSettings> method_settings();
 
 /// The options that can stand on the line of a command; of the main job where it is `app` itself.

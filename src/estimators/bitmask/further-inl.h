@@ -137,8 +137,8 @@ struct SectorStrata {
   }
 };
 
-/// Of the open sectors those that further views hide. `on_met` hears of the sectors that one ray
-/// stands for in each lane, and of what the rays have met.
+/// Returns which of the open sectors further views hide. Calls `on_met` with the sectors that one
+/// ray stands for in each lane, and with what the rays have met.
 template <class Met>
 HWY_INLINE VU sectors_of_further(const March& march, const MarchReceiver& p, const SideFrame& side,
                                  VU open, const Met& on_met) {

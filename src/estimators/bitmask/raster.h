@@ -87,7 +87,7 @@ class Raster {
     });
     return out;
   }
-  /// Of the planes of an overview.
+  /// The planes of an overview in whole rows.
   MarchPlanes in_whole_rows(const MarchPlanes& from, const FarRaster& far) const {
     MarchPlanes planes;
     for (const MarchLayer& layer : from.layers)
@@ -105,7 +105,7 @@ class Raster {
             in_whole_rows(values[2], far)};
   }
 
-  /// Of planes that are not needed any more.
+  /// A picture from a plane that is not needed any more.
   Plane<float> picture(InterleavedPlane plane, float background = 0) const {
     return of_receivers(background, [&](std::ptrdiff_t i) { return plane[i]; });
   }

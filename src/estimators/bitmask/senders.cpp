@@ -37,7 +37,7 @@ struct Around {
     all = all + weight_of_q;
   }
 
-  /// Of value(index).
+  /// The mean of value(index).
   template <class Value>
   HWY_INLINE V mean(const Value& value) const {
     V sum = set(0);

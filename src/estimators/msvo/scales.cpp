@@ -122,8 +122,7 @@ void upsample_row(const CoarseRows& rows, const Upsampling& how, bool multiply, 
     return hn::IfThenElse(shows_surface(hn::Neg(fine_depth)), saturate(value), set(1));
   };
   for (int x = 0; x < coarse_width; x += kLanes) {
-    // Of the fine pixels in a coarse one, the left one looks to the left and the right one to the
-    // right.
+    // The left fine pixel of a coarse one looks to the left, the right one to the right.
     const int fine = 2 * x - odd;
     V left_depth, right_depth, left = set(1), right = set(1);
     hn::LoadInterleaved2(d, depth + fine, left_depth, right_depth);

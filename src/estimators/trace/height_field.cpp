@@ -176,7 +176,7 @@ class Builder {
     }
     const float step = glm::dot(out_.space.slope(here.position, here.normal), at - glm::vec2(c));
     const float room = other ? std::abs(corner(*other).z - c.z) : std::abs(c.z);
-    // Of smooth normals some face away, at the outline of facets.
+    // At the outline of facets, interpolated normals may face away.
     if (!(glm::dot(here.normal, view) > 0) || !(std::abs(step) <= 0.5f * room)) return std::nullopt;
     const float front = c.z + step, back = backs_[n.corner];
     return Point{at, front, out_.space.orthographic() ? back + step : back * (front / c.z)};

@@ -93,7 +93,8 @@ HalfResolution::Taps make_taps(int count, int first) {
   const int last = half_count(count, first) - 1;
   HalfResolution::Taps taps;
   for (int i = 0; i < count + PaddedLayout::kPad; ++i) {
-    // Of a pixel's 2 x 2 the value lies in the middle: a quarter of a half pixel away.
+    // A value of half resolution lies in the middle of its 2 x 2 pixels, a quarter of its own width
+    // from the centre of each.
     const int pixel = std::min(i, count - 1) + first, own = (pixel >> 1) - (first >> 1);
     const bool first_of_two = (pixel & 1) == 0;
     const int before = first_of_two ? own - 1 : own;

@@ -24,7 +24,8 @@ class ExrReader : public ExrFile {
   /// The named channels of a part as float planes over the part's data window; half and uint
   /// values are converted. Tiled parts give their full-resolution level. A deep part, a channel
   /// that does not exist or one that is subsampled is an error.
-  /// Of `grid`, what it takes of the data window. Salvaged: missing pixels are NaN.
+  /// Planes cover the part of `grid` in the data window. In a salvaged file, missing pixels are
+  /// NaN.
   std::vector<Plane<float>> read(int part, std::span<const std::string> channels,
                                  const PixelGrid& grid = {}) const;
 

@@ -12,8 +12,8 @@
 namespace ssdo {
 namespace {
 
-/// Of cone responses for row vectors: K. M. Lam, "Metamerism and Colour Constancy", 1985, as in
-/// ICC.1:2022, annex E.
+/// Matrix from XYZ to cone responses, for row vectors: K. M. Lam, "Metamerism and Colour
+/// Constancy", 1985, as in ICC.1:2022, annex E.
 const Imath::M44f kBradford(0.8951f, -0.7502f, 0.0389f, 0,  //
                             0.2664f, 1.7135f, -0.0685f, 0,  //
                             -0.1614f, 0.0367f, 1.0296f, 0,  //

@@ -22,7 +22,8 @@ namespace {
 constexpr double kMiB = 1024.0 * 1024.0;
 constexpr double kLeast = 64 * kMiB, kMost = 1024 * 1024 * kMiB * 1024;
 
-/// Of what is there; the rest is for the system, other processes and what libraries take.
+/// The part of the available memory that a run uses by default. The rest is for the system, other
+/// processes and what libraries allocate.
 constexpr double kDefaultShare = 0.75;
 
 std::optional<std::size_t> from_user() {

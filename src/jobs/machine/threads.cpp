@@ -33,7 +33,7 @@ std::optional<int> from_user() {
                           kMostThreads));
 }
 
-/// Of `processors`, those that the quotas of the control groups leave.
+/// The number of processors, limited by the CPU quotas of the control groups.
 int within_quotas(int processors, const std::filesystem::path& root) {
   for (const std::string& line : lines_of_control_groups("", "cpu.max", root))
     processors = std::min(processors, processors_of_quota(line).value_or(processors));

@@ -20,7 +20,7 @@
 namespace ssdo {
 namespace {
 
-/// Of a camera's JSON, which takes less than 1 KiB.
+/// Largest JSON file of a camera, in bytes; a camera takes less than 1 KiB.
 constexpr std::size_t kMostCameraBytes = 1 << 20;
 
 using nlohmann::json;

@@ -82,7 +82,7 @@ ProjectionModel direct_linear_transform(const Samples& samples, const Window& wi
   // RQ by the QR of the matrix turned upside down.
   const Matrix3d flip = Vector3d::Ones().asDiagonal().toDenseMatrix().rowwise().reverse();
   const Matrix3d turned = (flip * matrix.leftCols<3>()).transpose();
-  // Of any size, as the eigenvectors are: a fixed one takes ten seconds to compile.
+  // Matrices of dynamic size, since those of a fixed size take ten seconds to compile.
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(turned);
   const Matrix3d upper = qr.matrixQR().triangularView<Eigen::Upper>();
   const Matrix3d q = Eigen::MatrixXd(qr.householderQ());

@@ -47,8 +47,8 @@ constexpr double kNoCamera = 0.02;
 constexpr float kStraight = 0.02f;
 constexpr double kLeastSmooth = 0.1;
 
-/// Of a P that fills its unit cube, the pixels of the camera found may differ by this much from
-/// those of the picture in width over height.
+/// Where P fills its unit cube: the most by which the pixel aspect of the camera found may differ
+/// from that of the picture.
 constexpr double kSameAspect = 0.02;
 
 /// A way to write coordinates that cannot be read as such.

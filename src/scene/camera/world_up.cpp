@@ -29,13 +29,14 @@ double bell(double x, double deviation) {
   return std::exp(-0.5 * (x / deviation) * (x / deviation)) / deviation;
 }
 
-/// Of an angle in degrees: most cameras are level, some are held by hand, few are tilted on
-/// purpose.
+/// Prior density of the roll of a camera, in degrees: most are level, some are held by hand, few
+/// are tilted on purpose.
 double density_of_roll(double degrees) {
   return 0.8 * bell(degrees, 0.2) + 0.1 * bell(degrees, 3) + 0.08 * bell(degrees, 20) + 1e-4;
 }
 
-/// Of the angle by which a camera looks down. Views from straight above are made as plans.
+/// Prior density of the angle by which a camera looks down, in degrees. A camera that looks
+/// straight down renders a plan.
 constexpr double kStraightDown = 89.8;
 double density_of_pitch(double degrees) {
   const double plan = degrees > kStraightDown ? 0.02 : 0;

@@ -127,7 +127,8 @@ class Comparison {
 
   std::size_t of_frame() const { return of_frame_.size(); }
 
-  /// Of the view with this camera, whose picture is `unit` times as large as its file says.
+  /// How well a view agrees with the frame if it has this camera and its lengths are multiplied by
+  /// `unit`.
   Agreement of(const Camera& camera, double unit) const {
     Agreement found;
     const auto count = [&](Shown::Sees sees, const glm::dvec3& normal) {
@@ -152,7 +153,7 @@ class Comparison {
   }
 
  private:
-  /// Of a cube about a point.
+  /// The side of a cube that a normal points to, 0 to 5.
   static std::size_t side_of(const glm::dvec3& normal) {
     const glm::dvec3 size = glm::abs(normal);
     const int axis = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;

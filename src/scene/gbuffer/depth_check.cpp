@@ -22,7 +22,8 @@ namespace {
 
 constexpr std::size_t kMostPixels = 20000, kFewestPixels = 16;
 
-/// Of right depths, as in depth_model.cpp: silhouettes that are averages are off.
+/// A depth is right if this share of the pixels agrees within the relative tolerance, as in
+/// depth_model.cpp; averaged silhouettes disagree.
 constexpr double kTolerance = 0.05, kLeastShare = 0.5;
 
 /// A wrong depth is named where the quantity that is named matches in nearly all pixels.

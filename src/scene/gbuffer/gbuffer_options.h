@@ -19,7 +19,8 @@ struct GBufferOptions {
   bool beauty = false;                    ///< whether a composite uses the colours of the beauty
   int downsample = 1;                     ///< how many times as large as the outputs the frame is
   PixelGrid grid = {};                    ///< the pixels that are read
-  /// Of a frame with more, an overview is read: one pixel of kOverviewStride x kOverviewStride.
+  /// A frame with more pixels is read as an overview: one pixel of kOverviewStride x
+  /// kOverviewStride.
   std::size_t most_pixels = std::numeric_limits<std::size_t>::max();
   std::optional<Space> space;             ///< of P and N; what they hold tells it where not given
   std::optional<Encodings> known;         ///< of all of the frame, where this is a part of it

@@ -29,7 +29,7 @@ namespace {
 /// Relative rounding: float keeps 24 bits, PXR24 16 of them.
 constexpr float kStepFloat = 1.0f / 16777216, kStepPxr24 = 1.0f / 65536;
 
-/// Of a G-buffer and its geometry.
+/// Memory that a G-buffer and its geometry take.
 constexpr double kBytesPerPixel = 100;
 
 bool is_sane(float v) { return std::isfinite(v); }

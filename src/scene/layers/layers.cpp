@@ -152,7 +152,7 @@ class LayerFinder {
     return found || !by_name ? found : find_by_name(role);
   }
 
-  /// Of layers with an equal claim, those beside `lead` are taken from here on:
+  /// From here on, layers beside `lead` win over others with an equal claim:
   /// "ViewLayer.Combined" beside "ViewLayer.Position", not "Composite.Combined".
   void prefer_beside(const Layer& lead) { prefix_ = split_channel(lead.name).first; }
 

@@ -54,7 +54,7 @@ const RoleRow& row_of(Role role);
 
 std::string_view role_name(Role role);
 
-/// Of all roles, in the order of Role.
+/// The names of all roles, in the order of Role.
 std::vector<std::string_view> role_names();
 
 std::optional<Role> role_from_name(std::string_view name);

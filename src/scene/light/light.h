@@ -25,7 +25,7 @@ struct Light {
   Environment sky = Environment::constant(glm::vec3(0));          ///< without the suns
   std::vector<Sun> suns;                                          ///< strongest first, at most 8
 
-  /// Of the radiance without the suns, by spherical harmonic. All orders are filled.
+  /// Spherical-harmonic coefficients of the radiance without the suns. All orders are filled.
   std::array<glm::vec3, kShCount> coefficients{};
 
   int order = 0;  ///< 0..4: bands above it are not worth computing

@@ -89,7 +89,7 @@ void SunSearch::project_rest() {
   }
 }
 
-/// Of the whole map, over pi.
+/// Irradiance over pi, by the whole map, of a surface with normal `d`.
 float SunSearch::irradiance_towards(const glm::vec3& d) const {
   float sum = 0;
   for (const Patch& patch : all_)

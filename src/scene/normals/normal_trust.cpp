@@ -46,9 +46,9 @@ constexpr Ramp kFollowsP{0.35, 0.6};
 /// constant N agrees with a floor, and with nothing else.
 constexpr Ramp kTurnsWithP{0, 0.01};
 
-/// Of a cell: the angle, as a tangent, between the mean normal and the mean gradient of P, and the
-/// component of the mean normal along that gradient; that of noise is 0, of bumps of 70 degrees
-/// 0.3 to 0.7.
+/// Two measures of a cell. kIsNear: the tangent of the angle between the mean normal and the mean
+/// gradient of P. kIsCoherent: the component of the mean normal along that gradient, which is 0 for
+/// noise and 0.3 to 0.7 for bumps of 70 degrees.
 constexpr Ramp kIsNear{0.6, 0.3};
 constexpr Ramp kIsCoherent{0.1, 0.25};
 constexpr int kCellsAcross = 24, kSmallestCell = 8;

@@ -20,7 +20,8 @@ struct NormalTrust {
   /// At a pixel, between the four cells around it.
   float at(int x, int y) const;
 
-  /// Of the cells with pixels that tell, and the mean by these.
+  /// Least, mean and largest trust over the cells that have pixels to measure; the mean is weighted
+  /// by the number of these pixels.
   float least() const;
   float mean() const;
   float most() const;

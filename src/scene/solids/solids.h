@@ -101,7 +101,7 @@ struct Solids {
     return {0, thickness_seen(int(pixel)), int(pixel)};
   }
 
-  /// Of layer 0 at a pixel; infinite where there is none, or `pixel` is -1.
+  /// Thickness of layer 0 at a pixel; infinite where none is known or `pixel` is -1.
   float thickness_seen(int pixel) const {
     return thickness.empty() || pixel < 0 ? std::numeric_limits<float>::infinity()
                                           : thickness[std::size_t(pixel)];
@@ -129,8 +129,8 @@ struct SolidsOfOverview {
   const Plane<float>& thickness;
 };
 
-/// What a frame alone suggests: how thick things are, and a second layer; see solids.cpp.
-/// Of some rows of a frame, an overview tells of the things that they cut.
+/// Guesses from a frame alone how thick objects are, and a second layer; see solids.cpp. If the
+/// geometry is some rows of a frame, an overview completes the objects that these rows cut.
 Solids guess_solids(const Geometry& geometry,
                     const std::optional<SolidsOfOverview>& overview = std::nullopt);
 

@@ -51,7 +51,8 @@ std::size_t inflated_bytes(Bytes packed, std::size_t most) {
   return result == LIBDEFLATE_SUCCESS ? size : most;
 }
 
-/// Of runs: a count n >= 0 and a byte that stands n + 1 times, or -n and n bytes.
+/// Size of unpacked runs. A run is a count n >= 0 and a byte that is repeated n + 1 times, or -n
+/// and n bytes.
 std::size_t bytes_of_runs(Bytes packed) {
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < packed.size();) {

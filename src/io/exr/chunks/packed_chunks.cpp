@@ -14,7 +14,7 @@
 namespace ssdo {
 namespace {
 
-/// Of a chunk that stands in several places.
+/// In place of the offset of a chunk that is found in several places.
 constexpr std::uint64_t kNowhere = ~std::uint64_t(0);
 
 }  // namespace
@@ -71,7 +71,8 @@ void PackedChunks::check_smaller_levels(std::size_t most) const {
   }
 }
 
-/// Of bytes beyond the file OpenEXR notices that they are missing after it has made room for them.
+/// OpenEXR allocates the bytes that a chunk claims before it finds that the file ends earlier: this
+/// check comes first.
 void PackedChunks::check_size(const ChunkHead& head, std::size_t most) const {
   if (head.bytes > most) throw std::runtime_error("a chunk claims more bytes than its pixels take");
   if (!head.has_sizes || head.place > size_ || head.bytes > size_ - head.place ||
@@ -83,7 +84,8 @@ void PackedChunks::check_size(const ChunkHead& head, std::size_t most) const {
     throw std::runtime_error("a chunk is larger than 2 GiB");
 }
 
-/// Of a chunk that was found in the file; of a tile of a smaller level, one more to look at.
+/// Counts a chunk that a search of the file has found. A tile of a smaller level adds one more
+/// place to check.
 void PackedChunks::add_place(std::uint64_t found) {
   const ChunkHead head = tables_.head_at(found);
   if (!head.is_full_resolution()) return places_.push_back(found);

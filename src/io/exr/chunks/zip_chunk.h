@@ -25,7 +25,7 @@ constexpr int rows_of_chunk(Imf::Compression compression) {
   return compression == Imf::ZIPS_COMPRESSION ? 1 : 16;
 }
 
-/// Of a value.
+/// Bytes of a value in the file.
 constexpr std::size_t bytes_of(Imf::PixelType type) { return type == Imf::HALF ? 2 : 4; }
 
 }  // namespace ssdo

@@ -19,8 +19,8 @@ constexpr std::uint32_t kMultiPartFlag = 0x1000;
 constexpr std::size_t kLongestName = 255;
 constexpr std::int64_t kNoFile = std::int64_t(1) << 62;  ///< bytes that none has
 
-/// Of the list of channels, each of which takes 20 bytes or more there and many times that in
-/// memory: files of renderers have some hundreds of channels.
+/// Most bytes of the list of channels. Each channel takes 20 bytes or more in the file and many
+/// times that in memory; files of renderers have some hundreds of channels.
 constexpr std::int32_t kLargestChannelList = 1 << 18;
 
 /// Types whose values have a size of their own, in bytes. OpenEXR reads as many, whatever size the

@@ -43,7 +43,7 @@ class Numbers {
   bool are_all_ = true;
 };
 
-/// Of a head, at most: part, column, row, two levels, and two sizes of eight bytes.
+/// Most bytes of the head of a chunk: part, column, row, two levels, and two sizes of eight bytes.
 constexpr std::size_t kHeadBytes = 5 * 4 + 2 * 8;
 
 std::uint64_t divide_up(std::uint64_t a, std::uint64_t b) { return (a + b - 1) / b; }
@@ -115,7 +115,8 @@ ChunkHead ChunkTables::head_at(std::uint64_t place) const {
   return head;
 }
 
-/// Of all levels. A part of a type that OpenEXR does not know says itself how many chunks it has.
+/// Describes the table of a part, all levels included. A part whose type OpenEXR does not know
+/// states its number of chunks itself.
 ChunkTables::OfPart ChunkTables::describe(const ExrPart& part, std::uint64_t begin) {
   OfPart of{begin, 0, {}, {}, {}};
   const auto width = std::uint64_t(part.data_window.width()),

@@ -31,8 +31,8 @@ struct ChunkHead {
 /// chunkOffsetReconstruction().
 class ChunkTables {
  public:
-  /// Of a file and its parts, which have to live as long as this object. `begin` is where the
-  /// tables begin, in bytes.
+  /// The tables of a file and its parts, which have to live as long as this object. `begin` is
+  /// where the tables begin, in bytes.
   ChunkTables(const InputFile& input, const Imf::MultiPartInputFile& file,
               std::span<const ExrPart> all, std::uint64_t begin);
 

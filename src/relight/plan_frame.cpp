@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "relight/plan_frame.h"
+
+#include <fmt/format.h>
+
+#include "error.h"
+#include "plan/explain.h"
+#include "plan/make_plan.h"
+#include "relight/frame_warnings.h"
+#include "scene/layers/windows.h"
+
+namespace ssdo {
+namespace {
+
+/// Bands have the rows of the frame.
+void check_bands(const Frame& frame) {
+  const bool composites = frame.plan.composition.compose != Compose::relight;
+  if (window_of_outputs(frame.readers(), frame.layers, composites, {}) == frame.gbuffer.file_window)
+    return;
+  throw Error(ExitCode::usage,
+              fmt::format("{}: a rendered layer reaches beyond the display window, where the data "
+                          "window of P ends, and takes all of the frame at once: render P with the "
+                          "same overscan, or raise --mem-limit",
+                          frame.input));
+}
+
+}  // namespace
+
+void plan_frame(Frame& frame, const FrameOptions& options, int number, bool has_deep_pixels) {
+  ModelOptions model = options.model;
+  if (model.temporal) model.seed += unsigned(number);
+  frame.plan = make_plan(model, options.output, frame.scene, frame.gbuffer, frame.input);
+  if (frame.gbuffer.grid.is_coarse()) {
+    check_bands(frame);
+    const Window& all = frame.gbuffer.file_window;
+    frame.bands = plan_bands(frame.input, all, frame.part().display_window, frame.scene, frame.plan,
+                             options.output, options.memory);
+    frame.plan.reasons.push_back(describe(*frame.bands, all));
+  }
+  warn_of_plan(frame, options, has_deep_pixels);
+  explain_earlier_products(frame);
+  explain_views(frame.plan, frame.views);
+  frame.advice = explain_guessed(frame.plan, frame.scene);
+}
+
+}  // namespace ssdo

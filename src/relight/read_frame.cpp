@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "relight/read_frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "error.h"
+#include "plan/composite_choice.h"
+#include "stopwatch.h"
+
+namespace ssdo {
+namespace {
+
+bool wants_reflection(const OutputOptions& output, const std::vector<LayerRequest>& aovs) {
+  const auto is_reflection = [](const SaveRequest& save) { return save.product == "reflection"; };
+  const auto is_specular = [](const LayerRequest& aov) { return aov.role == Role::specular; };
+  return contains(output.products, "reflection") || contains(output.products, kAllProducts) ||
+         std::ranges::any_of(output.saves, is_reflection) ||
+         (choose_compose(output, aovs) == Compose::occlude &&
+          std::ranges::any_of(aovs, is_specular));
+}
+
+/// Names that nothing asks for are no reason to refuse a frame.
+std::vector<Role> unused_roles(const FrameOptions& options, const FrameFiles& files) {
+  std::vector<Role> unused;
+  if (!wants_reflection(options.output, files.aovs)) unused.push_back(Role::roughness);
+  if (!options.model.temporal) unused.push_back(Role::motion);
+  return unused;
+}
+
+}  // namespace
+
+Frame read_frame(const FrameOptions& options, const FrameFiles& files,
+                 std::optional<DeepImage>& own) {
+  Stopwatch watch;
+  std::deque<ExrReader> opened = open_view(files.input, files.aovs, options.input.allow_partial);
+  const double opening = watch.lap();
+  InputOptions input = for_view(options.input, files);
+  input.gbuffer.downsample = options.output.downsample;
+  input.gbuffer.beauty = choose_compose(options.output, files.aovs) != Compose::relight;
+  input.gbuffer.most_pixels = most_pixels_in(options.memory);
+  View view =
+      read_view(std::move(opened), files.aovs, input, options.camera, unused_roles(options, files));
+  if (view.geometry.camera.panorama) {
+    throw Error(ExitCode::layer,
+                fmt::format("{}: is a lat-long panorama, which shows no frame; give it with --also "
+                            "to a frame of the same scene",
+                            files.input));
+  }
+  Frame frame;
+  frame.input = files.input;
+  frame.view = files.view;
+  frame.files = std::move(view.files);
+  frame.layers = std::move(view.layers);
+  frame.gbuffer = std::move(view.gbuffer);
+  frame.report = std::move(view.report);
+  frame.scene = take_scene(frame.gbuffer, std::move(view.geometry));
+  own = std::move(view.deep);
+  frame.times.read = opening + view.read_ms;
+  frame.times.prepare = watch.lap() - view.read_ms;
+  return frame;
+}
+
+}  // namespace ssdo

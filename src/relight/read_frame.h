@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "io/exr/deep_reader.h"
+#include "relight/frame.h"
+
+namespace ssdo {
+
+/// Layers, G-buffer, camera and geometry of a frame, of which an overview is read if it is too
+/// large for options.memory. If the frame is read from a deep file, `own` gets its samples. Errors:
+/// those of the stages; ExitCode::layer for a lat-long panorama.
+Frame read_frame(const FrameOptions& options, const FrameFiles& files,
+                 std::optional<DeepImage>& own);
+
+}  // namespace ssdo
