@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <new>
 #include <string_view>
 
 #include "error.h"
@@ -58,8 +57,7 @@ const ExrChannel& find_channel(const ExrReader& reader, const ExrPart& part,
 std::size_t stored_bytes(const ExrPart& part, const ExrChannel& channel) {
   // OpenEXR allows sampling only where it divides the size of the window.
   return std::size_t(part.data_window.width() / channel.x_sampling) *
-         std::size_t(part.data_window.height() / channel.y_sampling) *
-         (channel.type == Imf::HALF ? 2 : 4);
+         std::size_t(part.data_window.height() / channel.y_sampling) * bytes_of(channel.type);
 }
 
 /// How much less than a whole one a file may be and be read, in full or in part.
@@ -120,11 +118,8 @@ void read_or_fail(const ExrReader& reader, const ExrPart& part, const Window& ro
   if (rows.area() == 0) return;
   try {
     if (!read_zip_lines(reader, part, rows, channels)) read_chunks(reader, part, rows, channels);
-  } catch (const std::bad_alloc&) {
-    throw;  // nothing is wrong with the file
-  } catch (const Error&) {
-    throw;  // its disk cannot be read
   } catch (const std::exception& error) {
+    throw_unless_of_file(error);
     salvage_or_fail(reader, part, rows, channels, error);
   }
 }

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "error.h"
-#include "io/exr/chunks/zip_chunk.h"
+#include "io/exr/file/exr_parts.h"
 #include "math/half_color.h"
 #include "parallel/tiles.h"
 

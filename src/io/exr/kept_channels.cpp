@@ -58,8 +58,7 @@ StoredChannel laid_onto(const Window& to, const StoredChannel& stored, const Win
                     "of the outputs, {}; leave out --keep-channels",
                     input.path().string(), channel.name, x, y, text_of(to)));
   }
-  const std::size_t bytes = channel.type == Imf::HALF ? 2 : 4,
-                    row = bytes * std::size_t(from.width() / x),
+  const std::size_t bytes = bytes_of(channel.type), row = bytes * std::size_t(from.width() / x),
                     wide_row = bytes * std::size_t(to.width() / x);
   StoredChannel laid{channel, std::vector<std::byte>(wide_row * std::size_t(to.height() / y))};
   std::byte* first = laid.pixels.data() + wide_row * std::size_t((from.y0 - to.y0) / y) +

@@ -12,6 +12,7 @@
 #include <new>
 
 #include "io/exr/chunks/zip_chunk.h"
+#include "io/exr/file/exr_parts.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {
@@ -50,7 +51,7 @@ ZipOutput::ZipOutput(Imf::OStream& stream, const Imf::Header& header, int level)
     : stream_(stream),
       header_(header),
       level_(level),
-      chunk_rows_(rows_of_chunk(header.compression())),
+      chunk_rows_(lines_per_chunk(header.compression())),
       y_(header.dataWindow().min.y) {
   // OpenEXR writes the header and a table of chunks, of which there are none yet.
   { const Imf::MultiPartOutputFile empty(stream, &header, 1); }

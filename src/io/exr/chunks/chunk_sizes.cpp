@@ -14,7 +14,6 @@
 
 #include "io/exr/chunks/dwa_chunk.h"
 #include "io/exr/chunks/packed_chunks.h"
-#include "io/exr/chunks/zip_chunk.h"
 #include "io/exr/file/exr_parts.h"
 #include "parallel/tiles.h"
 

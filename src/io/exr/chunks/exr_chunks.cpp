@@ -11,13 +11,10 @@
 
 #include <algorithm>
 #include <cstring>
-#include <new>
 
-#include "error.h"
 #include "io/exr/chunks/chunk_sizes.h"
 #include "io/exr/chunks/deep_chunks.h"
 #include "io/exr/chunks/packed_chunks.h"
-#include "io/exr/chunks/zip_chunk.h"
 #include "io/exr/file/exr_parts.h"
 
 namespace ssdo {
@@ -103,21 +100,16 @@ void read_tiles(const ExrFile& file, const ExrPart& part, const Window& rows,
   }
 }
 
-void read_chunk(const ExrFile& file, const ExrPart& part, const PackedChunks& chunks,
-                std::size_t chunk, std::span<const ChannelRows> channels) {
-  const Window window = chunks.window(chunk);
-  const auto columns = std::size_t(chunks.columns());
-  if (is_tiled(part))
-    Tiles(file, part).read_one(int(chunk % columns), int(chunk / columns), window, channels);
-  else
-    read_lines(file, part, window, channels, {});
-}
-
 void try_flat_chunk(const ExrFile& file, const ExrPart& part, const PackedChunks& chunks,
                     std::size_t chunk) {
-  std::vector<std::byte> pixels(4 * chunks.window(chunk).area());
+  const Window window = chunks.window(chunk);
+  const auto columns = std::size_t(chunks.columns());
+  std::vector<std::byte> pixels(4 * window.area());
   const ChannelRows first{part.channels[0], pixels.data(), false};
-  read_chunk(file, part, chunks, chunk, std::span(&first, 1));
+  if (is_tiled(part))
+    Tiles(file, part).read_one(int(chunk % columns), int(chunk / columns), window, {&first, 1});
+  else
+    read_lines(file, part, window, {&first, 1}, {});
 }
 
 /// Whether a chunk can be read, which one of its channels shows: they are packed together.
@@ -130,17 +122,13 @@ bool can_read(const ExrFile& file, const ExrPart& part, const PackedChunks& chun
     else
       try_flat_chunk(file, part, chunks, chunk);
     return true;
-  } catch (const std::bad_alloc&) {
-    throw;  // a chunk that memory is too short for is not missing
-  } catch (const Error&) {
-    throw;  // nor is one that the disk does not give
-  } catch (const Iex::IoExc&) {
-    return false;  // OpenEXR took its bytes and could not decode them: the next chunk can be read
-  } catch (const Iex::BaseExc&) {
-    file.recover();  // which opens the part again, and takes as long as it has chunks
+  } catch (const std::exception& error) {
+    throw_unless_of_file(error);
+    // After an IoExc the next chunk can be read: OpenEXR took the bytes and could not decode them.
+    // To recover is to open the part again, and takes as long as it has chunks.
+    const bool asked = dynamic_cast<const Iex::BaseExc*>(&error);
+    if (asked && !dynamic_cast<const Iex::IoExc*>(&error)) file.recover();
     return false;
-  } catch (const std::exception&) {
-    return false;  // OpenEXR was not asked
   }
 }
 

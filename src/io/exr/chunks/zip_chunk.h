@@ -2,10 +2,8 @@
 #pragma once
 
 #include <ImfCompression.h>
-#include <ImfPixelType.h>
 
 #include <bit>
-#include <cstddef>
 
 // A chunk of ZIP holds 16 scanlines, one of ZIPS a single one; the channels of a line follow each
 // other in the order of the header. Before it is deflated, the bytes of the whole chunk with even
@@ -20,12 +18,5 @@ constexpr bool is_zip(Imf::Compression compression) {
   return std::endian::native == std::endian::little &&
          (compression == Imf::ZIP_COMPRESSION || compression == Imf::ZIPS_COMPRESSION);
 }
-
-constexpr int rows_of_chunk(Imf::Compression compression) {
-  return compression == Imf::ZIPS_COMPRESSION ? 1 : 16;
-}
-
-/// Bytes of a value in the file.
-constexpr std::size_t bytes_of(Imf::PixelType type) { return type == Imf::HALF ? 2 : 4; }
 
 }  // namespace ssdo

@@ -65,18 +65,14 @@ ExrFile::ExrFile(const std::filesystem::path& path, Salvage salvage)
   try {
     file_ = std::make_unique<Imf::MultiPartInputFile>(*stream_);
     for (int i = 0; i < file_->parts(); ++i) parts_.push_back(describe_part(*file_, i));
-  } catch (const std::bad_alloc&) {
-    throw;  // nothing is wrong with the file
-  } catch (const Error&) {
-    throw;  // its disk cannot be read
   } catch (const std::exception& error) {
+    throw_unless_of_file(error);
     fail(path, fmt::format("is damaged or cut short in its header ({}); render or copy it again",
                            one_line(error.what())));
   }
 }
 
 ExrFile::~ExrFile() = default;
-ExrFile::ExrFile(ExrFile&&) noexcept = default;
 
 const ChunkTables& ExrFile::chunk_tables() const {
   if (!chunk_tables_)

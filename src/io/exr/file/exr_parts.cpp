@@ -17,6 +17,18 @@
 #include "io/size_guard.h"
 
 namespace ssdo {
+namespace {
+
+/// What all channels of a row of tiles take, of which OpenEXR makes room for all, also where the
+/// image is smaller than a tile. 0 for scanlines.
+double tile_row_bytes(const ExrPart& part) {
+  if (!is_tiled(part)) return 0;
+  const Imf::TileDescription& tiles = part.header.tileDescription();
+  return bytes_per_pixel(part) * std::max(double(part.data_window.width()), double(tiles.xSize)) *
+         double(tiles.ySize);
+}
+
+}  // namespace
 
 Window window_of(const Imath::Box2i& box) {
   return {box.min.x, box.min.y, box.max.x + 1, box.max.y + 1};
@@ -41,7 +53,7 @@ int lines_per_chunk(Imf::Compression compression) {
 
 double bytes_per_pixel(const ExrPart& part) {
   double bytes = 0;
-  for (const ExrChannel& c : part.channels) bytes += c.type == Imf::HALF ? 2 : 4;
+  for (const ExrChannel& c : part.channels) bytes += double(bytes_of(c.type));
   return bytes;
 }
 
@@ -116,13 +128,6 @@ double largest_ratio(const ExrPart& part) {
 
 double decoder_bytes(const ExrPart& part) {
   return bytes_per_pixel(part) * pixels_per_chunk(part) * 2 * std::max(1, Imf::globalThreadCount());
-}
-
-double tile_row_bytes(const ExrPart& part) {
-  if (!is_tiled(part)) return 0;
-  const Imf::TileDescription& tiles = part.header.tileDescription();
-  return bytes_per_pixel(part) * std::max(double(part.data_window.width()), double(tiles.xSize)) *
-         double(tiles.ySize);
 }
 
 double float_bytes(const ExrChannel& channel) {

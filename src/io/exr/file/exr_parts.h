@@ -65,6 +65,9 @@ Window window_of(const Imath::Box2i& box);
 /// Scanlines that are packed together.
 int lines_per_chunk(Imf::Compression compression);
 
+/// The bytes of a value in files.
+constexpr std::size_t bytes_of(Imf::PixelType type) { return type == Imf::HALF ? 2 : 4; }
+
 /// What a pixel takes that has a value of every channel.
 double bytes_per_pixel(const ExrPart& part);
 
@@ -77,10 +80,6 @@ double largest_ratio(const ExrPart& part);
 /// The memory in which OpenEXR decodes the chunks of a part: every channel of a chunk, two chunks
 /// for each of its threads.
 double decoder_bytes(const ExrPart& part);
-
-/// What all channels of a row of tiles take, of which OpenEXR makes room for all, also where the
-/// image is smaller than a tile. 0 for scanlines.
-double tile_row_bytes(const ExrPart& part);
 
 /// What a channel takes of each pixel as float.
 double float_bytes(const ExrChannel& channel);
