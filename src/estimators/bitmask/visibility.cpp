@@ -25,12 +25,28 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-template <bool kOrthographic, int kOrder>
+/// The sectors of one side of a slice that are hidden, and those of them that something beyond the
+/// border hides.
+struct HiddenSectors {
+  VU all, beyond;
+};
+
+/// Not inlined, so that the march is not compiled anew for each order of the light.
+template <bool kOrthographic>
+HWY_NOINLINE HiddenSectors hidden_sectors(const March& march, const MarchReceiver& p,
+                                          const SideFrame& side, const Slice& slice, bool forward) {
+  VU beyond = set_bits(0);
+  const VU open = march_side<kOrthographic>(
+      march, p, side, slice, forward, [](auto&&...) HWY_ATTR {}, IgnoreHits(),
+      [&](bool, const Border&, VU bits) HWY_ATTR { beyond = hn::Or(beyond, bits); });
+  return {hn::AndNot(open, side.above), beyond};
+}
+
+template <int kOrder>
 void visibility(const VisibilityJob& job, const Window& part) {
   const March& march = job.march;
   for_each_receiver(
       march, part, [&](const MarchReceiver& p, const std::vector<Slice>& slices) HWY_ATTR {
-        const auto ignore = [](auto&&...) HWY_ATTR {};
         const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
         Moments<kOrder> sum, first_half;  // over slices, by w
         for (int k = 0; k < count_of_slices; ++k) {
@@ -41,12 +57,9 @@ void visibility(const VisibilityJob& job, const Window& part) {
           for (const bool forward : {true, false}) {
             const SideFrame side =
                 side_frame(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
-            VU hidden_beyond = set_bits(0);
-            const VU open = march_side<kOrthographic>(
-                march, p, side, slice, forward, ignore, IgnoreHits(),
-                [&](bool, const Border&, VU bits)
-                    HWY_ATTR { hidden_beyond = hn::Or(hidden_beyond, bits); });
-            const VU bits = hn::AndNot(open, side.above);
+            const auto [bits, hidden_beyond] =
+                march.scene.orthographic ? hidden_sectors<true>(march, p, side, slice, forward)
+                                         : hidden_sectors<false>(march, p, side, slice, forward);
             all.add(moments_of_first<kOrder + 1>(side.above_count), p.shading_v, side.shading_t,
                     forward);
             if (none(bits)) continue;
@@ -87,25 +100,19 @@ void visibility(const VisibilityJob& job, const Window& part) {
       });
 }
 
-template <bool kOrthographic>
-void visibility_in_order(const VisibilityJob& job, const Window& part) {
+void visibility_of_pixels(const VisibilityJob& job, const Window& part) {
   switch (job.order) {
     case 0:
-      return visibility<kOrthographic, 0>(job, part);
+      return visibility<0>(job, part);
     case 1:
-      return visibility<kOrthographic, 1>(job, part);
+      return visibility<1>(job, part);
     case 2:
-      return visibility<kOrthographic, 2>(job, part);
+      return visibility<2>(job, part);
     case 3:
-      return visibility<kOrthographic, 3>(job, part);
+      return visibility<3>(job, part);
     default:
-      return visibility<kOrthographic, 4>(job, part);
+      return visibility<4>(job, part);
   }
-}
-
-void visibility_of_pixels(const VisibilityJob& job, const Window& part) {
-  job.march.scene.orthographic ? visibility_in_order<true>(job, part)
-                               : visibility_in_order<false>(job, part);
 }
 
 }  // namespace ssdo::HWY_NAMESPACE
