@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is needed, builds, and runs every test: also with sanitizers, fuzzing for a minute
-# each, a shot on a farm, the package, faults, cppcheck and clang-tidy. Or some stages:
-#   tests/run.sh [release|address|fuzz|thread|farm|package|faults|lint|tidy]...
+# Installs what is needed, builds, and passes the tests. `all` passes them with sanitizers too,
+# fuzzes for a minute each, and tries a shot on a farm, the package, faults, cppcheck and clang-tidy.
+# `edit` is for between two edits: it builds and runs the tests whose files or names hold NAME, with
+# what these need, for one instruction set.
+#   tests/run.sh [all | edit NAME... | (release|address|fuzz|thread|farm|package|faults|lint|tidy)...]
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 mkdir -p "$root/build"
@@ -11,16 +13,44 @@ options=(-DSSDO_TESTS=ON)
 [ -z "${CI:-}" ] || options+=(-DSSDO_WERROR=ON)
 
 build_release() {
+  echo "tests/run.sh: building build/release"
   install_packages "${build_packages[@]}" "${test_packages[@]}"
   build "$release" all "${options[@]}"
 }
 
-run_tests() { ctest --test-dir "$1" --output-on-failure --parallel "$(nproc)"; }
+# run_tests FOLDER: as many processes at once as there are cores; failed tests are named.
+run_tests() {
+  echo "tests/run.sh: running the tests of ${1#"$root"/}"
+  ctest --test-dir "$1" --output-on-failure --parallel "$(nproc)" |
+    awk -f "$root/tests/name_failures.awk"
+}
 
 run_release() {
   build_release
   run_tests "$release"
   cat "$release"/reports/*.md
+}
+
+# tests_named NAME...: a line "file Suite.Test" for each test whose file or name holds a NAME.
+tests_named() {
+  (cd "$root/tests" && grep -roE '^TEST(_F|_P)?\([^,]+, [^)]+' --include='*_test.cpp') |
+    sed -E 's@:TEST[^(]*\(([^,]+), @ \1.@' |
+    awk 'BEGIN { for (i = 1; i < ARGC; ++i) names[i] = tolower(ARGV[i]); ARGC = 1 }
+      { for (i in names) if (index(tolower($0), names[i])) { print; break } }' "$@"
+}
+
+# One instruction set, and loops that are optimised less: half of the time to compile them, for the
+# same bits.
+run_edit() {
+  local edit=$root/build/edit isa=scalar found
+  found=$(tests_named "$@")
+  [ -n "$found" ] || { echo "tests/run.sh: no test is named $*" >&2; return 1; }
+  grep -qw avx2 /proc/cpuinfo && isa=avx2
+  install_packages "${build_packages[@]}" "${test_packages[@]}"
+  build "$edit" test_programs "${options[@]}" \
+    -DSSDO_ONE_ISA=$isa -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG" \
+    -DSSDO_ONLY_TESTS="$(cut -d' ' -f1 <<<"$found" | sort -u | paste -sd';')"
+  GTEST_FILTER=$(sed 's/.* \(.*\)/\1:*\/\1\/*/' <<<"$found" | paste -sd:) run_tests "$edit"
 }
 
 run_lint() {
@@ -40,7 +70,7 @@ run_tidy() { tidy "$root"/src/{,*/,*/*/,*/*/*/}*.cpp; }
 
 # tidy FILE...: clang-tidy as .clang-tidy says, with the headers and options of the address build.
 tidy() {
-  build_address ssdo_core
+  build_address ssdo_cli
   install_packages clang-tidy
   printf '%s\n' "$@" | xargs -n 1 -P "$(nproc)" clang-tidy -p "$root/build/address" --quiet
 }
@@ -82,7 +112,7 @@ test_sanitized() (
 names() { grep -v '^#' "$root/tests/$1" | paste -sd:; }
 
 run_address() {
-  build_address ssdo_tests
+  build_address all_tests
   test_sanitized address "-$(names address_left_out.txt)"
 }
 
@@ -92,7 +122,7 @@ run_fuzz() {
 }
 
 run_thread() {
-  build_sanitized thread ssdo_tests -DSSDO_SANITIZE=thread -DSSDO_ONE_ISA=scalar
+  build_sanitized thread all_tests -DSSDO_SANITIZE=thread -DSSDO_ONE_ISA=scalar
   test_sanitized thread "$(names threaded.txt)"
 }
 
@@ -111,9 +141,14 @@ run_faults() {
   as_root "$root/tests/faults/run.sh" "$release/ssdo" 24
 }
 
-[ $# -gt 0 ] || set -- release address fuzz thread farm package faults lint
+case "${1:-}" in
+  "") set -- release ;;
+  all) set -- release address fuzz thread farm package faults lint ;;
+  edit) shift; run_edit "$@"; exit ;;
+esac
 for stage in "$@"; do
   SECONDS=0
+  echo "tests/run.sh: $stage, of $*"
   "run_$stage"
   echo "tests/run.sh: $stage took $SECONDS s"
 done

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Whole files, EXR and PNG, have the same bytes from run to run, from any number of threads, and
-// whatever the order of options that name files and layers. See also tests/same_bits_test.cpp.
+// whatever the order of options that name files and layers. See also tests/hash/same_bits_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>

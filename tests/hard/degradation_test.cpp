@@ -13,6 +13,7 @@
 #include "filters/registry.h"
 #include "hard/every_method.h"
 #include "hard/recorded_degradation.h"
+#include "support/average_picture.h"
 #include "support/report.h"
 
 namespace ssdo::test {

@@ -64,9 +64,4 @@ HardFrame hard_frame(const Surface& scene, const Camera& camera, const Window& w
 /// What reading `part` from a file gives. `fov` stands for --fov, 0: the camera is fitted.
 Geometry read_through_file(const FramePart& part, double fov = 0, Plane<HalfColor>* albedo = {});
 
-/// P and N as renderers that average them make a picture: the mean over n x n samples of a pixel,
-/// background among them as 0. Pixels whose samples differ in surface are marked in `averaged`.
-Picture average_picture(const Surface& scene, const Camera& camera, const Window& window, int n,
-                        Plane<unsigned char>& averaged);
-
 }  // namespace ssdo::test

@@ -5,16 +5,16 @@
 
 #include <cmath>
 
-#include "support/random_frame.h"
+#include "support/random_numbers.h"
 
 namespace ssdo::test {
 namespace {
 
 TEST(TwoInOne, NumbersAreWholeWithTheRest) {
-  Random random(7);
+  RandomNumbers random(7);
   for (int i = 0; i < 100000; ++i) {
-    const float first = std::ldexp(between(random, -1, 1), int(between(random, -60, 60))),
-                second = i % 10 == 0 ? 0 : between(random, -1e3f, 1e3f);
+    const float first = std::ldexp(float(random.between(-1, 1)), random.whole(-60, 60)),
+                second = i % 10 == 0 ? 0 : float(random.between(-1e3, 1e3));
     const float both = two_in_one(first, second), rest = rest_of_two(first, second);
     ASSERT_EQ(whole_of_two(both, rest), glm::vec2(first, second));
     ASSERT_NEAR(first_of_two(both), first, 0.004 * std::abs(first));

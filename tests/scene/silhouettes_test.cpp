@@ -7,9 +7,8 @@
 
 #include <random>
 
-#include "hard/hard_cases.h"
 #include "scene/build_geometry.h"
-#include "support/analytic_scene.h"
+#include "support/average_picture.h"
 #include "support/gbuffer_of.h"
 
 namespace ssdo::test {

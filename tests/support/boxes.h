@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "support/analytic_scene.h"
-#include "support/deep_file.h"
+#include "support/deep_elements.h"
 
 namespace ssdo::test {
 

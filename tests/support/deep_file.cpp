@@ -7,8 +7,6 @@
 
 #include <cstring>
 
-#include "support/frame_file.h"
-
 namespace ssdo::test {
 namespace {
 
@@ -88,23 +86,6 @@ void write_deep(const std::filesystem::path& path, const std::vector<DeepPart>& 
   for (const DeepPart& part : parts) headers.push_back(header_of(part));
   Imf::MultiPartOutputFile file(path.c_str(), headers.data(), int(headers.size()));
   for (std::size_t i = 0; i < parts.size(); ++i) write_part(file, int(i), parts[i]);
-}
-
-DeepPixels merged(const std::vector<Surface>& elements, const Camera& camera,
-                  const Window& window) {
-  DeepPixels pixels(window);
-  for (int y = window.y0; y < window.y1; ++y) {
-    for (int x = window.x0; x < window.x1; ++x) {
-      const Ray ray = ray_through(camera, x + 0.5, y + 0.5);
-      for (const Surface& element : elements) {
-        const auto hit = element(ray);
-        if (!hit) continue;
-        const float depth = float(-camera.to_camera(ray.origin + hit->distance * ray.direction).z);
-        pixels.at(x, y).push_back({depth, depth, 1});
-      }
-    }
-  }
-  return pixels;
 }
 
 DeepImage image_of(const DeepPixels& pixels) {

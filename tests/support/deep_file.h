@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "io/exr/deep_reader.h"
-#include "support/analytic_scene.h"
 #include "support/exr_fixture.h"
 
 namespace ssdo::test {
@@ -34,10 +33,6 @@ struct DeepPart {
 };
 
 void write_deep(const std::filesystem::path& path, const std::vector<DeepPart>& parts);
-
-/// What a renderer writes for elements that it renders apart and merges: the first surface of each
-/// on every pixel's ray, by planar depth, in the order of the elements.
-DeepPixels merged(const std::vector<Surface>& elements, const Camera& camera, const Window& window);
 
 /// The image as ssdo reads it, without a file.
 DeepImage image_of(const DeepPixels& pixels);

@@ -15,11 +15,15 @@
 #include <string>
 #include <vector>
 
+#include "math/plane.h"
+
 namespace ssdo::test {
 
 /// What every test image holds in channel `c` (counted in the order of the header) at pixel (x, y):
 /// a whole number that half, float and uint all store exactly.
 int test_value(int c, int x, int y);
+
+inline Imath::Box2i box_of(const Window& w) { return {{w.x0, w.y0}, {w.x1 - 1, w.y1 - 1}}; }
 
 struct TestChannel {
   std::string name;

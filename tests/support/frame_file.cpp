@@ -28,8 +28,6 @@ FramePart frame_of(const Picture& picture, const std::string& prefix) {
   return part;
 }
 
-Imath::Box2i box_of(const Window& w) { return {{w.x0, w.y0}, {w.x1 - 1, w.y1 - 1}}; }
-
 void write_frame(const std::filesystem::path& path, const std::vector<FramePart>& parts) {
   std::vector<Imf::Header> headers;
   for (const FramePart& part : parts) {

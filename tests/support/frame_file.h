@@ -18,6 +18,7 @@
 
 #include "io/exr/exr_reader.h"
 #include "support/analytic_scene.h"
+#include "support/exr_fixture.h"
 
 namespace ssdo::test {
 
@@ -37,8 +38,6 @@ struct FramePart {
 
 /// P, N, albedo 1/2 and depth of a picture, under the names that Blender uses.
 FramePart frame_of(const Picture& picture, const std::string& prefix = "ViewLayer.");
-
-Imath::Box2i box_of(const Window& w);
 
 void write_frame(const std::filesystem::path& path, const std::vector<FramePart>& parts);
 

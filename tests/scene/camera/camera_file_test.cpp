@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Camera files: what `ssdo info --json` writes comes back, and what describes no camera is refused
-// (issue 18).
+// What describes no camera is refused (issue 18); tests/cli/camera_file_test.cpp has what comes
+// back.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -83,29 +83,6 @@ TEST_F(CameraFile, AMirrorIsRefusedUnlessTheFileDeclaresIt) {
   EXPECT_NEAR(
       glm::determinant(read(with_matrix(mirror, R"("world_handedness": "left", )")).rotation), -1,
       1e-12);
-}
-
-/// P in a left-handed space fits a camera that mirrors, and so does its file.
-TEST_F(CameraFile, WhatInfoWritesComesBack) {
-  for (const bool left : {false, true}) {
-    Picture picture = small_picture();
-    for (std::size_t i = 0; left && i < picture.position.size(); ++i) {
-      picture.position[i].z *= -1;
-      picture.normal[i].z *= -1;
-    }
-    write_frame(path("in.exr"), frame_of(picture));
-    const Finished told = run_tool({"info", path("in.exr"), "--json"});
-    ASSERT_EQ(told.code, 0) << told.err;
-    const json camera = parse_json(told.out)["camera"];
-    EXPECT_EQ(camera["world_handedness"], left ? "left" : "right");
-    const Camera back = read(camera.dump());
-    EXPECT_NEAR(back.fx, camera["fx"].get<double>(), 1e-9);
-    EXPECT_NEAR(glm::determinant(back.rotation), left ? -1 : 1, 1e-3);
-    EXPECT_EQ(
-        run_tool({path("in.exr"), "-o", path("out.exr"), "--overwrite", "--camera", path("c.json")})
-            .code,
-        0);
-  }
 }
 
 }  // namespace

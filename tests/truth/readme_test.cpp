@@ -11,9 +11,9 @@
 #include <regex>
 #include <set>
 
-#include "estimators/recorded_errors.h"
 #include "estimators/registry.h"
 #include "hard/recorded_degradation.h"
+#include "truth/recorded_errors.h"
 
 namespace ssdo::test {
 namespace {

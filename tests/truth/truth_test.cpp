@@ -14,13 +14,13 @@
 #include <filesystem>
 #include <numeric>
 
-#include "estimators/recorded_errors.h"
 #include "estimators/registry.h"
 #include "filters/shares.h"
 #include "io/exr/exr_reader.h"
 #include "relight/frame.h"
 #include "relight/relight.h"
 #include "support/crop.h"
+#include "truth/recorded_errors.h"
 
 namespace ssdo::test {
 namespace {

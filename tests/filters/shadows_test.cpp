@@ -9,10 +9,10 @@
 #include <cmath>
 #include <vector>
 
-#include "../../scene/light/painted_map.h"
 #include "estimators/bitmask/request.h"
 #include "filters/registry.h"
 #include "filters/shares.h"
+#include "scene/light/painted_map.h"
 #include "support/boxes.h"
 
 namespace ssdo::test {

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What pictures of back faces are worth, against rays through the scene.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "estimators/bitmask/request.h"
+#include "support/run_tool.h"
+#include "support/slab_and_ball.h"
+
+namespace ssdo::test {
+namespace {
+
+using testing::ContainsRegex;
+using testing::Not;
+
+/// The ground beside and below a slab sees the sky under it.
+TEST(BackFacesOfTheTool, OpenWhatIsBelowASlab) {
+  const TempDir folder;
+  const Camera camera = camera_of(kFrame);
+  const std::string frame = write_view(folder / "frame.exr", scene(), camera, kFrame),
+                    back = write_view(folder / "back.exr", backs(), camera, kFrame),
+                    out = folder / "out.exr";
+  const auto ao = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {
+        frame, "-o",           out,     "--overwrite", "--products",
+        "ao",  "--pixel-type", "float", "--quality",   "final"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished run = run_tool(arguments);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return channel(out, "ao.Y");
+  };
+  const auto rmse = [&](const Plane<float>& found) {
+    double sum = 0;
+    int count = 0;
+    for (int y = 12; y < kFrame.height() - 12; y += 6) {
+      for (int x = 12; x < kFrame.width() - 12; x += 6) {
+        const Point p = point_at(scene(), camera, kFrame, x, y);
+        if (p.position.z > 1e-6 || std::abs(p.position.x) > 1.6 || std::abs(p.position.y) > 1.6)
+          continue;
+        sum += std::pow(double(found(x, y)) - ao_by_rays(scene(), p, kNoLimit, 2048), 2);
+        ++count;
+      }
+    }
+    EXPECT_GT(count, 40);
+    return std::sqrt(sum / count);
+  };
+  for (const std::string method : {"bitmask", "trace"}) {
+    const double alone = rmse(ao({"--method", method})),
+                 known = rmse(ao({"--method", method, "--also", back})),
+                 given = rmse(ao({"--method", method, "--also", back, "--thickness", "3"}));
+    fmt::print("{}: RMSE {:.4f} alone, {:.4f} with back faces, {:.4f} with a thickness given too\n",
+               method, alone, known, given);
+    EXPECT_LT(known, 0.5 * alone) << method;
+    EXPECT_LT(given, 0.7 * alone) << method << ": what is measured wins";
+  }
+  EXPECT_EQ(ao({"--also", back, "--threads", "1"}).pixels,
+            ao({"--also", back, "--threads", "3"}).pixels);
+  EXPECT_THAT(run_tool({"info", frame, "--also", back}).out,
+              ContainsRegex("back.exr: back faces .* in [1-9][0-9]* pixels"));
+  EXPECT_THAT(run_tool({"info", frame, "--also", frame}).out, Not(ContainsRegex("back faces")));
+}
+
+}  // namespace
+}  // namespace ssdo::test
