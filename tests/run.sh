@@ -146,9 +146,10 @@ case "${1:-}" in
   all) set -- release address fuzz thread farm package faults lint ;;
   edit) shift; run_edit "$@"; exit ;;
 esac
+number=0
 for stage in "$@"; do
   SECONDS=0
-  echo "tests/run.sh: $stage, of $*"
+  echo "tests/run.sh: $stage, stage $((++number)) of $#"
   "run_$stage"
   echo "tests/run.sh: $stage took $SECONDS s"
 done
