@@ -79,9 +79,7 @@ class Bitmask {
                                                                     : nullptr),
         pattern_(pattern_of(request, layout_, scene.geometry.display, far_raster())),
         bounce_pattern_(bounce_pattern_of(request, layout_, scene.geometry.display, far_raster())),
-        further_(scene.further.empty()
-                     ? nullptr
-                     : std::make_unique<FurtherRays>(scene.further.vertices, scene.further.added)),
+        further_(FurtherRays::of_added(scene.further)),
         march_(march_with(pattern_)),
         bounce_march_(march_with(bounce_pattern_)) {}
 

@@ -69,9 +69,7 @@ class Guesses {
         surfel_(scene.geometry.surfel),
         footprint_(scene.geometry.camera),
         radius_(radius),
-        further_(scene.further.empty()
-                     ? nullptr
-                     : std::make_unique<FurtherRays>(scene.further.vertices, scene.further.added)) {
+        further_(FurtherRays::of_added(scene.further)) {
     const Camera& camera = scene.geometry.camera;
     f_ = {float(camera.fx), float(camera.fy)};
     c_ = {float(camera.cx - scene.geometry.window.x0), float(camera.cy - scene.geometry.window.y0)};

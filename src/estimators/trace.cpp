@@ -119,10 +119,7 @@ class Trace {
         samples_(int(request.parameters.at("samples"))),
         footprint_(scene.geometry.camera),
         rays_(build_height_field(scene.geometry, scene.solids)),
-        further_(scene.further.empty()
-                     ? nullptr
-                     : std::make_unique<FurtherRays>(scene.further.vertices, scene.further.added)) {
-  }
+        further_(FurtherRays::of_added(scene.further)) {}
 
   Products run() {
     wants_light_ = request_.products.direct || request_.products.bounce || request_.products.error;

@@ -10,11 +10,6 @@ struct RTCHit;
 
 namespace ssdo {
 
-/// Embree divides by an estimate of a reciprocal that each maker's processors make in another way.
-/// So its rays go on as far as this times where they end or have met something, and a filter takes
-/// of the triangles that they meet the first one by hit_of().
-constexpr float kReachForEmbree = 1 + 1e-5f;
-
 /// Where a ray meets a triangle.
 struct TriangleHit {
   unsigned mesh, triangle;  ///< Embree's numbers

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "estimators/triangle_rays.h"
 #include "scene/further/further_surfaces.h"
 
 namespace ssdo {
@@ -19,7 +20,9 @@ class FurtherRays {
   /// `vertices` must outlive this. Errors: ExitCode::failed where memory does not suffice.
   FurtherRays(const std::vector<Vertex>& vertices,
               const std::vector<FurtherSurfaces::Triangle>& triangles);
-  ~FurtherRays();
+
+  /// Those of what the frame does not show; null: there are none.
+  static std::unique_ptr<FurtherRays> of_added(const FurtherSurfaces& surfaces);
 
   /// The surface that a ray meets first.
   struct Hit {
@@ -34,8 +37,9 @@ class FurtherRays {
   Hit first_hit(const glm::vec3& origin, const glm::vec3& direction, float reach) const;
 
  private:
-  struct Embree;
-  std::unique_ptr<Embree> embree_;
+  class OtherThings;
+  const std::vector<Vertex>& vertices_;
+  TriangleRays rays_;
 };
 
 }  // namespace ssdo

@@ -5,6 +5,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "estimators/triangle_rays.h"
 #include "scene/geometry.h"
 
 namespace ssdo {
@@ -18,10 +19,7 @@ class PictureSpace {
   explicit PictureSpace(const Geometry& geometry);
 
   /// A ray from here as far as `reach`, in lengths of the direction.
-  struct Ray {
-    glm::vec3 origin, direction;
-    float reach;
-  };
+  using Ray = TriangleRays::Ray;
 
   glm::vec3 point(const glm::dvec3& camera_space) const;
   glm::vec3 position(const glm::vec3& point) const;  ///< the inverse

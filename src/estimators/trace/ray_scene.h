@@ -3,9 +3,9 @@
 
 #include <glm/vec3.hpp>
 #include <limits>
-#include <memory>
 
 #include "estimators/trace/height_field.h"
+#include "estimators/triangle_rays.h"
 
 namespace ssdo {
 
@@ -15,7 +15,6 @@ class RayScene {
  public:
   /// Errors: ExitCode::failed where memory does not suffice.
   explicit RayScene(HeightField field);
-  ~RayScene();
 
   // Directions are unit vectors; a reach may be infinite. What a solid has behind its front counts
   // only if that front is within reach too: how far back a distant thing goes is not known.
@@ -31,9 +30,9 @@ class RayScene {
   Hit first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;
 
  private:
-  struct Embree;
+  class FrontsWithin;
   HeightField field_;
-  std::unique_ptr<Embree> embree_;
+  TriangleRays rays_;
 };
 
 }  // namespace ssdo

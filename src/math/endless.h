@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace ssdo {
+
+/// Lengths from here on count as endless. The squares of shorter ones fit into a float, and Embree
+/// takes no longer ones.
+constexpr float kEndless = 1e18f;
+
+}  // namespace ssdo
