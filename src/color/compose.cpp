@@ -77,7 +77,8 @@ Arriving arriving_light(const Results& r) {
         light.part[i] *= r.products.ao[i];
       } else {
         light.part[i] *= r.products.direct[i];
-        light.whole[i] *= r.scene.light.unoccluded(r.scene.geometry.surfel[i].normal);
+        const Surfel& s = r.scene.geometry.surfel[i];
+        light.whole[i] *= r.scene.light.unoccluded(s.position, s.normal);
       }
     }
   });

@@ -29,8 +29,8 @@
 // - direct is a ratio to the exact unoccluded irradiance E(N), the ratio estimator of Heitz, Hill
 //   and McGuire (2018, Combining Analytic Direct Illumination and Stochastic Shadows): the noise
 //   of a few directions cancels. L is taken in spherical harmonics, of the environment without its
-//   suns; each sun is a direction of its own, tested along the slice that holds it
-//   (bitmask/rays/sun.cpp). So is what facets mirror (bitmask/rays/reflection.cpp).
+//   sources; each source has rays to its points (bitmask/rays/source.cpp). So is what facets mirror
+//   (bitmask/rays/reflection.cpp).
 // - bounce takes the radiance of the first surface in each sector; no 1/d^2, so no singularity
 //   (bitmask/bounce.cpp, bitmask/senders.cpp). Rays go to bright senders (bitmask/rays/emitters.h).
 // - A sampled pixel represents the stretch of the march up to halfway to the samples before and
@@ -55,7 +55,7 @@
 #include "estimators/bitmask/parts.h"
 #include "estimators/bitmask/patterns.h"
 #include "estimators/bitmask/raster.h"
-#include "estimators/bitmask/rays/find_sun.h"
+#include "estimators/bitmask/rays/find_source.h"
 #include "estimators/guessed.h"
 #include "scene/light/light.h"
 
@@ -84,8 +84,8 @@ class Bitmask {
         bounce_march_(march_with(bounce_pattern_)) {}
 
   Products run() {
-    // Suns first: what bounds their rays needs more memory than any other light.
-    if (wants_light() && !scene_.light.suns.empty()) gather_suns();
+    // Sources first: what bounds their rays needs more memory than any other light.
+    if (wants_light() && !scene_.light.sources.empty()) gather_sources();
     gather_visibility();
     InterleavedVectors bounce;
     if (request_.products.bounce) bounce = gather_bounce();
@@ -104,7 +104,7 @@ class Bitmask {
     FarRaster raster(layout_.width(), layout_.height(), s.first_x, s.first_y, from_px);
     kept_light_in_ = &raster;
     if (request_.products.bounce && request_.bounces > 0) {
-      if (!scene_.light.suns.empty()) gather_suns();
+      if (!scene_.light.sources.empty()) gather_sources();
       gather_visibility();
       gather_bounce();
     }
@@ -155,7 +155,7 @@ class Bitmask {
   void gather_visibility() {
     ao_ = InterleavedPlane(layout_);
     const Light& light = scene_.light;
-    VisibilityJob job{.march = march_, .irradiance = &light.irradiance, .ao = &ao_};
+    VisibilityJob job{.march = march_, .unoccluded = &light, .ao = &ao_};
     InterleavedVectors bent;
     if (request_.products.bent) {
       bent = raster_.make_color();
@@ -195,21 +195,21 @@ class Bitmask {
     return march;
   }
 
-  /// Finds where suns are seen, and once more by other rays where the error is wanted.
-  void gather_suns() {
+  /// Finds where sources are seen, and once more by other rays where the error is wanted.
+  void gather_sources() {
     const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
     const March march = march_of_rays();
     const float past = sun_past_beyond(march_scene_, scene_, request_);
-    for (const Sun& sun : scene_.light.suns) {
-      const PassBeyond pass = pass_beyond(past, sun.held);
+    for (const auto& source : scene_.light.sources) {
+      const PassBeyond pass = pass_beyond(past, source->held);
       const auto find = [&](const Window& to, RaySet set) {
-        const std::vector<RayDirections> directions =
-            directions_to(sun, rays_to_sun(request_.slices), request_.seed, set);
-        return find_sun({march, bounds, directions, &sun, pass}, to, progress_);
+        const std::vector<PointsOfSource> points =
+            points_of(*source, rays_to_source(request_.slices), request_.seed, set);
+        return find_source({march, bounds, points, *source, pass}, to, progress_);
       };
-      suns_.push_back(find(lit_part(), RaySet::of_light));
+      sources_.push_back(find(lit_part(), RaySet::of_light));
       if (request_.products.error)
-        suns_again_.push_back(find(march_scene_.receivers, RaySet::of_error));
+        sources_again_.push_back(find(march_scene_.receivers, RaySet::of_error));
     }
   }
 
@@ -222,10 +222,10 @@ class Bitmask {
   }
 
   FoundShares found_shares() const {
-    return {scene_.light, &ao_, out_.shares.are_ao ? nullptr : &sky_share_, suns_};
+    return {scene_.light, &ao_, out_.shares.are_ao ? nullptr : &sky_share_, sources_};
   }
 
-  /// Turns what was found into products, each in room that others have left. Suns go before the
+  /// Turns what was found into products, each in room that others have left. Sources go before the
   /// sky, whose planes are the largest: theirs lay between those of the bounce.
   void hand_out(InterleavedVectors bounce) {
     if (request_.products.bounce) out_.bounce = raster_.picture(std::move(bounce));
@@ -237,8 +237,8 @@ class Bitmask {
         return bounces ? error_[i] + bounce_error_[i] : error_[i];
       });
     }
-    hand_out_suns(suns_, raster_, out_.shares.suns, out_.shares.draws);
-    hand_out_suns(suns_again_, raster_, out_.shares.suns_again, out_.shares.draws_again);
+    hand_out_sources(sources_, raster_, out_.shares.suns, out_.shares.draws);
+    hand_out_sources(sources_again_, raster_, out_.shares.suns_again, out_.shares.draws_again);
     if (wants_light() && !out_.shares.are_ao)
       out_.shares.sky = raster_.picture(std::move(sky_share_), ao_);
     out_.ao = raster_.picture(std::move(ao_), 1.0f);
@@ -324,7 +324,7 @@ class Bitmask {
       if (job.emitters) {
         emitted_ = raster_.black();
         const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
-        const EmittedJob rays{bounce_march_, bounds, emitters,  rays_to_sun(request_.slices),
+        const EmittedJob rays{bounce_march_, bounds, emitters,  rays_to_source(request_.slices),
                               request_.seed, &light, &emitted_, job.error};
         for_each_tall_part_of(layout_, to, [&](const Window& w) { gather_emitted(rays, w); }, {});
       }
@@ -347,7 +347,7 @@ class Bitmask {
   InterleavedPlane ao_, error_, bounce_error_;
   InterleavedVectors emitted_;        ///< the part of the bounce that rays have found; empty: none
   InterleavedColorShares sky_share_;  ///< empty where that is ao
-  std::vector<SunShares> suns_, suns_again_;  ///< by sun
+  std::vector<SourceShares> sources_, sources_again_;  ///< by source
   const FarRaster* kept_light_in_ = nullptr;  ///< where bands of the frame need what is sent
   std::vector<FarLight> kept_light_;          ///< that, by pass
   Products out_;

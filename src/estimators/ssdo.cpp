@@ -19,7 +19,7 @@
 // - The environment is averaged over the solid angle of a sample, 2 pi / N, and looked up in an
 //   octahedral map: the listing's "blurred map" without its pole.
 // - direct is the ratio of the sum over visible samples to the sum over all, times the exact
-//   irradiance of the environment on n. What N directions make of a sun differs from pixel to pixel
+//   irradiance on n without occluders. What N directions make of a sun differs from pixel to pixel
 //   of the pattern, and on curved surfaces no filter averages it away; in the ratio it cancels.
 //
 // Known fault, kept: a point is tested, not the ray to it. What lies between p and x_i is missed
@@ -40,7 +40,7 @@
 #include <hwy/foreach_target.h>
 
 #include "estimators/view_space/lanes-inl.h"
-#include "simd/octahedral_map-inl.h"
+#include "scene/light/light-inl.h"
 
 #ifndef SSDO_SSDO_JOB
 #define SSDO_SSDO_JOB
@@ -53,12 +53,6 @@ struct PatternPoint {
   TiledNoise length;        ///< R l
 };
 
-/// The environment as the samples see it, for directions in camera space.
-struct Sky {
-  OctahedralMap radiance;    ///< averaged over the solid angle of a sample
-  OctahedralMap irradiance;  ///< over pi, on a surface with the normal that is looked up
-};
-
 /// Both passes see the same points and the same surfaces.
 struct SsdoJob {
   const ViewPlanes& planes;
@@ -66,8 +60,10 @@ struct SsdoJob {
 
   // Direct light; lengths in scene units.
   float bias, singularity, strength;
-  std::optional<Sky> sky;  ///< none: the same radiance from everywhere
-  glm::vec3 constant_radiance;
+  const Light& light;
+  /// The environment in camera space, averaged over the solid angle of a sample; none: the same
+  /// from everywhere.
+  std::optional<OctahedralMap> radiance;
 
   // Bounce light.
   float radius, gain;        ///< what the sum is multiplied by
@@ -130,18 +126,18 @@ void direct_of_tile(const SsdoJob& job, const Tile& tile, Plane<float>& ao,
       const SsdoSample s = sample_at(job, point, p, frame, x, y);
       const V share = hn::IfThenElse(is_hidden(job, s, bias), hidden_share, set(1));
       visible = hn::MulAdd(share, s.cosine, visible);
-      if (!job.sky || direct.empty()) continue;
-      const V3 arriving = look_up(job.sky->radiance, s.direction) * s.cosine;
+      if (!job.radiance || direct.empty()) continue;
+      const V3 arriving = look_up(*job.radiance, s.direction) * s.cosine;
       light = light + arriving;
       lit = mul_add(arriving, share, lit);
     }
     // 2 pi / N over pi; a strength above 1 takes more than there is.
     const V open = saturate(visible * set(2 / float(job.points.size())));
     if (direct.empty()) return open;
-    const V3 arriving =
-        job.sky ? V3{share_of(lit.x, light.x), share_of(lit.y, light.y), share_of(lit.z, light.z)} *
-                      look_up(job.sky->irradiance, p.normal)
-                : set(job.constant_radiance) * open;
+    const V3 share = job.radiance ? V3{share_of(lit.x, light.x), share_of(lit.y, light.y),
+                                       share_of(lit.z, light.z)}
+                                  : V3{open, open, open};
+    const V3 arriving = unoccluded(job.light, p.position, p.normal) * share;
     store_first(tile.x1 - x, if_then_else_zero(p.valid, arriving), &direct(x, y));
     return open;
   });
@@ -204,12 +200,10 @@ std::vector<PatternPoint> points_of(const Request& request, int count) {
   return points;
 }
 
-std::optional<Sky> sky_of(const Scene& scene, int samples) {
-  const Environment& environment = scene.light.environment;
-  if (environment.is_constant()) return std::nullopt;
-  constexpr float kPi = glm::pi<float>();
-  const glm::mat3& turn = scene.geometry.world_to_camera;
-  return Sky{environment.blurred(2 * kPi / float(samples), turn), environment.blurred(kPi, turn)};
+std::optional<OctahedralMap> radiance_of(const Scene& scene, int samples) {
+  if (scene.light.is_constant()) return std::nullopt;
+  return scene.light.environment.blurred(2 * glm::pi<float>() / float(samples),
+                                         scene.geometry.world_to_camera);
 }
 
 /// What every pixel sends: its albedo times all the light that arrives, or the layer that says so.
@@ -235,8 +229,8 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
                     parameter("bias") * request.radius,
                     parameter("singularity") * request.radius,
                     parameter("strength"),
-                    wants_light ? sky_of(scene, samples) : std::nullopt,
-                    scene.light.environment.constant_radiance(),
+                    scene.light,
+                    wants_light ? radiance_of(scene, samples) : std::nullopt,
                     request.radius,
                     parameter("bounce-strength") * 2 / float(samples),
                     parameter("bounce-singularity")};

@@ -5,14 +5,16 @@
 // the yardstick of the other methods. With directions w_i that are distributed as the cosine is,
 //
 //   ao      = number open / n
-//   direct  = E(N)/pi * sum_open L(w_i) / sum_all L(w_i)   channel by channel, then the suns, each
+//   direct  = E(N)/pi * sum_open L(w_i) / sum_all L(w_i)   channel by channel, then the sources,
+//   each
 //             by the share of its seen points in the cosines of all that are above the horizon
 //   bounce  = sum L_out(q_i) / n                            q_i: the surface that is met first
 //
-// L is the environment without its suns, looked up as it is: a method whose light is in spherical
-// harmonics shows here what they leave out. Where all is open, both ratios are exact with any n.
-// Elsewhere the first goes to the plain sum as n grows; with few rays it is biased where they meet
-// bright parts of L by chance. What is concentrated enough for that to matter is among the suns.
+// L is the environment without its sources, looked up as it is: a method whose light is in
+// spherical harmonics shows here what they leave out. Where all is open, both ratios are exact with
+// any n. Elsewhere the first goes to the plain sum as n grows; with few rays it is biased where
+// they meet bright parts of L by chance. What is concentrated enough for that to matter is among
+// the sources.
 //
 // What a surface sends is its albedo times all the light that arrives, as in method bitmask: the
 // side that is not seen has the light of its own side, as far as the seen one is open.
@@ -38,6 +40,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -52,7 +55,7 @@
 #include "math/microfacets.h"
 #include "math/sampling.h"
 #include "math/sobol.h"
-#include "scene/light/sun.h"
+#include "scene/light/source.h"
 #include "scene/normals/geometric_normal.h"
 #include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
@@ -65,12 +68,15 @@ namespace {
 constexpr int kGroups = 4;
 
 /// Seeds of the uses of a pixel's sequence.
-constexpr std::uint32_t kSurfaceSeed = 0x51ab, kSunSeed = 0x9c3d, kFacetSeed = 0x2f17;
+constexpr std::uint32_t kSurfaceSeed = 0x51ab, kSourceSeed = 0x9c3d, kFacetSeed = 0x2f17;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 using Groups = std::array<float, kGroups>;
 
 /// Directions of the seen points of one pixel.
 struct Receiver {
+  glm::vec3 position;
   glm::dvec3 origin;          ///< in front of all triangles of the pixel
   glm::vec3 normal, surface;  ///< that of shading and that of the geometry
   glm::mat3 frame;            ///< about the normal of shading
@@ -129,7 +135,7 @@ class Trace {
       out_.direct = Plane<glm::vec3>(width(), height(), glm::vec3(0));
       out_.shares.are_ao = scene_.light.is_constant();
       if (!out_.shares.are_ao) out_.shares.sky = out_.direct;
-      out_.shares.suns.assign(scene_.light.suns.size(), Plane<float>(width(), height(), 0.0f));
+      out_.shares.suns.assign(scene_.light.sources.size(), Plane<float>(width(), height(), 0.0f));
     }
     if (request_.products.error) luminances_ = Plane<Groups>(width(), height(), Groups{});
     for_each_surface([&](std::size_t pixel, const Receiver& p) { gather_visibility(pixel, p); });
@@ -159,9 +165,10 @@ class Trace {
   int height() const { return scene_.geometry.surfel.height; }
 
   /// Whether the frame or a further view shows something in the way, or the surface itself is.
-  bool is_blocked(const Receiver& p, const glm::vec3& to) const {
-    return glm::dot(to, p.surface) <= 0 || rays_.is_blocked(p.origin, to, request_.radius) ||
-           (further_ && further_->is_blocked(glm::vec3(p.origin), to, request_.radius));
+  bool is_blocked(const Receiver& p, const glm::vec3& to, float distance = kInfinity) const {
+    const float reach = std::min(distance, request_.radius);
+    return glm::dot(to, p.surface) <= 0 || rays_.is_blocked(p.origin, to, reach) ||
+           (further_ && further_->is_blocked(glm::vec3(p.origin), to, reach));
   }
 
   int group_of(int sample) const { return sample * kGroups / samples_; }
@@ -172,7 +179,10 @@ class Trace {
     const glm::vec3 normal(s.normal), position(s.position),
         view = direction_to_viewer(position, g.camera.orthographic),
         surface = geometric_normal(g.surfel, x, y, view);
-    return {ray_origin(rays_, s, {surface, view, footprint_.at(-position.z)}), normal, surface,
+    return {position,
+            ray_origin(rays_, s, {surface, view, footprint_.at(-position.z)}),
+            normal,
+            surface,
             frame_about(normal),
             hash_of(std::uint32_t(g.window.x0 - g.display.x0 + x),
                     std::uint32_t(g.window.y0 - g.display.y0 + y), request_.seed)};
@@ -248,38 +258,38 @@ class Trace {
 
   void add_direct(std::size_t pixel, const Receiver& p, const LightSums& light, float ao) {
     const bool even = scene_.light.is_constant();
-    const glm::vec3 unoccluded =
-        even ? scene_.light.environment.constant_radiance() : scene_.light.irradiance(p.normal);
+    const glm::vec3 unoccluded = scene_.light.unoccluded_sky(p.normal);
     const glm::vec3 share = even ? glm::vec3(ao) : light.share_of_all(ao);
     out_.direct[pixel] = unoccluded * share;
     if (!even) out_.shares.sky[pixel] = share;
     Groups groups{};
     for (int g = 0; g < kGroups; ++g) groups[g] = luminance(unoccluded * light.share_of_group(g));
-    for (std::size_t i = 0; i < scene_.light.suns.size(); ++i)
-      out_.direct[pixel] +=
-          light_of(scene_.light.suns[i], std::uint32_t(i), p, groups, out_.shares.suns[i][pixel]);
+    for (std::size_t i = 0; i < scene_.light.sources.size(); ++i)
+      out_.direct[pixel] += light_of(*scene_.light.sources[i], std::uint32_t(i), p, groups,
+                                     out_.shares.suns[i][pixel]);
     if (request_.products.error) luminances_[pixel] = groups;
   }
 
-  /// What a sun gives; `groups` gain what it gives in each part of the samples, `share` is the part
-  /// of it that arrives. Every point of it counts by its own cosine: one at the horizon gives less
-  /// than one above it. A normal that faces away leaves the share to what stands in between: it may
-  /// be that of a normal map, and a filter takes it for neighbours.
-  glm::vec3 light_of(const Sun& sun, std::uint32_t number, const Receiver& p, Groups& groups,
+  /// What a source gives; `groups` gain what it gives in each part of the samples, `share` is the
+  /// part of it that arrives. Every point of it counts by its own cosine: one at the horizon gives
+  /// less than one above it. A normal that faces away leaves the share to what stands in between:
+  /// it may be that of a normal map, and a filter takes it for neighbours.
+  glm::vec3 light_of(const Source& source, std::uint32_t number, const Receiver& p, Groups& groups,
                      float& share) const {
-    const glm::vec3 unoccluded = sun.cosine(p.normal) * sun.irradiance;
+    const glm::vec3 unoccluded = source.unoccluded(p.position, p.normal);
     if (unoccluded == glm::vec3(0)) {
-      share = !is_blocked(p, sun.direction);
+      const SourceCone cone = source.cone(p.position);
+      share = !is_blocked(p, cone.to, cone.distance);
       return unoccluded;
     }
     std::array<float, kGroups> seen{}, above{};
     for (int s = 0; s < samples_; ++s) {
-      const glm::vec3 to =
-          sun.point(sobol_point(std::uint32_t(s), hash_of(p.seed, number, kSunSeed)));
-      const float cosine = glm::dot(to, p.normal);
-      if (cosine <= 0) continue;
-      above[group_of(s)] += cosine;
-      if (!is_blocked(p, to)) seen[group_of(s)] += cosine;
+      const SourcePoint point = source.sample(
+          p.position, sobol_point(std::uint32_t(s), hash_of(p.seed, number, kSourceSeed)));
+      const float light = point.weight * glm::dot(point.to, p.normal);
+      if (light <= 0) continue;
+      above[group_of(s)] += light;
+      if (!is_blocked(p, point.to, point.distance)) seen[group_of(s)] += light;
     }
     float all_seen = 0, all_above = 0;
     for (int g = 0; g < kGroups; ++g) {
@@ -299,7 +309,8 @@ class Trace {
   /// What the unseen side of a pixel's surface sends.
   glm::vec3 sent_by_back(std::size_t pixel) const {
     const glm::vec3 normal = -scene_.geometry.surfel[pixel].normal;
-    const glm::vec3 light = out_.ao[pixel] * scene_.light.unoccluded(normal);
+    const glm::vec3 light =
+        out_.ao[pixel] * scene_.light.unoccluded(scene_.geometry.surfel[pixel].position, normal);
     return within_range(scene_.senders.albedo[pixel] * (light + out_.bounce[pixel]));
   }
 

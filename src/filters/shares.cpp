@@ -2,7 +2,7 @@
 //
 // What a filter averages in place of light and directions.
 //
-//   direct = E(N) S + sum over suns of E_k cos_k(N) s_k
+//   direct = E(N) S + sum over sources of E_k(P, N) s_k
 //
 // E(N) is the unoccluded light of the sky, a function of the normal, and so is that of a sun; S, by
 // channel, and s_k are the shares of it that arrive. Noise is in the shares alone, so filters
@@ -48,23 +48,14 @@ namespace ssdo::HWY_NAMESPACE {
 
 constexpr float kMostShare = 2;
 
-/// The normals of pixels side by side, and which of the lanes show a surface; the others have
-/// (0, 0, 1).
-struct Normals {
-  V3 n;
-  M valid;
-};
-
-HWY_INLINE Normals normals_of(const Surfels& q) {
-  return {if_then_else(q.surface, q.normal, set(glm::vec3(0, 0, 1))), q.surface};
-}
-
-/// Calls `work(index, count, normals)` for vectors of a row; the last may have fewer pixels than
-/// lanes.
+/// Calls `work(index, count, surfels)` for vectors of a row; the last may have fewer pixels than
+/// lanes. The normal is (0, 0, 1) where there is no surface.
 template <class Work>
 HWY_INLINE void for_each_vector(const Plane<Surfel>& surfel, int y, const Work& work) {
   for (int x = 0; x < surfel.width; x += kLanes) {
-    work(surfel.index(x, y), surfel.width - x, normals_of(surfels_at(surfel, x, y)));
+    Surfels s = surfels_at(surfel, x, y);
+    s.normal = if_then_else(s.surface, s.normal, set(glm::vec3(0, 0, 1)));
+    work(surfel.index(x, y), surfel.width - x, s);
   }
 }
 
@@ -75,39 +66,25 @@ HWY_INLINE V3 turned(const V3& v, const V3& a, const V3& b) {
   return mul_add(both, hn::Neg(dot(both, v) / opposite), mul_add(b, set(2) * dot(a, v), v));
 }
 
-/// The sky's light on surfaces with nothing around them.
-HWY_INLINE V3 unoccluded_sky(const Light& light, const V3& normal) {
-  // Looking a constant up would round.
-  return light.is_constant() ? set(light.environment.constant_radiance())
-                             : look_up(light.irradiance, normal);
-}
-
-/// All light on them.
-HWY_INLINE V3 unoccluded_light(const Light& light, const V3& normal) {
-  V3 sum = unoccluded_sky(light, normal);
-  for (const Sun& sun : light.suns) sum = sum + unoccluded(sun, normal);
-  return sum;
-}
-
 /// The share of its unoccluded light that each pixel of a row receives.
 void shares_of_row(const Scene& scene, Products& products, int y) {
   const bool has_ao = !products.ao.empty();
   for_each_vector(
-      scene.geometry.surfel, y, [&](std::size_t i, int count, const Normals& normals) HWY_ATTR {
+      scene.geometry.surfel, y, [&](std::size_t i, int count, const Surfels& s) HWY_ATTR {
         if (!products.bent.empty()) {
           const V3 bent = load_first(count, &products.bent[i]),
-                   deviation = turned(bent, normals.n, set(glm::vec3(0, 0, 1)));
-          store_first(count, if_then_else(normals.valid, deviation, bent), &products.bent[i]);
+                   deviation = turned(bent, s.normal, set(glm::vec3(0, 0, 1)));
+          store_first(count, if_then_else(s.surface, deviation, bent), &products.bent[i]);
         }
         if (products.direct.empty()) return;
         const V3 light = load_first(count, &products.direct[i]),
-                 all = unoccluded_light(scene.light, normals.n);
+                 all = unoccluded(scene.light, s.position, s.normal);
         const V ao = has_ao ? load_first(count, &products.ao[i]) : set(1);
         const auto share = [&](V part, V whole) HWY_ATTR {
           return hn::IfThenElse(whole > set(0), hn::Min(part / whole, set(kMostShare)), ao);
         };
         const V3 shares{share(light.x, all.x), share(light.y, all.y), share(light.z, all.z)};
-        store_first(count, if_then_else_zero(normals.valid, shares), &products.direct[i]);
+        store_first(count, if_then_else_zero(s.surface, shares), &products.direct[i]);
       });
 }
 
@@ -116,27 +93,27 @@ void light_of_row(const Scene& scene, Products& products, int y) {
   const Light& light = scene.light;
   Plane<glm::vec3>& found = products.shares.sky.empty() ? products.direct : products.shares.sky;
   for_each_vector(
-      scene.geometry.surfel, y, [&](std::size_t i, int count, const Normals& normals) HWY_ATTR {
-        const V3 n = normals.n;
+      scene.geometry.surfel, y, [&](std::size_t i, int count, const Surfels& s) HWY_ATTR {
+        const V3 n = s.normal;
         if (!products.bent.empty()) {
           const V3 deviation = load_first(count, &products.bent[i]),
                    bent = normalise(turned(deviation, set(glm::vec3(0, 0, 1)), n));
-          store_first(count, if_then_else(normals.valid, bent, deviation), &products.bent[i]);
+          store_first(count, if_then_else(s.surface, bent, deviation), &products.bent[i]);
         }
         if (found.empty()) return;
         V3 sum;
         if (products.shares.are_ao) {
-          sum = unoccluded_light(light, n) * load_first(count, &products.ao[i]);
+          sum = unoccluded(light, s.position, n) * load_first(count, &products.ao[i]);
         } else if (products.shares.sky.empty()) {
-          sum = load_first(count, &products.direct[i]) * unoccluded_light(light, n);
+          sum = load_first(count, &products.direct[i]) * unoccluded(light, s.position, n);
         } else {
           sum = saturate(load_first(count, &products.shares.sky[i])) * unoccluded_sky(light, n);
           for (std::size_t k = 0; k < products.shares.suns.size(); ++k) {
             const V share = saturate(load_first(count, &products.shares.suns[k][i]));
-            sum = mul_add(unoccluded(light.suns[k], n), share, sum);
+            sum = mul_add(unoccluded(*light.sources[k], s.position, n), share, sum);
           }
         }
-        store_first(count, if_then_else_zero(normals.valid, sum), &found[i]);
+        store_first(count, if_then_else_zero(s.surface, sum), &found[i]);
       });
 }
 

@@ -25,15 +25,16 @@ void add_sun_errors(Products& products, const Scene& scene) {
   const Plane<Surfel>& surfel = scene.geometry.surfel;
   const LightShares& shares = products.shares;
   for (std::size_t k = 0; k < shares.suns_again.size(); ++k) {
-    const Sun& sun = scene.light.suns[k];
-    const float light = luminance(sun.irradiance) / std::sqrt(2.0f);
+    const Source& source = *scene.light.sources[k];
+    const float light = luminance(source.irradiance) / std::sqrt(2.0f);
     for_each_row(surfel.height, [&](int y) {
       for (int x = 0; x < surfel.width; ++x) {
         const std::size_t i = surfel.index(x, y);
         const float one = std::clamp(shares.suns[k][i], 0.0f, 1.0f),
                     other = std::clamp(shares.suns_again[k][i], 0.0f, 1.0f);
         if (one == other || !surfel[i].is_surface()) continue;
-        products.error[i] += light * sun.cosine(surfel[i].normal) * (one - other);
+        products.error[i] +=
+            light * source.received(surfel[i].position, surfel[i].normal) * (one - other);
       }
     });
   }

@@ -25,7 +25,7 @@ constexpr double kBytesOfSenders = 20;
 constexpr int kUsualSuns = 3;
 
 double bytes_per_pixel(const ProductSet& products, const Scene& scene) {
-  return kBytesPerPixel + kBytesOfSun * double(scene.light.suns.size()) +
+  return kBytesPerPixel + kBytesOfSun * double(scene.light.sources.size()) +
          kBytesOfSenders * int(!scene.senders.radiance.empty()) +
          kBytesOfMore * (int(products.bent) + int(products.reflection));
 }

@@ -14,6 +14,7 @@
 #include "math/luminance.h"
 #include "plan/composite_choice.h"
 #include "plan/product_choice.h"
+#include "scene/light/distant_source.h"
 #include "scene/solids/solids.h"
 
 namespace ssdo {
@@ -116,7 +117,7 @@ void choose_bounces(Plan& plan, int wanted, const Scene& scene) {
 }
 
 /// A sun or a larger source, and how large it is.
-std::string shape_of(const Sun& sun) {
+std::string shape_of(const DistantSource& sun) {
   const float longer = glm::degrees(sun.extent.x), shorter = glm::degrees(sun.extent.y);
   // The rectangle with the moments of a disc has sides of sqrt(3) radii.
   const float radius = longer / std::sqrt(3.0f);
@@ -134,12 +135,14 @@ void explain_light(Plan& plan, const Light& light) {
     plan.reasons.push_back("direct is ao times the environment's one colour: no directions");
     return;
   }
-  for (const Sun& sun : light.suns) {
+  for (const auto& source : light.sources) {
+    const DistantSource* const sun = source->distant();
+    if (!sun) continue;
     plan.reasons.push_back(fmt::format(
         "{} gives {:.0f} % of the light that a surface facing it gets ({:.3g} of "
         "irradiance over pi), treated separately: spherical harmonics would hold {:.0f} "
         "% of it",
-        shape_of(sun), 100 * sun.share, luminance(sun.irradiance), 100 * sun.held));
+        shape_of(*sun), 100 * sun->share, luminance(sun->irradiance), 100 * sun->held));
   }
   std::string energy;
   for (const double share : light.band_energy) energy += fmt::format(" {:.1f}", 100 * share);

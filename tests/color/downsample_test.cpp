@@ -76,7 +76,8 @@ class Downsample : public testing::TestWithParam<int> {
 
   bool is_surface(std::size_t i) const { return scene_.geometry.is_surface(i); }
   glm::vec3 open(std::size_t i) const {
-    return scene_.light.unoccluded(scene_.geometry.surfel[i].normal);
+    return scene_.light.unoccluded(scene_.geometry.surfel[i].position,
+                                   scene_.geometry.surfel[i].normal);
   }
   Results results() const { return {scene_, gbuffer_, products_, composition_}; }
 

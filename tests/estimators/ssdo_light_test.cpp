@@ -147,9 +147,10 @@ int expect_the_slow_light(const SlowDirect::Parameters& parameters) {
       slow.look_from(x, y);
       if (slow.doubtful) continue;
       EXPECT_NEAR(out.ao(x, y), slow.ao, 1e-4) << x << "," << y;
-      // Lookups interpolate between directions 3 degrees apart.
+      // Lookups interpolate between directions 3 degrees apart, and light without occluders is
+      // exact to 1e-3 of that of a surface which faces the lamps.
       for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(out.direct(x, y)[c], slow.direct[c], 0.006 * slow.open[c]) << x << "," << y;
+        EXPECT_NEAR(out.direct(x, y)[c], slow.direct[c], 0.008 * slow.open[c]) << x << "," << y;
       const glm::dvec3 share = glm::dvec3(out.direct(x, y)) / slow.open;
       without_red += share.x < 0.5 && share.z > 0.9;
       ++compared;

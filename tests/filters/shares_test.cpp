@@ -15,6 +15,7 @@
 #include "support/chosen_isa.h"
 #include "support/random_frame.h"
 #include "support/scene_of.h"
+#include "support/sun_of.h"
 
 namespace ssdo::test {
 namespace {
@@ -91,11 +92,11 @@ TEST(Shares, ContrastOfNormalMapsIsKept) {
         Geometry g = geometry_of(plane({}, {0, 0, 1}), camera(), kWindow);
         add_waves(g, length_px);
         const Scene scene = scene_of(g, light_from_a_side(sun));
-        ASSERT_EQ(scene.light.suns.size(), sun ? 1u : 0u);
+        ASSERT_EQ(scene.light.sources.size(), sun ? 1u : 0u);
         const Products noisy = estimated(method, scene, {.ao = true, .direct = true, .bent = true}),
                        out = through_filter(method, scene, noisy);
         const auto light = [&](int x, int y) {
-          return double(scene.light.unoccluded(scene.geometry.surfel(x, y).normal).y);
+          return double(scene.light.unoccluded({}, scene.geometry.surfel(x, y).normal).y);
         };
         const auto green = [](const Products& p) {
           return [&p](int x, int y) { return double(p.direct(x, y).y); };
@@ -169,7 +170,7 @@ TEST(Shares, TheEdgeOfAShadowStaysWhereItIs) {
   for (int y = 0; y < kWindow.height(); ++y)
     for (int x = kEdge; x < kWindow.width(); ++x) p.shares.suns[0](x, y) = 1;
   const Products out = filter_shares(find_filter("geometry"), p, scene, 8);
-  const Sun& sun = scene.light.suns[0];
+  const DistantSource& sun = sun_of(scene.light);
   const int y = kWindow.height() / 2;
   for (int x = 8; x < kWindow.width() - 8; ++x) {
     const glm::vec3 n = g.surfel(x, y).normal;
@@ -189,7 +190,7 @@ TEST(Shares, AreOfTheLightThatTheNormalReceives) {
   p.ao = Plane<float>(kWindow.width(), kWindow.height(), 0.5f);
   p.direct = Plane<glm::vec3>::like(g.surfel);
   for (std::size_t i = 0; i < p.direct.size(); ++i)
-    p.direct[i] = 0.7f * scene.light.unoccluded(g.surfel[i].normal);
+    p.direct[i] = 0.7f * scene.light.unoccluded({}, g.surfel[i].normal);
   const Products shares = to_shares(p, scene);
   for (const glm::vec3& share : shares.direct.pixels)
     EXPECT_LT(difference(share, glm::dvec3(0.7)), 1e-4);
@@ -202,7 +203,7 @@ TEST(Shares, AreOfTheLightThatTheNormalReceives) {
   EXPECT_TRUE(light.shares.sky.empty() && light.shares.suns.empty());
   for (std::size_t i = 0; i < p.direct.size(); ++i) {
     const glm::vec3 n = g.surfel[i].normal;
-    const Sun& sun = scene.light.suns[0];
+    const DistantSource& sun = sun_of(scene.light);
     const glm::vec3 expected = glm::vec3(0.3f, 1, 0) * scene.light.irradiance(n) +
                                0.6f * std::max(0.0f, glm::dot(n, sun.direction)) * sun.irradiance;
     EXPECT_LT(difference(light.direct[i], expected), 1e-5 * (1 + glm::length(expected)));
@@ -251,7 +252,7 @@ TEST(Shares, EveryMethodComposesWhatItFound) {
     const Products none = through_filter(method, scene, noisy, "none");
     EXPECT_EQ(none.direct.pixels, noisy.direct.pixels);
     EXPECT_TRUE(none.shares.sky.empty() && none.shares.suns.empty());
-    EXPECT_EQ(noisy.shares.suns.size(), noisy.shares.sky.empty() ? 0 : scene.light.suns.size());
+    EXPECT_EQ(noisy.shares.suns.size(), noisy.shares.sky.empty() ? 0 : scene.light.sources.size());
     const Products composed = from_shares(to_shares(noisy, scene), scene);
     int off = 0;
     for (std::size_t i = 0; i < noisy.direct.size(); ++i) {

@@ -79,7 +79,7 @@ bool needs_openness(const Scene& scene, const Request& request) {
   const bool all_is_shown =
       std::any_of(scene.views.begin(), scene.views.end(),
                   [](const FurtherView& view) { return view.picture->closed; });
-  return (products.direct || products.bounce || products.error) && !scene.light.suns.empty() &&
+  return (products.direct || products.bounce || products.error) && !scene.light.sources.empty() &&
          request.extend_offscreen && !all_is_shown;
 }
 

@@ -143,7 +143,7 @@ HWY_INLINE Extension extend(const March& march, const MarchReceiver& p, const Si
     const V share = thickness / depth * reciprocal_sqrt(dot(ray, ray));
     e.depth = hn::Min(share, set(kEndlessShare));
   }
-  if (march.radius < 1e18f) {
+  if (march.radius < kEndless) {
     const V foot = dot(e.start, line);
     length = hn::Min(length, hn::Sqrt(hn::MulAdd(foot, foot, radius2 - e.distance2)) - foot);
   }

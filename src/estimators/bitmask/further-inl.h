@@ -17,6 +17,7 @@
 #include "estimators/bitmask/lanes-inl.h"
 #include "estimators/ray_start.h"
 #include "math/sequence_numbers.h"
+#include "simd/by_lane-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -25,20 +26,6 @@ namespace ssdo::HWY_NAMESPACE {
 /// white world and relative RMSE of direct light, of foliage with overscan and four views: .0692
 /// .158 with 3.3 rays, .0719 .163 with 2.4, at 8 % less time. A bounce hardly notices their number.
 constexpr float kRaysPerSlice = 2.4f, kBounceRaysPerSlice = 1.6f;
-
-/// The lanes of a vector, one by one.
-struct Lanes {
-  alignas(64) float values[kLanes];
-
-  HWY_INLINE explicit Lanes(V v) { store(v, values); }
-  HWY_INLINE float operator[](int lane) const { return values[lane]; }
-};
-struct Lanes3 {
-  Lanes x, y, z;
-
-  HWY_INLINE explicit Lanes3(const V3& v) : x(v.x), y(v.y), z(v.z) {}
-  HWY_INLINE glm::vec3 operator[](int lane) const { return {x[lane], y[lane], z[lane]}; }
-};
 
 /// Where the rays of receivers begin.
 HWY_INLINE V3 start_of_rays(const MarchScene& scene, const MarchReceiver& p) {

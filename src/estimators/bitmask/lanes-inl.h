@@ -16,6 +16,7 @@
 #include "estimators/bitmask/march.h"
 #include "estimators/bitmask/slice_sectors.h"
 #include "estimators/receiver-inl.h"
+#include "math/endless.h"
 #include "scene/same_surface-inl.h"
 #include "simd/lanes-inl.h"
 #include "simd/share16-inl.h"
@@ -226,7 +227,7 @@ HWY_INLINE V likeness(const MarchScene& scene, const MarchReceiver& p, std::ptrd
 /// being the receiver's distance and l the length of its ray per unit of depth.
 HWY_INLINE float reach_px(const MarchScene& scene, const MarchReceiver& p, float radius) {
   const float f = scene.fx > scene.fy ? scene.fx : scene.fy;
-  if (scene.orthographic || radius > 1e18f) return radius * f;
+  if (scene.orthographic || radius > kEndless) return radius * f;
   const V depth = set(0) - p.position.z, r = set(radius);
   const V slope = r * p.distance / (depth * (depth - r));
   const V reach = hn::IfThenElse(depth > r, slope, set(1e30f));

@@ -15,7 +15,6 @@
 #include "estimators/further/further_light.h"
 #include "estimators/further/further_rays.h"
 #include "math/half_color.h"
-#include "math/octahedral_map.h"
 #include "scene/light/light.h"
 #include "simd/interleaved.h"
 
@@ -60,8 +59,8 @@ struct VisibilityJob {
   /// Order of the spherical harmonics in which light is gathered, up to 4; 0: visibility only.
   int order = 0;
   /// Weights of the basis polynomials, (order + 1)^2 for red, then green, then blue.
-  const float* light = nullptr;               ///< null: the same from all directions
-  const OctahedralMap* irradiance = nullptr;  ///< over pi, by normal, without occlusion
+  const float* light = nullptr;       ///< null: the same from all directions
+  const Light* unoccluded = nullptr;  ///< all of it; null where `difference` is
   float through_beyond = 0;  ///< share of it that comes through what may go on beyond the frame
 
   InterleavedPlane* ao = nullptr;
@@ -76,10 +75,11 @@ struct VisibilityJob {
 /// Pixels that widths of penumbras, 32 at most, are stored as shares of.
 inline constexpr float kPenumbraUnit = 8;
 
-/// What rays to a sun have found: about 0..1, of what a surface of any normal would get, and
+/// What rays to a source have found: about 0..1, of what a surface of any normal would get, and
 /// ShadowDraw, with widths over kPenumbraUnit.
-struct SunShares {
-  explicit SunShares(const Interleaving& layout) : share(layout), weight(layout), width(layout) {}
+struct SourceShares {
+  explicit SourceShares(const Interleaving& layout)
+      : share(layout), weight(layout), width(layout) {}
 
   InterleavedShares share, weight, width;
 };
@@ -90,7 +90,7 @@ struct FoundShares {
   const InterleavedPlane* ao;
   const InterleavedColorShares* sky;  ///< as VisibilityJob has it; null: ao is the share of all
                                       ///< light
-  const std::vector<SunShares>& suns;
+  const std::vector<SourceShares>& sources;
 };
 
 /// The radiance that each pixel sends to others, and that of its back side.
@@ -158,14 +158,14 @@ struct DirectJob {
   InterleavedVectors* direct;
 };
 
-/// How much of the light of a sun arrives.
-struct SunJob {
+/// How much of the light of a source arrives.
+struct SourceJob {
   March march;
   const std::vector<DepthBounds>& bounds;
-  const std::vector<RayDirections>& directions;  ///< of each ray; unit, to points of the sun
-  const Sun* sun;
+  const std::vector<PointsOfSource>& points;  ///< that each ray goes to
+  const Source& source;
   PassBeyond pass;
-  SunShares* found = nullptr;
+  SourceShares* found = nullptr;
 };
 
 /// How much of what rough surfaces mirror is not blocked.
@@ -183,7 +183,7 @@ void march_visibility(const VisibilityJob& job, const Window& part);
 void march_bounce(const BounceJob& job, const Window& part);
 /// After march_bounce everywhere.
 void spread_bounce(const BounceJob& job, const Window& part);
-void march_sun(const SunJob& job, const Window& part);
+void march_source(const SourceJob& job, const Window& part);
 void march_reflection(const ReflectionJob& job, const Window& part);
 /// After spread_bounce of the same pixels. Parts are as for_each_tall_part_of() makes them.
 void gather_emitted(const EmittedJob& job, const Window& part);

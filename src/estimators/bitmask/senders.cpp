@@ -65,17 +65,34 @@ HWY_INLINE Around around(const MarchScene& scene, const Place& place) {
   return pixels;
 }
 
-/// The direct light on surfaces with these normals; `share(planes)`, their sum, of some light
-/// arrives.
+/// The normals by which light is weighed.
+HWY_INLINE V3 shading_normals(const MarchScene& scene, const Place& place) {
+  const M valid = holds_solid(load(scene.depth(), place.index));
+  return usable(load_shading(scene, place).normal, valid);
+}
+
+/// Where those surfaces are.
+HWY_INLINE V3 positions(const MarchScene& scene, const Place& place) {
+  const float* from = &scene.surfel(0, place.y).position.x;
+  const VI at = columns_of(scene, place) * set_int(sizeof(Surfel) / sizeof(float));
+  return {gather(from, at), gather(from + 1, at), gather(from + 2, at)};
+}
+
+/// The direct light of pixels; `share(planes)`, their sum, of some light arrives.
 template <class Share>
-HWY_INLINE V3 direct_light(const FoundShares& found, const V3& normal, const Share& share) {
-  const V3 sky = look_up(found.light.irradiance, normal);
+HWY_INLINE V3 direct_light(const MarchScene& scene, const FoundShares& found, const Place& place,
+                           const Share& share) {
+  const V3 normal = shading_normals(scene, place);
+  const V3 sky = unoccluded_sky(found.light, normal);
   if (!found.sky) return sky * share(*found.ao);
   const InterleavedPlane& ao = *found.ao;
   const InterleavedColorShares& more = *found.sky;
   V3 sum = sky * V3{share(ao, more[0]), share(ao, more[1]), share(ao, more[2])};
-  for (std::size_t k = 0; k < found.suns.size(); ++k)
-    sum = mul_add(unoccluded(found.light.suns[k], normal), share(found.suns[k].share), sum);
+  const V3 position = positions(scene, place);
+  for (std::size_t k = 0; k < found.sources.size(); ++k) {
+    const V3 light = unoccluded(*found.light.sources[k], position, normal);
+    sum = mul_add(light, share(found.sources[k].share), sum);
+  }
   return sum;
 }
 
@@ -101,12 +118,6 @@ HWY_INLINE V3 albedo_at(const SenderJob& job, const Place& place) {
 #endif
 }
 
-/// The normals by which light is weighed.
-HWY_INLINE V3 shading_normals(const MarchScene& scene, const Place& place) {
-  const M valid = holds_solid(load(scene.depth(), place.index));
-  return usable(load_shading(scene, place).normal, valid);
-}
-
 template <bool kOrthographic>
 void send_light(const SenderJob& job, const Window& part) {
   const MarchScene& scene = job.scene;
@@ -120,7 +131,7 @@ void send_light(const SenderJob& job, const Window& part) {
       return pixels.mean([&](std::ptrdiff_t q)
                              HWY_ATTR { return saturate((load(planes, q) + ...)); });
     };
-    V3 light = direct_light(job.found, shading_normals(scene, place), mean_share);
+    V3 light = direct_light(scene, job.found, place, mean_share);
     if (job.bounce) {
       const auto& [red, green, blue] = *job.bounce;
       light = light + V3{mean(red), mean(green), mean(blue)};
@@ -131,7 +142,8 @@ void send_light(const SenderJob& job, const Window& part) {
     const M valid = holds_solid(load(scene.depth(), i));
     const V3 behind = set(glm::vec3(0)) - usable(pixels.normal, valid);
     const V3 bounce = job.bounce ? load(*job.bounce, i) : set(glm::vec3(0));
-    const V3 at_back = mul_add(unoccluded(job.found.light, behind), mean(*job.found.ao), bounce);
+    const V3 all = unoccluded(job.found.light, positions(scene, place), behind);
+    const V3 at_back = mul_add(all, mean(*job.found.ao), bounce);
     store(both_sides(front, within_range(albedo * at_back)), *job.sent, i);
   });
 }
@@ -140,8 +152,7 @@ void direct_of_pixels(const DirectJob& job, const Window& part) {
   for_each_vector(job.scene, part, [&](const Place& place) HWY_ATTR {
     const auto own = [&](const auto&... planes)
                          HWY_ATTR { return saturate((load(planes, place.index) + ...)); };
-    store(direct_light(job.found, shading_normals(job.scene, place), own), *job.direct,
-          place.index);
+    store(direct_light(job.scene, job.found, place, own), *job.direct, place.index);
   });
 }
 

@@ -20,7 +20,7 @@
 
 #include "estimators/bitmask/moments-inl.h"
 #include "estimators/bitmask/side-inl.h"
-#include "simd/octahedral_map-inl.h"
+#include "scene/light/light-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -89,7 +89,7 @@ void visibility(const VisibilityJob& job, const Window& part) {
         };
         if (job.sky_share) store(visible(sum) - V3{ao, ao, ao}, *job.sky_share, i);
         if (job.difference) {
-          const V3 unoccluded = look_up(*job.irradiance, normals);
+          const V3 unoccluded = unoccluded_sky(*job.unoccluded, normals);
           const auto brightness = [&](const Moments<kOrder>& moments) HWY_ATTR {
             return luminance(unoccluded * saturate(visible(moments)));
           };

@@ -19,7 +19,7 @@
 namespace ssdo {
 namespace {
 
-constexpr int kRays = 16, kSunRays = 4;
+constexpr int kRays = 16, kSourceRays = 4;
 
 /// Vertices that one task works on.
 constexpr int kBand = 1024;
@@ -28,7 +28,7 @@ constexpr int kBand = 1024;
 /// lie above it by less.
 constexpr float kAbove = 0.3f;
 
-constexpr std::uint32_t kSurfaceSeed = 0x3c91, kSunSeed = 0x77e5;
+constexpr std::uint32_t kSurfaceSeed = 0x3c91, kSourceSeed = 0x77e5;
 
 class Lamps {
  public:
@@ -124,25 +124,25 @@ class Lamps {
       if (is_open) part += radiance;
     }
     glm::vec3 share(float(open) / kRays);
-    if (even) return share * light_.environment.constant_radiance();
     for (int c = 0; c < 3; ++c)
       if (whole[c] > 0) share[c] = part[c] / whole[c];
-    glm::vec3 direct = light_.irradiance(side.normal) * share;
-    for (std::size_t i = 0; i < light_.suns.size(); ++i)
-      direct += sunlight(light_.suns[i], std::uint32_t(i), side);
+    glm::vec3 direct = light_.unoccluded_sky(side.normal) * share;
+    for (std::size_t i = 0; i < light_.sources.size(); ++i)
+      direct += light_of(*light_.sources[i], std::uint32_t(i), side);
     return direct;
   }
 
-  glm::vec3 sunlight(const Sun& sun, std::uint32_t number, const Side& side) const {
-    const glm::vec3 unoccluded = sun.cosine(side.normal) * sun.irradiance;
+  glm::vec3 light_of(const Source& source, std::uint32_t number, const Side& side) const {
+    const glm::vec3 unoccluded = source.unoccluded(side.start, side.normal);
     if (unoccluded == glm::vec3(0)) return unoccluded;
     float seen = 0, above = 0;
-    for (int s = 0; s < kSunRays; ++s) {
-      const glm::vec3 to =
-          sun.point(sobol_point(std::uint32_t(s), hash_of(side.seed, number, kSunSeed)));
-      const float cosine = std::max(0.0f, glm::dot(to, side.normal));
-      above += cosine;
-      if (cosine > 0 && !rays_.is_blocked(side.start, to, radius_)) seen += cosine;
+    for (int s = 0; s < kSourceRays; ++s) {
+      const SourcePoint point = source.sample(
+          side.start, sobol_point(std::uint32_t(s), hash_of(side.seed, number, kSourceSeed)));
+      const float light = point.weight * std::max(0.0f, glm::dot(point.to, side.normal));
+      above += light;
+      const float reach = std::min(point.distance, radius_);
+      if (light > 0 && !rays_.is_blocked(side.start, point.to, reach)) seen += light;
     }
     return above > 0 ? unoccluded * (seen / above) : glm::vec3(0);
   }

@@ -16,7 +16,7 @@ Plane<glm::vec3> ambient_light(const Scene& scene, const Plane<float>& ao,
       if (!s.is_usable()) continue;
       const bool bent = facing && (*facing)[i] != glm::vec3(0);
       const glm::vec3 normal = bent ? (*facing)[i] : s.normal;
-      direct[i] = ao[i] * scene.light.unoccluded(normal);
+      direct[i] = ao[i] * scene.light.unoccluded(s.position, normal);
     }
   });
   return direct;

@@ -10,20 +10,17 @@
 
 #include <cmath>
 
+#include "scene/light/distant_source.h"
 #include "scene/light/light.h"
+#include "simd/by_lane-inl.h"
 #include "simd/lanes-inl.h"
 #include "simd/octahedral_map-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// The cosine between each normal and a direction, where it is positive; else 0.
-HWY_INLINE V facing(const V3& normal, const glm::vec3& to) {
-  return hn::Max(dot(normal, set(to)), set(0));
-}
-
-/// Sun::cosine(): the points of a source are looked at only where it crosses the horizon of a lane.
-HWY_INLINE V facing(const Sun& sun, const V3& normal) {
+/// The points of a source are looked at only where it crosses the horizon of a lane.
+HWY_INLINE V received(const DistantSource& sun, const V3& normal) {
   const V middle = dot(normal, set(sun.direction)), edge = set(std::sin(sun.angular_radius));
   const V whole = hn::IfThenElseZero(middle >= edge, middle);
   const M part = hn::And(middle<edge, middle> hn::Neg(edge));
@@ -38,15 +35,71 @@ HWY_INLINE V facing(const Sun& sun, const V3& normal) {
   return hn::IfThenElse(part, sum * set(1 / float(sun.points.size())), whole);
 }
 
-/// The direct light of a sun on surfaces with nothing around them.
-HWY_INLINE V3 unoccluded(const Sun& sun, const V3& normal) {
-  return set(sun.irradiance) * facing(sun, normal);
+// What Source tells. Of one that looks the same from everywhere all lanes have the same, the others
+// are asked lane by lane.
+
+HWY_INLINE V received(const Source& source, const V3& position, const V3& normal) {
+  if (const DistantSource* distant = source.distant()) return received(*distant, normal);
+  const Lanes3 positions(position), normals(normal);
+  return by_lane([&](int lane)
+                     HWY_ATTR { return source.received(positions[lane], normals[lane]); });
 }
 
-/// Light::unoccluded()
-HWY_INLINE V3 unoccluded(const Light& light, const V3& normal) {
-  V3 sum = look_up(light.irradiance, normal);
-  for (const Sun& sun : light.suns) sum = sum + unoccluded(sun, normal);
+/// SourcePoint
+struct SourcePoints {
+  V3 to;
+  V distance, weight;
+};
+
+HWY_INLINE SourcePoints seen(const Source& source, const V3& position, const V3& point) {
+  if (source.distant()) return {point, set(SourcePoint().distance), set(SourcePoint().weight)};
+  const Lanes3 positions(position), points(point);
+  SourcePoint found[kLanes];
+  for (int lane = 0; lane < kLanes; ++lane)
+    found[lane] = source.seen(positions[lane], points[lane]);
+  return {{by_lane([&](int lane) HWY_ATTR { return found[lane].to.x; }),
+           by_lane([&](int lane) HWY_ATTR { return found[lane].to.y; }),
+           by_lane([&](int lane) HWY_ATTR { return found[lane].to.z; })},
+          by_lane([&](int lane) HWY_ATTR { return found[lane].distance; }),
+          by_lane([&](int lane) HWY_ATTR { return found[lane].weight; })};
+}
+
+/// SourceCone, and how far the source can be from a plane that its middle lies in, at a distance
+/// of 1.
+struct SourceCones {
+  V3 to;
+  V angular_radius, sine;
+};
+
+HWY_INLINE SourceCones cones(const Source& source, const V3& position) {
+  if (source.distant()) {
+    const SourceCone cone = source.cone(glm::vec3(0));
+    return {set(cone.to), set(cone.angular_radius), set(std::sin(cone.angular_radius))};
+  }
+  const Lanes3 positions(position);
+  SourceCone found[kLanes];
+  for (int lane = 0; lane < kLanes; ++lane) found[lane] = source.cone(positions[lane]);
+  return {{by_lane([&](int lane) HWY_ATTR { return found[lane].to.x; }),
+           by_lane([&](int lane) HWY_ATTR { return found[lane].to.y; }),
+           by_lane([&](int lane) HWY_ATTR { return found[lane].to.z; })},
+          by_lane([&](int lane) HWY_ATTR { return found[lane].angular_radius; }),
+          by_lane([&](int lane) HWY_ATTR { return std::sin(found[lane].angular_radius); })};
+}
+
+// Source::unoccluded(), Light::unoccluded_sky() and Light::unoccluded().
+
+HWY_INLINE V3 unoccluded(const Source& source, const V3& position, const V3& normal) {
+  return set(source.irradiance) * received(source, position, normal);
+}
+
+HWY_INLINE V3 unoccluded_sky(const Light& light, const V3& normal) {
+  return light.is_constant() ? set(light.environment.constant_radiance())
+                             : look_up(light.irradiance, normal);
+}
+
+HWY_INLINE V3 unoccluded(const Light& light, const V3& position, const V3& normal) {
+  V3 sum = unoccluded_sky(light, normal);
+  for (const auto& source : light.sources) sum = sum + unoccluded(*source, position, normal);
   return sum;
 }
 

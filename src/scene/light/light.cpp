@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "parallel/tiles.h"
+#include "scene/light/distant_source.h"
 #include "scene/light/sky_grid.h"
 #include "scene/light/take_suns.h"
 
@@ -176,10 +177,14 @@ OctahedralMap irradiance(const Sky& sky, const Light& model) {
 
 }  // namespace
 
-glm::vec3 Light::unoccluded(const glm::vec3& normal) const {
-  if (is_constant()) return environment.constant_radiance();  // looking it up would round
-  glm::vec3 sum = irradiance(normal);
-  for (const Sun& sun : suns) sum += sun.cosine(normal) * sun.irradiance;
+glm::vec3 Light::unoccluded_sky(const glm::vec3& normal) const {
+  // Looking a constant up would round.
+  return is_constant() ? environment.constant_radiance() : irradiance(normal);
+}
+
+glm::vec3 Light::unoccluded(const glm::vec3& position, const glm::vec3& normal) const {
+  glm::vec3 sum = unoccluded_sky(normal);
+  for (const auto& source : sources) sum += source->unoccluded(position, normal);
   return sum;
 }
 
@@ -194,9 +199,11 @@ Light model_light(const Environment& environment, const glm::mat3& world_to_came
     return model;
   }
   SunsAndRest parts = take_suns(environment);
-  model.suns = std::move(parts.suns);
   model.sky = parts.rest;
-  for (Sun& sun : model.suns) sun.turn(world_to_camera);
+  for (DistantSource& sun : parts.suns) {
+    sun.turn(world_to_camera);
+    model.sources.push_back(std::make_shared<DistantSource>(std::move(sun)));
+  }
   const SkyGrid grid(refined(parts.rest), world_to_camera, kBandColumns);
   project(grid.patches, model);
   const std::vector<Patch> patches = grid.merged(kLobeColumns).patches;

@@ -4,12 +4,13 @@
 #include <array>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <vector>
 
 #include "math/octahedral_map.h"
 #include "math/spherical_harmonics.h"
 #include "scene/light/environment.h"
-#include "scene/light/sun.h"
+#include "scene/light/source.h"
 
 namespace ssdo {
 
@@ -22,16 +23,16 @@ constexpr double kBandLimited = 0.005, kLightResidual = 0.1;
 /// the two environments.
 struct Light {
   Environment environment = Environment::constant(glm::vec3(0));  ///< all of it
-  Environment sky = Environment::constant(glm::vec3(0));          ///< without the suns
-  std::vector<Sun> suns;                                          ///< strongest first, at most 8
+  Environment sky = Environment::constant(glm::vec3(0));          ///< without the sources
+  std::vector<std::shared_ptr<const Source>> sources;  ///< a map's strongest first, at most 8
 
-  /// Spherical-harmonic coefficients of the radiance without the suns. All orders are filled.
+  /// Spherical-harmonic coefficients of the sky's radiance. All orders are filled.
   std::array<glm::vec3, kShCount> coefficients{};
 
   int order = 0;  ///< 0..4: bands above it are not worth computing
 
-  /// Share that each band has of the energy without the suns: the brightness squared, over the
-  /// sphere, seen in patches of 1.4 degrees. Zeros for a black map.
+  /// Share that each band has of the sky's energy: the brightness squared, over the sphere, seen in
+  /// patches of 1.4 degrees. Zeros for a black map.
   std::array<double, kShOrder + 1> band_energy{};
 
   /// For each order, what the bands above it hold: RMS over directions and channels after a blur
@@ -39,11 +40,16 @@ struct Light {
   std::array<double, kShOrder + 1> residuals{};
   double residual() const { return residuals[order]; }
 
-  /// Unoccluded irradiance over pi without the suns, by normal. From the map, not from the bands.
+  /// unoccluded_sky() of a map. From its texels, not from the bands.
   OctahedralMap irradiance{2};
 
-  /// The same with the suns: all light that a surface gets that has nothing around it.
-  glm::vec3 unoccluded(const glm::vec3& normal) const;
+  // The light of a surface that has nothing around it, as irradiance over pi; light-inl.h has the
+  // same for vectors. Nothing else computes it.
+
+  glm::vec3 unoccluded_sky(const glm::vec3& normal) const;
+
+  /// The same with that of the sources.
+  glm::vec3 unoccluded(const glm::vec3& position, const glm::vec3& normal) const;
 
   /// Whether it comes from everywhere alike: one colour, no directions.
   bool is_constant() const { return environment.is_constant(); }

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "scene/light/sun.h"
+#include "scene/light/distant_source.h"
 
 namespace ssdo {
 namespace {

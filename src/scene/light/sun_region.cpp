@@ -7,7 +7,7 @@
 #include <glm/gtc/constants.hpp>
 #include <utility>
 
-#include "scene/light/sun.h"
+#include "scene/light/distant_source.h"
 
 namespace ssdo {
 namespace {

@@ -27,7 +27,8 @@ struct Lit {
 };
 
 /// Fills in size and radius of a source whose direction is known.
-void set_extent(const std::vector<Lit>& texels, double light, float texel_angle, Sun& sun) {
+void set_extent(const std::vector<Lit>& texels, double light, float texel_angle,
+                DistantSource& sun) {
   const glm::mat3 frame = frame_about(sun.direction);
   double xx = 0, yy = 0, xy = 0;
   float farthest = 0;
@@ -102,8 +103,8 @@ Window SunTexels::bounds(const std::vector<Window>& windows) const {
   return {start, top, start + width() - widest, bottom};
 }
 
-std::optional<Sun> SunTexels::measure(const std::vector<Window>& windows, float threshold,
-                                      const Surroundings& around) const {
+std::optional<DistantSource> SunTexels::measure(const std::vector<Window>& windows, float threshold,
+                                                const Surroundings& around) const {
   const Window all = bounds(windows);
   // Texels in a cell of the shape.
   const int across = (all.width() + kMostCells.x - 1) / kMostCells.x,
@@ -124,7 +125,7 @@ std::optional<Sun> SunTexels::measure(const std::vector<Window>& windows, float 
                    texels.push_back({d, bright, radiance >= threshold});
                  });
   if (!(light > 0)) return std::nullopt;
-  Sun sun;
+  DistantSource sun;
   const double length = glm::length(sum);
   sun.direction = glm::vec3(sum / length);
   sun.irradiance = whole_.gain() / kPi * glm::vec3(power * (length / light));

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "math/plane.h"
+#include "scene/light/distant_source.h"
 #include "scene/light/environment.h"
-#include "scene/light/sun.h"
 #include "scene/light/surroundings.h"
 
 namespace ssdo {
@@ -26,8 +26,8 @@ class SunTexels {
 
   /// What the texels of `windows` are brighter than the sky around them, as a source; nothing if
   /// they are not. `threshold` is the radiance of what surely belongs to it. Share and held are 0.
-  std::optional<Sun> measure(const std::vector<Window>& windows, float threshold,
-                             const Surroundings& around) const;
+  std::optional<DistantSource> measure(const std::vector<Window>& windows, float threshold,
+                                       const Surroundings& around) const;
 
   /// Leaves the sky around in place of a source, and all but `part` of the source, 0..1. Returns
   /// what each window would lose with all of it: radiance times solid angle.

@@ -8,7 +8,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "math/frame.h"
-#include "scene/light/sun.h"
+#include "scene/light/distant_source.h"
 
 namespace ssdo {
 namespace {

@@ -64,7 +64,7 @@ class SunSearch {
   bool may_be_source(const glm::vec3& d) const;
   std::size_t brightest_in(std::size_t coarse) const;
   std::size_t coarse_of(std::size_t fine) const;
-  std::optional<Sun> take(const SunRegion& region);
+  std::optional<DistantSource> take(const SunRegion& region);
   Window texels_of(std::size_t patch) const;
 
   const Environment& whole_;
@@ -160,13 +160,13 @@ Window SunSearch::texels_of(std::size_t patch) const {
 /// Takes what a region is brighter than the sky around it out of the map, or a part of it where it
 /// is little of the irradiance there; the search goes on without any of it. Otherwise the map
 /// stays.
-std::optional<Sun> SunSearch::take(const SunRegion& region) {
+std::optional<DistantSource> SunSearch::take(const SunRegion& region) {
   const RegionAndRing parts = widen(fine_, region);
   if (parts.ring.empty()) return std::nullopt;
   const Surroundings around(fine_, parts.ring, region.middle);
   std::vector<Window> windows;
   for (const std::size_t patch : parts.patches) windows.push_back(texels_of(patch));
-  std::optional<Sun> sun = texels_.measure(windows, region.threshold, around);
+  std::optional<DistantSource> sun = texels_.measure(windows, region.threshold, around);
   if (!sun) return std::nullopt;
   const float all = irradiance_towards(sun->direction);
   const float light = std::min(brightness(sun->irradiance), region.missing);
@@ -184,7 +184,7 @@ std::optional<Sun> SunSearch::take(const SunRegion& region) {
 }
 
 SunsAndRest SunSearch::run() {
-  std::vector<Sun> suns;
+  std::vector<DistantSource> suns;
   project_rest();
   SunGrowth growth(fine_, [&](std::size_t patch) { return held_[coarse_of(patch)]; });
   for (int i = 0; i < kMostTries && suns.size() < kMostSuns; ++i) {
@@ -197,7 +197,7 @@ SunsAndRest SunSearch::run() {
         return kLeastShare * irradiance_towards(middle);
       });
     }
-    const std::optional<Sun> sun = region ? take(*region) : std::nullopt;
+    const std::optional<DistantSource> sun = region ? take(*region) : std::nullopt;
     if (sun) {
       suns.push_back(*sun);
       project_rest();
@@ -209,7 +209,7 @@ SunsAndRest SunSearch::run() {
     examined_[*place] = true;
   }
   if (suns.empty()) return {{}, whole_};
-  std::sort(suns.begin(), suns.end(), [](const Sun& a, const Sun& b) {
+  std::sort(suns.begin(), suns.end(), [](const DistantSource& a, const DistantSource& b) {
     return brightness(a.irradiance) > brightness(b.irradiance);
   });
   return {std::move(suns), Environment(texels_.rest(), whole_.frame())};

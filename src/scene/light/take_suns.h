@@ -3,14 +3,14 @@
 
 #include <vector>
 
+#include "scene/light/distant_source.h"
 #include "scene/light/environment.h"
-#include "scene/light/sun.h"
 
 namespace ssdo {
 
 /// An environment in two parts whose light adds up to the whole in every texel.
 struct SunsAndRest {
-  std::vector<Sun> suns;  ///< strongest first, at most 8, in world space
+  std::vector<DistantSource> suns;  ///< strongest first, at most 8, in world space
   Environment rest;  ///< in place of suns the radiance around them, and what of them is not taken
 };
 

@@ -67,7 +67,7 @@ double on_floor(const View& view, const Environment& environment, double y0, dou
       if (p.position.z > 1e-6 || std::abs(p.position.x) > 1) continue;
       if (p.position.y < y0 || p.position.y > y1) continue;
       const glm::vec3 normal = g.world_to_camera * glm::vec3(p.normal);
-      sum += double(out.direct(x, y).x / light.unoccluded(normal).x), pixels += 1;
+      sum += double(out.direct(x, y).x / light.unoccluded({}, normal).x), pixels += 1;
     }
   }
   EXPECT_GT(pixels, 50);
@@ -163,7 +163,7 @@ TEST(BitmaskBeyond, AHillHidesNothingFromItself) {
   double least_sun = 1, least_reflection = 1;
   for (std::size_t i = 0; i < out.ao.size(); ++i) {
     if (!g.is_surface(i)) continue;
-    const float all = light.unoccluded(g.surfel[i].normal).x;
+    const float all = light.unoccluded({}, g.surfel[i].normal).x;
     least_sun = std::min(least_sun, double(out.direct[i].x / all));
     least_reflection = std::min(least_reflection, double(out.reflection[i]));
   }

@@ -52,7 +52,7 @@ double largest(const glm::dvec3& v) {
 
 TEST(BitmaskLight, TheModelKeepsABandLimitedSky) {
   const Light model = model_light(sky(), glm::mat3(1));
-  EXPECT_TRUE(model.suns.empty());
+  EXPECT_TRUE(model.sources.empty());
   EXPECT_GE(model.order, 2);
 }
 

@@ -10,6 +10,7 @@
 
 #include "estimators/bitmask/request.h"
 #include "support/scene_of.h"
+#include "support/sun_of.h"
 
 namespace ssdo::test {
 namespace {
@@ -68,9 +69,9 @@ TEST(BitmaskShading, ItsSunIsSeenWhereverThePlaneSeesIt) {
   (*map)(70, 40) = glm::vec3(8000);
   const Environment environment(map, {.up = UpAxis::z});
   const Light light = model_light(environment, g.world_to_camera);
-  ASSERT_EQ(light.suns.size(), 1u);
+  ASSERT_EQ(light.sources.size(), 1u);
   const glm::vec3 up = g.world_to_camera * glm::vec3(0, 0, 1);
-  ASSERT_GT(glm::dot(up, light.suns[0].direction), 0.2f) << "the sun is above the plane";
+  ASSERT_GT(glm::dot(up, sun_of(light).direction), 0.2f) << "the sun is above the plane";
   const Products out = run(g, {.radius = kNoLimit,
                                .environment = environment,
                                .products = {.ao = true, .direct = true},
@@ -80,9 +81,9 @@ TEST(BitmaskShading, ItsSunIsSeenWhereverThePlaneSeesIt) {
   for (int y = 2; y < kWindow.height() - 2; ++y) {
     for (int x = 2; x < kWindow.width() - 2; ++x) {
       const double expected =
-          std::max(0.0f, glm::dot(g.surfel(x, y).normal, light.suns[0].direction)) *
-          light.suns[0].irradiance.x;
-      EXPECT_NEAR(out.direct(x, y).x, expected, 1e-3 * light.suns[0].irradiance.x) << x << " " << y;
+          std::max(0.0f, glm::dot(g.surfel(x, y).normal, sun_of(light).direction)) *
+          sun_of(light).irradiance.x;
+      EXPECT_NEAR(out.direct(x, y).x, expected, 1e-3 * sun_of(light).irradiance.x) << x << " " << y;
     }
   }
 }

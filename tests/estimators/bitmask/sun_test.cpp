@@ -12,6 +12,7 @@
 #include "estimators/bitmask/request.h"
 #include "scene/solids/solids.h"
 #include "support/boxes.h"
+#include "support/sun_of.h"
 
 namespace ssdo::test {
 namespace {
@@ -34,9 +35,8 @@ Differs shares_that_differ(const Surface& scene, const Camera& camera, const Win
   const Geometry g = geometry_of(scene, camera, window);
   const Solids solids = guess_solids(g);
   const Light light = model_light(environment, g.world_to_camera);
-  EXPECT_EQ(light.suns.size(), 1u);
-  const glm::dvec3 to_sun =
-      glm::transpose(camera.rotation) * glm::dvec3(light.suns.at(0).direction);
+  EXPECT_EQ(light.sources.size(), 1u);
+  const glm::dvec3 to_sun = glm::transpose(camera.rotation) * glm::dvec3(sun_of(light).direction);
   const Products out = run(g, {.radius = kNoLimit,
                                .environment = environment,
                                .products = {.ao = true, .direct = true},
@@ -50,7 +50,7 @@ Differs shares_that_differ(const Surface& scene, const Camera& camera, const Win
       const Point p = point_at(scene, camera, window, x, y);
       const double cosine = glm::dot(p.normal, to_sun);
       const bool lit = cosine > 0 && !scene({p.position + 1e-6 * p.normal, to_sun});
-      const double unoccluded = std::max(cosine, 0.0) * light.suns[0].irradiance.x;
+      const double unoccluded = std::max(cosine, 0.0) * sun_of(light).irradiance.x;
       const bool off = std::abs(out.direct(x, y).x - (lit ? unoccluded : 0)) > 0.5 * unoccluded;
       differs.all += off, (lit ? differs.of_lit : differs.of_dark) += off;
       lit_pixels += lit, shadows += cosine > 0 && !lit;

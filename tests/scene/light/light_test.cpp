@@ -13,6 +13,7 @@
 
 #include "scene/light/painted_map.h"
 #include "scene/light/take_suns.h"
+#include "support/sun_of.h"
 
 namespace ssdo::test {
 namespace {
@@ -39,7 +40,7 @@ TEST(Light, ConstantNeedsOneCoefficient) {
   for (const Environment& env :
        {Environment::constant(color), paint(6, [&](const glm::vec3&) { return color; })}) {
     const Light model = model_light(env, glm::mat3(1));
-    EXPECT_TRUE(model.suns.empty());
+    EXPECT_TRUE(model.sources.empty());
     EXPECT_EQ(model.order, 0);
     EXPECT_LT(model.residual(), 1e-4);
     EXPECT_NEAR(model.band_energy[0], 1, 1e-4);
@@ -56,7 +57,7 @@ TEST(Light, BandLimitedLightHasItsCoefficientsAndItsOrder) {
     for (const int index : {l * l, l * l + l, l * l + 2 * l}) {
       const Light model = model_light(single_band(index, 0.5f), glm::mat3(1));
       EXPECT_EQ(model.order, l) << index;
-      EXPECT_TRUE(model.suns.empty()) << index;
+      EXPECT_TRUE(model.sources.empty()) << index;
       EXPECT_LT(model.residual(), 2e-3) << index;
       for (int i = 1; i < kShCount; ++i) {
         EXPECT_NEAR(model.coefficients[i].x, i == index ? 0.5 : 0, 1e-3) << index << " " << i;
@@ -78,8 +79,8 @@ TEST(Light, FindsADisc) {
   for (const int width : {128, 512}) {
     const Environment env = paint(width, sunny, 2048 / width);
     const Light model = model_light(env, glm::mat3(1));
-    ASSERT_EQ(model.suns.size(), 1u) << width;
-    const Sun& sun = model.suns[0];
+    ASSERT_EQ(model.sources.size(), 1u) << width;
+    const DistantSource& sun = sun_of(model);
     EXPECT_LT(glm::degrees(glm::distance(sun.direction, kSunDirection)), 0.3) << width;
     // The painted disc has the steps of its samples: 2 % off its area, 0.5 % off what was painted.
     EXPECT_NEAR(sun.irradiance.x / (3000 * kSunRadius * kSunRadius), 1, 0.02) << width;
@@ -102,11 +103,11 @@ TEST(Light, TakesSunsAndSoftBoxesStrongestFirst) {
                           return glm::vec3(glm::distance(d, soft) < 0.25f ? 20.0f : 0.5f);
                         }),
                   glm::mat3(1));
-  ASSERT_EQ(model.suns.size(), 3u);
-  EXPECT_LT(glm::distance(model.suns[0].direction, soft), 0.005);
-  EXPECT_LT(glm::distance(model.suns[1].direction, strong), 0.005);
-  EXPECT_LT(glm::distance(model.suns[2].direction, weak), 0.005);
-  EXPECT_NEAR(model.suns[0].angular_radius, 0.25, 0.015);
+  ASSERT_EQ(model.sources.size(), 3u);
+  EXPECT_LT(glm::distance(sun_of(model).direction, soft), 0.005);
+  EXPECT_LT(glm::distance(sun_of(model, 1).direction, strong), 0.005);
+  EXPECT_LT(glm::distance(sun_of(model, 2).direction, weak), 0.005);
+  EXPECT_NEAR(sun_of(model).angular_radius, 0.25, 0.015);
 }
 
 TEST(Light, IrradianceIsThatOfEveryTexel) {
@@ -124,8 +125,8 @@ TEST(Light, IrradianceIsThatOfEveryTexel) {
     std::mt19937 random(3);
     for (int i = 0; i < 30; ++i) {
       const glm::vec3 n = random_direction(random);
-      EXPECT_NEAR(model.unoccluded(n).x, exact(n).x, 1e-3);
-      if (model.suns.empty()) {
+      EXPECT_NEAR(model.unoccluded({}, n).x, exact(n).x, 1e-3);
+      if (model.sources.empty()) {
         EXPECT_NEAR(model.irradiance(n).x, exact(n).x, 1e-3);
       }
     }
@@ -138,8 +139,8 @@ TEST(Light, TurnsWithTheEnvironmentAndTheCamera) {
       glm::mat3(glm::rotate(glm::mat4(1), 0.8f, glm::normalize(glm::vec3(1, 2, -1))));
   const Light still = model_light(paint(256, sunny, 4), glm::mat3(1));
   const Light turned = model_light(paint(256, sunny, 4, 37), camera);
-  ASSERT_EQ(turned.suns.size(), 1u);
-  EXPECT_LT(glm::distance(turned.suns[0].direction, camera * turn * still.suns[0].direction), 1e-4);
+  ASSERT_EQ(turned.sources.size(), 1u);
+  EXPECT_LT(glm::distance(sun_of(turned).direction, camera * turn * sun_of(still).direction), 1e-4);
   EXPECT_EQ(turned.order, still.order);
   EXPECT_NEAR(turned.residual(), still.residual(), 1e-3);
   std::mt19937 random(4);
@@ -167,7 +168,7 @@ TEST(Light, IsTheSameInAnyExposureButForItsBrightness) {
   std::mt19937 random(1);
   for (int i = 0; i < 20; ++i) {
     const glm::vec3 n = random_direction(random);
-    EXPECT_EQ(bright_light.unoccluded(n), std::exp2(kStops) * dim_light.unoccluded(n));
+    EXPECT_EQ(bright_light.unoccluded({}, n), std::exp2(kStops) * dim_light.unoccluded({}, n));
   }
 }
 
@@ -195,7 +196,8 @@ TEST(Light, StaysFiniteForAnyMap) {
         EXPECT_LT(share, 1.01) << width;  // the dimmest floats are rounded by as much
       }
       EXPECT_TRUE(std::isfinite(model.residual()));
-      for (const Sun& sun : model.suns) {
+      for (const auto& source : model.sources) {
+        const DistantSource& sun = *source->distant();
         EXPECT_GE(std::min({sun.irradiance.x, sun.irradiance.y, sun.irradiance.z}), 0);
         EXPECT_NEAR(glm::length(sun.direction), 1, 1e-5);
       }

@@ -14,6 +14,7 @@
 #include "math/spherical_harmonics.h"
 #include "scene/light/light.h"
 #include "scene/light/painted_map.h"
+#include "support/sun_of.h"
 
 namespace ssdo::test {
 namespace {
@@ -30,7 +31,7 @@ glm::vec3 disc_or_sky(const glm::vec3& d, const glm::vec3& middle, float radius)
 
 /// Normals that put the horizon at all places in and around a source.
 template <class Visit>
-void for_each_elevation(const Sun& sun, const Visit& visit) {
+void for_each_elevation(const DistantSource& sun, const Visit& visit) {
   const glm::vec3 side = glm::normalize(glm::cross(sun.direction, {0.3f, 0.5f, -0.8f}));
   for (int i = -9; i <= 9; ++i) {
     const float e = 1.3f * sun.angular_radius * float(i) / 9;
@@ -44,13 +45,13 @@ void for_each_elevation(const Sun& sun, const Visit& visit) {
 double unoccluded_error(const Environment& map) {
   const Light light = model_light(map, glm::mat3(1));
   const TexelSum exact(map);
-  const glm::dvec3 most = exact(light.suns.at(0).direction);
+  const glm::dvec3 most = exact(sun_of(light).direction);
   double worst = 0;
   const auto compare = [&](const glm::vec3& n) {
-    const glm::dvec3 off = (glm::dvec3(light.unoccluded(n)) - exact(n)) / most;
+    const glm::dvec3 off = (glm::dvec3(light.unoccluded({}, n)) - exact(n)) / most;
     worst = std::max({worst, std::abs(off.x), std::abs(off.y), std::abs(off.z)});
   };
-  for (const Sun& sun : light.suns) for_each_elevation(sun, compare);
+  for (const auto& source : light.sources) for_each_elevation(*source->distant(), compare);
   std::mt19937 random(7);
   for (int i = 0; i < 20; ++i) compare(random_direction(random));
   return worst;
@@ -69,7 +70,7 @@ void expect_whole(const Environment& map) {
   }
   // The length of a vector sum is a little less than the sum of lengths: undone by the mean cosine.
   glm::dvec3 found(0);
-  for (const Sun& sun : parts.suns) {
+  for (const DistantSource& sun : parts.suns) {
     double cosines = 0;
     for (int i = 0; i < 4096; ++i)
       cosines += double(glm::dot(
@@ -87,7 +88,7 @@ TEST(TakeSuns, FindsDiscsOfAnySize) {
     const Environment map = paint(radius < 2 ? 1024 : 512, sky, samples);
     const SunsAndRest parts = take_suns(map);
     ASSERT_EQ(parts.suns.size(), 1u) << radius;
-    const Sun& sun = parts.suns[0];
+    const DistantSource& sun = parts.suns[0];
     const float texel = 360.0f / float(map.map()->width);
     EXPECT_LT(glm::degrees(glm::distance(sun.direction, middle)), 0.02 + 0.01 * radius) << radius;
     EXPECT_NEAR(glm::degrees(sun.angular_radius), std::max(radius, texel / 2), texel) << radius;
@@ -149,7 +150,7 @@ TEST(TakeSuns, FindsSeveralStrongestFirst) {
   for (std::size_t i = 1; i < 8; ++i)
     EXPECT_GE(brightness(parts.suns[i - 1].irradiance), brightness(parts.suns[i].irradiance));
   for (const glm::vec3& middle : middles) {
-    EXPECT_TRUE(std::any_of(parts.suns.begin(), parts.suns.end(), [&](const Sun& sun) {
+    EXPECT_TRUE(std::any_of(parts.suns.begin(), parts.suns.end(), [&](const DistantSource& sun) {
       return glm::distance(sun.direction, middle) < 0.01f;
     }));
   }
@@ -168,7 +169,8 @@ TEST(TakeSuns, TellsTwoApartThatAreClose) {
     const bool swapped = glm::distance(parts.suns[0].direction, left) > 0.06f;
     EXPECT_LT(glm::distance(parts.suns[swapped].direction, left), 0.01) << second;
     EXPECT_LT(glm::distance(parts.suns[!swapped].direction, right), 0.01) << second;
-    for (const Sun& sun : parts.suns) EXPECT_NEAR(glm::degrees(sun.angular_radius), 3, 0.6);
+    for (const DistantSource& sun : parts.suns)
+      EXPECT_NEAR(glm::degrees(sun.angular_radius), 3, 0.6);
     expect_whole(map);
     EXPECT_LT(unoccluded_error(map), 1e-3);
   }
@@ -240,7 +242,7 @@ TEST(TakeSuns, ASourceIsTakenLittleByLittleAsItGrows) {
         return glm::vec3(in_disc(d, middle, radius) ? 1 + strength / (sine * sine) : 1);
       });
       float taken = 0;
-      for (const Sun& sun : take_suns(map).suns) taken += brightness(sun.irradiance);
+      for (const DistantSource& sun : take_suns(map).suns) taken += brightness(sun.irradiance);
       if (i == 4) {
         EXPECT_EQ(taken, 0) << radius;
       }
@@ -275,7 +277,7 @@ TEST(TakeSuns, TakesALongBandInPieces) {
       const SunsAndRest parts = take_suns(map);
       EXPECT_GE(parts.suns.size(), 5u);
       EXPECT_LE(parts.suns.size(), 6u);
-      for (const Sun& sun : parts.suns) EXPECT_LT(glm::degrees(sun.angular_radius), 42);
+      for (const DistantSource& sun : parts.suns) EXPECT_LT(glm::degrees(sun.angular_radius), 42);
       float most = 0;
       for (const glm::vec3& left : parts.rest.map()->pixels) most = std::max(most, left.x);
       EXPECT_LT(most, 0.03) << "all of it is taken";
@@ -289,7 +291,7 @@ TEST(TakeSuns, TakesLessAndLessOfWiderBands) {
   float before = 0;
   for (float width = 10; width <= 20; width += 1) {
     float most = 0;
-    for (const Sun& sun : take_suns(band(width, direction_of(30, 20))).suns)
+    for (const DistantSource& sun : take_suns(band(width, direction_of(30, 20))).suns)
       most = std::max(most, sun.share);
     fmt::print("a band of {} degrees: {:.3f} of the light of what faces it\n", width, most);
     if (width == 10) {

@@ -17,41 +17,12 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "estimators/bitmask/rays/block-inl.h"
 #include "estimators/bitmask/rays/ray-inl.h"
 #include "math/sobol.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
-
-/// Pixels whose rays are on their way together: a vector wide and kRows high.
-struct EmittedBlock {
-  static constexpr int kRows = 4, kWidth = Interleaving::kPeriod * kLanes, kPixels = kRows * kWidth;
-  Window part;
-
-  /// The first of the numbers that the pixels of a vector have in their order in memory.
-  HWY_INLINE int first_of(const Place& at) const {
-    return ((at.y - part.y0) * Interleaving::kPeriod + at.column_phase) * kLanes;
-  }
-  /// Numbers in which the pixels of a column of the block follow on each other.
-  HWY_INLINE VI places(const Place& at) const {
-    return hn::Iota(DI(), 0) * set_int(kPixels / kLanes) +
-           set_int(at.column_phase * kRows + at.y - part.y0);
-  }
-};
-
-/// Calls `work(block)` for the blocks of a part of the raster.
-template <class Work>
-HWY_INLINE void for_each_emitted_block(const MarchScene& scene, const Window& part,
-                                       const Work& work) {
-  constexpr int kWidth = EmittedBlock::kWidth, kRows = EmittedBlock::kRows;
-  const int phase = scene.layout.phase(), first = ((part.x0 + phase) & -kWidth) - phase;
-  for (int y = part.y0; y < part.y1; y += kRows) {
-    for (int x = first; x < part.x1; x += kWidth) {
-      work(EmittedBlock{
-          {std::max(x, part.x0), y, std::min(x + kWidth, part.x1), std::min(y + kRows, part.y1)}});
-    }
-  }
-}
 
 /// The point that the ray of each lane goes to, and what that stands for.
 struct Chosen {
@@ -111,90 +82,61 @@ HWY_INLINE Chosen choose(const EmittedJob& job, const MarchReceiver& p, const Ch
   return {read3(points->position), read(points->solid), power * sum};
 }
 
-/// How far away in the picture a point is that lies on each lane's ray.
-template <bool kOrthographic>
-HWY_INLINE V pixels_to(const MarchScene& scene, const MarchReceiver& p, const RayInSlice& ray,
-                       const V3& point) {
-  V x = point.x * set(scene.fx), y = point.y * set(scene.fy);
-  if constexpr (!kOrthographic) {
-    const V nearness = set(-1) / hn::Min(point.z, set(-1e-20f));
-    x = x * nearness, y = y * nearness;
-  }
-  const V dx = x + set(scene.axis_x - float(scene.first_x)) - p.x,
-          dy = set(scene.axis_y - float(scene.first_y)) - y - p.y;
-  return dot(V2{dx, dy}, V2{ray.step_x, ray.step_y});
-}
+/// Numbers of the pixels of a block, by Block::first_of().
+struct OfBlock {
+  alignas(64) float values[Block::kPixels];
 
-/// Puts the rays of a vector of receivers into a queue, and returns the light that comes along
-/// them.
-template <bool kOrthographic>
-HWY_INLINE V3 send_rays(const EmittedJob& job, const MarchReceiver& p, const Choice& choice,
-                        VI places, WalkOverFrame<kOrthographic>& walk) {
-  const MarchScene& scene = job.march.scene;
-  const V zero = set(0);
-  const Chosen to = choose(job, p, choice);
-  const M lit = luminance(to.light) > zero;
-  const V3 way = to.position - p.position;
-  const V distance = hn::Sqrt(dot(way, way));
-  const V3 unit = way / hn::Max(distance, set(1e-20f));
-  Ray ray = make_ray(scene, p, unit, lit);
-  const V free = hn::Max(distance - to.solid, zero);
-  if (job.march.further) {
-    const Lanes3 start(start_of_rays(scene, p)), direction(unit);
-    const Lanes looks(hn::IfThenElseZero(ray.open, free));
-    alignas(64) float passes[kLanes];
-    for (int lane = 0; lane < kLanes; ++lane) {
-      passes[lane] = looks[lane] > 0 && job.march.further->is_blocked(start[lane], direction[lane],
-                                                                      looks[lane])
-                         ? 0.0f
-                         : 1.0f;
-    }
-    ray.open = hn::And(ray.open, load(passes) > zero);
-  }
-  const V end_px =
-      pixels_to<kOrthographic>(scene, p, ray.in_slice, mul_add(unit, free, p.position));
-  ray.in_slice.end_px = hn::Min(ray.in_slice.end_px, end_px);
-  walk.put(places, p, ray, hn::And(ray.open, end_px > set(1)));
-  return if_then_else_zero(ray.open, to.light);
-}
+  HWY_INLINE V operator()(int i) const { return load(values + i); }
+  HWY_INLINE void set_at(int i, V value) { store(value, values + i); }
+};
+struct OfBlock3 {
+  OfBlock x, y, z;
 
-/// What the rays of a block have found, by EmittedBlock::first_of().
-struct EmittedSums {
-  alignas(64) float light[3][EmittedBlock::kPixels];
-  alignas(64) float arrived[3][EmittedBlock::kPixels];
+  HWY_INLINE V3 operator()(int i) const { return {x(i), y(i), z(i)}; }
+  HWY_INLINE void set_at(int i, const V3& v) {
+    x.set_at(i, v.x), y.set_at(i, v.y), z.set_at(i, v.z);
+  }
+};
 
-  HWY_INLINE V3 load_from(const float (&from)[3][EmittedBlock::kPixels], int i) const {
-    return {load(from[0] + i), load(from[1] + i), load(from[2] + i)};
-  }
-  HWY_INLINE void store_to(float (&to)[3][EmittedBlock::kPixels], int i, const V3& value) {
-    store(value.x, to[0] + i), store(value.y, to[1] + i), store(value.z, to[2] + i);
-  }
+/// The rays of a block, the light that comes along them if nothing is in their way, and what of
+/// that arrives.
+struct EmittedRays {
+  OfBlock3 to, light, arrived;
+  OfBlock length;
 };
 
 /// The light that arrives at a block, by rays of one of two sets that have nothing in common.
 template <bool kOrthographic>
-HWY_INLINE void find_arriving(const EmittedJob& job, const EmittedBlock& block, int set_of_rays,
-                              WalkOverFrame<kOrthographic>& walk, EmittedSums& sums) {
+HWY_INLINE void find_arriving(const EmittedJob& job, const Block& block, int set_of_rays,
+                              Occluders<kOrthographic>& occluders, EmittedRays& rays) {
   const MarchScene& scene = job.march.scene;
+  const V zero = set(0);
+  const auto ray = [&](const MarchReceiver& p, int i) HWY_ATTR {
+    return make_ray<kOrthographic>(scene, p, rays.to(i), rays.length(i),
+                                   luminance(rays.light(i)) > zero);
+  };
   for (int k = 0; k < job.rays; ++k) {
-    walk.clear();
+    occluders.clear();
     for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
       MarchReceiver p = load_receiver(scene, place);
       p.reach_px = reach_px(scene, p, job.march.radius);
       const int i = block.first_of(place);
-      sums.store_to(
-          sums.light, i,
-          send_rays<kOrthographic>(job, p, choice(job, member_at(scene, place), k, set_of_rays),
-                                   block.places(place), walk));
-      if (k == 0) sums.store_to(sums.arrived, i, set(glm::vec3(0)));
+      const Chosen chosen = choose(job, p, choice(job, member_at(scene, place), k, set_of_rays));
+      const V3 way = chosen.position - p.position;
+      const V distance = hn::Sqrt(dot(way, way));
+      rays.to.set_at(i, way / hn::Max(distance, set(1e-20f)));
+      rays.length.set_at(i, hn::Max(distance - chosen.solid, zero));
+      rays.light.set_at(i, chosen.light);
+      if (k == 0) rays.arrived.set_at(i, set(glm::vec3(0)));
+      occluders.ask(block.places(place), p, ray(p, i));
     });
-    walk.run();
+    occluders.run();
     for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
       const int i = block.first_of(place);
-      const M arrives = walk.blocked_px(block.places(place)) < set(0);
-      const V3 light = if_then_else_zero(arrives, sums.load_from(sums.light, i));
-      sums.store_to(sums.arrived, i,
-                    mul_add(light, set(1 / float(job.rays)), sums.load_from(sums.arrived, i)));
+      const MarchReceiver p = load_receiver(scene, place);
+      const Arrival a = occluders.arrival(block.places(place), p, ray(p, i), PassBeyond{});
+      const V3 light = if_then_else_zero(a.share > zero, rays.light(i) * a.share);
+      rays.arrived.set_at(i, mul_add(light, set(1 / float(job.rays)), rays.arrived(i)));
     });
   }
 }
@@ -202,17 +144,17 @@ HWY_INLINE void find_arriving(const EmittedJob& job, const EmittedBlock& block, 
 template <bool kOrthographic>
 void emitted(const EmittedJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
-  WalkOverFrame<kOrthographic> walk(job.march, job.bounds, EmittedBlock::kPixels);
-  EmittedSums sums;
-  for_each_emitted_block(scene, part, [&](const EmittedBlock& block) HWY_ATTR {
+  Occluders<kOrthographic> occluders(job.march, job.bounds, Block::kPixels);
+  EmittedRays rays;
+  for_each_block(scene, part, [&](const Block& block) HWY_ATTR {
     // Twice where the error is wanted, which is what other points and rays change.
     for (int set_of_rays = 0; set_of_rays < (job.error ? 2 : 1); ++set_of_rays) {
-      find_arriving<kOrthographic>(job, block, set_of_rays, walk, sums);
+      find_arriving<kOrthographic>(job, block, set_of_rays, occluders, rays);
       // Halves of the slices differ by the square root of 3 times the error, two sets by that of 2.
       const V sign = set(std::sqrt(1.5f) * (set_of_rays == 0 ? 1 : -1));
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
         const std::ptrdiff_t i = place.index;
-        const V3 light = sums.load_from(sums.arrived, block.first_of(place));
+        const V3 light = rays.arrived(block.first_of(place));
         if (set_of_rays == 0) {
           store(load(*job.light, i) + light, *job.light, i);
           if (job.emitted) store(light, *job.emitted, i);

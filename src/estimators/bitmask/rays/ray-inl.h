@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Rays of a vector of pixels, each with a direction of its own: over the frame, through what
-// further views show and past what may go on beyond the frame.
+// What is in the way of rays, for a vector of pixels, each with a direction of its own: one
+// question for light of sources, of bright senders and of what is mirrored. See Occluders.
 #if defined(SSDO_BITMASK_RAY_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_RAY_INL_H_
 #undef SSDO_BITMASK_RAY_INL_H_
@@ -139,48 +139,64 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const V3& t
   return hn::IfThenElse(leaves_frame, hn::MulAdd(hidden, set(pass.through) - past, past), set(1));
 }
 
-/// Which open lanes see past what further views show.
-HWY_INLINE M open_past_further(const March& march, const MarchReceiver& p, const V3& to, M open) {
-  const Lanes3 start(start_of_rays(march.scene, p)), way(to);
-  const Lanes looks(hn::IfThenElseZero(open, set(1)));
-  alignas(64) float passes[kLanes];
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const bool open_lane = looks[lane] > 0;
-    passes[lane] =
-        open_lane && !march.further->is_blocked(start[lane], way[lane], march.radius) ? 1.0f : 0.0f;
-  }
-  return load(passes) > set(0);
-}
-
-/// The `turn` of open_beyond() for a member of the pattern.
-HWY_INLINE float turn_of_member(int member) {
-  constexpr int kPeriod = Interleaving::kPeriod;
-  return (float(SlicePattern::rank(member)) + 0.5f) / (kPeriod * kPeriod);
-}
-
-/// A ray from each receiver, of those lanes that look for what is in its way.
+/// A ray from each receiver, in those lanes that ask what is in its way.
 struct Ray {
   SideFrame side;
   RayInSlice in_slice;
   V3 to;
+  V length;  ///< what is farther away is not in its way; may be infinite
   M open;
 };
 
-HWY_INLINE Ray make_ray(const MarchScene& scene, const MarchReceiver& p, const V3& to, M open) {
+/// How far away in the picture a point is that lies on each lane's ray.
+template <bool kOrthographic>
+HWY_INLINE V pixels_to(const MarchScene& scene, const MarchReceiver& p, const RayInSlice& ray,
+                       const V3& point) {
+  V x = point.x * set(scene.fx), y = point.y * set(scene.fy);
+  if constexpr (!kOrthographic) {
+    const V nearness = set(-1) / hn::Min(point.z, set(-1e-20f));
+    x = x * nearness, y = y * nearness;
+  }
+  const V dx = x + set(scene.axis_x - float(scene.first_x)) - p.x,
+          dy = set(scene.axis_y - float(scene.first_y)) - y - p.y;
+  return dot(V2{dx, dy}, V2{ray.step_x, ray.step_y});
+}
+
+template <bool kOrthographic>
+HWY_INLINE Ray make_ray(const MarchScene& scene, const MarchReceiver& p, const V3& to, V length,
+                        M open) {
   Ray ray;
-  ray.to = to;
+  ray.to = to, ray.length = length;
   ray.in_slice = ray_in_slice(scene, p, to, ray.side);
   const SlicePoint along = ray.in_slice.along;
   ray.open = hn::And(open, dot(V2{ray.side.n_t, p.facing}, V2{along.s, along.v}) > set(0));
+  const M ends = hn::And(ray.open, length < set(kEndless));
+  if (!any(ends)) return ray;
+  V& end_px = ray.in_slice.end_px;
+  const V last_px =
+      pixels_to<kOrthographic>(scene, p, ray.in_slice, mul_add(to, length, p.position));
+  // Within a pixel there is nothing to meet.
+  const V until = hn::IfThenElseZero(last_px > set(1), hn::Min(end_px, last_px));
+  end_px = hn::IfThenElse(ends, until, end_px);
   return ray;
 }
 
-/// The way of rays over the frame: over the raster, and on over the overview where there is one.
+/// What becomes of rays.
+struct Arrival {
+  V share;       ///< of the ray, 0..1, that sees past all that is known
+  V blocked_at;  ///< way along it to what the frame shows in its way, or kFarAway
+};
+
+/// All that may be in the way of rays: the solids of the frame, those of the overview where the
+/// raster is a part of the frame, what further views show, and what goes on beyond the border.
+/// Rays are asked about together, in places of a queue, and go over the frame between both calls:
+///
+///   clear(); ask(places, ...) for some vectors; run(); arrival(places, ...) for each of them
 template <bool kOrthographic>
-class WalkOverFrame {
+class Occluders {
  public:
   /// As Walk.
-  WalkOverFrame(const March& march, const std::vector<DepthBounds>& bounds, int most)
+  Occluders(const March& march, const std::vector<DepthBounds>& bounds, int most)
       : march_(march), near_(march, bounds, most, 0, march.far ? march.far->raster.from_px : 1e9f) {
     if (!march.far) return;
     far_march_.emplace(march_in_overview(march));
@@ -193,11 +209,11 @@ class WalkOverFrame {
     if (far_) far_->clear();
   }
 
-  HWY_INLINE void put(VI places, const MarchReceiver& p, const Ray& ray, M looks) {
-    near_.put(places, p, ray.side, ray.in_slice, looks);
+  HWY_INLINE void ask(VI places, const MarchReceiver& p, const Ray& ray) {
+    near_.put(places, p, ray.side, ray.in_slice, ray.open);
     if (far_) {
       far_->put(places, in_far_pixels(march_, p), in_far_pixels(ray.side),
-                in_far_pixels(ray.in_slice), looks);
+                in_far_pixels(ray.in_slice), ray.open);
     }
   }
 
@@ -206,6 +222,30 @@ class WalkOverFrame {
     if (far_) far_->run();
   }
 
+  /// Of the rays that were asked about; `pass` is that of open_beyond().
+  HWY_INLINE Arrival arrival(VI places, const MarchReceiver& p, const Ray& ray,
+                             const PassBeyond& pass) const {
+    const V at_px = blocked_px(places);
+    const M meets = at_px >= set(0);
+    Arrival a;
+    a.blocked_at = hn::IfThenElse(hn::And(ray.open, meets),
+                                  way_along<kOrthographic>(ray.in_slice, p, at_px), set(kFarAway));
+    M open = hn::AndNot(meets, ray.open);
+    if (march_.further && any(open)) open = past_further(p, ray, open);
+    V share = set(1);
+    if (march_.cut && any(open)) {
+      constexpr int kMembers = Interleaving::kPeriod * Interleaving::kPeriod;
+      const int rank = SlicePattern::rank(member_at(march_.scene, p.place));
+      const float turn = (float(rank) + 0.5f) / kMembers;
+      share = far_ ? open_beyond<kOrthographic>(*far_march_, in_far_pixels(march_, p), ray.to,
+                                                in_far_pixels(ray.in_slice), turn, pass)
+                   : open_beyond<kOrthographic>(march_, p, ray.to, ray.in_slice, turn, pass);
+    }
+    a.share = hn::IfThenElseZero(open, share);
+    return a;
+  }
+
+ private:
   /// As Walk.
   HWY_INLINE V blocked_px(VI places) const {
     const V near = near_.blocked_px(places);
@@ -214,41 +254,22 @@ class WalkOverFrame {
     return hn::IfThenElse(far > set(0), hn::IfThenElse(near >= set(0), near, far), near);
   }
 
- private:
+  /// Which open lanes see past what further views show.
+  HWY_INLINE M past_further(const MarchReceiver& p, const Ray& ray, M open) const {
+    const Lanes3 start(start_of_rays(march_.scene, p)), to(ray.to);
+    const V reach = hn::Min(ray.length, set(march_.radius));
+    const Lanes looks(hn::IfThenElse(open, reach, set(-1)));
+    return by_lane([&](int lane) HWY_ATTR {
+             return looks[lane] >= 0 &&
+                    !march_.further->is_blocked(start[lane], to[lane], looks[lane]);
+           }) > set(0);
+  }
+
   const March& march_;
   Walk<kOrthographic> near_;
   std::optional<March> far_march_;
   std::optional<Walk<kOrthographic>> far_;
 };
-
-/// What becomes of rays.
-struct Arrival {
-  V share;       ///< of the ray, 0..1, that sees past all that is known
-  V blocked_at;  ///< way along it to what the frame shows in its way, or kFarAway
-};
-
-/// Of rays that the frame blocks at `blocked_px`, that of Walk. `turn` and `pass` are those of
-/// open_beyond().
-template <bool kOrthographic>
-HWY_INLINE Arrival arrival(const March& march, const MarchReceiver& p, const Ray& ray, V blocked_px,
-                           float turn, const PassBeyond& pass) {
-  const M meets = blocked_px >= set(0);
-  Arrival a;
-  a.blocked_at =
-      hn::IfThenElse(hn::And(ray.open, meets),
-                     way_along<kOrthographic>(ray.in_slice, p, blocked_px), set(kFarAway));
-  M open = hn::AndNot(meets, ray.open);
-  if (march.further && any(open)) open = open_past_further(march, p, ray.to, open);
-  V share = set(1);
-  if (march.cut && any(open)) {
-    share = march.far
-                ? open_beyond<kOrthographic>(march_in_overview(march), in_far_pixels(march, p),
-                                             ray.to, in_far_pixels(ray.in_slice), turn, pass)
-                : open_beyond<kOrthographic>(march, p, ray.to, ray.in_slice, turn, pass);
-  }
-  a.share = hn::IfThenElseZero(open, share);
-  return a;
-}
 
 }  // namespace ssdo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -23,22 +23,22 @@ int reversed(int rank) {
 
 }  // namespace
 
-int rays_to_sun(int slices) { return int(std::bit_floor(unsigned(std::max(1, slices / 2)))); }
+int rays_to_source(int slices) { return int(std::bit_floor(unsigned(std::max(1, slices / 2)))); }
 
 // Points of Sobol's sequence: of the rays of a pixel, of those of neighbours in the pattern, as of
 // consecutive seeds, any power of two are spread evenly in both coordinates.
-std::vector<RayDirections> directions_to(const Sun& sun, int rays, unsigned seed, RaySet set) {
-  std::vector<RayDirections> directions(static_cast<std::size_t>(rays));
-  for (std::size_t block = 0; block < directions[0].size(); ++block) {
+std::vector<PointsOfSource> points_of(const Source& source, int rays, unsigned seed, RaySet set) {
+  std::vector<PointsOfSource> points(static_cast<std::size_t>(rays));
+  for (std::size_t block = 0; block < points[0].size(); ++block) {
     for (int m = 0; m < kMembers; ++m) {
       const int number = int(block) * kMembers + reversed(SlicePattern::rank(m));
       const std::uint32_t place = std::uint32_t(number) ^ seed;
       for (std::uint32_t k = 0; k < std::uint32_t(rays); ++k)
-        directions[k][block][std::size_t(m)] =
-            sun.point(sobol_point(place * std::uint32_t(rays) + k, std::uint32_t(set)));
+        points[k][block][std::size_t(m)] =
+            source.point(sobol_point(place * std::uint32_t(rays) + k, std::uint32_t(set)));
     }
   }
-  return directions;
+  return points;
 }
 
 }  // namespace ssdo

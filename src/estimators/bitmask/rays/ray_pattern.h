@@ -5,26 +5,26 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "scene/light/sun.h"
+#include "scene/light/source.h"
 #include "simd/interleaved.h"
 
 namespace ssdo {
 
-/// Unit directions by block of the pattern and member: the points of a sun repeat after 2 x 2
+/// Source::point() by block of the pattern and member: the points of a source repeat after 2 x 2
 /// blocks, row by row, so that the filter of wide penumbras sees four times as many.
-using RayDirections =
+using PointsOfSource =
     std::array<std::array<glm::vec3, Interleaving::kPeriod * Interleaving::kPeriod>, 4>;
 
-/// Points of a sun that have nothing to do with those of the other set.
+/// Points of a source that have nothing to do with those of the other set.
 enum class RaySet { of_light, of_error };
 
-/// Rays of each pixel to each sun where it marches so many slices, a power of two: their noise
+/// Rays of each pixel to each source where it marches so many slices, a power of two: their noise
 /// falls as that of the slices does.
-int rays_to_sun(int slices);
+int rays_to_source(int slices);
 
-/// Directions to points of a sun, evenly spread in each block and in all of them, for each of
+/// Points of a source, evenly spread in each block and in all of them, for each of
 /// `rays`, a power of two. Another seed exchanges them.
-std::vector<RayDirections> directions_to(const Sun& sun, int rays, unsigned seed,
-                                         RaySet set = RaySet::of_light);
+std::vector<PointsOfSource> points_of(const Source& source, int rays, unsigned seed,
+                                      RaySet set = RaySet::of_light);
 
 }  // namespace ssdo

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <glm/matrix.hpp>
+#include <limits>
 
 #include "estimators/bitmask/rays/ray-inl.h"
 #include "math/frame.h"
@@ -41,7 +42,7 @@ template <bool kOrthographic>
 void reflection(const ReflectionJob& job, const Window& part) {
   constexpr int kTogether = 8;  // rays of each pixel on their way at once
   const MarchScene& scene = job.march.scene;
-  WalkOverFrame<kOrthographic> walk(job.march, job.bounds, kTogether * kLanes);
+  Occluders<kOrthographic> occluders(job.march, job.bounds, kTogether * kLanes);
   const auto places = [](int k) HWY_ATTR { return hn::Iota(DI(), k * kLanes); };
   Ray rays[kTogether];
   V shares[kTogether];
@@ -55,20 +56,21 @@ void reflection(const ReflectionJob& job, const Window& part) {
     V open = set(0), all = set(0);
     for (int first = 0; first < job.rays; first += kTogether) {
       const int count = std::min(kTogether, job.rays - first);
-      walk.clear();
+      occluders.clear();
       for (int k = 0; k < count; ++k) {
         // All members together cover the square evenly.
         const int sample = SlicePattern::rank(member) * job.rays + first + k;
         const Mirrored m = mirrored(normals, viewers, roughness,
                                     sobol_point(std::uint32_t(sample), hash_of(job.seed, 0, 0)));
         shares[k] = m.share;
-        rays[k] = make_ray(scene, p, m.to, hn::And(p.valid, m.share > set(0)));
-        walk.put(places(k), p, rays[k], rays[k].open);
+        rays[k] =
+            make_ray<kOrthographic>(scene, p, m.to, set(std::numeric_limits<float>::infinity()),
+                                    hn::And(p.valid, m.share > set(0)));
+        occluders.ask(places(k), p, rays[k]);
       }
-      walk.run();
+      occluders.run();
       for (int k = 0; k < count; ++k) {
-        const Arrival a = arrival<kOrthographic>(job.march, p, rays[k], walk.blocked_px(places(k)),
-                                                 turn_of_member(member), PassBeyond{});
+        const Arrival a = occluders.arrival(places(k), p, rays[k], PassBeyond{});
         open = hn::MulAdd(a.share, shares[k], open);
         all = all + hn::IfThenElseZero(p.valid, hn::Max(shares[k], set(0)));
       }

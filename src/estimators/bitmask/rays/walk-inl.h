@@ -330,7 +330,7 @@ class Walk {
   /// Whether fronts of this nearness that are e above the tangent plane are within the radius.
   HWY_INLINE M within_radius(const Way& w, V dx, V dy, V near, V e) const {
     const float radius = march_.radius;
-    if (radius > 1e18f) return e == e;
+    if (radius > kEndless) return e == e;
     const V2 across{numbers(w.place, kAcrossX), numbers(w.place, kAcrossY)};
     const V slope = numbers(w.place, kSlope);
     const V scale = kOrthographic ? set(1) : set(1) / near;

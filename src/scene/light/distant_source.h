@@ -9,19 +9,20 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "scene/light/source.h"
 #include "scene/light/sun_shape.h"
 
 namespace ssdo {
 
-/// A concentrated source of any shape taken out of an environment: the sun, a lamp, a window.
-struct Sun {
+/// A source of any shape that is endlessly far, taken out of an environment: the sun, a lamp, a
+/// window. received() is 1 for a normal that is `direction`: `irradiance` is the length of the
+/// vector sum of its light.
+struct DistantSource final : Source {
   glm::vec3 direction{0};  ///< unit, towards its middle: that of the vector sum of its light
   float angular_radius =
-      0;  ///< radians, from the middle to its farthest light; half a texel or more
-  glm::vec3 irradiance{0};  ///< over pi, on a surface that faces it: the length of the vector sum
+      0;                ///< radians, from the middle to its farthest light; half a texel or more
   glm::vec2 extent{0};  ///< radians, sides of the even rectangle with its moments, longer one first
   float share = 0;      ///< of the irradiance that a surface facing it has from everywhere
-  float held = 0;       ///< share of its light that spherical harmonics would keep in its place
 
   SunShape shape;
 
@@ -30,16 +31,20 @@ struct Sun {
   std::vector<glm::vec3> points;
   float point_radius = 0;
 
-  /// Unit direction to a point of it, in proportion to its light, for `u` in the unit square.
-  glm::vec3 point(const glm::vec2& u) const { return shape.point(u); }
+  glm::vec3 point(const glm::vec2& u) const override { return shape.point(u); }
 
-  /// What turns `irradiance` into that of a surface with this normal: the mean of the cosines to
-  /// all points above the horizon, 1 for `direction`. dot(normal, direction) if all of it is above.
-  float cosine(const glm::vec3& normal) const {
+  /// dot(normal, direction) if all of it is above the horizon.
+  float received(const glm::vec3&, const glm::vec3& normal) const override {
     const float middle = glm::dot(normal, direction), edge = std::sin(angular_radius);
     if (middle >= edge) return middle;
     return middle <= -edge ? 0 : cosine_at_horizon(normal);
   }
+
+  SourcePoint seen(const glm::vec3&, const glm::vec3& point) const override { return {point}; }
+  SourceCone cone(const glm::vec3&) const override {
+    return {.to = direction, .angular_radius = angular_radius};
+  }
+  const DistantSource* distant() const override { return this; }
 
   void turn(const glm::mat3& by);
 
@@ -48,7 +53,7 @@ struct Sun {
 };
 
 /// Fills in `points` and `point_radius` of a source that has all the rest.
-void set_points(Sun& sun);
+void set_points(DistantSource& sun);
 
 /// The mean of max(0, x) over the numbers x that are `radius` from `middle` at most: the cosine to
 /// a part of a source, which the horizon may cut.

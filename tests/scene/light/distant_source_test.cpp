@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A concentrated source by itself: where its light lies and what it gives at the horizon.
-#include "scene/light/sun.h"
+#include "scene/light/distant_source.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace ssdo::test {
 namespace {
 
 /// The only source of a map that is black around it.
-Sun only_source(const Environment& map) {
+DistantSource only_source(const Environment& map) {
   const SunsAndRest parts = take_suns(map);
   EXPECT_EQ(parts.suns.size(), 1u);
   return parts.suns.at(0);
@@ -44,14 +44,14 @@ glm::vec3 uneven(const glm::vec3& d, const glm::vec3& middle) {
   return glm::vec3((right > 0.1f ? 3.0f : 2.0f) + 2 * right);
 }
 
-TEST(Sun, PointsAreAsDenseAsTheLight) {
+TEST(DistantSource, PointsAreAsDenseAsTheLight) {
   // In the middle of the map, across the date line, near a pole, and turned.
   for (const glm::vec2& at : {glm::vec2(20, 10), glm::vec2(180, -30), glm::vec2(70, 80)}) {
     for (const float turned : {0.0f, 77.0f}) {
       const glm::vec3 middle = direction_of(at.x, at.y);
       const Environment map = paint(
           512, [&](const glm::vec3& d) { return uneven(d, middle); }, 1, turned);
-      const Sun sun = only_source(map);
+      const DistantSource sun = only_source(map);
       Moments texels, points;
       for (int y = 0; y < 256; ++y) {
         for (int x = 0; x < 512; ++x)
@@ -78,11 +78,11 @@ TEST(Sun, PointsAreAsDenseAsTheLight) {
   }
 }
 
-TEST(Sun, PointsInATexelAreEvenlySpread) {
+TEST(DistantSource, PointsInATexelAreEvenlySpread) {
   const Environment map = paint(64, [](const glm::vec3& d) {
     return glm::vec3(in_disc(d, {1, 0, 0}, 9) ? 1 : 0);
   });
-  const Sun sun = only_source(map);
+  const DistantSource sun = only_source(map);
   // Four quarters of a texel, of equal solid angle but for the slope of the sine.
   std::array<int, 4> hits{};
   constexpr int kSide = 256;
@@ -95,11 +95,11 @@ TEST(Sun, PointsInATexelAreEvenlySpread) {
   for (const int n : hits) EXPECT_NEAR(n / double(kSide * kSide), 0.25, 0.005);
 }
 
-TEST(Sun, ALargeShapeIsCoarsenedByLittle) {
+TEST(DistantSource, ALargeShapeIsCoarsenedByLittle) {
   const glm::vec3 middle = direction_of(170, 20);
   const Environment map =
       paint(4096, [&](const glm::vec3& d) { return glm::vec3(in_disc(d, middle, 20) ? 1 : 0); });
-  const Sun sun = only_source(map);
+  const DistantSource sun = only_source(map);
   float farthest = 0;
   for (int i = 0; i < 10000; ++i)
     farthest = std::max(
@@ -125,21 +125,21 @@ double cosine_of_disc(double radius_degrees, double elevation_degrees) {
   return sum / all;
 }
 
-TEST(Sun, DiscsCrossTheHorizonGradually) {
+TEST(DistantSource, DiscsCrossTheHorizonGradually) {
   EXPECT_NEAR(cosine_of_disc(4.5, 0), 0.0168, 2e-4);
   EXPECT_NEAR(cosine_of_disc(4.5, 0.5), 0.0214, 2e-4);
   EXPECT_NEAR(cosine_of_disc(4.5, 3), 0.0535, 2e-4);
   double worst = 0;
   for (const float radius : {0.27f, 1.0f, 4.5f, 10.0f, 20.0f}) {
     for (const glm::vec3& middle : {direction_of(33, 12), direction_of(100, 88)}) {
-      const Sun sun = only_source(paint(
+      const DistantSource sun = only_source(paint(
           1024, [&](const glm::vec3& d) { return glm::vec3(in_disc(d, middle, radius) ? 1 : 0); },
           radius < 2 ? 8 : 2));
       const glm::vec3 side = glm::normalize(glm::cross(sun.direction, {0.3f, 0.5f, -0.8f}));
       for (int i = -20; i <= 20; ++i) {
         const double elevation = 1.3 * radius * i / 20.0;
         const float e = glm::radians(float(elevation));
-        const float found = sun.cosine(std::cos(e) * side + std::sin(e) * sun.direction);
+        const float found = sun.received({}, std::cos(e) * side + std::sin(e) * sun.direction);
         const double exact = cosine_of_disc(radius, elevation);
         worst = std::max(worst, std::abs(found - exact));
         EXPECT_NEAR(found, exact, 1e-3) << radius << " " << elevation;
@@ -155,18 +155,18 @@ TEST(Sun, DiscsCrossTheHorizonGradually) {
   fmt::print("cosine of discs at the horizon: off by {:.1e} at most\n", worst);
 }
 
-TEST(Sun, TurnsAsAWhole) {
+TEST(DistantSource, TurnsAsAWhole) {
   const glm::mat3 turn(glm::rotate(glm::mat4(1), 0.8f, glm::normalize(glm::vec3(1, 2, -1))));
-  const Sun still =
+  const DistantSource still =
       only_source(paint(256, [](const glm::vec3& d) { return uneven(d, direction_of(20, 30)); }));
-  Sun turned = still;
+  DistantSource turned = still;
   turned.turn(turn);
   std::mt19937 random(1);
   for (int i = 0; i < 100; ++i) {
     const glm::vec2 u(float(i % 10) / 10, float(i / 10) / 10);
     EXPECT_LT(glm::distance(turned.point(u), turn * still.point(u)), 1e-6);
     const glm::vec3 n = random_direction(random);
-    EXPECT_NEAR(turned.cosine(turn * n), still.cosine(n), 1e-6);
+    EXPECT_NEAR(turned.received({}, turn * n), still.received({}, n), 1e-6);
   }
 }
 

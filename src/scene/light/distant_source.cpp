@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/light/sun.h"
+#include "scene/light/distant_source.h"
 
 #include <algorithm>
 
@@ -34,7 +34,7 @@ void divide(Points::iterator begin, Points::iterator end, int halvings, Points& 
 
 }  // namespace
 
-void set_points(Sun& sun) {
+void set_points(DistantSource& sun) {
   Points places;
   for (int row = 0; row < kSide; ++row) {
     for (int column = 0; column < kSide; ++column)
@@ -50,14 +50,14 @@ void set_points(Sun& sun) {
   sun.point_radius = std::sqrt(sun.extent.x * sun.extent.y / float(sun.points.size())) / 2;
 }
 
-float Sun::cosine_at_horizon(const glm::vec3& normal) const {
+float DistantSource::cosine_at_horizon(const glm::vec3& normal) const {
   float sum = 0;
   for (const glm::vec3& point : points)
     sum += mean_above_horizon(glm::dot(normal, point), point_radius);
   return sum / float(points.size());
 }
 
-void Sun::turn(const glm::mat3& by) {
+void DistantSource::turn(const glm::mat3& by) {
   direction = by * direction;
   shape.turn(by);
   for (glm::vec3& point : points) point = by * point;

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/bitmask/rays/find_source.h"
+
+#include <utility>
+
+#include "estimators/bitmask/parts.h"
+
+namespace ssdo {
+
+SourceShares find_source(SourceJob job, const Window& to, const Progress& progress) {
+  const Interleaving& layout = job.march.scene.layout;
+  SourceShares found(layout);
+  job.found = &found;
+  for_each_tall_part_of(
+      layout, to, [&](const Window& part) { march_source(job, part); }, progress);
+  return found;
+}
+
+void hand_out_sources(std::vector<SourceShares>& found, const Raster& raster,
+                      std::vector<Plane<float>>& shares, std::vector<ShadowDraw>& draws) {
+  for (SourceShares& source : found) {
+    shares.push_back(raster.picture(std::move(source.share), 1));
+    draws.push_back({raster.picture(std::move(source.weight), 1),
+                     raster.picture(std::move(source.width), kPenumbraUnit)});
+  }
+}
+
+}  // namespace ssdo

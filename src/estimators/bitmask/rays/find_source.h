@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "estimators/bitmask/march.h"
+#include "estimators/bitmask/raster.h"
+#include "estimators/products.h"
+#include "parallel/tiles.h"
+
+namespace ssdo {
+
+/// How much of a source arrives at the pixels `to` of a raster. Where the result of the job goes is
+/// set here.
+SourceShares find_source(SourceJob job, const Window& to, const Progress& progress);
+
+/// Turns what was found of sources into pictures, as LightShares has them, and frees it.
+void hand_out_sources(std::vector<SourceShares>& found, const Raster& raster,
+                      std::vector<Plane<float>>& shares, std::vector<ShadowDraw>& draws);
+
+}  // namespace ssdo

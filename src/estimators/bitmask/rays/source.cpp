@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The light of a source, by rays from each pixel to points of it: one at few slices. Compiled once
+// for every instruction set.
+//
+// All pixels have rays of their own. Where those of some of them decide for their neighbours, thin
+// shadows are missed: with one in four, those of two pixels were not there in a third of the frames
+// of a slow pan, and a test that is sure of what lies between them costs as much as the rays.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "estimators/bitmask/rays/source.cpp"
+#include <hwy/foreach_target.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimators/bitmask/rays/block-inl.h"
+#include "estimators/bitmask/rays/ray-inl.h"
+#include "scene/light/light-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace ssdo::HWY_NAMESPACE {
+
+/// The points that the rays of a vector of pixels go to, `aside` members away from its own. Lanes
+/// are in blocks beside each other.
+HWY_INLINE V3 points_of(const MarchScene& scene, const PointsOfSource& points, const Place& place,
+                        int aside) {
+  const std::size_t member = std::size_t(member_at(scene, place) + aside) % points.front().size();
+  const int row = ((place.y + scene.first_y) >> Interleaving::kShift) & 1,
+            column = (place.column + (scene.first_x >> Interleaving::kShift)) & 1;
+  const V3 even = set(points[std::size_t(2 * row + column)][member]),
+           odd = set(points[std::size_t(2 * row + (column ^ 1))][member]);
+  return {hn::OddEven(odd.x, even.x), hn::OddEven(odd.y, even.y), hn::OddEven(odd.z, even.z)};
+}
+
+/// The points that the rays of a vector of pixels go to. Where that is below the horizon of a lane,
+/// as part of a source may be, another one.
+HWY_INLINE SourcePoints points_above(const SourceJob& job, const PointsOfSource& points,
+                                     const MarchReceiver& p) {
+  constexpr int kTries = 8, kApart = 9;  // members that lie apart in both directions
+  const auto at = [&](int k) HWY_ATTR {
+    return seen(job.source, p.position, points_of(job.march.scene, points, p.place, kApart * k));
+  };
+  SourcePoints found = at(0);
+  const SourceCones all = cones(job.source, p.position);
+  const M sets = hn::Abs(dot(p.normal, all.to)) < all.sine;
+  for (int k = 1; k < kTries; ++k) {
+    const M below = hn::And(sets, dot(p.normal, found.to) <= set(0));
+    if (!any(below)) break;
+    const SourcePoints other = at(k);
+    found = {if_then_else(below, other.to, found.to),
+             hn::IfThenElse(below, other.distance, found.distance),
+             hn::IfThenElse(below, other.weight, found.weight)};
+  }
+  return found;
+}
+
+/// Width in pixels of the penumbra that something throws at this distance, where the source is
+/// `source_distance` away: half of the way to it, and the penumbra is as wide as the source.
+template <bool kOrthographic>
+HWY_INLINE V penumbra_px(const SourceJob& job, const MarchReceiver& p, V distance,
+                         V source_distance) {
+  const MarchScene& scene = job.march.scene;
+  const V angle = set(2) * cones(job.source, p.position).angular_radius,
+          left = hn::Max(set(1) - distance / source_distance, set(1e-3f));
+  const V width = distance * (angle * set(std::max(scene.fx, scene.fy))) / left;
+  const V px = kOrthographic ? width : width / (set(0) - p.position.z);
+  return hn::Clamp(px, set(1), set(float(4 * Interleaving::kPeriod)));
+}
+
+/// What the rays of the pixels of a block have found, by Block::first_of().
+struct BlockSums {
+  alignas(64) float weight[Block::kPixels];    ///< the light of the rays
+  alignas(64) float share[Block::kPixels];     ///< that of the rays that arrive
+  alignas(64) float width_px[Block::kPixels];  ///< of penumbras, by the light of the others
+
+  HWY_INLINE void clear(int i) {
+    for (float* sum : {weight, share, width_px}) store(set(0), sum + i);
+  }
+  HWY_INLINE void add(int i, V light, V arrives, V penumbra_px) {
+    const V lost = light * (set(1) - arrives);
+    store(load(weight + i) + light, weight + i);
+    store(hn::MulAdd(light, arrives, load(share + i)), share + i);
+    store(hn::MulAdd(lost, penumbra_px, load(width_px + i)), width_px + i);
+  }
+};
+
+/// Rays from a vector of receivers to the points that their member of the pattern looks at.
+struct SourceRays {
+  MarchReceiver p;
+  V light;  ///< that of the point: its weight times the cosine to the normal; 0: there is no ray
+  Ray ray;
+};
+
+template <bool kOrthographic>
+HWY_INLINE SourceRays rays_to_points(const SourceJob& job, const PointsOfSource& points,
+                                     const Place& place) {
+  const MarchScene& scene = job.march.scene;
+  SourceRays rays{load_receiver(scene, place), {}, {}};
+  MarchReceiver& p = rays.p;
+  p.reach_px = reach_px(scene, p, job.march.radius);
+  const SourcePoints to = points_above(job, points, p);
+  const V light = to.weight * dot(p.normal, to.to);
+  const M above = hn::And(p.valid, light > set(0));
+  rays.light = hn::IfThenElseZero(above, light);
+  rays.ray = make_ray<kOrthographic>(scene, p, to.to, to.distance, above);
+  return rays;
+}
+
+template <bool kOrthographic>
+void source(const SourceJob& job, const Window& part) {
+  const MarchScene& scene = job.march.scene;
+  Occluders<kOrthographic> occluders(job.march, job.bounds, Block::kPixels);
+  BlockSums sums;
+  for_each_block(scene, part, [&](const Block& block) HWY_ATTR {
+    for_each_vector(scene, block.part,
+                    [&](const Place& place) HWY_ATTR { sums.clear(block.first_of(place)); });
+    for (const PointsOfSource& points : job.points) {
+      occluders.clear();
+      for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
+        const auto [p, light, ray] = rays_to_points<kOrthographic>(job, points, place);
+        occluders.ask(block.places(place), p, ray);
+      });
+      occluders.run();
+      for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
+        const auto [p, light, ray] = rays_to_points<kOrthographic>(job, points, place);
+        const Arrival a = occluders.arrival(block.places(place), p, ray, job.pass);
+        sums.add(block.first_of(place), light, a.share,
+                 penumbra_px<kOrthographic>(job, p, a.blocked_at, ray.length));
+      });
+    }
+    for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
+      const std::ptrdiff_t i = place.index;
+      const int from = block.first_of(place);
+      const V zero = set(0), weight = load(sums.weight + from), arrives = load(sums.share + from),
+              blocked = weight - arrives,
+              widths = load(sums.width_px + from) * set(1 / kPenumbraUnit);
+      store(hn::IfThenElseZero(weight > zero, arrives / weight), job.found->share, i);
+      store(weight / set(float(job.points.size())), job.found->weight, i);
+      store(hn::IfThenElseZero(blocked > zero, widths / blocked), job.found->width, i);
+    });
+  });
+}
+
+void source_of_pixels(const SourceJob& job, const Window& part) {
+  job.march.scene.orthographic ? source<true>(job, part) : source<false>(job, part);
+}
+
+}  // namespace ssdo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ssdo {
+
+HWY_EXPORT(source_of_pixels);
+
+void march_source(const SourceJob& job, const Window& part) {
+  HWY_DYNAMIC_DISPATCH(source_of_pixels)(job, part);
+}
+
+}  // namespace ssdo
+#endif

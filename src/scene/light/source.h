@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+
+namespace ssdo {
+
+struct DistantSource;
+
+/// A point of a source as a receiver sees it.
+struct SourcePoint {
+  glm::vec3 to{0};  ///< unit direction to it
+  float distance = std::numeric_limits<float>::infinity();
+  float weight = 1;  ///< see Source
+};
+
+/// The cone in which a receiver sees all of a source.
+struct SourceCone {
+  glm::vec3 to{0};  ///< unit direction to the middle
+  float distance = std::numeric_limits<float>::infinity();
+  float angular_radius = 0;  ///< radians
+};
+
+/// A concentrated source of light, of one colour, in the space of positions and normals. Without
+/// occluders a surface at p with the normal n has from it
+///
+///   unoccluded(p, n) = irradiance received(p, n),   received = mean of weight max(0, cos)
+///
+/// the mean being that over all its points, which are those of even `u` in the unit square. With
+/// occluders each point counts as far as a ray to it, `distance` long, is open.
+struct Source {
+  virtual ~Source() = default;
+
+  glm::vec3 irradiance{0};  ///< over pi, of a surface for which received() is 1
+  float held = 0;           ///< share of its light that spherical harmonics would keep in its place
+
+  virtual float received(const glm::vec3& position, const glm::vec3& normal) const = 0;
+
+  /// The point for `u`: a place, or the unit direction to one that is endlessly far.
+  virtual glm::vec3 point(const glm::vec2& u) const = 0;
+
+  /// What of point() a receiver sees, and what of all of them.
+  virtual SourcePoint seen(const glm::vec3& position, const glm::vec3& point) const = 0;
+  virtual SourceCone cone(const glm::vec3& position) const = 0;
+
+  /// This, if it is endlessly far: it looks the same from everywhere. Null: it is not.
+  virtual const DistantSource* distant() const { return nullptr; }
+
+  SourcePoint sample(const glm::vec3& position, const glm::vec2& u) const {
+    return seen(position, point(u));
+  }
+  glm::vec3 unoccluded(const glm::vec3& position, const glm::vec3& normal) const {
+    return received(position, normal) * irradiance;
+  }
+
+ protected:
+  Source() = default;
+  Source(const Source&) = default;
+  Source& operator=(const Source&) = default;
+};
+
+}  // namespace ssdo
