@@ -51,7 +51,7 @@
 #include "estimators/bitmask/basis_weights.h"
 #include "estimators/bitmask/beyond.h"
 #include "estimators/bitmask/border_light.h"
-#include "estimators/bitmask/march.h"
+#include "estimators/bitmask/jobs.h"
 #include "estimators/bitmask/parts.h"
 #include "estimators/bitmask/patterns.h"
 #include "estimators/bitmask/raster.h"

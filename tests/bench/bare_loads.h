@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "estimators/bitmask/march.h"
+#include "estimators/bitmask/jobs.h"
 
 namespace ssdo::bench {
 

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-#include "estimators/bitmask/march.h"
+#include "estimators/bitmask/jobs.h"
 #include "estimators/bitmask/parts.h"
 
 namespace ssdo {

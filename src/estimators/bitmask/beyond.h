@@ -39,6 +39,7 @@
 #include <glm/vec3.hpp>
 
 #include "estimators/bitmask/march_scene.h"
+#include "estimators/bitmask/rays/pass_beyond.h"
 #include "estimators/bitmask/slice_pattern.h"
 #include "estimators/estimator.h"
 
@@ -78,13 +79,7 @@ float sun_past_beyond(const Openness& frame);
 /// The same of a frame, or of the one that it is a band of; 1 where it does not count.
 float sun_past_beyond(const MarchScene& scene, const Scene& frame, const Request& request);
 
-/// Shares of the rays to a source, 0..1: of those that leave the frame and that nothing hides which
-/// goes on beyond it, and of those that something does.
-struct PassBeyond {
-  float past = 1, through = 0;
-};
-
-/// Those of a source of which harmonics would hold the share `held`. From a quarter on, as of a
+/// The same for a source of which harmonics would keep the share `held`. From a quarter on, as of a
 /// disc of 11 degrees, it is as sky; suns and what is between are less so. Relative error of direct
 /// light of a room under two soft boxes: 0.141 if it is sky by `held` alone, 0.093 so.
 PassBeyond pass_beyond(float sun_past, float held);

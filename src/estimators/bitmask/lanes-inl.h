@@ -13,7 +13,7 @@
 #include <array>
 #include <cmath>
 
-#include "estimators/bitmask/march.h"
+#include "estimators/bitmask/jobs.h"
 #include "estimators/bitmask/slice_sectors.h"
 #include "estimators/receiver-inl.h"
 #include "math/endless.h"

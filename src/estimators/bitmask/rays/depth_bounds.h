@@ -21,7 +21,7 @@ class DepthBounds {
   /// Sides of cells are powers of two, from kSmallest to kLargest; their exponents.
   static constexpr int kSmallest = 2, kLargest = 8;
 
-  /// Of a layer of the scene.
+  /// The bounds of a layer of the scene.
   DepthBounds(const MarchScene& scene, const MarchLayer& layer);
 
   /// Pixel (0, 0) of the raster in the grid of cells. Cells lie in the display window alike

@@ -2,8 +2,8 @@
 //
 // Small bright senders: what they send that a march of few steps would miss or meet by chance.
 //
-// Of the radiance L that a pixel sends, in luminance, the part above a level that the frame sets is
-// gathered by rays (rays/emitted_light.cpp), the rest by the march (bitmask/bounce.cpp):
+// A pixel sends the radiance L, in luminance. Rays gather the part of it above a level that the
+// frame sets (rays/emitted_light.cpp), and the march gathers the rest (bitmask/bounce.cpp):
 //
 //   level = 4 (mean of sqrt(L) over the frame's surfaces)^2 / smoothstep(0.05, 0.15, s)
 //
@@ -28,13 +28,9 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "estimators/bitmask/march_scene.h"
-#include "simd/interleaved.h"
+#include "estimators/bitmask/rays/sent_light.h"
 
 namespace ssdo {
-
-struct FarScene;
-struct FarLight;
 
 /// A point that light leaves from, in camera space.
 struct Emitter {
@@ -56,16 +52,6 @@ struct Emitters {
   std::vector<Emitter> points;  ///< kPoints of each member; empty: nothing exceeds the level
 
   const Emitter* of_member(int member) const { return &points[std::size_t(member * kPoints)]; }
-};
-
-/// The light that is sent in a pass of bounces.
-struct SentLight {
-  const MarchScene& scene;
-  const InterleavedVectors& radiance;
-  bool two_sided;                 ///< as SenderJob has it
-  Window lit;                     ///< the pixels whose radiance is known
-  const FarScene* far = nullptr;  ///< the frame around; null: the raster is all that sends
-  const FarLight* far_light = nullptr;
 };
 
 /// `seed` exchanges the points of the members.

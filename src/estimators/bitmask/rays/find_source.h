@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "estimators/bitmask/march.h"
+#include "estimators/bitmask/jobs.h"
 #include "estimators/bitmask/raster.h"
 #include "estimators/products.h"
 #include "parallel/tiles.h"

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "estimators/bitmask/march.h"
+#include "estimators/bitmask/rays/emitters.h"
+#include "estimators/bitmask/rays/pass_beyond.h"
+#include "estimators/bitmask/rays/ray_pattern.h"
+#include "estimators/further/further_light.h"
+#include "math/half_color.h"
+#include "scene/light/light.h"
+
+namespace ssdo {
+
+/// The visibility of each pixel, and how much of the light reaches it.
+struct VisibilityJob {
+  March march;
+  /// Order of the spherical harmonics in which light is gathered, up to 4; 0: visibility only.
+  int order = 0;
+  /// Weights of the basis polynomials, (order + 1)^2 for red, then green, then blue.
+  const float* light = nullptr;       ///< null: the same from all directions
+  const Light* unoccluded = nullptr;  ///< all of it; null where `difference` is
+  float through_beyond = 0;  ///< share of it that comes through what may go on beyond the frame
+
+  InterleavedPlane* ao = nullptr;
+  InterleavedVectors* bent = nullptr;  ///< unit; null: not wanted
+  /// What of the light arrives, less ao: in one colour from everywhere, nothing, without rounding.
+  /// Null: not wanted.
+  InterleavedColorShares* sky_share = nullptr;
+  InterleavedPlane* difference =
+      nullptr;  ///< standard error of its luminance, signed; null: not wanted
+};
+
+/// Pixels that widths of penumbras, 32 at most, are stored as shares of.
+inline constexpr float kPenumbraUnit = 8;
+
+/// What rays to a source have found: about 0..1, of what a surface of any normal would get, and
+/// ShadowDraw, with widths over kPenumbraUnit.
+struct SourceShares {
+  explicit SourceShares(const Interleaving& layout)
+      : share(layout), weight(layout), width(layout) {}
+
+  InterleavedShares share, weight, width;
+};
+
+/// How much of the light arrives at each pixel, as LightShares has it.
+struct FoundShares {
+  const Light& light;
+  const InterleavedPlane* ao;
+  const InterleavedColorShares* sky;  ///< as VisibilityJob has it; null: ao is the share of all
+                                      ///< light
+  const std::vector<SourceShares>& sources;
+};
+
+/// The radiance that each pixel sends to others, and that of its back side.
+struct SenderJob {
+  const MarchScene& scene;
+  FoundShares found;
+  const Plane<HalfColor>& albedo;
+  const InterleavedVectors* bounce;  ///< that has arrived so far; null: none
+  InterleavedVectors* sent;
+  bool two_sided;  ///< `sent` holds front and back, as two_in_one(); else they send the same
+};
+
+/// What the pixels that march have gathered.
+struct GatheredLight {
+  GatheredLight(const March& march, bool with_error)
+      : layout(march.scene.layout, march.pattern.spacing()),
+        sum{InterleavedPlane(layout), InterleavedPlane(layout), InterleavedPlane(layout)},
+        weights(layout) {
+    if (with_error) error = InterleavedPlane(layout);
+  }
+
+  SparseInterleaving layout;
+  InterleavedVectors sum;    ///< of weighted radiance
+  InterleavedPlane weights;  ///< their sum
+  InterleavedPlane error;    ///< of the luminance of the mean radiance, times the weights
+};
+
+/// The light that each pixel receives from the first surface in every direction: the mean radiance
+/// of what hides the environment, times 1 - ao.
+struct BounceJob {
+  March march;
+  const InterleavedPlane* ao;
+  /// The radiance that layer 0 sends; spread_bounce() replaces it by the light that arrives.
+  InterleavedVectors* light;
+  bool two_sided;                    ///< as SenderJob has it
+  const Solids& solids;              ///< of the scene: whose light layers 1, 2, ... send
+  const BorderValues* sent_border;   ///< three: of surfaces that continue beyond the frame
+  const FurtherLight* sent_further;  ///< of what only further views show
+  Window lit;                        ///< the pixels of the raster whose `sent` is known
+  const FarScene* overview;          ///< tells that of others; null where all are lit
+  const FarLight* far;               ///< what the overview sends
+  const Emitters* emitters;          ///< whose light rays gather; null: there are none
+
+  GatheredLight* gathered;
+  InterleavedPlane* error;  ///< standard error of the luminance of what arrives, signed; null: not
+                            ///< wanted
+};
+
+/// The light of bright senders, which is added to that of the march.
+struct EmittedJob {
+  March march;
+  const std::vector<DepthBounds>& bounds;
+  const Emitters& emitters;
+  int rays;  ///< of each pixel, a power of two
+  unsigned seed;
+  InterleavedVectors* light;    ///< that has arrived so far
+  InterleavedVectors* emitted;  ///< the same alone; null: not wanted
+  InterleavedPlane* error;      ///< as BounceJob has it, to be added to; null: not wanted
+};
+
+/// The direct light of each pixel.
+struct DirectJob {
+  const MarchScene& scene;
+  FoundShares found;
+  InterleavedVectors* direct;
+};
+
+/// How much of the light of a source arrives.
+struct SourceJob {
+  March march;
+  const std::vector<DepthBounds>& bounds;
+  const std::vector<PointsOfSource>& points;  ///< that each ray goes to
+  const Source& source;
+  PassBeyond pass;
+  SourceShares* found = nullptr;
+};
+
+/// How much of what rough surfaces mirror is not blocked.
+struct ReflectionJob {
+  March march;
+  const std::vector<DepthBounds>& bounds;
+  const InterleavedPlane* roughness;  ///< 0..1
+  int rays;                           ///< of each pixel
+  unsigned seed;
+  InterleavedPlane* open;  ///< 0..1
+};
+
+/// All of these work on a part of the raster, and may write to pixels beside it in the same rows.
+void march_visibility(const VisibilityJob& job, const Window& part);
+void march_bounce(const BounceJob& job, const Window& part);
+/// After march_bounce everywhere.
+void spread_bounce(const BounceJob& job, const Window& part);
+void march_source(const SourceJob& job, const Window& part);
+void march_reflection(const ReflectionJob& job, const Window& part);
+/// After spread_bounce of the same pixels. Parts are as for_each_tall_part_of() makes them.
+void gather_emitted(const EmittedJob& job, const Window& part);
+void find_senders(const SenderJob& job, const Window& part);
+void find_direct(const DirectJob& job, const Window& part);
+
+}  // namespace ssdo
