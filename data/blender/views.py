@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cameras that show more of a scene than its picture does: overscan, a panorama, further views.
+"""Cameras that show more of a scene than its picture does: overscan, a panorama, other views.
 
 ssdo takes what they show as known geometry, in place of guesses. Each is a G-buffer as export.py
 makes it, with P in world space and unfiltered.
@@ -13,7 +13,7 @@ import bpy
 from mathutils import Euler, Matrix, Vector
 
 PANORAMA_SIZE = (512, 256)
-ALSO_WIDTH = 320  # a further view joins surfaces: it needs no finer pixels
+ALSO_WIDTH = 320  # another view joins surfaces: it needs no finer pixels
 TOP_WIDTH, TOP_HEIGHT = 2.5, 3.0  # a view from above shows 2.5 times the width, from 3 such above
 
 

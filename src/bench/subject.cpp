@@ -103,7 +103,7 @@ Subject read_subject(const BenchJob& job, std::vector<RunFile> inputs) {
   prepared.output.products.clear();
   prepared.output.compose.reset();  // no composite is measured
   const Lighting light(prepared.light);
-  FurtherPictures pictures;
+  OtherPictures pictures;
   FrameFiles files{job.input, prepared.input.aovs, prepared.input.also};
   if (!prepared.input.views.empty()) files.view = prepared.input.views.front();
   subject.frame = prepare_frame(prepared, light, pictures, files);

@@ -101,16 +101,16 @@ void add_input(CLI::App& app, InputOptions& o) {
                   "albedo:premultiplied=LAYER states how alpha is in it",
                   fmt::join(role_names(), " ")));
   group.repeatable("--also", "FILE", o.also,
-                   "a further G-buffer of the same scene with P in world space: another camera, a "
+                   "another G-buffer of the same scene with P in world space: another camera, a "
                    "panorama, or a deep image of this frame");
   group.text(
       "--neighbours", "K[xSTEP]", [&](const Text& text) { o.neighbours = read_neighbours(text); },
-      "K frames before and after in the same sequence, every STEP, as further G-buffers");
+      "K frames before and after in the same sequence, every STEP, as other G-buffers");
   CLI::Option* part = group.value("--part", "NAME|N", o.part,
                                   "look for layers in this part or view, and what completes it");
   const Text left(kEyes[0]), right(kEyes[1]);
   group.choice("--stereo", o.views, {{left, {left}}, {right, {right}}, {"all", {left, right}}},
-               "relight this view of a stereo file, or both, with the other as a further G-buffer");
+               "relight this view of a stereo file, or both, with the other as another G-buffer");
   app.get_option("--stereo")->excludes(part);
   group.choice("--space", o.gbuffer.space, {{"world", Space::world}, {"camera", Space::camera}},
                "that P and N are stored in; default: as they agree with each other and the camera");
@@ -328,7 +328,7 @@ void add_main_options(CLI::App& app, Options& o) {
   add_batch(app, o.batch);
   add_resources(app, o);
   add_messages(app, o.verbosity);
-  Group(app, "Say")
+  Group(app, "Messages")
       .value("--config", "FILE.toml", o.config_file,
              "options from a TOML file; the command line wins")
       ->configurable(false);

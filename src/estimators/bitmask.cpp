@@ -40,8 +40,8 @@
 // frame
 //   (bitmask/extension-inl.h) are guesses that GTAO does not make. How much light comes through
 //   what is beyond: bitmask/beyond.h, bitmask/rays/border_extents.h.
-// - What only further views show may be anywhere, behind the camera too: rays ask it for the
-//   sectors that the march leaves open (bitmask/further-inl.h).
+// - What only other views show may be anywhere, behind the camera too: rays ask it for the
+//   sectors that the march leaves open (bitmask/other_views-inl.h).
 #include "estimators/bitmask.h"
 
 #include <algorithm>
@@ -79,7 +79,7 @@ class Bitmask {
                                                                     : nullptr),
         pattern_(pattern_of(request, layout_, scene.geometry.display, far_raster())),
         bounce_pattern_(bounce_pattern_of(request, layout_, scene.geometry.display, far_raster())),
-        further_(FurtherRays::of_added(scene.further)),
+        other_views_(OtherViewRays::of_added(scene.other_surfaces)),
         march_(march_with(pattern_)),
         bounce_march_(march_with(bounce_pattern_)) {}
 
@@ -122,8 +122,8 @@ class Bitmask {
   const FarRaster* far_raster() const { return far_ ? &far_->raster : nullptr; }
 
   March march_with(const SlicePattern& pattern) const {
-    return {march_scene_,   pattern, request_.radius, request_.extend_offscreen, may_be_thin(),
-            further_.get(), far_};
+    return {march_scene_,       pattern, request_.radius, request_.extend_offscreen, may_be_thin(),
+            other_views_.get(), far_};
   }
 
   /// A part of the raster with what may send light to it in so many bounces.
@@ -141,7 +141,8 @@ class Bitmask {
   /// Some solids are no guesses.
   bool may_be_thin() const {
     const auto& ends = scene_.solids.end.pixels;
-    return std::any_of(ends.begin(), ends.end(), [](Origin o) { return o != Origin::guessed; });
+    return std::any_of(ends.begin(), ends.end(),
+                       [](Provenance o) { return o != Provenance::guessed; });
   }
 
   bool senders_need_light() const { return scene_.senders.radiance.empty(); }
@@ -287,9 +288,9 @@ class Bitmask {
     const bool lit = senders_need_light(), two_sided = lit && !scene_.light.is_constant();
     const FarScene* overview = request_.around_band ? request_.around_band->far.get() : nullptr;
     if (request_.products.error) bounce_error_ = InterleavedPlane(layout_);
-    std::vector<FurtherLight> sent_further;
-    if (further_)
-      sent_further = light_further_surfaces(scene_, request_.bounces - 1, request_.radius);
+    std::vector<OtherViewLight> sent_by_others;
+    if (other_views_)
+      sent_by_others = light_other_surfaces(scene_, request_.bounces - 1, request_.radius);
     InterleavedVectors bounce;
     for (int pass = 1; pass <= request_.bounces; ++pass) {
       // What is lit reaches as far as the bounces that follow.
@@ -306,11 +307,12 @@ class Bitmask {
       const bool wants_error = request_.products.error && pass == request_.bounces;
       InterleavedPlane* const error = wants_error ? &bounce_error_ : nullptr;
       const Emitters* const bright = emitters.points.empty() ? nullptr : &emitters;
-      const FurtherLight* const further = further_ ? &sent_further[std::size_t(pass - 1)] : nullptr;
+      const OtherViewLight* const from_others =
+          other_views_ ? &sent_by_others[std::size_t(pass - 1)] : nullptr;
       GatheredLight gathered(bounce_march_, wants_error);
       const BounceJob job{
           bounce_march_, &ao_,     &light,   two_sided, scene_.solids, sent_border.data(),
-          further,       lit_part, overview, far_light, bright,        &gathered,
+          from_others,   lit_part, overview, far_light, bright,        &gathered,
           error};
       // Light gathered in the last pass is not sent on: only receivers need it.
       const Window to = lit && pass < request_.bounces
@@ -341,7 +343,7 @@ class Bitmask {
   const Raster raster_;
   const FarScene* far_;  ///< where marches of a band go on; null: nowhere
   SlicePattern pattern_, bounce_pattern_;
-  std::unique_ptr<FurtherRays> further_;  ///< null: there are no further views
+  std::unique_ptr<OtherViewRays> other_views_;  ///< null: there are no other views
   March march_, bounce_march_;
   CutSurfaces cut_;
   InterleavedPlane ao_, error_, bounce_error_;

@@ -10,13 +10,13 @@
 #include <utility>
 
 #include "estimators/bitmask/slice_pattern.h"
-#include "estimators/further/further_rays.h"
+#include "estimators/other_views/other_view_rays.h"
 #include "estimators/ray_start.h"
 #include "math/frame.h"
 #include "math/sampling.h"
 #include "math/sobol.h"
-#include "scene/further/sight.h"
 #include "scene/normals/normals.h"
+#include "scene/other_views/sight.h"
 #include "scene/pixel_footprint.h"
 #include "scene/same_surface.h"
 
@@ -69,7 +69,7 @@ class Guesses {
         surfel_(scene.geometry.surfel),
         footprint_(scene.geometry.camera),
         radius_(radius),
-        further_(FurtherRays::of_added(scene.further)) {
+        other_views_(OtherViewRays::of_added(scene.other_surfaces)) {
     const Camera& camera = scene.geometry.camera;
     f_ = {float(camera.fx), float(camera.fy)};
     c_ = {float(camera.cx - scene.geometry.window.x0), float(camera.cy - scene.geometry.window.y0)};
@@ -212,17 +212,17 @@ class Guesses {
     if (solids.end_is_measured(pixel) && distance <= solids.thickness[pixel]) return true;
     for (int k = 1; k < solids.layers(); ++k) {
       const Solid solid = solids.at(k, pixel);
-      if (solids.origin(k, pixel) == Origin::measured && distance >= solid.distance &&
+      if (solids.provenance(k, pixel) == Provenance::measured && distance >= solid.distance &&
           distance <= solid.distance + solid.thickness)
         return true;
     }
     return false;
   }
 
-  /// What the further views know about a ray.
+  /// What the other views know about a ray.
   std::vector<SightLine> sights(const PicturedRay& line) const {
     std::vector<SightLine> all;
-    for (const FurtherView& view : scene_.views) all.emplace_back(view, line.origin, line.to);
+    for (const OtherView& view : scene_.views) all.emplace_back(view, line.origin, line.to);
     return all;
   }
 
@@ -234,7 +234,8 @@ class Guesses {
   /// The first place on a ray's way that no picture shows, if the ray meets nothing that one shows.
   std::optional<Unseen> follow(const PicturedRay& line, const glm::vec3& normal, int set,
                                bool to_camera) const {
-    if (further_ && further_->is_blocked(line.origin, line.to, radius_)) return std::nullopt;
+    if (other_views_ && other_views_->is_blocked(line.origin, line.to, radius_))
+      return std::nullopt;
     const auto [border, side] = leaves(line);
     const float whole =
         line.most < kInfinity || line.away > 0 ? line.pixels_at(line.most) : kInfinity;
@@ -275,7 +276,7 @@ class Guesses {
   Plane<float> depth_;  ///< depth_at() of all pixels; empty: not gathered
   PixelFootprint footprint_;
   float radius_, far_;
-  std::unique_ptr<FurtherRays> further_;  ///< null: there are no further views
+  std::unique_ptr<OtherViewRays> other_views_;  ///< null: there are no other views
   glm::vec2 f_, c_;
   std::array<float, std::size_t(kSteps* kSets)> distances_;
 };

@@ -5,16 +5,14 @@
 // the yardstick of the other methods. With directions w_i that are distributed as the cosine is,
 //
 //   ao      = number open / n
-//   direct  = E(N)/pi * sum_open L(w_i) / sum_all L(w_i)   channel by channel, then the sources,
-//   each
-//             by the share of its seen points in the cosines of all that are above the horizon
+//   direct  = E(N)/pi * sum_open L(w_i) / sum_all L(w_i)   channel by channel, then each source by
+//             the visible part of the cosines to its points above the horizon
 //   bounce  = sum L_out(q_i) / n                            q_i: the surface that is met first
 //
-// L is the environment without its sources, looked up as it is: a method whose light is in
-// spherical harmonics shows here what they leave out. Where all is open, both ratios are exact with
-// any n. Elsewhere the first goes to the plain sum as n grows; with few rays it is biased where
-// they meet bright parts of L by chance. What is concentrated enough for that to matter is among
-// the sources.
+// L is the environment without its sources, as it is: methods with light in spherical harmonics
+// differ by what these leave out. Where all is open, both ratios are exact with any n. Elsewhere
+// the first is biased where few rays meet bright parts of L by chance; such parts are among the
+// sources.
 //
 // What a surface sends is its albedo times all the light that arrives, as in method bitmask: the
 // side that is not seen has the light of its own side, as far as the seen one is open.
@@ -23,16 +21,16 @@
 // Otherwise the endless side walls of far objects raise the RMSE of ao on the ground of a closed
 // room, against a path tracer, from 0.04 to 0.10.
 //
-// What only further views show is a second set of triangles, in camera space, for it may lie behind
-// the camera; it sends what rays among all views find (further/further_light.h).
+// What only other views show is a second set of triangles, in camera space, for it may lie behind
+// the camera; it sends what rays among all views find (other_views/other_view_light.h).
 //
-// Rays start from the surface itself, whose normal comes from P (scene/normals.h), in front of
-// all triangles of the pixel (trace/ray_origin.h). Those below the surface are blocked; their
+// Rays start from the surface itself, whose normal comes from P (scene/normals/normals.h), in front
+// of all triangles of the pixel (trace/ray_origin.h). Those below the surface are blocked; their
 // directions are distributed about the normal of shading.
 //
 // Directions are points of Sobol's sequence, scrambled anew for every pixel (math/sobol.h). Their
-// error falls about as n^-3/4, and is not shared by neighbours, so that no filter is needed and
-// means over a frame are exact. Surfaces end with the frame.
+// error falls about as n^-3/4 and is independent among neighbours: no filter is needed, and means
+// over a frame are unbiased. Surfaces end with the frame.
 #include "estimators/trace.h"
 
 #include <algorithm>
@@ -44,9 +42,10 @@
 #include <memory>
 #include <utility>
 
-#include "estimators/further/further_light.h"
-#include "estimators/further/further_rays.h"
 #include "estimators/guessed.h"
+#include "estimators/other_views/other_view_light.h"
+#include "estimators/other_views/other_view_rays.h"
+#include "estimators/trace/light_sums.h"
 #include "estimators/trace/ray_origin.h"
 #include "estimators/trace/ray_scene.h"
 #include "math/frame.h"
@@ -64,15 +63,10 @@
 namespace ssdo {
 namespace {
 
-/// The spread of the means of so many parts of the samples gives the standard error.
-constexpr int kGroups = 4;
-
 /// Seeds of the uses of a pixel's sequence.
 constexpr std::uint32_t kSurfaceSeed = 0x51ab, kSourceSeed = 0x9c3d, kFacetSeed = 0x2f17;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-using Groups = std::array<float, kGroups>;
 
 /// Directions of the seen points of one pixel.
 struct Receiver {
@@ -81,38 +75,6 @@ struct Receiver {
   glm::vec3 normal, surface;  ///< that of shading and that of the geometry
   glm::mat3 frame;            ///< about the normal of shading
   std::uint32_t seed;
-};
-
-/// Standard error of the mean of all groups, if they are independent. Parts of one sequence are
-/// more even together than that: it errs on the safe side. It has the sign of the difference of two
-/// halves, so that a filter averages it as it averages noise.
-float standard_error(const Groups& groups) {
-  float mean = 0, squares = 0;
-  for (const float g : groups) mean += g / kGroups;
-  for (const float g : groups) squares += (g - mean) * (g - mean);
-  const float difference = groups[0] + groups[1] - groups[2] - groups[3];
-  return std::copysign(std::sqrt(squares / (kGroups * (kGroups - 1))), difference);
-}
-
-/// The light from a hemisphere, part by part of the samples.
-struct LightSums {
-  std::array<glm::vec3, kGroups> open{}, all{};
-  std::array<int, kGroups> seen{}, number{};
-
-  glm::vec3 share(const glm::vec3& part, const glm::vec3& whole, float ao) const {
-    glm::vec3 out;
-    for (int c = 0; c < 3; ++c)
-      out[c] = whole[c] > 0 ? std::clamp(part[c] / whole[c], 0.0f, 1.0f) : ao;
-    return out;
-  }
-  glm::vec3 share_of_group(int g) const {
-    return share(open[g], all[g], float(seen[g]) / float(number[g]));
-  }
-  glm::vec3 share_of_all(float ao) const {
-    glm::vec3 part(0), whole(0);
-    for (int g = 0; g < kGroups; ++g) part += open[g], whole += all[g];
-    return share(part, whole, ao);
-  }
 };
 
 /// The method on one frame.
@@ -125,7 +87,7 @@ class Trace {
         samples_(int(request.parameters.at("samples"))),
         footprint_(scene.geometry.camera),
         rays_(build_height_field(scene.geometry, scene.solids)),
-        further_(FurtherRays::of_added(scene.further)) {}
+        other_views_(OtherViewRays::of_added(scene.other_surfaces)) {}
 
   Products run() {
     wants_light_ = request_.products.direct || request_.products.bounce || request_.products.error;
@@ -141,8 +103,8 @@ class Trace {
     for_each_surface([&](std::size_t pixel, const Receiver& p) { gather_visibility(pixel, p); });
     if (request_.products.bounce) {
       out_.bounce = Plane<glm::vec3>(width(), height(), glm::vec3(0));
-      if (further_ && request_.bounces > 0)
-        sent_further_ = light_further_surfaces(scene_, request_.bounces - 1, request_.radius);
+      if (other_views_ && request_.bounces > 0)
+        sent_by_others_ = light_other_surfaces(scene_, request_.bounces - 1, request_.radius);
       for (int pass = 1; pass <= request_.bounces; ++pass) gather_bounce(pass);
     }
     if (request_.products.error) {
@@ -164,11 +126,11 @@ class Trace {
   int width() const { return scene_.geometry.surfel.width; }
   int height() const { return scene_.geometry.surfel.height; }
 
-  /// Whether the frame or a further view shows something in the way, or the surface itself is.
+  /// Whether the frame or another view shows something in the way, or the surface itself is.
   bool is_blocked(const Receiver& p, const glm::vec3& to, float distance = kInfinity) const {
     const float reach = std::min(distance, request_.radius);
     return glm::dot(to, p.surface) <= 0 || rays_.is_blocked(p.origin, to, reach) ||
-           (further_ && further_->is_blocked(glm::vec3(p.origin), to, reach));
+           (other_views_ && other_views_->is_blocked(glm::vec3(p.origin), to, reach));
   }
 
   int group_of(int sample) const { return sample * kGroups / samples_; }
@@ -335,10 +297,10 @@ class Trace {
         ++number[group_of(s)];
         if (glm::dot(to, p.surface) <= 0) continue;
         const auto [hit, distance] = rays_.first_hit(p.origin, to, request_.radius);
-        if (further_) {
-          const auto other = further_->first_hit(glm::vec3(p.origin), to, request_.radius);
+        if (other_views_) {
+          const auto other = other_views_->first_hit(glm::vec3(p.origin), to, request_.radius);
           if (other.sender >= 0 && other.distance < distance) {
-            const FurtherLight& light = sent_further_[std::size_t(pass - 1)];
+            const OtherViewLight& light = sent_by_others_[std::size_t(pass - 1)];
             sums[group_of(s)] +=
                 (other.unseen ? light.unseen : light.seen)[std::size_t(other.sender)];
             continue;
@@ -366,8 +328,8 @@ class Trace {
   int samples_;
   PixelFootprint footprint_;
   RayScene rays_;
-  std::unique_ptr<FurtherRays> further_;    ///< null: there are no further views
-  std::vector<FurtherLight> sent_further_;  ///< by pass
+  std::unique_ptr<OtherViewRays> other_views_;  ///< null: there are no other views
+  std::vector<OtherViewLight> sent_by_others_;  ///< by pass
   bool wants_light_ = false;
   Plane<Groups> luminances_;  ///< of direct + bounce
   Products out_;

@@ -232,8 +232,8 @@ class Batch {
   void compute(Work& work, WorkOnView& view, std::optional<History>& before,
                const std::function<void(double)>& on_progress) {
     Frame& frame = view.frame;
-    Past past{std::move(before), {}};
-    if (options_.model.temporal) place_in_sequence(frame, past, before_of(work.index));
+    TemporalInput temporal{std::move(before), {}};
+    if (options_.model.temporal) place_in_sequence(frame, temporal, before_of(work.index));
     if (options_.command == Command::info || options_.verbosity.dry_run) note_losses(work, frame);
     if (options_.command == Command::info) return info_.show(frame);
     if (options_.verbosity.dry_run || options_.verbosity.verbose)
@@ -249,7 +249,7 @@ class Batch {
       return;
     }
     if (!behind_) print(work);
-    view.relit = relight(job, std::move(frame.scene), on_progress, past);
+    view.relit = relight(job, std::move(frame.scene), on_progress, temporal);
     if (options_.verbosity.verbose)
       for (const std::string& note : view.relit.notes) work.messages.add(note);
     work.messages.warn(view.relit.warnings, frame.view);
@@ -344,7 +344,7 @@ class Batch {
   const bool overlaps_;            ///< frames are read and written beside the one that is estimated
   const bool writes_behind_;       ///< not only read
   std::optional<Lighting> light_;  ///< read after the first listing of `info`
-  FurtherPictures pictures_;       ///< of all frames
+  OtherPictures pictures_;         ///< of all frames
   SequenceFrames frames_;
   ProgressLine progress_;
   InfoReport info_;

@@ -40,7 +40,7 @@ bool is_done(const Job& job);
 /// which such a frame has not.
 FrameFiles files_named(const RunOptions& options);
 
-/// The files of a frame of a sequence without further views, with its number in their patterns.
+/// The files of a frame of a sequence without other views, with its number in their patterns.
 FrameFiles files_at(const RunOptions& options, int frame);
 
 /// Every file that a frame is made from: `files`, those of --env, --camera, --config and the

@@ -27,8 +27,8 @@ struct HalfColor {
 
  private:
   static std::uint16_t bits(float channel) {
-    const float held = channel > 0 ? std::min(channel, kMost) : 0;
-    const auto whole = std::bit_cast<std::uint32_t>(held * (1 / kScale));
+    const float clamped = channel > 0 ? std::min(channel, kMost) : 0;
+    const auto whole = std::bit_cast<std::uint32_t>(clamped * (1 / kScale));
     const std::uint32_t below_half = (1u << (kShift - 1)) - 1, odd = whole >> kShift & 1;
     return std::uint16_t((whole + below_half + odd) >> kShift);
   }

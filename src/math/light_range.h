@@ -12,10 +12,10 @@ constexpr float kBrightest = 1e15f;
 /// Light within the range of numbers: after many bounces between surfaces that send more than they
 /// get it would leave it. Not-a-number is dark.
 inline glm::vec3 within_range(const glm::vec3& light) {
-  glm::vec3 held;
+  glm::vec3 clamped;
   for (int c = 0; c < 3; ++c)
-    held[c] = light[c] == light[c] ? std::clamp(light[c], -kBrightest, kBrightest) : 0.0f;
-  return held;
+    clamped[c] = light[c] == light[c] ? std::clamp(light[c], -kBrightest, kBrightest) : 0.0f;
+  return clamped;
 }
 
 }  // namespace ssdo

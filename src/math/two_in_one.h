@@ -36,7 +36,7 @@ inline float rest_of_two(float first, float second) {
 }
 
 /// The whole numbers of two_in_one() and rest_of_two().
-inline glm::vec2 whole_of_two(float both, float rest) {
+inline glm::vec2 with_rest(float both, float rest) {
   const auto with = [](float upper, std::uint32_t lower) {
     const auto sixteen = std::uint32_t(std::int32_t(std::int16_t(lower)));
     return std::bit_cast<float>(std::bit_cast<std::uint32_t>(upper) + sixteen);

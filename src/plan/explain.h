@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "plan/plan.h"
-#include "scene/further/merge.h"
+#include "scene/other_views/merge.h"
 #include "scene/scene.h"
 
 namespace ssdo {
 
-/// Adds what further views contribute to the reasons.
+/// Adds what other views contribute to the reasons.
 void explain_views(Plan& plan, const std::vector<MergeCounts>& views);
 
 /// Adds how much of the result is guessed, and what would help, to the reasons. Where it is much,

@@ -177,8 +177,8 @@ void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geomet
 void explain_measured(Plan& plan, const Scene& scene) {
   const Solids& solids = scene.solids;
   const auto is_measured = [](const SolidLayer& layer) {
-    const auto& origins = layer.origin.pixels;
-    return std::find(origins.begin(), origins.end(), Origin::measured) != origins.end();
+    const auto& known = layer.provenance.pixels;
+    return std::find(known.begin(), known.end(), Provenance::measured) != known.end();
   };
   if (std::none_of(solids.behind.begin(), solids.behind.end(), is_measured)) return;
   std::size_t surfaces = 0, pixels = 0;
@@ -186,7 +186,7 @@ void explain_measured(Plan& plan, const Scene& scene) {
   for (std::size_t i = 0; i < scene.geometry.surfel.size(); ++i) {
     int measured = 0;
     for (int k = 1; k < solids.layers(); ++k)
-      measured += solids.at(k, i).exists() && solids.origin(k, i) == Origin::measured;
+      measured += solids.at(k, i).exists() && solids.provenance(k, i) == Provenance::measured;
     surfaces += scene.geometry.is_surface(i);
     pixels += measured > 0;
     most = std::max(most, measured);

@@ -131,7 +131,7 @@ class Round {
     return out;
   }
 
-  Estimate filter(Noisy noisy, const Scene& scene, const Past& past) const {
+  Estimate filter(Noisy noisy, const Scene& scene, const TemporalInput& temporal) const {
     Estimate out;
     const Geometry& geometry = scene.geometry;
     const int pattern = plan_.method->pattern_size;
@@ -139,8 +139,8 @@ class Round {
     scale_to_noise(products.error, *plan_.method);
     products = filter_shares(*plan_.filter, std::move(products), scene, pattern);
     if (plan_.temporal) {
-      out.history =
-          accumulate(past.history ? &*past.history : nullptr, geometry, products, past.motion);
+      out.history = accumulate(temporal.history ? &*temporal.history : nullptr, geometry, products,
+                               temporal.motion);
       products = products_of(out.history);
     }
     if (request_.products.error) {
@@ -215,7 +215,7 @@ std::string describe(const ErrorFound& found, const Method& method, const Reques
 }  // namespace
 
 Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double)>& on_progress,
-                  const Past& past) {
+                  const TemporalInput& temporal) {
   Request request = plan.request;
   double estimate_ms = 0, filter_ms = 0;
   for (;;) {
@@ -225,7 +225,7 @@ Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double
     estimate_ms += watch.lap();
     // With --error another round may follow.
     if (!plan.error) scene = seen_by_filters(std::move(scene));
-    Estimate out = round.filter(std::move(noisy), scene, past);
+    Estimate out = round.filter(std::move(noisy), scene, temporal);
     filter_ms += watch.lap();
     if (plan.error && out.error->all > *plan.error) {
       if (refine(request, *plan.error, *out.error)) continue;

@@ -24,7 +24,7 @@ struct ErrorFound {
 /// The products of a frame after the filter.
 struct Estimate {
   Products products;
-  Scene scene;      ///< what is left of it: without solids, views and further surfaces
+  Scene scene;      ///< what is left of it: without solids, views and surfaces of other views
   Request request;  ///< of the plan, with the slices and steps that were needed
   std::optional<ErrorFound> error;  ///< where the plan asks for it
   History history;                  ///< of a temporal plan, for the next frame; without a geometry
@@ -33,7 +33,7 @@ struct Estimate {
 };
 
 /// What a temporal plan takes from the frame before, both of them where there is one.
-struct Past {
+struct TemporalInput {
   std::optional<History> history;
   Plane<glm::vec2> motion;  ///< pixels to where it was there; may be empty
 };
@@ -42,6 +42,6 @@ struct Past {
 /// for, if it does. `on_progress` is called with the share that is done, 0..1. What only methods
 /// look at is freed before the last filter.
 Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double)>& on_progress,
-                  const Past& past);
+                  const TemporalInput& temporal);
 
 }  // namespace ssdo

@@ -33,7 +33,7 @@ std::vector<std::string> Frame::losses() const {
   std::vector<std::string> all;
   for (const ExrReader& file : files)
     for (const std::string& line : file.losses()) all.push_back(line);
-  all.insert(all.end(), further_losses.begin(), further_losses.end());
+  all.insert(all.end(), losses_of_views.begin(), losses_of_views.end());
   return all;
 }
 

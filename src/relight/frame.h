@@ -15,10 +15,10 @@
 #include "relight/frame_options.h"
 #include "relight/lighting.h"
 #include "scene/camera/world_up.h"
-#include "scene/further/further_pictures.h"
-#include "scene/further/merge.h"
 #include "scene/gbuffer.h"
 #include "scene/layers/layers.h"
+#include "scene/other_views/merge.h"
+#include "scene/other_views/other_pictures.h"
 #include "scene/scene.h"
 #include "scene/view.h"
 
@@ -39,14 +39,14 @@ struct Frame {
   Scene scene;
   GBuffer gbuffer;  ///< what the scene has not taken: layers as rendered, alpha, motion
   GeometryReport report;
-  /// What further views add: those of --also, then neighbours, then back faces.
+  /// What other views add: those of --also, then neighbours, then back faces.
   std::vector<MergeCounts> views;
   std::string light;  ///< one line
   Plan plan;
   std::string advice;                ///< what to render where much is guessed: see explain_guessed
   std::vector<std::string> history;  ///< what a temporal plan takes from the frame before, and why
-  std::vector<std::string> further_losses;  ///< of further views; see ExrReader::losses()
-  StageTimes times;                         ///< of the stages up to here
+  std::vector<std::string> losses_of_views;  ///< of other views; see ExrReader::losses()
+  StageTimes times;                          ///< of the stages up to here
   /// Set for a frame that is larger than memory: the scene and what is left of the G-buffer then
   /// are an overview of it, one pixel of kOverviewStride x kOverviewStride.
   std::optional<BandPlan> bands;
@@ -58,7 +58,7 @@ struct Frame {
   std::vector<std::string> warnings() const;
   void warn(const std::vector<std::string>& lines);  ///< adds to the warnings
 
-  /// What --allow-partial has found missing so far, in files of the frame and of further views: a
+  /// What --allow-partial has found missing so far, in files of the frame and of other views: a
   /// line each. Rows may be read, and channels kept, until the outputs are written.
   std::vector<std::string> losses() const;
 };

@@ -12,9 +12,9 @@
 #include "scene/deep/deep_frame.h"
 #include "scene/deep/join_measured.h"
 #include "scene/deep/measured_solids.h"
-#include "scene/further/back_faces.h"
-#include "scene/further/carve.h"
-#include "scene/further/registration.h"
+#include "scene/other_views/back_faces.h"
+#include "scene/other_views/carve.h"
+#include "scene/other_views/registration.h"
 
 namespace ssdo {
 namespace {
@@ -48,11 +48,11 @@ Solids find_solids(const Geometry& geometry, const std::vector<DeepImage>& image
 
 /// Takes the views of back faces out of `views`: they tell how thick things are, and as surfaces
 /// they would be seen from the inside.
-std::vector<MergeCounts> use_back_faces(std::vector<FurtherView>& views, Scene& scene) {
+std::vector<MergeCounts> use_back_faces(std::vector<OtherView>& views, Scene& scene) {
   std::vector<MergeCounts> counts;
-  std::vector<FurtherView> others;
+  std::vector<OtherView> others;
   std::vector<Plane<float>> distances;
-  for (FurtherView& view : views) {
+  for (OtherView& view : views) {
     auto found = find_back_faces(view, scene.geometry);
     if (!found) {
       others.push_back(std::move(view));
@@ -68,8 +68,8 @@ std::vector<MergeCounts> use_back_faces(std::vector<FurtherView>& views, Scene& 
 
 /// Leaves out the files of --also that don't fit the frame, or changes them so that they do.
 void register_views(KnownGeometry& known, const Geometry& frame) {
-  std::vector<FurtherView> fitting;
-  for (FurtherView& view : known.views) {
+  std::vector<OtherView> fitting;
+  for (OtherView& view : known.views) {
     if (view.is_neighbour) {
       fitting.push_back(std::move(view));
       continue;
@@ -111,12 +111,12 @@ bool is_same_file(const std::string& a, const std::string& b) {
 /// Reads the views of one frame.
 class ViewReader {
  public:
-  ViewReader(const Frame& frame, const FrameOptions& options, FurtherPictures& pictures,
+  ViewReader(const Frame& frame, const FrameOptions& options, OtherPictures& pictures,
              KnownGeometry& known)
       : frame_(frame), options_(options), pictures_(pictures), known_(known) {}
 
   void add_also(const std::string& path) {
-    const FurtherPictures::Picture picture = pictures_.also(path);
+    const OtherPictures::Picture picture = pictures_.also(path);
     if (!picture) {
       const ExrReader file(path, options_.input.allow_partial ? Salvage::done : Salvage::offered);
       known_.deep.push_back(
@@ -157,8 +157,7 @@ class ViewReader {
   void add_alike(const FrameFiles& files, CameraOptions camera, std::string_view role) {
     camera.shot = {};
     try {
-      FurtherView view =
-          place(pictures_.alike(files, options_.input, camera), frame_.scene.geometry);
+      OtherView view = place(pictures_.alike(files, options_.input, camera), frame_.scene.geometry);
       view.is_neighbour = true;
       add(std::move(view));
     } catch (const Error& e) {
@@ -166,7 +165,7 @@ class ViewReader {
     }
   }
 
-  void add(FurtherView view) {
+  void add(OtherView view) {
     const std::vector<std::string>& losses = view.picture->losses;
     known_.losses.insert(known_.losses.end(), losses.begin(), losses.end());
     known_.views.push_back(std::move(view));
@@ -184,14 +183,14 @@ class ViewReader {
 
   const Frame& frame_;
   const FrameOptions& options_;
-  FurtherPictures& pictures_;
+  OtherPictures& pictures_;
   KnownGeometry& known_;
 };
 
 }  // namespace
 
 KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
-                                  const FrameOptions& options, FurtherPictures& pictures,
+                                  const FrameOptions& options, OtherPictures& pictures,
                                   const std::optional<DeepImage>& own) {
   KnownGeometry known;
   ViewReader reader(frame, options, pictures, known);
@@ -215,8 +214,8 @@ std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
   std::vector<MergeCounts> of_backs = use_back_faces(known.views, scene), counts;
   register_views(known, scene.geometry);
   if (known.views.empty()) return of_backs;
-  scene.further = merge_views(known.views, scene.geometry, scene.senders.albedo, counts);
-  std::vector<FurtherView> of_scene;
+  scene.other_surfaces = merge_views(known.views, scene.geometry, scene.senders.albedo, counts);
+  std::vector<OtherView> of_scene;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     warn_of(counts[i], known.warnings);
     if (!counts[i].is_of_another_scene()) of_scene.push_back(known.views[i]);

@@ -7,9 +7,9 @@
 
 #include "io/exr/deep_reader.h"
 #include "relight/frame.h"
-#include "scene/further/further_pictures.h"
-#include "scene/further/further_view.h"
-#include "scene/further/merge.h"
+#include "scene/other_views/merge.h"
+#include "scene/other_views/other_pictures.h"
+#include "scene/other_views/other_view.h"
 #include "scene/scene.h"
 
 namespace ssdo {
@@ -17,8 +17,8 @@ namespace ssdo {
 /// What the files of --also, the neighbours in the sequence and the other eye show of a frame's
 /// scene.
 struct KnownGeometry {
-  std::vector<DeepImage> deep;     ///< of the frame itself
-  std::vector<FurtherView> views;  ///< of other cameras, in the frame's camera space
+  std::vector<DeepImage> deep;   ///< of the frame itself
+  std::vector<OtherView> views;  ///< of other cameras, in the frame's camera space
   std::vector<std::string> warnings;
   std::vector<std::string> losses;  ///< of the views; see ExrReader::losses()
 };
@@ -28,10 +28,10 @@ struct KnownGeometry {
 /// itself was read from. Errors: those of the stages that read; ExitCode::layer where the frame
 /// knows no world space to place other views in.
 KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
-                                  const FrameOptions& options, FurtherPictures& pictures,
+                                  const FrameOptions& options, OtherPictures& pictures,
                                   const std::optional<DeepImage>& own);
 
-/// Fills the solids and the further surfaces of a scene: measured where deep images or further
+/// Fills the solids and the surfaces of other views of a scene: measured where deep images or other
 /// views show them, guessed elsewhere, or as thick as `thickness`. Gives what each view added,
 /// those of back faces last, which are taken out of `known`; of views of another scene, unit or
 /// axes, warnings tell. Errors: ExitCode::layer for a deep image of another frame.

@@ -29,7 +29,7 @@ namespace {
 /// The share of a job's time that estimate and filter take, for progress.
 constexpr double kEstimateShare = 0.85;
 
-/// Finds the solids behind the surfaces, and takes what further views add.
+/// Finds the solids behind the surfaces, and takes what other views add.
 void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& options) {
   if (find_method(options.model.method).takes.thickness) {
     std::optional<float> thickness;
@@ -37,7 +37,7 @@ void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& opti
     frame.views = use_known_geometry(known, frame.scene, thickness, options.input.gbuffer);
   }
   frame.warn(known.warnings);
-  frame.further_losses = std::move(known.losses);
+  frame.losses_of_views = std::move(known.losses);
 }
 
 void append(std::vector<std::string>& lines, const std::vector<std::string>& more) {
@@ -46,8 +46,8 @@ void append(std::vector<std::string>& lines, const std::vector<std::string>& mor
 
 }  // namespace
 
-Frame prepare_frame(const FrameOptions& options, const Lighting& lighting,
-                    FurtherPictures& pictures, const FrameFiles& files, int number) {
+Frame prepare_frame(const FrameOptions& options, const Lighting& lighting, OtherPictures& pictures,
+                    const FrameFiles& files, int number) {
   std::optional<DeepImage> own;
   Frame frame = read_frame(options, files, own);
   warn_of_encoded_colors(frame);
@@ -65,7 +65,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& lighting,
 }
 
 Relit relight(const RelightJob& job, Scene scene, const std::function<void(double)>& on_progress,
-              const Past& past) {
+              const TemporalInput& temporal) {
   const Frame& frame = job.frame;
   Relit relit;
   // Made first: a view that does not exist costs no estimate.
@@ -82,7 +82,8 @@ Relit relight(const RelightJob& job, Scene scene, const std::function<void(doubl
     return relit;
   }
   Estimate found = estimate(
-      std::move(scene), frame.plan, [&](double done) { on_progress(kEstimateShare * done); }, past);
+      std::move(scene), frame.plan, [&](double done) { on_progress(kEstimateShare * done); },
+      temporal);
   relit.scene = std::move(found.scene);
   relit.plan.request = std::move(found.request);
   relit.products = std::move(found.products);

@@ -6,7 +6,7 @@
 
 #include "relight/job.h"
 #include "relight/lighting.h"
-#include "scene/further/further_pictures.h"
+#include "scene/other_views/other_pictures.h"
 
 namespace ssdo {
 
@@ -15,14 +15,14 @@ namespace ssdo {
 /// the run. `number` is the frame's in its sequence: a temporal plan has another sampling pattern
 /// in every frame. Errors: those of the stages; ExitCode::input for a file of --also that is
 /// missing or no EXR.
-Frame prepare_frame(const FrameOptions& options, const Lighting& light, FurtherPictures& pictures,
+Frame prepare_frame(const FrameOptions& options, const Lighting& light, OtherPictures& pictures,
                     const FrameFiles& files, int number = 0);
 
 /// The main job up to its files: estimate and filter. `scene` is that of the job's frame, which has
 /// none from then on. `on_progress` is called with the share
 /// that is done, 0..1. Errors: those of the stages.
 Relit relight(const RelightJob& job, Scene scene, const std::function<void(double)>& on_progress,
-              const Past& past);
+              const TemporalInput& temporal);
 
 /// The rest of it: compose, colour, write. `views` are those of one frame, usually one. All targets
 /// appear, or none. Adds to the times and clamped values of the first. Errors: those of the stages.

@@ -6,10 +6,10 @@
 
 #include "math/half_color.h"
 #include "math/plane.h"
-#include "scene/further/further_surfaces.h"
-#include "scene/further/further_view.h"
 #include "scene/geometry.h"
 #include "scene/light/light.h"
+#include "scene/other_views/other_surfaces.h"
+#include "scene/other_views/other_view.h"
 #include "scene/solids/solids.h"
 
 namespace ssdo {
@@ -25,8 +25,8 @@ struct Senders {
 struct Scene {
   Geometry geometry;
   Solids solids;
-  std::vector<FurtherView> views;  ///< of other cameras
-  FurtherSurfaces further;         ///< what they show that the frame does not
+  std::vector<OtherView> views;  ///< of other cameras
+  OtherSurfaces other_surfaces;  ///< what they show that the frame does not
   Senders senders;
   Light light;
   Plane<float> roughness;  ///< 0..1; empty: the same everywhere, a parameter of the method

@@ -25,7 +25,7 @@ struct Neighbours {
 /// Which files and layers are read, and how.
 struct InputOptions {
   std::vector<LayerRequest> aovs;
-  std::vector<std::string> also;  ///< further pictures of the same scene, or their patterns
+  std::vector<std::string> also;  ///< other pictures of the same scene, or their patterns
   Neighbours neighbours;
   std::string part;                ///< name or number; empty: all
   std::vector<std::string> views;  ///< those to relight of a stereo file; empty: its only one
@@ -39,7 +39,7 @@ struct InputOptions {
 struct FrameFiles {
   std::string input;
   std::vector<LayerRequest> aovs;
-  std::vector<std::string> also;  ///< further pictures of the same scene, in the order of --also
+  std::vector<std::string> also;  ///< other pictures of the same scene, in the order of --also
   std::vector<FrameFiles> neighbours = {};  ///< frames of the same sequence; need not exist
   std::string view = {};                    ///< of a stereo file; empty: --part chooses
 };

@@ -130,8 +130,8 @@ HWY_INLINE V luminance(const V3& color) {
 
 /// within_range() of math/light_range.h
 HWY_INLINE V within_range(V light) {
-  const V held = hn::Min(hn::Max(light, set(-kBrightest)), set(kBrightest));
-  return hn::IfThenElseZero(light == light, held);
+  const V clamped = hn::Min(hn::Max(light, set(-kBrightest)), set(kBrightest));
+  return hn::IfThenElseZero(light == light, clamped);
 }
 HWY_INLINE V3 within_range(const V3& light) {
   return {within_range(light.x), within_range(light.y), within_range(light.z)};

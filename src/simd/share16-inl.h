@@ -24,8 +24,8 @@ HWY_INLINE V load(const Share16* from) {
 
 /// Not-a-number becomes any share.
 HWY_INLINE void store(V shares, Share16* to) {
-  const V most = set(Share16::kMost), held = hn::Min(hn::Max(shares, hn::Neg(most)), most);
-  const auto steps = hn::DemoteTo(DI16(), hn::NearestInt(held * set(Share16::kSteps)));
+  const V most = set(Share16::kMost), clamped = hn::Min(hn::Max(shares, hn::Neg(most)), most);
+  const auto steps = hn::DemoteTo(DI16(), hn::NearestInt(clamped * set(Share16::kSteps)));
   hn::StoreU(steps, DI16(), reinterpret_cast<std::int16_t*>(to));
 }
 

@@ -25,7 +25,7 @@ HWY_INLINE V first_of_two(V both) {
 HWY_INLINE V second_of_two(V both) {
   return hn::BitCast(D(), hn::ShiftLeft<16>(hn::BitCast(DU(), both)));
 }
-HWY_INLINE V2 whole_of_two(V both, V rest) {
+HWY_INLINE V2 with_rest(V both, V rest) {
   const auto with = [](V upper, VI lower) HWY_ATTR {
     return hn::BitCast(D(), hn::BitCast(DI(), upper) + hn::ShiftRight<16>(lower));
   };

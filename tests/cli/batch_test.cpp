@@ -259,7 +259,7 @@ TEST_F(Shot, LayersOfAnotherSequenceFollowTheFrame) {
   EXPECT_THAT(missing.error_line(), HasSubstr("extra.0004.exr"));
 }
 
-TEST_F(Shot, FurtherPicturesFollowTheFrame) {
+TEST_F(Shot, OtherPicturesFollowTheFrame) {
   write_frame(file("more", 1), frame_of(small_picture()));
   const Finished missing =
       run({"--frames", "1-2", "--also", dir_ / "more.####.exr", "--on-error", "continue", "-v"});

@@ -248,7 +248,7 @@ TEST(Refusals, OfAMissingFileOfALayer) {
   }
 }
 
-TEST(Refusals, OfAMissingFurtherPicture) {
+TEST(Refusals, OfAMissingOtherPicture) {
   const TempDir dir;
   const std::string in = dir / "in.exr", gone = dir / "gone.exr";
   write_frame(in, frame_of(small_picture()));

@@ -111,7 +111,7 @@ class Examples : public testing::Test {
     OIIO::ImageBuf(data("environments/studio.exr")).write((*folder_ / "stage.hdr").string());
   }
 
-  /// Frames and sequences, and further views of them.
+  /// Frames and sequences, and other views of them.
   static void write_frames() {
     const FramePart room = shrunk("room_corner.exr"), still = shrunk("still_life.exr");
     for (int frame = 1001; frame <= 1012; ++frame) {

@@ -134,7 +134,7 @@ TEST_F(HeaderCameraFiles, GivesADepthTheAoThatACameraFileGivesIt) {
   EXPECT_THAT(refused.error_line(), HasSubstr("give --fov DEGREES"));
 }
 
-TEST_F(HeaderCameraFiles, PlacesFurtherPicturesBesidePInCameraSpace) {
+TEST_F(HeaderCameraFiles, PlacesOtherPicturesBesidePInCameraSpace) {
   const Camera side =
       look_at(camera_from_fov(50, kDisplay, 1), {-4, -2, 2}, {0, 0, 0.3}, {0, 0, 1});
   write_frame(folder_ / "side.exr", frame_of(take_picture(still_life(), side, kDisplay)));

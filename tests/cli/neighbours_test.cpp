@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Frames before and after as further views, by the tool on real sequences: what they add, against
+// Frames before and after as other views, by the tool on real sequences: what they add, against
 // rays through the very scene, and which of them are used.
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -85,7 +85,7 @@ TEST_F(Privacy, OutputsNameNoFolderUserOrHost) {
       EXPECT_EQ(bytes.find(name), bytes.npos) << output << " holds " << name;
   }
   EXPECT_THAT(text_in_header(outputs[0], "ssdo/plan"), HasSubstr("further.exr: "))
-      << "the plan says what the further view adds";
+      << "the plan says what the other view adds";
 }
 
 TEST_F(Privacy, HistorySaysWhoRanWhat) {

@@ -81,7 +81,7 @@ TEST_F(SameFiles, FromRunToRunAndForAnyThreads) {
   }
 }
 
-TEST_F(SameFiles, ForFurtherViewsInAnyOrder) {
+TEST_F(SameFiles, ForOtherViewsInAnyOrder) {
   for (const char* method : {"bitmask", "trace"}) {
     Words views = {"back.exr", "beside.exr", "deep.exr"};
     std::string first;

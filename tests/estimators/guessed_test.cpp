@@ -103,7 +103,7 @@ TEST(Guessed, MeasuredSolidsAreKnown) {
   scene.solids = constant_thickness(scene.geometry, 0.8f);
   const int beside = kWindow.width() / 2;
   EXPECT_GT(mean_of_columns(shares(scene, 1), beside), 0.1) << "as thick as somebody said";
-  scene.solids.end = Plane<Origin>(kWindow.width(), kWindow.height(), Origin::measured);
+  scene.solids.end = Plane<Provenance>(kWindow.width(), kWindow.height(), Provenance::measured);
   EXPECT_EQ(mean_of_columns(shares(scene, 1), beside), 0) << "down to the ground";
   for (float& thickness : scene.solids.thickness.pixels) thickness = 0.1f;
   EXPECT_GT(mean_of_columns(shares(scene, 1), beside), 0.05)

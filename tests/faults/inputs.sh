@@ -66,7 +66,7 @@ test_changing_inputs() {
   say "inputs that change: $count runs, $finished finished, the others refused; every output of one input"
 }
 
-# Frames, further pictures and neighbours that go between two frames. A neighbour that is gone is
+# Frames, other pictures and neighbours that go between two frames. A neighbour that is gone is
 # left out: such a frame is compared with none.
 test_changing_shots() {
   local i name finished=0 count=$((runs / 8)) kind victim

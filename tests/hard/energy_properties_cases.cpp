@@ -85,7 +85,7 @@ Measured light_gained(const Subject& s) {
   Scene scene = with_light(s.frame.scene, Environment::constant(glm::vec3(1)));
   const Plane<Surfel>& surfel = scene.geometry.surfel;
   scene.senders = {Plane<HalfColor>(surfel.width, surfel.height, glm::vec3(1)), {}};
-  for (Vertex& v : scene.further.vertices) v.albedo = glm::vec3(1);
+  for (Vertex& v : scene.other_surfaces.vertices) v.albedo = glm::vec3(1);
   Plan plan = s.frame.plan;
   const bool bounces = plan.method->products.bounce;
   plan.request.products = {.ao = true, .direct = true, .bounce = bounces};

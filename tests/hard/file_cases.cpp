@@ -130,7 +130,7 @@ Geometry read_through_file(const FramePart& part, double fov, Plane<HalfColor>* 
   write_frame(dir / "frame.exr", part);
   FrameOptions options;
   if (fov > 0) options.camera.fov = fov;
-  FurtherPictures pictures;
+  OtherPictures pictures;
   Frame frame = prepare_frame(options, Lighting(options.light), pictures,
                               {(dir / "frame.exr").string(), {}, {}});
   if (albedo) *albedo = std::move(frame.scene.senders.albedo);

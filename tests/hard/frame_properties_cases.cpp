@@ -68,7 +68,7 @@ Measured bad_files(const Subject& s) {
   if (!RandomNumbers(s.shot.seed + 7).chance(0.1)) return std::nullopt;
   const TempDir dir;
   const StoredFrame stored = store(s.shot, dir.path());
-  FurtherPictures pictures;
+  OtherPictures pictures;
   Frame frame =
       prepare_frame(stored.options, Lighting(stored.options.light), pictures, stored.files);
   const std::vector<Target> targets = {{(dir / "out.exr").string(), {}}};

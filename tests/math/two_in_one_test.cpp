@@ -16,7 +16,7 @@ TEST(TwoInOne, NumbersAreWholeWithTheRest) {
     const float first = std::ldexp(float(random.between(-1, 1)), random.whole(-60, 60)),
                 second = i % 10 == 0 ? 0 : float(random.between(-1e3, 1e3));
     const float both = two_in_one(first, second), rest = rest_of_two(first, second);
-    ASSERT_EQ(whole_of_two(both, rest), glm::vec2(first, second));
+    ASSERT_EQ(with_rest(both, rest), glm::vec2(first, second));
     ASSERT_NEAR(first_of_two(both), first, 0.004 * std::abs(first));
     ASSERT_NEAR(second_of_two(both), second, 0.004 * std::abs(second));
   }

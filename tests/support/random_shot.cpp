@@ -267,7 +267,7 @@ std::string RandomShot::describe() const {
   if (m.slices) text += fmt::format(", {} slices", *m.slices);
   if (m.steps) text += fmt::format(", {} steps", *m.steps);
   if (!m.extend_offscreen) text += ", open";
-  if (further) text += ", a further view";
+  if (further) text += ", another view";
   if (!broken.empty()) text += fmt::format(", {} broken values", broken.size());
   if (options.output.downsample > 1) text += ", downsample 2";
   if (options.output.crop) text += ", crop";

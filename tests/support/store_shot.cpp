@@ -155,7 +155,7 @@ StoredFrame store(const RandomShot& shot, const std::filesystem::path& folder) {
 Frame read_frame(const RandomShot& shot) {
   const TempDir dir;
   const StoredFrame stored = store(shot, dir.path());
-  FurtherPictures pictures;
+  OtherPictures pictures;
   return prepare_frame(stored.options, Lighting(stored.options.light), pictures, stored.files);
 }
 

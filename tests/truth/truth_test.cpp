@@ -31,7 +31,7 @@ const std::string kData = std::string(SSDO_SOURCE_DIR) + "/data/";
 struct Subject {
   std::string name, frame, environment, truth;
   double radius_small, radius_large;
-  std::vector<std::string> also = {};  ///< further views
+  std::vector<std::string> also = {};  ///< other views
 };
 
 /// Of data/. `with` is what its file has beside the picture.
@@ -155,7 +155,7 @@ Result run(const std::string& method, const Subject& scene, const std::string& e
   if (method == "trace") options.model.set = {"samples=16"};
   if (find_method(method).takes.radius) options.model.radius = radius;
   options.light.env = environment;
-  FurtherPictures pictures;
+  OtherPictures pictures;
   Frame frame =
       prepare_frame(options, Lighting(options.light), pictures, {scene.frame, {}, scene.also});
   Plan& plan = frame.plan;

@@ -3,7 +3,7 @@
 
 The scene is a box with blocks, a ball, a teapot and a head in it, open to the viewer, path-traced by
 Blender Cycles under a map of Poly Haven (CC0). Here are its G-buffer, the same with overscan, four
-further views, and the truth of ao at two radii and without one, of direct light and of one bounce.
+other views, and the truth of ao at two radii and without one, of direct light and of one bounce.
 
 Every third pixel of every third row is kept, the middle one of its block, and every fourth of the
 panorama, whose size three does not divide. So P still lies in the middle of its pixel, and the truth

@@ -76,9 +76,8 @@ glm::vec3 up_in_camera(const Scene& scene) {
 bool needs_openness(const Scene& scene, const Request& request) {
   const ProductSet& products = request.products;
   // A panorama shows what stands beyond the border, and rays have asked it.
-  const bool all_is_shown =
-      std::any_of(scene.views.begin(), scene.views.end(),
-                  [](const FurtherView& view) { return view.picture->closed; });
+  const bool all_is_shown = std::any_of(scene.views.begin(), scene.views.end(),
+                                        [](const OtherView& view) { return view.picture->closed; });
   return (products.direct || products.bounce || products.error) && !scene.light.sources.empty() &&
          request.extend_offscreen && !all_is_shown;
 }

@@ -156,14 +156,14 @@ HWY_INLINE V measure_of(const MarchReceiver& p, const SideFrame& side, VU bits) 
   return hn::IfThenElse(hn::RebindMask(D(), others == set_bits(0)), of_run, of_bits);
 }
 
-/// Light from what only further views show.
+/// Light from what only other views show.
 template <class Receive>
-struct FromFurther {
+struct FromOtherViews {
   static constexpr bool kWantsHits = true;
-  const FurtherLight* sent;
+  const OtherViewLight* sent;
   const Receive& receive;
 
-  HWY_INLINE void operator()(VU bits, const FurtherRays::Hit* hits) const {
+  HWY_INLINE void operator()(VU bits, const OtherViewRays::Hit* hits) const {
     receive(bits, [&]() HWY_ATTR {
       alignas(64) float radiance[3][kLanes] = {};
       for (int lane = 0; lane < kLanes; ++lane) {
@@ -221,7 +221,7 @@ void gather_light(const BounceJob& job, const Window& part) {
                                                               from_side);
                       });
                     },
-                FromFurther<decltype(receive)>{job.sent_further, receive},
+                FromOtherViews<decltype(receive)>{job.sent_by_others, receive},
                 [&](bool far, const Border& border, VU bits) HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {
                     const BorderValues* sent = far ? job.far->border.data() : job.sent_border;

@@ -8,7 +8,7 @@
 #include "estimators/bitmask/rays/emitters.h"
 #include "estimators/bitmask/rays/pass_beyond.h"
 #include "estimators/bitmask/rays/ray_pattern.h"
-#include "estimators/further/further_light.h"
+#include "estimators/other_views/other_view_light.h"
 #include "math/half_color.h"
 #include "scene/light/light.h"
 
@@ -86,14 +86,14 @@ struct BounceJob {
   const InterleavedPlane* ao;
   /// The radiance that layer 0 sends; spread_bounce() replaces it by the light that arrives.
   InterleavedVectors* light;
-  bool two_sided;                    ///< as SenderJob has it
-  const Solids& solids;              ///< of the scene: whose light layers 1, 2, ... send
-  const BorderValues* sent_border;   ///< three: of surfaces that continue beyond the frame
-  const FurtherLight* sent_further;  ///< of what only further views show
-  Window lit;                        ///< the pixels of the raster whose `sent` is known
-  const FarScene* overview;          ///< tells that of others; null where all are lit
-  const FarLight* far;               ///< what the overview sends
-  const Emitters* emitters;          ///< whose light rays gather; null: there are none
+  bool two_sided;                        ///< as SenderJob has it
+  const Solids& solids;                  ///< of the scene: whose light layers 1, 2, ... send
+  const BorderValues* sent_border;       ///< three: of surfaces that continue beyond the frame
+  const OtherViewLight* sent_by_others;  ///< of what only other views show
+  Window lit;                            ///< the pixels of the raster whose `sent` is known
+  const FarScene* overview;              ///< tells that of others; null where all are lit
+  const FarLight* far;                   ///< what the overview sends
+  const Emitters* emitters;              ///< whose light rays gather; null: there are none
 
   GatheredLight* gathered;
   InterleavedPlane* error;  ///< standard error of the luminance of what arrives, signed; null: not

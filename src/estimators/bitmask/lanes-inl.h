@@ -134,7 +134,7 @@ HWY_INLINE V3 normal_of_tilt(const MarchScene& scene, const V2& tilt, const V2& 
 /// The unit normals of the tangent planes at index `q`.
 HWY_INLINE V3 load_normal(const MarchScene& scene, const MarchPlanes& planes, std::ptrdiff_t q,
                           const V2& slope) {
-  const V2 tilt = whole_of_two(load(planes.tilt, q), load(planes.tilt_rest, q));
+  const V2 tilt = with_rest(load(planes.tilt, q), load(planes.tilt_rest, q));
   const V3 normal = normal_of_tilt(scene, tilt, slope);
   return normal * (set(1) / hn::Sqrt(dot(normal, normal)));
 }

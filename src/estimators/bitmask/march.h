@@ -9,7 +9,7 @@
 #include "estimators/bitmask/rays/depth_bounds.h"
 #include "estimators/bitmask/slice_pattern.h"
 #include "estimators/estimator.h"
-#include "estimators/further/further_rays.h"
+#include "estimators/other_views/other_view_rays.h"
 #include "simd/interleaved.h"
 
 namespace ssdo {
@@ -41,7 +41,7 @@ struct March {
   bool extend;               ///< surfaces go on beyond the frame
   bool may_be_thin = false;  ///< solids may be thinner than neighbours on a surface are apart;
                              ///< guessed ones seldom are
-  const FurtherRays* further = nullptr;  ///< what only further views show; null: nothing
+  const OtherViewRays* other_views = nullptr;  ///< what only other views show; null: nothing
   const FarScene* far = nullptr;  ///< where the raster is a part of a frame without its reach: what
                                   ///< marches meet beyond far->raster.from_px
   const CutSurfaces* cut = nullptr;  ///< what rays that leave the frame may meet; null: nothing

@@ -106,7 +106,7 @@ glm::vec2 ray_slope(const MarchScene& scene, int x, int y) {
 
 glm::vec3 tangent_normal(const MarchScene& scene, int x, int y) {
   const std::ptrdiff_t i = scene.layout.index(x, y);
-  const glm::vec2 tilt = whole_of_two(scene.tilt[i], scene.tilt_rest[i]),
+  const glm::vec2 tilt = with_rest(scene.tilt[i], scene.tilt_rest[i]),
                   aside = tilt * glm::vec2(-scene.fx, scene.fy),
                   slope = scene.orthographic ? glm::vec2(0) : ray_slope(scene, x, y);
   return glm::normalize(glm::vec3(aside, 1 + glm::dot(aside, slope)));

@@ -14,7 +14,7 @@
 #include <span>
 
 #include "estimators/bitmask/extension-inl.h"
-#include "estimators/bitmask/further-inl.h"
+#include "estimators/bitmask/other_views-inl.h"
 #include "estimators/bitmask/overview-inl.h"
 #include "estimators/bitmask/piece-inl.h"
 
@@ -144,16 +144,16 @@ HWY_INLINE VU hidden_beyond(const March& march, const MarchReceiver& p, const Si
   return hn::Or(bits, far_bits);
 }
 
-/// The same over the frame, what further views show, and beyond the frame's border. `on_further`
-/// is told of what rays meet there (further-inl.h); `on_beyond(far, border, sectors)` is called
+/// The same over the frame, what other views show, and beyond the frame's border. `on_other_views`
+/// is told of what rays meet there (other_views-inl.h); `on_beyond(far, border, sectors)` is called
 /// with the sectors that are first hidden beyond the border, of the raster or of the overview.
-template <bool kOrthographic, class Met, class Further, class Beyond>
+template <bool kOrthographic, class Met, class OtherViews, class Beyond>
 HWY_INLINE VU march_side(const March& march, const MarchReceiver& p, const SideFrame& side,
                          const Slice& slice, bool forward, const Met& on_met,
-                         const Further& on_further, const Beyond& on_beyond) {
+                         const OtherViews& on_other_views, const Beyond& on_beyond) {
   VU open = march_frame<kOrthographic>(march, p, side, slice.sides[forward ? 0 : 1], on_met);
-  if (march.further && !none(open))
-    open = hn::AndNot(sectors_of_further(march, p, side, open, on_further), open);
+  if (march.other_views && !none(open))
+    open = hn::AndNot(sectors_hidden_in_other_views(march, p, side, open, on_other_views), open);
   if (!march.extend || none(open)) return open;
   const float sign = forward ? 1.0f : -1.0f;
   const VU bits = hidden_beyond<kOrthographic>(march, p, side, sign * slice.dx, sign * slice.dy,

@@ -12,9 +12,9 @@ namespace ssdo {
 namespace {
 
 /// Motion vectors refer to the frame before in time, which may not be the one before in the list.
-void place_motion(Frame& frame, Past& past, const FrameBefore& before) {
+void place_motion(Frame& frame, TemporalInput& temporal, const FrameBefore& before) {
   if (!before.is_last_in_time) {
-    past.motion = {};
+    temporal.motion = {};
     frame.history.push_back("motion is not used: it leads to a frame that is not the last");
     return;
   }
@@ -23,7 +23,7 @@ void place_motion(Frame& frame, Past& past, const FrameBefore& before) {
       fmt::format("motion {} times {:g}, {:g}: pixels to the frame before, y up, where what moves "
                   "has its history",
                   name, before.motion_scale.x, before.motion_scale.y));
-  if (contradicts_cameras(past.history->geometry, frame.scene.geometry, past.motion)) {
+  if (contradicts_cameras(temporal.history->geometry, frame.scene.geometry, temporal.motion)) {
     frame.report.warnings.push_back(
         fmt::format("{} moves other ways than the cameras say; are its units pixels to the frame "
                     "before, y up? give --motion-scale",
@@ -33,17 +33,18 @@ void place_motion(Frame& frame, Past& past, const FrameBefore& before) {
 
 }  // namespace
 
-void place_in_sequence(Frame& frame, Past& past, const FrameBefore& before) {
-  std::optional<History>& history = past.history;
+void place_in_sequence(Frame& frame, TemporalInput& temporal, const FrameBefore& before) {
+  std::optional<History>& history = temporal.history;
   const Geometry& geometry = frame.scene.geometry;
-  past.motion = std::move(frame.gbuffer.motion);
+  temporal.motion = std::move(frame.gbuffer.motion);
   std::string reason =
       !geometry.world_known ? "no history: the frame knows no world space"
       : history             ? "history of the frame before, where that shows the same surface"
                 : "no history: the first frame, or the one before was not made by this run";
   if (history && history->geometry.world_known && geometry.world_known) {
-    const Continuity found = compare_frames({history->geometry, history->albedo},
-                                            {geometry, frame.scene.senders.albedo}, past.motion);
+    const Continuity found =
+        compare_frames({history->geometry, history->albedo}, {geometry, frame.scene.senders.albedo},
+                       temporal.motion);
     history->albedo = {};  // not needed any more
     if (found.is_cut()) {
       history.reset();
@@ -53,7 +54,7 @@ void place_in_sequence(Frame& frame, Past& past, const FrameBefore& before) {
     }
   }
   frame.history.push_back(reason);
-  if (history && !past.motion.empty()) place_motion(frame, past, before);
+  if (history && !temporal.motion.empty()) place_motion(frame, temporal, before);
 }
 
 }  // namespace ssdo

@@ -15,9 +15,9 @@ struct FrameBefore {
   glm::vec2 motion_scale;        ///< --motion-scale
 };
 
-/// Decides for a frame of a temporal run what counts of `past`, whose history is that of the frame
-/// before, where there is one. Moves the frame's motion into `past`, clears the history after a
-/// cut, and says in the frame what was decided.
-void place_in_sequence(Frame& frame, Past& past, const FrameBefore& before);
+/// Decides for a frame of a temporal run what counts of `temporal`, whose history is that of the
+/// frame before, where there is one. Moves the frame's motion into `temporal`, clears the history
+/// after a cut, and says in the frame what was decided.
+void place_in_sequence(Frame& frame, TemporalInput& temporal, const FrameBefore& before);
 
 }  // namespace ssdo

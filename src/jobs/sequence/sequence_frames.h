@@ -20,7 +20,7 @@ namespace ssdo {
 class SequenceFrames {
  public:
   /// The arguments have to outlive it.
-  SequenceFrames(const RunOptions& options, FurtherPictures& pictures)
+  SequenceFrames(const RunOptions& options, OtherPictures& pictures)
       : options_(options), pictures_(pictures) {}
 
   /// prepare_frame(), of the frame `number` of a sequence or of one alone. Not for several threads
@@ -38,7 +38,7 @@ class SequenceFrames {
   std::string normal_space(const std::string& view);
 
   const RunOptions& options_;
-  FurtherPictures& pictures_;
+  OtherPictures& pictures_;
   std::optional<std::optional<UpEvidence>> up_;  ///< of the shot, once it was asked for
   std::optional<std::string> normal_space_;      ///< the same; empty: no frame is sure
 };

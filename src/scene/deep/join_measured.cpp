@@ -55,13 +55,13 @@ class Join {
       add_guesses(k + 1);
     }
     out_.thickness = std::move(guess_.thickness);
-    out_.end = Plane<Origin>(owner_.width, owner_.height, Origin::guessed);
+    out_.end = Plane<Provenance>(owner_.width, owner_.height, Provenance::guessed);
     for_each_pixel([&](std::size_t i) {
       float& thickness = out_.thickness[i];
       if (has(0, i)) thickness = std::min(before_seen[i], measured_.behind[0].distance[i]);
       if (measured_.seen_thickness[i] < kInfinity) {
         thickness = measured_.seen_thickness[i];
-        out_.end[i] = Origin::measured;
+        out_.end[i] = Provenance::measured;
       }
     });
     return std::move(out_);
@@ -91,7 +91,7 @@ class Join {
 
   SolidLayer& layer(std::size_t k) {
     while (out_.behind.size() <= k) {
-      out_.behind.emplace_back(owner_.width, owner_.height, Origin::measured);
+      out_.behind.emplace_back(owner_.width, owner_.height, Provenance::measured);
       out_.behind.back().normal = Plane<glm::vec3>(owner_.width, owner_.height);
     }
     return out_.behind[k];
@@ -105,7 +105,7 @@ class Join {
       const Solid found = guess_.at(1, i);
       if ((k > 0 && !has(k - 1, i)) || has(k, i) || !found.exists()) return;
       const auto source = std::size_t(found.sender);
-      to.origin[i] = Origin::guessed;
+      to.provenance[i] = Provenance::guessed;
       to.distance[i] = distance_to(k, i) + found.distance;
       to.thickness[i] = found.thickness;
       to.sender[i] = owner_[source];

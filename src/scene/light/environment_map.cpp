@@ -187,8 +187,8 @@ class Intake {
 
   void clear_broken(Plane<glm::vec3>& texels) {
     for (glm::vec3& texel : texels.pixels) {
-      const glm::vec3 held = within_range(texel);
-      if (texel != held) {
+      const glm::vec3 clamped = within_range(texel);
+      if (texel != clamped) {
         texel = glm::vec3(0);
         ++broken_;
       } else if (std::min({texel.x, texel.y, texel.z}) < 0) {

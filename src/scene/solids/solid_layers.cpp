@@ -15,8 +15,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-SolidLayer::SolidLayer(int width, int height, Origin of_all)
-    : origin(width, height, of_all),
+SolidLayer::SolidLayer(int width, int height, Provenance of_all)
+    : provenance(width, height, of_all),
       distance(width, height, kInfinity),
       thickness(width, height, kInfinity),
       sender(width, height, -1) {}
@@ -55,7 +55,7 @@ glm::vec3 normal_of_solid(const Geometry& geometry, const Solids& solids, int la
 
 Solids constant_thickness(const Geometry& geometry, float thickness) {
   const int w = geometry.surfel.width, h = geometry.surfel.height;
-  return {Plane<float>(w, h, thickness), Plane<Origin>(w, h, Origin::given), {}, {}};
+  return {Plane<float>(w, h, thickness), Plane<Provenance>(w, h, Provenance::given), {}, {}};
 }
 
 }  // namespace ssdo

@@ -110,10 +110,10 @@ struct Guess {
 /// Guesses along the lines of one direction: forward to measure the runs and to continue what is
 /// before them, then back to use their widths and to continue what is after them. Lines side by
 /// side are walked together, so that memory is read in its order.
-class Walk {
+class GuessAlongLines {
  public:
-  Walk(const Geometry& geometry, const Plane<unsigned char>& connections, std::size_t k,
-       const std::optional<SolidsOfOverview>& overview, Runs& runs, Guess& out)
+  GuessAlongLines(const Geometry& geometry, const Plane<unsigned char>& connections, std::size_t k,
+                  const std::optional<SolidsOfOverview>& overview, Runs& runs, Guess& out)
       : geometry_(geometry),
         overview_(overview),
         connections_(connections),
@@ -376,12 +376,12 @@ class Walk {
 Solids guess_solids(const Geometry& geometry, const std::optional<SolidsOfOverview>& overview) {
   const int w = geometry.surfel.width, h = geometry.surfel.height;
   Guess guess{Plane<float>(w, h, kInfinity), Plane<float>(w, h, kInfinity),
-              SolidLayer(w, h, Origin::guessed)};
+              SolidLayer(w, h, Provenance::guessed)};
   guess.second.thickness = {};  // a surface is as thick behind something as where it is seen
   const Plane<unsigned char> connections = find_connections(geometry);
   Runs runs{Plane<int>(w, h), Plane<WidthOfRun>(w, h)};
   for (std::size_t k = 0; k < kDirections.size(); ++k)
-    Walk(geometry, connections, k, overview, runs, guess).run();
+    GuessAlongLines(geometry, connections, k, overview, runs, guess).run();
   for_each_row(h, [&](int y) {
     for (std::size_t i = connections.index(0, y); i < connections.index(0, y + 1); ++i) {
       float& thickness = guess.thickness[i];

@@ -13,7 +13,7 @@
 namespace ssdo {
 
 /// How it is known that a solid is where it is.
-enum class Origin : std::uint8_t {
+enum class Provenance : std::uint8_t {
   seen,      ///< the pixel shows its front
   guessed,   ///< the pixels around suggest it
   measured,  ///< another picture shows it
@@ -38,9 +38,9 @@ struct Solid {
 /// At most one solid behind the surface that each pixel shows; planes as large as the geometry's.
 struct SolidLayer {
   /// No solid anywhere.
-  SolidLayer(int width, int height, Origin of_all);
+  SolidLayer(int width, int height, Provenance of_all);
 
-  Plane<Origin> origin;
+  Plane<Provenance> provenance;
   Plane<float> distance;
   Plane<float> thickness;  ///< empty: that of each sender where it is seen
   Plane<int> sender;
@@ -74,20 +74,20 @@ class BorderOf {
 /// shows, the others are behind it. Without planes everything that is seen is endless.
 struct Solids {
   Plane<float> thickness;          ///< of layer 0, from front to back; empty: infinite
-  Plane<Origin> end;               ///< how it is known where layer 0 ends; empty: guessed
+  Plane<Provenance> end;           ///< how it is known where layer 0 ends; empty: guessed
   std::vector<SolidLayer> behind;  ///< layers 1, 2, ..., kMostLayers - 1 at most
   BorderOf<float> beyond;  ///< how far what the border shows may go on beyond it, in scene units;
                            ///< empty: without limit
 
   int layers() const { return 1 + int(behind.size()); }
 
-  Origin origin(int layer, std::size_t pixel) const {
-    return layer == 0 ? Origin::seen : behind[std::size_t(layer - 1)].origin[pixel];
+  Provenance provenance(int layer, std::size_t pixel) const {
+    return layer == 0 ? Provenance::seen : behind[std::size_t(layer - 1)].provenance[pixel];
   }
 
   /// Whether another picture shows where layer 0 ends.
   bool end_is_measured(std::size_t pixel) const {
-    return !end.empty() && end[pixel] == Origin::measured;
+    return !end.empty() && end[pixel] == Provenance::measured;
   }
 
   /// The solid of a layer at a pixel that shows a surface.

@@ -117,7 +117,7 @@ TEST(HeightField, HoldsAsManyLayersAsAPixelHas) {
   const Geometry g = card_before_wall(false);
   Solids solids = constant_thickness(g, 0.1f);
   for (const float distance : {0.3f, 0.6f}) {
-    SolidLayer layer(64, 48, Origin::measured);
+    SolidLayer layer(64, 48, Provenance::measured);
     for (std::size_t i = 0; i < kPixels; ++i) {
       if (g.surfel[i].position.z <= -5.5) continue;
       layer.distance[i] = distance, layer.thickness[i] = 0.1f, layer.sender[i] = int(i);

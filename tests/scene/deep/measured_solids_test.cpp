@@ -68,13 +68,13 @@ TEST(MeasuredSolids, LieWhereTheElementsLie) {
       const Ray ray = ray_through(camera, double(i % 120) + 0.5, double(i / 120) + 0.5);
       const auto [enter, leave] = kHidden.cross(ray);
       ASSERT_TRUE(second.exists());
-      EXPECT_EQ(found.solids.origin(1, i), Origin::measured);
+      EXPECT_EQ(found.solids.provenance(1, i), Provenance::measured);
       if (enter < leave && std::abs(ray.origin.z + enter * ray.direction.z - 0.2) < 1e-6) {
         EXPECT_NEAR(second.distance, between(g, i, 1.5, 0.2), 1e-4);
         ASSERT_TRUE(third.exists());
         EXPECT_LT(glm::distance(point_behind(g, i, third.distance), wall_alone.surfel[i].position),
                   1e-3);
-        EXPECT_EQ(found.solids.origin(2, i), Origin::measured);
+        EXPECT_EQ(found.solids.provenance(2, i), Provenance::measured);
         EXPECT_LE(second.thickness, third.distance - second.distance + 1e-4)
             << "ends before the next";
         ++boxes;

@@ -57,9 +57,9 @@ bool shows_card(const Geometry& g, std::size_t i) {
 
 TEST(Solids, AreRefusedWithMoreLayersThanThereIsRoomFor) {
   Solids solids;
-  solids.behind.assign(kMostLayers - 1, SolidLayer(1, 1, Origin::guessed));
+  solids.behind.assign(kMostLayers - 1, SolidLayer(1, 1, Provenance::guessed));
   EXPECT_NO_THROW(check_layers(solids));
-  solids.behind.emplace_back(1, 1, Origin::guessed);
+  solids.behind.emplace_back(1, 1, Provenance::guessed);
   EXPECT_THROW(check_layers(solids), std::logic_error);
 }
 
@@ -121,8 +121,8 @@ TEST(Solids, BehindACardAreTheTangentPlaneThatReachesIt) {
     const Geometry wall = geometry_of(leaning_wall(), view(orthographic), kWindow);
     const Solids solids = guess_solids(g);
     ASSERT_EQ(solids.layers(), 2);
-    EXPECT_EQ(solids.origin(0, 0), Origin::seen);
-    EXPECT_EQ(solids.origin(1, 0), Origin::guessed);
+    EXPECT_EQ(solids.provenance(0, 0), Provenance::seen);
+    EXPECT_EQ(solids.provenance(1, 0), Provenance::guessed);
     for (std::size_t i = 0; i < g.surfel.size(); ++i) {
       const Solid second = solids.at(1, i);
       ASSERT_EQ(second.exists(), shows_card(g, i));

@@ -10,7 +10,7 @@
 #endif
 
 #include "estimators/bitmask/extension-inl.h"
-#include "estimators/bitmask/further-inl.h"
+#include "estimators/bitmask/other_views-inl.h"
 #include "estimators/bitmask/rays/walk-inl.h"
 
 #include <optional>
@@ -188,7 +188,7 @@ struct Arrival {
 };
 
 /// All that may be in the way of rays: the solids of the frame, those of the overview where the
-/// raster is a part of the frame, what further views show, and what goes on beyond the border.
+/// raster is a part of the frame, what other views show, and what goes on beyond the border.
 /// Rays are asked about together, in places of a queue, and go over the frame between both calls:
 ///
 ///   clear(); ask(places, ...) for some vectors; run(); arrival(places, ...) for each of them
@@ -254,7 +254,7 @@ class Occluders {
     return hn::IfThenElse(far > set(0), hn::IfThenElse(near >= set(0), near, far), near);
   }
 
-  /// Which open lanes see past what further views show.
+  /// Which open lanes see past what other views show.
   HWY_INLINE M past_further(const MarchReceiver& p, const Ray& ray, M open) const {
     const Lanes3 start(start_of_rays(march_.scene, p)), to(ray.to);
     const V reach = hn::Min(ray.length, set(march_.radius));

@@ -9,20 +9,20 @@
 #include <vector>
 
 #include "estimators/triangle_rays.h"
-#include "scene/further/further_surfaces.h"
+#include "scene/other_views/other_surfaces.h"
 
 namespace ssdo {
 
-/// Triangles of further views that answer rays in the camera space of the frame, through Embree.
+/// Triangles of other views that answer rays in the camera space of the frame, through Embree.
 /// May be asked from many threads at once.
-class FurtherRays {
+class OtherViewRays {
  public:
   /// `vertices` must outlive this. Errors: ExitCode::failed where memory does not suffice.
-  FurtherRays(const std::vector<Vertex>& vertices,
-              const std::vector<FurtherSurfaces::Triangle>& triangles);
+  OtherViewRays(const std::vector<Vertex>& vertices,
+                const std::vector<OtherSurfaces::Triangle>& triangles);
 
   /// Those of what the frame does not show; null: there are none.
-  static std::unique_ptr<FurtherRays> of_added(const FurtherSurfaces& surfaces);
+  static std::unique_ptr<OtherViewRays> of_added(const OtherSurfaces& surfaces);
 
   /// The surface that a ray meets first.
   struct Hit {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "estimators/further/further_rays.h"
+#include "estimators/other_views/other_view_rays.h"
 
 #include <cstddef>
 #include <glm/geometric.hpp>
@@ -18,9 +18,9 @@ bool is_unseen(const Vertex& vertex, const glm::vec3& direction) {
 }  // namespace
 
 /// What is not of the thing that a ray starts from.
-class FurtherRays::OtherThings final : public TriangleRays::Rule {
+class OtherViewRays::OtherThings final : public TriangleRays::Rule {
  public:
-  OtherThings(const FurtherRays& rays, const glm::vec3& direction)
+  OtherThings(const OtherViewRays& rays, const glm::vec3& direction)
       : rays_(rays), direction_(direction) {}
 
   bool counts(const TriangleHit& hit) const override {
@@ -30,31 +30,31 @@ class FurtherRays::OtherThings final : public TriangleRays::Rule {
   }
 
  private:
-  const FurtherRays& rays_;
+  const OtherViewRays& rays_;
   const glm::vec3& direction_;
 };
 
 // A vertex holds more than its position, so that four floats can be read from the last one.
-FurtherRays::FurtherRays(const std::vector<Vertex>& vertices,
-                         const std::vector<FurtherSurfaces::Triangle>& triangles)
+OtherViewRays::OtherViewRays(const std::vector<Vertex>& vertices,
+                             const std::vector<OtherSurfaces::Triangle>& triangles)
     : vertices_(vertices),
       rays_({{vertices.empty() ? nullptr : &vertices.front().position, vertices.size(),
               sizeof(Vertex), triangles}},
-            "further views") {}
+            "other views") {}
 
-std::unique_ptr<FurtherRays> FurtherRays::of_added(const FurtherSurfaces& surfaces) {
+std::unique_ptr<OtherViewRays> OtherViewRays::of_added(const OtherSurfaces& surfaces) {
   return surfaces.empty() ? nullptr
-                          : std::make_unique<FurtherRays>(surfaces.vertices, surfaces.added);
+                          : std::make_unique<OtherViewRays>(surfaces.vertices, surfaces.added);
 }
 
-bool FurtherRays::is_blocked(const glm::vec3& origin, const glm::vec3& direction,
-                             float reach) const {
+bool OtherViewRays::is_blocked(const glm::vec3& origin, const glm::vec3& direction,
+                               float reach) const {
   const OtherThings rule(*this, direction);
   return rays_.is_blocked({origin, direction, reach}, &rule);
 }
 
-FurtherRays::Hit FurtherRays::first_hit(const glm::vec3& origin, const glm::vec3& direction,
-                                        float reach) const {
+OtherViewRays::Hit OtherViewRays::first_hit(const glm::vec3& origin, const glm::vec3& direction,
+                                            float reach) const {
   const OtherThings rule(*this, direction);
   const auto hit = rays_.first_hit({origin, direction, reach}, &rule);
   if (!hit) return {};

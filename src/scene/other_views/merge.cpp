@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A pixel of a further view adds what it shows only where the frame does not show it:
+// A pixel of another view adds what it shows only where the frame does not show it:
 //
 // - What lies within kSurfaceTolerance footprints of a surface that the frame shows there is that
 //   surface. The frame knows it better: coarse triangles would cut through the finer surface.
@@ -11,7 +11,7 @@
 // Neighbours of one view are joined as those of the frame are, if they share their fate. Where they
 // are not, each reaches half-way to the next on its own tangent plane: leaves and wires are single
 // pixels of a small view, and would be lost between triangles.
-#include "scene/further/merge.h"
+#include "scene/other_views/merge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,15 +21,15 @@
 #include <numeric>
 
 #include "parallel/tiles.h"
-#include "scene/further/sight.h"
 #include "scene/normals/normals.h"
+#include "scene/other_views/sight.h"
 #include "scene/pixel_footprint.h"
 #include "scene/same_surface.h"
 
 namespace ssdo {
 namespace {
 
-/// The frame among the surfaces that light further views: with so many columns at most.
+/// The frame among the surfaces that light other views: with so many columns at most.
 constexpr int kFrameColumns = 320;
 
 /// Between frames of a sequence where half has changed, of so many pixels, there is a cut, as
@@ -47,7 +47,7 @@ class Merger {
  public:
   explicit Merger(const Geometry& frame) : frame_(frame), footprint_(frame.camera) {}
 
-  /// What the frame knows of a place that a further view shows.
+  /// What the frame knows of a place that another view shows.
   Fate judge(const Surfel& s) const {
     const glm::vec3 p = s.position;
     const bool ortho = frame_.camera.orthographic;
@@ -83,10 +83,10 @@ class Merger {
   PixelFootprint footprint_;
 };
 
-/// What one further view shows of the others' surfaces.
+/// What one other view shows of the others' surfaces.
 class Rival {
  public:
-  explicit Rival(const FurtherView& view) : view_(view) {}
+  explicit Rival(const OtherView& view) : view_(view) {}
 
   bool has_albedo() const { return !view_.picture->albedo.empty(); }
 
@@ -127,7 +127,7 @@ class Rival {
     return view_.footprint(depth) / facing;
   }
 
-  const FurtherView& view_;
+  const OtherView& view_;
 };
 
 /// The `k`-th view leaves out what another one shows more finely, or as finely and earlier. One
@@ -161,7 +161,7 @@ struct Grid {
 /// Makes vertices and triangles of a grid.
 class Mesher {
  public:
-  Mesher(const Grid& grid, const Plane<Fate>& fates, FurtherSurfaces& out)
+  Mesher(const Grid& grid, const Plane<Fate>& fates, OtherSurfaces& out)
       : grid_(grid),
         fates_(fates),
         out_(out),
@@ -270,7 +270,7 @@ class Mesher {
 
   const Grid& grid_;
   const Plane<Fate>& fates_;
-  FurtherSurfaces& out_;
+  OtherSurfaces& out_;
   glm::dmat3 to_frame_;
   int width_, height_;
   Plane<std::uint32_t> index_;
@@ -300,9 +300,9 @@ bool MergeCounts::is_of_another_scene() const {
   return in_common() >= kFewestInCommon && double(seen) < kLeastInCommon * double(in_common());
 }
 
-FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometry& frame,
-                            const Plane<HalfColor>& albedo, std::vector<MergeCounts>& counts) {
-  FurtherSurfaces out;
+OtherSurfaces merge_views(const std::vector<OtherView>& views, const Geometry& frame,
+                          const Plane<HalfColor>& albedo, std::vector<MergeCounts>& counts) {
+  OtherSurfaces out;
   const Merger merger(frame);
   counts.assign(views.size(), {});
   std::vector<std::size_t> order(views.size());
@@ -311,13 +311,13 @@ FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometr
     return views[a].picture->file < views[b].picture->file;
   });
   struct Judged {
-    const FurtherView* view;
+    const OtherView* view;
     Plane<Fate> fates;
   };
   std::vector<Judged> judged;
   std::vector<Rival> rivals;
   for (const std::size_t k : order) {
-    const FurtherView& view = views[k];
+    const OtherView& view = views[k];
     counts[k].file = view.picture->file;
     counts[k].has_albedo = !view.picture->albedo.empty();
     counts[k].is_neighbour = view.is_neighbour;
@@ -331,7 +331,7 @@ FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometr
     auto& [view, fates] = judged[k];
     const Plane<Surfel> surfel = view->surfels_in_frame();
     leave_out_repeated(rivals, k, surfel, fates);
-    const FurtherPicture& picture = *view->picture;
+    const OtherPicture& picture = *view->picture;
     Mesher({surfel, picture.albedo, view->camera, picture.window, picture.closed, 1}, fates, out)
         .run();
   }

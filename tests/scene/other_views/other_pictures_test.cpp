@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/further/further_pictures.h"
+#include "scene/other_views/other_pictures.h"
 
 #include <gmock/gmock.h>
 
@@ -14,11 +14,11 @@ namespace ssdo::test {
 namespace {
 
 namespace fs = std::filesystem;
-using Picture = FurtherPictures::Picture;
+using Picture = OtherPictures::Picture;
 
-class FurtherPicturesOf : public testing::Test {
+class OtherPicturesOf : public testing::Test {
  protected:
-  FurtherPicturesOf() {
+  OtherPicturesOf() {
     for (const std::string name : {"a", "b"}) write_frame(path(name), frame_of(small_picture()));
   }
   std::string path(const std::string& name) const { return folder / (name + ".exr"); }
@@ -28,10 +28,10 @@ class FurtherPicturesOf : public testing::Test {
     return files;
   }
   TempDir folder;
-  FurtherPictures pictures;
+  OtherPictures pictures;
 };
 
-TEST_F(FurtherPicturesOf, ARunAreReadOnce) {
+TEST_F(OtherPicturesOf, ARunAreReadOnce) {
   const Picture first = pictures.also(path("a"));
   ASSERT_TRUE(first);
   fs::remove(path("a"));
@@ -39,11 +39,11 @@ TEST_F(FurtherPicturesOf, ARunAreReadOnce) {
   EXPECT_NE(pictures.also(path("b")), first);
 }
 
-TEST_F(FurtherPicturesOf, ARunAreKeptUntilNoFrameExpectsThem) {
+TEST_F(OtherPicturesOf, ARunAreKeptUntilNoFrameExpectsThem) {
   const FrameFiles one = also({"a"}), two = also({"a", "b"});
   pictures.expect(one);
   pictures.expect(two);
-  std::weak_ptr<const FurtherPicture> a = pictures.also(path("a")), b = pictures.also(path("b"));
+  std::weak_ptr<const OtherPicture> a = pictures.also(path("a")), b = pictures.also(path("b"));
   pictures.release(one);
   EXPECT_FALSE(a.expired());
   pictures.release(two);
@@ -52,13 +52,13 @@ TEST_F(FurtherPicturesOf, ARunAreKeptUntilNoFrameExpectsThem) {
   EXPECT_TRUE(pictures.also(path("a"))) << "read anew";
 }
 
-TEST_F(FurtherPicturesOf, ASequenceAreKeptForTheFramesToCome) {
+TEST_F(OtherPicturesOf, ASequenceAreKeptForTheFramesToCome) {
   FrameFiles first, second;
   first.neighbours = {{path("a"), {}, {}}};
   second.neighbours = {{path("a"), {}, {}}, {path("b"), {}, {}}};
   pictures.expect(first);
   pictures.expect(second);
-  std::weak_ptr<const FurtherPicture> a = pictures.alike(first.neighbours[0], {}, {});
+  std::weak_ptr<const OtherPicture> a = pictures.alike(first.neighbours[0], {}, {});
   pictures.release(first);
   EXPECT_FALSE(a.expired());
   EXPECT_EQ(pictures.alike(second.neighbours[0], {}, {}), a.lock());
@@ -66,7 +66,7 @@ TEST_F(FurtherPicturesOf, ASequenceAreKeptForTheFramesToCome) {
   EXPECT_TRUE(a.expired());
 }
 
-TEST_F(FurtherPicturesOf, ARunAreReadOnceByManyThreads) {
+TEST_F(OtherPicturesOf, ARunAreReadOnceByManyThreads) {
   std::vector<std::future<Picture>> asked;
   for (int i = 0; i < 8; ++i)
     asked.push_back(std::async(std::launch::async, [&] { return pictures.also(path("a")); }));
@@ -74,7 +74,7 @@ TEST_F(FurtherPicturesOf, ARunAreReadOnceByManyThreads) {
   for (std::future<Picture>& picture : asked) EXPECT_EQ(picture.get(), one);
 }
 
-TEST_F(FurtherPicturesOf, DamagedFilesFailEveryTime) {
+TEST_F(OtherPicturesOf, DamagedFilesFailEveryTime) {
   fs::resize_file(path("a"), fs::file_size(path("a")) / 2);
   EXPECT_THROW(pictures.also(path("a")), Error);
   fs::copy_file(path("b"), path("a"), fs::copy_options::overwrite_existing);

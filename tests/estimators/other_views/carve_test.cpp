@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/further/carve.h"
+#include "scene/other_views/carve.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "estimators/bitmask/request.h"
-#include "scene/further/further_pictures.h"
+#include "scene/other_views/other_pictures.h"
 #include "support/boxes.h"
 #include "support/frame_file.h"
 #include "support/temp_dir.h"
@@ -31,7 +31,7 @@ double share_cut(const Window& view_window) {
               frame_of(take_picture(scene, looks(view_window, 40, {1.2, -3.8, 1.6}), view_window)));
   Solids solids = guess_solids(frame);
   const Plane<float> guessed = solids.thickness;
-  carve(solids, frame, {place(FurtherPictures().also(folder / "view.exr"), frame)});
+  carve(solids, frame, {place(OtherPictures().also(folder / "view.exr"), frame)});
   int posts = 0, cut = 0;
   for (std::size_t i = 0; i < guessed.size(); ++i) {
     const glm::dvec3 p =

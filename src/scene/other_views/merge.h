@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "math/half_color.h"
-#include "scene/further/further_surfaces.h"
-#include "scene/further/further_view.h"
 #include "scene/geometry.h"
+#include "scene/other_views/other_surfaces.h"
+#include "scene/other_views/other_view.h"
 
 namespace ssdo {
 
-/// What became of the pixels of a further view that show a surface. Of a view of back faces only
+/// What became of the pixels of another view that show a surface. Of a view of back faces only
 /// `backs` counts.
 struct MergeCounts {
   std::string file;
@@ -30,10 +30,10 @@ struct MergeCounts {
   bool is_of_another_scene() const;
 };
 
-/// Joins what further views show. The views' order does not matter. `albedo` is the frame's.
+/// Joins what other views show. The views' order does not matter. `albedo` is the frame's.
 /// `counts` has a row for each view, in their order. Neighbours of another scene, as they are
 /// before and after a cut, are left out.
-FurtherSurfaces merge_views(const std::vector<FurtherView>& views, const Geometry& frame,
-                            const Plane<HalfColor>& albedo, std::vector<MergeCounts>& counts);
+OtherSurfaces merge_views(const std::vector<OtherView>& views, const Geometry& frame,
+                          const Plane<HalfColor>& albedo, std::vector<MergeCounts>& counts);
 
 }  // namespace ssdo

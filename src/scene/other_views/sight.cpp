@@ -2,7 +2,7 @@
 //
 // Millions of points are asked for, so that all but the start of a line is in float: its rounding
 // is far below the footprints by which depths are told apart.
-#include "scene/further/sight.h"
+#include "scene/other_views/sight.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -46,14 +46,14 @@ glm::vec2 project(const Camera& camera, const glm::vec3& p) {
 
 }  // namespace
 
-SightLine::SightLine(const FurtherView& view, const glm::vec3& start, const glm::vec3& direction)
+SightLine::SightLine(const OtherView& view, const glm::vec3& start, const glm::vec3& direction)
     : view_(&view),
       start_(view.camera.to_camera(glm::dvec3(start))),
       direction_(view.camera.rotation * glm::dvec3(direction)) {}
 
 Sight SightLine::at(float t, float width) const {
   const Camera& camera = view_->camera;
-  const FurtherPicture& shown = *view_->picture;
+  const OtherPicture& shown = *view_->picture;
   const glm::vec3 own = start_ + t * direction_;
   const float depth_here = camera.panorama ? glm::length(own) : -own.z;
   if (!camera.orthographic && !(depth_here > 0)) return Sight::unknown;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/further/further_view.h"
+#include "scene/other_views/other_view.h"
 
 #include <glm/matrix.hpp>
 #include <utility>
@@ -15,12 +15,12 @@ Camera seen_from(const Camera& view, const Camera& frame) {
   return camera;
 }
 
-FurtherView place(FurtherView::Picture picture, const Geometry& frame) {
+OtherView place(OtherView::Picture picture, const Geometry& frame) {
   const Camera camera = seen_from(picture->camera, frame.camera);
   return {std::move(picture), camera};
 }
 
-Plane<Surfel> FurtherView::surfels_in_frame() const {
+Plane<Surfel> OtherView::surfels_in_frame() const {
   Plane<Surfel> placed = picture->surfel;
   const glm::dmat3 to_frame = glm::transpose(camera.rotation);
   for_each_row(placed.height, [&](int y) {

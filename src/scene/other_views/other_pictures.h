@@ -10,19 +10,19 @@
 #include <utility>
 #include <vector>
 
-#include "scene/further/further_view.h"
+#include "scene/other_views/other_view.h"
 #include "scene/view.h"
 
 namespace ssdo {
 
-/// The further pictures of a run: each is read once, and kept as long as frames will ask for it.
+/// The other pictures of a run: each is read once, and kept as long as frames will ask for it.
 /// May be asked from several threads.
-class FurtherPictures {
+class OtherPictures {
  public:
-  using Picture = FurtherView::Picture;
+  using Picture = OtherView::Picture;
 
   /// With `allow_partial`, missing chunks of the files of --also are no errors.
-  explicit FurtherPictures(bool allow_partial = false) : allow_partial_(allow_partial) {}
+  explicit OtherPictures(bool allow_partial = false) : allow_partial_(allow_partial) {}
 
   /// A further frame will ask for its files, until it is released. Files that no frame expects any
   /// more are forgotten; those that none has expected are kept.

@@ -5,26 +5,26 @@
 #include <glm/vec3.hpp>
 #include <limits>
 
-#include "scene/further/further_view.h"
+#include "scene/other_views/other_view.h"
 
 namespace ssdo {
 
 /// Points within so many footprints of the plane of what a picture shows are on that surface.
 inline constexpr float kSurfaceTolerance = 3;
 
-/// What a further view knows about a point.
+/// What another view knows about a point.
 enum class Sight {
   unknown,  ///< outside of its picture, or behind what it shows
   surface,  ///< it shows a surface there
   empty,    ///< it looks through
 };
 
-/// What a further view knows about the points of one line.
+/// What another view knows about the points of one line.
 class SightLine {
  public:
   /// `start` and the unit `direction` are in the camera space of the frame; the view must outlive
   /// this.
-  SightLine(const FurtherView& view, const glm::vec3& start, const glm::vec3& direction);
+  SightLine(const OtherView& view, const glm::vec3& start, const glm::vec3& direction);
 
   /// What the four pixels around the picture of the point at distance `t` agree on. A view does not
   /// show what is narrower than a few of its pixels but looks past it: `width` is that of what the
@@ -32,7 +32,7 @@ class SightLine {
   Sight at(float t, float width = std::numeric_limits<float>::infinity()) const;
 
  private:
-  const FurtherView* view_;
+  const OtherView* view_;
   glm::vec3 start_, direction_;  ///< in the camera space of the view
 };
 

@@ -2,12 +2,12 @@
 //
 // Pictures of back faces from the frame's own camera: told from other views, with exact
 // thicknesses.
-#include "scene/further/back_faces.h"
+#include "scene/other_views/back_faces.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "scene/further/further_pictures.h"
+#include "scene/other_views/other_pictures.h"
 #include "support/slab_and_ball.h"
 #include "support/temp_dir.h"
 
@@ -23,7 +23,7 @@ Geometry frame_of_scene(const Camera& camera) {
 class BackFaces : public testing::Test {
  protected:
   std::optional<Plane<float>> find(const std::string& file, const Geometry& frame) {
-    return find_back_faces(place(FurtherPictures().also(file), frame), frame);
+    return find_back_faces(place(OtherPictures().also(file), frame), frame);
   }
 
   std::string write(const std::string& name, const Surface& shown, const Camera& camera,
@@ -125,8 +125,8 @@ TEST_F(BackFaces, LeaveWhatADeepImageHasMeasured) {
   const Camera camera = camera_of(kFrame);
   const Geometry frame = frame_of_scene(camera);
   Solids solids = constant_thickness(frame, 0.5f);
-  solids.end = Plane<Origin>(kFrame.width(), kFrame.height(), Origin::guessed);
-  solids.end[0] = Origin::measured;
+  solids.end = Plane<Provenance>(kFrame.width(), kFrame.height(), Provenance::guessed);
+  solids.end[0] = Provenance::measured;
   Plane<float> distance(kFrame.width(), kFrame.height(), 0.25f), nearer = distance;
   distance[2] = std::numeric_limits<float>::infinity();
   nearer[1] = 0.125f, nearer[2] = distance[2];

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Rays towards what only further views show, for a vector of pixels; see bitmask.cpp. A march sees
-// the frame alone: where sectors of a side stay open, a few rays ask the surfaces of further views,
+// Rays towards what only other views show, for a vector of pixels; see bitmask.cpp. A march sees
+// the frame alone: where sectors of a side stay open, a few rays ask the surfaces of other views,
 // wherever these are.
-#if defined(SSDO_BITMASK_FURTHER_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SSDO_BITMASK_FURTHER_INL_H_
-#undef SSDO_BITMASK_FURTHER_INL_H_
+#if defined(SSDO_BITMASK_OTHER_VIEWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SSDO_BITMASK_OTHER_VIEWS_INL_H_
+#undef SSDO_BITMASK_OTHER_VIEWS_INL_H_
 #else
-#define SSDO_BITMASK_FURTHER_INL_H_
+#define SSDO_BITMASK_OTHER_VIEWS_INL_H_
 #endif
 
 #include <algorithm>
@@ -124,11 +124,11 @@ struct SectorStrata {
   }
 };
 
-/// Returns which of the open sectors further views hide. Calls `on_met` with the sectors that one
+/// Returns which of the open sectors other views hide. Calls `on_met` with the sectors that one
 /// ray stands for in each lane, and with what the rays have met.
 template <class Met>
-HWY_INLINE VU sectors_of_further(const March& march, const MarchReceiver& p, const SideFrame& side,
-                                 VU open, const Met& on_met) {
+HWY_INLINE VU sectors_hidden_in_other_views(const March& march, const MarchReceiver& p,
+                                            const SideFrame& side, VU open, const Met& on_met) {
   const DU du;
   const Lanes3 start(start_of_rays(march.scene, p));
   const float first = hn::GetLane(side.start) - 0.5f;  // the same for all lanes
@@ -145,15 +145,15 @@ HWY_INLINE VU sectors_of_further(const March& march, const MarchReceiver& p, con
   }
   VU all = set_bits(0);
   for (int k = 0; k < most; ++k) {
-    FurtherRays::Hit hits[kLanes];
+    OtherViewRays::Hit hits[kLanes];
     for (int lane = 0; lane < kLanes; ++lane) {
       hidden[lane] = 0;
       if (k >= strata[lane].count) continue;
       const glm::vec3 to = sectors.direction(lane, strata[lane].sector[k]);
       if constexpr (Met::kWantsHits) {
-        hits[lane] = march.further->first_hit(start[lane], to, march.radius);
+        hits[lane] = march.other_views->first_hit(start[lane], to, march.radius);
         if (hits[lane].sender >= 0) hidden[lane] = strata[lane].bits[k];
-      } else if (march.further->is_blocked(start[lane], to, march.radius)) {
+      } else if (march.other_views->is_blocked(start[lane], to, march.radius)) {
         hidden[lane] = strata[lane].bits[k];
       }
     }

@@ -8,14 +8,14 @@
 
 namespace ssdo {
 
-/// What the surfaces of further views send, by vertex: their albedo times the light that arrives.
-struct FurtherLight {
+/// What the surfaces of other views send, by vertex: their albedo times the light that arrives.
+struct OtherViewLight {
   std::vector<glm::vec3> seen;    ///< from the side that a view has seen
   std::vector<glm::vec3> unseen;  ///< from the other side
 };
 
 /// What they send after 0, 1, ..., `bounces` bounces, by rays among all that is known of the scene.
 /// `radius` is the farthest at which things occlude.
-std::vector<FurtherLight> light_further_surfaces(const Scene& scene, int bounces, float radius);
+std::vector<OtherViewLight> light_other_surfaces(const Scene& scene, int bounces, float radius);
 
 }  // namespace ssdo

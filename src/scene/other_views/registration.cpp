@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// P of a further view is in the world of the application that rendered it: in another unit, with y
+// P of another view is in the world of the application that rendered it: in another unit, with y
 // up in place of z, or of another scene. Whether it fits is seen where both cameras look. A sample
 // of one, seen from the other camera, lies
 //
@@ -11,7 +11,7 @@
 // The share that is shared of the first two is near 1 for every view of the scene, also for one
 // from behind, which shares few of its pixels. Worlds differ by a unit, by which axis is up and by
 // the signs of the axes: all of these that keep camera space right-handed are tried.
-#include "scene/further/registration.h"
+#include "scene/other_views/registration.h"
 
 #include <fmt/format.h>
 
@@ -24,9 +24,9 @@
 #include <utility>
 #include <vector>
 
-#include "scene/further/back_faces.h"
-#include "scene/further/sight.h"
 #include "scene/normals/normals.h"
+#include "scene/other_views/back_faces.h"
+#include "scene/other_views/sight.h"
 #include "scene/pixel_footprint.h"
 
 namespace ssdo {
@@ -116,7 +116,7 @@ std::vector<Surfel> samples_of(const Plane<Surfel>& surfel) {
 /// Asks both pictures for samples of each other.
 class Comparison {
  public:
-  Comparison(const FurtherPicture& picture, const Geometry& frame)
+  Comparison(const OtherPicture& picture, const Geometry& frame)
       : picture_(picture),
         frame_(frame),
         of_view_(samples_of(picture.surfel)),
@@ -160,7 +160,7 @@ class Comparison {
     return std::size_t(2 * axis + (normal[axis] < 0));
   }
 
-  const FurtherPicture& picture_;
+  const OtherPicture& picture_;
   const Geometry& frame_;
   const std::vector<Surfel> of_view_, of_frame_;
   Camera own_;
@@ -180,13 +180,13 @@ Camera in_world(Camera camera, const OtherWorld& world) {
   return camera;
 }
 
-FurtherView::Picture in_world(const FurtherPicture& picture, const OtherWorld& world) {
-  FurtherPicture out = picture;
+OtherView::Picture in_world(const OtherPicture& picture, const OtherWorld& world) {
+  OtherPicture out = picture;
   out.camera = in_world(picture.camera, world);
   const auto unit = float(world.unit);
   for (Surfel& s : out.surfel.pixels) s.position *= unit, s.rounding *= unit;
   for (float& depth : out.depth.pixels) depth *= unit;
-  return std::make_shared<const FurtherPicture>(std::move(out));
+  return std::make_shared<const OtherPicture>(std::move(out));
 }
 
 /// y up or z up, with any signs; the unchanged first.
@@ -268,7 +268,7 @@ double Agreement::share() const {
   return sum / known_sides();
 }
 
-Registration register_view(FurtherView view, const Geometry& frame) {
+Registration register_view(OtherView view, const Geometry& frame) {
   const Comparison comparison(*view.picture, frame);
   const Agreement own = comparison.of(view.camera, 1);
   if (own.all() >= kFewest && !contradicts(own)) return {std::move(view), {}};

@@ -4,7 +4,7 @@
 // asked for what the views know about them, near to far in steps that grow as distances do. Where a
 // view looks through a point nothing is solid, and the guess ends. Where a view shows a surface,
 // that one is measured.
-#include "scene/further/carve.h"
+#include "scene/other_views/carve.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 #include <limits>
 
 #include "parallel/tiles.h"
-#include "scene/further/sight.h"
 #include "scene/normals/normals.h"
+#include "scene/other_views/sight.h"
 #include "scene/pixel_footprint.h"
 #include "scene/same_surface.h"
 
@@ -29,11 +29,11 @@ constexpr float kFarthest = 4;
 /// What the views know about the points of one line.
 class SightLines {
  public:
-  explicit SightLines(const std::vector<FurtherView>& views) : views_(views) {}
+  explicit SightLines(const std::vector<OtherView>& views) : views_(views) {}
 
   void aim(const glm::vec3& start, const glm::vec3& direction) {
     lines_.clear();
-    for (const FurtherView& view : views_) lines_.emplace_back(view, start, direction);
+    for (const OtherView& view : views_) lines_.emplace_back(view, start, direction);
   }
 
   /// Whether a view looks through the point `t` behind a front, which would be inside of something
@@ -61,7 +61,7 @@ class SightLines {
   }
 
  private:
-  const std::vector<FurtherView>& views_;
+  const std::vector<OtherView>& views_;
   std::vector<SightLine> lines_;
 };
 
@@ -83,7 +83,7 @@ float first_on_way(float first, float most, const Ends& ends) {
 
 class Carver {
  public:
-  Carver(Solids& solids, const Geometry& frame, const std::vector<FurtherView>& views)
+  Carver(Solids& solids, const Geometry& frame, const std::vector<OtherView>& views)
       : solids_(solids), frame_(frame), views_(views), footprint_(frame.camera) {
     for (const Surfel& s : frame.surfel.pixels)
       if (s.is_usable()) farthest_ = std::max(farthest_, kFarthest * glm::length(s.position));
@@ -92,7 +92,8 @@ class Carver {
   void carve() {
     solids_.separate_thicknesses();
     if (solids_.end.empty())
-      solids_.end = Plane<Origin>(frame_.surfel.width, frame_.surfel.height, Origin::guessed);
+      solids_.end =
+          Plane<Provenance>(frame_.surfel.width, frame_.surfel.height, Provenance::guessed);
     const int w = frame_.surfel.width, h = frame_.surfel.height;
     for_each_row((h + 1) / 2, [&](int block_y) {
       SightLines lines(views_);
@@ -142,11 +143,11 @@ class Carver {
       }
       if (known.end < std::min(most, known.asked)) {
         thickness = known.end;
-        solids_.end[pixel] = Origin::measured;
+        solids_.end[pixel] = Provenance::measured;
       }
     }
     for (SolidLayer& layer : solids_.behind) {
-      if (layer.origin[pixel] != Origin::guessed) continue;
+      if (layer.provenance[pixel] != Provenance::guessed) continue;
       const float distance = layer.distance[pixel];
       if (!(distance < farthest_)) continue;
       aim();
@@ -194,14 +195,14 @@ class Carver {
 
   Solids& solids_;
   const Geometry& frame_;
-  const std::vector<FurtherView>& views_;
+  const std::vector<OtherView>& views_;
   PixelFootprint footprint_;
   float farthest_ = 0;
 };
 
 }  // namespace
 
-void carve(Solids& solids, const Geometry& frame, const std::vector<FurtherView>& views) {
+void carve(Solids& solids, const Geometry& frame, const std::vector<OtherView>& views) {
   if (!views.empty() && !solids.thickness.empty()) Carver(solids, frame, views).carve();
 }
 

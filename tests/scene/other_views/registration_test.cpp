@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Views in another unit, with other axes, or of another scene.
-#include "scene/further/registration.h"
+#include "scene/other_views/registration.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "scene/further/further_pictures.h"
+#include "scene/other_views/other_pictures.h"
 #include "support/boxes.h"
 #include "support/frame_file.h"
 #include "support/temp_dir.h"
@@ -55,7 +55,7 @@ class Registers : public testing::Test {
     part.channels.erase("ViewLayer.Depth.Z");
     const auto path = folder_.path() / fmt::format("view{}.exr", ++count_);
     write_frame(path, part);
-    return register_view(place(FurtherPictures().also(path), frame_), frame_);
+    return register_view(place(OtherPictures().also(path), frame_), frame_);
   }
 
   Registration panorama(const World& world = {}) {
@@ -64,7 +64,7 @@ class Registers : public testing::Test {
   }
 
   /// Most that a view of this scene shows off the surfaces of the scene, in the frame's world.
-  double off(const FurtherView& view) const {
+  double off(const OtherView& view) const {
     double most = 0;
     const glm::dmat3 to_world = glm::transpose(frame_.camera.rotation);
     for (const Surfel& s : view.surfels_in_frame().pixels) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Further views of a scene, by the tool on real files: what they add, against rays through the very
+// Other views of a scene, by the tool on real files: what they add, against rays through the very
 // scene, and what they must not change.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -46,7 +46,7 @@ Surface closed_room() {
                  wall({0, -3, 0}, {0, 1, 0}), wall({0, 3, 0}, {0, -1, 0})});
 }
 
-class FurtherViews : public testing::Test {
+class OtherViews : public testing::Test {
  protected:
   std::string write(const std::string& name, const Surface& scene, const Camera& camera,
                     const Window& window) {
@@ -94,7 +94,7 @@ double rmse(const Plane<float>& ao, const Surface& scene, const Camera& camera,
   return std::sqrt(sum / count);
 }
 
-TEST_F(FurtherViews, ClosedRoomIsDarkWithAPanorama) {
+TEST_F(OtherViews, ClosedRoomIsDarkWithAPanorama) {
   const glm::dvec3 eye(-0.5, -2, 1.4), target(0.3, 3, 1.2);
   const std::string frame =
                         write("frame.exr", closed_room(), pinhole(kFrame, 50, eye, target), kFrame),
@@ -112,7 +112,7 @@ TEST_F(FurtherViews, ClosedRoomIsDarkWithAPanorama) {
 
 /// A sky with a sun that stands high: it would light the floor of the room if nothing asked what is
 /// behind the camera.
-TEST_F(FurtherViews, NoSunShinesIntoAClosedRoom) {
+TEST_F(OtherViews, NoSunShinesIntoAClosedRoom) {
   const glm::dvec3 eye(-0.5, -2, 1.4), target(0.3, 3, 0.6);
   const std::string frame =
                         write("frame.exr", closed_room(), pinhole(kFrame, 50, eye, target), kFrame),
@@ -138,7 +138,7 @@ TEST_F(FurtherViews, NoSunShinesIntoAClosedRoom) {
 
 /// Views from outside show the other side of walls that stand behind the camera: they are lit
 /// there, and dark inside.
-TEST_F(FurtherViews, WallsSeenFromOutsideSendNoLightInside) {
+TEST_F(OtherViews, WallsSeenFromOutsideSendNoLightInside) {
   const glm::dvec3 eye(-0.5, -2, 1.4), target(0.3, 3, 1.2);
   const Camera above = pinhole(kView, 50, {8, 9, 8}, {0, 0, 1.5}),
                below = pinhole(kView, 50, {-8, -9, -5}, {0, 0, 1.5});
@@ -163,7 +163,7 @@ TEST_F(FurtherViews, WallsSeenFromOutsideSendNoLightInside) {
   }
 }
 
-TEST_F(FurtherViews, AreKnownAndNotGuessed) {
+TEST_F(OtherViews, AreKnownAndNotGuessed) {
   const glm::dvec3 eye(-0.5, -2, 1.4), target(0.3, 3, 1.2);
   const std::string frame =
                         write("frame.exr", closed_room(), pinhole(kFrame, 50, eye, target), kFrame),
@@ -192,7 +192,7 @@ TEST_F(FurtherViews, AreKnownAndNotGuessed) {
               HasSubstr("these do: bitmask, trace"));
 }
 
-TEST_F(FurtherViews, BoxBehindABoxHidesWhatItHides) {
+TEST_F(OtherViews, BoxBehindABoxHidesWhatItHides) {
   const Box before{{-0.5, -0.6, 0}, {0.5, -0.4, 1.1}}, behind{{-0.4, 0.1, 0}, {0.4, 0.5, 0.8}};
   const Surface scene = all_of({plane({}, {0, 0, 1}), before.surface(), behind.surface()});
   const Camera camera = pinhole(kFrame, 40, {0, -4, 1.3}, {0, 0, 0.3});
@@ -213,7 +213,7 @@ TEST_F(FurtherViews, BoxBehindABoxHidesWhatItHides) {
   }
 }
 
-TEST_F(FurtherViews, CoarseViewOfAnOpenTerrainChangesNothing) {
+TEST_F(OtherViews, CoarseViewOfAnOpenTerrainChangesNothing) {
   // Gentle hills within the frame, all of which both cameras see.
   const Surface hills =
       all_of({plane({}, {0, 0, 1}), sphere({-1, 0, -9.9}, 10), sphere({0.5, 0.4, -7.85}, 8)});
@@ -235,7 +235,7 @@ TEST_F(FurtherViews, CoarseViewOfAnOpenTerrainChangesNothing) {
             rmse(ao(frame, {}), hills, camera, everywhere) + 1e-4);
 }
 
-TEST_F(FurtherViews, WhatHasMovedIsLeftOut) {
+TEST_F(OtherViews, WhatHasMovedIsLeftOut) {
   const Surface ground = plane({}, {0, 0, 1}), stays = sphere({1.2, 0.4, 0.4}, 0.4);
   const Surface now = all_of({ground, stays}),
                 before = all_of({ground, stays, sphere({-0.6, 0, 0.5}, 0.5)});
@@ -255,7 +255,7 @@ TEST_F(FurtherViews, WhatHasMovedIsLeftOut) {
   EXPECT_THAT(run_tool({"info", frame, "--also", larger}).out, HasSubstr("larger.exr: left out"));
 }
 
-TEST_F(FurtherViews, GiveTheSameBitsInAnyOrderAndForAnyThreads) {
+TEST_F(OtherViews, GiveTheSameBitsInAnyOrderAndForAnyThreads) {
   const Box box{{-0.5, -0.6, 0}, {0.5, 0.4, 0.9}};
   const Surface scene = all_of({plane({}, {0, 0, 1}), box.surface()});
   const std::string frame = write("frame.exr", scene,
@@ -268,7 +268,7 @@ TEST_F(FurtherViews, GiveTheSameBitsInAnyOrderAndForAnyThreads) {
   EXPECT_EQ(once.pixels, ao(frame, {a, b}, {"--threads", "3"}).pixels);
 }
 
-TEST_F(FurtherViews, SendTheLightThatTheyReceive) {
+TEST_F(OtherViews, SendTheLightThatTheyReceive) {
   // A wall behind the camera lights the floor: its bounce is missing in the frame alone.
   const Surface scene = all_of({plane({}, {0, 0, 1}), plane({0, -3, 0}, {0, 1, 0})});
   const glm::dvec3 eye(0, -2, 1.5), target(0, 1, 0);
@@ -291,7 +291,7 @@ TEST_F(FurtherViews, SendTheLightThatTheyReceive) {
   EXPECT_NEAR(bounce_at_bottom({"--also", around}), hidden * 0.5 * 0.5, 0.2 * hidden * 0.25);
 }
 
-TEST_F(FurtherViews, AreRefusedWhereTheyCannotBePlaced) {
+TEST_F(OtherViews, AreRefusedWhereTheyCannotBePlaced) {
   const Surface scene = all_of({plane({}, {0, 0, 1}), sphere({0, 0, 0.5}, 0.5)}),
                 other = all_of({plane({0, 0, 0.4}, {0, 0, 1}), sphere({1, 1, 0.9}, 0.5)});
   const Camera camera = pinhole(kFrame, 45, {0, -5, 3}, {0, 0, 0}),
@@ -328,7 +328,7 @@ TEST_F(FurtherViews, AreRefusedWhereTheyCannotBePlaced) {
   EXPECT_THAT(as_frame.error_line(), AllOf(HasSubstr("around.exr"), HasSubstr("--also")));
 }
 
-TEST_F(FurtherViews, WithoutAlbedoHideAndSendNothing) {
+TEST_F(OtherViews, WithoutAlbedoHideAndSendNothing) {
   const Box box{{-0.5, -0.6, 0}, {0.5, 0.4, 0.9}};
   const Surface scene = all_of({plane({}, {0, 0, 1}), box.surface()});
   const Camera beside = pinhole(kView, 50, {-3.5, 1.2, 1.4}, {0, 0, 0.3});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/further/further_pictures.h"
+#include "scene/other_views/other_pictures.h"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ constexpr float kNothing = std::numeric_limits<float>::infinity();
 /// a panorama, or filtered beyond use.
 constexpr double kMostMissPx = 0.5;
 
-/// Layers that no further picture needs.
+/// Layers that no other picture needs.
 const std::vector<Role> kUnused = {Role::motion,  Role::roughness, Role::radiance,
                                    Role::ambient, Role::specular,  Role::beauty};
 
@@ -34,11 +34,11 @@ std::string name_of(const FrameFiles& frame) {
 void check(const View& view, const std::string& file) {
   if (!view.layers[Role::position]) {
     throw Error(ExitCode::layer,
-                fmt::format("{}: has no position; a further view needs P in world space", file));
+                fmt::format("{}: has no position; another view needs P in world space", file));
   }
   const Geometry& g = view.geometry;
   if (g.median_depth > 0 && !g.world_known) {
-    throw Error(ExitCode::layer, fmt::format("{}: P is in camera space; a further view needs P in "
+    throw Error(ExitCode::layer, fmt::format("{}: P is in camera space; another view needs P in "
                                              "world space, as the frame's is",
                                              file));
   }
@@ -51,10 +51,10 @@ void check(const View& view, const std::string& file) {
   }
 }
 
-/// Keeps of a view what further pictures need.
-FurtherPictures::Picture picture_of(View view, const std::string& file) {
+/// Keeps of a view what other pictures need.
+OtherPictures::Picture picture_of(View view, const std::string& file) {
   check(view, file);
-  FurtherPicture out;
+  OtherPicture out;
   out.file = file;
   out.camera = view.geometry.camera;
   out.window = view.geometry.window;
@@ -74,12 +74,12 @@ FurtherPictures::Picture picture_of(View view, const std::string& file) {
   }
   for (const ExrReader& read : view.files)
     for (const std::string& line : read.losses()) out.losses.push_back(line);
-  return std::make_shared<const FurtherPicture>(std::move(out));
+  return std::make_shared<const OtherPicture>(std::move(out));
 }
 
 }  // namespace
 
-std::vector<FurtherPictures::Key> FurtherPictures::keys_of(const FrameFiles& frame) {
+std::vector<OtherPictures::Key> OtherPictures::keys_of(const FrameFiles& frame) {
   std::vector<Key> keys;
   for (const std::string& file : frame.also) keys.emplace_back(kByNames, file);
   for (const FrameFiles& other : frame.neighbours) keys.emplace_back(kAsInput, name_of(other));
@@ -87,12 +87,12 @@ std::vector<FurtherPictures::Key> FurtherPictures::keys_of(const FrameFiles& fra
   return keys;
 }
 
-void FurtherPictures::expect(const FrameFiles& frame) {
+void OtherPictures::expect(const FrameFiles& frame) {
   const std::lock_guard lock(mutex_);
   for (const Key& key : keys_of(frame)) ++entries_[key].frames;
 }
 
-void FurtherPictures::release(const FrameFiles& frame) {
+void OtherPictures::release(const FrameFiles& frame) {
   const std::lock_guard lock(mutex_);
   for (const Key& key : keys_of(frame)) {
     const auto entry = entries_.find(key);
@@ -100,7 +100,7 @@ void FurtherPictures::release(const FrameFiles& frame) {
   }
 }
 
-FurtherPictures::Picture FurtherPictures::also(const std::string& file) {
+OtherPictures::Picture OtherPictures::also(const std::string& file) {
   return get({kByNames, file}, [&]() -> Picture {
     std::deque<ExrReader> opened = open_view(file, {}, allow_partial_);
     if (has_deep_part(opened.front())) return nullptr;
@@ -108,8 +108,8 @@ FurtherPictures::Picture FurtherPictures::also(const std::string& file) {
   });
 }
 
-FurtherPictures::Picture FurtherPictures::alike(const FrameFiles& frame, const InputOptions& input,
-                                                const CameraOptions& camera) {
+OtherPictures::Picture OtherPictures::alike(const FrameFiles& frame, const InputOptions& input,
+                                            const CameraOptions& camera) {
   return get({kAsInput, name_of(frame)}, [&] {
     std::vector<LayerRequest> aovs = frame.aovs;
     std::erase_if(aovs, [](const LayerRequest& request) {
@@ -121,8 +121,7 @@ FurtherPictures::Picture FurtherPictures::alike(const FrameFiles& frame, const I
   });
 }
 
-FurtherPictures::Picture FurtherPictures::get(const Key& key,
-                                              const std::function<Picture()>& read) {
+OtherPictures::Picture OtherPictures::get(const Key& key, const std::function<Picture()>& read) {
   std::promise<Picture> promise;
   std::shared_future<Picture> picture;
   bool is_first = false;

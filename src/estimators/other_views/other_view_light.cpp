@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The light of method trace (see trace.cpp) at the vertices of further views, in few samples: a
+// The light of method trace (see trace.cpp) at the vertices of other views, in few samples: a
 // bounce averages over many of them.
-#include "estimators/further/further_light.h"
+#include "estimators/other_views/other_view_light.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <utility>
 
-#include "estimators/further/further_rays.h"
+#include "estimators/other_views/other_view_rays.h"
 #include "math/frame.h"
 #include "math/light_range.h"
 #include "math/sampling.h"
@@ -30,32 +30,33 @@ constexpr float kAbove = 0.3f;
 
 constexpr std::uint32_t kSurfaceSeed = 0x3c91, kSourceSeed = 0x77e5;
 
-class Lamps {
+/// The surfaces of other views as senders: their direct light and bounces, found by rays.
+class OtherViewSenders {
  public:
-  Lamps(const Scene& scene, float radius)
-      : surfaces_(scene.further),
+  OtherViewSenders(const Scene& scene, float radius)
+      : surfaces_(scene.other_surfaces),
         light_(scene.light),
         to_world_(glm::transpose(scene.geometry.world_to_camera)),
         radius_(radius),
         rays_(surfaces_.vertices, surfaces_.all) {}
 
-  std::vector<FurtherLight> run(int bounces) {
+  std::vector<OtherViewLight> run(int bounces) {
     const std::size_t count = surfaces_.vertices.size();
     find_senders(bounces > 0);
-    FurtherLight direct = dark(count), bounce = direct;
+    OtherViewLight direct = dark(count), bounce = direct;
     for_each_side([&](std::size_t i, const Side& side, bool seen) {
       of(direct, seen)[i] = direct_light(side);
     });
-    std::vector<FurtherLight> passes;
+    std::vector<OtherViewLight> passes;
     for (int pass = 0;; ++pass) {
-      FurtherLight out = dark(count);
+      OtherViewLight out = dark(count);
       for_each_side([&](std::size_t i, const Side&, bool seen) {
         const glm::vec3 light = of(direct, seen)[i] + of(bounce, seen)[i];
         of(out, seen)[i] = within_range(surfaces_.vertices[i].albedo * light);
       });
       passes.push_back(std::move(out));
       if (pass >= bounces) return passes;
-      FurtherLight next = dark(count);
+      OtherViewLight next = dark(count);
       for_each_side([&](std::size_t i, const Side& side, bool seen) {
         of(next, seen)[i] = bounced_light(side, passes.back());
       });
@@ -70,11 +71,11 @@ class Lamps {
     std::uint32_t seed;
   };
 
-  static FurtherLight dark(std::size_t count) {
+  static OtherViewLight dark(std::size_t count) {
     return {std::vector<glm::vec3>(count, glm::vec3(0)),
             std::vector<glm::vec3>(count, glm::vec3(0))};
   }
-  static std::vector<glm::vec3>& of(FurtherLight& light, bool seen) {
+  static std::vector<glm::vec3>& of(OtherViewLight& light, bool seen) {
     return seen ? light.seen : light.unseen;
   }
 
@@ -147,7 +148,7 @@ class Lamps {
     return above > 0 ? unoccluded * (seen / above) : glm::vec3(0);
   }
 
-  glm::vec3 bounced_light(const Side& side, const FurtherLight& sent) const {
+  glm::vec3 bounced_light(const Side& side, const OtherViewLight& sent) const {
     const glm::mat3 frame = frame_about(side.normal);
     glm::vec3 sum(0);
     for (int s = 0; s < kRays; ++s) {
@@ -158,18 +159,18 @@ class Lamps {
     return sum / float(kRays);
   }
 
-  const FurtherSurfaces& surfaces_;
+  const OtherSurfaces& surfaces_;
   const Light& light_;
   glm::mat3 to_world_;
   float radius_;
-  FurtherRays rays_;
+  OtherViewRays rays_;
   std::vector<std::uint32_t> senders_;
 };
 
 }  // namespace
 
-std::vector<FurtherLight> light_further_surfaces(const Scene& scene, int bounces, float radius) {
-  return Lamps(scene, radius).run(bounces);
+std::vector<OtherViewLight> light_other_surfaces(const Scene& scene, int bounces, float radius) {
+  return OtherViewSenders(scene, radius).run(bounces);
 }
 
 }  // namespace ssdo

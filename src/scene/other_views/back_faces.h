@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "math/plane.h"
-#include "scene/further/further_view.h"
 #include "scene/geometry.h"
+#include "scene/other_views/other_view.h"
 #include "scene/solids/solids.h"
 
 namespace ssdo {
@@ -15,7 +15,7 @@ namespace ssdo {
 /// The distance from what each pixel of a frame shows to the back face behind it, along its view
 /// ray; infinite where the view shows none. Nothing where `view` is not of back faces from the
 /// frame's own camera: see back_faces.cpp.
-std::optional<Plane<float>> find_back_faces(const FurtherView& view, const Geometry& frame);
+std::optional<Plane<float>> find_back_faces(const OtherView& view, const Geometry& frame);
 
 /// Ends what is seen at the nearest of its back faces, unless a deep image has measured it already.
 void end_at_back_faces(Solids& solids, const std::vector<Plane<float>>& distances);

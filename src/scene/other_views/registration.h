@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "scene/further/further_view.h"
 #include "scene/geometry.h"
+#include "scene/other_views/other_view.h"
 
 namespace ssdo {
 
@@ -34,13 +34,13 @@ struct Agreement {
 
 /// A view of --also as it fits the frame.
 struct Registration {
-  std::optional<FurtherView> view;  ///< nothing: no unit and no axes of its P make it fit
-  std::string warning;              ///< of a view that was changed, or is left out; else empty
+  std::optional<OtherView> view;  ///< nothing: no unit and no axes of its P make it fit
+  std::string warning;            ///< of a view that was changed, or is left out; else empty
 };
 
 /// Keeps a view that fits the frame, and one of which the frame sees too little to tell. Another is
 /// tried in other units and with other axes, and changed to those with which it fits; see
 /// registration.cpp.
-Registration register_view(FurtherView view, const Geometry& frame);
+Registration register_view(OtherView view, const Geometry& frame);
 
 }  // namespace ssdo

@@ -14,7 +14,7 @@
 // A surface at the very place of the frame's is one that the frame sees from behind: a sheet, or
 // the inside of a hull. It says nothing about what is behind it, so that the guess stays, as it
 // does where there is no back face, or one before the surface.
-#include "scene/further/back_faces.h"
+#include "scene/other_views/back_faces.h"
 
 #include <algorithm>
 #include <atomic>
@@ -47,7 +47,7 @@ constexpr double kLeastBehind = 0.1, kMostBefore = 0.1;
 constexpr float kLeastFacing = 0.1f;
 
 /// Whether the rays of a view are among those of the frame.
-bool is_same_camera(const FurtherView& view, const Geometry& frame) {
+bool is_same_camera(const OtherView& view, const Geometry& frame) {
   const Camera &a = frame.camera, &b = view.camera;
   if (b.panorama || a.orthographic != b.orthographic) return false;
   const double focal = std::min(a.fx, a.fy);
@@ -64,7 +64,7 @@ bool is_same_camera(const FurtherView& view, const Geometry& frame) {
 
 class BackFaces {
  public:
-  BackFaces(const FurtherView& view, const Geometry& frame)
+  BackFaces(const OtherView& view, const Geometry& frame)
       : view_(view),
         shown_(*view.picture),
         surfel_(view.surfels_in_frame()),
@@ -120,8 +120,8 @@ class BackFaces {
     return distance + std::clamp(glm::dot(back.normal, aside) / facing, -most, most);
   }
 
-  const FurtherView& view_;
-  const FurtherPicture& shown_;
+  const OtherView& view_;
+  const OtherPicture& shown_;
   const Plane<Surfel> surfel_;  ///< in the camera space of the frame
   const Geometry& frame_;
   PixelFootprint footprint_;
@@ -129,7 +129,7 @@ class BackFaces {
 
 }  // namespace
 
-std::optional<Plane<float>> find_back_faces(const FurtherView& view, const Geometry& frame) {
+std::optional<Plane<float>> find_back_faces(const OtherView& view, const Geometry& frame) {
   if (!is_same_camera(view, frame)) return std::nullopt;
   return BackFaces(view, frame).find();
 }
@@ -137,23 +137,23 @@ std::optional<Plane<float>> find_back_faces(const FurtherView& view, const Geome
 void end_at_back_faces(Solids& solids, const std::vector<Plane<float>>& distances) {
   if (distances.empty()) return;
   const int w = solids.thickness.width, h = solids.thickness.height;
-  if (solids.end.empty()) solids.end = Plane<Origin>(w, h, Origin::guessed);
+  if (solids.end.empty()) solids.end = Plane<Provenance>(w, h, Provenance::guessed);
   for_each_row(h, [&](int y) {
     for (std::size_t i = solids.end.index(0, y), end = i + std::size_t(w); i < end; ++i) {
       float nearest = kNowhere;
       for (const Plane<float>& distance : distances) nearest = std::min(nearest, distance[i]);
-      if (!(nearest < kNowhere) || solids.end[i] == Origin::measured) continue;
+      if (!(nearest < kNowhere) || solids.end[i] == Provenance::measured) continue;
       solids.thickness[i] = nearest;
-      solids.end[i] = Origin::measured;
+      solids.end[i] = Provenance::measured;
     }
   });
   // Where a surface is guessed to go on behind something it is as thick as where it is seen.
   for (SolidLayer& layer : solids.behind) {
     if (layer.thickness.empty()) continue;
     for_each_row(h, [&](int y) {
-      for (std::size_t i = layer.origin.index(0, y), end = i + std::size_t(w); i < end; ++i) {
+      for (std::size_t i = layer.provenance.index(0, y), end = i + std::size_t(w); i < end; ++i) {
         const int sender = layer.sender[i];
-        if (layer.origin[i] != Origin::guessed || sender < 0) continue;
+        if (layer.provenance[i] != Provenance::guessed || sender < 0) continue;
         if (solids.end_is_measured(std::size_t(sender)))
           layer.thickness[i] = solids.thickness[std::size_t(sender)];
       }

@@ -8,7 +8,7 @@
 
 namespace ssdo {
 
-/// A place on a surface that a pixel of a further view shows, in the camera space of the frame.
+/// A place on a surface that a pixel of another view shows, in the camera space of the frame.
 struct Vertex {
   glm::vec3 position{0}, normal{0};  ///< the normal is unit, on the side that is seen
   glm::vec3 albedo{0};
@@ -16,8 +16,8 @@ struct Vertex {
   std::uint32_t sender = 0;  ///< the vertex whose light it sends: the middle of its pixel
 };
 
-/// What further views show of a scene: surfaces as triangles.
-struct FurtherSurfaces {
+/// What other views show of a scene: surfaces as triangles.
+struct OtherSurfaces {
   using Triangle = std::array<std::uint32_t, 3>;
 
   std::vector<Vertex> vertices;

@@ -17,7 +17,7 @@ namespace ssdo {
 
 /// What another camera shows of the scene, or a panorama, in its own camera space: the same for
 /// every frame.
-struct FurtherPicture {
+struct OtherPicture {
   std::string file;
   Camera camera;            ///< from world space to its own
   Window window;            ///< of the planes, in the pixels of its display window
@@ -29,9 +29,9 @@ struct FurtherPicture {
   std::vector<std::string> losses;  ///< see ExrReader::losses()
 };
 
-/// A further picture, placed in the camera space of a frame.
-struct FurtherView {
-  using Picture = std::shared_ptr<const FurtherPicture>;
+/// Another picture, placed in the camera space of a frame.
+struct OtherView {
+  using Picture = std::shared_ptr<const OtherPicture>;
 
   Picture picture;
   Camera camera;              ///< from the frame's camera space to its own
@@ -51,6 +51,6 @@ struct FurtherView {
 Camera seen_from(const Camera& view, const Camera& frame);
 
 /// Places a picture in the camera space of a frame whose world is known.
-FurtherView place(FurtherView::Picture picture, const Geometry& frame);
+OtherView place(OtherView::Picture picture, const Geometry& frame);
 
 }  // namespace ssdo
