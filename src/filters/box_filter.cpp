@@ -46,11 +46,7 @@ FilterPlanes filter_box(FilterPlanes noisy, const Plane<Surfel>& guide, int patt
   for (int dy = first; dy < first + pattern_size; ++dy) {
     for (int dx = first; dx < first + pattern_size; ++dx) window.push_back({dx, dy, 1});
   }
-  return in_passes(
-      std::move(noisy), guide, {window},
-      [&](const FilterPlanes& from, const auto& taps, const Tile& tile, FilterPlanes& to) {
-        HWY_DYNAMIC_DISPATCH(box_tile)(from, guide, taps, tile, to);
-      });
+  return in_passes(std::move(noisy), guide, {window}, HWY_DYNAMIC_DISPATCH(box_tile));
 }
 
 }  // namespace ssdo

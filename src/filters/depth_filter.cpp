@@ -57,11 +57,8 @@ FilterPlanes filter_depth(FilterPlanes noisy, const Plane<Surfel>& guide, int /*
   std::vector<Tap> row;
   for (int i = -4; i <= 4; ++i)
     row.push_back({kSpacing * i, 0, float(kWeights[std::size_t(std::abs(i))])});
-  return in_passes(
-      std::move(noisy), guide, {row, transposed(row)},
-      [&](const FilterPlanes& from, const auto& taps, const Tile& tile, FilterPlanes& to) {
-        HWY_DYNAMIC_DISPATCH(depth_tile)(from, guide, taps, tile, to);
-      });
+  return in_passes(std::move(noisy), guide, {row, transposed(row)},
+                   HWY_DYNAMIC_DISPATCH(depth_tile));
 }
 
 }  // namespace ssdo

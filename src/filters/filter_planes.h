@@ -55,17 +55,20 @@ inline std::vector<Tap> transposed(std::vector<Tap> taps) {
   return taps;
 }
 
+/// Averages one tile of `from` in the window of `taps`.
+using TilePass = void (*)(const FilterPlanes& from, const Plane<Surfel>& guide,
+                          const std::vector<Tap>& taps, const Tile& tile, FilterPlanes& to);
+
 /// Runs `pass` from `noisy` with each window in turn, each on what the one before has left.
-/// `pass(from, taps, tile, to)` averages one tile.
-template <class Pass>
-FilterPlanes in_passes(FilterPlanes noisy, const Plane<Surfel>& guide,
-                       const std::vector<std::vector<Tap>>& windows, const Pass& pass) {
-  FilterPlanes from = std::move(noisy), to = like(from);
+inline FilterPlanes in_passes(FilterPlanes noisy, const Plane<Surfel>& guide,
+                              const std::vector<std::vector<Tap>>& windows, TilePass pass) {
+  FilterPlanes to = like(noisy);
   for (const std::vector<Tap>& taps : windows) {
-    for_each_tile(guide.width, guide.height, [&](const Tile& tile) { pass(from, taps, tile, to); });
-    std::swap(from, to);
+    for_each_tile(guide.width, guide.height,
+                  [&](const Tile& tile) { pass(noisy, guide, taps, tile, to); });
+    std::swap(noisy, to);
   }
-  return from;
+  return noisy;
 }
 
 }  // namespace ssdo

@@ -58,11 +58,7 @@ FilterPlanes filter_gaussian(FilterPlanes noisy, const Plane<Surfel>& guide, int
   std::vector<std::vector<Tap>> windows;
   for (int round = 0; round < kRounds; ++round)
     windows.insert(windows.end(), {row, transposed(row)});
-  return in_passes(
-      std::move(noisy), guide, windows,
-      [&](const FilterPlanes& from, const auto& taps, const Tile& tile, FilterPlanes& to) {
-        HWY_DYNAMIC_DISPATCH(gaussian_tile)(from, guide, taps, tile, to);
-      });
+  return in_passes(std::move(noisy), guide, windows, HWY_DYNAMIC_DISPATCH(gaussian_tile));
 }
 
 }  // namespace ssdo

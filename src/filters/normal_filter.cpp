@@ -51,11 +51,8 @@ FilterPlanes filter_normal(FilterPlanes noisy, const Plane<Surfel>& guide, int /
                                               0.11453744493};
   std::vector<Tap> row;
   for (int i = -3; i <= 3; ++i) row.push_back({i, 0, float(kWeights[std::size_t(std::abs(i))])});
-  return in_passes(
-      std::move(noisy), guide, {row, transposed(row)},
-      [&](const FilterPlanes& from, const auto& taps, const Tile& tile, FilterPlanes& to) {
-        HWY_DYNAMIC_DISPATCH(normal_tile)(from, guide, taps, tile, to);
-      });
+  return in_passes(std::move(noisy), guide, {row, transposed(row)},
+                   HWY_DYNAMIC_DISPATCH(normal_tile));
 }
 
 }  // namespace ssdo
