@@ -185,7 +185,8 @@ std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
 
   ProjectionModel affine = fit_affine(samples);
   affine = fit_affine(inliers(affine, samples));
-  const double affine_rms = reprojection_rms(affine, inliers(affine, samples));
+  const Samples of_affine = inliers(affine, samples);
+  const double affine_rms = reprojection_rms(affine, of_affine);
 
   ProjectionModel model = direct_linear_transform(samples, window);
   Samples used = samples;
@@ -198,7 +199,7 @@ std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
   // with a focal length that means nothing.
   if ((affine_rms < 0.02 || affine_rms <= 1.02 * reprojection_rms(model, used)) &&
       (affine_rms > kNoCameraPx ||
-       axes_uncertainty(affine, samples, window) < kMostUncertainAxes)) {
+       axes_uncertainty(affine, of_affine, window) < kMostUncertainAxes)) {
     return camera_of(affine, samples, window);
   }
   if (is_flat(model, used) || !(focal_uncertainty(model, used) < 0.01)) return std::nullopt;
