@@ -318,8 +318,11 @@ TEST(MainJob, BrokenPixelsAreCountedAndMakeNoNaN) {
 TEST(MainJob, ValuesBeyondHalfAreClampedAndSaid) {
   const TempDir dir;
   write_frame(dir / "in.exr", frame_of(small_picture()));
-  const Finished done = relight({dir / "in.exr", "-o", dir / "out.exr", "--env", "1e6"});
+  const Finished done = relight(
+      {dir / "in.exr", "-o", dir / "out.exr", "--env", "1e6", "--stats", dir / "stats.json"});
   EXPECT_THAT(done.err, HasSubstr("clamped"));
+  EXPECT_THAT(parse_json(read_file(dir / "stats.json"))[0].at("warnings").dump(),
+              HasSubstr("clamped to 65504"));
   EXPECT_EQ(channel(dir / "out.exr", "direct.R")(0, 0), 65504);
 }
 

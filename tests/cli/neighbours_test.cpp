@@ -144,6 +144,22 @@ TEST_F(NeighboursOf, ARunHaveTheSameBitsInOneRunFrameByFrameAndForAnyThreads) {
             ao(1, {"--neighbours", "2", "--also", file(4)}).pixels);
 }
 
+/// A frame that takes its camera from another does not read its neighbours with it: the next frame,
+/// which tells its own, has the same neighbour.
+TEST_F(NeighboursOf, AFrameWithoutACameraAreReadAsThoseOfOthers) {
+  write_shot();
+  for (const int frame : {2, 3}) {
+    Picture picture = take_picture(boxes(), passing(frame), kFrame);
+    for (std::size_t i = 0; i < picture.position.size(); ++i)
+      if (i % 96 < 40 || i % 96 > 55 || i / 96 != 50)
+        picture.position[i] = picture.normal[i] = glm::vec3(0);
+    write_frame(file(frame), frame_of(picture));
+  }
+  const Plane<float> apart = ao(4, {"--neighbours", "1"});
+  ASSERT_EQ(run({"--neighbours", "1", "--frames", "2-4"}).code, 0);
+  EXPECT_EQ(channel(file(4, "out"), "ao.Y").pixels, apart.pixels);
+}
+
 TEST_F(NeighboursOf, AMovingThingAreLeftOutWhereItWas) {
   const Surface still = all_of({plane({}, {0, 0, 1}), Box{{0.8, 0, 0}, {1.2, 0.4, 0.6}}.surface()});
   const auto with_ball = [&](double x) { return all_of({still, sphere({x, -0.4, 0.45}, 0.45)}); };
