@@ -280,7 +280,7 @@ glm::mat3 rotation_to_gradients(const Candidate& candidate, const std::vector<Wi
     }
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(products,
                                                 Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Matrix3d u = svd.matrixU(), v = svd.matrixV();
+    const Eigen::Matrix3d &u = svd.matrixU(), &v = svd.matrixV();
     const Eigen::Vector3d proper(1, 1, (u * v.transpose()).determinant() < 0 ? -1 : 1);
     turn = u * proper.asDiagonal() * v.transpose() * turn;
   }
