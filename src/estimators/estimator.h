@@ -46,7 +46,7 @@ struct Openness {
   /// Of pixels that look above the horizon, the squared sines of their elevation: of those
   /// that show surfaces, and of those that show sky.
   double walls = 0, sky = 0;
-  double above = 0, pixels = 0;  ///< the number of those pixels, and of all
+  double above = 0, pixels = 0;  ///< how many do, by degrees near the horizon, and of how many
 };
 
 /// Beside a band, what is known of the frame that it is some rows of.

@@ -30,6 +30,7 @@ std::size_t place_positions(const GBuffer& g, const Camera& camera, DepthKind ki
   for_each_row(out.surfel.height, [&](int y) {
     for (int x = 0; x < out.surfel.width; ++x) {
       const std::size_t i = out.surfel.index(x, y);
+      if (!g.broken.empty() && g.broken[i]) out.surfel[i].rounding = Surfel::kBroken;
       if (!g.valid[i]) continue;
       glm::dvec3 p;
       double magnitude;
@@ -47,6 +48,7 @@ std::size_t place_positions(const GBuffer& g, const Camera& camera, DepthKind ki
       }
       if (!camera.panorama && !(float(p.z) < 0)) {
         ++behind[std::size_t(y)];
+        out.surfel[i].rounding = Surfel::kBroken;
         continue;
       }
       out.surfel[i].position = glm::vec3(p);

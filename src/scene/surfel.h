@@ -13,9 +13,13 @@ struct alignas(32) Surfel {
   float valid = 0;      ///< 1 on a surface, 0 on background and broken pixels; read by vectors
   glm::vec3 normal{0};  ///< unit, on the viewer's side
   float rounding = 0;   ///< distance by which the rounding of P as stored may have moved it
+  static constexpr float kBroken = -1;  ///< as `rounding`, where valid is 0 and is_broken() holds
 
   /// Whether there is a surface.
   bool is_surface() const { return valid != 0; }
+
+  /// Whether something is there that P does not place: it is not finite, or behind the camera.
+  bool is_broken() const { return rounding < 0; }
 
   /// Whether methods can work with it: a surface in front of the viewer, whose position has a
   /// square with room for sums, with a normal of about unit length. Methods take all else for

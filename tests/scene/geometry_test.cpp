@@ -122,11 +122,16 @@ TEST(Geometry, HasNormalsThatFaceTheViewerAndNoneMissing) {
   EXPECT_EQ(report.normals_turned, 1u);
 }
 
+/// What no P places is no background.
 TEST(Geometry, LeavesOutWhatLiesBehindTheCamera) {
   const Camera camera = view(false);
   GBuffer g = gbuffer_of(take_picture(ball_on_ground(), camera, kWindow));
   const std::size_t behind = g.position.index(5, 70);
   g.position[behind] = glm::vec3(0, -20, 8);
+  const std::size_t broken = behind + 3;
+  g.valid[broken] = 0;
+  g.broken = Plane<unsigned char>(kWindow.width(), kWindow.height());
+  g.broken[broken] = 1;
   const TempDir dir;
   write_camera(camera, dir / "camera.json");
   GeometryReport report;
@@ -134,6 +139,8 @@ TEST(Geometry, LeavesOutWhatLiesBehindTheCamera) {
       build_geometry(g, {(dir / "camera.json").string(), {}, {}}, "f", report);
   EXPECT_FALSE(geometry.is_surface(behind));
   EXPECT_TRUE(geometry.is_surface(behind + 1));
+  for (std::size_t i = 0; i < geometry.surfel.size(); ++i)
+    EXPECT_EQ(geometry.surfel[i].is_broken(), i == behind || i == broken) << i;
   EXPECT_THAT(report.warnings, ElementsAre(HasSubstr("1 positions lie behind the camera")));
 }
 

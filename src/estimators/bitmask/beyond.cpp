@@ -49,6 +49,7 @@ void add_openness(const MarchScene& scene, const Window& display, const glm::vec
   for (int y = first_y; y < rows.y1; y += kPeriod) {
     for (int x = -layout.phase() & (kPeriod - 1); x < layout.width(); x += kPeriod) {
       const std::ptrdiff_t i = layout.index(x, y);
+      if (!scene.shows_surface(i) && !scene.shows_background(x, y)) continue;
       const double sine = double(sine_above_horizon(scene, x, y, up)), weight = sine * sine;
       sum.pixels += 1;
       sum.above += std::min(1.0, sine / kAllAbove);

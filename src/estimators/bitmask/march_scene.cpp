@@ -112,16 +112,20 @@ glm::vec3 tangent_normal(const MarchScene& scene, int x, int y) {
   return glm::normalize(glm::vec3(aside, 1 + glm::dot(aside, slope)));
 }
 
-float reach_px(const Geometry& g, float radius) {
+float reach_px(float f, bool orthographic, const glm::vec3& point, float radius) {
   constexpr float kMargin = 1.01f;  // a march puts surfaces onto the middles of their pixels
-  const float f = kMargin * float(std::max(g.camera.fx, g.camera.fy)), r = radius;
-  if (g.camera.orthographic) return r * f;
+  if (orthographic) return kMargin * f * radius;
+  const float depth = -point.z, r = radius;
+  if (depth <= kMargin * r) return std::numeric_limits<float>::infinity();
+  return kMargin * f * r * glm::length(point) / (depth * (depth - r));
+}
+
+float reach_px(const Geometry& g, float radius) {
+  const auto f = float(std::max(g.camera.fx, g.camera.fy));
   float reach = 0;
   for (const Surfel& s : g.surfel.pixels) {
     if (!s.is_surface()) continue;
-    const float depth = -s.position.z, distance = glm::length(glm::vec3(s.position));
-    if (depth <= kMargin * r) return std::numeric_limits<float>::infinity();
-    reach = std::max(reach, f * r * distance / (depth * (depth - r)));
+    reach = std::max(reach, reach_px(f, g.camera.orthographic, s.position, radius));
   }
   return reach;
 }
@@ -152,6 +156,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                    g.window.y0 - g.display.y0,
                    frame.width(),
                    frame.height(),
+                   g.window.y0 - frame.y0,
                    g.surfel,
                    BorderLayout(layout),
                    {},

@@ -93,6 +93,7 @@ struct MarchScene : MarchPlanes {
   float axis_x, axis_y;           ///< pixel of the display window that the camera's axis meets
   int first_x, first_y;           ///< pixel (0, 0) in the display window
   int frame_width, frame_height;  ///< of the frame that the raster is all of, or some rows of
+  int frame_y;                    ///< rows of that frame above the raster
   /// What only receivers need: the normal that shading sees, by which light is weighed, and the
   /// rounding.
   const Plane<Surfel>& surfel;
@@ -102,6 +103,11 @@ struct MarchScene : MarchPlanes {
   BorderValues border_beyond;     ///< how far it may go on beyond the frame; empty: without limit
 
   bool shows_surface(std::ptrdiff_t i) const { return holds_solid(depth()[i]); }
+  /// Whether nothing is there. A pixel that shows neither tells nothing.
+  bool shows_background(int x, int y) const {
+    const Surfel& s = surfel(x, y);
+    return !s.is_surface() && !s.is_broken();
+  }
   Window raster() const { return {0, 0, layout.width(), layout.height()}; }
 };
 
@@ -111,8 +117,12 @@ glm::vec2 ray_slope(const MarchScene& scene, int x, int y);
 /// The unit normal of the tangent plane of what a pixel shows.
 glm::vec3 tangent_normal(const MarchScene& scene, int x, int y);
 
-/// How far away in the picture something within the radius of any surface may be, in pixels: as
-/// reach_px() of lanes-inl.h for the nearest. Infinite where that is within the radius itself.
+/// How far away in the picture something within the radius of a point, in camera space, may be, in
+/// pixels: as reach_px() of lanes-inl.h. Infinite where the camera is within the radius. `f` pixels
+/// per unit of slope, or per scene unit of an orthographic camera.
+float reach_px(float f, bool orthographic, const glm::vec3& point, float radius);
+
+/// The same of any surface.
 float reach_px(const Geometry& geometry, float radius);
 
 /// `receivers` as Request has them: in the coordinates of the geometry's window, and within it;

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "math/half_color.h"
 #include "parallel/tiles.h"
@@ -127,6 +128,7 @@ void find_background(GBuffer& g, std::optional<float> background_depth,
   const float empty = empty_from(g), empty_depth = g.position.empty() ? empty : kEmptyDepth,
               far = background_depth ? *background_depth * (1 - 1e-6f) : empty_depth;
   g.valid = Plane<unsigned char>(g.window.width(), g.window.height());
+  Plane<unsigned char> broken_pixels = Plane<unsigned char>::like(g.valid);
   std::atomic<std::size_t> background_pixels = 0, bad_pixels = 0;
   for_each_row(g.valid.height, [&](int y) {
     std::size_t background_in_row = 0, bad_in_row = 0;
@@ -149,13 +151,15 @@ void find_background(GBuffer& g, std::optional<float> background_depth,
         background |= broken && !depth_of_position;
       }
       background_in_row += background;
-      bad_in_row += !background && broken;
+      broken_pixels[i] = !background && broken;
+      bad_in_row += broken_pixels[i];
       g.valid[i] = !background && !broken;
     }
     background_pixels += background_in_row, bad_pixels += bad_in_row;
   });
   g.background_pixels += background_pixels;
   g.bad_pixels += bad_pixels;
+  g.broken = bad_pixels > 0 ? std::move(broken_pixels) : Plane<unsigned char>();
 }
 
 }  // namespace ssdo

@@ -14,11 +14,11 @@ inline constexpr float kEmptyDepth = 1e9f;
 /// Relative rounding of half floats, which keep 11 bits.
 inline constexpr float kStepHalf = 1.0f / 2048;
 
-/// Fills `valid` and counts background and broken pixels. A pixel is background where anything says
-/// so: alpha is 0; P is 0, not finite, or kEmptyDepth or more, or what half cannot hold where it is
-/// stored in half; N is 0; or the depth is `background_depth` or more, not finite, 0 or less. P or
-/// N of 0 does not count where the depth agrees with P there, and N of 0 does not count in a layer
-/// that is 0 everywhere. So are all pixels outside `lead_window`.
+/// Fills `valid` and `broken`, and counts background and broken pixels. A pixel is background where
+/// anything says so: alpha is 0; P is 0, not finite, or kEmptyDepth or more, or what half cannot
+/// hold where it is stored in half; N is 0; or the depth is `background_depth` or more, not finite,
+/// 0 or less. P or N of 0 does not count where the depth agrees with P there, and N of 0 does not
+/// count in a layer that is 0 everywhere. So are all pixels outside `lead_window`.
 ///
 /// Encodings `known` from all of a frame hold for a part of it; else they are found here.
 ///

@@ -74,7 +74,7 @@ double on_floor(const View& view, const Environment& environment, double y0, dou
   return sum / pixels;
 }
 
-constexpr int kFromLeft = 0, kFromBehindLeft = 52, kRow30 = 10, kRow45 = 7;
+constexpr int kFromLeft = 0, kFromBehindLeft = 52, kFromAheadLeft = 10, kRow30 = 10, kRow45 = 7;
 
 TEST(BitmaskBeyond, TheSkyComesThroughByHalfAndASunDoesNot) {
   EXPECT_FLOAT_EQ(pass_beyond(1, 0).through, 0);
@@ -191,9 +191,157 @@ TEST(BitmaskBeyond, ExtentsAreThoseThatTheFrameShows) {
     EXPECT_NEAR(e.seen[0], 6 - p.position.y, 0.3) << y;
     EXPECT_NEAR(e.seen[1], p.position.y - nearest, 0.3) << y;
     EXPECT_NEAR(e.seen[2], 2 - p.position.z, 0.15) << y;
+    EXPECT_LT(e.most[2], 0.1) << "the frame shows the top in row " << y;
     ++found;
   }
   EXPECT_GT(found, 5);
+}
+
+constexpr Window kWide{0, 0, 96, 64};
+
+/// From the origin along y, `width` wide; z up.
+Camera level_ortho(double width, double back = 0, const Window& window = kWide) {
+  return look_at(camera_from_ortho_width(width, window, 1), {0, -back, 0}, {0, 1, 0}, {0, 0, 1});
+}
+
+/// A part of the plane y = `y`, which faces the camera.
+template <class Within>
+Surface front(double y, const Within& within) {
+  return cut(plane({0, y, 0}, {0, -1, 0}), [=](const glm::dvec3& p) { return within(p.x, p.z); });
+}
+
+/// Those of the pixels at the left border, from top to bottom.
+std::vector<BorderExtent> extents_at_left(const Geometry& g, float radius = kNoLimit) {
+  const MarchScene scene = make_march_scene(g, guess_solids(g));
+  const CutSurfaces cut = find_cut_surfaces(scene, g.world_to_camera * glm::vec3(0, 0, 1), radius);
+  std::vector<BorderExtent> extents;
+  for (int y = 0; y < g.surfel.height; ++y)
+    extents.push_back(cut.extents[std::size_t(scene.border.in_column(false, y))]);
+  return extents;
+}
+
+void expect_same_extents(const std::vector<BorderExtent>& a, const std::vector<BorderExtent>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t y = 0; y < a.size(); ++y) {
+    for (int k = 0; k < 4; ++k) {
+      EXPECT_NEAR(a[y].seen[k], b[y].seen[k], 1e-3) << y << " " << k;
+      EXPECT_NEAR(a[y].most[k], b[y].most[k], 1e-3) << y << " " << k;
+    }
+  }
+}
+
+/// An orthographic camera may stand anywhere on its axis.
+TEST(BitmaskBeyond, ExtentsDoNotDependOnWhereAnOrthographicCameraStands) {
+  const Surface scene =
+      all_of({front(8, [](double x, double) { return x < 2; }),
+              front(6, [](double x, double) { return x > -3.4 && x < -2.4; })});  // hides a part
+  const auto extents = [&](double back) {
+    return extents_at_left(geometry_of(scene, level_ortho(8, back), kWide));
+  };
+  expect_same_extents(extents(0), extents(40));
+}
+
+/// Of large frames, walks skip pixels far away, but not next to the border.
+TEST(BitmaskBeyond, ExtentsAreSeenToThePixel) {
+  const Window window{0, 0, 1920, 24};
+  const double pixel = 40.0 / 1920;
+  const Surface scene = front(8, [&](double x, double) { return x < -20 + 8 * pixel; });
+  for (const BorderExtent& e :
+       extents_at_left(geometry_of(scene, level_ortho(40, 0, window), window)))
+    EXPECT_NEAR(e.seen[0], 7 * pixel, 0.1 * pixel);
+}
+
+/// The lower part of a wall ends, the upper part goes on behind what stands before it. Where one
+/// becomes longer than the other, the end that is seen does not vanish at once.
+TEST(BitmaskBeyond, AnEndIsNotLostToALongerRun) {
+  const double pixel = 8.0 / 96;
+  float before = 0;
+  for (int longer = -12; longer <= 12; ++longer) {
+    const double upper = (0.25 + longer) * pixel, lower = 0.25 * pixel;
+    const Surface scene =
+        all_of({front(8, [=](double x, double z) { return z > 0 || x < lower; }),
+                front(6, [=](double x, double z) { return z > 0 && x > upper; })});
+    const float most = extents_at_left(geometry_of(scene, level_ortho(8), kWide))[31].most[0];
+    if (longer > -12) EXPECT_NEAR(most / before, 1, 0.25) << longer;
+    before = most;
+  }
+}
+
+/// A radius that the whole scene is within changes nothing. The top of this wall is nine pixels
+/// below the border, so that it is not quite known to end there.
+TEST(BitmaskBeyond, AnEndAtTheTopIsGradedWithARadiusToo) {
+  const double pixel = 8.0 / 96;
+  const Surface scene = front(8, [=](double x, double z) { return x < 2 && z < 23.25 * pixel; });
+  const Geometry g = geometry_of(scene, level_ortho(8), kWide);
+  const std::vector<BorderExtent> extents = extents_at_left(g);
+  EXPECT_GT(extents[40].most[2], 0.2);
+  expect_same_extents(extents, extents_at_left(g, 100));
+}
+
+/// Broken pixels are no sky: they end nothing, and do not make a place open.
+TEST(BitmaskBeyond, BrokenPixelsTellNothing) {
+  const Surface scene = front(8, [](double x, double z) { return x < 2 && z < 1; });
+  Geometry g = geometry_of(scene, level_ortho(8), kWide);
+  const std::vector<BorderExtent> known = extents_at_left(g);
+  for (Surfel& s : g.surfel.pixels)
+    if (!s.is_surface()) s.rounding = Surfel::kBroken;
+  const std::vector<BorderExtent> extents = extents_at_left(g);
+  EXPECT_NEAR(extents[40].seen[2], known[40].seen[2], 1e-3);
+  EXPECT_GT(extents[40].most[2], 10 * known[40].most[2]);
+
+  const MarchScene march_scene = make_march_scene(g, guess_solids(g));
+  Openness sum;
+  add_openness(march_scene, kWide, {0, 1, 0}, kNoLimit, march_scene.raster(), sum);
+  EXPECT_GT(sum.surfaces, 0);
+  EXPECT_EQ(sum.pixels, sum.surfaces);
+  EXPECT_EQ(sum.sky, 0);
+}
+
+/// The left border cuts a wall that ends just below the upper one. Rays that leave the frame on
+/// both sides of the corner between them meet it alike.
+TEST(BitmaskBeyond, WhatHidesDoesNotJumpAtACorner) {
+  const Window window{0, 0, 480, 320};
+  const Camera camera = look_at(camera_from_fov(45, window, 1), {0, 0, 1}, {0, 1, 1}, {0, 0, 1});
+  const double half_x = 10 * std::tan(glm::radians(22.5)), half_z = half_x * 64 / 96;
+  const Surface scene =
+      all_of({plane({}, {0, 0, 1}),
+              front(10, [=](double x, double z) { return x < 0 && z < 1 + half_z - 0.01; })});
+  const Geometry g = geometry_of(scene, camera, window);
+  const Solids solids = guess_solids(g);
+  const Environment environment = sun_at(kFromAheadLeft, kRow30);
+  const Products out = run(g, {.radius = kNoLimit,
+                               .environment = environment,
+                               .products = {.ao = true, .direct = true},
+                               .slices = 1,
+                               .steps = 16,
+                               .solids = &solids});
+  const Light light = model_light(environment, g.world_to_camera);
+  const glm::vec3 in_camera = light.suns.at(0).direction;
+  const glm::dvec3 to_sun = glm::transpose(camera.rotation) * glm::dvec3(in_camera);
+  // Where rays to it lead.
+  const glm::dvec2 sun = camera.project(glm::dvec3(in_camera));
+  double sum[2] = {}, pixels[2] = {};
+  for (int y = 0; y < window.height(); ++y) {
+    for (int x = 0; x < window.width(); ++x) {
+      if (!g.is_surface(g.surfel.index(x, y))) continue;
+      const Point p = point_at(scene, camera, window, x, y);
+      if (p.position.z > 1e-6 || p.position.y > 10) continue;
+      const glm::dvec3 at_wall = p.position + (10 - p.position.y) / to_sun.y * to_sun;
+      const glm::dvec2 meets = camera.project(camera.to_camera(at_wall)), at(x + 0.5, y + 0.5),
+                       way = glm::normalize(sun - at);
+      if ((meets.x > -1 && meets.y > -1) || std::min(meets.x, meets.y) < -6) continue;
+      const double beside_px = way.y * at.x - way.x * at.y;  // of the corner
+      if (std::abs(beside_px) > 4) continue;
+      const int side = beside_px > 0;
+      sum[side] += double(out.direct(x, y).x / light.unoccluded({0, 1, 0}).x);
+      pixels[side] += 1;
+    }
+  }
+  ASSERT_GT(std::min(pixels[0], pixels[1]), 20);
+  fmt::print("beside a corner: {:.3f} and {:.3f} of the sun\n", sum[0] / pixels[0],
+             sum[1] / pixels[1]);
+  EXPECT_NEAR(sum[0] / pixels[0], sum[1] / pixels[1], 0.1);
+  EXPECT_LT(sum[0] / pixels[0], 0.4) << "through the top";
 }
 
 }  // namespace

@@ -197,6 +197,9 @@ TEST(Background, CountsWhatIsNotANumberAsBrokenWhereDepthShowsASurface) {
   }
   find_background(g, std::nullopt);
   EXPECT_EQ(g.bad_pixels, broken);
+  for (std::size_t i = 0; i < g.broken.size(); ++i)
+    EXPECT_EQ(bool(g.broken[i]), i % 9 == 0 && picture.valid[i]) << i;
+  EXPECT_EQ(g.broken.size(), g.valid.size());
   EXPECT_EQ(g.background_pixels, kWindow.area() - surfaces(picture));
 }
 

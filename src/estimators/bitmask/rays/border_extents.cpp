@@ -32,58 +32,91 @@ constexpr float kSameWay = 0.7f;
 
 /// A surface ends where others are seen behind its plane for so many pixels and a share of those
 /// over which it was seen: windows and gaps between houses are no ends. Behind what stands before
-/// it, it goes on if it is seen again before it would be twice as long, or this share of its depth.
+/// it, it goes on if it is seen again before it would be twice as long, or this share of the
+/// diagonal of the frame at its depth.
 constexpr float kGapPx = 3, kGapShare = 0.15f, kHiddenShare = 0.15f;
 
-/// A walk across the frame looks at about this many pixels: of larger frames some are skipped. So
-/// many others start from each walk, at right angles, to both sides.
-constexpr int kMostPixels = 128, kWalksAcross = 3;
+/// The steps of a walk grow with the way, by one pixel in so many, up to this share of the frame.
+/// So many other walks start from each, at right angles, to both sides.
+constexpr int kPixelsPerStep = 8, kMostSteps = 128, kWalksAcross = 3;
 
 constexpr glm::ivec2 kWays[4] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
 
-/// Where a walk over the frame has last met the surface.
+/// What a walk over the frame has met of the surface.
 struct Run {
-  glm::vec3 to{0};  ///< from the pixel at the border
-  int px = 0;       ///< walked
-  float cut = 1;    ///< 0..1: 1 where the border or something before it hides where it ends
+  glm::vec3 from{0}, to{0};  ///< where it begins and last met it, from the pixel at the border
+  int px = 0;                ///< walked
+  float cut = 1;  ///< 0..1: 1 where the border or something before it hides where it ends
+};
+
+/// How far a surface is seen along one axis, and whether it ends there. Of walks that end at about
+/// the same place some may have seen the end and others not: they count by the fourth power of how
+/// far they came, which goes over from one to another smoothly, and by how much they led along the
+/// axis. What a walk along the top of a wall meets tells nothing of its height.
+class SeenAlong {
+ public:
+  explicit SeenAlong(const glm::vec3& axis) : axis_(axis) {}
+
+  void add(const Run& run) {
+    const double seen = double(glm::dot(run.to, axis_));
+    if (!(seen > 0)) return;
+    seen_ = std::max(seen_, float(seen));
+    const glm::vec3 way = run.to - run.from;
+    const double along = double(glm::dot(way, axis_)) / double(glm::length(way));
+    if (!(along > 0)) return;
+    const double seen2 = seen * seen, weight = seen2 * seen2 * along * along;
+    weights_ += weight, cut_ += weight * double(run.cut);
+  }
+
+  float seen() const { return seen_; }
+  float cut() const { return weights_ > 0 ? float(cut_ / weights_) : 1; }
+
+ private:
+  const glm::vec3 axis_;
+  float seen_ = 0;
+  double weights_ = 0, cut_ = 0;
 };
 
 /// The surface of one pixel at the border.
 class CutSurface {
  public:
-  CutSurface(const MarchScene& scene, const glm::ivec2& at, std::ptrdiff_t border_index)
-      : scene_(scene), at_(at), start_(position(at)) {
+  CutSurface(const MarchScene& scene, const glm::ivec2& at, std::ptrdiff_t border_index,
+             float radius)
+      : scene_(scene),
+        at_(at),
+        start_(position(at)),
+        radius_(radius),
+        reach_px_(reach_px(std::max(scene.fx, scene.fy), scene.orthographic, start_, radius)),
+        diagonal_px_(std::hypot(float(scene.frame_width), float(scene.frame_height))) {
     for (int c = 0; c < 3; ++c) normal_[c] = scene.border_normal[c][std::size_t(border_index)];
   }
 
-  BorderExtent extent(const glm::vec3& up, float radius) const {
+  BorderExtent extent(const glm::vec3& up) const {
     const glm::vec3 axis = glm::cross(up, normal_) + kAxisOfLevelPlanes,
                     right = glm::normalize(axis - glm::dot(axis, normal_) * normal_),
                     uphill = glm::cross(normal_, right);
-    const glm::vec3 axes[4] = {right, -right, uphill, -uphill};
-    BorderExtent extent;
-    float cut[4] = {1, 1, 1, 1};
+    SeenAlong along[4] = {SeenAlong(right), SeenAlong(-right), SeenAlong(uphill),
+                          SeenAlong(-uphill)};
     const auto add = [&](const Run& run) {
-      for (int k = 0; k < 4; ++k) {
-        const float seen = glm::dot(run.to, axes[k]);
-        if (seen > extent.seen[k]) extent.seen[k] = seen, cut[k] = run.cut;
-      }
+      for (SeenAlong& axis : along) axis.add(run);
     };
     for (const glm::ivec2& way : kWays) {
-      const Run run = walk(at_, way, radius);
+      const Run run = walk(at_, way);
       add(run);
       for (int k = 1; k <= kWalksAcross && run.px > 0; ++k) {
         const glm::ivec2 from = at_ + way * (run.px * k / kWalksAcross), across(way.y, way.x);
-        add(walk(from, across, radius));
-        add(walk(from, -across, radius));
+        add(walk(from, across));
+        add(walk(from, -across));
       }
     }
+    BorderExtent extent;
+    for (int k = 0; k < 4; ++k) extent.seen[k] = along[k].seen();
     const float level = 1 - std::abs(glm::dot(uphill, up)), wide = extent.seen[0] + extent.seen[1],
                 high = extent.seen[2] + extent.seen[3],
                 most[2] = {kMostAside * std::max(wide, level * high),
                            glm::mix(kMostUp * high, kMostAside * std::max(wide, high), level)};
     for (int k = 0; k < 4; ++k) {
-      const float share = kEndShare + (1 - kEndShare) * cut[k];
+      const float share = kEndShare + (1 - kEndShare) * along[k].cut();
       extent.most[k] = std::max(most[k / 2] * share, footprint(-start_.z));
     }
     return extent;
@@ -99,22 +132,35 @@ class CutSurface {
     return {ray_slope(scene_, at.x, at.y) * (scene_.orthographic ? 1 : depth), -depth};
   }
 
+  /// Pixels from one to the border of the frame, of which the raster may be some rows.
+  int to_border(const glm::ivec2& from, const glm::ivec2& way) const {
+    const int x = from.x, y = scene_.frame_y + from.y;
+    return way.x != 0 ? (way.x > 0 ? scene_.frame_width - 1 - x : x)
+                      : (way.y > 0 ? scene_.frame_height - 1 - y : y);
+  }
+
   /// From a pixel on, in the direction `way`.
-  Run walk(const glm::ivec2& from, const glm::ivec2& way, float radius) const {
-    const int w = scene_.layout.width(), h = scene_.layout.height();
-    const int size = way.x != 0 ? scene_.frame_width : scene_.frame_height,
-              step = std::max(1, size / kMostPixels),
-              to_border = way.x != 0 ? (way.x > 0 ? w - 1 - from.x : from.x)
-                                     : (way.y > 0 ? h - 1 - from.y : from.y);
-    Run run;
-    float reaches = 2 * glm::length(position(from) - start_) + kHiddenShare * -start_.z;
+  Run walk(const glm::ivec2& from, const glm::ivec2& way) const {
+    const int largest_step =
+        std::max(1, (way.x != 0 ? scene_.frame_width : scene_.frame_height) / kMostSteps);
+    Run run{position(from) - start_};
+    // What the pixel at the border shows is half a pixel of it, and may end there.
+    const glm::vec3 aside(way.x, -way.y, 0);
+    if (from == at_)
+      run.to = 0.5f * footprint(-start_.z) * (aside - glm::dot(aside, normal_) * normal_);
+    float reaches = 2 * glm::length(run.from) + kHiddenShare * diagonal_px_ * footprint(-start_.z);
     int gap = 0;
-    for (int px = step; px <= to_border; px += step) {
+    for (int px = 1, step = 1; float(px) <= reach_px_; px += step) {
+      step = std::clamp(px / kPixelsPerStep, 1, largest_step);
       const glm::ivec2 at = from + way * px;
+      if (!scene_.raster().contains(at.x, at.y)) return run;
+      if (!scene_.shows_surface(scene_.layout.index(at.x, at.y)) &&
+          !scene_.shows_background(at.x, at.y))
+        continue;
       const glm::vec3 there = position(at), to = there - start_;
       const float above = glm::dot(to, normal_), length = glm::length(to),
                   tolerance = kPlaneShare * length + kPlanePx * footprint(-there.z);
-      if (length > radius) return run;
+      if (length > radius_) return run;
       if (above > tolerance) continue;
       if (above >= -tolerance && length <= reaches) {
         if (glm::dot(tangent_normal(scene_, at.x, at.y), normal_) < kSameWay) continue;
@@ -125,11 +171,8 @@ class CutSurface {
       }
       gap += step;
       if (float(gap) < kGapPx + kGapShare * float(run.px)) continue;
-      const float margin_px =
-          kEndMargin * std::hypot(float(scene_.frame_width), float(scene_.frame_height));
-      // Some rows of a frame, as are read for a radius, do not tell how far its border is.
-      const bool may_be_part = way.y != 0 && std::isfinite(radius);
-      run.cut = may_be_part ? 0.0f : 1 - std::min(1.0f, float(to_border - run.px) / margin_px);
+      const float margin_px = kEndMargin * diagonal_px_;
+      run.cut = 1 - std::min(1.0f, float(to_border(from, way) - run.px) / margin_px);
       return run;
     }
     return run;
@@ -138,6 +181,7 @@ class CutSurface {
   const MarchScene& scene_;
   const glm::ivec2 at_;
   const glm::vec3 start_;
+  const float radius_, reach_px_, diagonal_px_;
   glm::vec3 normal_{0};
 };
 
@@ -148,7 +192,7 @@ CutSurfaces find_cut_surfaces(const MarchScene& scene, const glm::vec3& up, floa
   CutSurfaces cut{up, std::vector<BorderExtent>(scene.border.size())};
   const auto find = [&](int x, int y, std::ptrdiff_t index) {
     if (!scene.shows_surface(scene.layout.index(x, y))) return;
-    cut.extents[std::size_t(index)] = CutSurface(scene, {x, y}, index).extent(up, radius);
+    cut.extents[std::size_t(index)] = CutSurface(scene, {x, y}, index, radius).extent(up);
   };
   for_each_row(w, [&](int x) {
     for (const bool last : {false, true}) find(x, last ? h - 1 : 0, scene.border.in_row(last, x));
