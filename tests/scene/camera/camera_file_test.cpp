@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What describes no camera is refused (issue 18); tests/cli/camera_file_test.cpp has what comes
-// back.
+// What describes no camera is refused (issue 18). What `ssdo info` writes is read back in
+// tests/cli/camera_file_test.cpp.
 #include <gmock/gmock.h>
 
 #include <fstream>

@@ -53,13 +53,21 @@ float to_srgb(float v) {
   return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
 }
 
-/// P to the box that the surfaces fill, each axis for itself or all by the longest.
+/// The box that the surfaces fill.
+struct Bounds {
+  glm::vec3 low{1e9f}, high{-1e9f};
+
+  Bounds() {
+    const GBuffer g = gbuffer_of(still_life());
+    for (const glm::vec3& q : g.position.pixels) low = glm::min(low, q), high = glm::max(high, q);
+  }
+};
+
+/// P to that box, each axis for itself or all by the longest.
 glm::vec3 in_box(const glm::vec3& p, bool each) {
-  const GBuffer g = gbuffer_of(still_life());
-  glm::vec3 low(1e9f), high(-1e9f);
-  for (const glm::vec3& q : g.position.pixels) low = glm::min(low, q), high = glm::max(high, q);
-  const glm::vec3 size = high - low;
-  return (p - low) / (each ? size : glm::vec3(std::max({size.x, size.y, size.z})));
+  static const Bounds box;  // a picture of it for every pixel took most of the time of these tests
+  const glm::vec3 size = box.high - box.low;
+  return (p - box.low) / (each ? size : glm::vec3(std::max({size.x, size.y, size.z})));
 }
 
 TEST(PositionCheck, AcceptsPositions) {

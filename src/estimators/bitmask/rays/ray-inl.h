@@ -226,7 +226,7 @@ class Occluders {
     if (far_) far_->run();
   }
 
-  /// Of the rays that were asked about; `pass` is that of open_beyond().
+  /// What of the rays asked about arrives; `pass` is that of open_beyond().
   HWY_INLINE Arrival arrival(VI places, const MarchReceiver& p, const Ray& ray,
                              const PassBeyond& pass) const {
     const V at_px = blocked_px(places);
@@ -235,7 +235,7 @@ class Occluders {
     a.blocked_at = hn::IfThenElse(hn::And(ray.open, meets),
                                   way_along<kOrthographic>(ray.in_slice, p, at_px), set(kFarAway));
     M open = hn::AndNot(meets, ray.open);
-    if (march_.further && any(open)) open = past_further(p, ray, open);
+    if (march_.other_views && any(open)) open = past_other_views(p, ray, open);
     V share = set(1);
     if (march_.cut && any(open)) {
       constexpr int kMembers = Interleaving::kPeriod * Interleaving::kPeriod;
@@ -259,13 +259,13 @@ class Occluders {
   }
 
   /// Which open lanes see past what other views show.
-  HWY_INLINE M past_further(const MarchReceiver& p, const Ray& ray, M open) const {
+  HWY_INLINE M past_other_views(const MarchReceiver& p, const Ray& ray, M open) const {
     const Lanes3 start(start_of_rays(march_.scene, p)), to(ray.to);
     const V reach = hn::Min(ray.length, set(march_.radius));
     const Lanes looks(hn::IfThenElse(open, reach, set(-1)));
     return by_lane([&](int lane) HWY_ATTR {
              return looks[lane] >= 0 &&
-                    !march_.further->is_blocked(start[lane], to[lane], looks[lane]);
+                    !march_.other_views->is_blocked(start[lane], to[lane], looks[lane]);
            }) > set(0);
   }
 
