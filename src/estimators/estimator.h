@@ -43,10 +43,11 @@ struct FarScene;
 /// What a frame shows of how open the place is, added up over its pixels.
 struct Openness {
   double ao = 0, surfaces = 0;  ///< the ao of surfaces, and their number
-  /// Of pixels that look above the horizon, the squared sines of their elevation: of those
-  /// that show surfaces, and of those that show sky.
+  /// Sums of the squared sine of elevation over pixels above the horizon: those that show surfaces,
+  /// and those that show sky.
   double walls = 0, sky = 0;
-  double above = 0, pixels = 0;  ///< how many do, by degrees near the horizon, and of how many
+  double above = 0, pixels = 0;  ///< pixels above the horizon, which those near it count for in
+                                 ///< part, and all pixels that tell
 };
 
 /// Beside a band, what is known of the frame that it is some rows of.
