@@ -98,7 +98,7 @@ class CutSurface {
     SeenAlong along[4] = {SeenAlong(right), SeenAlong(-right), SeenAlong(uphill),
                           SeenAlong(-uphill)};
     const auto add = [&](const Run& run) {
-      for (SeenAlong& axis : along) axis.add(run);
+      for (SeenAlong& direction : along) direction.add(run);
     };
     for (const glm::ivec2& way : kWays) {
       const Run run = walk(at_, way);
