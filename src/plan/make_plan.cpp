@@ -15,7 +15,7 @@
 #include "plan/composite_choice.h"
 #include "plan/product_choice.h"
 #include "scene/light/distant_source.h"
-#include "scene/solids/solids.h"
+#include "scene/solids/width_of_run.h"
 
 namespace ssdo {
 namespace {

@@ -108,14 +108,14 @@ const std::vector<IdleRule<Purpose>>& rules_of_options() {
        "composite occlude does not use it, and no output has bounce"},
       {{"--bounces"},
        [](const FrameOptions& o, Purpose purpose) {
-         return work == Purpose::relight && o.model.bounces > 0 && !o.model.error &&
+         return purpose == Purpose::relight && o.model.bounces > 0 && !o.model.error &&
                 choose_compose(o.output, o.input.aovs) != Compose::occlude &&
                 !shows_composite(o.output) && !asks_for(o, {"bounce", "composite", "error"});
        },
        "no output has bounce or the composite"},
       {{"--set roughness"},
        [](const FrameOptions& o, Purpose purpose) {
-         return work == Purpose::relight && sets(o.model, "roughness") &&
+         return purpose == Purpose::relight && sets(o.model, "roughness") &&
                 !asks_for(o, {"reflection"}) && !has_specular(o.input.aovs);
        },
        "no output has reflection"},
@@ -133,10 +133,10 @@ const std::vector<IdleRule<Purpose>>& rules_of_options() {
        },
        "method {method} does not look behind what is seen"},
       {{"--compose"},
-       [](const FrameOptions&, Purpose purpose) { return work == Purpose::bench; },
+       [](const FrameOptions&, Purpose purpose) { return purpose == Purpose::bench; },
        "bench measures no composite"},
       {{"--mem-limit"},
-       [](const FrameOptions&, Purpose purpose) { return work == Purpose::bench; },
+       [](const FrameOptions&, Purpose purpose) { return purpose == Purpose::bench; },
        "bench measures whole frames"},
       {{"--products"},
        [](const FrameOptions& o, Purpose) {
