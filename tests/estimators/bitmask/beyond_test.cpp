@@ -12,6 +12,7 @@
 
 #include "estimators/bitmask/rays/border_extents.h"
 #include "estimators/bitmask/request.h"
+#include "support/sun_of.h"
 
 namespace ssdo::test {
 namespace {
@@ -262,7 +263,9 @@ TEST(BitmaskBeyond, AnEndIsNotLostToALongerRun) {
         all_of({front(8, [=](double x, double z) { return z > 0 || x < lower; }),
                 front(6, [=](double x, double z) { return z > 0 && x > upper; })});
     const float most = extents_at_left(geometry_of(scene, level_ortho(8), kWide))[31].most[0];
-    if (longer > -12) EXPECT_NEAR(most / before, 1, 0.25) << longer;
+    if (longer > -12) {
+      EXPECT_NEAR(most / before, 1, 0.25) << longer;
+    }
     before = most;
   }
 }
@@ -316,7 +319,7 @@ TEST(BitmaskBeyond, WhatHidesDoesNotJumpAtACorner) {
                                .steps = 16,
                                .solids = &solids});
   const Light light = model_light(environment, g.world_to_camera);
-  const glm::vec3 in_camera = light.suns.at(0).direction;
+  const glm::vec3 in_camera = sun_of(light).direction;
   const glm::dvec3 to_sun = glm::transpose(camera.rotation) * glm::dvec3(in_camera);
   // Where rays to it lead.
   const glm::dvec2 sun = camera.project(glm::dvec3(in_camera));
@@ -333,7 +336,7 @@ TEST(BitmaskBeyond, WhatHidesDoesNotJumpAtACorner) {
       const double beside_px = way.y * at.x - way.x * at.y;  // of the corner
       if (std::abs(beside_px) > 4) continue;
       const int side = beside_px > 0;
-      sum[side] += double(out.direct(x, y).x / light.unoccluded({0, 1, 0}).x);
+      sum[side] += double(out.direct(x, y).x / light.unoccluded({}, {0, 1, 0}).x);
       pixels[side] += 1;
     }
   }
