@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "color/display_image.h"
+#include "color/downsample.h"
 #include "support/scene_of.h"
 
 namespace ssdo::test {
