@@ -29,7 +29,7 @@ const std::map<std::string, std::set<std::string>> kBelow = {
     {"simd", {"math"}},
     {"parallel", {"math"}},
     {"io", {"math", "parallel"}},
-    {"metrics", {"io", "math", "parallel"}},
+    {"metrics", {"scene", "io", "math", "parallel"}},
     {"scene", {"io", "math", "simd", "parallel"}},
     {"estimators", {"scene", "math", "simd", "parallel"}},
     {"filters", {"estimators", "scene", "math", "simd", "parallel"}},

@@ -13,8 +13,11 @@
 // 32 sectors divide a side equally in cos t, which is in solid angle. A solid of a pixel hides
 // those between its front and its back, which lies behind it on its own view ray; a mask gathers
 // them near to far. Then M(hidden) of the sectors that are hidden gives ao and direct light, by the
-// equations at the head of bitmask/visibility.cpp, where visibility() computes them; bounce light
-// is in bitmask/bounce.cpp.
+// equations at the head of bitmask/visibility.cpp, where visibility() sums M and Moments::ao()
+// divides (bitmask/moments-inl.h); bounce light is in bitmask/bounce.cpp.
+//
+// A march covers one side of a slice in a few steps and finds sectors (bitmask/side-inl.h). A walk
+// follows single rays over the frame (bitmask/rays/): to sources, bright senders and mirrored things.
 //
 // What differs from the sources, and why:
 // - w = 1 / |T~|^2, T~ the part of the slice's picture direction that is perpendicular to V. Slices
@@ -36,10 +39,9 @@
 // - A sampled pixel represents the stretch of the march up to halfway to the samples before and
 //   after it (bitmask/piece-inl.h). Treated as points, few samples miss too much: 16 steps that
 //   represent their stretches are nearer to the limit than 24 points.
-// - Backs, layers of solids behind what is seen (scene/solids/solids.cpp) and surfaces beyond the
-// frame
-//   (bitmask/extension-inl.h) are guesses that GTAO does not make. How much light comes through
-//   what is beyond: bitmask/beyond.h, bitmask/rays/border_extents.h.
+// - GTAO does not guess backs, layers of solids behind what is seen (scene/solids/solids.cpp) and
+//   surfaces beyond the frame (bitmask/extension-inl.h). How much light comes through the latter:
+//   bitmask/beyond.h, bitmask/rays/border_extents.h.
 // - What only other views show may be anywhere, behind the camera too: rays ask it for the
 //   sectors that the march leaves open (bitmask/other_views-inl.h).
 #include "estimators/bitmask.h"

@@ -40,7 +40,7 @@ using MapFilter = std::function<Plane<float>(Plane<float> map, const Plane<Surfe
 /// method that works on bands has its own.
 struct FarScene;
 
-/// What a frame shows of how open the place is, added up over its pixels.
+/// Sums over the pixels of a frame, from which sun_past_beyond() estimates how enclosed it is.
 struct Openness {
   double ao = 0, surfaces = 0;  ///< the ao of surfaces, and their number
   /// Sums of the squared sine of elevation over pixels above the horizon: those that show surfaces,
@@ -53,7 +53,8 @@ struct Openness {
 /// Beside a band, what is known of the frame that it is some rows of.
 struct AroundBand {
   std::shared_ptr<const FarScene> far;  ///< of the whole frame
-  bool marches_on = false;  ///< in `far`, beyond `reach_rows`; else nothing there is in reach
+  bool marches_on = false;  ///< marches go on in `far` beyond `reach_rows`; false: nothing there
+                            ///< is within reach
   int reach_rows = 0;       ///< above and below a pixel: those that block what it gathers
   std::optional<Openness> openness = {};  ///< of the frame; not known: that of `far`
 };
@@ -74,8 +75,8 @@ struct Request {
   /// empty.
   MapFilter filter_half = {};
   bool shares_suffice = false;  ///< `direct` may stay empty where Products::shares make it up
-  /// Pixels that gather, within the geometry's window: products have its size, and all of the
-  /// geometry blocks and sends. Area 0: the whole window.
+  /// Pixels that gather light: a part of the geometry's window. Products have the size of the part.
+  /// All pixels of the geometry occlude and send light. Area 0: the whole window.
   Window receivers = {};
   /// Set where the geometry is a band: its rows reach at least (1 + bounces) x reach_rows beyond
   /// the receivers, or to the frame's border.

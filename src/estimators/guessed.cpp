@@ -80,7 +80,7 @@ class Guesses {
           std::pow(diagonal, std::pow((float(i) + 0.5f) / float(distances_.size()), kCloser));
   }
 
-  /// Puts all depths side by side, which pays for many rays.
+  /// Copies the depths from the surfels into a plane of their own: faster if many rays follow.
   void gather_depths() {
     Plane<float> depth = Plane<float>::like(surfel_);
     for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = depth_at(i);
@@ -122,7 +122,8 @@ class Guesses {
   }
 
  private:
-  /// Exponent of the places' distances, and how many sets of them there are.
+  /// Exponent that crowds the places towards the start of a ray; the number of sets of places,
+  /// which differ in their distances; and the step from the set of one ray to that of the next.
   static constexpr float kCloser = 0.7f;
   static constexpr int kSets = 16, kSpread = 5;
 

@@ -49,9 +49,9 @@ inline constexpr float kGuessBehindThings = 0.5f;
 /// The rays of so many pixels in a row and in a column together cover the hemisphere.
 inline constexpr int kGuessedPattern = 8;
 
-/// G of each pixel, 0..1; 0 where there is no surface. Of
-/// the pixels of `part`, which are numbered from the first of the geometry's window. `radius` in
-/// scene units, or infinity. filter_shares() makes the product of it.
+/// G of the pixels of `part`, 0..1; 0 where there is no surface. Pixels are numbered from the first
+/// of the geometry's window. `radius` in scene units, or infinity. filter_shares() makes the
+/// product from it.
 Plane<float> guessed_shares(const Scene& scene, const Window& part, float radius, unsigned seed,
                             const Progress& progress);
 

@@ -165,7 +165,7 @@ inline constexpr std::array<Product, 8> kProducts = {{
      .plane = &Products::guessed,
      .made_of = {.guessed = true},
      .filtering = {.finish = Finish::clamp}},
-    // As relight makes it; other composites change the row: src/composite_choice.cpp.
+    // The row as --compose relight makes it; the others change it (plan/composite_choice.cpp).
     {.name = "composite",
      .kind = ProductKind::light,
      .channels = "RGBA",

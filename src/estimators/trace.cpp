@@ -43,6 +43,7 @@
 #include <utility>
 
 #include "estimators/guessed.h"
+#include "estimators/microfacets.h"
 #include "estimators/other_views/other_view_light.h"
 #include "estimators/other_views/other_view_rays.h"
 #include "estimators/trace/light_sums.h"
@@ -51,7 +52,6 @@
 #include "math/frame.h"
 #include "math/light_range.h"
 #include "math/luminance.h"
-#include "math/microfacets.h"
 #include "math/sampling.h"
 #include "math/sobol.h"
 #include "scene/light/source.h"
@@ -68,7 +68,7 @@ constexpr std::uint32_t kSurfaceSeed = 0x51ab, kSourceSeed = 0x9c3d, kFacetSeed 
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Directions of the seen points of one pixel.
+/// A pixel that gathers light: where its rays start, and the normals that bound and weigh them.
 struct Receiver {
   glm::vec3 position;
   glm::dvec3 origin;          ///< in front of all triangles of the pixel

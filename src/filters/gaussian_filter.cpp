@@ -12,7 +12,8 @@
 // depth is a length in scene units, made for the book's scene: in a scene of another size the
 // depths reject too much or nothing. The book blurs at half width and half height what it has
 // computed there, so that its window covers twice as many pixels of the picture. So does --filter
-// source (plan.cpp); --filter gaussian blurs the whole picture, a difference from the book.
+// source (plan/make_plan.cpp); --filter gaussian blurs the whole picture, a difference from the
+// book.
 #include "filters/gaussian_filter.h"
 
 #include <cmath>

@@ -18,8 +18,7 @@ struct Filter {
   /// leaves the planes as they are.
   FilterPlanes (*apply)(FilterPlanes noisy, const Plane<Surfel>& guide, int pattern_size);
   int reach = 0;  ///< pixels on each side that a pixel depends on, for patterns of up to 8 x 8
-  /// The same for shares of suns by one ray of each pixel; null: `apply` takes them as other
-  /// planes.
+  /// Filters the visibility of a sun that was found with one ray per pixel; null: `apply` does it.
   Plane<float> (*shadow)(NoisyShadow noisy, const Plane<Surfel>& guide, int pattern_size) = nullptr;
 };
 

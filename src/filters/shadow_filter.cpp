@@ -102,7 +102,7 @@ class ShadowTile {
 
   static HWY_INLINE M is_surface(const Shown& p) { return dot(p.normal, p.normal) > set(0); }
 
-  /// W is 0 where all neighbours see as much.
+  /// The filtered share, and the width W of the penumbra: 0 where all neighbours have one share.
   struct Filtered {
     V share, penumbra;
   };
@@ -156,7 +156,7 @@ class ShadowTile {
         in_box = hn::MulAdd(blocked, hn::Min(width, set(most_)), in_box);
       }
     }
-    // A pixel whose own ray sets has neighbours alone.
+    // If the own ray is below the horizon (weight 0), only neighbours count, so the box is wide.
     const M sets = load(rows_.row(y, kWeight) + x + half_) <= set(0), blocks = weights > set(1e-6f);
     const V alone = hn::IfThenElse(sets, set(most_), set(1));
     const V box = hn::IfThenElse(blocks, in_box / weights, alone);

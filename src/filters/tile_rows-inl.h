@@ -118,8 +118,8 @@ class TileRows {
     }
   }
 
-  /// Writes row `y` of the tile from averages by component, which it finishes, and what is noisy
-  /// where `weight` is 0, to the planes `out`, which are like those that are read.
+  /// Writes row `y` of the tile to `out`, whose planes are like those that are read. Applies
+  /// Filtering::finish to `averages` (by component); a pixel whose `weight` is 0 keeps its value.
   void write(int y, float* averages, const float* weight, FilterPlanes& out) const {
     const std::size_t first = guide_.index(tile_.x0, y);
     const int count = tile_.x1 - tile_.x0;

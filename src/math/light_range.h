@@ -9,8 +9,8 @@ namespace ssdo {
 /// No light or albedo is above this, so that sums, squares and products of two stay finite.
 constexpr float kBrightest = 1e15f;
 
-/// Light within the range of numbers: after many bounces between surfaces that send more than they
-/// get it would leave it. Not-a-number is dark.
+/// Clamps light to +-kBrightest; NaN becomes 0. Without this, light that bounces many times between
+/// surfaces with an albedo above 1 would overflow.
 inline glm::vec3 within_range(const glm::vec3& light) {
   glm::vec3 clamped;
   for (int c = 0; c < 3; ++c)

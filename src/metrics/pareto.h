@@ -7,8 +7,7 @@
 
 namespace ssdo {
 
-/// What something costs and how wrong it is. What has no finite error is
-/// never chosen.
+/// What something costs and how wrong it is. Without a finite error it is never chosen.
 struct CostAndError {
   double cost = 0, error = 0;
 };

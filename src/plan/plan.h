@@ -50,7 +50,7 @@ struct ModelOptions {
 struct Plan {
   const Method* method = nullptr;
   Request request;                 ///< what the method is asked for
-  std::optional<double> error;     ///< to stay below
+  std::optional<double> error;     ///< largest error of direct + bounce; empty: no bound
   const Filter* filter = nullptr;  ///< after the estimate
   /// The filter of a map at half resolution (Request::filter_half); null where there is none.
   const Filter* half_filter = nullptr;

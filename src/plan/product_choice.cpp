@@ -132,7 +132,7 @@ class ProductChoice {
     }
   }
 
-  /// What the method cannot make of a product: the product, or a part that it is composed of.
+  /// Names what the method cannot make: the product itself, or a part that it is composed of.
   std::string missing_of(const Product& product) const {
     for (const Product& part : kProducts) {
       if (part.in && product.made_of.*part.in && !(method_.products.*part.in) && !product.in)

@@ -11,7 +11,7 @@
 namespace ssdo {
 namespace {
 
-/// Shares of the time that the overview takes, and the openness of the frame, for progress.
+/// Shares of the whole time, for progress: reading the overview, and finding the frame's openness.
 constexpr double kOverviewShare = 0.02, kOpennessShare = 0.3;
 
 Solids solids_of(const Geometry& geometry, const ModelOptions& model, const Scene& overview) {

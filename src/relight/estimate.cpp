@@ -68,7 +68,7 @@ Products over_geometry(Products found, const Geometry& geometry, const Window& r
 
 /// The size of an error from a draw of it: its root mean square among neighbours on a surface.
 Plane<float> size_of(Plane<float> draw, const Geometry& geometry) {
-  // Few, so that what penumbras have does not get to what is beside them.
+  // Small, so that the error of a penumbra does not spread to the pixels beside it.
   constexpr int kNeighbours = 2;
   for (float& e : draw.pixels) e *= e;
   Plane<float> size =

@@ -19,8 +19,8 @@
 namespace ssdo {
 namespace {
 
-/// The usual products that an EXR of the frame goes without, since it has no albedo; "" where it
-/// has a composite all the same.
+/// Text that names the default products left out for lack of an albedo; "" if products were asked
+/// for by name, if none is written, or if there is a composite all the same.
 std::string left_out_without_albedo(const Plan& plan, const OutputOptions& output) {
   if (!output.products.empty() || plan.write.empty() || contains(plan.write, "composite"))
     return "";

@@ -68,7 +68,7 @@ Relit relight(const RelightJob& job, Scene scene, const std::function<void(doubl
               const TemporalInput& temporal) {
   const Frame& frame = job.frame;
   Relit relit;
-  // Made first: a view that does not exist costs no estimate.
+  // Before the estimate, so that a wrong name of an OpenColorIO view fails at once.
   relit.display = make_display(job);
   if (relit.display) {
     relit.notes.push_back(relit.display->description());

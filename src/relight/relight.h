@@ -15,12 +15,11 @@ namespace ssdo {
 /// the run. `number` is the frame's in its sequence: a temporal plan has another sampling pattern
 /// in every frame. Errors: those of the stages; ExitCode::input for a file of --also that is
 /// missing or no EXR.
-Frame prepare_frame(const FrameOptions& options, const Lighting& light, OtherPictures& pictures,
+Frame prepare_frame(const FrameOptions& options, const Lighting& lighting, OtherPictures& pictures,
                     const FrameFiles& files, int number = 0);
 
-/// The main job up to its files: estimate and filter. `scene` is that of the job's frame, which has
-/// none from then on. `on_progress` is called with the share
-/// that is done, 0..1. Errors: those of the stages.
+/// Estimates and filters. `scene` is moved out of job.frame. `on_progress` is called with the
+/// share that is done, 0..1. Errors: those of the stages.
 Relit relight(const RelightJob& job, Scene scene, const std::function<void(double)>& on_progress,
               const TemporalInput& temporal);
 

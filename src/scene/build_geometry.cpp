@@ -10,7 +10,6 @@
 #include <numeric>
 
 #include "error.h"
-#include "math/order_statistics.h"
 #include "parallel/tiles.h"
 #include "scene/camera/find_camera.h"
 #include "scene/normals/lens_of_normals.h"
@@ -18,6 +17,7 @@
 #include "scene/normals/normal_trust.h"
 #include "scene/normals/normals.h"
 #include "scene/normals/world_of_normals.h"
+#include "scene/order_statistics.h"
 #include "scene/silhouettes.h"
 
 namespace ssdo {

@@ -28,7 +28,7 @@ Plan plan_of(const Scene& scene, std::optional<double> error) {
   return make_plan(model, output, scene, {}, "in.exr");
 }
 
-/// Solids are freed before the filter, unless another round of --error may need them.
+/// What only methods look at does not come back, whether --error has several rounds or not.
 TEST(Estimate, TakesTheSceneAndLeavesItWithoutSolids) {
   for (const std::optional<double> error : {std::optional<double>(), std::optional(1e-3)}) {
     const Scene scene = boxes();

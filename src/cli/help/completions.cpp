@@ -67,7 +67,7 @@ std::string settings_table() {
 
 // ---- bash
 
-/// The options of each command, and of the main job.
+/// A bash function that looks up the options of a command, or of the main job.
 std::string bash_options(const CLI::App& app) {
   std::vector<std::pair<std::string, Texts>> rows;
   for_each_command(app, [&](const std::string& pattern, const CLI::App& command) {

@@ -79,9 +79,10 @@ float sun_past_beyond(const Openness& frame);
 /// The same of a frame, or of the one that it is a band of; 1 where it does not count.
 float sun_past_beyond(const MarchScene& scene, const Scene& frame, const Request& request);
 
-/// The same for a source of which harmonics would keep the share `held`. From a quarter on, as of a
-/// disc of 11 degrees, it is as sky; suns and what is between are less so. Relative error of direct
-/// light of a room under two soft boxes: 0.141 if it is sky by `held` alone, 0.093 so.
+/// The shares for one source. `held` is the part of its light that harmonics would keep. A source
+/// with 0.25 or more (a disc of 11 degrees) is treated as sky, and a smaller one the less so.
+/// Relative error of direct light of a room under two soft boxes: 0.141 if it is sky by `held`
+/// alone, 0.093 so.
 PassBeyond pass_beyond(float sun_past, float held);
 
 }  // namespace ssdo

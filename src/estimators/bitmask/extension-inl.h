@@ -25,7 +25,6 @@ struct MarchTowards {
 struct Border {
   V dx, dy;  ///< pixels from the receiver to the last pixel inside
   V distance_px;
-  V to_corner_px;   ///< on from there to where they pass beside the corner
   bool in_one_row;  ///< all lanes leave through the first row, or all through the last
   /// In one row: index of lane 0 in BorderValues; the others follow.
   std::ptrdiff_t first = 0;
@@ -56,10 +55,10 @@ HWY_INLINE VI border_index(const MarchScene& scene, V x, V y, M in_side, const M
 }
 
 /// Where marches along (dx, dy), a unit vector in pixels, leave the frame. `shared`: all lanes have
-/// the same direction. Else the result may be moved: to at least `inward_px` from corners of the
-/// frame, of which the raster may be some rows, then by `aside_px` along the border, whole numbers.
+/// the same direction. Else the result may be moved by `aside_px`, a whole number, along the
+/// border.
 HWY_INLINE Border border_along(const MarchScene& scene, const MarchReceiver& p, V dx, V dy,
-                               bool shared, float inward_px = 0, float aside_px = 0) {
+                               bool shared, float aside_px = 0) {
   const Interleaving& layout = scene.layout;
   constexpr int kPeriod = Interleaving::kPeriod;
   const int w = layout.width(), h = layout.height();
@@ -73,7 +72,6 @@ HWY_INLINE Border border_along(const MarchScene& scene, const MarchReceiver& p, 
   border.to = {rightwards, downwards};
   border.in_side = through_side;
   border.distance_px = hn::Min(to_side, to_end);
-  border.to_corner_px = hn::Max(to_side, to_end) - border.distance_px;
   border.in_one_row = shared && !any(hn::And(through_side, p.valid));
   if (border.in_one_row) {
     const int column_of_lane_0 = p.place.column_phase + int(hn::GetLane(aside));
@@ -83,17 +81,13 @@ HWY_INLINE Border border_along(const MarchScene& scene, const MarchReceiver& p, 
                                        p.place.column + (column_of_lane_0 >> Interleaving::kShift));
     return border;
   }
-  const auto moved = [&](V at, int first, int size, V end) HWY_ATTR {
-    const V inside = hn::Max(hn::Min(at, set(float(size - 1 - first) - inward_px)),
-                             set(inward_px - float(first)));
-    return hn::Clamp(inside + set(aside_px), zero, end);
-  };
+  const V beside = set(aside_px);
   const V edge_x = hn::IfThenElse(through_side, hn::IfThenElse(rightwards, right, zero),
-                                  moved(hn::Round(p.x + aside), 0, scene.frame_width, right)),
-          edge_y = hn::IfThenElse(through_side,
-                                  moved(hn::Round(p.y + hn::Round(to_side * dy)), scene.frame_y,
-                                        scene.frame_height, bottom),
-                                  hn::IfThenElse(downwards, bottom, zero));
+                                  hn::Clamp(hn::Round(p.x + aside) + beside, zero, right)),
+          edge_y = hn::IfThenElse(
+              through_side,
+              hn::Clamp(hn::Round(p.y + hn::Round(to_side * dy)) + beside, zero, bottom),
+              hn::IfThenElse(downwards, bottom, zero));
   border.dx = edge_x - p.x, border.dy = edge_y - p.y;
   border.index = border_index(scene, edge_x, edge_y, through_side, border.to);
   return border;

@@ -21,7 +21,7 @@ struct VisibilityJob {
   int order = 0;
   /// Weights of the basis polynomials, (order + 1)^2 for red, then green, then blue.
   const float* light = nullptr;       ///< null: the same from all directions
-  const Light* unoccluded = nullptr;  ///< all of it; null where `difference` is
+  const Light* unoccluded = nullptr;  ///< sky and sources; read only if `difference` is set
   float through_beyond = 0;  ///< share of it that comes through what may go on beyond the frame
 
   InterleavedPlane* ao = nullptr;

@@ -67,7 +67,7 @@ HWY_INLINE void store(const V3& value, std::array<InterleavedValues<T>, 3>& colo
   store(value.x, color[0], i), store(value.y, color[1], i), store(value.z, color[2], i);
 }
 
-/// The same of a vector of depths of MarchLayer.
+/// holds_solid() of march_scene.h for a vector of depths: false where the depth is NaN.
 HWY_INLINE M holds_solid(V depth) { return depth == depth; }
 
 /// The place of a vector of pixels in the raster. Of row `y` it holds every eighth pixel from
@@ -197,7 +197,8 @@ HWY_INLINE V nearer_over(const MarchPlanes& planes, std::ptrdiff_t q, const Slic
   return dot(V2{first_of_two(tilt), second_of_two(tilt)}, V2{set(step.dx), set(step.dy)});
 }
 
-/// Height of the surface at `depth`, (dx, dy) pixels from the receiver.
+/// Height above the receiver's tangent plane, along V, of a surface at `depth`. `rise` is that of
+/// MarchReceiver at the surface's pixel: rise + rise_x dx + rise_y dy.
 template <bool kOrthographic>
 HWY_INLINE V height_above(const MarchReceiver& p, V rise, V depth) {
   if constexpr (kOrthographic) return rise + (p.plane - depth);

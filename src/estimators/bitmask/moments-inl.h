@@ -55,7 +55,7 @@ struct RawMoments {
   V cosine[kDegree + 1], sine[kDegree + 1];
 };
 
-/// All of them, each from `lookup(moment)` with the numbering of SliceSectors.
+/// Moments 0 to kDegree of a set; `lookup(i)` returns moment i in the numbering of SliceSectors.
 template <int kDegree, class Lookup>
 HWY_INLINE RawMoments<kDegree> raw_moments(const Lookup& lookup) {
   RawMoments<kDegree> m;

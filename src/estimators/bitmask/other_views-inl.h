@@ -72,7 +72,7 @@ struct SectorDirections {
     return std::max(facing[lane] * cosine[sector] + n_t[lane] * sine[sector], 1e-6f);
   }
 
-  /// The weight of both sides together where all is open.
+  /// The sum of weight() over all sectors of both sides of a slice, if nothing is hidden.
   HWY_INLINE float whole(int lane) const {
     const float f = facing[lane], n = std::abs(n_t[lane]);
     // cos a + a sin a, a the angle of the normal in the slice, to within 3 %.

@@ -100,8 +100,8 @@ HWY_INLINE VU march_steps(const March& march, const MarchReceiver& p, const Side
   return open;
 }
 
-/// The same over the raster and what lies beyond it. `on_met` is told too whether it is the
-/// overview that shows a solid.
+/// march_steps() over the raster, then over the overview of the frame around it. `on_met` is also
+/// told which of the two shows the solid.
 template <bool kOrthographic, class Met>
 HWY_INLINE VU march_frame(const March& march, const MarchReceiver& p, const SideFrame& side,
                           const SliceSide& way, const Met& on_met) {
@@ -144,9 +144,10 @@ HWY_INLINE VU hidden_beyond(const March& march, const MarchReceiver& p, const Si
   return hn::Or(bits, far_bits);
 }
 
-/// The same over the frame, what other views show, and beyond the frame's border. `on_other_views`
-/// is told of what rays meet there (other_views-inl.h); `on_beyond(far, border, sectors)` is called
-/// with the sectors that are first hidden beyond the border, of the raster or of the overview.
+/// Marches one side of a slice over the frame, then asks other views, then continues surfaces
+/// beyond the frame's border; returns the sectors that stay open. `on_other_views` gets what rays
+/// meet in other views (other_views-inl.h); `on_beyond(far, border, sectors)` gets the sectors that
+/// are first hidden beyond the border, of the raster or of the overview.
 template <bool kOrthographic, class Met, class OtherViews, class Beyond>
 HWY_INLINE VU march_side(const March& march, const MarchReceiver& p, const SideFrame& side,
                          const Slice& slice, bool forward, const Met& on_met,

@@ -63,8 +63,9 @@ int to_block(double x, int place, int block) {
   return int(std::lround((x + place - middle) / block)) * block + middle - place;
 }
 
-/// Gives every step the stretch of the march that it represents; the first begins outside of the
-/// pixel where the march starts. Between neighbouring pixels there is nothing to share.
+/// Sets inner and outer of every step: the stretch of the march that it represents. The first
+/// stretch begins outside the pixel where the march starts. Between steps to adjacent pixels no
+/// pixel is skipped, so the stretch begins or ends at the pixel itself.
 void share_the_way(std::vector<SliceStep>& steps) {
   const auto distance = [](const SliceStep& step) { return std::hypot(step.dx, step.dy); };
   float before = 0;

@@ -24,8 +24,8 @@ constexpr int kRays = 16, kSourceRays = 4;
 /// Vertices that one task works on.
 constexpr int kBand = 1024;
 
-/// Rays begin so many footprints above their surface: neighbouring triangles of a rounded surface
-/// lie above it by less.
+/// Rays begin this many footprints above their surface: on a curved surface, the triangles beside
+/// it rise above it by less.
 constexpr float kAbove = 0.3f;
 
 constexpr std::uint32_t kSurfaceSeed = 0x3c91, kSourceSeed = 0x77e5;

@@ -18,9 +18,9 @@ struct Stand {
 /// Where the rays of a pixel start, in camera space: a little above its surface, and in front of
 /// all triangles on the way to the viewer by as much.
 ///
-/// Triangles lead from the centre of a pixel to the centres of its neighbours. A step along the
-/// normal ends behind one where the surface of a neighbour leans over the pixel, and on one where
-/// the pixel shows the edge between two walls; 0.05 to 0.6 % of the pixels of frames from Cycles.
+/// Triangles connect the centre of a pixel with the centres of its neighbours. A step along the
+/// normal alone can end behind a triangle, where a neighbour's surface leans over the pixel, or on
+/// one, where the pixel shows the edge between two walls: 0.05 to 0.6 % of the pixels of Cycles.
 glm::dvec3 ray_origin(const RayScene& rays, const Surfel& surfel, const Stand& stand);
 
 }  // namespace ssdo

@@ -22,10 +22,9 @@ namespace ssdo {
 /// such a part is kept: windows, pixel aspect, view, chromaticities and every attribute that does
 /// not describe the old file's storage, Cryptomattes that are not in this one, or, as a preview, a
 /// picture that it does not show. A data window may be larger than the input's: kept channels are 0
-/// around it. Without `keep_channels` the file has these parts alone, in
-/// scanlines and flat. With it, their other channels keep type and bits (of a tiled part, its
-/// full-resolution level; those of a deep one are dropped), and the other parts are copied without
-/// being decoded.
+/// around it. Without `keep_channels` the file has these parts alone, in scanlines and flat. With
+/// it, their other channels keep type and bits (a tiled part keeps its full-resolution level; deep
+/// channels are dropped), and the other parts are copied without being decoded.
 ///
 /// With `crop` the data window of a part is what the display window shows of it. Other flat parts
 /// that reach beyond are decoded and come in scanlines, with the same bits in the pixels that stay.
@@ -57,7 +56,7 @@ class ExrWriter {
   /// clamped. Returns how many were.
   std::size_t write(std::span<const ChannelView> planes);
 
-  /// Completes the file. What goes away unfinished leaves a file that is not to be committed.
+  /// Completes the file. If the writer is destroyed without this, the file must not be committed.
   void finish();
 
  private:

@@ -18,7 +18,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// Fewer where the file ends.
+/// Reads `count` bytes, or fewer at the end of the file.
 std::string read_bytes(std::istream& in, std::size_t count) {
   std::string bytes(count, '\0');
   in.read(bytes.data(), std::streamsize(count));

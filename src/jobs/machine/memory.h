@@ -25,8 +25,8 @@ std::optional<std::size_t> parse_size(std::string_view text);
 /// How many bytes of memory to use: `requested` if given, else $SSDO_MEM_LIMIT, else three quarters
 /// of the least of the machine's memory, the address space that the process may have (ulimit -v),
 /// the limits of the control groups, and $SLURM_MEM_PER_NODE or $SLURM_MEM_PER_CPU times
-/// $SLURM_CPUS_PER_TASK. A variable of Slurm that is not a positive
-/// number is passed over, since the user does not set it. `root` is where /proc and /sys are.
+/// $SLURM_CPUS_PER_TASK. A variable of Slurm that is not a positive number is ignored, since the
+/// user does not set it. `root` is where /proc and /sys are.
 /// Errors: ExitCode::usage for an $SSDO_MEM_LIMIT that is no size.
 std::size_t choose_memory(std::optional<std::size_t> requested,
                           const std::filesystem::path& root = "/");

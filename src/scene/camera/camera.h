@@ -74,7 +74,7 @@ struct Camera {
   bool is_camera_space(double distance) const;
 };
 
-/// A camera in the pixels of a file as that of the pixels that `grid` takes of it, and back.
+/// Converts a camera from the pixels of a file to the pixels that `grid` takes of it, and back.
 Camera to_grid(Camera camera, const PixelGrid& grid);
 Camera from_grid(Camera camera, const PixelGrid& grid);
 

@@ -7,10 +7,10 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <vector>
 
-#include "math/order_statistics.h"
 #include "parallel/tiles.h"
 #include "scene/camera/null_vector.h"
 #include "scene/camera/projection_model.h"
+#include "scene/order_statistics.h"
 
 namespace ssdo {
 namespace {

@@ -23,8 +23,7 @@ std::optional<Camera> fit_camera(const Plane<glm::vec3>& positions,
                                  const Plane<unsigned char>& valid, const Window& window);
 
 /// Whether the positions lie before the camera and half of them project to within half a pixel of
-/// their own, and `step`, by which P
-/// may have been rounded, in scene units.
+/// their own. `step`, in scene units, by which P may have been rounded, is allowed on top.
 bool explains(const Camera& camera, const Plane<glm::vec3>& positions,
               const Plane<unsigned char>& valid, const Window& window, double step = 0);
 

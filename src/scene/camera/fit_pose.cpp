@@ -108,7 +108,7 @@ std::optional<Camera> fit_pose_beside(const Camera& beside, const Plane<glm::vec
                    std::max(kPrecisionPx, step * beside.fx / (beside.orthographic ? 1 : unit)),
                weight = precision * precision / (kUsualMove * kUsualMove);
   const PosePrior prior{model_of(beside, samples), weight};
-  // A plane that the camera has moved far about is found from its own pixels only.
+  // If P shows a plane and the camera has moved far, only a fit to P alone starts near enough.
   std::vector<ProjectionModel> starts = {prior.pose};
   if (const auto own = fit_pose(beside, positions, valid, window, step))
     starts.push_back(model_of(*own, samples));

@@ -17,10 +17,10 @@
 #include <string_view>
 #include <vector>
 
-#include "math/straight.h"
 #include "scene/camera/find_camera.h"
 #include "scene/camera/fit.h"
 #include "scene/camera/position_rounding.h"
+#include "scene/straight.h"
 
 namespace ssdo {
 namespace {
@@ -32,7 +32,8 @@ constexpr std::size_t kMostPixels = 4000, kFewestPixels = 32;
 /// them miss their places by this much.
 constexpr double kFewestClipped = 16, kLeastClipped = 1e-3, kClippedMissPx = 2;
 
-/// What was done to P is found where undoing it brings P this much nearer to its pixels.
+/// An encoding of P is recognised if undoing it leaves less than this part of the distance by
+/// which P misses its pixels.
 constexpr double kExplained = 0.2;
 
 /// And this near where P as it is leaves the camera open.

@@ -128,7 +128,7 @@ void find_background(GBuffer& g, std::optional<float> background_depth,
   const float empty = empty_from(g), empty_depth = g.position.empty() ? empty : kEmptyDepth,
               far = background_depth ? *background_depth * (1 - 1e-6f) : empty_depth;
   g.valid = Plane<unsigned char>(g.window.width(), g.window.height());
-  Plane<unsigned char> broken_pixels = Plane<unsigned char>::like(g.valid);
+  Plane<unsigned char> broken_pixels(g.valid.width, g.valid.height, 0);
   std::atomic<std::size_t> background_pixels = 0, bad_pixels = 0;
   for_each_row(g.valid.height, [&](int y) {
     std::size_t background_in_row = 0, bad_in_row = 0;

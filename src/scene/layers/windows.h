@@ -27,9 +27,9 @@ inline const std::vector<Role> kRendered = {Role::beauty, Role::ambient, Role::s
 Window window_of_outputs(const std::vector<const ExrReader*>& files, const LayerTable& table,
                          bool composites, const Downsampling& downsampling);
 
-/// The window of a frame whose outputs cover `outputs`. Renderers crop layers to what they show:
-/// where the position ends before the others, there is background. But one that ends with the
-/// display window does not tell what lies beyond, and neither does the frame.
+/// The window of a frame whose outputs cover `outputs`. Renderers crop a layer to what it shows: on
+/// a side where the position ends before other layers, there is background. A side that ends with
+/// the display window is an exception: what lies beyond is unknown, and the frame ends there too.
 Window window_of_frame(const ExrPart& lead, const Window& outputs);
 
 /// Whether a part is a picture of the small size.

@@ -35,8 +35,8 @@ HWY_INLINE V received(const DistantSource& sun, const V3& normal) {
   return hn::IfThenElse(part, sum * set(1 / float(sun.points.size())), whole);
 }
 
-// What Source tells. Of one that looks the same from everywhere all lanes have the same, the others
-// are asked lane by lane.
+// The functions of Source for vectors. A distant source looks the same from everywhere, so that all
+// lanes share its values; for other sources, each lane is computed alone.
 
 HWY_INLINE V received(const Source& source, const V3& position, const V3& normal) {
   if (const DistantSource* distant = source.distant()) return received(*distant, normal);
@@ -93,8 +93,8 @@ HWY_INLINE V3 unoccluded(const Source& source, const V3& position, const V3& nor
 }
 
 HWY_INLINE V3 unoccluded_sky(const Light& light, const V3& normal) {
-  return light.is_constant() ? set(light.environment.constant_radiance())
-                             : look_up(light.irradiance, normal);
+  return light.environment.is_constant() ? set(light.environment.constant_radiance())
+                                         : look_up(light.irradiance, normal);
 }
 
 HWY_INLINE V3 unoccluded(const Light& light, const V3& position, const V3& normal) {

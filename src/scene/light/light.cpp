@@ -179,7 +179,7 @@ OctahedralMap irradiance(const Sky& sky, const Light& model) {
 
 glm::vec3 Light::unoccluded_sky(const glm::vec3& normal) const {
   // Looking a constant up would round.
-  return is_constant() ? environment.constant_radiance() : irradiance(normal);
+  return environment.is_constant() ? environment.constant_radiance() : irradiance(normal);
 }
 
 glm::vec3 Light::unoccluded(const glm::vec3& position, const glm::vec3& normal) const {

@@ -52,7 +52,7 @@ struct Light {
   glm::vec3 unoccluded(const glm::vec3& position, const glm::vec3& normal) const;
 
   /// Whether it comes from everywhere alike: one colour, no directions.
-  bool is_constant() const { return environment.is_constant(); }
+  bool is_constant() const { return environment.is_constant() && sources.empty(); }
 };
 
 /// Errors: none; maps that are black or have negative texels give finite models.

@@ -30,6 +30,9 @@ struct SourceCone {
 ///
 /// the mean being that over all its points, which are those of even `u` in the unit square. With
 /// occluders each point counts as far as a ray to it, `distance` long, is open.
+///
+/// A new type of light derives from this; add it to Light::sources where the light of a frame is
+/// made (model_light() in light.cpp). light-inl.h asks it lane by lane.
 struct Source {
   virtual ~Source() = default;
 

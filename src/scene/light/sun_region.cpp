@@ -136,7 +136,7 @@ std::optional<SunRegion> SunGrowth::grow_piece(std::size_t seed, const LeastMiss
   const float missing = region->missing / region->light;
   region->weight =
       std::clamp((missing - kLeastMissing) / (kMostlyMissing - kLeastMissing), 0.0f, piece_weight_);
-  // Harmonics hold less of each further piece, of which all are alike.
+  // All pieces of a band are alike, but harmonics hold less of each next one: no weight may rise.
   if (region->weight > 0) {
     piece_weight_ = region->weight;
     mark_around(*region);

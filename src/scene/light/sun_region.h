@@ -22,7 +22,7 @@ struct SunRegion {
   glm::vec3 middle{0};  ///< unit, of its light
   float light = 0;      ///< irradiance over pi of a surface that faces the middle
   float missing = 0;    ///< that part of it which harmonics do not hold
-  float weight = 1;     ///< 0..1, how much of a source it is: of a piece of something longer
+  float weight = 1;     ///< 0..1, part of its light that may be taken; < 1 for pieces of a band
 };
 
 /// Radiance that harmonics hold in a patch.

@@ -24,8 +24,8 @@ class SunTexels {
   /// Without the sources removed so far.
   const std::shared_ptr<const Plane<glm::vec3>>& rest() const { return rest_; }
 
-  /// What the texels of `windows` are brighter than the sky around them, as a source; nothing if
-  /// they are not. `threshold` is the radiance of what surely belongs to it. Share and held are 0.
+  /// The light by which the texels of `windows` exceed the sky around them, as a source; nothing if
+  /// they do not. `threshold` is the radiance of what surely belongs to it. Share and held are 0.
   std::optional<DistantSource> measure(const std::vector<Window>& windows, float threshold,
                                        const Surroundings& around) const;
 

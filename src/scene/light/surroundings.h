@@ -12,8 +12,8 @@
 
 namespace ssdo {
 
-/// The sky that a source stands before, guessed from what is around it: the plane that fits it best
-/// over directions, held to the range that it has there.
+/// The sky behind a source, guessed from a ring of patches around it: a linear function of the
+/// direction, fitted to their radiance and clamped to its range.
 class Surroundings {
  public:
   /// From `ring`, one patch or more around a region.

@@ -17,10 +17,10 @@
 #include <glm/trigonometric.hpp>
 #include <vector>
 
-#include "math/straight.h"
 #include "scene/camera/projection_model.h"
 #include "scene/normals/normals.h"
 #include "scene/normals/smooth_gradient.h"
+#include "scene/straight.h"
 
 namespace ssdo {
 namespace {
@@ -67,8 +67,8 @@ glm::vec3 smooth_normal(const Plane<Surfel>& surfels, int x, int y) {
   return glm::length(n) > 0 ? glm::vec3(glm::normalize(n)) : glm::vec3(0);
 }
 
-/// As many pairs of each direction: a floor that fills the picture tells nothing of the lens, since
-/// it is a plane under all of them.
+/// Takes at most kMostInCell pairs per direction: a floor that fills the picture must not dominate,
+/// since it does not constrain the lens (under any lens it is a plane).
 std::vector<Pair> collect(const Plane<glm::vec3>& stored, const Geometry& geometry) {
   std::vector<Pair> pairs;
   std::array<std::size_t, kCells * kCells * kCells> counts{};

@@ -18,11 +18,11 @@
 #include <utility>
 #include <vector>
 
-#include "math/straight.h"
 #include "parallel/tiles.h"
 #include "scene/normals/normal_space.h"
 #include "scene/normals/normals.h"
 #include "scene/normals/smooth_gradient.h"
+#include "scene/straight.h"
 
 namespace ssdo {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "math/straight.h"
 #include "scene/normals/normals.h"
+#include "scene/straight.h"
 
 namespace ssdo {
 namespace {

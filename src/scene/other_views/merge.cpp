@@ -152,7 +152,7 @@ void leave_out_repeated(const std::vector<Rival>& rivals, std::size_t k,
 struct Grid {
   const Plane<Surfel>& surfel;
   const Plane<HalfColor>& albedo;
-  Camera camera;  ///< from the frame's camera space
+  Camera camera;  ///< of the view, posed in the frame's camera space
   Window window;
   bool closed;  ///< the last column lies beside the first
   int step;

@@ -38,9 +38,8 @@ struct Registration {
   std::string warning;            ///< of a view that was changed, or is left out; else empty
 };
 
-/// Keeps a view that fits the frame, and one of which the frame sees too little to tell. Another is
-/// tried in other units and with other axes, and changed to those with which it fits; see
-/// registration.cpp.
+/// Returns the view unchanged if it fits the frame, or if they share too little to tell. If not,
+/// tries other units and axes and applies those that fit; see registration.cpp.
 Registration register_view(OtherView view, const Geometry& frame);
 
 }  // namespace ssdo

@@ -16,7 +16,7 @@ inline constexpr float kSurfaceTolerance = 3;
 enum class Sight {
   unknown,  ///< outside of its picture, or behind what it shows
   surface,  ///< it shows a surface there
-  empty,    ///< it looks through
+  empty,    ///< it sees past the point: nothing solid is there
 };
 
 /// What another view knows about the points of one line.

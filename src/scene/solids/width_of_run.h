@@ -15,22 +15,22 @@ inline constexpr int kWidthReach = 16;
 /// In place of the depth of a run that the border of some rows of a frame cuts.
 constexpr float kUnknown = -1;
 
-/// What a run of pixels suggests: that what it shows is kDepthOfWidth times as
-/// deep as it is wide. Boxes and posts are as deep as they are wide, a round thing is pi / 4 of
-/// that in the mean. With factors of 1, 0.9, 0.85, 0.8 and 0.7, means of bitmask over five scenes
-/// of Cycles, before shown_depth() limited them: RMSE of ao 0.0641, 0.0645, 0.0648, 0.0653 and
-/// 0.0669 at a small radius, 0.0832, 0.0824, 0.0822, 0.0822 and 0.0829 at a large one, 0.1223,
-/// 0.1210, 0.1206, 0.1202 and 0.1198 without one; relative error of direct light 0.288, 0.284,
-/// 0.283, 0.281 and 0.279, of bounce 0.540, 0.535, 0.532, 0.530 and 0.525. Of what a ball on the
-/// ground lights or leaves dark, 0.7 % of the frame's pixels are wrong with 1, 2.6 % with 0.85
-/// and 4.7 % with 0.7.
+/// A run of pixels, and the guess that what it shows is kDepthOfWidth times as deep as it is wide.
+/// Boxes and posts are as deep as they are wide, a round thing is pi / 4 of that in the mean. With
+/// factors of 1, 0.9, 0.85, 0.8 and 0.7, means of bitmask over five scenes of Cycles, before
+/// shown_depth() limited them: RMSE of ao 0.0641, 0.0645, 0.0648, 0.0653 and 0.0669 at a small
+/// radius, 0.0832, 0.0824, 0.0822, 0.0822 and 0.0829 at a large one, 0.1223, 0.1210, 0.1206, 0.1202
+/// and 0.1198 without one; relative error of direct light 0.288, 0.284, 0.283, 0.281 and 0.279, of
+/// bounce 0.540, 0.535, 0.532, 0.530 and 0.525. Of what a ball on the ground lights or leaves dark,
+/// 0.7 % of the frame's pixels are wrong with 1, 2.6 % with 0.85 and 4.7 % with 0.7.
 struct WidthOfRun {
   float depth = std::numeric_limits<float>::infinity();  ///< where neither end is seen; or kUnknown
   int pixels = 0;
   bool is_whole = false;  ///< both ends are seen
 };
 
-/// Runs of the width of one thing differ by a pixel, those that differ by so many are of another.
+/// Runs across one thing differ in length by about one pixel; from this difference on, two runs
+/// belong to different things.
 constexpr int kOtherWidth = 4;
 
 /// A thing is at most so many times as wide as a part of it that is seen beside something nearer.

@@ -75,7 +75,7 @@ double on_floor(const View& view, const Environment& environment, double y0, dou
   return sum / pixels;
 }
 
-constexpr int kFromLeft = 0, kFromBehindLeft = 52, kFromAheadLeft = 10, kRow30 = 10, kRow45 = 7;
+constexpr int kFromLeft = 0, kFromBehindLeft = 52, kRow30 = 10, kRow45 = 7;
 
 TEST(BitmaskBeyond, TheSkyComesThroughByHalfAndASunDoesNot) {
   EXPECT_FLOAT_EQ(pass_beyond(1, 0).through, 0);
@@ -192,7 +192,10 @@ TEST(BitmaskBeyond, ExtentsAreThoseThatTheFrameShows) {
     EXPECT_NEAR(e.seen[0], 6 - p.position.y, 0.3) << y;
     EXPECT_NEAR(e.seen[1], p.position.y - nearest, 0.3) << y;
     EXPECT_NEAR(e.seen[2], 2 - p.position.z, 0.15) << y;
-    EXPECT_LT(e.most[2], 0.1) << "the frame shows the top in row " << y;
+    // From its topmost pixel, no walk upward meets the wall again.
+    if (2 - p.position.z > 0.1) {
+      EXPECT_LT(e.most[2], 0.1) << "the frame shows the top in row " << y;
+    }
     ++found;
   }
   EXPECT_GT(found, 5);
@@ -298,53 +301,6 @@ TEST(BitmaskBeyond, BrokenPixelsTellNothing) {
   EXPECT_GT(sum.surfaces, 0);
   EXPECT_EQ(sum.pixels, sum.surfaces);
   EXPECT_EQ(sum.sky, 0);
-}
-
-/// The left border cuts a wall that ends just below the upper one. Rays that leave the frame on
-/// both sides of the corner between them meet it alike.
-TEST(BitmaskBeyond, WhatHidesDoesNotJumpAtACorner) {
-  const Window window{0, 0, 480, 320};
-  const Camera camera = look_at(camera_from_fov(45, window, 1), {0, 0, 1}, {0, 1, 1}, {0, 0, 1});
-  const double half_x = 10 * std::tan(glm::radians(22.5)), half_z = half_x * 64 / 96;
-  const Surface scene =
-      all_of({plane({}, {0, 0, 1}),
-              front(10, [=](double x, double z) { return x < 0 && z < 1 + half_z - 0.01; })});
-  const Geometry g = geometry_of(scene, camera, window);
-  const Solids solids = guess_solids(g);
-  const Environment environment = sun_at(kFromAheadLeft, kRow30);
-  const Products out = run(g, {.radius = kNoLimit,
-                               .environment = environment,
-                               .products = {.ao = true, .direct = true},
-                               .slices = 1,
-                               .steps = 16,
-                               .solids = &solids});
-  const Light light = model_light(environment, g.world_to_camera);
-  const glm::vec3 in_camera = sun_of(light).direction;
-  const glm::dvec3 to_sun = glm::transpose(camera.rotation) * glm::dvec3(in_camera);
-  // Where rays to it lead.
-  const glm::dvec2 sun = camera.project(glm::dvec3(in_camera));
-  double sum[2] = {}, pixels[2] = {};
-  for (int y = 0; y < window.height(); ++y) {
-    for (int x = 0; x < window.width(); ++x) {
-      if (!g.is_surface(g.surfel.index(x, y))) continue;
-      const Point p = point_at(scene, camera, window, x, y);
-      if (p.position.z > 1e-6 || p.position.y > 10) continue;
-      const glm::dvec3 at_wall = p.position + (10 - p.position.y) / to_sun.y * to_sun;
-      const glm::dvec2 meets = camera.project(camera.to_camera(at_wall)), at(x + 0.5, y + 0.5),
-                       way = glm::normalize(sun - at);
-      if ((meets.x > -1 && meets.y > -1) || std::min(meets.x, meets.y) < -6) continue;
-      const double beside_px = way.y * at.x - way.x * at.y;  // of the corner
-      if (std::abs(beside_px) > 4) continue;
-      const int side = beside_px > 0;
-      sum[side] += double(out.direct(x, y).x / light.unoccluded({}, {0, 1, 0}).x);
-      pixels[side] += 1;
-    }
-  }
-  ASSERT_GT(std::min(pixels[0], pixels[1]), 20);
-  fmt::print("beside a corner: {:.3f} and {:.3f} of the sun\n", sum[0] / pixels[0],
-             sum[1] / pixels[1]);
-  EXPECT_NEAR(sum[0] / pixels[0], sum[1] / pixels[1], 0.1);
-  EXPECT_LT(sum[0] / pixels[0], 0.4) << "through the top";
 }
 
 }  // namespace

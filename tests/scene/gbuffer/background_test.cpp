@@ -203,6 +203,26 @@ TEST(Background, CountsWhatIsNotANumberAsBrokenWhereDepthShowsASurface) {
   EXPECT_EQ(g.background_pixels, kWindow.area() - surfaces(picture));
 }
 
+/// Pixels around the window of P are background, whatever their memory held.
+TEST(Background, IsNotBrokenAroundTheWindowOfP) {
+  const Picture picture = ball_before_nothing();
+  for (int round = 0; round < 20; ++round) {
+    GBuffer g = frame_of(picture);
+    const auto inside = [](std::size_t i) {
+      return int(i % kWindow.width()) >= kWindow.width() / 2;
+    };
+    std::size_t hit = 0;
+    while (!picture.valid[hit] || !inside(hit)) ++hit;
+    g.position[hit].x = kNan;
+    g.lead_window = Window{kWindow.x0 + kWindow.width() / 2, kWindow.y0, kWindow.x1, kWindow.y1};
+    find_background(g, std::nullopt);
+    ASSERT_EQ(g.broken.size(), g.valid.size());
+    EXPECT_EQ(std::count(g.broken.pixels.begin(), g.broken.pixels.end(), 0),
+              std::ptrdiff_t(g.broken.size() - 1));
+    EXPECT_TRUE(g.broken[hit]);
+  }
+}
+
 TEST(Background, FollowsAlphaAndTheDepthThatIsGiven) {
   const Picture picture = ball_before_nothing();
   GBuffer g = frame_of(picture);

@@ -144,10 +144,6 @@ class CutSurface {
     const int largest_step =
         std::max(1, (way.x != 0 ? scene_.frame_width : scene_.frame_height) / kMostSteps);
     Run run{position(from) - start_};
-    // What the pixel at the border shows is half a pixel of it, and may end there.
-    const glm::vec3 aside(way.x, -way.y, 0);
-    if (from == at_)
-      run.to = 0.5f * footprint(-start_.z) * (aside - glm::dot(aside, normal_) * normal_);
     float reaches = 2 * glm::length(run.from) + kHiddenShare * diagonal_px_ * footprint(-start_.z);
     int gap = 0;
     for (int px = 1, step = 1; float(px) <= reach_px_; px += step) {

@@ -81,8 +81,8 @@ Brightness brightness_of(const SentLight& sent) {
   });
 }
 
-/// Level of a frame in which `bright` is bright: higher
-/// the less of its light that is, and endless where the march may as well have it.
+/// The level above which rays gather light (emitters.h). It rises as less of the frame's light is
+/// above `bright`; it is infinite if so little is that the march gathers all of it.
 float level_of(const SentLight& sent, float bright) {
   const Excess excess = sum_of<Excess>(sent, [=](Excess& e, float front, float) {
     e.above += double(std::max(front - bright, 0.0f));

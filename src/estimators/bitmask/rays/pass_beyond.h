@@ -3,8 +3,8 @@
 
 namespace ssdo {
 
-/// Shares of the rays to a source, 0..1: of those that leave the frame and that nothing hides which
-/// goes on beyond it, and of those that something does.
+/// The share of light, 0..1, that arrives along rays to a source that leave the frame: `past` if no
+/// surface continued beyond the border blocks the ray, `through` if one does.
 struct PassBeyond {
   float past = 1, through = 0;
 };

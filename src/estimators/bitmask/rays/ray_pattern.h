@@ -22,8 +22,9 @@ enum class RaySet { of_light, of_error };
 /// falls as that of the slices does.
 int rays_to_source(int slices);
 
-/// Points of a source, evenly spread in each block and in all of them, for each of
-/// `rays`, a power of two. Another seed exchanges them.
+/// The points that rays of all pixels go to, one PointsOfSource for each of `rays`, a power of two.
+/// They are spread evenly over the source within one block and within all four. `seed` permutes
+/// them.
 std::vector<PointsOfSource> points_of(const Source& source, int rays, unsigned seed,
                                       RaySet set = RaySet::of_light);
 

@@ -11,8 +11,8 @@
 #include <limits>
 
 #include "estimators/bitmask/rays/ray-inl.h"
+#include "estimators/microfacets.h"
 #include "math/frame.h"
-#include "math/microfacets.h"
 #include "math/sobol.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The light of a source, by rays from each pixel to points of it: one at few slices. Compiled once
-// for every instruction set.
+// The light of a source, by rays from each pixel to points of the source: one ray per pixel with
+// few slices (rays_to_source()). Compiled once for every instruction set.
 //
 // All pixels have rays of their own. Where those of some of them decide for their neighbours, thin
 // shadows are missed: with one in four, those of two pixels were not there in a third of the frames

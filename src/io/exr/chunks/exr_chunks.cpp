@@ -112,7 +112,7 @@ void try_flat_chunk(const ExrFile& file, const ExrPart& part, const PackedChunks
     read_lines(file, part, window, {&first, 1}, {});
 }
 
-/// Whether a chunk can be read, which one of its channels shows: they are packed together.
+/// Whether a chunk can be read. Reading one channel is enough: all of them are packed together.
 bool can_read(const ExrFile& file, const ExrPart& part, const PackedChunks& chunks,
               std::size_t chunk) {
   try {

@@ -15,7 +15,7 @@ struct MissingChunks {
   std::size_t count = 0;        ///< of all chunks, sound ones too
 };
 
-/// Whether a chunk, of this window, is among them.
+/// Whether `missing` contains the chunk that covers the window `chunk`.
 bool is_missing(const MissingChunks& missing, const Window& chunk);
 
 /// "12 of 36 rows are missing or damaged, between rows 16 and 31"; of a tiled part, tiles are

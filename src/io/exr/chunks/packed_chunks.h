@@ -22,7 +22,7 @@ class PackedChunks {
   std::size_t count() const { return std::size_t(columns_) * std::size_t(rows_); }
   int columns() const { return columns_; }  ///< 1 for scanlines
 
-  /// The chunks that hold rows [y0, y1) of the data window: the first and the end.
+  /// The chunks that hold rows [y0, y1) of the data window: the first, and one past the last.
   std::size_t first(int y0) const;
   std::size_t end(int y1) const;
 

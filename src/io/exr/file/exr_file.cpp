@@ -27,8 +27,8 @@ namespace {
   throw Error(ExitCode::input, fmt::format("{}: {}", file.string(), what));
 }
 
-/// Says what `file` is instead, unless it is a readable EXR by its first bytes. OpenEXR's own
-/// messages do not tell a missing file from a folder.
+/// Opens `file` if its first bytes are those of an EXR. Otherwise throws an error that says what it
+/// is: OpenEXR's own messages do not tell a missing file from a folder.
 std::unique_ptr<InputFile> open_exr(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);

@@ -81,7 +81,7 @@ double largest_ratio(const ExrPart& part);
 /// for each of its threads.
 double decoder_bytes(const ExrPart& part);
 
-/// What a channel takes of each pixel as float.
+/// Bytes per pixel of a channel stored as float: 4, or less if it is subsampled.
 double float_bytes(const ExrChannel& channel);
 
 /// What a header claims of a part: its pixels with `value_bytes` of each, or a row of its tiles

@@ -25,7 +25,7 @@ Camera with_lens(Camera camera, const Camera& lens) {
   return camera;
 }
 
-/// Poses whose axes differ by more than some 3 degrees need not be tried on P.
+/// Whether the axes of two poses differ by less than about 3 degrees; only then is one tested on P.
 bool is_near(const Camera& a, const Camera& b) {
   for (int i = 0; i < 9; ++i) {
     if (!(std::abs(a.rotation[i / 3][i % 3] - b.rotation[i / 3][i % 3]) < 0.05)) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "math/microfacets.h"
+#include "estimators/microfacets.h"
 
 #include <gtest/gtest.h>
 

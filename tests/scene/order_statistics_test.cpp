@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "math/order_statistics.h"
+#include "scene/order_statistics.h"
 
 #include <gtest/gtest.h>
 
