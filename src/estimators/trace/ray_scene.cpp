@@ -8,7 +8,8 @@
 namespace ssdo {
 namespace {
 
-constexpr unsigned kSheets = 0, kCuts = 1;
+/// The number of the sheets among the meshes of the rays; the cuts have the next.
+constexpr unsigned kSheets = 0;
 
 const TriangleMesh& mesh_of(const HeightField& field, unsigned number) {
   return number == kSheets ? field.sheets : field.cuts;
