@@ -261,16 +261,23 @@ TEST(CameraFit, TakesNoOrthographicCameraThatFewPixelsLeaveOpen) {
 
 /// Averaged silhouettes lie on no surface, and tell nothing of how well the others agree.
 TEST(CameraFit, TakesAnOrthographicCameraOfFewPixelsAmongSilhouettes) {
-  Picture few = take_picture(still_life(), above(camera_from_ortho_width(8, kWindow, 1)), kWindow);
-  std::mt19937 random(1);
-  for (std::size_t i = 0; i < few.valid.size(); ++i) {
-    few.valid[i] &= random() % 50 == 0;
-    if (random() % 10 == 0) few.position[i] *= 0.5f;  // half surface, half nothing
+  const Picture all =
+      take_picture(still_life(), above(camera_from_ortho_width(8, kWindow, 1)), kWindow);
+  int found = 0;  // of eight random samples, of which some are too few
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    Picture few = all;
+    std::mt19937 random(seed);
+    for (std::size_t i = 0; i < few.valid.size(); ++i) {
+      few.valid[i] &= random() % 30 == 0;
+      if (random() % 10 == 0) few.position[i] *= 0.5f;  // half surface, half nothing
+    }
+    const auto fitted = fit_camera(few.position, few.valid, kWindow);
+    if (!fitted) continue;
+    ++found;
+    EXPECT_TRUE(fitted->orthographic);
+    EXPECT_LT(turn_between(*fitted, few.camera), 0.01);
   }
-  const auto fitted = fit_camera(few.position, few.valid, kWindow);
-  ASSERT_TRUE(fitted);
-  EXPECT_TRUE(fitted->orthographic);
-  EXPECT_LT(turn_between(*fitted, few.camera), 0.01);
+  EXPECT_GE(found, 6);
 }
 
 TEST(FitCamera, TheResidualIsThatOfAllPixels) {
