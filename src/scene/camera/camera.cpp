@@ -116,6 +116,11 @@ Camera parse_camera(const json& j, const std::string& file, const Window& displa
   } else {
     camera = camera_from_fov(read_between(j, "hfov_deg", 0, 180, file), display, pixel_aspect);
   }
+  if (!(std::max(camera.fx, camera.fy) < kLargest)) {
+    refuse(file, fmt::format("{} is so small that a pixel shows nothing; give the {} of the frame",
+                             type == "ortho" ? "ortho_width" : "hfov_deg",
+                             type == "ortho" ? "width" : "field of view"));
+  }
   if (j.contains("world_to_camera")) set_pose(camera, j, file);
   return camera;
 }

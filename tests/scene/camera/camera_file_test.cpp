@@ -36,12 +36,12 @@ class CameraFile : public testing::Test {
 };
 
 TEST_F(CameraFile, FieldsOfViewAndSizesAreThoseOfACamera) {
-  for (const char* degrees : {"0", "-40", "180", "400", "1e308"})
+  for (const char* degrees : {"0", "-40", "180", "400", "1e308", "1e-307"})
     expect_refused(std::string(R"({"hfov_deg": )") + degrees + "}", "hfov_deg is ");
   for (const char* text : {R"({"hfov_deg": "40"})", R"({"hfov_deg": null})", R"({"fx": 1e999})",
                            R"({"fx": NaN})", "[]", "7", "", "{}", R"({"type": 3, "fx": 1})"})
     expect_refused(text, "");
-  for (const char* width : {"0", "-3"})
+  for (const char* width : {"0", "-3", "1e-307"})
     expect_refused(std::string(R"({"type": "ortho", "ortho_width": )") + width + "}",
                    "ortho_width is ");
   expect_refused(R"({"fx": 0})", "fx is 0");
