@@ -9,8 +9,10 @@ scene beside it, for ssdo to know in place of guessing:
     blender -b -P export.py -- still_life -o still_life.exr --overscan 25 --pano around.exr \
         --also left.exr:-40 --also right.exr:40 --also top.exr:top --camera still_life.camera.json
 
-`--samples`, `--world`, `--bounces`, `--ao-radius` and `--seed` make it a path-traced render with
-light passes instead: truth.py uses those.
+`--lights lamps.json` writes the lamps of the scene, which `ssdo --lights` reads.
+
+`--samples`, `--world`, `--lamp`, `--bounces`, `--ao-radius` and `--seed` make it a path-traced render
+with light passes instead: truth.py uses those.
 """
 import argparse
 import json
@@ -23,6 +25,7 @@ from mathutils import Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 # Blender does not put a script's own folder on the path.
+from lamps import write_lamps  # noqa: E402
 from scenes import SCENES  # noqa: E402
 from views import (View, from_above, new_camera, panorama, set_windows, turned,  # noqa: E402
                    view_json, widened)
@@ -50,14 +53,14 @@ def add_camera(scene, picture):
     scene.camera = camera
 
 
-def add_world(scene, environment=None):
-    """A uniform white world of strength 1, or the lat-long map with importance sampling."""
+def add_world(scene, environment=None, strength=1.0):
+    """A uniform white world, or the lat-long map with importance sampling."""
     world = scene.world = bpy.data.worlds.new("world")
     world.use_nodes = True
     nodes, links = world.node_tree.nodes, world.node_tree.links
     background = nodes["Background"]
     background.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
-    background.inputs["Strength"].default_value = 1.0
+    background.inputs["Strength"].default_value = strength
     if environment:
         texture = nodes.new("ShaderNodeTexEnvironment")
         texture.image = bpy.data.images.load(str(ENVIRONMENTS / environment))
@@ -65,6 +68,21 @@ def add_world(scene, environment=None):
         links.new(texture.outputs["Color"], background.inputs["Color"])
     world.cycles.sampling_method = "MANUAL"
     world.cycles.sample_map_resolution = 1024
+
+
+def add_lamps(scene, picture, args):
+    """Those that are asked for; a file of lamps has all of them."""
+    for lamp in picture.lamps:
+        lamp.put()
+    if args.lights:
+        write_lamps(args.lights)
+    names = [lamp.name for lamp in picture.lamps]
+    for name in args.lamp:
+        if name not in (*names, "all"):
+            sys.exit(f"--lamp {name}: the scene has {', '.join(names) or 'no lamp'}")
+    for name in names:
+        if not {name, "all"} & set(args.lamp):
+            bpy.data.objects.remove(scene.objects[name])
 
 
 def set_up_cycles(scene, samples, bounces, seed, antialiased=False):
@@ -173,11 +191,14 @@ def parse_arguments():
     more.add_argument("--also", type=read_also, action="append", default=[],
                       metavar="FILE:DEGREES|top",
                       help="the camera turned about its target, or a view from above; repeatable")
+    more.add_argument("--lights", type=Path, metavar="FILE", help="the lamps of the scene, as JSON")
     more.add_argument("--stereo", type=float, metavar="DISTANCE",
                       help="both eyes in one file, the right one so far beside the camera")
     light = parser.add_argument_group("path-traced light passes")
     light.add_argument("--samples", type=int, help="write light passes, so many samples per pixel")
-    light.add_argument("--world", choices=["white", "environment"], default="white")
+    light.add_argument("--world", choices=["white", "environment", "black"], default="white")
+    light.add_argument("--lamp", action="append", default=[], metavar="NAME",
+                       help="a lamp of the scene, or all; repeatable")
     light.add_argument("--bounces", type=int, default=0)
     light.add_argument("--ao-radius", type=float, default=1.0)
     light.add_argument("--seed", type=int, default=0)
@@ -194,7 +215,9 @@ def main():
     scene.name = args.scene
     picture.build()
     add_camera(scene, picture)
-    add_world(scene, picture.environment if args.world == "environment" else None)
+    add_world(scene, picture.environment if args.world == "environment" else None,
+              0.0 if args.world == "black" else 1.0)
+    add_lamps(scene, picture, args)
     scene.world.light_settings.distance = args.ao_radius  # of the AO pass
     set_up_cycles(scene, args.samples or 1, args.bounces, args.seed, args.antialiased)
     if args.samples:

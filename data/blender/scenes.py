@@ -35,6 +35,31 @@ class Scene:
     hfov_deg: float
     environment: str  # file in data/environments
     ao_radii: tuple  # metres; the short one for contacts, the long one about a hero's size
+    lamps: tuple = ()  # each a Lamp; they light only what asks for them
+
+
+@dataclass(frozen=True)
+class Lamp:
+    """A lamp as Blender has it: type and properties of its data, and where it looks."""
+
+    name: str
+    type: str
+    at: tuple
+    to: tuple
+    watts: float
+    color: tuple
+    more: dict
+
+    def put(self):
+        data = bpy.data.lights.new(self.name, self.type)
+        data.energy, data.color = self.watts, self.color
+        for key, value in self.more.items():
+            setattr(data, key, value)
+        thing = bpy.data.objects.new(self.name, data)
+        thing.location = self.at
+        toward = Vector(self.to) - Vector(self.at)
+        thing.rotation_euler = toward.to_track_quat("-Z", "Y").to_euler()
+        bpy.context.scene.collection.objects.link(thing)
 
 
 def diffuse(albedo):
@@ -235,10 +260,22 @@ def room_corner():
     put("marble", sphere(), GREEN, (0.35, 0.32), size=0.4, smooth=True)
 
 
+# A large soft lamp at the left, a spot behind the group, a bulb between things, and a low sun.
+STILL_LIFE_LAMPS = (
+    Lamp("key", "AREA", (-4.2, -4.6, 4.4), (0, 0, 0.6), 900, (1.0, 0.86, 0.68),
+         {"shape": "RECTANGLE", "size": 1.6, "size_y": 1.0}),
+    Lamp("rim", "SPOT", (3.4, 4.6, 3.4), (0, 0.1, 0.9), 1500, (0.42, 0.62, 1.0),
+         {"spot_size": radians(50), "spot_blend": 0.4, "shadow_soft_size": 0.1}),
+    Lamp("bulb", "POINT", (-0.62, -0.98, 0.5), (0, 0, 0), 40, (1.0, 0.45, 0.16),
+         {"shadow_soft_size": 0.06}),
+    Lamp("dusk", "SUN", (0, 0, 9), (-4, 3, 6.5), 1.5, (1.0, 0.6, 0.35), {"angle": radians(3)}),
+)
+
 SCENES = {
     # The horizon, 300 m away, falls between two rows of pixel centres: no pixel is half sky.
     "still_life": Scene(still_life, 576, 324, camera=(0.35, -8.6, 2.35), target=(0.1, 0, 0.984),
-                        hfov_deg=45.0, environment="sky.exr", ao_radii=(0.5, 2.0)),
+                        hfov_deg=45.0, environment="sky.exr", ao_radii=(0.5, 2.0),
+                        lamps=STILL_LIFE_LAMPS),
     "room_corner": Scene(room_corner, 480, 270, camera=(4.1, -5.2, 3.3), target=(-0.15, 0.3, 0.72),
                          hfov_deg=42.0, environment="studio.exr", ao_radii=(0.25, 1.0)),
 }

@@ -3,14 +3,17 @@
 
 The scene is a box with blocks, a ball, a teapot and a head in it, open to the viewer, path-traced by
 Blender Cycles under a map of Poly Haven (CC0). Here are its G-buffer, the same with overscan, four
-other views, and the truth of ao at two radii and without one, of direct light and of one bounce.
+other views, and the truth of ao at two radii and without one, of direct light and of one bounce, under the
+map and under each of three lamps alone.
 
 Every third pixel of every third row is kept, the middle one of its block, and every fourth of the
 panorama, whose size three does not divide. So P still lies in the middle of its pixel, and the truth
 is that of the pixel: nothing is averaged. The environment is averaged over blocks of 4 x 4.
 """
+import json
 import os
 import sys
+from math import acos, cos, degrees, pi, radians
 
 import numpy
 import OpenImageIO as oiio
@@ -54,8 +57,35 @@ def keep(source, name, layers, stride=3):
           (columns[0] // stride, rows[0] // stride), display)
 
 
+def lamp(name, blender):
+    """A lamp for `ssdo --lights`, as data/blender/lamps.py makes it from Blender's values."""
+    turn = numpy.array(blender["matrix"])[:3, :3]
+    power = blender["power"]
+    if blender["type"] == "area":
+        keys = {"type": "rect", "width": blender["size"][0], "height": blender["size"][1],
+                "intensity": power / 4}
+    elif blender["type"] == "spot":
+        border = radians(blender["spot_angle_deg"]) / 2
+        inner = acos(cos(border) + (1 - cos(border)) * blender["blend"])
+        keys = {"type": "disk", "radius": blender["radius"], "intensity": power / (4 * pi),
+                "cone_angle": degrees(border), "cone_softness": 1 - inner / border}
+    else:
+        keys = {"type": "sphere", "radius": blender["radius"], "intensity": power / pi}
+    return {"name": name, **keys, "normalize": True, "color": blender["colour"],
+            "position": blender["location"], "direction": list(-turn[:, 2]), "up": list(turn[:, 1])}
+
+
 def main():
     scene, environment = sys.argv[1:]
+    with open(f"{scene}/lights.json") as file:
+        lights = json.load(file)["lights"]
+    with open(os.path.join(HERE, "lights.json"), "w") as file:
+        json.dump({"lights": [lamp(*item) for item in lights.items()]}, file, indent=1)
+        file.write("\n")
+    for name in lights:
+        for part in ("direct", "bounce"):
+            keep(f"{scene}/truth_light_{name}_{part}.exr", f"truth_light_{name}_{part}.exr",
+                 ("DiffDir", "DiffInd"))
     for name in ("gbuffer", "overscan", "also_left", "also_right", "also_top", "also_pano"):
         keep(f"{scene}/{name}.exr", name + ".exr", ("Position", "Depth", "Normal", "DiffCol"),
              4 if name == "also_pano" else 3)
