@@ -159,6 +159,9 @@ void add_light(CLI::App& app, LightOptions& o) {
       "axis that points up; auto: by the header of Blender or Unreal, else by the camera, else y");
   group.value("--env-exposure", "STOPS", o.exposure_stops, "brighten the environment")
       ->check(between(-100, 100));
+  group.repeatable("--lights", "FILE.json", o.lamp_files, "lamps: see LIGHTS in man ssdo");
+  group.repeatable("--light", "'TYPE KEY=VALUE ...'", o.lamps,
+                   "a lamp: sphere, disk, rect or distant, with the keys of such a file");
 }
 
 /// The options that decide the number of samples.

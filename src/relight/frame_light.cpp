@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <glm/matrix.hpp>
+
+#include "scene/light/lamps/lamp.h"
 
 namespace ssdo {
 namespace {
@@ -12,6 +15,27 @@ WorldUp find_up(const Frame& frame, const FrameOptions& options) {
   const bool asks = options.up_of_shot && !header_tells_up(frame.gbuffer);
   return find_world_up(frame.gbuffer, frame.scene.geometry,
                        asks ? options.up_of_shot() : std::nullopt);
+}
+
+/// The sources of lamps in camera space, after those of the map.
+void add_lamps(Frame& frame, const std::vector<Lamp>& lamps) {
+  if (lamps.empty()) return;
+  Scene& scene = frame.scene;
+  const Geometry& geometry = scene.geometry;
+  std::string names;
+  for (const Lamp& lamp : lamps) {
+    const double depth = -geometry.camera.to_camera(lamp.position).z;
+    const double pixel =
+        depth > 0 ? geometry.frame_height_at(float(depth)) / geometry.display.height() : 0;
+    scene.light.sources.push_back(make_source(lamp, geometry.camera, pixel / 2));
+    names += (names.empty() ? "" : ", ") + lamp.name;
+  }
+  frame.light +=
+      fmt::format("; {} {}: {}", lamps.size(), lamps.size() > 1 ? "lamps" : "lamp", names);
+  if (geometry.world_known) return;
+  frame.warn(
+      {"the frame knows no world space; lamps are taken in camera space: give --camera "
+       "FILE.json to place them"});
 }
 
 }  // namespace
@@ -25,7 +49,7 @@ void light_frame(Frame& frame, const Lighting& lighting, const FrameOptions& opt
   scene.light = model_light(around.environment, scene.geometry.world_to_camera);
   frame.light = around.description;
   frame.warn(around.warnings);
-  const bool has_directions = !scene.light.is_constant();
+  const bool has_directions = !around.environment.is_constant();
   if (has_directions && world && !options.light.up) {
     frame.light += "; up " + up.source;
     if (!up.warning.empty()) frame.warn({up.warning});
@@ -37,6 +61,7 @@ void light_frame(Frame& frame, const Lighting& lighting, const FrameOptions& opt
   }
   if (has_directions && world && glm::determinant(scene.geometry.world_to_camera) < 0)
     frame.warn({"the world of P is left-handed: the map lies in its axes, and appears mirrored"});
+  add_lamps(frame, lighting.lamps());
 }
 
 }  // namespace ssdo

@@ -6,8 +6,8 @@
 
 namespace ssdo {
 
-/// Places the environment in a frame: sets the light of its scene and the line that describes it.
-/// Warns where nothing in the frame tells how the map lies in it. Asks options.up_of_shot where
+/// Places the environment and the lamps in a frame: sets the light of its scene and the line that
+/// describes it. Warns where nothing in the frame tells how the map and the lamps lie in it. Asks options.up_of_shot where
 /// neither the user nor a header says which axis is up.
 void light_frame(Frame& frame, const Lighting& lighting, const FrameOptions& options);
 

@@ -9,6 +9,7 @@
 #include <glm/gtc/constants.hpp>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "color/color_space.h"
 #include "error.h"
@@ -18,6 +19,7 @@
 #include "parallel/tiles.h"
 #include "scene/layers/names.h"
 #include "scene/light/environment_map.h"
+#include "scene/light/lamps/read_lamps.h"
 
 namespace ssdo {
 namespace {
@@ -103,7 +105,16 @@ Plane<glm::vec3> convert(const Plane<glm::vec3>& map, const glm::mat3& matrix) {
 }  // namespace
 
 Lighting::Lighting(const LightOptions& options) : options_(options) {
-  const auto color = parse_color(options.env);
+  read_environment();
+  for (const std::string& file : options.lamp_files) {
+    for (Lamp& lamp : read_lamps(file)) lamps_.push_back(std::move(lamp));
+  }
+  for (const std::string& text : options.lamps) lamps_.push_back(parse_lamp(text));
+  name_lamps(lamps_);
+}
+
+void Lighting::read_environment() {
+  const auto color = parse_color(options_.env);
   if (!color) {
     read_map();
     return;
@@ -111,11 +122,11 @@ Lighting::Lighting(const LightOptions& options) : options_(options) {
   for (int c = 0; c < 3; ++c) {
     if ((*color)[c] >= 0 && (*color)[c] <= kBrightest) continue;
     throw Error(ExitCode::usage,
-                fmt::format("--env {}: a colour of light has values from 0 to {:g}", options.env,
+                fmt::format("--env {}: a colour of light has values from 0 to {:g}", options_.env,
                             kBrightest));
   }
   check_exposure(brightest_channel(*color));
-  constant_ = *color * float(std::exp2(options.exposure_stops));
+  constant_ = *color * float(std::exp2(options_.exposure_stops));
   warn_if_dim(brightest_channel(constant_), warnings_);
   description_ = fmt::format("constant {:g},{:g},{:g}", constant_.x, constant_.y, constant_.z);
 }

@@ -4,6 +4,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <string>
 
 namespace ssdo {
 
@@ -20,7 +21,7 @@ struct SourcePoint {
 struct SourceCone {
   glm::vec3 to{0};  ///< unit direction to the middle
   float distance = std::numeric_limits<float>::infinity();
-  float angular_radius = 0;  ///< radians
+  float angular_radius = 0;  ///< radians; above pi / 2 inside of the source
 };
 
 /// A concentrated source of light, of one colour, in the space of positions and normals. Without
@@ -31,17 +32,19 @@ struct SourceCone {
 /// the mean being that over all its points, which are those of even `u` in the unit square. With
 /// occluders each point counts as far as a ray to it, `distance` long, is open.
 ///
-/// A new type of light derives from this; add it to Light::sources where the light of a frame is
-/// made (model_light() in light.cpp). light-inl.h asks it lane by lane.
+/// Suns come from model_light() in light.cpp, lamps from lamps/make_source.h. light-inl.h asks a new
+/// type lane by lane.
 struct Source {
   virtual ~Source() = default;
 
+  std::string name;         ///< of its layers; empty: a part of the environment
   glm::vec3 irradiance{0};  ///< over pi, of a surface for which received() is 1
   float held = 0;           ///< share of its light that spherical harmonics would keep in its place
 
   virtual float received(const glm::vec3& position, const glm::vec3& normal) const = 0;
 
-  /// The point for `u`: a place, or the unit direction to one that is endlessly far.
+  /// The point for `u`, in whatever form seen() takes: a place, the unit direction to one that is
+  /// endlessly far, or `u` itself where the receiver decides how points are spread.
   virtual glm::vec3 point(const glm::vec2& u) const = 0;
 
   /// What of point() a receiver sees, and what of all of them.

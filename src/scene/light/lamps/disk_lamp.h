@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "scene/light/lamps/near_lamp.h"
+
+namespace ssdo {
+
+/// A disk that sends the same radiance from all of its front; `size` is its radius.
+struct DiskLamp final : NearLamp {
+ protected:
+  double integral(const LampReceiver& r) const override;
+  double shown_area() const override;
+  double reach() const override { return 1; }
+  LampSample sample(const glm::dvec3& position, const glm::vec2& u) const override;
+  std::vector<double> bends(const glm::dvec3& position) const override;
+  LampArcs arcs(const glm::dvec3& position, double off_axis) const override;
+};
+
+}  // namespace ssdo

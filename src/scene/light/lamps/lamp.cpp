@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/light/lamps/lamp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "math/light_range.h"
+#include "scene/light/lamps/disk_lamp.h"
+#include "scene/light/lamps/distant_lamp.h"
+#include "scene/light/lamps/rect_lamp.h"
+#include "scene/light/lamps/sphere_lamp.h"
+
+namespace ssdo {
+
+double Lamp::area() const {
+  constexpr double kPi = glm::pi<double>();
+  double size = 0;
+  switch (type) {
+    case LampType::sphere:
+      size = 4 * kPi * radius * radius;
+      break;
+    case LampType::disk:
+      size = kPi * radius * radius;
+      break;
+    case LampType::rect:
+      size = width * height;
+      break;
+    case LampType::distant: {
+      const double sine = std::sin(glm::radians(angle) / 2), covered = sine * sine;
+      size = kPi * (angle <= 180 ? covered : 2 - covered);
+    }
+  }
+  return size > 0 ? size : 1;
+}
+
+glm::dvec3 Lamp::value() const { return color * (intensity * std::exp2(exposure)); }
+
+namespace {
+
+/// What stands for the radius of a point: it is less than any pixel.
+constexpr double kPointRadius = 1e-9;
+
+glm::vec3 turned(const Camera& camera, const glm::dvec3& direction) {
+  return glm::vec3(glm::normalize(camera.rotation * direction));
+}
+
+std::shared_ptr<NearLamp> shape_of(const Lamp& lamp) {
+  if (lamp.type == LampType::rect) {
+    auto rect = std::make_shared<RectLamp>();
+    const double longer = std::max(lamp.width, lamp.height);
+    rect->half = glm::dvec2(lamp.width, lamp.height) / longer;
+    rect->size = longer / 2;
+    return rect;
+  }
+  std::shared_ptr<NearLamp> round;
+  if (lamp.type == LampType::disk)
+    round = std::make_shared<DiskLamp>();
+  else
+    round = std::make_shared<SphereLamp>();
+  round->size = std::max(lamp.radius, kPointRadius);
+  return round;
+}
+
+std::shared_ptr<DistantLamp> distant(const Lamp& lamp, const Camera& camera) {
+  auto source = std::make_shared<DistantLamp>();
+  source->direction = turned(camera, lamp.axes[2]);
+  const double half_angle = glm::radians(lamp.angle) / 2;
+  source->cap = {std::sin(half_angle), std::cos(half_angle)};
+  return source;
+}
+
+}  // namespace
+
+std::shared_ptr<const Source> make_source(const Lamp& lamp, const Camera& camera, double nearest) {
+  // The integral of its light over its surface, over pi: received() is over the same area, or, for
+  // a sphere, a quarter of it.
+  glm::dvec3 light = lamp.value() * (lamp.normalize ? 1 : lamp.area()) / glm::pi<double>();
+  if (lamp.type == LampType::sphere) light /= 4;
+  // No receiver gets more than kBrightest.
+  nearest = std::max(nearest, std::sqrt(std::max({light.x, light.y, light.z}) / kBrightest));
+  std::shared_ptr<Source> source;
+  if (lamp.type == LampType::distant) {
+    source = distant(lamp, camera);
+  } else {
+    const std::shared_ptr<NearLamp> near = shape_of(lamp);
+    near->center = glm::vec3(camera.to_camera(lamp.position));
+    near->axes = {turned(camera, lamp.axes[0]), turned(camera, lamp.axes[1]),
+                  turned(camera, -lamp.axes[2])};
+    near->nearest = nearest;
+    if (lamp.has_cone) {
+      near->lit.outer = glm::radians(lamp.cone_angle);
+      near->lit.inner = near->lit.outer * (1 - lamp.cone_softness);
+    }
+    source = near;
+  }
+  source->name = lamp.name;
+  source->irradiance = glm::vec3(light);
+  return source;
+}
+
+}  // namespace ssdo

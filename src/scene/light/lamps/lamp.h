@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <string>
+
+#include "scene/camera/camera.h"
+#include "scene/light/source.h"
+
+namespace ssdo {
+
+enum class LampType { sphere, disk, rect, distant };
+
+/// What a user says of one lamp, in the space and unit of the world of P. The meaning is that of
+/// UsdLux: a surface of the lamp has the radiance
+///
+///   color * intensity * 2^exposure
+///
+/// and with `normalize` that over the area of the lamp: 4 pi radius^2, pi radius^2, width * height,
+/// or pi sin^2 of half the angle. Lamps emit along -z of their axes, spheres in all directions.
+struct Lamp {
+  std::string name;
+  std::string origin;  ///< for messages: "FILE: light NAME" or "--light NAME"
+  LampType type = LampType::sphere;
+  glm::dvec3 position{0};
+  glm::dmat3 axes{1};            ///< columns: along the width, along the height, backwards
+  double radius = 0.5;           ///< of a sphere or disk; a sphere of radius 0 is a point
+  double width = 1, height = 1;  ///< of a rect
+  double angle = 0.53;           ///< degrees across, of a distant lamp
+  glm::dvec3 color{1};           ///< times that of the temperature
+  double intensity = 1, exposure = 0;
+  bool normalize = false;
+  double cone_angle = 90, cone_softness = 0;  ///< degrees off the axis; see Cone
+  bool has_cone = false;
+
+  /// What `normalize` divides by; 1 for lamps without a size.
+  double area() const;
+
+  /// color * intensity * 2^exposure.
+  glm::dvec3 value() const;
+};
+
+/// The light of a lamp in the space of this camera. `nearest` is the distance at which a receiver
+/// is as near as can be told: half a pixel; nearer ones get no more light than there.
+std::shared_ptr<const Source> make_source(const Lamp& lamp, const Camera& camera, double nearest);
+
+}  // namespace ssdo

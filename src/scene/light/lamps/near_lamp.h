@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "scene/light/lamps/cone.h"
+#include "scene/light/source.h"
+
+namespace ssdo {
+
+/// A receiver in the space of a lamp, in units of its size: the middle of the lamp at the origin,
+/// its axis along z. All that shapes do is in this space.
+struct LampReceiver {
+  glm::dvec3 position{0}, normal{0};
+};
+
+/// A direction in which a receiver sees a lamp.
+struct LampSample {
+  glm::dvec3 to{0};
+  double distance = 0;
+  double solid_angle = 0;  ///< of the lamp, had it all the density of its points that there is here
+};
+
+/// Angles about the axis: from `middle - half` to `middle + half`.
+struct LampArc {
+  double middle = 0, half = 0;
+};
+
+/// The parts of a lamp that a receiver sees at one angle off the axis, seen as a circle about the
+/// direction opposite to it.
+struct LampArcs {
+  std::array<LampArc, 4> arcs;
+  int count = 0;
+};
+
+/// A lamp of a place and a size. `irradiance` is its radiance times the area that it shows, over
+/// pi: of a disk with the size of a sphere, of a flat lamp all of it. received() is the integral of
+/// the cosine over the directions in which it is seen, over this area: far in front of it,
+/// cos / distance^2.
+///
+/// Points are spread by solid angle, so that near lamps have no points that are much brighter than
+/// others: point() is `u`.
+struct NearLamp : Source {
+  glm::vec3 center{0};
+  glm::mat3 axes{1};   ///< orthogonal columns: along the width, along the height, to where it sends
+  double size = 1;     ///< the unit: a radius, or half of the longer side
+  double nearest = 0;  ///< receivers nearer than this get no more light than there
+  Cone lit;            ///< where it sends
+
+  float received(const glm::vec3& position, const glm::vec3& normal) const override;
+  glm::vec3 point(const glm::vec2& u) const override { return {u, 0}; }
+  SourcePoint seen(const glm::vec3& position, const glm::vec3& point) const override;
+  SourceCone cone(const glm::vec3& position) const override;
+
+ protected:
+  /// Integral of max(0, cos) over the directions in which the lamp is seen.
+  virtual double integral(const LampReceiver& r) const = 0;
+  virtual double shown_area() const = 0;
+  virtual double reach() const = 0;  ///< of its farthest point from the middle
+  virtual LampSample sample(const glm::dvec3& position, const glm::vec2& u) const = 0;
+
+  /// The angles off the axis, 0 to pi, at which the parts of it that are seen change their shape,
+  /// in any order: the first and the last, and those of corners.
+  virtual std::vector<double> bends(const glm::dvec3& position) const = 0;
+  virtual LampArcs arcs(const glm::dvec3& position, double off_axis) const = 0;
+
+ private:
+  LampReceiver local(const glm::vec3& position, const glm::vec3& normal) const;
+  double within_cone(const LampReceiver& r) const;
+  double dimming(double distance) const;
+};
+
+}  // namespace ssdo

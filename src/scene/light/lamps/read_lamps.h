@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/light/lamps/lamp.h"
+
+namespace ssdo {
+
+/// The lamps of a frame. Each costs about a tenth of a run, and planes and layers of its own: with
+/// more, a run with a map of them is cheaper and shows the same.
+constexpr std::size_t kMostLamps = 64;
+
+/// The layers of the environment map: no lamp has this name.
+inline constexpr const char* kEnvironmentName = "env";
+
+/// Reads a JSON object with `lights`, an array of objects with the keys of `man ssdo`, LIGHTS; a
+/// lamp without a name is left without. Errors: ExitCode::input, in one line that names file, light
+/// and key.
+std::vector<Lamp> read_lamps(const std::string& file);
+
+/// Reads "TYPE KEY=VALUE ...", numbers of one value separated by commas: what --light takes.
+/// Errors: ExitCode::usage.
+Lamp parse_lamp(const std::string& text);
+
+/// Names the lamps that have no name light1, light2, ... by their place. Errors: ExitCode::usage
+/// for two of one name and for more than kMostLamps.
+void name_lamps(std::vector<Lamp>& lamps);
+
+}  // namespace ssdo
