@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "scene.h"
+
+Camera orbit(Random& r, Vec at, Range distance, Range elevation, Range fov) {
+  Camera c;
+  const float a = r.angle(), e = r(elevation.low, elevation.high) * kPi / 180;
+  const float d = r.log(distance.low, distance.high);
+  c.fov = r(fov.low, fov.high);
+  c.target = at;
+  c.eye = at + Vec{std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e)} * d;
+  if (r.chance(.07f)) c.ortho_width = 2 * d * std::tan(c.fov * kPi / 360);
+  return c;
+}
+
+Camera inside(Random& r, Vec size, Range fov) {
+  Camera c;
+  const float top = size.z - .25f;
+  const float height = r.chance(.6f) ? std::min(r(1.3f, 1.8f), top) : r(.3f, top);
+  const auto near_wall = [&](float s) { return r.chance(.5f) ? r(.3f, .6f) : s - r(.3f, .6f); };
+  c.eye = {near_wall(size.x), near_wall(size.y), height};
+  if (r.chance(.5f)) c.eye.x = size.x * r(.15f, .85f);
+  if (r.chance(.3f)) c.eye.y = size.y * r(.15f, .85f);
+  const Vec across{size.x - c.eye.x, size.y - c.eye.y, 0};
+  c.target = {c.eye.x + (across.x - c.eye.x) * r(.3f, 1) + size.x * r(-.2f, .2f),
+              c.eye.y + (across.y - c.eye.y) * r(.3f, 1) + size.y * r(-.2f, .2f),
+              height + r(-.8f, .3f)};
+  c.fov = r(fov.low, fov.high);
+  return c;
+}
+
+Camera walk(Random& r, Vec eye, float turn, Range fov) {
+  Camera c;
+  const float a = r(-turn, turn);
+  c.eye = eye;
+  c.target = eye + Vec{std::cos(a), std::sin(a), r(-.2f, .15f)} * 10;
+  c.fov = r(fov.low, fov.high);
+  return c;
+}
+
+void behind_camera(Random& r, Scene& scene) {
+  if (!r.chance(.4f)) return;
+  const Camera& c = scene.camera;
+  const Vec view = c.target - c.eye;
+  const float reach = std::max(length(view), .3f), heading = std::atan2(view.y, view.x);
+  const Rot face = about_z(heading - kPi / 2);  // +y of the added things looks along the view
+  const float near = reach * r(.3f, 1.5f);
+  const auto at = [&](float side, float back) {
+    Vec p = c.eye + face * Vec{side, -back, 0};
+    p.z = 0;
+    return p;
+  };
+  Mesh& m = scene.mesh;
+  m.tint = r.albedo();
+  switch (r.count(0, 3)) {
+    case 0: {  // a wall or a house front
+      const float w = reach * r(.6f, 4), h = reach * r(.4f, 2.5f);
+      m.box(at(r(-.5f, .5f) * w, near) + Vec{0, 0, h / 2}, {w / 2, reach * .03f, h / 2},
+            face * about_z(r(-.4f, .4f)));
+      break;
+    }
+    case 1:  // houses
+      for (int i = r.count(1, 4); i > 0; --i) {
+        const float w = reach * r(.3f, 1), h = reach * r(.5f, 2.5f);
+        m.box(at(reach * r(-2, 2), near + w + reach * r(0, 2)) + Vec{0, 0, h / 2},
+              {w, w * r(.5f, 1), h / 2}, face);
+      }
+      break;
+    case 2:  // trees
+      for (int i = r.count(1, 6); i > 0; --i)
+        place(r, m, tree(r, r.count(0, 1)), at(reach * r(-2, 2), near + reach * r(.2f, 2)),
+              reach * r(.5f, 1.6f));
+      break;
+    default:  // a crew, and a frame of cloth
+      for (int i = r.count(1, 5); i > 0; --i)
+        place(r, m, person(r), at(reach * r(-1, 1), near + r(.2f, 1)), std::min(1.f, reach));
+      if (r.chance(.5f))
+        m.box(at(reach * r(-1, 1), near) + Vec{0, 0, reach * r(.5f, 1.2f)},
+              {reach * .5f, .01f, reach * .4f}, face * about_z(r(-1, 1)) * about_x(r(-.6f, .6f)));
+  }
+}
+
+const std::vector<Family>& families() {
+  static const std::vector<Family> all = [] {
+    std::vector<Family> out;
+    for (const auto& part :
+         {room_families(), town_families(), nature_families(), object_families(), set_families()})
+      out.insert(out.end(), part.begin(), part.end());
+    return out;
+  }();
+  return all;
+}

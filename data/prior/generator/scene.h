@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A scene is a mesh and a camera; a family makes scenes of one kind.
+#pragma once
+
+#include <vector>
+
+#include "things.h"
+
+struct Camera {
+  Vec eye{0, 0, 0}, target{0, 1, 0};
+  float fov = 50;         // degrees, over the longer side of the frame
+  float ortho_width = 0;  // over the longer side; 0: perspective
+};
+
+struct Scene {
+  Mesh mesh;
+  Camera camera;
+};
+
+struct Family {
+  const char* name;
+  void (*make)(Random& r, Scene& scene);
+  bool outdoor;     // things may be put behind the camera
+  bool validation;  // never trained on
+};
+
+/// All families, in the order of their numbers: append only, the number is part of the data.
+const std::vector<Family>& families();
+
+// The families of each file.
+std::vector<Family> room_families();
+std::vector<Family> town_families();
+std::vector<Family> nature_families();
+std::vector<Family> object_families();
+std::vector<Family> set_families();
+
+// Cameras as people place them (cameras.cpp).
+struct Range {
+  float low, high;
+};
+/// Looks at a point from around it: distance in metres, elevation in degrees.
+Camera orbit(Random& r, Vec at, Range distance, Range elevation, Range fov);
+/// Stands in a box 0..x, 0..y at a person's heights, often near a wall or in a corner.
+Camera inside(Random& r, Vec size, Range fov);
+/// Walks along +x: the eye at `eye`, the view turned by at most `turn` radians.
+Camera walk(Random& r, Vec eye, float turn, Range fov);
+/// With some probability, builds what stands behind the camera: houses, walls, trees, a crew.
+void behind_camera(Random& r, Scene& scene);
