@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# make.sh WORK SSDO FRAMES: builds the generator in the folder WORK, makes FRAMES frames and their
-# inputs with the binary SSDO, 100 at a time, then trains. What exists is kept: a run that was
+# make.sh WORK SSDO FRAMES [OUT]: builds the generator in the folder WORK, makes FRAMES frames and their
+# inputs with the binary SSDO, 100 at a time, then trains and writes the weights to OUT (WORK).
+# What exists is kept: a run that was
 # stopped goes on where it was, and a larger FRAMES adds to what there is.
 set -e
 work=$1 ssdo=$2 frames=$3
@@ -36,3 +37,7 @@ while [ "$first" -lt "$frames" ]; do
   fi
   first=$((last + 1))
 done
+
+out=${4:-$work}
+/usr/bin/python3 "$here/train.py" "$work" "$out"
+/usr/bin/python3 "$here/vectors.py" "$out/prior.bin" "$here/../room_corner.exr" "$out/vectors.txt"

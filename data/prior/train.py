@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """train.py WORK OUT [ablate]: trains candidates on WORK/cache, chooses by the worst validation
-family, and writes the weights OUT/prior.bin and OUT/vectors.txt; with `ablate` tables only"""
+family, and writes the weights OUT/prior.bin; with `ablate` tables only"""
 import glob
 import hashlib
 import os
@@ -252,16 +252,6 @@ def write(work, folder, nets, data):
         f.write(("\n".join(header) + "\nend\n").encode())
         for net in nets.values():
             f.write(model.flat_weights(net).tobytes())
-    with open(f"{folder}/vectors.txt", "w") as f:
-        f.write("# model, inputs, outputs, then ao and spread that follow from them\n")
-        for kind, net in nets.items():
-            for i in range(6):
-                x = data.x[RADII[i % 2]][i * 7919 % len(data.family)][i * 31].float()
-                with torch.no_grad():
-                    out = net(x)
-                    ao, _, spread = model.answer(out, x[0], x[1])
-                values = torch.cat([x, out, ao[None], spread[None]]).numpy()
-                f.write(kind + " " + " ".join(f"{v:.9g}" for v in values) + "\n")
 
 
 ABLATIONS = {

@@ -15,7 +15,6 @@ import numpy as np
 import OpenImageIO as oiio
 import torch
 
-import dataset
 import features
 import gbuffer
 import model
@@ -64,14 +63,6 @@ def sky_of(path, out):
     return np.einsum("hw,hwk,hwc->kc", weight, b, a) / scale[:, None]
 
 
-def estimate(ssdo, path, out, radius, *options):
-    at = ("--radius", str(radius))
-    c = run(ssdo, path, f"{out}_{radius}.exr", *at, "--products", "ao,guessed,bent", *options)
-    o = run(ssdo, path, f"{out}_{radius}_open.exr", *at, "--products", "ao", "--offscreen", "open")
-    bent = gbuffer.layer(c, "bent")
-    return features.Estimate(c["ao.Y"], c["guessed.Y"], o["ao.Y"], bent, float(radius)), c
-
-
 def blocks(values, valid):
     """Means over blocks of which at least half is valid"""
     h, w = (n // BLOCK * BLOCK for n in valid.shape)
@@ -81,53 +72,80 @@ def blocks(values, valid):
     return [(tile(np.where(valid, v, 0)) / np.maximum(count, 1))[keep] for v in values]
 
 
-def scene(ssdo, folder, work, truth, nets, kind):
-    name = os.path.basename(folder)
-    path, out = f"{folder}/gbuffer.exr", f"{work}/{name}"
-    g = gbuffer.read_gbuffer(path)
-    geometry = features.Geometry(g, UP if kind == "up" else None)
-    pixels = np.flatnonzero(g.valid.ravel())
-    at = lambda v: v.reshape(g.valid.size, -1)[pixels]
-    read = lambda f, n: at(gbuffer.layer(gbuffer.read_channels(f"{folder}/{f}"), n, "RGB"))
-    radii = sorted((os.path.basename(f)[9:-4] for f in glob.glob(f"{folder}/truth_ao_*")), key=float)
-    rmse = lambda a, b: float(np.sqrt(np.mean((np.asarray(a, np.float64) - b) ** 2)))
-    row, extra = [], {}
-    for radius in [*radii, "inf"]:
-        options = ("--env", f"{work}/linear.exr") if radius == "inf" else ()
-        e, c = estimate(ssdo, path, out, radius)
-        truth_ao = read("truth_white.exr", "ViewLayer.DiffDir") if radius == "inf" else read(
-            f"truth_ao_{radius}.exr", "ViewLayer.AO")
-        truth_ao = truth_ao.mean(1)
-        x = torch.from_numpy(geometry.features(e, pixels))
+class Scene:
+    """A scene with its truth, at the valid pixels"""
+
+    def __init__(self, ssdo, folder, work, kind):
+        self.ssdo, self.folder, self.path = ssdo, folder, f"{folder}/gbuffer.exr"
+        self.name = os.path.basename(folder)
+        self.out = f"{work}/{self.name}"
+        g = gbuffer.read_gbuffer(self.path)
+        self.valid = g.valid
+        self.geometry = features.Geometry(g, UP if kind == "up" else None)
+        self.pixels = np.flatnonzero(g.valid.ravel())
+        names = (os.path.basename(f)[9:-4] for f in glob.glob(f"{folder}/truth_ao_*"))
+        self.radii = [*sorted(names, key=float), "inf"]
+
+    def at(self, field):
+        return field.reshape(self.valid.size, -1)[self.pixels]
+
+    def truth(self, file, layer):
+        c = gbuffer.read_channels(f"{self.folder}/{file}")
+        return self.at(gbuffer.layer(c, f"ViewLayer.{layer}", "RGB"))
+
+    def estimate(self, radius):
+        at = ("--radius", radius)
+        c = run(self.ssdo, self.path, f"{self.out}_{radius}.exr", *at, "--products", "ao,guessed,bent")
+        o = run(self.ssdo, self.path, f"{self.out}_{radius}_open.exr", *at, "--products", "ao",
+                "--offscreen", "open")
+        bent = gbuffer.layer(c, "bent")
+        return features.Estimate(c["ao.Y"], c["guessed.Y"], o["ao.Y"], bent, float(radius))
+
+    def light(self, env, name):
+        c = run(self.ssdo, self.path, f"{self.out}_{name}.exr", "--radius", "inf", "--products",
+                "direct", "--env", env)
+        return self.at(gbuffer.layer(c, "direct", "RGB"))
+
+
+def rmse(a, b):
+    return float(np.sqrt(np.mean((np.asarray(a, np.float64) - b) ** 2)))
+
+
+def test(s, net, work, truth):
+    """-> the columns that main() prints"""
+    row = []
+    for radius in s.radii:
+        e = s.estimate(radius)
+        file, layer = ("truth_white.exr", "DiffDir") if radius == "inf" else (
+            f"truth_ao_{radius}.exr", "AO")
+        known = s.truth(file, layer).mean(1)
+        x = torch.from_numpy(s.geometry.features(e, s.pixels))
         with torch.no_grad():
-            o = nets[kind](x)
-            ao, width, spread = model.answer(o, x[:, 0], x[:, 1])
-        row += [rmse(x[:, 0], truth_ao), rmse(ao, truth_ao)]
-    linear = run(ssdo, path, f"{out}_linear.exr", "--radius", "inf", "--products", "direct", *options)
-    tool1 = (gbuffer.layer(linear, "direct", "RGB") - (0.5 * (e.ao + e.open))[..., None])
-    zero, tool1 = at(0.5 * (e.ao + e.open))[:, 0], at(tool1) @ geometry.axes.T
-    with torch.no_grad():
-        m1 = model.moments(o, width, torch.from_numpy(tool1.astype(np.float32))).numpy()
-    env = os.path.basename(json.load(open(f"{folder}/camera.json"))["env"])
-    sky_path = f"{work}/sky_{env}"
-    sky = sky_of(f"{truth}/env/{env}", sky_path)
-    light = lambda p, n: at(gbuffer.layer(
-        run(ssdo, path, f"{out}_{n}.exr", "--radius", "inf", "--products", "direct", "--env", p),
-        "direct", "RGB"))
-    direct, from_sky = light(f"{truth}/env/{env}", "env"), light(sky_path, "sky")
-    known = read("truth_env_direct.exr", "ViewLayer.DiffDir")
-    change = np.concatenate([(ao.numpy() - zero)[:, None], (m1 - tool1) @ geometry.axes], 1)
-    lit = lambda k: np.clip(from_sky + change[:, :k] @ sky[:k], 0, None) + direct - from_sky
-    row += [rmse(v, known) / known.mean() for v in (direct, lit(1), lit(4))]
-    fields = np.zeros((4, g.valid.size))
-    for k, v in enumerate((truth_ao, ao, spread, x[:, 1])):
-        fields[k, pixels] = v
-    error = np.abs(fields[0] - fields[1]).reshape(g.valid.shape)
-    signed, sure, guess = blocks([error, fields[2].reshape(g.valid.shape), fields[3].reshape(g.valid.shape)], g.valid)
-    low = sure < 0.05
-    extra = [rank_correlation(sure, signed), rank_correlation(guess, signed), low.mean(),
-             float(np.sqrt(np.mean(signed[low] ** 2))) if low.any() else 0.0]
-    return name, row, extra
+            out = net(x)
+            ao, width, spread = model.answer(out, x[:, 0], x[:, 1])
+        row += [rmse(x[:, 0], known), rmse(ao, known)]
+    row += direct(s, e, ao.numpy(), (width[:, None] * out[:, 1:4]).detach().numpy(), work, truth)
+    fields = np.zeros((3, s.valid.size))
+    for k, v in enumerate((np.abs(ao - known), spread, x[:, 1])):
+        fields[k, s.pixels] = v
+    error, spread, guessed = blocks(fields.reshape(3, *s.valid.shape), s.valid)
+    sure = spread < 0.05
+    row += [rank_correlation(spread, error), rank_correlation(guessed, error), sure.mean()]
+    return row + [float(np.sqrt(np.mean(error[sure] ** 2))) if sure.any() else 0.0]
+
+
+def direct(s, e, ao, change1, work, truth):
+    """Relative errors with the rules, with the prior's ao for the mean radiance of the sky, and with
+    its moments for the sky's gradient; suns are left as they are"""
+    env = os.path.basename(json.load(open(f"{s.folder}/camera.json"))["env"])
+    sky = sky_of(f"{truth}/env/{env}", f"{work}/sky_{env}")
+    all_light = s.light(f"{truth}/env/{env}", "env")
+    from_sky = s.light(f"{work}/sky_{env}", "sky")
+    known = s.truth("truth_env_direct.exr", "DiffDir")
+    change0 = ao - s.at(0.5 * (e.ao + e.open))[:, 0]
+    change = np.concatenate([change0[:, None], change1 @ s.geometry.axes], 1)
+    lit = lambda k: np.clip(from_sky + change[:, :k] @ sky[:k], 0, None) + all_light - from_sky
+    return [rmse(v, known) / known.mean() for v in (all_light, lit(1), lit(4))]
 
 
 def main():
@@ -135,19 +153,16 @@ def main():
     work, ssdo, truth = sys.argv[1:4]
     out = f"{work}/truth"
     os.makedirs(out, exist_ok=True)
-    if not os.path.exists(f"{out}/linear.exr"):
-        subprocess.run([sys.executable, f"{os.path.dirname(__file__)}/linear_map.py", f"{out}/linear.exr"], check=True)
-    nets = {kind: load_model(f"{work}/{kind}.pt") for kind in ("up", "camera")}
-    for kind in nets:
+    for kind in ("up", "camera"):
+        net = load_model(f"{work}/{kind}.pt")
         print(f"model {kind}\n{'':10s} near rules prior | far rules prior | white rules prior |"
               " direct rules, ao, moments | rank (guessed) sure rmse")
         rows = []
         for folder in sorted(glob.glob(f"{truth}/public/*")):
-            if not os.path.exists(f"{folder}/truth_white.exr"):
-                continue
-            name, row, extra = scene(ssdo, folder, out, truth, nets, kind)
-            rows.append(row + extra)
-            show(name, rows[-1])
+            if os.path.exists(f"{folder}/truth_white.exr"):
+                s = Scene(ssdo, folder, out, kind)
+                rows.append(test(s, net, out, truth))
+                show(s.name, rows[-1])
         show("mean", np.mean(rows, 0))
 
 
