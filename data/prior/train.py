@@ -53,7 +53,7 @@ def ao_loss(net, x, y, rule):
     rmse = (error.square().mean(1) + 3e-4).sqrt()
     loss = rmse / (rule + 0.03) + torch.relu(rmse / (rule + 0.003) - 1)
     expected = (error.abs().detach() / spread + spread.log()).mean(1)
-    return loss.mean() + 0.05 * expected.mean(), out, width
+    return loss.mean() + 0.1 * expected.mean(), out, width
 
 
 def moment_loss(out, width, truth, tool):
@@ -73,10 +73,9 @@ def train(data, hidden=(48, 32), seed=0, light=0.35, epochs=10, drop=(), directi
     some = data.x["far"][frames].reshape(-1, len(features.NAMES))[::23].float()
     net.mean[:] = some.mean(0)
     net.inverse_deviation[:] = 1 / (some.std(0) + 1e-2)
-    for r in ("near",):  # the radius varies only there
-        k = features.NAMES.index("pixel.log_radius")
-        both = torch.cat([some[:, k], data.x[r][frames][..., k].reshape(-1)[::23].float()])
-        net.mean[k], net.inverse_deviation[k] = both.mean(), 1 / both.std()
+    k = features.NAMES.index("pixel.log_radius")  # it varies only where it is limited
+    radius = torch.cat([some[:, k], data.x["near"][frames][..., k].reshape(-1)[::23].float()])
+    net.mean[k], net.inverse_deviation[k] = radius.mean(), 1 / radius.std()
     net.inverse_deviation[list(drop)] = 0
     order, sign = features.mirror()
     sign_t = torch.from_numpy(sign)
@@ -205,14 +204,20 @@ def show(title, t):
             f" {v['rank']:.2f} ({v['rank_guessed']:.2f}) {v['sure']:.2f} {v['sure_rmse']:.3f}"
         )
     mean = lambda c: np.mean([v[c] for v in t.values()])
-    ratio = lambda r: np.exp(np.mean([np.log(v[r] / v[r + "_rule"]) for v in t.values()]))
     print(
-        f"mean of families: far {mean('far_rule'):.3f} -> {mean('far'):.3f} (ratio {ratio('far'):.3f}),"
-        f" near {mean('near_rule'):.3f} -> {mean('near'):.3f} (ratio {ratio('near'):.3f}),"
-        f" light {mean('light_rules'):.3f} ao {mean('light_ao'):.3f} both {mean('light_both'):.3f},"
-        f" worst ratio {worst(t):.3f}",
+        f"mean of families: far {mean('far_rule'):.3f} -> {mean('far'):.3f},"
+        f" near {mean('near_rule'):.3f} -> {mean('near'):.3f}; ratios far {ratio(t, 'far'):.3f},"
+        f" near {ratio(t, 'near'):.3f}, moments {ratio(t, 'd_model', 'd_tool'):.3f},"
+        f" light by ao {ratio(t, 'light_ao', 'light_rules'):.3f}, with moments"
+        f" {ratio(t, 'light_both', 'light_rules'):.3f}; worst ratio {worst(t):.3f}",
         flush=True,
     )
+
+
+def ratio(t, column, rule=None):
+    """Geometric mean over families of a column over that of the rules"""
+    rule = rule or column + "_rule"
+    return np.exp(np.mean([np.log(v[column] / v[rule]) for v in t.values()]))
 
 
 def choose(work, kind):
@@ -273,8 +278,11 @@ def ablate(work):
     runs += [("a quarter of the frames", dict(limit=0.25, epochs=20)), ("no directions", dict(directions=False))]
     for name, options in runs:
         t = table(data, errors(data, train(data, epochs=options.pop("epochs", 5), **options), unseen))
-        ratio = lambda r: np.exp(np.mean([np.log(v[r] / v[r + "_rule"]) for v in t.values()]))
-        print(f"{name:24s} far {ratio('far'):.3f} near {ratio('near'):.3f} worst {worst(t):.3f}", flush=True)
+        print(
+            f"{name:24s} far {ratio(t, 'far'):.3f} near {ratio(t, 'near'):.3f}"
+            f" light {ratio(t, 'light_both', 'light_rules'):.3f} worst {worst(t):.3f}",
+            flush=True,
+        )
 
 
 def main():

@@ -269,7 +269,7 @@ void cave(Random& r, Scene& s) {
   const Vec k{r(.7f, 2), r(.7f, 1.2f), r(.45f, .8f)};
   const Vec mouth = unit(Vec{r.sign() * k.x, r(-.5f, .5f), r(-.1f, .8f)});
   Mesh shell(r), open(r);
-  shell.surface(110, 55, true, [&](float u, float v) {
+  shell.surface(240, 120, true, [&](float u, float v) {
     const float f = 2 * kPi * u, t = kPi * v;
     const Vec d{std::sin(t) * std::cos(f), std::sin(t) * std::sin(f), -std::cos(t)};
     const float q = 1 + rough * fractal(d * 2.2f, seed, 4);
