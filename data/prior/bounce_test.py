@@ -24,8 +24,8 @@ def bounce_of(work, ssdo, number):
     out = f"{work}/bounce/{number}.exr"
     if not os.path.exists(out):
         frame = f"{work}/frames/frame_{number}.exr"
-        options = ["--radius", "inf", "--products", "bounce", "--threads", "1", "-q", "--create-dirs"]
-        subprocess.run([ssdo, frame, "-o", out, *options], check=True)
+        options = ["--radius", "inf", "--products", "bounce", "--threads", "1", "-q"]
+        subprocess.run([ssdo, frame, "-o", out, "--create-dirs", *options], check=True)
     return gbuffer.layer(gbuffer.read_channels(out), "bounce", "RGB").mean(-1)
 
 

@@ -102,7 +102,8 @@ def lookup(grid, x, y):
     rows, columns, _ = grid.shape
     u = np.clip((x + 1) / 2 * columns - 0.5, 0, columns - 1)
     v = np.clip((1 - y) / 2 * rows - 0.5, 0, rows - 1)
-    i, j = np.minimum(u.astype(int), max(columns - 2, 0)), np.minimum(v.astype(int), max(rows - 2, 0))
+    i = np.minimum(u.astype(int), max(columns - 2, 0))
+    j = np.minimum(v.astype(int), max(rows - 2, 0))
     s, t = (u - i)[:, None], (v - j)[:, None]
     i1, j1 = np.minimum(i + 1, columns - 1), np.minimum(j + 1, rows - 1)
     top = grid[j, i] * (1 - s) + grid[j, i1] * s

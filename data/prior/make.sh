@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# make.sh WORK SSDO FRAMES [OUT]: builds the generator in the folder WORK, makes FRAMES frames and their
-# inputs with the binary SSDO, 100 at a time, then trains and writes the weights to OUT (WORK).
-# What exists is kept: a run that was
-# stopped goes on where it was, and a larger FRAMES adds to what there is.
+# make.sh WORK SSDO FRAMES [OUT]: builds the generator in the folder WORK, makes FRAMES frames and
+# their inputs with the binary SSDO, 100 at a time, then trains and writes the weights to OUT
+# (WORK). What exists is kept: a run that was stopped goes on where it was, and a larger FRAMES
+# adds to what there is.
 set -e
 work=$1 ssdo=$2 frames=$3
 here=$(cd "$(dirname "$0")" && pwd)

@@ -63,7 +63,9 @@ def moment_loss(out, width, truth, tool):
     return (ratio + torch.relu(ratio - 1)).mean()
 
 
-def train(data, hidden=(48, 32), seed=0, light=0.35, epochs=10, drop=(), directions=True, limit=1.0):
+def train(
+    data, hidden=(48, 32), seed=0, light=0.35, epochs=10, drop=(), directions=True, limit=1.0
+):
     """-> Prior. drop: inputs that are hidden from it; light: frames whose mean truth is darker are
     drawn less often, as some light gets into what people render."""
     torch.manual_seed(seed)
@@ -151,7 +153,8 @@ def errors(data, net, frames):
                         ("ao", ao, data.tool1[f]),
                         ("both", ao, m1),
                     ):
-                        light.setdefault(name, []).append(rmse(zero + one @ g, truth) / float(floor))
+                        error = rmse(zero + one @ g, truth) / float(floor)
+                        light.setdefault(name, []).append(error)
                 for name, v in light.items():
                     row["light_" + name] = float(np.mean(v))
             rows.append(row)
@@ -228,7 +231,8 @@ def choose(work, kind):
         start = time.process_time()
         net = train(data, **options)
         t = table(data, errors(data, net, unseen))
-        print(kind, options, f"worst {worst(t):.3f}, {time.process_time() - start:.0f} CPU s", flush=True)
+        seconds = time.process_time() - start
+        print(kind, options, f"worst {worst(t):.3f}, {seconds:.0f} CPU s", flush=True)
         if best is None or worst(t) < best[0]:
             best = worst(t), options, net, t
     show(f"{kind}: chosen {best[1]}; families never trained on", best[3])
@@ -274,10 +278,14 @@ ABLATIONS = {
 def ablate(work):
     data = Data(work, "up")
     unseen = np.flatnonzero(data.unseen)
-    runs = [(k, dict(drop=[i for i, n in enumerate(features.NAMES) if f(n)])) for k, f in ABLATIONS.items()]
-    runs += [("a quarter of the frames", dict(limit=0.25, epochs=20)), ("no directions", dict(directions=False))]
+    runs = []
+    for name, hides in ABLATIONS.items():
+        runs.append((name, dict(drop=[i for i, n in enumerate(features.NAMES) if hides(n)])))
+    runs.append(("a quarter of the frames", dict(limit=0.25, epochs=20)))
+    runs.append(("no directions", dict(directions=False)))
     for name, options in runs:
-        t = table(data, errors(data, train(data, epochs=options.pop("epochs", 5), **options), unseen))
+        net = train(data, **{"epochs": 5, **options})
+        t = table(data, errors(data, net, unseen))
         print(
             f"{name:24s} far {ratio(t, 'far'):.3f} near {ratio(t, 'near'):.3f}"
             f" light {ratio(t, 'light_both', 'light_rules'):.3f} worst {worst(t):.3f}",

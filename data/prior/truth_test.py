@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """truth_test.py WORK SSDO TRUTH: the rules and the model on path-traced scenes, after training
 
-TRUTH holds public/SCENE/ with gbuffer.exr, truth_white.exr, truth_ao_R.exr, truth_env_direct.exr and
-camera.json, and env/. Prints RMSE of ao at the smaller and the larger radius and without limit, and
-of direct light relative to its mean, with the rules, with the prior's ao, and with its moments;
-then, over blocks of 8 x 8 pixels of white ao, how spread and guessed predict the error."""
+TRUTH holds env/, and public/SCENE/ with gbuffer.exr, truth_white.exr, truth_ao_R.exr,
+truth_env_direct.exr and camera.json. Prints RMSE of ao at the smaller and the larger radius and
+without limit, and of direct light relative to its mean, with the rules, with the prior's ao, and
+with its moments; then, over blocks of 8 x 8 pixels of white ao, how spread and guessed predict the error."""
 import glob
 import json
 import os
@@ -95,7 +95,8 @@ class Scene:
 
     def estimate(self, radius):
         at = ("--radius", radius)
-        c = run(self.ssdo, self.path, f"{self.out}_{radius}.exr", *at, "--products", "ao,guessed,bent")
+        c = run(self.ssdo, self.path, f"{self.out}_{radius}.exr", *at, "--products",
+                "ao,guessed,bent")
         o = run(self.ssdo, self.path, f"{self.out}_{radius}_open.exr", *at, "--products", "ao",
                 "--offscreen", "open")
         bent = gbuffer.layer(c, "bent")
@@ -135,8 +136,8 @@ def test(s, net, work, truth):
 
 
 def direct(s, e, ao, change1, work, truth):
-    """Relative errors with the rules, with the prior's ao for the mean radiance of the sky, and with
-    its moments for the sky's gradient; suns are left as they are"""
+    """Relative errors with the rules, with the prior's ao for the mean radiance of the sky, and
+    with its moments for the sky's gradient; suns are left as they are"""
     env = os.path.basename(json.load(open(f"{s.folder}/camera.json"))["env"])
     sky = sky_of(f"{truth}/env/{env}", f"{work}/sky_{env}")
     all_light = s.light(f"{truth}/env/{env}", "env")
@@ -168,7 +169,8 @@ def main():
 
 def show(name, r):
     print(f"{name:10s} {r[0]:.3f} {r[1]:.3f} | {r[2]:.3f} {r[3]:.3f} | {r[4]:.3f} {r[5]:.3f} |"
-          f" {r[6]:.3f} {r[7]:.3f} {r[8]:.3f} | {r[9]:.2f} ({r[10]:.2f}) {r[11]:.2f} {r[12]:.3f}", flush=True)
+          f" {r[6]:.3f} {r[7]:.3f} {r[8]:.3f} | {r[9]:.2f} ({r[10]:.2f}) {r[11]:.2f} {r[12]:.3f}",
+          flush=True)
 
 
 if __name__ == "__main__":
