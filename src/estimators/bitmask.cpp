@@ -17,7 +17,8 @@
 // divides (bitmask/moments-inl.h); bounce light is in bitmask/bounce.cpp.
 //
 // A march covers one side of a slice in a few steps and finds sectors (bitmask/side-inl.h). A walk
-// follows single rays over the frame (bitmask/rays/): to sources, bright senders and mirrored things.
+// follows single rays over the frame (bitmask/rays/): to sources, bright senders and mirrored
+// things.
 //
 // What differs from the sources, and why:
 // - w = 1 / |T~|^2, T~ the part of the slice's picture direction that is perpendicular to V. Slices
@@ -204,7 +205,8 @@ class Bitmask {
     const March march = march_of_rays();
     const float past = sun_past_beyond(march_scene_, scene_, request_);
     for (const auto& source : scene_.light.sources) {
-      const PassBeyond pass = pass_beyond(past, source->held);
+      // A place that is closed against the sky is not closed against a lamp, which stands in it.
+      const PassBeyond pass = source->distant() ? pass_beyond(past, source->held) : PassBeyond{};
       const auto find = [&](const Window& to, RaySet set) {
         const std::vector<PointsOfSource> points =
             points_of(*source, rays_to_source(request_.slices), request_.seed, set);

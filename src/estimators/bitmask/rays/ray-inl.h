@@ -47,10 +47,25 @@ HWY_INLINE V is_there(V way, const V* seen, const V* most) {
 /// Sines over the plane of a surface from which on it hides nothing of a receiver, and all.
 constexpr float kBehindPlane = 0.02f, kInFrontOfPlane = 0.1f;
 
+/// A ray from each receiver, in those lanes that ask what is in its way.
+struct Ray {
+  SideFrame side;
+  RayInSlice in_slice;
+  V3 to;
+  V length;  ///< what is farther away is not in its way; may be infinite
+  M open;
+};
+
+/// The same in the raster of an overview.
+HWY_INLINE Ray in_far_pixels(Ray ray) {
+  ray.in_slice = in_far_pixels(ray.in_slice);
+  return ray;
+}
+
 /// How likely it is, 0..1, that rays which leave the frame at `leaves` meet the surface of a pixel
 /// at the border beyond it.
 template <bool kOrthographic>
-HWY_INLINE V meets_beyond(const March& march, const MarchReceiver& p, const V3& to, V leaves,
+HWY_INLINE V meets_beyond(const March& march, const MarchReceiver& p, const Ray& ray, V leaves,
                           const Border& border) {
   const MarchScene& scene = march.scene;
   const V zero = set(0), depth = border(scene.border_depth);
@@ -61,14 +76,14 @@ HWY_INLINE V meets_beyond(const March& march, const MarchReceiver& p, const V3& 
   const V3 normal{border(scene.border_normal[0]), border(scene.border_normal[1]),
                   border(scene.border_normal[2])};
   const V3 to_border = at_border - p.position;
-  const V way = dot(to_border, normal) / dot(to, normal);
-  const M meets = hn::And(way > leaves, way < set(march.radius));
+  const V way = dot(to_border, normal) / dot(ray.to, normal);
+  const M meets = hn::And(way > leaves, way < hn::Min(ray.length, set(march.radius)));
   const M in_reach = dot(to_border, to_border) < set(march.radius * march.radius);
   const M may_meet = hn::And(meets, in_reach);
   if (!any(may_meet)) return zero;
 
   const V3 right = unit_across(cross(set(march.cut->up), normal) + set(kAxisOfLevelPlanes), normal),
-           beyond = mul_add(to, way, -to_border);
+           beyond = mul_add(ray.to, way, -to_border);
   const float* extents = march.cut->extents.front().seen;
   const VI at = hn::ShiftLeft<3>(border.index);
   V seen[4], most[4];
@@ -111,26 +126,28 @@ HWY_INLINE Border beside_corner(const MarchScene& scene, const MarchReceiver& p,
 /// those that a surface which goes on is likely to hide, and `past` of the others that leave it
 /// within the radius. `turn` in 0..1 differs from member to member of the pattern.
 template <bool kOrthographic>
-HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const V3& to,
-                         const RayInSlice& ray, float turn, const PassBeyond& pass) {
+HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const Ray& ray, float turn,
+                         const PassBeyond& pass) {
   const MarchScene& scene = march.scene;
   const float apart_px = 2 * kWitnessReach *
                          std::hypot(float(scene.frame_width), float(scene.frame_height)) /
                          kWitnesses;
-  const Border exit = border_along(scene, p, ray.step_x, ray.step_y, false);
-  const V exit_at = way_along<kOrthographic>(ray, p, exit.distance_px);
+  const Border exit = border_along(scene, p, ray.in_slice.step_x, ray.in_slice.step_y, false);
+  const V exit_at = way_along<kOrthographic>(ray.in_slice, p, exit.distance_px);
   // By lane: reach_px is that of the nearest receiver of the vector.
-  const M leaves_frame = hn::And(exit.distance_px < ray.end_px, exit_at < set(march.radius));
+  const M leaves_frame =
+      hn::And(exit.distance_px < ray.in_slice.end_px, exit_at < set(march.radius));
   if (!any(leaves_frame)) return set(1);
   const V leaves = hn::IfThenElse(leaves_frame, exit_at, set(kFarAway));
   V near_exit = set(0), near_corner = set(0);
   for (int k = 0; k < kWitnesses; ++k) {
     const float aside_px = std::round((float(k) + turn - 0.5f * kWitnesses) * apart_px),
                 inward_px = std::round((float(k) + turn) * apart_px);
-    const Border border = border_along(scene, p, ray.step_x, ray.step_y, false, aside_px);
-    near_exit = near_exit + meets_beyond<kOrthographic>(march, p, to, leaves, border);
+    const Border border =
+        border_along(scene, p, ray.in_slice.step_x, ray.in_slice.step_y, false, aside_px);
+    near_exit = near_exit + meets_beyond<kOrthographic>(march, p, ray, leaves, border);
     near_corner =
-        near_corner + meets_beyond<kOrthographic>(march, p, to, leaves,
+        near_corner + meets_beyond<kOrthographic>(march, p, ray, leaves,
                                                   beside_corner(scene, p, border, inward_px));
   }
   const V hidden = hn::Max(near_exit, near_corner * set(kCornerTrust)) * set(1.0f / kWitnesses);
@@ -139,16 +156,8 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const V3& t
   return hn::IfThenElse(leaves_frame, hn::MulAdd(hidden, set(pass.through) - past, past), set(1));
 }
 
-/// A ray from each receiver, in those lanes that ask what is in its way.
-struct Ray {
-  SideFrame side;
-  RayInSlice in_slice;
-  V3 to;
-  V length;  ///< what is farther away is not in its way; may be infinite
-  M open;
-};
-
-/// How far away in the picture a point is that lies on each lane's ray.
+/// How far away in the picture a point is that lies on each lane's ray. A ray to a point beside or
+/// behind a perspective camera never ends in the picture.
 template <bool kOrthographic>
 HWY_INLINE V pixels_to(const MarchScene& scene, const MarchReceiver& p, const RayInSlice& ray,
                        const V3& point) {
@@ -159,7 +168,9 @@ HWY_INLINE V pixels_to(const MarchScene& scene, const MarchReceiver& p, const Ra
   }
   const V dx = x + set(scene.axis_x - float(scene.first_x)) - p.x,
           dy = set(scene.axis_y - float(scene.first_y)) - y - p.y;
-  return dot(V2{dx, dy}, V2{ray.step_x, ray.step_y});
+  const V px = dot(V2{dx, dy}, V2{ray.step_x, ray.step_y});
+  if constexpr (kOrthographic) return px;
+  return hn::IfThenElse(point.z < set(0), px, set(1e9f));
 }
 
 template <bool kOrthographic>
@@ -237,9 +248,9 @@ class Occluders {
       constexpr int kMembers = Interleaving::kPeriod * Interleaving::kPeriod;
       const int rank = SlicePattern::rank(member_at(march_.scene, p.place));
       const float turn = (float(rank) + 0.5f) / kMembers;
-      share = far_ ? open_beyond<kOrthographic>(*far_march_, in_far_pixels(march_, p), ray.to,
-                                                in_far_pixels(ray.in_slice), turn, pass)
-                   : open_beyond<kOrthographic>(march_, p, ray.to, ray.in_slice, turn, pass);
+      share = far_ ? open_beyond<kOrthographic>(*far_march_, in_far_pixels(march_, p),
+                                                in_far_pixels(ray), turn, pass)
+                   : open_beyond<kOrthographic>(march_, p, ray, turn, pass);
     }
     a.share = hn::IfThenElseZero(open, share);
     return a;
