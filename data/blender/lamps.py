@@ -101,8 +101,19 @@ def lamps_json():
     return {"lights": lamps}
 
 
+def rounded(value):
+    """Blender's numbers have single precision: seven digits."""
+    if isinstance(value, float):
+        return float(f"{value:.7g}") + 0.0  # no -0
+    if isinstance(value, dict):
+        return {key: rounded(part) for key, part in value.items()}
+    return [rounded(part) for part in value] if isinstance(value, list) else value
+
+
 def write_lamps(path):
-    path.write_text(json.dumps(lamps_json(), indent=1) + "\n")
+    """One lamp on each line."""
+    lamps = ",\n".join("  " + json.dumps(rounded(lamp)) for lamp in lamps_json()["lights"])
+    path.write_text(f'{{"lights": [\n{lamps}\n]}}\n')
 
 
 if __name__ == "__main__":

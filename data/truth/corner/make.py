@@ -79,10 +79,10 @@ def main():
     scene, environment = sys.argv[1:]
     with open(f"{scene}/lights.json") as file:
         lights = json.load(file)["lights"]
-    with open(os.path.join(HERE, "lights.json"), "w") as file:
-        json.dump({"lights": [lamp(*item) for item in lights.items()]}, file, indent=1)
-        file.write("\n")
-    for name in lights:
+    for name, values in lights.items():
+        with open(os.path.join(HERE, f"light_{name}.json"), "w") as file:
+            json.dump({"lights": [lamp(name, values)]}, file, indent=1)
+            file.write("\n")
         for part in ("direct", "bounce"):
             keep(f"{scene}/truth_light_{name}_{part}.exr", f"truth_light_{name}_{part}.exr",
                  ("DiffDir", "DiffInd"))
