@@ -161,11 +161,9 @@ class Bitmask {
     const Light& light = scene_.light;
     VisibilityJob job{.march = march_, .unoccluded = &light, .ao = &ao_};
     InterleavedVectors bent;
-    if (request_.products.bent) {
-      bent = raster_.make_color();
-      job.bent = &bent;
-      job.order = 1;
-    }
+    if (request_.products.bent) bent = raster_.make_color(), job.bent = &bent, job.order = 1;
+    InterleavedPlane open_ao;
+    if (request_.open_ao) open_ao = InterleavedPlane(layout_), job.open_ao = &open_ao;
     std::vector<float> weights;
     if (wants_light()) {
       out_.shares.are_ao = light.is_constant();
@@ -188,6 +186,7 @@ class Bitmask {
     for_each_band_of(
         lit_part(), [&](const Window& part) { march_visibility(job, part); }, progress_);
     if (request_.products.bent) out_.bent = raster_.picture(std::move(bent));
+    if (request_.open_ao) out_.open_ao = raster_.picture(std::move(open_ao), 1.0f);
   }
 
   /// A march of rays. In a band that marches on, the overview tells what they leave the frame by.
@@ -385,7 +384,8 @@ Method bitmask_method() {
                 .endless_radius = true,
                 .thickness = true,
                 .march = true,
-                .receivers = true},
+                .receivers = true,
+                .prior = true},
       .pattern_size = Interleaving::kPeriod,
       .source_filter = {"geometry"},
       .parameters = {kRoughness},

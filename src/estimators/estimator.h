@@ -75,6 +75,7 @@ struct Request {
   /// empty.
   MapFilter filter_half = {};
   bool shares_suffice = false;  ///< `direct` may stay empty where Products::shares make it up
+  bool open_ao = false;         ///< Products::open_ao is made too, by methods that take a prior
   /// Pixels that gather light: a part of the geometry's window. Products have the size of the part.
   /// All pixels of the geometry occlude and send light. Area 0: the whole window.
   Window receivers = {};
@@ -90,6 +91,7 @@ struct Takes {
   bool thickness = false;       ///< --thickness: the method uses Scene::solids
   bool march = false;           ///< --quality, --slices, --steps, --offscreen and --error
   bool receivers = false;       ///< Request::receivers; without it, all pixels gather
+  bool prior = false;           ///< --prior learned: the method makes what that asks of it
 };
 
 /// The filter with which a method's source ends.

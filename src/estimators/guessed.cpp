@@ -308,6 +308,29 @@ Plane<float> guessed_shares(const Scene& scene, const Window& part, float radius
   return shares;
 }
 
+Plane<float> guessed_shares(const Scene& scene, const Plane<std::int32_t>& pixels,
+                            const glm::ivec2& first, float radius, unsigned seed) {
+  constexpr int kLast = kGuessedPattern - 1;
+  Guesses guesses(scene, radius);
+  guesses.gather_depths();
+  Plane<float> shares(pixels.width, pixels.height, 0.0f);
+  for_each_tile(pixels.width, pixels.height, [&](const Tile& tile) {
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        const std::int32_t pixel = pixels(x, y);
+        if (pixel == kNoPixel) continue;
+        const int width = scene.geometry.surfel.width,
+                  place = ((first.y + y) & kLast) * kGuessedPattern + ((first.x + x) & kLast);
+        const Guesses::Samples samples{SlicePattern::rank(place), 1, hash_of(seed, 0, kSeed)};
+        guesses.gather(pixel % width, pixel / width, samples, [&](Unseen at) {
+          shares(x, y) = at == Unseen::behind_things ? kGuessBehindThings : 1;
+        });
+      }
+    }
+  });
+  return shares;
+}
+
 GuessedMean mean_guessed(const Scene& scene, float radius) {
   const Guesses guesses(scene, radius);
   const Plane<Surfel>& surfel = scene.geometry.surfel;

@@ -18,6 +18,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <glm/vec2.hpp>
 #include <string_view>
 
 #include "estimators/estimator.h"
@@ -54,6 +56,13 @@ inline constexpr int kGuessedPattern = 8;
 /// product from it.
 Plane<float> guessed_shares(const Scene& scene, const Window& part, float radius, unsigned seed,
                             const Progress& progress);
+
+/// G of single pixels, by one ray each: pixel numbers of the geometry by place in a grid whose
+/// squares of kGuessedPattern x kGuessedPattern places, counted from `first`, together cover the
+/// hemisphere. 0 where the number is kNoPixel.
+inline constexpr std::int32_t kNoPixel = -1;
+Plane<float> guessed_shares(const Scene& scene, const Plane<std::int32_t>& pixels,
+                            const glm::ivec2& first, float radius, unsigned seed);
 
 /// The product, of G and ao where noise is filtered out of both.
 inline float guessed_product(float g, float ao) {

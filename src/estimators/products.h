@@ -57,6 +57,7 @@ struct Products {
   Plane<float> error;  ///< of the luminance of direct + bounce, with the sign of one draw of noise
   Plane<float> guessed;  ///< G of estimators/guessed.h; the product once it is filtered
   LightShares shares;    ///< what `direct` is made of, where the method knows
+  Plane<float> open_ao;  ///< ao if surfaces end at the frame's border; not filtered
 };
 
 /// What the values of a product are. It decides how --temporal and pictures treat them.

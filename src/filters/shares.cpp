@@ -139,11 +139,13 @@ Products without_shares(Products products) {
   return products;
 }
 
-Products filter_found(const Filter& filter, Products noisy, const Scene& scene, int pattern_size) {
+Products filter_found(const Filter& filter, Products noisy, const Scene& scene, int pattern_size,
+                      const std::function<void(Products&)>& amend) {
   if (filter.apply)
     noisy = filter_products(filter, to_shares(std::move(noisy), scene), scene.geometry.surfel,
                             pattern_size);
   add_sun_errors(noisy, scene);
+  if (amend) amend(noisy);
   return filter.apply ? from_shares(std::move(noisy), scene) : without_shares(std::move(noisy));
 }
 
@@ -165,13 +167,14 @@ Guesses mean_of_guesses(const Filter& filter, Guesses noisy, const Plane<Surfel>
 
 }  // namespace
 
-Products filter_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size) {
+Products filter_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size,
+                       const std::function<void(Products&)>& amend) {
   Guesses guesses;
   const Plane<Surfel>& guide = scene.geometry.surfel;
   const bool have_guesses = !noisy.guessed.empty(), apart = pattern_size != kGuessedPattern;
   if (have_guesses && apart)
     guesses = mean_of_guesses(filter, {std::exchange(noisy.guessed, {}), noisy.ao}, guide);
-  Products found = filter_found(filter, std::move(noisy), scene, pattern_size);
+  Products found = filter_found(filter, std::move(noisy), scene, pattern_size, amend);
   if (!have_guesses) return found;
   if (!apart) guesses.guessed = std::move(found.guessed), guesses.ao = found.ao;
   // One mean leaves steps, eight pixels apart, where a ray of one pixel passes other things than

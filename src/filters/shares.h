@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+
 #include "estimators/estimator.h"
 #include "filters/registry.h"
 #include "scene/scene.h"
@@ -8,8 +10,10 @@
 namespace ssdo {
 
 /// The products after a filter that averages what arrives of the light, not the light: shading by
-/// the normal of each pixel stays as it is. See shares.cpp.
-Products filter_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size);
+/// the normal of each pixel stays as it is. See shares.cpp. `amend` may change ao and the shares
+/// of light between the filter and the light that is made of them.
+Products filter_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size,
+                       const std::function<void(Products&)>& amend = {});
 
 /// Products as filter_shares() hands them to the filter: without `direct` where its shares are
 /// known, else with the share of all light that arrives in its place; with `bent` turned as the

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "estimators/guessed.h"
+#include "prior/prior.h"
 
 namespace ssdo {
 namespace {
@@ -36,6 +37,11 @@ void explain_views(Plan& plan, const std::vector<MergeCounts>& views) {
         file, view.added, view.seen, view.contradictory,
         view.has_albedo ? "" : "; it has no albedo, so that it sends no light"));
   }
+}
+
+void use_prior(Plan& plan, const LearnedPrior& prior) {
+  plan.prior = prior;
+  plan.reasons.push_back(describe_prior(prior.up.has_value()));
 }
 
 std::string explain_guessed(Plan& plan, const Scene& scene) {

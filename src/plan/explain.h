@@ -17,4 +17,7 @@ void explain_views(Plan& plan, const std::vector<MergeCounts>& views);
 /// it gives a warning for who asks before rendering; nothing is wrong with the frame.
 std::string explain_guessed(Plan& plan, const Scene& scene);
 
+/// Has a plan use the learned prior, and says what it does.
+void use_prior(Plan& plan, const LearnedPrior& prior);
+
 }  // namespace ssdo

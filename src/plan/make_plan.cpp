@@ -14,6 +14,7 @@
 #include "math/luminance.h"
 #include "plan/composite_choice.h"
 #include "plan/product_choice.h"
+#include "prior/prior.h"
 #include "scene/light/distant_source.h"
 #include "scene/solids/width_of_run.h"
 
@@ -44,7 +45,8 @@ void refuse_options(const Method& method, const ModelOptions& model) {
       {"--thickness", model.thickness.has_value(), takes.thickness},
       {"--slices", model.slices.has_value(), takes.march || find_parameter(method, "slices")},
       {"--steps", model.steps.has_value(), takes.march || find_parameter(method, "steps")},
-      {"--error", model.error.has_value(), takes.march}};
+      {"--error", model.error.has_value(), takes.march},
+      {"--prior learned", model.prior == Prior::learned, takes.prior}};
   for (const OptionOfModel& option : options) {
     if (option.given && !option.taken) {
       throw Error(ExitCode::usage,
@@ -225,7 +227,7 @@ void choose_march(Plan& plan, const ModelOptions& model) {
 /// With --crop, pixels that no output holds gather nothing, where that changes no other pixel: not
 /// where their error counts, or where a later frame may show what they show.
 void choose_receivers(Plan& plan, const OutputOptions& output, const Geometry& geometry,
-                      const GBuffer& gbuffer, const std::string& file) {
+                      const GBuffer& gbuffer, const std::string& file, int reach_of_prior) {
   // The windows of an overview are not those of the outputs.
   if (!output.crop || gbuffer.grid.is_coarse()) return;
   const Window &data = geometry.window, shown = intersection(data, geometry.display);
@@ -241,7 +243,7 @@ void choose_receivers(Plan& plan, const OutputOptions& output, const Geometry& g
                   "sends light, but is not written",
                   shown.width(), shown.height(), data.width(), data.height()));
   if (!plan.method->takes.receivers || plan.temporal || plan.request.products.error) return;
-  const int reach = plan.filter->reach + gbuffer.downsampling.reach();
+  const int reach = plan.filter->reach + gbuffer.downsampling.reach() + reach_of_prior;
   plan.request.receivers =
       intersection(data, {shown.x0 - reach, shown.y0 - reach, shown.x1 + reach, shown.y1 + reach});
 }
@@ -284,7 +286,8 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
   explain_thickness(plan, model);
   explain_measured(plan, scene);
   choose_march(plan, model);
-  choose_receivers(plan, output, scene.geometry, gbuffer, file);
+  choose_receivers(plan, output, scene.geometry, gbuffer, file,
+                   model.prior == Prior::learned ? kPriorReach : 0);
   explain_downsampling(plan, gbuffer);
   return plan;
 }

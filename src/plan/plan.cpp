@@ -28,6 +28,7 @@ nlohmann::json to_json(const Plan& plan, const std::vector<std::string>& history
   if (plan.method->takes.march) {
     j["slices"] = plan.request.slices;
     j["steps"] = plan.request.steps;
+    j["prior"] = plan.prior ? "learned" : "rules";
     j["offscreen"] = plan.request.extend_offscreen ? "extend" : "open";
   }
   return j;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <glm/vec3.hpp>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -30,12 +31,16 @@ inline constexpr std::array<QualityLevel, 3> kQualities = {{{"draft", Quality::d
 constexpr int slices_of(Quality quality) { return kQualities[std::size_t(quality)].slices; }
 constexpr int steps_of(Quality quality) { return kQualities[std::size_t(quality)].steps; }
 
+/// What fills the directions that no picture shows.
+enum class Prior { rules, learned };
+
 /// What the user says about the method.
 struct ModelOptions {
   std::string method{methods().front().name};
   std::optional<double> radius;     ///< scene units or infinity; chosen from the frame if not given
   std::optional<double> thickness;  ///< scene units or infinity; found in the frame if not given
   bool extend_offscreen = true;     ///< surfaces go on beyond the frame
+  Prior prior = Prior::rules;
   Quality quality = Quality::standard;
   std::optional<int> slices, steps;  ///< in place of those of the quality
   std::optional<double> error;       ///< largest standard error of direct + bounce
@@ -46,6 +51,11 @@ struct ModelOptions {
   bool temporal = false;            ///< frames of a sequence share what they find
 };
 
+/// What a learned prior is told of a frame by others than the estimate.
+struct LearnedPrior {
+  std::optional<glm::vec3> up;  ///< unit, camera space; not known: nothing
+};
+
 /// What will be computed for a frame, and why.
 struct Plan {
   const Method* method = nullptr;
@@ -54,13 +64,14 @@ struct Plan {
   const Filter* filter = nullptr;  ///< after the estimate
   /// The filter of a map at half resolution (Request::filter_half); null where there is none.
   const Filter* half_filter = nullptr;
-  bool temporal = false;             ///< then the mean with the frames before
-  std::vector<std::string> make;     ///< products for any of the outputs
-  std::vector<std::string> write;    ///< those that every EXR of -o holds, in their order there
-  std::string show;                  ///< the one that every picture of -o holds
-  Composition composition;           ///< how the composite is made, where it is
-  int downsample = 1;                ///< how many times as large as the outputs the frame is
-  std::vector<std::string> reasons;  ///< one line per decision
+  std::optional<LearnedPrior> prior;  ///< where it is used
+  bool temporal = false;              ///< then the mean with the frames before
+  std::vector<std::string> make;      ///< products for any of the outputs
+  std::vector<std::string> write;     ///< those that every EXR of -o holds, in their order there
+  std::string show;                   ///< the one that every picture of -o holds
+  Composition composition;            ///< how the composite is made, where it is
+  int downsample = 1;                 ///< how many times as large as the outputs the frame is
+  std::vector<std::string> reasons;   ///< one line per decision
 
   int samples_per_pixel() const;
   /// The name of the filter that removes the noise of the pattern, at full or half resolution.

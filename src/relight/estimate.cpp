@@ -27,6 +27,7 @@
 
 #include "filters/shares.h"
 #include "math/luminance.h"
+#include "prior/prior.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -61,6 +62,7 @@ Products over_geometry(Products found, const Geometry& geometry, const Window& r
   for_each_plane([&](const Product& product, auto& plane) { place(plane, product.background); },
                  found);
   for_each_share([&](auto& plane) { place(plane, 0); }, found);
+  place(found.open_ao, 1);
   for (ShadowDraw& draw : found.shares.draws) place(draw.weight, 0), place(draw.width_px, 0);
   for (ShadowDraw& draw : found.shares.draws_again) place(draw.weight, 0), place(draw.width_px, 0);
   return found;
@@ -108,6 +110,7 @@ Plane<float> change_by_steps(const Scene& scene, const Method& method, Request f
 struct Noisy {
   Products products;
   Plane<float> change;  ///< by steps; empty where they are not compared
+  std::optional<PriorField> prior;
 };
 
 /// Estimates and filters once.
@@ -123,9 +126,17 @@ class Round {
     const auto progress = [this](std::size_t done, std::size_t count) { tell(done, count); };
     Request request = request_;
     request.shares_suffice = plan_.filter->apply && !compares_steps_;
+    if (plan_.prior) request.open_ao = request.products.bent = true;
     Noisy out{over_geometry(plan_.method->estimate(scene, request, progress), scene.geometry,
                             request.receivers),
+              {},
               {}};
+    if (plan_.prior) {
+      Products& products = out.products;
+      out.prior = find_prior(scene, request, products, plan_.prior->up);
+      products.open_ao = {};
+      if (!request_.products.bent) products.bent = {};
+    }
     if (compares_steps_)
       out.change = change_by_steps(scene, *plan_.method, request_, out.products, progress);
     return out;
@@ -137,7 +148,9 @@ class Round {
     const int pattern = plan_.method->pattern_size;
     Products& products = out.products = std::move(noisy.products);
     scale_to_noise(products.error, *plan_.method);
-    products = filter_shares(*plan_.filter, std::move(products), scene, pattern);
+    std::function<void(Products&)> lean;
+    if (noisy.prior) lean = [&](Products& found) { apply_prior(*noisy.prior, geometry, found); };
+    products = filter_shares(*plan_.filter, std::move(products), scene, pattern, lean);
     if (plan_.temporal) {
       out.history = accumulate(temporal.history ? &*temporal.history : nullptr, geometry, products,
                                temporal.motion);

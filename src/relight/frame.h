@@ -42,6 +42,8 @@ struct Frame {
   /// What other views add: those of --also, then neighbours, then back faces.
   std::vector<MergeCounts> views;
   std::string light;  ///< one line
+  std::optional<glm::vec3>
+      up;  ///< unit, camera space; found for a learned prior, where it is known
   Plan plan;
   std::string advice;                ///< what to render where much is guessed: see explain_guessed
   std::vector<std::string> history;  ///< what a temporal plan takes from the frame before, and why

@@ -44,7 +44,12 @@ void light_frame(Frame& frame, const Lighting& lighting, const FrameOptions& opt
   Scene& scene = frame.scene;
   const bool world = scene.geometry.world_known;
   WorldUp up;
-  if (world && lighting.needs_up()) up = find_up(frame, options);
+  const bool asks_prior = options.model.prior == Prior::learned && !options.light.up;
+  if (world && (lighting.needs_up() || asks_prior)) up = find_up(frame, options);
+  if (world && (options.light.up || (asks_prior && up.known))) {
+    const UpAxis axis = options.light.up.value_or(up.axis);
+    frame.up = scene.geometry.world_to_camera[axis == UpAxis::z ? 2 : 1];
+  }
   const FrameEnvironment around = lighting.around(up.axis, chromaticities_of(frame.part().header));
   scene.light = model_light(around.environment, scene.geometry.world_to_camera);
   frame.light = around.description;

@@ -90,6 +90,16 @@ const std::vector<IdleRule<Purpose>>& rules_of_options() {
       {{"--motion-scale"},
        [](const FrameOptions& o, Purpose) { return !o.model.temporal; },
        "motion is used with --temporal only"},
+      {{"--prior"},
+       [](const FrameOptions&, Purpose purpose) { return purpose == Purpose::bench; },
+       "bench measures methods by their rules"},
+      {{"--prior"},
+       [](const FrameOptions& o, Purpose purpose) {
+         return purpose == Purpose::relight && o.model.prior == Prior::learned &&
+                !shows_composite(o.output) &&
+                !asks_for(o, {"ao", "direct", "composite", "guessed"});
+       },
+       "no output has ao, direct or the composite"},
       {{"--quality", "--offscreen"},
        [](const FrameOptions& o, Purpose purpose) {
          return purpose != Purpose::bench && !method_of(o).takes.march;

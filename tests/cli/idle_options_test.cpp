@@ -119,6 +119,7 @@ TEST_F(IdleOptions, WithAnEffectAreNot) {
                                  "--env-up", "z"},
         {"-o", path("out.png"), "--bits", "16", "--view", "Raw", "--pixel-type", "float"},
         {"--offscreen", "open", "--bounces", "2", "--seed", "1"},
+        {"--prior", "learned", "--products", "ao"},
         {"--set", "roughness=0.3", "--products", "reflection"}}) {
     const Finished done = run("in.exr", flags);
     EXPECT_EQ(done.code, 0);

@@ -134,9 +134,10 @@ TEST_F(Outputs, EveryBounceAddsLight) {
 
 TEST_F(Outputs, EveryFlagOfTheModelMatters) {
   const auto plain = run({}).pixels;
-  EXPECT_EQ(run({"--method", "bitmask", "--seed", "0", "--filter", "geometry", "--radius", "auto",
-                 "--thickness", "auto", "--offscreen", "extend", "--quality", "standard",
-                 "--slices", "2", "--steps", "16"})
+  EXPECT_EQ(run({"--method",    "bitmask",  "--seed",  "0",           "--filter",
+                 "geometry",    "--radius", "auto",    "--thickness", "auto",
+                 "--offscreen", "extend",   "--prior", "rules",       "--quality",
+                 "standard",    "--slices", "2",       "--steps",     "16"})
                 .pixels,
             plain)
       << "these are the defaults";
@@ -146,6 +147,7 @@ TEST_F(Outputs, EveryFlagOfTheModelMatters) {
                                                 {"--thickness", "0.05"},
                                                 {"--thickness", "inf"},
                                                 {"--offscreen", "open"},
+                                                {"--prior", "learned"},
                                                 {"--quality", "draft"},
                                                 {"--quality", "final"},
                                                 {"--slices", "5"},

@@ -25,7 +25,8 @@ struct VisibilityJob {
   float through_beyond = 0;  ///< share of it that comes through what may go on beyond the frame
 
   InterleavedPlane* ao = nullptr;
-  InterleavedVectors* bent = nullptr;  ///< unit; null: not wanted
+  InterleavedPlane* open_ao = nullptr;  ///< if surfaces end at the border; null: not wanted
+  InterleavedVectors* bent = nullptr;   ///< unit; null: not wanted
   /// What of the light arrives, less ao: in one colour from everywhere, nothing, without rounding.
   /// Null: not wanted.
   InterleavedColorShares* sky_share = nullptr;

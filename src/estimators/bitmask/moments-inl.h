@@ -200,9 +200,12 @@ struct Moments {
   }
 
   /// 1 - M(hidden) / M(all): the visibility of the hemisphere, weighted by the cosine.
-  HWY_INLINE V ao() const {
+  HWY_INLINE V ao() const { return ao_of(hidden[0]); }
+
+  /// The same if only this sum is hidden.
+  HWY_INLINE V ao_of(V sum_of_hidden) const {
     const V zero = set(0), one = set(1);
-    return hn::IfThenElse(all[0] > zero, hn::Clamp(one - hidden[0] / all[0], zero, one), one);
+    return hn::IfThenElse(all[0] > zero, hn::Clamp(one - sum_of_hidden / all[0], zero, one), one);
   }
 
   /// 1 - int_lost L dM / int_all L dM, for the light L with these weights. Both sums are over the

@@ -8,6 +8,7 @@
 //
 // all:    sectors above the plane across the shading normal
 // hidden: those of them that solids hide, found by a march over each side
+//         (open_ao counts those alone that the frame hides, and not what may go on beyond it)
 // lost:   `hidden`, less the share `through_beyond` of what only surfaces beyond the border hide
 // w:      SliceFrame::weight
 // L:      light in spherical harmonics, so that moments of the sectors suffice (moments-inl.h);
@@ -49,11 +50,13 @@ void visibility(const VisibilityJob& job, const Window& part) {
       march, part, [&](const MarchReceiver& p, const std::vector<Slice>& slices) HWY_ATTR {
         const int count_of_slices = int(slices.size()), firsts = (count_of_slices + 1) / 2;
         Moments<kOrder> sum, first_half;  // over slices, by w
+        V hidden_in_frame = set(0);       // of sum.hidden, what the frame itself hides
         for (int k = 0; k < count_of_slices; ++k) {
           if (k == firsts) first_half = sum;
           const Slice& slice = slices[std::size_t(slice_at(k, count_of_slices))];
           const SliceFrame f = slice_frame(march.scene, p, slice);
           CircleMoments<kOrder> hidden, beyond, all;
+          CircleMoments<0> in_frame;
           for (const bool forward : {true, false}) {
             const SideFrame side =
                 side_frame(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
@@ -64,6 +67,9 @@ void visibility(const VisibilityJob& job, const Window& part) {
                     forward);
             if (none(bits)) continue;
             hidden.add(moments_of_bits<kOrder + 1>(bits), p.shading_v, side.shading_t, forward);
+            if (job.open_ao)
+              in_frame.add(moments_of_bits<1>(hn::AndNot(hidden_beyond, bits)), p.shading_v,
+                           side.shading_t, forward);
             if (job.through_beyond == 0 || none(hidden_beyond)) continue;
             beyond.add(moments_of_bits<kOrder + 1>(hidden_beyond), p.shading_v, side.shading_t,
                        forward);
@@ -71,10 +77,12 @@ void visibility(const VisibilityJob& job, const Window& part) {
           CircleMoments<kOrder> lost = hidden;
           if (job.through_beyond > 0) lost.subtract(beyond, set(job.through_beyond));
           sum.add(p, f, hidden, lost, all);
+          hidden_in_frame = hn::MulAdd(f.weight, in_frame.cosine[0], hidden_in_frame);
         }
         const std::ptrdiff_t i = p.place.index;
         const V ao = sum.ao();
         store(hn::IfThenElse(p.valid, ao, set(1)), *job.ao, i);
+        if (job.open_ao) store(sum.ao_of(hidden_in_frame), *job.open_ao, i);
         if (!job.bent && !job.sky_share && !job.difference) return;
         const V3 normals = usable(load_shading(march.scene, p.place).normal, p.valid);
         if constexpr (kOrder > 0) {

@@ -133,7 +133,8 @@ WorldUp find_world_up(const GBuffer& g, const Geometry& geometry,
     return {UpAxis::y, "a guess",
             fmt::format("the camera is held as if {} were up in the world of P: the environment is "
                         "placed with y up; turn P and N, or give --env-up z",
-                        best.name)};
+                        best.name),
+            false};
   }
   for (const auto& [axis, taken, other] :
        {std::tuple{UpAxis::z, &z, &y}, std::tuple{UpAxis::y, &y, &z}}) {
@@ -145,7 +146,8 @@ WorldUp find_world_up(const GBuffer& g, const Geometry& geometry,
   return {
       UpAxis::y, "a guess",
       "the camera does not surely tell whether y or z is up in the world of P: taken as y; give "
-      "--env-up y or --env-up z"};
+      "--env-up y or --env-up z",
+      false};
 }
 
 }  // namespace ssdo

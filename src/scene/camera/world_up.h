@@ -16,6 +16,7 @@ struct WorldUp {
   UpAxis axis = UpAxis::y;
   std::string source;   ///< "by the header", "by the camera, 160 to 1", "a guess"
   std::string warning;  ///< where it is a guess, or header and camera disagree; else empty
+  bool known = true;    ///< false: a guess
 };
 
 /// How likely the axes y, z, x, -y, -z and -x are up, by the camera and the surfaces of a frame, or

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the learned prior is told about a pixel, in the order of data/prior/features.py: the pixel
+// itself, means around it at three scales, and means of the frame and along its borders. All of it
+// is without units, and changes continuously with the camera.
+//
+// Means are over cells of the display window, of which a square frame has 48 x 48, and over cells 4
+// and 12 times as large. Between the centres of cells they are interpolated; where little of a cell
+// shows surfaces, its means lean to those of the frame.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "math/plane.h"
+#include "prior/squares.h"
+#include "scene/geometry.h"
+
+namespace ssdo {
+
+/// Rows right, ahead and up of the axes in which directions are told, which turn them from camera
+/// space. `up` unit, in camera space: then the axes stand upright and face where the camera looks,
+/// continuously also where it looks straight down. Without it, they are the camera's.
+glm::mat3 prior_axes(const std::optional<glm::vec3>& up);
+
+class PriorInputs {
+ public:
+  static constexpr int kScales = 3;
+  static constexpr std::size_t kOfPixel = 19, kOfScale = 12, kOfFrame = 16, kOfSide = 6;
+  /// Inputs of a pixel, and those that all pixels have in common, which follow them.
+  static constexpr std::size_t kOwn = kOfPixel + kScales * kOfScale,
+                               kShared = kOfFrame + 4 * kOfSide;
+
+  /// `squares` with the means of what was found; `radius` in scene units, or infinity; `up` as
+  /// prior_axes() has it.
+  PriorInputs(const Squares& squares, const Geometry& geometry, const std::optional<glm::vec3>& up,
+              float radius);
+
+  std::span<const float> shared() const { return shared_; }
+
+  /// Writes the own inputs of a row of squares: kOwn rows, `stride` floats apart.
+  void write(int y, std::size_t stride, float* rows) const;
+
+ private:
+  /// What means are taken of; its squares, for deviations, stand last.
+  enum Value {
+    kNormal = 0,
+    kLevel = 3,  ///< share of the normal that is vertical
+    kLogDepth,
+    kLogDepth2,
+    kAo,
+    kGuessed,
+    kOpen,  ///< how much more is open if surfaces end at the border
+    kBent,
+    kAo2 = kBent + 3,
+    kGuessed2,
+    kValues
+  };
+  using Values = std::array<float, kValues>;
+
+  /// Of a cell: the share that shows surfaces, and sums over these by the size of the cell.
+  struct Cell {
+    float covered = 0;
+    Values sums = {};
+  };
+
+  void find_log_depth();
+  void find_cells(double aspect);
+  void share();
+  Values values_of(int x, int y) const;
+  Values means(const Cell& cell) const;
+  Cell look_up(const Plane<Cell>& cells, float across, float down) const;
+
+  const Squares& squares_;
+  glm::mat3 axes_;
+  bool orthographic_;
+  float lens_;  ///< geometric mean of half the width and half the height: slopes, or scene units
+  float log_lens_, log_aspect_, pitch_, radius_;
+  Plane<float> log_depth_;
+  Cell frame_;         ///< all of it
+  Values frame_mean_;  ///< over surfaces
+  std::array<Plane<Cell>, kScales> cells_;
+  std::vector<float> shared_;
+};
+
+}  // namespace ssdo

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "prior/squares.h"
+
+#include <cmath>
+
+#include "estimators/guessed.h"
+#include "parallel/tiles.h"
+
+namespace ssdo {
+namespace {
+
+/// The prior looks at frames as if they were about so many pixels wide, but takes one pixel of 16
+/// at least.
+constexpr double kLookedAt = 480;
+constexpr int kLargest = 4;
+
+int floor_div(int a, int b) { return int(std::floor(double(a) / b)); }
+
+/// The pixel that stands for a square, of those on a side: 8 squares in a row take 8 different
+/// columns of the sampling pattern.
+int place_in(int square, int step) {
+  constexpr int kPeriod = kGuessedPattern;
+  const int turn = (square & (kPeriod - 1)) * step / kPeriod;
+  return turn & (step - 1);
+}
+
+}  // namespace
+
+int square_size(int display_width) {
+  const int wanted = int(std::lround(display_width / kLookedAt));
+  return wanted >= kLargest ? kLargest : wanted >= 2 ? 2 : 1;
+}
+
+Squares make_squares(const Geometry& geometry, const Window& part) {
+  Squares s;
+  const int step = s.step = square_size(geometry.display.width());
+  // Of the first pixel of the geometry in the display window.
+  const int left = geometry.window.x0 - geometry.display.x0,
+            top = geometry.window.y0 - geometry.display.y0;
+  s.first = {floor_div(left + part.x0, step), floor_div(top + part.y0, step)};
+  s.display = {floor_div(geometry.display.width() - 1, step) + 1,
+               floor_div(geometry.display.height() - 1, step) + 1};
+  const int width = floor_div(left + part.x1 - 1, step) + 1 - s.first.x,
+            height = floor_div(top + part.y1 - 1, step) + 1 - s.first.y;
+  s.pixel = Plane<std::int32_t>(width, height, kNoPixel);
+  s.covered = Plane<float>(width, height, 0.0f);
+  s.surfel = Plane<Surfel>(width, height);
+  for_each_row(height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const int x0 = (s.first.x + x) * step - left, y0 = (s.first.y + y) * step - top;
+      const auto take = [&](int px, int py) {
+        if (!part.contains(px, py) || !geometry.surfel(px, py).is_usable()) return false;
+        s.pixel(x, y) = std::int32_t(geometry.surfel.index(px, py));
+        s.surfel(x, y) = geometry.surfel(px, py);
+        return true;
+      };
+      if (take(x0 + place_in(s.first.x + x, step), y0 + place_in(s.first.y + y, step))) {
+        s.covered(x, y) = 1;
+        continue;
+      }
+      for (int k = 0; k < step * step; ++k)
+        if (take(x0 + k % step, y0 + k / step)) break;
+    }
+  });
+  return s;
+}
+
+}  // namespace ssdo
