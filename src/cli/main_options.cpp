@@ -98,7 +98,8 @@ void add_input(CLI::App& app, InputOptions& o) {
   group.each(
       "--aov", "ROLE=LAYER", [&](const Text& text) { o.aovs.push_back(parse_layer_request(text)); },
       fmt::format("ROLE=LAYER or ROLE=FILE:LAYER, roles {}; albedo:straight=LAYER or "
-                  "albedo:premultiplied=LAYER states how alpha is in it",
+                  "albedo:premultiplied=LAYER states how alpha is in it; light:NAME=LAYER is what "
+                  "a lamp gave to the beauty without shadow",
                   fmt::join(role_names(), " ")));
   group.repeatable("--also", "FILE", o.also,
                    "another G-buffer of the same scene with P in world space: another camera, a "
@@ -147,7 +148,7 @@ void add_camera(CLI::App& app, CameraOptions& o) {
       ->excludes(fov);
 }
 
-void add_light(CLI::App& app, LightOptions& o) {
+void add_light(CLI::App& app, LightOptions& o, OutputOptions& output) {
   Group group(app, "Light");
   group.value("--env", "FILE[:LAYER]|R,G,B", o.env, "lat-long or cube map, or a constant colour");
   group
@@ -162,6 +163,8 @@ void add_light(CLI::App& app, LightOptions& o) {
   group.repeatable("--lights", "FILE.json", o.lamp_files, "lamps: see LIGHTS in man ssdo");
   group.repeatable("--light", "'TYPE KEY=VALUE ...'", o.lamps,
                    "a lamp: sphere, disk, rect or distant, with the keys of such a file");
+  group.flag("--per-light", output.per_light,
+             "add direct, bounce, shadow and unshadowed of each light, the environment's as env");
 }
 
 /// The options that decide the number of samples.
@@ -327,7 +330,7 @@ void add_messages(CLI::App& app, Verbosity& o) {
 void add_main_options(CLI::App& app, Options& o) {
   add_input(app, o.input);
   add_camera(app, o.camera);
-  add_light(app, o.light);
+  add_light(app, o.light, o.output);
   add_model(app, o.model);
   add_output(app, o.output);
   add_color(app, o.color);

@@ -4,7 +4,7 @@
 // alpha is between 0 and 1 need no division.
 //
 //   relight   F[alpha albedo (direct + bounce)]
-//   occlude   beauty - ambient (1 - S) - specular (1 - reflection)
+//   occlude   beauty - ambient (1 - S) - sum light_k (1 - S_k) - specular (1 - reflection)
 //   add       beauty + F[alpha albedo (direct + bounce)]
 //
 // F is the mean of the pixels of the G-buffer that a pixel of the output shows: one of them, or
@@ -15,8 +15,9 @@
 // occluders: what hides a red light and not a green one throws a green shadow, where ao would make
 // it brown (Ritschel, Grosch, Seidel, "Approximating Dynamic Global Illumination in Image Space",
 // 2009). Under the filter it is F[alpha albedo direct] / F[alpha albedo unoccluded], as an ambient
-// layer that the renderer has filtered is F[alpha albedo unoccluded]. What lamps give stays as
-// rendered: ambient is a part of the beauty.
+// layer that the renderer has filtered is F[alpha albedo unoccluded]. S_k is the same of a lamp,
+// and light_k the layer of what it gave without shadows (--aov light:NAME). What other lamps give
+// stays as rendered.
 //
 // occlude and add keep the beauty and its alpha where there is no geometry.
 #include "color/compose.h"
@@ -28,8 +29,10 @@
 #include <type_traits>
 
 #include "color/downsample.h"
+#include "color/light_colors.h"
 #include "math/light_range.h"
 #include "parallel/tiles.h"
+#include "scene/light/named_light.h"
 
 namespace ssdo {
 namespace {
@@ -42,6 +45,35 @@ Plane<glm::vec3> in_input_space(Plane<glm::vec3> directions, const glm::mat3& no
     for (int c = 0; c < 3; ++c) d[c] = glm::dot(normals_to_camera[c], seen);
   }
   return directions;
+}
+
+/// Adds the channels of a plane, each with its letter.
+template <class T>
+void append(NamedChannels& out, const Product& product, const std::string& prefix,
+            const Plane<T>& plane) {
+  for (int c = 0; c < ChannelView(plane, 0).step; ++c)
+    out.channels.push_back({prefix + product.channels[out.channels.size()], {plane, c}});
+}
+
+template <class T>
+void append_made(NamedChannels& out, const Product& product, const std::string& prefix,
+                 Plane<T> plane) {
+  append(out, product, prefix, plane);
+  out.made = std::move(plane);
+}
+
+/// Adds a plane of the products as outputs show it.
+template <class T>
+void append_found(NamedChannels& out, const Product& product, const std::string& prefix,
+                  const Plane<T>& found, const Results& results) {
+  const bool turns = product.kind == ProductKind::direction;
+  if (!turns && results.gbuffer.downsampling.is_identity())
+    return append(out, product, prefix, found);
+  Plane<T> plane = product_at_output_size(product, found, results);
+  if constexpr (std::is_same_v<T, glm::vec3>) {
+    if (turns) plane = in_input_space(std::move(plane), results.scene.geometry.normals_to_camera);
+  }
+  append_made(out, product, prefix, std::move(plane));
 }
 
 /// albedo (direct + bounce).
@@ -61,24 +93,25 @@ Plane<glm::vec3> sent_light(const Results& r, const Plane<float>& alpha) {
   return at_output_size(std::move(sent), r.gbuffer);
 }
 
-/// Light of the environment at the surfaces of a pixel: the visible part, and all of it.
+/// A light at the surfaces of a pixel: the visible part, and all of it.
 struct Arriving {
   Plane<glm::vec3> part, whole;
 };
 
-Arriving arriving_light(const Results& r) {
+/// `by` null: the same light from everywhere, of which ao is the visible part.
+Arriving arriving_light(const Results& r, const LitBy* by) {
   Arriving light;
   light.whole = weights_by_albedo(r);
   light.part = light.whole;
   for_each_row(light.part.height, [&](int y) {
     for (std::size_t i = light.part.index(0, y); i < light.part.index(0, y + 1); ++i) {
       if (light.whole[i] == glm::vec3(0)) continue;  // without a surface there is no normal
-      if (r.composition.share_is_ao) {
+      if (!by) {
         light.part[i] *= r.products.ao[i];
       } else {
-        light.part[i] *= r.products.direct[i];
+        light.part[i] *= by->direct[i];
         const Surfel& s = r.scene.geometry.surfel[i];
-        light.whole[i] *= r.scene.light.unoccluded(s.position, s.normal);
+        light.whole[i] *= by->light.unoccluded(s.position, s.normal);
       }
     }
   });
@@ -103,24 +136,62 @@ const Plane<glm::vec3>& rendered(const GBuffer& gbuffer) {
   return gbuffer.beauty.empty() ? gbuffer.ambient : gbuffer.beauty;
 }
 
+/// What of rendered layers does not arrive.
+class Hidden {
+ public:
+  explicit Hidden(const Results& r) : r_(r), sum_(Plane<glm::vec3>::like(rendered(r.gbuffer))) {
+    std::fill(sum_.pixels.begin(), sum_.pixels.end(), glm::vec3(0));
+  }
+
+  /// `layer` is what a light gave; `by` as of arriving_light().
+  void add(const Plane<glm::vec3>& layer, const LitBy* by) {
+    const Arriving light = arriving_light(r_, by);
+    for_each_row(sum_.height, [&](int y) {
+      for (std::size_t i = sum_.index(0, y); i < sum_.index(0, y + 1); ++i)
+        sum_[i] += layer[i] * (glm::vec3(1) - arriving_share(light.part[i], light.whole[i]));
+    });
+  }
+
+  Plane<glm::vec3> take() { return std::move(sum_); }
+
+ private:
+  const Results& r_;
+  Plane<glm::vec3> sum_;
+};
+
+/// What occlusion takes of the layers that lights gave. Ambient light is the environment's alone.
+Plane<glm::vec3> hidden_light(const Results& r) {
+  Hidden hidden(r);
+  const Plane<glm::vec3>& ambient = r.gbuffer.ambient;
+  const LitBy all{r.scene.light, r.products.direct};
+  const bool by_ao = r.composition.share_is_ao, has_ambient = !ambient.empty();
+  if (has_ambient && by_ao) hidden.add(ambient, nullptr);
+  if (has_ambient && !by_ao && !has_lamps(r.scene.light)) hidden.add(ambient, &all);
+  if (!has_lamps(r.scene.light)) return hidden.take();
+  const std::vector<NamedLight> lights = lights_of(r.scene.light);
+  for (std::size_t k = 0; k < lights.size() && k < r.products.lights.size(); ++k) {
+    const LitBy by{lights[k].light, r.products.lights[k].direct};
+    const auto layer = r.gbuffer.lights.find(lights[k].name);
+    if (has_ambient && !by_ao && lights[k].name == kEnvironmentName) hidden.add(ambient, &by);
+    if (layer != r.gbuffer.lights.end()) hidden.add(layer->second, &by);
+  }
+  return hidden.take();
+}
+
 Plane<glm::vec3> occluded(const Results& r) {
-  const Plane<glm::vec3>&beauty = rendered(r.gbuffer), &ambient = r.gbuffer.ambient,
-        &specular = r.gbuffer.specular;
-  const Arriving light = arriving_light(r);
+  const Plane<glm::vec3>&beauty = rendered(r.gbuffer), &specular = r.gbuffer.specular;
+  Plane<glm::vec3> hidden = hidden_light(r);
   Plane<float> reflection;
   if (!specular.empty())
     reflection = product_at_output_size(find_product("reflection"), r.products.reflection, r);
-  auto out = Plane<glm::vec3>::like(beauty);
-  for_each_row(out.height, [&](int y) {
-    for (std::size_t i = out.index(0, y); i < out.index(0, y + 1); ++i) {
-      glm::vec3 hidden =
-          ambient[i] * (glm::vec3(1) - arriving_share(light.part[i], light.whole[i]));
-      if (!specular.empty()) hidden += specular[i] * (1 - reflection[i]);
+  for_each_row(hidden.height, [&](int y) {
+    for (std::size_t i = hidden.index(0, y); i < hidden.index(0, y + 1); ++i) {
+      if (!specular.empty()) hidden[i] += specular[i] * (1 - reflection[i]);
       // No light is negative, unless the render has it so, even where its layers do not add up.
-      out[i] = glm::max(within_range(beauty[i] - hidden), glm::min(beauty[i], glm::vec3(0)));
+      hidden[i] = glm::max(within_range(beauty[i] - hidden[i]), glm::min(beauty[i], glm::vec3(0)));
     }
   });
-  return out;
+  return hidden;
 }
 
 Plane<glm::vec3> added(const Results& r, const Plane<float>& alpha) {
@@ -153,31 +224,43 @@ Composite composite(const Results& r) {
 }
 
 NamedChannels product_channels(const std::string& name, const Results& results) {
-  const Product& wanted = find_product(name);
-  NamedChannels out;
-  const auto append = [&](const std::string& prefix, const auto& plane) {
-    for (int c = 0; c < ChannelView(plane, 0).step; ++c)
-      out.channels.push_back({prefix + wanted.channels[out.channels.size()], {plane, c}});
-  };
-  for_each_plane(
-      [&](const Product& product, const auto& found) {
-        if (&product != &wanted) return;
-        const bool turns = product.kind == ProductKind::direction;
-        if (!turns && results.gbuffer.downsampling.is_identity()) return append(name + ".", found);
-        auto plane = product_at_output_size(product, found, results);
-        if constexpr (std::is_same_v<decltype(plane), Plane<glm::vec3>>) {
-          if (turns)
-            plane = in_input_space(std::move(plane), results.scene.geometry.normals_to_camera);
-        }
-        append(name + ".", plane);
-        out.made = std::move(plane);
-      },
-      results.products);
-  if (wanted.in) return out;
-  Composite composed = composite(results);
-  append("", composed.color);
-  append("", composed.alpha);
-  out.made = std::move(composed);
+  const Product& product = find_product(name);
+  NamedChannels out(product.background);
+  if (const auto* scalar = std::get_if<Plane<float> Products::*>(&product.plane)) {
+    append_found(out, product, name + ".", results.products.*(*scalar), results);
+  } else if (const auto* vector = std::get_if<Plane<glm::vec3> Products::*>(&product.plane)) {
+    append_found(out, product, name + ".", results.products.*(*vector), results);
+  } else if (name == kComposite) {
+    Composite composed = composite(results);
+    append(out, product, "", composed.color);
+    append(out, product, "", composed.alpha);
+    out.made = std::move(composed);
+  } else {
+    const LitBy all{results.scene.light, results.products.direct};
+    append_made(out, product, name + ".", composed_of_light(product, all, results));
+  }
+  return out;
+}
+
+std::vector<NamedChannels> light_channels(const std::string& name, const Results& results) {
+  const Product& product = find_product(name);
+  std::vector<NamedChannels> out;
+  if (!product.by_light || !results.composition.per_light) return out;
+  const std::vector<NamedLight> lights = lights_of(results.scene.light);
+  const std::vector<LightProducts>& found = results.products.lights;
+  for (std::size_t k = 0; k < lights.size(); ++k) {
+    NamedChannels& channels = out.emplace_back(product.background);
+    const std::string prefix = name + "." + lights[k].name + ".";
+    if (name == "direct") {
+      append_found(channels, product, prefix, found[k].direct, results);
+    } else if (name == "bounce") {
+      append_found(channels, product, prefix, found[k].bounce, results);
+    } else {
+      const Plane<glm::vec3> none;
+      const LitBy by{lights[k].light, found.empty() ? none : found[k].direct};
+      append_made(channels, product, prefix, composed_of_light(product, by, results));
+    }
+  }
   return out;
 }
 

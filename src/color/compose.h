@@ -28,12 +28,13 @@ struct NamedChannel {
   ChannelView pixels;
 };
 
-/// The channels of a product.
+/// The channels of a product, or of what one light gives of it.
 struct NamedChannels {
-  NamedChannels() = default;
+  explicit NamedChannels(float at_background) : background(at_background) {}
   NamedChannels(NamedChannels&&) = default;  // a copy would not be what its channels show
 
   std::vector<NamedChannel> channels;
+  float background;  ///< value where there is no surface
   /// Those of them that were made for the output; the others are views of the products.
   std::variant<std::monostate, Plane<float>, Plane<glm::vec3>, Composite> made;
 };
@@ -46,5 +47,9 @@ Composite composite(const Results& results);
 /// them: directions in the space of the input's normals, the composite premultiplied. Valid as long
 /// as the results are.
 NamedChannels product_channels(const std::string& name, const Results& results);
+
+/// The same of each light, "PRODUCT.LIGHT.R" and so on; none where `results.composition` has no
+/// layers of lights, or the product has none.
+std::vector<NamedChannels> light_channels(const std::string& name, const Results& results);
 
 }  // namespace ssdo

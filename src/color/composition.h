@@ -31,6 +31,8 @@ struct Composition {
   /// For occlude: the visible part of the ambient light is ao in every channel. Otherwise it is
   /// `direct` over the direct light without occluders.
   bool share_is_ao = false;
+  /// Beside the products of all light stand those of each light.
+  bool per_light = false;
 };
 
 }  // namespace ssdo

@@ -2,6 +2,7 @@
 #include "color/display_image.h"
 
 #include "color/downsample.h"
+#include "color/light_colors.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {
@@ -31,6 +32,11 @@ Composite colors_of(const Product& product, const Results& results, bool straigh
   if (const auto* plane = std::get_if<Plane<glm::vec3> Products::*>(&product.plane))
     return {product_at_output_size(product, results.products.*(*plane), results),
             at_output_size(coverage(results.scene, results.gbuffer), results.gbuffer)};
+  if (product.name != kComposite) {
+    const LitBy all{results.scene.light, results.products.direct};
+    return {composed_of_light(product, all, results),
+            at_output_size(coverage(results.scene, results.gbuffer), results.gbuffer)};
+  }
   Composite shown = composite(results);
   for (std::size_t i = 0; i < shown.color.size() && straight; ++i) {
     if (shown.alpha[i] > 0) shown.color[i] /= shown.alpha[i];
@@ -55,13 +61,13 @@ DisplayImage make_display_image(const std::string& name, const Results& results,
   image.width = display.width();
   image.height = display.height();
   image.pixel_aspect = results.gbuffer.pixel_aspect;
-  const bool grey = product.channels.size() == 1;
   image.channels = has_alpha && !format.alpha ? 3 : int(product.channels.size());
   const auto channels = std::size_t(image.channels);
   image.values.assign(display.area() * channels, 0.0f);
   if (product.kind != ProductKind::light) {
     // Data as they are; directions as colours usually show them, -1..1 in 0..1.
-    const float scale = grey ? 1.0f : 0.5f, offset = grey ? 0.0f : 0.5f;
+    const bool is_signed = product.kind == ProductKind::direction;
+    const float scale = is_signed ? 0.5f : 1.0f, offset = is_signed ? 0.5f : 0.0f;
     const NamedChannels planes = product_channels(name, results);
     for_each_shown_pixel(display, data, [&](std::size_t to, std::size_t from) {
       for (std::size_t c = 0; c < channels; ++c)

@@ -31,7 +31,7 @@ bool needs_display(const std::string& product);
 /// Light becomes colours of the display. The composite keeps its alpha and is not premultiplied; or
 /// it lies over black, premultiplied before the display transform, as compositors show and convert
 /// a premultiplied EXR. Where its alpha is 0, colours are as they are. Directions become RGB with
-/// 1/2 for 0, other data grey. Pixels outside the data window are empty.
+/// 1/2 for 0; other data stay as they are. Pixels outside the data window are empty.
 DisplayImage make_display_image(const std::string& name, const Results& results,
                                 const DisplayFormat& format);
 

@@ -53,7 +53,7 @@
 
 #include "estimators/bitmask/basis_weights.h"
 #include "estimators/bitmask/beyond.h"
-#include "estimators/bitmask/border_light.h"
+#include "estimators/bitmask/bounce_passes.h"
 #include "estimators/bitmask/jobs.h"
 #include "estimators/bitmask/parts.h"
 #include "estimators/bitmask/patterns.h"
@@ -90,11 +90,11 @@ class Bitmask {
     // Sources first: what bounds their rays needs more memory than any other light.
     if (wants_light() && !scene_.light.sources.empty()) gather_sources();
     gather_visibility();
-    InterleavedVectors bounce;
-    if (request_.products.bounce) bounce = gather_bounce();
+    BouncedLights bounced;
+    if (request_.products.bounce) bounced = gather_bounce();
     if (request_.products.reflection) gather_reflection();
     end_marches();
-    hand_out(std::move(bounce));
+    hand_out(std::move(bounced));
     if (request_.products.guessed)
       out_.guessed =
           guessed_shares(scene_, march_scene_.receivers, request_.radius, request_.seed, progress_);
@@ -106,19 +106,19 @@ class Bitmask {
     const MarchScene& s = march_scene_;
     FarRaster raster(layout_.width(), layout_.height(), s.first_x, s.first_y, from_px);
     kept_light_in_ = &raster;
+    std::vector<FarLight> kept;
     if (request_.products.bounce && request_.bounces > 0) {
       if (!scene_.light.sources.empty()) gather_sources();
       gather_visibility();
-      gather_bounce();
+      kept = gather_bounce().kept;
     }
     kept_light_in_ = nullptr;
     MarchPlanes planes = raster_.in_whole_rows(s, raster);
     std::vector<DepthBounds> bounds = depth_bounds(s);
     CutSurfaces cut = find_cut_surfaces(s, up_in_camera(scene_), request_.radius);
     const Openness open = openness_of(s, scene_, request_.radius);
-    return {
-        std::move(march_scene_), raster, std::move(planes),     std::move(bounds), scene_.solids,
-        std::move(cut),          open,   std::move(kept_light_)};
+    return {std::move(march_scene_), raster, std::move(planes), std::move(bounds), scene_.solids,
+            std::move(cut),          open,   std::move(kept)};
   }
 
  private:
@@ -127,14 +127,6 @@ class Bitmask {
   March march_with(const SlicePattern& pattern) const {
     return {march_scene_,       pattern, request_.radius, request_.extend_offscreen, may_be_thin(),
             other_views_.get(), far_};
-  }
-
-  /// A part of the raster with what may send light to it in so many bounces.
-  Window with_senders(const Window& part, int bounces) const {
-    const Window raster = march_scene_.raster();
-    if (!request_.around_band) return raster;
-    const int rows = bounces * request_.around_band->reach_rows;
-    return intersection(raster, {raster.x0, part.y0 - rows, raster.x1, part.y1 + rows});
   }
 
   bool wants_light() const {
@@ -148,12 +140,12 @@ class Bitmask {
                        [](Provenance o) { return o != Provenance::guessed; });
   }
 
-  bool senders_need_light() const { return scene_.senders.radiance.empty(); }
-
   /// The pixels whose own light is found: all of the raster where they send it to others.
   Window lit_part() const {
-    const bool sends = request_.products.bounce && request_.bounces > 0 && senders_need_light();
-    return sends ? with_senders(march_scene_.receivers, request_.bounces) : march_scene_.receivers;
+    const bool sends =
+        request_.products.bounce && request_.bounces > 0 && scene_.senders.radiance.empty();
+    const Window& receivers = march_scene_.receivers;
+    return sends ? with_senders(march_scene_, request_, receivers, request_.bounces) : receivers;
   }
 
   void gather_visibility() {
@@ -225,21 +217,30 @@ class Bitmask {
     march_scene_.layers.front().thickness = {};
   }
 
-  FoundShares found_shares() const {
-    return {scene_.light, &ao_, out_.shares.are_ao ? nullptr : &sky_share_, sources_};
+  const InterleavedColorShares* found_sky() const {
+    return out_.shares.are_ao ? nullptr : &sky_share_;
   }
 
   /// Turns what was found into products, each in room that others have left. Sources go before the
   /// sky, whose planes are the largest: theirs lay between those of the bounce.
-  void hand_out(InterleavedVectors bounce) {
-    if (request_.products.bounce) out_.bounce = raster_.picture(std::move(bounce));
-    if (emitted_[0].data()) out_.shares.emitted = raster_.picture(std::move(emitted_));
+  void hand_out(BouncedLights bounced) {
+    const auto place = [&](BouncedLight& light, Plane<glm::vec3>& bounce,
+                           Plane<glm::vec3>& emitted) {
+      bounce = raster_.picture(std::move(light.bounce));
+      if (light.emitted[0].data()) emitted = raster_.picture(std::move(light.emitted));
+    };
+    if (request_.products.bounce) place(bounced.all, out_.bounce, out_.shares.emitted);
+    out_.lights.resize(bounced.each.size());
+    for (std::size_t k = 0; k < bounced.each.size(); ++k)
+      place(bounced.each[k], out_.lights[k].bounce, out_.lights[k].emitted);
+    add_up(out_.bounce, &LightProducts::bounce);
+    add_up(out_.shares.emitted, &LightProducts::emitted);
     if (wants_light() && !request_.shares_suffice) out_.direct = raster_.picture(direct_light());
     if (request_.products.error) {
-      const bool bounces = bounce_error_.data() != nullptr;
-      out_.error = raster_.of_receivers(0.0f, [&](std::ptrdiff_t i) {
-        return bounces ? error_[i] + bounce_error_[i] : error_[i];
-      });
+      const InterleavedPlane& more = bounced.error;
+      const bool bounces = more.data() != nullptr;
+      out_.error = raster_.of_receivers(
+          0.0f, [&](std::ptrdiff_t i) { return bounces ? error_[i] + more[i] : error_[i]; });
     }
     hand_out_sources(sources_, raster_, out_.shares.suns, out_.shares.draws);
     hand_out_sources(sources_again_, raster_, out_.shares.suns_again, out_.shares.draws_again);
@@ -248,9 +249,29 @@ class Bitmask {
     out_.ao = raster_.picture(std::move(ao_), 1.0f);
   }
 
+  /// Takes out of the planes of lights that their senders are rounded one by one (two_in_one()):
+  /// the sum becomes that of all.
+  void add_up(const Plane<glm::vec3>& of_all, Plane<glm::vec3> LightProducts::*plane) {
+    constexpr float kMost = 0.01f;  // more is no rounding
+    for_each_row(of_all.height, [&](int y) {
+      for (std::size_t i = of_all.index(0, y); i < of_all.index(0, y + 1); ++i) {
+        glm::vec3 sum(0);
+        for (const LightProducts& light : out_.lights)
+          if (!(light.*plane).empty()) sum += (light.*plane)[i];
+        for (int c = 0; c < 3; ++c) {
+          if (!(sum[c] > 0)) continue;
+          const float times = std::clamp(of_all[i][c] / sum[c], 1 - kMost, 1 + kMost);
+          for (LightProducts& light : out_.lights)
+            if (!(light.*plane).empty()) (light.*plane)[i][c] *= times;
+        }
+      }
+    });
+  }
+
   InterleavedVectors direct_light() const {
     InterleavedVectors direct = raster_.make_color();
-    const DirectJob job{march_scene_, found_shares(), &direct};
+    const NamedLight light = as_one_light(scene_.light);
+    const DirectJob job{march_scene_, shares_of(light, ao_, found_sky(), sources_), &direct};
     for_each_band_of(march_scene_.receivers, [&](const Window& part) { find_direct(job, part); },
                      {});
     return direct;
@@ -273,69 +294,9 @@ class Bitmask {
     out_.reflection = raster_.picture(std::move(open), 1.0f);
   }
 
-  /// The radiance that pixels send, given the bounce of the pass before; null: there is none.
-  InterleavedVectors sent_light(const Window& part, const InterleavedVectors* bounce,
-                                bool two_sided) const {
-    // A layer may say what is sent.
-    if (!senders_need_light()) return raster_.interleaved(scene_.senders.radiance);
-    InterleavedVectors sent = raster_.make_color();
-    const SenderJob senders{march_scene_, found_shares(), scene_.senders.albedo,
-                            bounce,       &sent,          two_sided};
-    for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
-    return sent;
-  }
-
-  /// Each pass is lit by the one before.
-  InterleavedVectors gather_bounce() {
-    if (request_.bounces == 0) return raster_.black();
-    const bool lit = senders_need_light(), two_sided = lit && !scene_.light.is_constant();
-    const FarScene* overview = request_.around_band ? request_.around_band->far.get() : nullptr;
-    if (request_.products.error) bounce_error_ = InterleavedPlane(layout_);
-    std::vector<OtherViewLight> sent_by_others;
-    if (other_views_)
-      sent_by_others = light_other_surfaces(scene_, request_.bounces - 1, request_.radius);
-    InterleavedVectors bounce;
-    for (int pass = 1; pass <= request_.bounces; ++pass) {
-      // What is lit reaches as far as the bounces that follow.
-      const Window lit_part = with_senders(march_scene_.receivers, request_.bounces - pass + 1);
-      InterleavedVectors light = sent_light(lit_part, pass > 1 ? &bounce : nullptr, two_sided);
-      const FarLight* far_light = overview ? &overview->light[std::size_t(pass - 1)] : nullptr;
-      const Emitters emitters =
-          find_emitters({march_scene_, light, two_sided, lit_part, far_, far_light}, request_.seed);
-      const std::array<BorderValues, 3> sent_border =
-          light_beyond(march_scene_, light, two_sided, emitters.bright);
-      if (kept_light_in_)
-        kept_light_.push_back({raster_.in_whole_rows(light, *kept_light_in_), sent_border,
-                               emitters.bright, emitters.level});
-      const bool wants_error = request_.products.error && pass == request_.bounces;
-      InterleavedPlane* const error = wants_error ? &bounce_error_ : nullptr;
-      const Emitters* const bright = emitters.points.empty() ? nullptr : &emitters;
-      const OtherViewLight* const from_others =
-          other_views_ ? &sent_by_others[std::size_t(pass - 1)] : nullptr;
-      GatheredLight gathered(bounce_march_, wants_error);
-      const BounceJob job{
-          bounce_march_, &ao_,     &light,   two_sided, scene_.solids, sent_border.data(),
-          from_others,   lit_part, overview, far_light, bright,        &gathered,
-          error};
-      // Light gathered in the last pass is not sent on: only receivers need it.
-      const Window to = lit && pass < request_.bounces
-                            ? with_senders(march_scene_.receivers, request_.bounces - pass)
-                            : march_scene_.receivers;
-      for_each_band_of(
-          grown(layout_, to, bounce_pattern_.spacing() - 1),
-          [&](const Window& part) { march_bounce(job, part); }, progress_);
-      for_each_band_of(to, [&](const Window& part) { spread_bounce(job, part); }, {});
-      emitted_ = {};
-      if (job.emitters) {
-        emitted_ = raster_.black();
-        const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
-        const EmittedJob rays{bounce_march_, bounds, emitters,  rays_to_source(request_.slices),
-                              request_.seed, &light, &emitted_, job.error};
-        for_each_tall_part_of(layout_, to, [&](const Window& w) { gather_emitted(rays, w); }, {});
-      }
-      bounce = std::move(light);
-    }
-    return bounce;
+  BouncedLights gather_bounce() const {
+    return gather_bounces({scene_, request_, progress_, raster_, bounce_march_, ao_, found_sky(),
+                           sources_, kept_light_in_});
   }
 
   const Scene& scene_;
@@ -349,12 +310,10 @@ class Bitmask {
   std::unique_ptr<OtherViewRays> other_views_;  ///< null: there are no other views
   March march_, bounce_march_;
   CutSurfaces cut_;
-  InterleavedPlane ao_, error_, bounce_error_;
-  InterleavedVectors emitted_;        ///< the part of the bounce that rays have found; empty: none
-  InterleavedColorShares sky_share_;  ///< empty where that is ao
+  InterleavedPlane ao_, error_;
+  InterleavedColorShares sky_share_;                   ///< empty where that is ao
   std::vector<SourceShares> sources_, sources_again_;  ///< by source
   const FarRaster* kept_light_in_ = nullptr;  ///< where bands of the frame need what is sent
-  std::vector<FarLight> kept_light_;          ///< that, by pass
   Products out_;
 };
 

@@ -62,6 +62,8 @@ struct AroundBand {
 /// What is asked of a method.
 struct Request {
   ProductSet products;
+  ProductSet by_light =
+      {};            ///< of direct and bounce, those that each light has planes of its own of
   float radius = 0;  ///< scene units; infinity: without limit
   int bounces = 0;
   unsigned seed = 0;             ///< of the sampling pattern

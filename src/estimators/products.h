@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <glm/vec3.hpp>
 #include <string>
 #include <string_view>
@@ -47,6 +48,14 @@ struct LightShares {
   bool are_ao = false;  ///< light comes from everywhere alike, and ao is its share; no planes then
 };
 
+/// What one light of a frame gives: the environment or a lamp (scene/light/named_light.h). The sums
+/// over the lights are `direct` and `bounce` of all of them.
+struct LightProducts {
+  std::string name;
+  Plane<glm::vec3> direct, bounce;  ///< empty where they were not asked for
+  Plane<glm::vec3> emitted;         ///< the part of its bounce that LightShares::emitted has
+};
+
 /// Planes over the receivers of the request: those that were asked for, and others that the method
 /// found on its way; the rest are empty. Linear, without the receiver's albedo.
 struct Products {
@@ -58,6 +67,7 @@ struct Products {
   Plane<float> guessed;  ///< G of estimators/guessed.h; the product once it is filtered
   LightShares shares;    ///< what `direct` is made of, where the method knows
   Plane<float> open_ao;  ///< ao if surfaces end at the frame's border; not filtered
+  std::vector<LightProducts> lights;  ///< in the order of lights_of(); empty: not asked for
 };
 
 /// What the values of a product are. It decides how --temporal and pictures treat them.
@@ -88,7 +98,7 @@ struct Product {
   ProductKind kind;
   std::string_view
       channels;  ///< a letter for each; in an EXR "NAME.LETTER", or the letter alone if composed
-  bool ProductSet::*in = nullptr;  ///< its place in a set; null: composed of others
+  bool ProductSet::*in = nullptr;  ///< its place in a set; null: composed (color/compose.h)
   std::variant<std::monostate, Plane<float> Products::*, Plane<glm::vec3> Products::*> plane = {};
   ProductSet made_of = {};  ///< what a method has to make for it
   ProductSet with = {};  ///< optional parts: used if the method makes them and their layers exist
@@ -98,11 +108,12 @@ struct Product {
   bool usual = false;               ///< made where --products is not given
   Filtering filtering = {};
   bool measured = false;      ///< by bench
+  bool by_light = false;      ///< --per-light: each light has a layer of it
   std::string_view aka = "";  ///< names that renderers give such a layer, in lower case
 };
 
 /// In the order of lists and files.
-inline constexpr std::array<Product, 8> kProducts = {{
+inline constexpr std::array<Product, 10> kProducts = {{
     {.name = "ao",
      .kind = ProductKind::share,
      .channels = "Y",
@@ -140,7 +151,17 @@ inline constexpr std::array<Product, 8> kProducts = {{
      .usual = true,
      .filtering = {.shadowed = true},
      .measured = true,
+     .by_light = true,
      .aka = "diffdir diffusedirect"},
+    // Light of surfaces that nothing is in front of: no method has to be asked.
+    {.name = "unshadowed", .kind = ProductKind::light, .channels = "RGB", .by_light = true},
+    // direct / unshadowed. Not clamped, so that their product is direct.
+    {.name = "shadow",
+     .kind = ProductKind::share,
+     .channels = "RGB",
+     .made_of = {.direct = true},
+     .background = 1,
+     .by_light = true},
     {.name = "bounce",
      .kind = ProductKind::light,
      .channels = "RGB",
@@ -151,6 +172,7 @@ inline constexpr std::array<Product, 8> kProducts = {{
      .usual = true,
      .filtering = {.coupling = Coupling::occluders},
      .measured = true,
+     .by_light = true,
      .aka = "diffind diffuseindirect"},
     {.name = "error",
      .kind = ProductKind::deviation,
@@ -176,6 +198,9 @@ inline constexpr std::array<Product, 8> kProducts = {{
      .usual = true},
 }};
 
+/// The product that the options of COMPOSITES change.
+inline constexpr std::string_view kComposite = "composite";
+
 /// --products all: whatever frame and method allow.
 inline constexpr std::string_view kAllProducts = "all";
 
@@ -193,21 +218,26 @@ ProductSet operator&(const ProductSet& a, const ProductSet& b);
 /// Whether a list of products has `name`.
 bool contains(const std::vector<std::string>& names, std::string_view name);
 
-/// Calls visit(product, plane of each of `all`) for every product that is estimated; the planes,
-/// some of which may be empty, are Plane<float> or Plane<glm::vec3>.
-template <class Visit, class... All>
-void for_each_plane(const Visit& visit, All&... all) {
+/// Calls visit(product, plane of each of `all`) for every product that is estimated, then for what
+/// each light gives of direct and bounce; the planes, some of which may be empty, are Plane<float>
+/// or Plane<glm::vec3>. `all` have as many lights as the first.
+template <class Visit, class First, class... Others>
+void for_each_plane(const Visit& visit, First& first, Others&... others) {
   for (const Product& product : kProducts) {
     if (const auto* scalar = std::get_if<Plane<float> Products::*>(&product.plane))
-      visit(product, all.**scalar...);
+      visit(product, first.**scalar, others.**scalar...);
     else if (const auto* vector = std::get_if<Plane<glm::vec3> Products::*>(&product.plane))
-      visit(product, all.**vector...);
+      visit(product, first.**vector, others.**vector...);
+  }
+  for (std::size_t k = 0; k < first.lights.size(); ++k) {
+    visit(find_product("direct"), first.lights[k].direct, others.lights[k].direct...);
+    visit(find_product("bounce"), first.lights[k].bounce, others.lights[k].bounce...);
   }
 }
 
 /// Calls visit(plane of each of `all`) for what light is made of: the sky's share, then each sun's,
-/// then those by other points, then what is emitted; some planes may be empty. `all` have as many
-/// as the first.
+/// then those by other points, then what is emitted, in all and by each light; some planes may be
+/// empty. `all` have as many as the first.
 template <class Visit, class First, class... Others>
 void for_each_share(const Visit& visit, First& first, Others&... others) {
   visit(first.shares.sky, others.shares.sky...);
@@ -216,6 +246,8 @@ void for_each_share(const Visit& visit, First& first, Others&... others) {
   for (std::size_t i = 0; i < first.shares.suns_again.size(); ++i)
     visit(first.shares.suns_again[i], others.shares.suns_again[i]...);
   visit(first.shares.emitted, others.shares.emitted...);
+  for (std::size_t k = 0; k < first.lights.size(); ++k)
+    visit(first.lights[k].emitted, others.lights[k].emitted...);
 }
 
 }  // namespace ssdo

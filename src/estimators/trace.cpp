@@ -40,20 +40,21 @@
 #include <glm/matrix.hpp>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "estimators/guessed.h"
 #include "estimators/microfacets.h"
-#include "estimators/other_views/other_view_light.h"
 #include "estimators/other_views/other_view_rays.h"
 #include "estimators/trace/light_sums.h"
 #include "estimators/trace/ray_origin.h"
 #include "estimators/trace/ray_scene.h"
+#include "estimators/trace/senders.h"
 #include "math/frame.h"
-#include "math/light_range.h"
 #include "math/luminance.h"
 #include "math/sampling.h"
 #include "math/sobol.h"
+#include "scene/light/named_light.h"
 #include "scene/light/source.h"
 #include "scene/normals/geometric_normal.h"
 #include "scene/normals/normals.h"
@@ -103,8 +104,13 @@ class Trace {
     for_each_surface([&](std::size_t pixel, const Receiver& p) { gather_visibility(pixel, p); });
     if (request_.products.bounce) {
       out_.bounce = Plane<glm::vec3>(width(), height(), glm::vec3(0));
-      if (other_views_ && request_.bounces > 0)
-        sent_by_others_ = light_other_surfaces(scene_, request_.bounces - 1, request_.radius);
+      senders_.push_back(senders_of(as_one_light(scene_.light)));
+      if (request_.by_light.bounce) {
+        for (NamedLight& light : lights_of(scene_.light))
+          senders_.push_back(senders_of(std::move(light)));
+        out_.lights.resize(senders_.size() - 1);
+        for (LightProducts& light : out_.lights) light.bounce = out_.bounce;
+      }
       for (int pass = 1; pass <= request_.bounces; ++pass) gather_bounce(pass);
     }
     if (request_.products.error) {
@@ -262,61 +268,55 @@ class Trace {
     return unoccluded * share;
   }
 
-  /// What each pixel sends: its albedo times all the light that arrives, or the layer that says so.
-  glm::vec3 sent_by(std::size_t pixel) const {
-    if (!scene_.senders.radiance.empty()) return within_range(scene_.senders.radiance[pixel]);
-    return within_range(scene_.senders.albedo[pixel] * (out_.direct[pixel] + out_.bounce[pixel]));
+  TraceSenders senders_of(NamedLight light) const {
+    TraceSenders senders{std::move(light), {}, {}, {}};
+    if (other_views_ && request_.bounces > 0)
+      senders.others =
+          light_other_surfaces(scene_, senders.light, request_.bounces - 1, request_.radius);
+    return senders;
   }
 
-  /// What the unseen side of a pixel's surface sends.
-  glm::vec3 sent_by_back(std::size_t pixel) const {
-    const glm::vec3 normal = -scene_.geometry.surfel[pixel].normal;
-    const glm::vec3 light =
-        out_.ao[pixel] * scene_.light.unoccluded(scene_.geometry.surfel[pixel].position, normal);
-    return within_range(scene_.senders.albedo[pixel] * (light + out_.bounce[pixel]));
+  /// The bounce of the k-th of the senders.
+  Plane<glm::vec3>& bounce_of(std::size_t k) {
+    return k == 0 ? out_.bounce : out_.lights[k - 1].bounce;
   }
 
+  /// The surface that a ray meets first.
+  std::optional<Met> first_met(const Receiver& p, const glm::vec3& to) const {
+    const auto [hit, distance] = rays_.first_hit(p.origin, to, request_.radius);
+    if (other_views_) {
+      const auto other = other_views_->first_hit(glm::vec3(p.origin), to, request_.radius);
+      if (other.sender >= 0 && other.distance < distance)
+        return Met{true, other.unseen, std::size_t(other.sender)};
+    }
+    if (hit.sender < 0) return std::nullopt;
+    const auto q = std::size_t(hit.sender);
+    return Met{false, hit.layer == 0 && glm::dot(scene_.geometry.surfel[q].normal, to) > 0, q};
+  }
+
+  /// The same rays gather the light of all and of each.
   void gather_bounce(int pass) {
-    const bool last = pass == request_.bounces;
-    const bool two_sided = !scene_.light.is_constant() && scene_.senders.radiance.empty();
-    Plane<glm::vec3> sent(width(), height(), glm::vec3(0)), sent_back;
-    if (two_sided) sent_back = sent;
-    for_each_row(height(), [&](int y) {
-      for (int x = 0; x < width(); ++x) {
-        const std::size_t pixel = sent.index(x, y);
-        if (!scene_.geometry.surfel[pixel].is_usable()) continue;
-        sent[pixel] = sent_by(pixel);
-        if (two_sided) sent_back[pixel] = sent_by_back(pixel);
-      }
-    });
+    const bool wants_error = pass == request_.bounces && request_.products.error;
+    for (std::size_t k = 0; k < senders_.size(); ++k)
+      find_senders(scene_, out_, bounce_of(k), senders_[k]);
     for_each_surface([&](std::size_t pixel, const Receiver& p) {
       std::array<glm::vec3, kGroups> sums{};
       std::array<int, kGroups> number{};
+      for (std::size_t k = 1; k < senders_.size(); ++k) bounce_of(k)[pixel] = glm::vec3(0);
       for (int s = 0; s < samples_; ++s) {
         const glm::vec3 to = direction(p, s);
         ++number[group_of(s)];
         if (glm::dot(to, p.surface) <= 0) continue;
-        const auto [hit, distance] = rays_.first_hit(p.origin, to, request_.radius);
-        if (other_views_) {
-          const auto other = other_views_->first_hit(glm::vec3(p.origin), to, request_.radius);
-          if (other.sender >= 0 && other.distance < distance) {
-            const OtherViewLight& light = sent_by_others_[std::size_t(pass - 1)];
-            sums[group_of(s)] +=
-                (other.unseen ? light.unseen : light.seen)[std::size_t(other.sender)];
-            continue;
-          }
-        }
-        if (hit.sender < 0) continue;
-        const auto q = std::size_t(hit.sender);
-        const bool back =
-            two_sided && hit.layer == 0 && glm::dot(scene_.geometry.surfel[q].normal, to) > 0;
-        sums[group_of(s)] += back ? sent_back[q] : sent[q];
+        const std::optional<Met> met = first_met(p, to);
+        if (!met) continue;
+        sums[group_of(s)] += senders_[0].sent_by(*met, pass);
+        for (std::size_t k = 1; k < senders_.size(); ++k)
+          bounce_of(k)[pixel] += senders_[k].sent_by(*met, pass) / float(samples_);
       }
       glm::vec3 sum(0);
       for (int g = 0; g < kGroups; ++g) {
         sum += sums[g];
-        if (last && request_.products.error)
-          luminances_[pixel][g] += luminance(sums[g]) / float(number[g]);
+        if (wants_error) luminances_[pixel][g] += luminance(sums[g]) / float(number[g]);
       }
       out_.bounce[pixel] = sum / float(samples_);
     });
@@ -329,7 +329,7 @@ class Trace {
   PixelFootprint footprint_;
   RayScene rays_;
   std::unique_ptr<OtherViewRays> other_views_;  ///< null: there are no other views
-  std::vector<OtherViewLight> sent_by_others_;  ///< by pass
+  std::vector<TraceSenders> senders_;           ///< of all light, then of each light apart
   bool wants_light_ = false;
   Plane<Groups> luminances_;  ///< of direct + bounce
   Products out_;

@@ -46,6 +46,7 @@ Products filter_products(const Filter& filter, Products noisy, const Plane<Surfe
     for (Plane<float>& sun : *suns)
       if (!suns_are_done) take(sun, kOfShares);
   take(shares.emitted, {});
+  for (LightProducts& light : noisy.lights) take(light.emitted, {});
   planes = filter.apply(std::move(planes), guide, pattern_size);
   for (std::size_t k = 0; k < planes.size(); ++k) {
     const auto put_back = [&](auto* place) {

@@ -208,7 +208,7 @@ class CornerFilter {
     int c = 0;
     for (const FilterPlane& mean : means) {
       if (mean.filtering.coupling == Coupling::visibility) ao_ = c;
-      if (mean.filtering.coupling == Coupling::occluders) bounce_ = c;
+      if (mean.filtering.coupling == Coupling::occluders) bounces_.push_back(c);
       c += mean.components();
     }
   }
@@ -277,19 +277,22 @@ class CornerFilter {
       for (const int end = c + plane.components(); c < end; ++c)
         store(average(mean(c, x, y), of_plane, means_around(c, x, y)), result(c) + x);
     }
-    if (ao_ && bounce_) hold_bounce_to_ao(x, y, weights);
+    if (ao_ && !bounces_.empty()) hold_bounces_to_ao(x, y, weights);
   }
 
-  /// Turns the mean bounce into the mean radiance of what hides, times what hides by the new ao.
-  HWY_INLINE void hold_bounce_to_ao(int x, int y, const Corners& weights) {
+  /// Turns the mean bounce of each light, and of all, into the mean radiance of what hides, times
+  /// what hides by the new ao.
+  HWY_INLINE void hold_bounces_to_ao(int x, int y, const Corners& weights) {
     const V e = set(kOwnRadiance), one = set(1), own_closed = one - mean(*ao_, x, y),
             closed = one - average(mean(*ao_, x, y), weights, means_around(*ao_, x, y));
     // Below rounding nothing hides.
     const V whole = hn::MulAdd(e, own_closed, closed);
     const V scale = hn::IfThenElseZero(whole > set(1e-6f), (one - load(result(*ao_) + x)) / whole);
-    for (int c = *bounce_; c < *bounce_ + 3; ++c) {
-      float* at = result(c) + x;
-      store(hn::MulAdd(e, mean(c, x, y), load(at)) * scale, at);
+    for (const int bounce : bounces_) {
+      for (int c = bounce; c < bounce + 3; ++c) {
+        float* at = result(c) + x;
+        store(hn::MulAdd(e, mean(c, x, y), load(at)) * scale, at);
+      }
     }
   }
 
@@ -298,8 +301,9 @@ class CornerFilter {
   const FilterPlanes& means_;
   TileRows rows_;
   FilterPlanes& out_;
-  std::optional<int> ao_, bounce_;  ///< their first components
-  AlignedFloats results_;  ///< by component and column; last component: 0 without a surface
+  std::optional<int> ao_;     ///< its first component
+  std::vector<int> bounces_;  ///< the first component of each
+  AlignedFloats results_;     ///< by component and column; last component: 0 without a surface
 };
 
 void filter_tile(const FilterPlanes& noisy, const Plane<Surfel>& guide, int pattern_size,

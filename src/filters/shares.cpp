@@ -23,6 +23,9 @@
 //
 // Where the share of all light is ao, there is nothing to be filtered but ao.
 //
+// What each light gives is its own unoccluded light times its share, or that of all light. So the
+// sum over the lights is the product.
+//
 // ao is averaged as it is. What of ao is open by the normal alone would be divided out in
 // shares_of_row() and multiplied in light_of_row().
 //
@@ -35,6 +38,7 @@
 #include "estimators/guessed.h"
 #include "filters/filter_products.h"
 #include "filters/sun_errors.h"
+#include "scene/light/named_light.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/shares.cpp"
@@ -88,6 +92,43 @@ void shares_of_row(const Scene& scene, Products& products, int y) {
       });
 }
 
+/// The light of a row from its shares, light by light, before light_of_row() takes their room.
+/// `direct` holds light, not shares, where nothing was filtered.
+void lights_of_row(const Scene& scene, const std::vector<NamedLight>& lights, bool direct_is_light,
+                   Products& products, int y) {
+  const LightShares& shares = products.shares;
+  for_each_vector(
+      scene.geometry.surfel, y, [&](std::size_t i, int count, const Surfels& s) HWY_ATTR {
+        V3 of_all{};  // share of all light, where the parts are not known
+        if (shares.are_ao) {
+          const V ao = load_first(count, &products.ao[i]);
+          of_all = {ao, ao, ao};
+        } else if (shares.sky.empty()) {
+          of_all = load_first(count, &products.direct[i]);
+          const V3 all = unoccluded(scene.light, s.position, s.normal);
+          const auto divided = [](V part, V whole) HWY_ATTR {
+            return hn::IfThenElseZero(whole > set(0), part / whole);
+          };
+          if (direct_is_light)
+            of_all = {divided(of_all.x, all.x), divided(of_all.y, all.y), divided(of_all.z, all.z)};
+        }
+        for (std::size_t l = 0; l < lights.size(); ++l) {
+          const Light& light = lights[l].light;
+          V3 sum;
+          if (shares.sky.empty()) {
+            sum = unoccluded(light, s.position, s.normal) * of_all;
+          } else {
+            sum = saturate(load_first(count, &shares.sky[i])) * unoccluded_sky(light, s.normal);
+            for (std::size_t k = 0; k < light.sources.size(); ++k) {
+              const V share = saturate(load_first(count, &shares.suns[lights[l].numbers[k]][i]));
+              sum = mul_add(unoccluded(*light.sources[k], s.position, s.normal), share, sum);
+            }
+          }
+          store_first(count, if_then_else_zero(s.surface, sum), &products.lights[l].direct[i]);
+        }
+      });
+}
+
 /// The light of a row from its shares.
 void light_of_row(const Scene& scene, Products& products, int y) {
   const Light& light = scene.light;
@@ -125,18 +166,36 @@ namespace ssdo {
 
 HWY_EXPORT(shares_of_row);
 HWY_EXPORT(light_of_row);
+HWY_EXPORT(lights_of_row);
 
 namespace {
 
 /// Adds what is emitted to the bounce `times` times.
 void add_emitted(Products& products, float times) {
-  const Plane<glm::vec3>& emitted = products.shares.emitted;
-  for (std::size_t i = 0; i < emitted.size(); ++i) products.bounce[i] += times * emitted[i];
+  const auto add = [&](const Plane<glm::vec3>& emitted, Plane<glm::vec3>& bounce) {
+    for (std::size_t i = 0; i < emitted.size(); ++i) bounce[i] += times * emitted[i];
+  };
+  add(products.shares.emitted, products.bounce);
+  for (LightProducts& light : products.lights) add(light.emitted, light.bounce);
 }
 
 Products without_shares(Products products) {
   products.shares = {};
+  for (LightProducts& light : products.lights) light.emitted = {};
   return products;
+}
+
+/// The direct light of each light, where the products have lights.
+void find_lights(Products& products, const Scene& scene, bool direct_is_light) {
+  const LightShares& shares = products.shares;
+  const bool is_known = shares.are_ao || !shares.sky.empty() || !products.direct.empty();
+  if (products.lights.empty() || !is_known) return;
+  const std::vector<NamedLight> lights = lights_of(scene.light);
+  for (LightProducts& light : products.lights)
+    light.direct = Plane<glm::vec3>::like(scene.geometry.surfel);
+  for_each_row(scene.geometry.surfel.height, [&](int y) {
+    HWY_DYNAMIC_DISPATCH(lights_of_row)(scene, lights, direct_is_light, products, y);
+  });
 }
 
 Products filter_found(const Filter& filter, Products noisy, const Scene& scene, int pattern_size,
@@ -146,7 +205,9 @@ Products filter_found(const Filter& filter, Products noisy, const Scene& scene, 
                             pattern_size);
   add_sun_errors(noisy, scene);
   if (amend) amend(noisy);
-  return filter.apply ? from_shares(std::move(noisy), scene) : without_shares(std::move(noisy));
+  if (filter.apply) return from_shares(std::move(noisy), scene);
+  find_lights(noisy, scene, true);
+  return without_shares(std::move(noisy));
 }
 
 /// What the product `guessed` is made of.
@@ -198,6 +259,7 @@ Products to_shares(Products products, const Scene& scene) {
 
 Products from_shares(Products products, const Scene& scene) {
   add_emitted(products, 1);
+  find_lights(products, scene, false);
   // The light of the sky's share takes its place.
   if (products.shares.are_ao) products.direct = Plane<glm::vec3>::like(scene.geometry.surfel);
   if (!products.direct.empty() || !products.shares.sky.empty() || !products.bent.empty()) {

@@ -47,7 +47,9 @@ namespace {
 constexpr float kMostFrames = 15;  ///< of history; with the present frame the mean counts 16
 
 bool same_products(const Products& a, const Products& b) {
-  bool same = true;
+  bool same =
+      std::ranges::equal(a.lights, b.lights, {}, &LightProducts::name, &LightProducts::name);
+  if (!same) return false;
   for_each_plane([&](const Product&, const auto& one,
                      const auto& other) { same = same && one.empty() == other.empty(); },
                  a, b);

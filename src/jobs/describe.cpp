@@ -175,14 +175,15 @@ json depth_json(const Frame& frame) {
 
 json layers_json(const Frame& frame) {
   json layers = json::object();
-  for (std::size_t i = 0; i < kRoleCount; ++i) {
-    if (const auto& layer = frame.layers.layers[i]) {
-      layers[std::string(role_name(Role(i)))] = {
-          {"layer", layer->name}, {"channels", layer->channels},
-          {"part", layer->part},  {"file", frame.files[std::size_t(layer->file)].path().string()},
-          {"half", layer->half},  {"by_request", layer->by_request}};
-    }
-  }
+  const auto add = [&](const std::string& role, const Layer& layer) {
+    layers[role] = {
+        {"layer", layer.name}, {"channels", layer.channels},
+        {"part", layer.part},  {"file", frame.files[std::size_t(layer.file)].path().string()},
+        {"half", layer.half},  {"by_request", layer.by_request}};
+  };
+  for (std::size_t i = 0; i < kRoleCount; ++i)
+    if (const auto& layer = frame.layers.layers[i]) add(std::string(role_name(Role(i))), *layer);
+  for (const auto& [name, layer] : frame.layers.lights) add("light:" + name, layer);
   return layers;
 }
 
@@ -206,6 +207,8 @@ std::string describe(const Frame& frame) {
                                : Role(i) == Role::depth  ? describe_depth(frame)
                                                          : describe_layer(frame, *layer));
   }
+  for (const auto& [name, layer] : frame.layers.lights)
+    line("light:" + name, describe_layer(frame, layer));
   line("camera", describe_camera(frame));
   if (frame.report.header) line("header", describe(*frame.report.header));
   line("surfaces", fmt::format("{} of {} pixels ({} background, {} broken), median depth {:.4g}",

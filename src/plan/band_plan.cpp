@@ -9,6 +9,7 @@
 #include "error.h"
 #include "io/images/image_file.h"
 #include "math/pixel_grid.h"
+#include "scene/light/named_light.h"
 
 namespace ssdo {
 namespace {
@@ -24,8 +25,15 @@ constexpr double kBytesOfSenders = 20;
 /// Suns of a map that are allowed for before it is known.
 constexpr int kUsualSuns = 3;
 
-double bytes_per_pixel(const ProductSet& products, const Scene& scene) {
-  return kBytesPerPixel + kBytesOfSun * double(scene.light.sources.size()) +
+/// What each light adds whose bounce, or direct light, is kept apart.
+constexpr double kBytesOfBounce = 50, kBytesOfDirect = 14;
+
+double bytes_per_pixel(const Request& request, const Scene& scene) {
+  const ProductSet &products = request.products, &by_light = request.by_light;
+  double bytes_of_light =
+      kBytesOfBounce * int(by_light.bounce) + kBytesOfDirect * int(by_light.direct);
+  if (by_light != ProductSet()) bytes_of_light *= double(lights_of(scene.light).size());
+  return bytes_of_light + kBytesPerPixel + kBytesOfSun * double(scene.light.sources.size()) +
          kBytesOfSenders * int(!scene.senders.radiance.empty()) +
          kBytesOfMore * (int(products.bent) + int(products.reflection));
 }
@@ -46,7 +54,7 @@ class Planner {
   Planner(const Window& frame, const Window& display, const Scene& overview, const Plan& plan,
           std::size_t memory)
       : frame_(frame), plan_(plan) {
-    const double of_pixel = bytes_per_pixel(plan.request.products, overview);
+    const double of_pixel = bytes_per_pixel(plan.request, overview);
     bytes_of_row_ = of_pixel * frame.width();
     bytes_ = kBytes + of_pixel * double(overview.geometry.surfel.size());
     rows_ = int(std::clamp((double(memory) - bytes_) / bytes_of_row_, 0.0, 1e9));
@@ -107,8 +115,10 @@ std::string needs_whole_frame(const Scene& overview, const Plan& plan,
 
 }  // namespace
 
-std::size_t most_pixels_in(std::size_t memory) {
-  const double most = kBytesPerPixel + kUsualSuns * kBytesOfSun + 2 * kBytesOfMore;
+std::size_t most_pixels_in(std::size_t memory, const OutputOptions& output, int lamps) {
+  const double of_light = output.per_light ? kBytesOfBounce + kBytesOfDirect : 0;
+  const double most = kBytesPerPixel + (kUsualSuns + lamps) * kBytesOfSun + 2 * kBytesOfMore +
+                      (1 + lamps) * of_light;
   return std::size_t(std::max(0.0, double(memory) - kBytes) / most);
 }
 
@@ -121,7 +131,7 @@ BandPlan plan_bands(const std::string& file, const Window& frame, const Window& 
                 fmt::format("{} take {} of memory, and may take {}; {} needs all of the frame at "
                             "once: leave that out, or raise --mem-limit",
                             size,
-                            in_gigabytes(kBytes + bytes_per_pixel(plan.request.products, overview) *
+                            in_gigabytes(kBytes + bytes_per_pixel(plan.request, overview) *
                                                       double(frame.area())),
                             in_gigabytes(double(memory)), what));
   }

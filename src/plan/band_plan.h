@@ -19,8 +19,9 @@ struct BandPlan {
   bool marches_on = false;  ///< in an overview of the frame, beyond reach_rows
 };
 
-/// How many pixels a frame may have that is computed as a whole in so many bytes of memory.
-std::size_t most_pixels_in(std::size_t memory);
+/// How many pixels a frame may have that is computed as a whole in so many bytes of memory, lit by
+/// an environment and so many lamps.
+std::size_t most_pixels_in(std::size_t memory, const OutputOptions& output, int lamps);
 
 /// The bands of a frame with these data and display windows. `overview` is what was read of it, and
 /// `plan` that of the overview.

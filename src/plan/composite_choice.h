@@ -14,9 +14,9 @@
 
 namespace ssdo {
 
-/// Which composite a frame gets: the one that is asked for, else occlude where an ambient layer is
-/// given, else relight.
-Compose choose_compose(const OutputOptions& output, bool has_ambient);
+/// Which composite a frame gets: the one that is asked for, else occlude where an ambient layer or
+/// that of a lamp is given, else relight.
+Compose choose_compose(const OutputOptions& output, bool has_part_to_occlude);
 Compose choose_compose(const OutputOptions& output, const std::vector<LayerRequest>& aovs);
 
 /// How that composite is made in the light of `scene` by a method with these parameters.
@@ -29,8 +29,15 @@ Product composite_row(const Composition& composition, const GBuffer& gbuffer);
 /// Throws ExitCode::layer where the rendered layers that the composite is made of are missing.
 void check_rendered_layers(Compose compose, const GBuffer& gbuffer, const std::string& file);
 
+/// Throws ExitCode::usage where --aov light:NAME names no lamp.
+void check_lights(const Light& light, const GBuffer& gbuffer, const std::string& file);
+
+/// Whether the composite takes how much of each light arrives, not of all together.
+bool needs_lights(const Composition& composition, const Scene& scene, const GBuffer& gbuffer);
+
 /// Adds what the composite is, and why, to the reasons of a plan that makes it.
-void explain_composite(Plan& plan, const OutputOptions& output, const GBuffer& gbuffer);
+void explain_composite(Plan& plan, const OutputOptions& output, const Scene& scene,
+                       const GBuffer& gbuffer);
 
 /// Adds how alpha is in the albedo, where it matters, to the reasons of a plan that uses it.
 void explain_albedo(Plan& plan, const GBuffer& gbuffer);

@@ -276,7 +276,7 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
   plan.error = model.error;
   plan.composition = choose_composition(output, scene, gbuffer, plan.request.parameters);
   choose_products(plan, output, scene, gbuffer, file);
-  explain_composite(plan, output, gbuffer);
+  explain_composite(plan, output, scene, gbuffer);
   explain_reflection(plan, scene);
   check_multi_bounce(plan, scene, file);
   choose_bounces(plan, model.bounces, scene);

@@ -25,6 +25,7 @@ struct OutputOptions {
   std::optional<Imf::Compression> compression;  ///< the input's where not given
   std::optional<int> compression_level;         ///< its own default where not given
   int bits = 8;                                 ///< per channel of PNG and TIFF: 8 or 16
+  bool per_light = false;  ///< EXR outputs hold the layers of each light beside those of all
   bool keep_channels = false;
   bool crop = false;    ///< EXR outputs hold the display window only
   int downsample = 1;   ///< how many times as large as the outputs the frame is: 1 to 8

@@ -12,6 +12,7 @@
 #include "estimators/registry.h"
 #include "io/images/image_file.h"
 #include "plan/composite_choice.h"
+#include "scene/light/named_light.h"
 
 namespace ssdo {
 namespace {
@@ -25,12 +26,14 @@ class ProductChoice {
       : plan_(plan),
         method_(*plan.method),
         output_(output),
+        scene_(scene),
         gbuffer_(gbuffer),
         layers_{{"", true},
                 {"albedo", !scene.senders.albedo.empty()},
                 {"ambient", !gbuffer.ambient.empty()},
                 {"roughness", !scene.roughness.empty()}},
         file_(file) {
+    check_lights(scene.light, gbuffer, file);
     row("composite") = composite_row(plan.composition, gbuffer);
   }
 
@@ -53,6 +56,9 @@ class ProductChoice {
     }
     if (plan_.error) wanted.emplace_back("error");
     plan_.request.products = asked_of_method(wanted);
+    if (output_.per_light) choose_layers_of_lights();
+    if (contains(plan_.make, kComposite) && needs_lights(plan_.composition, scene_, gbuffer_))
+      plan_.request.by_light.direct = plan_.request.products.direct;
   }
 
  private:
@@ -63,7 +69,8 @@ class ProductChoice {
 
   /// Whether --compose or a layer of ambient light asks for the composite.
   bool is_asked_for(const Product& product) const {
-    return !product.in && (output_.compose || plan_.composition.compose != Compose::relight);
+    return product.name == kComposite &&
+           (output_.compose || plan_.composition.compose != Compose::relight);
   }
 
   /// What of the planes the wanted products are made of the method makes, and the layers allow.
@@ -74,6 +81,39 @@ class ProductChoice {
       if (contains(wanted, product.name)) asked = asked | product.made_of | product.with;
     }
     return asked & possible & method_.products;
+  }
+
+  /// What --per-light adds.
+  void choose_layers_of_lights() {
+    plan_.composition.per_light = true;
+    const ProductSet& asked = plan_.request.products;
+    const bool direct = contains(plan_.make, "direct") || contains(plan_.make, "shadow");
+    plan_.request.by_light = {.direct = asked.direct && direct,
+                              .bounce = asked.bounce && contains(plan_.make, "bounce")};
+    if (plan_.request.by_light.bounce && !scene_.senders.radiance.empty()) {
+      throw Error(ExitCode::usage,
+                  fmt::format("{}: --per-light: the layer of radiance says what surfaces send, but "
+                              "not by which light: leave --aov radiance out, or bounce out of "
+                              "--products",
+                              file_));
+    }
+    Names names, products;
+    for (const NamedLight& light : lights_of(scene_.light)) {
+      if (contains(names, light.name) || (light.name == kEnvironmentName && !names.empty())) {
+        throw Error(ExitCode::usage,
+                    fmt::format("light '{}': the layers of {} have this name; give it another for "
+                                "--per-light",
+                                light.name,
+                                light.name == kEnvironmentName ? "the environment" : "two lights"));
+      }
+      names.push_back(light.name);
+    }
+    for (const Product& product : kProducts)
+      if (product.by_light && contains(plan_.make, product.name))
+        products.emplace_back(product.name);
+    if (!products.empty())
+      plan_.reasons.push_back(
+          fmt::format("per light: {} of {}", fmt::join(products, ", "), fmt::join(names, ", ")));
   }
 
   Names of_exr() const {
@@ -115,7 +155,8 @@ class ProductChoice {
   }
 
   void check(const Product& product) const {
-    if (!product.in) check_rendered_layers(plan_.composition.compose, gbuffer_, file_);
+    if (product.name == kComposite)
+      check_rendered_layers(plan_.composition.compose, gbuffer_, file_);
     if (!makes(method_, product)) {
       Names others;
       for (const Method& method : methods()) {
@@ -144,6 +185,7 @@ class ProductChoice {
   Plan& plan_;
   const Method& method_;
   const OutputOptions& output_;
+  const Scene& scene_;
   const GBuffer& gbuffer_;
   const std::map<std::string_view, bool> layers_;  ///< by role: whether the frame has it
   const std::string& file_;

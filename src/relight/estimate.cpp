@@ -28,6 +28,7 @@
 #include "filters/shares.h"
 #include "math/luminance.h"
 #include "prior/prior.h"
+#include "scene/light/named_light.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -99,6 +100,7 @@ Plane<float> change_by_steps(const Scene& scene, const Method& method, Request f
                              const Products& products, const Progress& progress) {
   fewer.steps = fewer.steps > 1 ? fewer.steps / 2 : 2;
   fewer.products = {.direct = true, .bounce = fewer.products.bounce};
+  fewer.by_light = {};
   const Products other = method.estimate(scene, fewer, progress);
   auto change = Plane<float>::like(scene.geometry.surfel);
   for (std::size_t i = 0; i < change.size(); ++i)
@@ -116,21 +118,28 @@ struct Noisy {
 /// Estimates and filters once.
 class Round {
  public:
-  Round(const Plan& plan, const Request& request, const std::function<void(double)>& on_progress)
+  Round(const Plan& plan, const Request& request, const Light& light,
+        const std::function<void(double)>& on_progress)
       : plan_(plan), request_(request), on_progress_(on_progress) {
     compares_steps_ = request.products.error && plan.method->takes.march;
-    passes_ = (compares_steps_ ? 2.0 : 1.0) * (1.0 + request.bounces);
+    if (request.by_light != ProductSet()) {
+      for (NamedLight& each : lights_of(light)) names_.push_back(std::move(each.name));
+    }
+    passes_ = (compares_steps_ ? 2.0 : 1.0) * (1.0 + request.bounces) +
+              (bounces_by_light() ? double(names_.size()) * request.bounces : 0.0);
   }
 
   Noisy estimate(const Scene& scene) {
+    if (is_idle()) return {};
     const auto progress = [this](std::size_t done, std::size_t count) { tell(done, count); };
     Request request = request_;
     request.shares_suffice = plan_.filter->apply && !compares_steps_;
     if (plan_.prior) request.open_ao = request.products.bent = true;
-    Noisy out{over_geometry(plan_.method->estimate(scene, request, progress), scene.geometry,
-                            request.receivers),
-              {},
-              {}};
+    request.by_light.bounce = bounces_by_light();
+    Products found = plan_.method->estimate(scene, request, progress);
+    found.lights.resize(names_.size());
+    for (std::size_t k = 0; k < names_.size(); ++k) found.lights[k].name = names_[k];
+    Noisy out{over_geometry(std::move(found), scene.geometry, request.receivers), {}, {}};
     if (plan_.prior) {
       Products& products = out.products;
       out.prior = find_prior(scene, request, products, plan_.prior->up);
@@ -144,6 +153,7 @@ class Round {
 
   Estimate filter(Noisy noisy, const Scene& scene, const TemporalInput& temporal) const {
     Estimate out;
+    if (is_idle()) return out;
     const Geometry& geometry = scene.geometry;
     const int pattern = plan_.method->pattern_size;
     Products& products = out.products = std::move(noisy.products);
@@ -151,6 +161,7 @@ class Round {
     std::function<void(Products&)> lean;
     if (noisy.prior) lean = [&](Products& found) { apply_prior(*noisy.prior, geometry, found); };
     products = filter_shares(*plan_.filter, std::move(products), scene, pattern, lean);
+    finish_lights(products);
     if (plan_.temporal) {
       out.history = accumulate(temporal.history ? &*temporal.history : nullptr, geometry, products,
                                temporal.motion);
@@ -166,6 +177,19 @@ class Round {
   }
 
  private:
+  /// Whether all that is made is composed of what is known without an estimate.
+  bool is_idle() const { return request_.products == ProductSet(); }
+
+  /// Whether the method gathers the bounce light by light: that of a single light is all of it.
+  bool bounces_by_light() const { return request_.by_light.bounce && names_.size() > 1; }
+
+  void finish_lights(Products& products) const {
+    for (LightProducts& light : products.lights) {
+      if (!request_.by_light.direct) light.direct = {};
+      if (request_.by_light.bounce && !bounces_by_light()) light.bounce = products.bounce;
+    }
+  }
+
   void tell(std::size_t done, std::size_t count) {
     on_progress_(std::min((finished_ + double(done) / double(count)) / passes_, 1.0));
     if (done == count) finished_ += 1;
@@ -189,6 +213,7 @@ class Round {
   const Request& request_;
   const std::function<void(double)>& on_progress_;
   bool compares_steps_;
+  std::vector<std::string> names_;  ///< of the lights that have planes of their own
   double passes_, finished_ = 0;
 };
 
@@ -233,7 +258,7 @@ Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double
   double estimate_ms = 0, filter_ms = 0;
   for (;;) {
     Stopwatch watch;
-    Round round(plan, request, on_progress);
+    Round round(plan, request, scene.light, on_progress);
     Noisy noisy = round.estimate(scene);
     estimate_ms += watch.lap();
     // With --error another round may follow.

@@ -79,12 +79,10 @@ bool has_overscan(const Frame& frame, const OutputOptions& output) {
     return intersection(part.data_window, display) != part.data_window;
   };
   bool found = reaches_beyond(frame.part());
-  for (const Role role : kRendered) {
-    const auto& layer = frame.layers[role];
-    if (layer)
+  for (const Role role : kRendered)
+    for (const Layer* layer : frame.layers.all(role))
       found |=
           reaches_beyond(frame.files[std::size_t(layer->file)].parts()[std::size_t(layer->part)]);
-  }
   for (const ExrPart& part : frame.files.front().parts())
     found |= output.keep_channels && reaches_beyond(part);
   return found;
@@ -95,16 +93,16 @@ bool has_overscan(const Frame& frame, const OutputOptions& output) {
 void warn_of_encoded_colors(Frame& frame) {
   std::set<std::string> warned;
   for (const Role role :
-       {Role::albedo, Role::beauty, Role::radiance, Role::ambient, Role::specular}) {
-    const auto& layer = frame.layers[role];
-    if (!layer) continue;
-    const ExrReader& file = frame.files[std::size_t(layer->file)];
-    const auto curve = curve_of(file.parts()[std::size_t(layer->part)].header);
-    if (!curve || !warned.insert(curve->space).second) continue;
-    frame.report.warnings.push_back(fmt::format(
-        "the header says that colours are {}, which is not linear, and {} is taken as linear: "
-        "convert its colours, or correct colorInteropID or oiio:ColorSpace",
-        curve->space, role_name(role)));
+       {Role::albedo, Role::beauty, Role::radiance, Role::ambient, Role::specular, Role::light}) {
+    for (const Layer* layer : frame.layers.all(role)) {
+      const ExrReader& file = frame.files[std::size_t(layer->file)];
+      const auto curve = curve_of(file.parts()[std::size_t(layer->part)].header);
+      if (!curve || !warned.insert(curve->space).second) continue;
+      frame.report.warnings.push_back(fmt::format(
+          "the header says that colours are {}, which is not linear, and {} is taken as linear: "
+          "convert its colours, or correct colorInteropID or oiio:ColorSpace",
+          curve->space, role_name(role)));
+    }
   }
 }
 
@@ -117,6 +115,7 @@ void warn_of_plan(Frame& frame, const FrameOptions& options, bool has_deep_pixel
                                     .normal = frame.layers[Role::normal].has_value(),
                                     .ambient = !frame.gbuffer.ambient.empty(),
                                     .specular = !frame.gbuffer.specular.empty(),
+                                    .lights = !frame.gbuffer.lights.empty(),
                                     .constant_light = frame.scene.light.is_constant(),
                                     .overscan = has_overscan(frame, options.output)}));
 }

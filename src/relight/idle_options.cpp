@@ -129,6 +129,15 @@ const std::vector<IdleRule<Purpose>>& rules_of_options() {
                 !asks_for(o, {"reflection"}) && !has_specular(o.input.aovs);
        },
        "no output has reflection"},
+      {{"--per-light"},
+       [](const FrameOptions& o, Purpose purpose) {
+         return purpose == Purpose::relight &&
+                !asks_for(o, {"direct", "bounce", "unshadowed", "shadow"});
+       },
+       "no output has direct, bounce, unshadowed or shadow"},
+      {{"--per-light"},
+       [](const FrameOptions&, Purpose purpose) { return purpose == Purpose::bench; },
+       "bench measures the light of all"},
       {{"--env-exposure"},
        occlude_without({"direct", "bounce", "error"}),
        "composite occlude takes the share of the light that arrives, and no output has light"},
@@ -153,7 +162,7 @@ const std::vector<IdleRule<Purpose>>& rules_of_options() {
          return o.output.files.empty() && !o.output.saves.empty();
        },
        "it is for files of -o, and --save names its product"},
-      {{"--pixel-type", "--compression", "--keep-channels", "--crop", "--history"},
+      {{"--per-light", "--pixel-type", "--compression", "--keep-channels", "--crop", "--history"},
        no_output(is_exr),
        "no output is an EXR"},
       {{"--bits"}, no_output(is_deep_picture), "no output is PNG or TIFF"},
@@ -205,6 +214,9 @@ const std::vector<IdleRule<Facts>>& rules_of_frames() {
        "{of_composite}"},
       {{"--aov specular"},
        [](const Asked&, const Facts& f) { return f.specular && !occludes(f); },
+       "{of_composite}"},
+      {{"--aov light"},
+       [](const Asked&, const Facts& f) { return f.lights && !occludes(f); },
        "{of_composite}"},
   };
   return all;

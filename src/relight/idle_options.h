@@ -22,9 +22,10 @@ std::vector<std::string> idle_options(const std::set<std::string>& given,
 /// What a frame holds for options that other frames have no use for.
 struct FrameFacts {
   const Plan& plan;
-  bool depth, position, normal, ambient, specular;  ///< layers; depth may be that of deep pixels
-  bool constant_light;                              ///< the light is the same from everywhere
-  bool overscan;  ///< a layer that outputs take has pixels beyond the display window
+  bool depth, position, normal, ambient, specular,
+      lights;           ///< layers; depth may be that of deep pixels
+  bool constant_light;  ///< the light is the same from everywhere
+  bool overscan;        ///< a layer that outputs take has pixels beyond the display window
 };
 
 /// A warning for each option that has no effect on this frame.

@@ -3,11 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "error.h"
 #include "plan/explain.h"
 #include "plan/make_plan.h"
 #include "relight/frame_warnings.h"
+#include "scene/layers/groups.h"
+#include "scene/layers/names.h"
 #include "scene/layers/windows.h"
+#include "scene/light/named_light.h"
 
 namespace ssdo {
 namespace {
@@ -33,12 +38,26 @@ void refuse_prior_in_bands(const Frame& frame, const ModelOptions& model) {
                           frame.input));
 }
 
+/// In a part with several views, "direct.right.R" is the right view's light of all.
+void check_names_of_lights(const Frame& frame) {
+  const std::vector<std::string> views = views_of(group_channels(frame.files.front(), 0));
+  for (const NamedLight& light : lights_of(frame.scene.light)) {
+    const auto is_name = [&](const std::string& view) { return lower(view) == lower(light.name); };
+    if (std::ranges::none_of(views, is_name)) continue;
+    throw Error(ExitCode::usage,
+                fmt::format("{}: light '{}' has the name of a view, whose channels its own would "
+                            "be taken for; give it another for --per-light",
+                            frame.input, light.name));
+  }
+}
+
 }  // namespace
 
 void plan_frame(Frame& frame, const FrameOptions& options, int number, bool has_deep_pixels) {
   ModelOptions model = options.model;
   if (model.temporal) model.seed += unsigned(number);
   frame.plan = make_plan(model, options.output, frame.scene, frame.gbuffer, frame.input);
+  if (options.output.per_light) check_names_of_lights(frame);
   if (frame.gbuffer.grid.is_coarse()) {
     refuse_prior_in_bands(frame, model);
     check_bands(frame);

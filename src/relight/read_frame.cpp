@@ -32,7 +32,7 @@ std::vector<Role> unused_roles(const FrameOptions& options, const FrameFiles& fi
 
 }  // namespace
 
-Frame read_frame(const FrameOptions& options, const FrameFiles& files,
+Frame read_frame(const FrameOptions& options, const FrameFiles& files, int lamps,
                  std::optional<DeepImage>& own) {
   Stopwatch watch;
   std::deque<ExrReader> opened = open_view(files.input, files.aovs, options.input.allow_partial);
@@ -40,7 +40,7 @@ Frame read_frame(const FrameOptions& options, const FrameFiles& files,
   InputOptions input = for_view(options.input, files);
   input.gbuffer.downsample = options.output.downsample;
   input.gbuffer.beauty = choose_compose(options.output, files.aovs) != Compose::relight;
-  input.gbuffer.most_pixels = most_pixels_in(options.memory);
+  input.gbuffer.most_pixels = most_pixels_in(options.memory, options.output, lamps);
   View view =
       read_view(std::move(opened), files.aovs, input, options.camera, unused_roles(options, files));
   if (view.geometry.camera.panorama) {

@@ -9,9 +9,9 @@
 namespace ssdo {
 
 /// Layers, G-buffer, camera and geometry of a frame, of which an overview is read if it is too
-/// large for options.memory. If the frame is read from a deep file, `own` gets its samples. Errors:
-/// those of the stages; ExitCode::layer for a lat-long panorama.
-Frame read_frame(const FrameOptions& options, const FrameFiles& files,
+/// large for options.memory in the light of so many lamps. If the frame is read from a deep file,
+/// `own` gets its samples. Errors: those of the stages; ExitCode::layer for a lat-long panorama.
+Frame read_frame(const FrameOptions& options, const FrameFiles& files, int lamps,
                  std::optional<DeepImage>& own);
 
 }  // namespace ssdo

@@ -49,7 +49,7 @@ void append(std::vector<std::string>& lines, const std::vector<std::string>& mor
 Frame prepare_frame(const FrameOptions& options, const Lighting& lighting, OtherPictures& pictures,
                     const FrameFiles& files, int number) {
   std::optional<DeepImage> own;
-  Frame frame = read_frame(options, files, own);
+  Frame frame = read_frame(options, files, int(lighting.lamps().size()), own);
   warn_of_encoded_colors(frame);
   Stopwatch watch;
   KnownGeometry known = read_known_geometry(frame, files, options, pictures, own);

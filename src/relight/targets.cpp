@@ -135,8 +135,11 @@ ExrContents exr_contents(const RelightJob& job, const Plan& plan, const Target& 
   const Frame& frame = job.frame;
   ExrContents contents;
   const auto names = target.product ? std::vector{*target.product} : plan.write;
-  for (const std::string& product : names)
+  for (const std::string& product : names) {
     contents.products.push_back(product_channels(product, results));
+    for (NamedChannels& light : light_channels(product, results))
+      contents.products.push_back(std::move(light));
+  }
   ExrOutput& output = contents.output;
   output.input = &frame.files[std::size_t(frame.lead().file)];
   output.part = frame.lead().part;
@@ -156,11 +159,10 @@ ExrContents exr_contents(const RelightJob& job, const Plan& plan, const Target& 
                        {"ssdo/" + name("plan"), json_text(to_json(plan, frame.history))}};
   if (!job.options.output.made_by.empty())
     output.attributes.emplace_back("ssdo/history", history_of(frame, job.options.output.made_by));
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const float background = find_product(names[i]).background;
-    for (const NamedChannel& channel : contents.products[i].channels) {
+  for (const NamedChannels& product : contents.products) {
+    for (const NamedChannel& channel : product.channels) {
       output.planes.push_back(
-          {name(channel.name), job.options.output.pixel_type, channel.pixels, background});
+          {name(channel.name), job.options.output.pixel_type, channel.pixels, product.background});
     }
   }
   const Window all = window_of_outputs(frame);

@@ -50,6 +50,7 @@ struct GBuffer {
   Plane<glm::vec3> beauty;    ///< as rendered; empty where no composite uses it
   Plane<glm::vec3> ambient;   ///< the part of `beauty` that ambient light gave
   Plane<glm::vec3> specular;  ///< the part of `beauty` that mirrors the surroundings
+  std::map<std::string, Plane<glm::vec3>> lights;  ///< the part that each lamp gave, by its name
   Plane<float> depth, alpha;  ///< depth: along the axis or the ray, in scene units
   Plane<float> roughness;     ///< of what mirrors, 0..1
   Plane<glm::vec2> motion;    ///< pixels, x right and y down, to where it was in the frame before

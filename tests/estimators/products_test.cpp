@@ -44,7 +44,8 @@ TEST(Products, EachRowHasItsOwnNameAndPlane) {
   EXPECT_EQ(planes, sets);
   // A plane or a place in a set without a row would be larger than all rows together.
   EXPECT_EQ(sizeof(ProductSet), std::size_t(sets));
-  EXPECT_EQ(sizeof(Products), std::size_t(planes) * sizeof(Plane<float>) + sizeof(LightShares));
+  EXPECT_EQ(sizeof(Products), std::size_t(planes) * sizeof(Plane<float>) + sizeof(LightShares) +
+                                  sizeof(Products::open_ao) + sizeof(Products::lights));
 }
 
 TEST(Products, AreFoundByNameOrListed) {
@@ -52,7 +53,9 @@ TEST(Products, AreFoundByNameOrListed) {
   EXPECT_THAT(error,
               IsError(ExitCode::usage, "product 'normals': no such product; there are ao, bent"));
   EXPECT_THAT(error, IsError(ExitCode::usage, "composite, and all"));
-  EXPECT_EQ(product_names(), "ao, bent, reflection, direct, bounce, error, guessed, composite");
+  EXPECT_EQ(product_names(),
+            "ao, bent, reflection, direct, unshadowed, shadow, bounce, error, guessed, "
+            "composite");
 }
 
 TEST(ProductSet, HasTheOperationsOfASet) {

@@ -12,9 +12,11 @@ namespace ssdo {
 /// (bitmask/extension-inl.h), by channel: what the pixel at the border sends, but no more than
 /// `level` in luminance, Emitters::bright. A pixel tells where a surface goes on, but not that its
 /// light does: paper in the sun that touches the border would be continued by many times its size.
-/// `radiance` is what pixels send; `two_sided` as SenderJob has it.
+/// `radiance` is what pixels send, of one light or of all, which `of_all` has; `two_sided` as
+/// SenderJob has it.
 std::array<BorderValues, 3> light_beyond(const MarchScene& scene,
-                                         const InterleavedVectors& radiance, bool two_sided,
+                                         const InterleavedVectors& radiance,
+                                         const InterleavedVectors& of_all, bool two_sided,
                                          float level);
 
 }  // namespace ssdo

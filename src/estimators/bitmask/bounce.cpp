@@ -64,12 +64,13 @@ struct MetPixels {
 };
 
 /// What the march gathers of the light that pixels send: all but what rays do (rays/emitters.h).
-/// `seen`: they turn the side to the receivers that the camera sees.
+/// `seen`: they turn the side to the receivers that the camera sees. `of_all`: what that side sends
+/// of all lights.
 template <bool kOrthographic>
 HWY_INLINE V3 without_emitted(const BounceJob& job, const MarchReceiver& p, const MetPixels& met,
-                              M seen, const V3& sent) {
+                              M seen, const V3& sent, const V3& of_all) {
   const MarchScene& scene = job.march.scene;
-  const V light = luminance(sent), above = light - set(job.emitters->level);
+  const V light = luminance(of_all), above = light - set(job.emitters->level);
   // An endless solid has no back that rays go to.
   const V thickness = load(met.planes.layers.front().thickness, met.q);
   const M ends = thickness < set(kOrthographic ? kEndlessLength : kEndlessShare),
@@ -213,12 +214,14 @@ void gather_light(const BounceJob& job, const Window& part) {
                         if (!job.two_sided && !job.emitters) return sent;
                         const MarchPlanes& planes = far ? march.far->planes : march.scene;
                         const M seen = faces<kOrthographic>(planes, q, step, p);
-                        const V3 from_side = job.two_sided
-                                                 ? if_then_else(seen, front_of(sent), back_of(sent))
-                                                 : sent;
-                        if (!job.emitters) return from_side;
+                        const auto from_side = [&](const V3& both) HWY_ATTR {
+                          return job.two_sided ? if_then_else(seen, front_of(both), back_of(both))
+                                               : both;
+                        };
+                        if (!job.emitters) return from_side(sent);
+                        const V3 of_all = load(far ? job.far_of_all->sent : *job.of_all, q);
                         return without_emitted<kOrthographic>(job, p, {planes, q, step}, seen,
-                                                              from_side);
+                                                              from_side(sent), from_side(of_all));
                       });
                     },
                 FromOtherViews<decltype(receive)>{job.sent_by_others, receive},

@@ -52,7 +52,7 @@ struct FoundShares {
   const InterleavedPlane* ao;
   const InterleavedColorShares* sky;  ///< as VisibilityJob has it; null: ao is the share of all
                                       ///< light
-  const std::vector<SourceShares>& sources;
+  std::vector<const SourceShares*> sources;  ///< as in `light`
 };
 
 /// The radiance that each pixel sends to others, and that of its back side.
@@ -87,6 +87,9 @@ struct BounceJob {
   const InterleavedPlane* ao;
   /// The radiance that layer 0 sends; spread_bounce() replaces it by the light that arrives.
   InterleavedVectors* light;
+  /// What it sends of all lights together, of which `light` may be one: by that it is decided what
+  /// rays gather and what the march.
+  const InterleavedVectors* of_all;
   bool two_sided;                        ///< as SenderJob has it
   const Solids& solids;                  ///< of the scene: whose light layers 1, 2, ... send
   const BorderValues* sent_border;       ///< three: of surfaces that continue beyond the frame
@@ -94,6 +97,7 @@ struct BounceJob {
   Window lit;                            ///< the pixels of the raster whose `sent` is known
   const FarScene* overview;              ///< tells that of others; null where all are lit
   const FarLight* far;                   ///< what the overview sends
+  const FarLight* far_of_all;            ///< the same as `of_all`
   const Emitters* emitters;              ///< whose light rays gather; null: there are none
 
   GatheredLight* gathered;

@@ -18,7 +18,8 @@ namespace ssdo {
 struct FarLight {
   InterleavedVectors sent;  ///< in the order of FarRaster
   std::array<BorderValues, 3> border;
-  float bright, level;  ///< as Emitters has them, of the frame
+  float bright, level;                ///< as Emitters has them, of the frame
+  std::vector<FarLight> lights = {};  ///< each light's part of it, where the bounce is by light
 };
 
 /// All of a frame as an overview shows it, for rasters that are a part of the frame.

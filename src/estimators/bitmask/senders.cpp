@@ -91,7 +91,7 @@ HWY_INLINE V3 direct_light(const MarchScene& scene, const FoundShares& found, co
   const V3 position = positions(scene, place);
   for (std::size_t k = 0; k < found.sources.size(); ++k) {
     const V3 light = unoccluded(*found.light.sources[k], position, normal);
-    sum = mul_add(light, share(found.sources[k].share), sum);
+    sum = mul_add(light, share(found.sources[k]->share), sum);
   }
   return sum;
 }

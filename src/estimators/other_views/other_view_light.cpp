@@ -33,9 +33,10 @@ constexpr std::uint32_t kSurfaceSeed = 0x3c91, kSourceSeed = 0x77e5;
 /// The surfaces of other views as senders: their direct light and bounces, found by rays.
 class OtherViewSenders {
  public:
-  OtherViewSenders(const Scene& scene, float radius)
+  OtherViewSenders(const Scene& scene, const NamedLight& light, float radius)
       : surfaces_(scene.other_surfaces),
-        light_(scene.light),
+        light_(light.light),
+        numbers_(light.numbers),
         to_world_(glm::transpose(scene.geometry.world_to_camera)),
         radius_(radius),
         rays_(surfaces_.vertices, surfaces_.all) {}
@@ -129,7 +130,7 @@ class OtherViewSenders {
       if (whole[c] > 0) share[c] = part[c] / whole[c];
     glm::vec3 direct = light_.unoccluded_sky(side.normal) * share;
     for (std::size_t i = 0; i < light_.sources.size(); ++i)
-      direct += light_of(*light_.sources[i], std::uint32_t(i), side);
+      direct += light_of(*light_.sources[i], std::uint32_t(numbers_[i]), side);
     return direct;
   }
 
@@ -161,6 +162,7 @@ class OtherViewSenders {
 
   const OtherSurfaces& surfaces_;
   const Light& light_;
+  const std::vector<std::size_t>& numbers_;  ///< by which rays to a source are chosen
   glm::mat3 to_world_;
   float radius_;
   OtherViewRays rays_;
@@ -169,8 +171,9 @@ class OtherViewSenders {
 
 }  // namespace
 
-std::vector<OtherViewLight> light_other_surfaces(const Scene& scene, int bounces, float radius) {
-  return OtherViewSenders(scene, radius).run(bounces);
+std::vector<OtherViewLight> light_other_surfaces(const Scene& scene, const NamedLight& light,
+                                                 int bounces, float radius) {
+  return OtherViewSenders(scene, light, radius).run(bounces);
 }
 
 }  // namespace ssdo

@@ -4,6 +4,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "scene/light/named_light.h"
 #include "scene/scene.h"
 
 namespace ssdo {
@@ -14,8 +15,9 @@ struct OtherViewLight {
   std::vector<glm::vec3> unseen;  ///< from the other side
 };
 
-/// What they send after 0, 1, ..., `bounces` bounces, by rays among all that is known of the scene.
-/// `radius` is the farthest at which things occlude.
-std::vector<OtherViewLight> light_other_surfaces(const Scene& scene, int bounces, float radius);
+/// What they send of one light, or of all as one, after 0, 1, ..., `bounces` bounces, by rays among
+/// all that is known of the scene. `radius` is the farthest at which things occlude.
+std::vector<OtherViewLight> light_other_surfaces(const Scene& scene, const NamedLight& light,
+                                                 int bounces, float radius);
 
 }  // namespace ssdo

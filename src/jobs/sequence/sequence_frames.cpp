@@ -38,14 +38,15 @@ std::optional<View> SequenceFrames::read(const FrameFiles& files, std::size_t mo
     try {
   std::error_code ignored;
   if (!std::filesystem::exists(files.input, ignored)) return std::nullopt;
-  const std::vector<Role> unused = {Role::albedo,   Role::beauty,    Role::radiance, Role::ambient,
-                                    Role::specular, Role::roughness, Role::motion};
+  const std::vector<Role> unused = {Role::albedo,   Role::beauty, Role::radiance,  Role::ambient,
+                                    Role::specular, Role::light,  Role::roughness, Role::motion};
   std::vector<LayerRequest> aovs = files.aovs;
   std::erase_if(aovs, [&](const LayerRequest& request) {
     return std::ranges::find(unused, request.role) != unused.end();
   });
   InputOptions input = for_view(options_.input, files);
-  input.gbuffer.most_pixels = std::min(most_pixels, most_pixels_in(options_.memory));
+  input.gbuffer.most_pixels =
+      std::min(most_pixels, most_pixels_in(options_.memory, options_.output, 0));
   return read_view(open_view(files.input, aovs, input.allow_partial), aovs, input, options_.camera,
                    unused);
 } catch (const Error&) {

@@ -57,10 +57,11 @@ class LayerReader {
       : files_(files), window_(window), grid_(grid) {
     std::map<Part, std::vector<std::string>> channels;
     for (const Role role : roles) {
-      if (!table[role]) continue;
-      auto& names = channels[{table[role]->file, table[role]->part}];
-      for (const std::string& name : table[role]->channels) {
-        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+      for (const Layer* layer : table.all(role)) {
+        auto& names = channels[{layer->file, layer->part}];
+        for (const std::string& name : layer->channels) {
+          if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        }
       }
     }
     for (const auto& [part, names] : channels) {
@@ -186,24 +187,29 @@ void note_bright_ambient(GBuffer& g) {
       brighter, 100 * double(brighter) / double(lit)));
 }
 
-/// Reads beauty, ambient and specular, and brings them to the size of the outputs.
+/// Reads the rendered layers, and brings them to the size of the outputs.
 void take_rendered(GBuffer& g, const LayerReader& read, const std::vector<const ExrReader*>& files,
                    const LayerTable& table, bool has_beauty) {
-  const auto take = [&](Role role, Plane<glm::vec3>& colors) {
-    const std::optional<Layer>& layer = table[role];
-    if (!layer) return;
+  const auto read_layer = [&](const std::string& name, const std::optional<Layer>& layer) {
+    Plane<glm::vec3> colors;
+    if (!layer) return colors;
     if (has_size_of_outputs(part_of(files, *layer), g.downsampling)) {
       colors = read.vector_over(g.downsampling.small(g.window), layer, 0);
       for (glm::vec3& color : colors.pixels) color = is_sane(color) ? color : glm::vec3(0);
-      return;
+      return colors;
     }
     colors = read.vector(layer, 0);
-    clear_broken(g, colors, role_name(role), "black there");
-    colors = filter_pixels(colors, g.window, g.downsampling);
+    clear_broken(g, colors, name, "black there");
+    return filter_pixels(colors, g.window, g.downsampling);
+  };
+  const auto take = [&](Role role, Plane<glm::vec3>& colors) {
+    colors = read_layer(std::string(role_name(role)), table[role]);
   };
   if (has_beauty) take(Role::beauty, g.beauty);
   take(Role::ambient, g.ambient);
   take(Role::specular, g.specular);
+  for (const auto& [name, layer] : table.lights)
+    g.lights[name] = read_layer("light:" + name, layer);
   note_bright_ambient(g);
 }
 
@@ -313,9 +319,9 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   g.by_blender = is_by_blender(part.header);
   note_precision(g, *lead, part, table[Role::position].has_value());
 
-  std::vector<Role> roles = {Role::position, Role::depth,   Role::normal,    Role::albedo,
-                             Role::radiance, Role::alpha,   Role::roughness, Role::motion,
-                             Role::ambient,  Role::specular};
+  std::vector<Role> roles = {Role::position, Role::depth,    Role::normal,    Role::albedo,
+                             Role::radiance, Role::alpha,    Role::roughness, Role::motion,
+                             Role::ambient,  Role::specular, Role::light};
   if (options.beauty) roles.push_back(Role::beauty);
   check_display_windows(files, table, roles, g.downsampling);
   const LayerReader read(files, table, roles, g.window, g.grid, deep);

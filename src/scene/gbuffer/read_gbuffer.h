@@ -30,8 +30,8 @@ Rendered read_rendered(const std::vector<const ExrReader*>& files, const LayerTa
 /// not finite) or a normal of 0.
 /// The table has a position or a depth, whose data window the planes have; with `options.beauty`
 /// they cover the rendered layers too. `deep` is the depth of a deep part, decoded but for its kind
-/// (planar or ray). Beauty, ambient and specular may have the
-/// size of the outputs; if they have that of the other layers, they are filtered to it. Errors:
+/// (planar or ray). Rendered layers may have the size of
+/// the outputs; if they have that of the other layers, they are filtered to it. Errors:
 /// ExitCode::layer when a layer is of another display window, or the depth has no unit;
 /// ExitCode::usage when `options.downsample` does not divide the display window.
 GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTable& table,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,20 +24,32 @@ struct Layer {
 };
 
 /// One `--aov ROLE=LAYER` or `--aov ROLE=FILE:LAYER`. ROLE may be `albedo:straight` or
-/// `albedo:premultiplied`, which states how alpha is in it.
+/// `albedo:premultiplied`, which states how alpha is in it, and is `light:NAME` for what a lamp
+/// gave.
 struct LayerRequest {
   Role role = Role::position;
   std::string file;  ///< empty: the frame itself
   std::string layer;
   std::optional<bool> premultiplied = {};
+  std::string light = {};  ///< its name, for Role::light
 };
 
 /// The layers of a frame by role.
 struct LayerTable {
-  std::array<std::optional<Layer>, kRoleCount> layers;
+  std::array<std::optional<Layer>, kRoleCount> layers;  ///< none for Role::light
+  std::map<std::string, Layer> lights;                  ///< those, by the name of the light
 
   const std::optional<Layer>& operator[](Role role) const { return layers[std::size_t(role)]; }
   std::optional<Layer>& operator[](Role role) { return layers[std::size_t(role)]; }
+
+  /// All that have a role.
+  std::vector<const Layer*> all(Role role) const {
+    std::vector<const Layer*> found;
+    if (const auto& one = (*this)[role]) found.push_back(&*one);
+    if (role == Role::light)
+      for (const auto& [name, layer] : lights) found.push_back(&layer);
+    return found;
+  }
 };
 
 }  // namespace ssdo

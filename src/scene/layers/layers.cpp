@@ -147,9 +147,16 @@ class LayerFinder {
   std::optional<Layer> find(Role role, bool by_name) const {
     std::optional<Layer> found;
     for (const LayerRequest& request : requests_) {
-      if (request.role == role) found = find_requested(request);
+      if (request.role == role && role != Role::light) found = find_requested(request);
     }
     return found || !by_name ? found : find_by_name(role);
+  }
+
+  std::map<std::string, Layer> find_lights() const {
+    std::map<std::string, Layer> found;
+    for (const LayerRequest& request : requests_)
+      if (request.role == Role::light) found[request.light] = find_requested(request);
+    return found;
   }
 
   /// From here on, layers beside `lead` win over others with an equal claim:
@@ -241,19 +248,27 @@ class LayerFinder {
   std::string prefix_;                           ///< of layers that are preferred; may be empty
 };
 
-/// Takes `:straight` or `:premultiplied` off the end of a role, and returns what it states.
-std::optional<bool> take_alpha(std::string& role, const std::string& text) {
+/// Takes what follows a colon off the end of a role: `:straight` or `:premultiplied`, which state
+/// how alpha is in the albedo, or the name of a light.
+void take_detail(std::string& role, const std::string& text, LayerRequest& request) {
   const auto colon = role.find(':');
-  if (colon == std::string::npos) return std::nullopt;
-  const std::string alpha = role.substr(colon + 1);
-  role.resize(colon);
-  if (role == role_name(Role::albedo) && (alpha == "straight" || alpha == "premultiplied"))
-    return alpha == "premultiplied";
-  throw Error(
-      ExitCode::usage,
-      fmt::format("--aov {}: '{}:{}' is no role; with a colon there are albedo:straight and "
-                  "albedo:premultiplied",
-                  text, role, alpha));
+  const std::string detail = colon == std::string::npos ? "" : role.substr(colon + 1);
+  role.resize(std::min(colon, role.size()));
+  if (role == role_name(Role::light)) {
+    request.light = detail;
+    if (!detail.empty()) return;
+    throw Error(ExitCode::usage,
+                fmt::format("--aov {}: expected light:NAME=LAYER with the name of a lamp", text));
+  }
+  if (colon == std::string::npos) return;
+  if (role == role_name(Role::albedo) && (detail == "straight" || detail == "premultiplied")) {
+    request.premultiplied = detail == "premultiplied";
+    return;
+  }
+  throw Error(ExitCode::usage,
+              fmt::format("--aov {}: '{}:{}' is no role; with a colon there are albedo:straight, "
+                          "albedo:premultiplied and light:NAME",
+                          text, role, detail));
 }
 
 }  // namespace
@@ -261,7 +276,8 @@ std::optional<bool> take_alpha(std::string& role, const std::string& text) {
 LayerRequest parse_layer_request(const std::string& text) {
   const auto equals = text.find('=');
   std::string name = text.substr(0, equals);
-  const std::optional<bool> premultiplied = take_alpha(name, text);
+  LayerRequest request;
+  take_detail(name, text, request);
   const auto role = role_from_name(name);
   if (equals == std::string::npos || !role || equals + 1 == text.size()) {
     const auto roles = role_names();
@@ -271,7 +287,8 @@ LayerRequest parse_layer_request(const std::string& text) {
                     role ? "" : did_you_mean(name, {roles.begin(), roles.end()}),
                     fmt::join(roles, ", ")));
   }
-  LayerRequest request{*role, "", text.substr(equals + 1), premultiplied};
+  request.role = *role;
+  request.layer = text.substr(equals + 1);
   // A layer name may contain a colon: it separates a file only where that file or sequence exists.
   const auto colon = request.layer.rfind(':');
   if (colon == std::string::npos) return request;
@@ -311,6 +328,7 @@ LayerTable find_layers(const std::vector<const ExrReader*>& files,
     break;
   }
   for (std::size_t i = 0; i < kRoleCount; ++i) find(Role(i));
+  table.lights = finder.find_lights();
   return table;
 }
 

@@ -18,9 +18,9 @@ std::vector<Components> vector_sets(const Components& in_full) {
 
 /// Plain `diffuse` is not among the names of albedo, since it is lit; `pref` and `rest` not among
 /// those of position, since they are in another space; `mist` not among those of depth, since it is
-/// no distance. `radiance`, `ambient` and `specular` have no name that could be trusted: a specular
-/// layer usually has the highlights of lamps too. Nor has motion of other renderers than Blender,
-/// whose units and signs differ.
+/// no distance. `radiance`, `ambient`, `specular` and `light` have no name that could be trusted: a
+/// specular layer usually has the highlights of lamps too. Nor has motion of other renderers than
+/// Blender, whose units and signs differ.
 const std::array<RoleRow, kRoleCount>& table() {
   static const std::array<RoleRow, kRoleCount> rows = {{
       {.name = "position",
@@ -97,6 +97,8 @@ const std::array<RoleRow, kRoleCount>& table() {
       {.name = "radiance", .layers = {}, .components = kColor, .outside = "are black in it"},
       {.name = "ambient", .layers = {}, .components = kColor, .outside = "are black in it"},
       {.name = "specular", .layers = {}, .components = kColor, .outside = "are black in it"},
+      // One for each lamp that is named.
+      {.name = "light", .layers = {}, .components = kColor, .outside = "are black in it"},
       // One value, or one that a renderer wrote as grey or into the first of three channels.
       {.name = "roughness",
        .layers = {"roughness", "specularroughness"},

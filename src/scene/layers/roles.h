@@ -20,6 +20,7 @@ enum class Role {
   radiance,
   ambient,
   specular,
+  light,
   roughness,
   motion,
 };

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -60,7 +61,7 @@ void note_data_window(const Files& files, Role role, const Layer& layer, GBuffer
 }
 
 bool is_rendered(Role role) {
-  return role == Role::beauty || role == Role::ambient || role == Role::specular;
+  return std::find(kRendered.begin(), kRendered.end(), role) != kRendered.end();
 }
 
 /// What to do about a layer of role `role` with the display window `own` beside `wanted`.
@@ -87,10 +88,11 @@ Window window_of_outputs(const Files& files, const LayerTable& table, bool compo
                          const Downsampling& downsampling) {
   Window all = part_of(files, *table[lead_of(table)]).data_window;
   for (const Role role : composites ? kRendered : std::vector<Role>()) {
-    if (!table[role]) continue;
-    const ExrPart& part = part_of(files, *table[role]);
-    const Window& own = part.data_window;
-    all = hull(all, has_size_of_outputs(part, downsampling) ? downsampling.large(own) : own);
+    for (const Layer* layer : table.all(role)) {
+      const ExrPart& part = part_of(files, *layer);
+      const Window& own = part.data_window;
+      all = hull(all, has_size_of_outputs(part, downsampling) ? downsampling.large(own) : own);
+    }
   }
   return all;
 }
@@ -110,37 +112,37 @@ void check_display_windows(const Files& files, const LayerTable& table,
                            const std::vector<Role>& roles, const Downsampling& downsampling) {
   const Role lead = lead_of(table);
   const Window& wanted = part_of(files, *table[lead]).display_window;
-  for (const Role role : roles) {
-    if (!table[role]) continue;
-    const ExrPart& part = part_of(files, *table[role]);
+  const auto check = [&](Role role, const Layer& layer) {
+    const ExrPart& part = part_of(files, layer);
     const Window& own = part.display_window;
-    if (own == wanted || (is_rendered(role) && has_size_of_outputs(part, downsampling))) continue;
+    if (own == wanted || (is_rendered(role) && has_size_of_outputs(part, downsampling))) return;
     throw Error(ExitCode::layer,
                 fmt::format("{}: {} has the display window {}, and {} has {}; {}",
-                            files[0]->path().string(), text_of(files, role, *table[role]),
-                            text_of(own), text_of(files, lead, *table[lead]), text_of(wanted),
+                            files[0]->path().string(), text_of(files, role, layer), text_of(own),
+                            text_of(files, lead, *table[lead]), text_of(wanted),
                             remedy(role, own, wanted, downsampling)));
-  }
+  };
+  for (const Role role : roles)
+    for (const Layer* layer : table.all(role)) check(role, *layer);
 }
 
 void note_data_windows(const Files& files, const LayerTable& table, const std::vector<Role>& roles,
                        GBuffer& g) {
   const float aspect = part_of(files, *table[lead_of(table)]).header.pixelAspectRatio();
   std::set<const ExrPart*> noted;
-  for (const Role role : roles) {
-    if (!table[role]) continue;
-    const ExrPart& part = part_of(files, *table[role]);
+  const auto note = [&](Role role, const Layer& layer) {
+    const ExrPart& part = part_of(files, layer);
     const bool unused = role == Role::depth && g.depth.empty();  // it contradicts P
     const Window own_window = g.grid.of(part.data_window), lead = g.lead_window.value_or(g.window);
-    if (!unused && hull(own_window, lead) != own_window)
-      note_data_window(files, role, *table[role], g);
+    if (!unused && hull(own_window, lead) != own_window) note_data_window(files, role, layer, g);
     const float own = part.header.pixelAspectRatio();
-    if (std::abs(own - aspect) <= kSameAspect * aspect || !noted.insert(&part).second) continue;
+    if (std::abs(own - aspect) <= kSameAspect * aspect || !noted.insert(&part).second) return;
     g.warnings.push_back(fmt::format(
         "{} has pixels of aspect {:.4g}, and {} those of {:.4g}; pixels are matched one to one",
-        text_of(*files[std::size_t(table[role]->file)], part), own, role_name(lead_of(table)),
-        aspect));
-  }
+        text_of(*files[std::size_t(layer.file)], part), own, role_name(lead_of(table)), aspect));
+  };
+  for (const Role role : roles)
+    for (const Layer* layer : table.all(role)) note(role, *layer);
 }
 
 }  // namespace ssdo

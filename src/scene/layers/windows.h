@@ -20,7 +20,8 @@ inline Window hull(const Window& a, const Window& b) {
 const ExrPart& part_of(const std::vector<const ExrReader*>& files, const Layer& layer);
 
 /// The layers that composites of a beauty are made of.
-inline const std::vector<Role> kRendered = {Role::beauty, Role::ambient, Role::specular};
+inline const std::vector<Role> kRendered = {Role::beauty, Role::ambient, Role::specular,
+                                            Role::light};
 
 /// What the outputs of a frame cover, in pixels of its files: the data window of the position, or
 /// else of the depth, and for `composites` of a beauty those of its layers.
@@ -37,7 +38,7 @@ bool has_size_of_outputs(const ExrPart& part, const Downsampling& downsampling);
 
 /// Layers of one frame cover one picture, be they in several parts or files: throws
 /// ExitCode::layer where the display window of one is not that of the position, or else of the
-/// depth. Beauty, ambient and specular may have the size of the outputs instead. Data windows may
+/// depth. Rendered layers may have the size of the outputs instead. Data windows may
 /// differ, as renderers that crop or add overscan write them.
 void check_display_windows(const std::vector<const ExrReader*>& files, const LayerTable& table,
                            const std::vector<Role>& roles, const Downsampling& downsampling);

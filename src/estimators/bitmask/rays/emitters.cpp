@@ -40,6 +40,8 @@ struct Side {
   double power() const { return double(light) * double(point.area); }
 };
 
+glm::vec3 each(float (*of)(float), const glm::vec3& v) { return {of(v.x), of(v.y), of(v.z)}; }
+
 /// The pixels of a raster that send.
 class Senders {
  public:
@@ -61,17 +63,18 @@ class Senders {
     const glm::vec3 both(radiance_[0][i], radiance_[1][i], radiance_[2][i]);
     const glm::vec3 front = two_sided_ ? each(first_of_two, both) : both,
                     back = two_sided_ ? each(second_of_two, both) : both;
-    if (luminance(front) > level_) visit(side(front, x, y, at, false));
+    const auto visit_side = [&](const glm::vec3& radiance, bool is_back) {
+      Side s = side(radiance, x, y, at, is_back);
+      s.point.pixel = int(i), s.point.is_back = is_back;
+      visit(s);
+    };
+    if (luminance(front) > level_) visit_side(front, false);
     const float thickness = scene_.layers.front().thickness[at];
     const bool ends = thickness < (scene_.orthographic ? kEndlessLength : kEndlessShare);
-    if (ends && luminance(back) > level_) visit(side(back, x, y, at, true));
+    if (ends && luminance(back) > level_) visit_side(back, true);
   }
 
  private:
-  static glm::vec3 each(float (*of)(float), const glm::vec3& v) {
-    return {of(v.x), of(v.y), of(v.z)};
-  }
-
   glm::vec3 to_viewer(int x, int y) const {
     return scene_.orthographic ? glm::vec3(0, 0, 1)
                                : glm::normalize(glm::vec3(-ray_slope(scene_, x, y), 1));
@@ -147,6 +150,7 @@ class Senders {
     out.light = light - level_;
     out.point.position = is_back ? front - through * normal : front;
     out.point.normal = is_back ? -normal : normal;
+    out.point.per_radiance = out.light / light * area;
     out.point.power = out.light / light * area * radiance;
     out.point.area = area;
     out.point.solid = beside_px_ * pixel + (is_back ? 0.5f * through : 0);
@@ -196,7 +200,10 @@ struct Part {
   template <class Visit>
   void for_each_side(std::size_t tile, const Visit& visit) const {
     tiles.for_each_pixel(tile, [&](int x, int y) {
-      senders.for_each_side(x, y, far ? far->index(x, y) : layout.index(x, y), visit);
+      senders.for_each_side(x, y, far ? far->index(x, y) : layout.index(x, y), [&](Side s) {
+        s.point.is_far = far != nullptr;
+        visit(s);
+      });
     });
   }
 };
@@ -266,6 +273,7 @@ class Points {
       // As much power as every other point has, in the colour of this one.
       const double times = each_ * kMembers / s.power();
       point.power *= float(times), point.area *= float(times);
+      point.per_radiance *= float(times);
     };
     const Side* last = nullptr;
     Side kept;
@@ -320,6 +328,20 @@ Emitters find_emitters(const SentLight& sent, unsigned seed) {
     });
   }
   return out;
+}
+
+Emitters emitters_of_light(Emitters of_all, const InterleavedVectors& radiance, bool two_sided,
+                           const FarLight* far) {
+  bool sends = false;
+  for (Emitter& e : of_all.points) {
+    const InterleavedVectors& from = e.is_far ? far->sent : radiance;
+    const glm::vec3 both(from[0][e.pixel], from[1][e.pixel], from[2][e.pixel]);
+    const auto side = e.is_back ? second_of_two : first_of_two;
+    e.power = e.per_radiance * (two_sided ? each(side, both) : both);
+    sends = sends || e.power != glm::vec3(0);
+  }
+  if (!sends) of_all.points.clear();
+  return of_all;
 }
 
 }  // namespace ssdo

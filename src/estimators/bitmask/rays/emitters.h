@@ -37,7 +37,10 @@ struct Emitter {
   glm::vec3 position, normal;  ///< it sends to the side of the normal, unit
   glm::vec3 power;             ///< radiance times the area that it stands for
   float area;                  ///< that area
-  float solid;  ///< how far before the point, on a ray to it, its own solid may begin
+  float solid;           ///< how far before the point, on a ray to it, its own solid may begin
+  float per_radiance;    ///< power over the radiance of the pixel that it is taken from
+  int pixel;             ///< that: the index of its radiance
+  bool is_back, is_far;  ///< whether its back sends; whether it is a pixel of the overview
 };
 
 /// What of the light that the pixels of a frame send is gathered by rays.
@@ -56,5 +59,10 @@ struct Emitters {
 
 /// `seed` exchanges the points of the members.
 Emitters find_emitters(const SentLight& sent, unsigned seed);
+
+/// The same points with what they send of one light. `far`: what the overview sends of it. No
+/// points: they send nothing of it.
+Emitters emitters_of_light(Emitters of_all, const InterleavedVectors& radiance, bool two_sided,
+                           const FarLight* far);
 
 }  // namespace ssdo

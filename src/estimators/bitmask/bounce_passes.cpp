@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/bitmask/bounce_passes.h"
+
+#include <utility>
+
+#include "estimators/bitmask/border_light.h"
+#include "estimators/bitmask/parts.h"
+
+namespace ssdo {
+namespace {
+
+/// A light that is followed, or all of them as one.
+struct Followed {
+  NamedLight light;
+  std::vector<OtherViewLight> sent_by_others;  ///< by pass
+  BouncedLight found = {};                     ///< in the pass before
+};
+
+/// What all lights of a pass share.
+struct Pass {
+  int number;                        ///< from 1 on
+  Window lit;                        ///< the pixels that send
+  Window to;                         ///< those that gather
+  const InterleavedVectors& of_all;  ///< what all lights together send
+  const Emitters& emitters;          ///< chosen by that
+  const FarLight* far_of_all;
+  GatheredLight& gathered;
+};
+
+class BouncePasses {
+ public:
+  explicit BouncePasses(const BounceInputs& inputs)
+      : in_(inputs),
+        scene_(inputs.scene),
+        request_(inputs.request),
+        march_scene_(inputs.march.scene),
+        overview_(request_.around_band ? request_.around_band->far.get() : nullptr),
+        is_lit_(scene_.senders.radiance.empty()),
+        two_sided_(is_lit_ && !scene_.light.is_constant()),
+        all_(follow(as_one_light(scene_.light))) {
+    if (!request_.by_light.bounce) return;
+    for (NamedLight& light : lights_of(scene_.light)) each_.push_back(follow(std::move(light)));
+  }
+
+  BouncedLights run() {
+    BouncedLights out;
+    if (request_.products.error && request_.bounces > 0)
+      out.error = InterleavedPlane(march_scene_.layout);
+    for (int pass = 1; pass <= request_.bounces; ++pass) run(pass, out);
+    out.all = std::move(all_.found);
+    for (Followed& light : each_) out.each.push_back(std::move(light.found));
+    return out;
+  }
+
+ private:
+  Followed follow(NamedLight light) const {
+    Followed followed{std::move(light), {}};
+    if (request_.bounces == 0)
+      followed.found.bounce = in_.raster.black();
+    else if (in_.march.other_views)
+      followed.sent_by_others =
+          light_other_surfaces(scene_, followed.light, request_.bounces - 1, request_.radius);
+    return followed;
+  }
+
+  void run(int number, BouncedLights& out) {
+    // What is lit reaches as far as the bounces that follow.
+    const Window lit =
+        with_senders(march_scene_, request_, march_scene_.receivers, request_.bounces - number + 1);
+    // Light gathered in the last pass is not sent on: only receivers need it.
+    const Window to = is_lit_ && number < request_.bounces
+                          ? with_senders(march_scene_, request_, march_scene_.receivers,
+                                         request_.bounces - number)
+                          : march_scene_.receivers;
+    InterleavedVectors sent = sent_light(lit, all_, number);
+    const FarLight* far_light = overview_ ? &overview_->light[std::size_t(number - 1)] : nullptr;
+    const Emitters emitters = find_emitters(
+        {march_scene_, sent, two_sided_, lit, in_.march.far, far_light}, request_.seed);
+    const bool wants_error = request_.products.error && number == request_.bounces;
+    GatheredLight gathered(in_.march, wants_error);
+    const Pass pass{number, lit, to, sent, emitters, far_light, gathered};
+    std::vector<FarLight> kept;
+    for (std::size_t k = 0; k < each_.size(); ++k) {
+      InterleavedVectors of_light = sent_light(lit, each_[k], number);
+      const FarLight* far_of_light = far_light ? &far_light->lights[k] : nullptr;
+      const Emitters points = emitters_of_light(emitters, of_light, two_sided_, far_of_light);
+      FarLight far = gather(each_[k], of_light, pass, far_of_light, points, nullptr);
+      if (in_.keep_in) kept.push_back(std::move(far));
+      each_[k].found.bounce = std::move(of_light);
+    }
+    FarLight far =
+        gather(all_, sent, pass, far_light, emitters, wants_error ? &out.error : nullptr);
+    if (in_.keep_in) {
+      far.lights = std::move(kept);
+      out.kept.push_back(std::move(far));
+    }
+    all_.found.bounce = std::move(sent);
+  }
+
+  /// The radiance that pixels send, given the bounce of the pass before.
+  InterleavedVectors sent_light(const Window& part, const Followed& light, int pass) const {
+    // A layer may say what is sent.
+    if (!is_lit_) return in_.raster.interleaved(scene_.senders.radiance);
+    InterleavedVectors sent = in_.raster.make_color();
+    const SenderJob senders{march_scene_,
+                            shares_of(light.light, in_.ao, in_.sky, in_.sources),
+                            scene_.senders.albedo,
+                            pass > 1 ? &light.found.bounce : nullptr,
+                            &sent,
+                            two_sided_};
+    for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
+    return sent;
+  }
+
+  /// Replaces what a light sends by what of it arrives. Returns what bands need of the former,
+  /// where they do. `points`: what rays go to, with this light. `error` may be null.
+  FarLight gather(Followed& light, InterleavedVectors& sent, const Pass& pass,
+                  const FarLight* far_light, const Emitters& points, InterleavedPlane* error) {
+    const std::array<BorderValues, 3> border =
+        light_beyond(march_scene_, sent, pass.of_all, two_sided_, pass.emitters.bright);
+    FarLight kept{{}, {}, pass.emitters.bright, pass.emitters.level};
+    if (in_.keep_in) kept.sent = in_.raster.in_whole_rows(sent, *in_.keep_in), kept.border = border;
+    const Emitters* const bright = pass.emitters.points.empty() ? nullptr : &pass.emitters;
+    const OtherViewLight* const from_others =
+        in_.march.other_views ? &light.sent_by_others[std::size_t(pass.number - 1)] : nullptr;
+    const BounceJob job{in_.march,     &in_.ao,         &sent,       &pass.of_all,   two_sided_,
+                        scene_.solids, border.data(),   from_others, pass.lit,       overview_,
+                        far_light,     pass.far_of_all, bright,      &pass.gathered, error};
+    for_each_band_of(
+        grown(march_scene_.layout, pass.to, in_.march.pattern.spacing() - 1),
+        [&](const Window& part) { march_bounce(job, part); }, in_.progress);
+    for_each_band_of(pass.to, [&](const Window& part) { spread_bounce(job, part); }, {});
+    light.found.emitted = {};
+    if (points.points.empty()) return kept;
+    light.found.emitted = in_.raster.black();
+    const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
+    const EmittedJob rays{in_.march,
+                          bounds,
+                          points,
+                          rays_to_source(request_.slices),
+                          request_.seed,
+                          &sent,
+                          &light.found.emitted,
+                          error};
+    for_each_tall_part_of(march_scene_.layout, pass.to,
+                          [&](const Window& w) { gather_emitted(rays, w); }, {});
+    return kept;
+  }
+
+  const BounceInputs& in_;
+  const Scene& scene_;
+  const Request& request_;
+  const MarchScene& march_scene_;
+  const FarScene* overview_;
+  const bool is_lit_;  ///< what is sent is found, not given
+  const bool two_sided_;
+  Followed all_;
+  std::vector<Followed> each_;
+};
+
+}  // namespace
+
+BouncedLights gather_bounces(const BounceInputs& inputs) { return BouncePasses(inputs).run(); }
+
+Window with_senders(const MarchScene& scene, const Request& request, const Window& part,
+                    int bounces) {
+  const Window raster = scene.raster();
+  if (!request.around_band) return raster;
+  const int rows = bounces * request.around_band->reach_rows;
+  return intersection(raster, {raster.x0, part.y0 - rows, raster.x1, part.y1 + rows});
+}
+
+FoundShares shares_of(const NamedLight& light, const InterleavedPlane& ao,
+                      const InterleavedColorShares* sky, const std::vector<SourceShares>& sources) {
+  FoundShares found{light.light, &ao, sky, {}};
+  for (const std::size_t number : light.numbers) found.sources.push_back(&sources[number]);
+  return found;
+}
+
+}  // namespace ssdo

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The passes of bounces of method bitmask (see bitmask.cpp). Each is lit by the one before.
+//
+// Light is linear: where layers of each light are wanted, each is sent on and gathered alone, by
+// the same slices, masks and rays, and its next pass is lit by its own. Two things depend on how
+// bright a sender is, and are decided by all lights together: what rays gather in place of the
+// march (rays/emitters.h), and what goes on beyond the border (border_light.h). So the sum over the
+// lights is the light of all, up to the rounding of two_in_one(), which bitmask.cpp takes out.
+#pragma once
+
+#include <vector>
+
+#include "estimators/bitmask/jobs.h"
+#include "estimators/bitmask/raster.h"
+#include "estimators/estimator.h"
+#include "scene/light/named_light.h"
+#include "scene/scene.h"
+
+namespace ssdo {
+
+/// What the passes look at.
+struct BounceInputs {
+  const Scene& scene;
+  const Request& request;
+  const Progress& progress;
+  const Raster& raster;
+  const March& march;
+  const InterleavedPlane& ao;
+  const InterleavedColorShares* sky;  ///< as FoundShares has it
+  const std::vector<SourceShares>& sources;
+  const FarRaster* keep_in;  ///< the order in which bands of the frame need what is sent; or null
+};
+
+/// What has arrived after the last pass.
+struct BouncedLight {
+  InterleavedVectors bounce;
+  InterleavedVectors emitted;  ///< the part of it that rays have found; empty: none
+};
+
+struct BouncedLights {
+  BouncedLight all;
+  std::vector<BouncedLight> each;  ///< where Request::by_light asks for it
+  InterleavedPlane error;          ///< of all; empty where it is not wanted
+  std::vector<FarLight> kept;      ///< what was sent, by pass, where `keep_in` asks for it
+};
+
+BouncedLights gather_bounces(const BounceInputs& inputs);
+
+/// A part of the raster with what may send light to it in so many bounces.
+Window with_senders(const MarchScene& scene, const Request& request, const Window& part,
+                    int bounces);
+
+/// What arrives of one light, or of all. `sky` as FoundShares has it.
+FoundShares shares_of(const NamedLight& light, const InterleavedPlane& ao,
+                      const InterleavedColorShares* sky, const std::vector<SourceShares>& sources);
+
+}  // namespace ssdo

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/trace/senders.h"
+
+#include "math/light_range.h"
+#include "parallel/tiles.h"
+
+namespace ssdo {
+namespace {
+
+/// What of a light arrives.
+glm::vec3 direct_of(const NamedLight& light, const Products& found, const Surfel& s,
+                    std::size_t pixel) {
+  if (found.shares.are_ao || light.name.empty()) return found.direct[pixel];
+  glm::vec3 direct = light.light.unoccluded_sky(s.normal) * found.shares.sky[pixel];
+  for (std::size_t i = 0; i < light.numbers.size(); ++i)
+    direct += light.light.sources[i]->unoccluded(s.position, s.normal) *
+              found.shares.suns[light.numbers[i]][pixel];
+  return direct;
+}
+
+}  // namespace
+
+void find_senders(const Scene& scene, const Products& found, const Plane<glm::vec3>& bounce,
+                  TraceSenders& senders) {
+  const bool is_given = !scene.senders.radiance.empty(),
+             two_sided = !scene.light.is_constant() && !is_given;
+  senders.front = Plane<glm::vec3>(bounce.width, bounce.height, glm::vec3(0));
+  if (two_sided) senders.back = senders.front;
+  for_each_row(bounce.height, [&](int y) {
+    for (std::size_t i = bounce.index(0, y); i < bounce.index(0, y + 1); ++i) {
+      const Surfel& s = scene.geometry.surfel[i];
+      if (!s.is_usable()) continue;
+      if (is_given) {
+        senders.front[i] = within_range(scene.senders.radiance[i]);
+        continue;
+      }
+      const glm::vec3 albedo(scene.senders.albedo[i]);
+      senders.front[i] = within_range(albedo * (direct_of(senders.light, found, s, i) + bounce[i]));
+      if (!two_sided) continue;
+      // The side that is not seen has the light of its own side, as far as the seen one is open.
+      const glm::vec3 behind = found.ao[i] * senders.light.light.unoccluded(s.position, -s.normal);
+      senders.back[i] = within_range(albedo * (behind + bounce[i]));
+    }
+  });
+}
+
+}  // namespace ssdo
