@@ -4,7 +4,8 @@
 TRUTH holds env/, and public/SCENE/ with gbuffer.exr, truth_white.exr, truth_ao_R.exr,
 truth_env_direct.exr and camera.json. Prints RMSE of ao at the smaller and the larger radius and
 without limit, and of direct light relative to its mean, with the rules, with the prior's ao, and
-with its moments; then, over blocks of 8 x 8 pixels of white ao, how spread and guessed predict the error."""
+with its moments; then, over blocks of 8 x 8 pixels of white ao, how spread and guessed predict the
+error."""
 import glob
 import json
 import os
