@@ -3,8 +3,9 @@
 
 One bounce in a white world, on the first COUNT frames of the families that are never trained on.
 What the prior finds blocked sends the mean radiance of what the frame shows; what it finds open no
-longer sends: B' = B + (ao - ao') L, with L the mean of albedo * ao' over the frame. Prints the RMSE
-over the mean, of the tool's bounce B and of B'."""
+longer sends: B' = B + (ao - ao') L, with L the mean of albedo * ao' over the frame. Senders are lit
+by ao' too: B" = q B + (ao - ao') L, with q the ratio of L to the mean of albedo * ao. Prints the
+RMSE over the mean, of the tool's bounce B, of B' and of B"."""
 import os
 import subprocess
 import sys
@@ -44,9 +45,11 @@ def errors(work, ssdo, number, net):
     tool = bounce_of(work, ssdo, number).ravel()[pixels]
     truth = rows[:, 11:14].mean(1)
     sent = np.mean(albedo.ravel()[pixels] * ao)
-    changed = np.maximum(tool + (x[:, 0].numpy() - ao) * sent, 0)
+    before = x[:, 0].numpy()
+    dimmed = sent / max(np.mean(albedo.ravel()[pixels] * before), 1e-6)
+    changed = [np.maximum(q * tool + (before - ao) * sent, 0) for q in (1, dimmed)]
     scale = truth.mean() + 0.01
-    return [np.sqrt(np.mean((v - truth) ** 2)) / scale for v in (tool, changed)]
+    return [np.sqrt(np.mean((v - truth) ** 2)) / scale for v in (tool, *changed)]
 
 
 def main():
@@ -58,8 +61,9 @@ def main():
         name = data.names[data.family[f]]
         result.setdefault(name, []).append(errors(work, ssdo, f"{data.number[f]:05d}", net))
     for name, rows in result.items():
-        print(f"{name:12s} {len(rows):3d} frames, bounce rules {np.mean(rows, 0)[0]:.3f}"
-              f" prior {np.mean(rows, 0)[1]:.3f}")
+        rules, blocked, lit = np.mean(rows, 0)
+        print(f"{name:12s} {len(rows):3d} frames, bounce rules {rules:.3f}, what is blocked sends"
+              f" {blocked:.3f}, lit by the prior too {lit:.3f}")
 
 
 if __name__ == "__main__":
