@@ -11,6 +11,8 @@
 #include <cmath>
 
 #include "scene/light/distant_source.h"
+#include "scene/light/lamps/lamp_points-inl.h"
+#include "scene/light/lamps/near_lamp-inl.h"
 #include "scene/light/light.h"
 #include "simd/by_lane-inl.h"
 #include "simd/lanes-inl.h"
@@ -36,23 +38,22 @@ HWY_INLINE V received(const DistantSource& sun, const V3& normal) {
 }
 
 // The functions of Source for vectors. A distant source looks the same from everywhere, so that all
-// lanes share its values; for other sources, each lane is computed alone.
+// lanes share its values; lamps have vector forms; for other sources, each lane is computed alone.
 
 HWY_INLINE V received(const Source& source, const V3& position, const V3& normal) {
   if (const DistantSource* distant = source.distant()) return received(*distant, normal);
+  if (const NearLamp* lamp = source.near_lamp()) return received(*lamp, position, normal);
+  if (const DistantLamp* lamp = source.distant_lamp()) return received(*lamp, normal);
   const Lanes3 positions(position), normals(normal);
   return by_lane([&](int lane)
                      HWY_ATTR { return source.received(positions[lane], normals[lane]); });
 }
 
-/// SourcePoint
-struct SourcePoints {
-  V3 to;
-  V distance, weight;
-};
-
 HWY_INLINE SourcePoints seen(const Source& source, const V3& position, const V3& point) {
   if (source.distant()) return {point, set(SourcePoint().distance), set(SourcePoint().weight)};
+  if (const NearLamp* lamp = source.near_lamp()) return seen(*lamp, position, point);
+  if (const DistantLamp* lamp = source.distant_lamp())
+    return {point, set(SourcePoint().distance), set(lamp->weight())};
   const Lanes3 positions(position), points(point);
   SourcePoint found[kLanes];
   for (int lane = 0; lane < kLanes; ++lane)
@@ -64,15 +65,9 @@ HWY_INLINE SourcePoints seen(const Source& source, const V3& position, const V3&
           by_lane([&](int lane) HWY_ATTR { return found[lane].weight; })};
 }
 
-/// SourceCone, and how far the source can be from a plane that its middle lies in, at a distance
-/// of 1.
-struct SourceCones {
-  V3 to;
-  V angular_radius, sine;
-};
-
 HWY_INLINE SourceCones cones(const Source& source, const V3& position) {
-  if (source.distant()) {
+  if (const NearLamp* lamp = source.near_lamp()) return cones(*lamp, position);
+  if (source.distant() || source.distant_lamp()) {
     const SourceCone cone = source.cone(glm::vec3(0));
     return {set(cone.to), set(cone.angular_radius), set(std::sin(cone.angular_radius))};
   }

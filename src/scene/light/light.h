@@ -24,7 +24,7 @@ constexpr double kBandLimited = 0.005, kLightResidual = 0.1;
 struct Light {
   Environment environment = Environment::constant(glm::vec3(0));  ///< all of it
   Environment sky = Environment::constant(glm::vec3(0));          ///< without the sources
-  std::vector<std::shared_ptr<const Source>> sources;  ///< a map's strongest first, at most 8; then lamps
+  std::vector<std::shared_ptr<const Source>> sources;  ///< at most 8 of a map, then lamps
 
   /// Spherical-harmonic coefficients of the sky's radiance. All orders are filled.
   std::array<glm::vec3, kShCount> coefficients{};

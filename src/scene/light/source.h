@@ -8,7 +8,9 @@
 
 namespace ssdo {
 
+struct DistantLamp;
 struct DistantSource;
+struct NearLamp;
 
 /// A point of a source as a receiver sees it.
 struct SourcePoint {
@@ -21,7 +23,7 @@ struct SourcePoint {
 struct SourceCone {
   glm::vec3 to{0};  ///< unit direction to the middle
   float distance = std::numeric_limits<float>::infinity();
-  float angular_radius = 0;  ///< radians; above pi / 2 inside of the source
+  float angular_radius = 0;  ///< radians; pi / 2 at most, as inside of the source
 };
 
 /// A concentrated source of light, of one colour, in the space of positions and normals. Without
@@ -32,8 +34,8 @@ struct SourceCone {
 /// the mean being that over all its points, which are those of even `u` in the unit square. With
 /// occluders each point counts as far as a ray to it, `distance` long, is open.
 ///
-/// Suns come from model_light() in light.cpp, lamps from lamps/make_source.h. light-inl.h asks a new
-/// type lane by lane.
+/// Suns come from model_light() in light.cpp, lamps from make_source() in lamps/lamp.h. light-inl.h
+/// asks a new type lane by lane.
 struct Source {
   virtual ~Source() = default;
 
@@ -53,6 +55,10 @@ struct Source {
 
   /// This, if it is endlessly far: it looks the same from everywhere. Null: it is not.
   virtual const DistantSource* distant() const { return nullptr; }
+
+  /// This, if it is such a lamp: they have functions for vectors. Null: it is not.
+  virtual const NearLamp* near_lamp() const { return nullptr; }
+  virtual const DistantLamp* distant_lamp() const { return nullptr; }
 
   SourcePoint sample(const glm::vec3& position, const glm::vec2& u) const {
     return seen(position, point(u));

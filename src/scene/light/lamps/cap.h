@@ -69,10 +69,9 @@ inline glm::dvec2 to_disk(const glm::vec2& u) {
   return {r * std::cos(angle), r * std::sin(angle)};
 }
 
-/// A direction of a cap about z, of this height; even over it for even `u`. The height of a place
-/// over the middle is its share of the area.
-inline glm::dvec3 direction_in_cap(double height, const glm::vec2& u) {
-  const glm::dvec2 disk = to_disk(u);
+/// The direction in a cap about z, of this height, for a place of the unit disk: even ones give
+/// even ones, since an area of a sphere goes with its height.
+inline glm::dvec3 direction_in_cap(double height, const glm::dvec2& disk) {
   const double down = glm::dot(disk, disk) * height;
   return {disk * std::sqrt(height * (2 - down)), 1 - down};
 }

@@ -89,14 +89,17 @@ double DiskLamp::integral(const LampReceiver& r) const {
 // between its nearest and its farthest point. Even points of a disk, made as long and as wide as
 // the ellipse and lifted to the sphere, cover it with a density that varies by a factor of two at
 // most (after Guillen et al. 2017, Area-Preserving Parameterizations for Spherical Ellipses).
-LampSample DiskLamp::sample(const glm::dvec3& position, const glm::vec2& u) const {
+LampSample DiskLamp::sample(const glm::dvec3& position, const glm::dvec2& point) const {
   const Turned turned(position);
-  const double off = turned.off, h = turned.height;
-  if (!(h > 0)) return {{0, 0, 1}, std::max(1.0, glm::length(position)), 0};
+  if (!(turned.height > 0)) return {{0, 0, 1}, std::max(1.0, glm::length(position)), 0};
+  const double off = turned.off, h = std::max(turned.height, kNearestToPlane);
   const glm::dvec2 to_near(1 - off, -h), to_far(-1 - off, -h);  // in the plane of the axis
   const glm::dvec2 one = to_near / glm::length(to_near), other = to_far / glm::length(to_far);
-  const double length = std::sqrt((1 - glm::dot(one, other)) / 2);  // sine of half the angle
   glm::dvec2 middle = one + other;
+  // Sine of half the angle between them; far away, that angle is small.
+  const double cosine = glm::dot(one, other);
+  const double sine = 2 * h / (glm::length(to_near) * glm::length(to_far));
+  const double length = cosine > 0 ? sine / glm::length(middle) : std::sqrt((1 - cosine) / 2);
   // Right at the disk, they are opposite to each other.
   middle = glm::length(middle) > 1e-9 ? glm::normalize(middle) : glm::dvec2(0, -1);
   const glm::dvec2 along(-middle.y, middle.x);
@@ -104,10 +107,9 @@ LampSample DiskLamp::sample(const glm::dvec3& position, const glm::vec2& u) cons
   const double way = -h / middle.y, at = off + middle.x * way,
                half_chord = std::sqrt(std::max(0.0, 1 - at * at));
   const double width = half_chord / std::hypot(half_chord, way);
-  const glm::dvec2 disk = to_disk(u);
-  const double radius_squared = glm::dot(disk, disk);
+  const double radius_squared = glm::dot(point, point);
   const glm::dvec2 edge = radius_squared > 0
-                              ? disk / std::sqrt(radius_squared) * glm::dvec2(length, width)
+                              ? point / std::sqrt(radius_squared) * glm::dvec2(length, width)
                               : glm::dvec2(length, 0);
   const double border = std::min(1.0, glm::dot(edge, edge));  // sine^2 of its angle
   // 1 - cosine at the border; points are even in it.
@@ -123,12 +125,13 @@ LampSample DiskLamp::sample(const glm::dvec3& position, const glm::vec2& u) cons
   return found;
 }
 
-std::vector<double> DiskLamp::bends(const glm::dvec3& position) const {
+LampBends DiskLamp::bends(const glm::dvec3& position) const {
   const Turned turned(position);
-  if (!(turned.height > 0)) return {kPi, kPi};
+  if (!(turned.height > 0)) return {{kPi, kPi}, 2};
   const double near = turned.off - 1;
-  return {near > 0 ? std::atan2(near, turned.height) : 0, std::atan2(std::abs(near), turned.height),
-          std::atan2(turned.off + 1, turned.height)};
+  return {{near > 0 ? std::atan2(near, turned.height) : 0,
+           std::atan2(std::abs(near), turned.height), std::atan2(turned.off + 1, turned.height)},
+          3};
 }
 
 LampArcs DiskLamp::arcs(const glm::dvec3& position, double off_axis) const {

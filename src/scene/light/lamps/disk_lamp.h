@@ -7,12 +7,15 @@ namespace ssdo {
 
 /// A disk that sends the same radiance from all of its front; `size` is its radius.
 struct DiskLamp final : NearLamp {
- protected:
-  double integral(const LampReceiver& r) const override;
+  DiskLamp() : NearLamp(LampShape::disk) {}
+
   double shown_area() const override;
   double reach() const override { return 1; }
-  LampSample sample(const glm::dvec3& position, const glm::vec2& u) const override;
-  std::vector<double> bends(const glm::dvec3& position) const override;
+
+ protected:
+  double integral(const LampReceiver& r) const override;
+  LampSample sample(const glm::dvec3& position, const glm::dvec2& point) const override;
+  LampBends bends(const glm::dvec3& position) const override;
   LampArcs arcs(const glm::dvec3& position, double off_axis) const override;
 };
 

@@ -36,6 +36,10 @@ double Lamp::area() const {
   return size > 0 ? size : 1;
 }
 
+double Lamp::reach() const {
+  return type == LampType::rect ? std::hypot(width, height) / 2 : radius;
+}
+
 glm::dvec3 Lamp::value() const { return color * (intensity * std::exp2(exposure)); }
 
 namespace {
@@ -51,7 +55,7 @@ std::shared_ptr<NearLamp> shape_of(const Lamp& lamp) {
   if (lamp.type == LampType::rect) {
     auto rect = std::make_shared<RectLamp>();
     const double longer = std::max(lamp.width, lamp.height);
-    rect->half = glm::dvec2(lamp.width, lamp.height) / longer;
+    rect->half_sides = glm::dvec2(lamp.width, lamp.height) / longer;
     rect->size = longer / 2;
     return rect;
   }
@@ -75,12 +79,14 @@ std::shared_ptr<DistantLamp> distant(const Lamp& lamp, const Camera& camera) {
 }  // namespace
 
 std::shared_ptr<const Source> make_source(const Lamp& lamp, const Camera& camera, double nearest) {
-  // The integral of its light over its surface, over pi: received() is over the same area, or, for
-  // a sphere, a quarter of it.
-  glm::dvec3 light = lamp.value() * (lamp.normalize ? 1 : lamp.area()) / glm::pi<double>();
-  if (lamp.type == LampType::sphere) light /= 4;
-  // No receiver gets more than kBrightest.
-  nearest = std::max(nearest, std::sqrt(std::max({light.x, light.y, light.z}) / kBrightest));
+  // What it gives to a surface for which received() is 1: that is over the area that it shows, a
+  // quarter of that of a sphere and, of the sky, what is above the horizon.
+  const double shown = lamp.type == LampType::sphere    ? lamp.area() / 4
+                       : lamp.type == LampType::distant ? std::min(lamp.area(), glm::pi<double>())
+                                                        : lamp.area();
+  const glm::dvec3 light =
+      lamp.value() * (lamp.normalize ? shown / lamp.area() : shown) / glm::pi<double>();
+  const double most = std::max({light.x, light.y, light.z});
   std::shared_ptr<Source> source;
   if (lamp.type == LampType::distant) {
     source = distant(lamp, camera);
@@ -89,7 +95,9 @@ std::shared_ptr<const Source> make_source(const Lamp& lamp, const Camera& camera
     near->center = glm::vec3(camera.to_camera(lamp.position));
     near->axes = {turned(camera, lamp.axes[0]), turned(camera, lamp.axes[1]),
                   turned(camera, -lamp.axes[2])};
-    near->nearest = nearest;
+    // No receiver gets more than kBrightest: see NearLamp::received().
+    near->nearest =
+        std::max(nearest, std::sqrt(most * glm::pi<double>() / near->shown_area() / kBrightest));
     if (lamp.has_cone) {
       near->lit.outer = glm::radians(lamp.cone_angle);
       near->lit.inner = near->lit.outer * (1 - lamp.cone_softness);

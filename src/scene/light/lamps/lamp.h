@@ -38,6 +38,9 @@ struct Lamp {
   /// What `normalize` divides by; 1 for lamps without a size.
   double area() const;
 
+  /// Radius of a ball that holds it, about its position.
+  double reach() const;
+
   /// color * intensity * 2^exposure.
   glm::dvec3 value() const;
 };

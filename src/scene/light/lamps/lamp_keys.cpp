@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "io/one_line.h"
-#include "math/light_range.h"
 #include "nearest_name.h"
 #include "scene/light/lamps/blackbody.h"
 #include "scene/light/lamps/read_lamps.h"
@@ -27,6 +26,7 @@ using nlohmann::json;
 /// Positions and sizes up to this have squares and products that floats hold.
 constexpr double kLargest = 1e9;
 constexpr std::size_t kLongestName = 100;  ///< a channel has at most 255 bytes
+constexpr double kMostLight = 1e15;        ///< kBrightest, of which a float is a little less
 constexpr double kMostStops = 100;
 constexpr double kRigid = 1e-3;  ///< as for cameras
 
@@ -54,7 +54,7 @@ std::vector<std::string> keys_of(LampType type) {
 std::string shown(const json& value) {
   constexpr std::size_t kMost = 60;
   std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
-  if (text.size() > kMost) text = text.substr(0, kMost) + "...";
+  if (text.size() > kMost) text.replace(kMost, text.npos, "...");
   return printable(text);
 }
 
@@ -243,9 +243,9 @@ class LampReader {
   }
 
   void read_light() {
-    if (object_.contains("color")) lamp_.color = numbers("color", 0, double(kBrightest));
+    if (object_.contains("color")) lamp_.color = numbers("color", 0, kMostLight);
     if (lamp_.type == LampType::distant) lamp_.intensity = 50000;
-    lamp_.intensity = number("intensity", lamp_.intensity, 0, double(kBrightest));
+    lamp_.intensity = number("intensity", lamp_.intensity, 0, kMostLight);
     lamp_.exposure = number("exposure", 0, -kMostStops, kMostStops);
     if (object_.contains("color_temperature")) {
       lamp_.color *= blackbody_color(
@@ -258,9 +258,9 @@ class LampReader {
     }
     const glm::dvec3 value = lamp_.value();
     const double brightest = std::max({value.x, value.y, value.z});
-    if (brightest > kBrightest) {
+    if (brightest > kMostLight) {
       refuse(fmt::format("{}: makes its light {:.2g}, and {:g} is the most",
-                         lamp_.exposure > 0 ? "exposure" : "intensity", brightest, kBrightest));
+                         lamp_.exposure > 0 ? "exposure" : "intensity", brightest, kMostLight));
     }
     const bool has_no_size = (lamp_.type == LampType::sphere && lamp_.radius == 0) ||
                              (lamp_.type == LampType::distant && lamp_.angle == 0);

@@ -15,6 +15,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "scene/light/lamps/cap.h"
+
 namespace ssdo {
 namespace {
 
@@ -64,17 +66,21 @@ float NearLamp::received(const glm::vec3& position, const glm::vec3& normal) con
 }
 
 double NearLamp::within_cone(const LampReceiver& r) const {
-  std::vector<double> at = bends(r.position);
-  const auto [first, last] = std::minmax_element(at.begin(), at.end());
+  LampBends at = bends(r.position);
+  const auto [first, last] = std::minmax_element(at.angles.begin(), at.angles.begin() + at.count);
   if (*last <= lit.inner) return integral(r);
   if (*first >= lit.outer) return 0;
-  if (lit.inner > *first) at.push_back(lit.inner);
-  std::sort(at.begin(), at.end());
   const double across = std::hypot(r.normal.x, r.normal.y),
                towards = std::atan2(r.normal.y, r.normal.x);
+  // Circles about the axis are cut by the horizon from one angle to another.
+  const double begin = *first, end = *last, cut = std::abs(std::atan2(r.normal.z, across));
+  for (const double angle : {lit.inner, cut, kPi - cut}) {
+    if (angle > begin && angle < end) at.add(angle);
+  }
+  std::sort(at.angles.begin(), at.angles.begin() + at.count);
   double sum = 0;
-  for (std::size_t i = 0; i + 1 < at.size(); ++i) {
-    const double from = at[i], to = std::min(at[i + 1], lit.outer);
+  for (std::size_t i = 0; i + 1 < std::size_t(at.count); ++i) {
+    const double from = at.angles[i], to = std::min(at.angles[i + 1], lit.outer);
     if (!(to > from)) continue;
     for (int k = 0; k < kNodes; ++k) {
       const double s = kPi / 2 * kPlaces[std::size_t(k)];
@@ -92,9 +98,13 @@ double NearLamp::within_cone(const LampReceiver& r) const {
   return sum;
 }
 
+glm::vec3 NearLamp::point(const glm::vec2& u) const {
+  return {shape == LampShape::rect ? u : glm::vec2(to_disk(u)), 0};
+}
+
 SourcePoint NearLamp::seen(const glm::vec3& position, const glm::vec3& point) const {
   const glm::dvec3 from = local(position, glm::vec3(0)).position;
-  const LampSample found = sample(from, glm::vec2(point));
+  const LampSample found = sample(from, glm::dvec2(point));
   const double share = lit.is_open() ? 1 : lit.at(std::acos(std::clamp(-found.to.z, -1.0, 1.0)));
   const double weight =
       share * found.solid_angle / (shown_area() * size * size) * dimming(glm::length(from));

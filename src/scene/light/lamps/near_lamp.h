@@ -2,10 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <vector>
 
 #include "scene/light/lamps/cone.h"
 #include "scene/light/source.h"
@@ -25,9 +25,25 @@ struct LampSample {
   double solid_angle = 0;  ///< of the lamp, had it all the density of its points that there is here
 };
 
+/// Receivers nearer to the plane of a flat lamp than this see points of it as from there.
+constexpr double kNearestToPlane = 1e-9;
+
+/// Farther than this, points of a rect are even over its area: floats lose the angles of its
+/// corners, and the light of its points differs by a quarter at most.
+constexpr double kFarFromRect = 8;
+
 /// Angles about the axis: from `middle - half` to `middle + half`.
 struct LampArc {
   double middle = 0, half = 0;
+};
+
+/// Angles off the axis, 0 to pi, at which the parts of a lamp that are seen change their shape, in
+/// any order: the first and the last, and those of corners.
+struct LampBends {
+  std::array<double, 13> angles;
+  int count = 0;
+
+  void add(double angle) { angles[std::size_t(count++)] = angle; }
 };
 
 /// The parts of a lamp that a receiver sees at one angle off the axis, seen as a circle about the
@@ -37,35 +53,42 @@ struct LampArcs {
   int count = 0;
 };
 
+enum class LampShape { sphere, disk, rect };
+
 /// A lamp of a place and a size. `irradiance` is its radiance times the area that it shows, over
 /// pi: of a disk with the size of a sphere, of a flat lamp all of it. received() is the integral of
 /// the cosine over the directions in which it is seen, over this area: far in front of it,
 /// cos / distance^2.
 ///
 /// Points are spread by solid angle, so that near lamps have no points that are much brighter than
-/// others: point() is `u`.
+/// others: point() is a place of the unit disk or square, for which the receiver decides what it
+/// is.
 struct NearLamp : Source {
+  const LampShape shape;
   glm::vec3 center{0};
   glm::mat3 axes{1};   ///< orthogonal columns: along the width, along the height, to where it sends
   double size = 1;     ///< the unit: a radius, or half of the longer side
   double nearest = 0;  ///< receivers nearer than this get no more light than there
-  Cone lit;            ///< where it sends
+  glm::dvec2 half_sides{1};  ///< sides of a rect over 2, the longer one 1
+  Cone lit;                  ///< where it sends
 
   float received(const glm::vec3& position, const glm::vec3& normal) const override;
-  glm::vec3 point(const glm::vec2& u) const override { return {u, 0}; }
+  glm::vec3 point(const glm::vec2& u) const override;
   SourcePoint seen(const glm::vec3& position, const glm::vec3& point) const override;
   SourceCone cone(const glm::vec3& position) const override;
+  const NearLamp* near_lamp() const override { return this; }
 
- protected:
-  /// Integral of max(0, cos) over the directions in which the lamp is seen.
-  virtual double integral(const LampReceiver& r) const = 0;
   virtual double shown_area() const = 0;
   virtual double reach() const = 0;  ///< of its farthest point from the middle
-  virtual LampSample sample(const glm::dvec3& position, const glm::vec2& u) const = 0;
 
-  /// The angles off the axis, 0 to pi, at which the parts of it that are seen change their shape,
-  /// in any order: the first and the last, and those of corners.
-  virtual std::vector<double> bends(const glm::dvec3& position) const = 0;
+ protected:
+  explicit NearLamp(LampShape of) : shape(of) {}
+
+  /// Integral of max(0, cos) over the directions in which the lamp is seen.
+  virtual double integral(const LampReceiver& r) const = 0;
+  virtual LampSample sample(const glm::dvec3& position, const glm::dvec2& point) const = 0;
+
+  virtual LampBends bends(const glm::dvec3& position) const = 0;
   virtual LampArcs arcs(const glm::dvec3& position, double off_axis) const = 0;
 
  private:

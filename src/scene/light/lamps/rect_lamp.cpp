@@ -64,8 +64,8 @@ struct SphericalRectangle {
 
 double RectLamp::integral(const LampReceiver& r) const {
   if (!(r.position.z > 0)) return 0;
-  const std::array<glm::dvec2, 4> corners = {-half, glm::dvec2(half.x, -half.y), half,
-                                             glm::dvec2(-half.x, half.y)};
+  const std::array<glm::dvec2, 4> corners = {-half_sides, glm::dvec2(half_sides.x, -half_sides.y),
+                                             half_sides, glm::dvec2(-half_sides.x, half_sides.y)};
   double sum = 0;
   glm::dvec3 first(0), last(0);  // corners of what is above the horizon
   bool any = false;
@@ -87,46 +87,47 @@ double RectLamp::integral(const LampReceiver& r) const {
   return -(sum + along_edge(last, first, r.normal)) / 2;
 }
 
-LampSample RectLamp::sample(const glm::dvec3& position, const glm::vec2& u) const {
-  const Sides s(half, position);
-  const double h = s.height;
-  if (!(h > 0)) return {{0, 0, 1}, std::max(1.0, glm::length(position)), 0};
-  constexpr double kFar = 100;  // the density over the area differs by 3 % at most
-  const glm::dvec2 share(u);
-  if (glm::dot(position, position) > kFar * kFar) {
-    const glm::dvec3 way(s.low + (s.high - s.low) * share, -h);
+LampSample RectLamp::sample(const glm::dvec3& position, const glm::dvec2& point) const {
+  Sides s(half_sides, position);
+  if (!(s.height > 0)) return {{0, 0, 1}, std::max(1.0, glm::length(position)), 0};
+  const double h = s.height = std::max(s.height, kNearestToPlane);
+  if (glm::dot(position, position) > kFarFromRect * kFarFromRect) {
+    const glm::dvec3 way(s.low + (s.high - s.low) * point, -h);
     const double squared = glm::dot(way, way), distance = std::sqrt(squared);
     return {way / distance, distance, shown_area() * h / (distance * squared)};
   }
   const SphericalRectangle seen(s);
-  const double x = seen.x_at(share.x, s), away = std::hypot(x, h);
+  const double x = seen.x_at(point.x, s), away = std::hypot(x, h);
   // Along a line, the solid angle goes with the sine.
   const double sine =
-      glm::mix(s.low.y / std::hypot(away, s.low.y), s.high.y / std::hypot(away, s.high.y), share.y);
+      glm::mix(s.low.y / std::hypot(away, s.low.y), s.high.y / std::hypot(away, s.high.y), point.y);
   const double y = away * sine / std::sqrt(std::max(1e-300, (1 - sine) * (1 + sine)));
   const glm::dvec3 way(x, std::clamp(y, s.low.y, s.high.y), -h);
   const double distance = glm::length(way);
   return {way / distance, distance, std::max(0.0, seen.solid_angle)};
 }
 
-std::vector<double> RectLamp::bends(const glm::dvec3& position) const {
-  const Sides s(half, position);
-  if (!(s.height > 0)) return {kPi, kPi};
+LampBends RectLamp::bends(const glm::dvec3& position) const {
+  const Sides s(half_sides, position);
+  if (!(s.height > 0)) return {{kPi, kPi}, 2};
   const double begin = glm::length(glm::max(glm::max(s.low, -s.high), glm::dvec2(0))),
                end = glm::length(glm::max(glm::abs(s.low), glm::abs(s.high)));
-  std::vector<double> radii = {begin, end};
+  LampBends bends;
+  const auto add = [&](double radius) {
+    bends.add(std::atan2(std::clamp(radius, begin, end), s.height));
+  };
+  add(begin), add(end);
   // Sides and corners that the circles about the foot pass in between.
   for (const double x : {s.low.x, s.high.x}) {
-    radii.push_back(std::abs(x));
-    for (const double y : {s.low.y, s.high.y}) radii.push_back(std::hypot(x, y));
+    add(std::abs(x));
+    for (const double y : {s.low.y, s.high.y}) add(std::hypot(x, y));
   }
-  for (const double y : {s.low.y, s.high.y}) radii.push_back(std::abs(y));
-  for (double& radius : radii) radius = std::atan2(std::clamp(radius, begin, end), s.height);
-  return radii;
+  for (const double y : {s.low.y, s.high.y}) add(std::abs(y));
+  return bends;
 }
 
 LampArcs RectLamp::arcs(const glm::dvec3& position, double off_axis) const {
-  const Sides s(half, position);
+  const Sides s(half_sides, position);
   const double radius = s.height * std::tan(off_axis);
   // The circle is cut where it leaves a side; between two cuts, it is inside or outside.
   std::array<double, 8> cuts;

@@ -10,14 +10,15 @@ namespace ssdo {
 /// A rectangle that sends the same radiance from all of its front; `size` is half of its longer
 /// side.
 struct RectLamp final : NearLamp {
-  glm::dvec2 half{1};  ///< of its width and height; the longer one is 1
+  RectLamp() : NearLamp(LampShape::rect) {}
+
+  double shown_area() const override { return 4 * half_sides.x * half_sides.y; }
+  double reach() const override { return glm::length(half_sides); }
 
  protected:
   double integral(const LampReceiver& r) const override;
-  double shown_area() const override { return 4 * half.x * half.y; }
-  double reach() const override { return glm::length(half); }
-  LampSample sample(const glm::dvec3& position, const glm::vec2& u) const override;
-  std::vector<double> bends(const glm::dvec3& position) const override;
+  LampSample sample(const glm::dvec3& position, const glm::dvec2& point) const override;
+  LampBends bends(const glm::dvec3& position) const override;
   LampArcs arcs(const glm::dvec3& position, double off_axis) const override;
 };
 

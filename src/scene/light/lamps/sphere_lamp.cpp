@@ -40,10 +40,10 @@ double SphereLamp::integral(const LampReceiver& r) const {
   return kPi * form_factor_of_cap(glm::dot(r.normal, ball.to), ball.cap);
 }
 
-LampSample SphereLamp::sample(const glm::dvec3& position, const glm::vec2& u) const {
+LampSample SphereLamp::sample(const glm::dvec3& position, const glm::dvec2& point) const {
   const Ball ball(position);
   const double all = ball.cap.height();
-  const glm::dvec3 in_cap = direction_in_cap(all, u);
+  const glm::dvec3 in_cap = direction_in_cap(all, point);
   LampSample found{frame_of(ball.to) * in_cap, kTouching, 2 * kPi * all};
   if (ball.cap.cosine >= 0) {
     // Along the chord: its middle is nearest to that of the sphere.
@@ -54,12 +54,13 @@ LampSample SphereLamp::sample(const glm::dvec3& position, const glm::vec2& u) co
   return found;
 }
 
-std::vector<double> SphereLamp::bends(const glm::dvec3& position) const {
+LampBends SphereLamp::bends(const glm::dvec3& position) const {
   const Ball ball(position);
   const double middle = ball.off_axis(), angle = ball.angle();
   const double far = middle + angle;
-  return {middle > angle ? middle - angle : 0, std::abs(middle - angle),
-          far > kPi ? 2 * kPi - far : far, far > kPi ? kPi : far};
+  return {{middle > angle ? middle - angle : 0, std::abs(middle - angle),
+           far > kPi ? 2 * kPi - far : far, far > kPi ? kPi : far},
+          4};
 }
 
 LampArcs SphereLamp::arcs(const glm::dvec3& position, double off_axis) const {

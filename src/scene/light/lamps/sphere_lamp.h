@@ -8,12 +8,15 @@ namespace ssdo {
 /// A ball that sends the same radiance from all of its surface; `size` is its radius. Inside of it,
 /// it is seen in all directions but those in which its surface is far: see Cap::of_ball().
 struct SphereLamp final : NearLamp {
- protected:
-  double integral(const LampReceiver& r) const override;
+  SphereLamp() : NearLamp(LampShape::sphere) {}
+
   double shown_area() const override;
   double reach() const override { return 1; }
-  LampSample sample(const glm::dvec3& position, const glm::vec2& u) const override;
-  std::vector<double> bends(const glm::dvec3& position) const override;
+
+ protected:
+  double integral(const LampReceiver& r) const override;
+  LampSample sample(const glm::dvec3& position, const glm::dvec2& point) const override;
+  LampBends bends(const glm::dvec3& position) const override;
   LampArcs arcs(const glm::dvec3& position, double off_axis) const override;
 };
 
