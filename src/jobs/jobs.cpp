@@ -224,6 +224,7 @@ std::vector<RunFile> inputs_of(const RunOptions& options, const FrameFiles& file
                                  {"--config", options.config_file}};
   for (const LayerRequest& request : files.aovs) inputs.push_back({"--aov", request.file});
   for (const std::string& path : files.also) inputs.push_back({"--also", path});
+  for (const std::string& path : options.light.lamp_files) inputs.push_back({"--lights", path});
   for (const FrameFiles& neighbour : files.neighbours) {
     inputs.push_back({"--neighbours", neighbour.input});
     for (const LayerRequest& request : neighbour.aovs) inputs.push_back({"--aov", request.file});

@@ -146,6 +146,12 @@ void explain_light(Plan& plan, const Light& light) {
         "% of it",
         shape_of(*sun), 100 * sun->share, luminance(sun->irradiance), 100 * sun->held));
   }
+  for (const auto& source : light.sources) {
+    if (source->name.empty()) continue;
+    plan.reasons.push_back(fmt::format(
+        "lamp {}: its light at each surface, times how much of it rays find open", source->name));
+  }
+  if (light.environment.is_constant()) return;
   std::string energy;
   for (const double share : light.band_energy) energy += fmt::format(" {:.1f}", 100 * share);
   plan.reasons.push_back(

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <glm/matrix.hpp>
 
+#include "relight/lamp_warnings.h"
 #include "scene/light/lamps/lamp.h"
 
 namespace ssdo {
@@ -28,6 +29,7 @@ void add_lamps(Frame& frame, const std::vector<Lamp>& lamps) {
     const double pixel =
         depth > 0 ? geometry.frame_height_at(float(depth)) / geometry.display.height() : 0;
     scene.light.sources.push_back(make_source(lamp, geometry.camera, pixel / 2));
+    frame.warn(warnings_of(lamp, *scene.light.sources.back(), geometry));
     names += (names.empty() ? "" : ", ") + lamp.name;
   }
   frame.light +=

@@ -116,7 +116,7 @@ void warn_of_plan(Frame& frame, const FrameOptions& options, bool has_deep_pixel
                                     .ambient = !frame.gbuffer.ambient.empty(),
                                     .specular = !frame.gbuffer.specular.empty(),
                                     .lights = !frame.gbuffer.lights.empty(),
-                                    .constant_light = frame.scene.light.is_constant(),
+                                    .constant_light = frame.scene.light.environment.is_constant(),
                                     .overscan = has_overscan(frame, options.output)}));
 }
 

@@ -141,6 +141,11 @@ const std::vector<IdleRule<Purpose>>& rules_of_options() {
       {{"--env-exposure"},
        occlude_without({"direct", "bounce", "error"}),
        "composite occlude takes the share of the light that arrives, and no output has light"},
+      {{"--light", "--lights"},
+       [](const FrameOptions& o, Purpose purpose) {
+         return purpose != Purpose::bench && !method_of(o).products.direct;
+       },
+       "the method makes no light"},
       {{"--seed"},
        [](const FrameOptions& o, Purpose purpose) {
          return purpose != Purpose::bench && method_of(o).ladder.seeds == 1;

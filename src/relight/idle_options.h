@@ -24,7 +24,7 @@ struct FrameFacts {
   const Plan& plan;
   bool depth, position, normal, ambient, specular,
       lights;           ///< layers; depth may be that of deep pixels
-  bool constant_light;  ///< the light is the same from everywhere
+  bool constant_light;  ///< the environment is the same from everywhere
   bool overscan;        ///< a layer that outputs take has pixels beyond the display window
 };
 
