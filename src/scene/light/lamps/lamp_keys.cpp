@@ -16,7 +16,6 @@
 #include "io/one_line.h"
 #include "nearest_name.h"
 #include "scene/light/lamps/blackbody.h"
-#include "scene/light/lamps/read_lamps.h"
 
 namespace ssdo {
 namespace {

@@ -12,9 +12,6 @@ namespace ssdo {
 /// more, a run with a map of them is cheaper and shows the same.
 constexpr std::size_t kMostLamps = 64;
 
-/// The layers of the environment map: no lamp has this name.
-inline constexpr const char* kEnvironmentName = "env";
-
 /// Reads a JSON object with `lights`, an array of objects with the keys of `man ssdo`, LIGHTS; a
 /// lamp without a name is left without. Errors: ExitCode::input, in one line that names file, light
 /// and key.
