@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -27,7 +28,8 @@ constexpr double kLargest = 1e9;
 constexpr std::size_t kLongestName = 100;  ///< a channel has at most 255 bytes
 constexpr double kMostLight = 1e15;        ///< kBrightest, of which a float is a little less
 constexpr double kMostStops = 100;
-constexpr double kRigid = 1e-3;  ///< as for cameras
+constexpr std::string_view kReserved = "env";  ///< the layers of the environment
+constexpr double kRigid = 1e-3;                ///< as for cameras
 
 const std::vector<std::pair<std::string, LampType>> kTypes = {{"sphere", LampType::sphere},
                                                               {"disk", LampType::disk},
@@ -97,9 +99,8 @@ class LampReader {
     }
     const std::size_t number = origin_.text.rfind(' ') + 1;
     origin_.text = origin_.text.substr(0, number) + lamp_.name;
-    if (lamp_.name == kEnvironmentName)
-      refuse(
-          fmt::format("name: '{}' is that of the environment map; give another", kEnvironmentName));
+    if (lamp_.name == kReserved)
+      refuse(fmt::format("name: '{}' is that of the environment map; give another", kReserved));
   }
 
   void read_type() {

@@ -9,9 +9,6 @@
 
 namespace ssdo {
 
-/// The layers of the environment map: no lamp has this name.
-inline constexpr const char* kEnvironmentName = "env";
-
 /// Where a lamp is described, for errors: "FILE: light 2".
 struct LampOrigin {
   ExitCode code;
