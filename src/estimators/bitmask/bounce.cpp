@@ -17,6 +17,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "estimators/bitmask/moments-inl.h"
+#include "estimators/bitmask/rays/unseen_senders-inl.h"
 #include "estimators/bitmask/side-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -63,6 +64,19 @@ struct MetPixels {
   const SliceStep& step;
 };
 
+/// From the receivers to what those pixels show.
+template <bool kOrthographic>
+HWY_INLINE V3 way_to(const MarchScene& scene, const MarchReceiver& p, const MetPixels& met) {
+  const float dx = met.step.dx, dy = met.step.dy;
+  const V depth = load(met.planes.depth(), met.q);
+  V3 there{p.slope_x + set(dx / scene.fx), p.slope_y - set(dy / scene.fy), set(-1)};
+  if constexpr (kOrthographic)
+    there.z = hn::Neg(depth);
+  else
+    there = there * depth;
+  return there - p.position;
+}
+
 /// What the march gathers of the light that pixels send: all but what rays do (rays/emitters.h).
 /// `seen`: they turn the side to the receivers that the camera sees. `of_all`: what that side sends
 /// of all lights.
@@ -76,14 +90,7 @@ HWY_INLINE V3 without_emitted(const BounceJob& job, const MarchReceiver& p, cons
   const M ends = thickness < set(kOrthographic ? kEndlessLength : kEndlessShare),
           exceeds = hn::And(above > set(0), hn::Or(seen, ends));
   if (!any(exceeds)) return sent;
-  const float dx = met.step.dx, dy = met.step.dy;
-  const V depth = load(met.planes.depth(), met.q);
-  V3 there{p.slope_x + set(dx / scene.fx), p.slope_y - set(dy / scene.fy), set(-1)};
-  if constexpr (kOrthographic)
-    there.z = hn::Neg(depth);
-  else
-    there = there * depth;
-  const V3 way = there - p.position;
+  const V3 way = way_to<kOrthographic>(scene, p, met);
   const V far = dot(way, way) * set(glm::pi<float>()) * above;
   const V by_rays = above * far / (far + set(job.emitters->power));
   return sent * hn::IfThenElse(exceeds, set(1) - by_rays / light, set(1));
@@ -105,10 +112,16 @@ HWY_INLINE V3 gather(const InterleavedVectors& color, VI at) {
   return {gather(color[0].data(), at), gather(color[1].data(), at), gather(color[2].data(), at)};
 }
 
+/// What solids send, and the lanes in which the frame shows it.
+struct Sent {
+  V3 radiance;
+  M shown;
+};
+
 /// What the solids of layer `layer` send that the pixels at `step` from the receivers hold, in the
 /// lanes of `bits`: what the pixels that show them do, if any.
-HWY_INLINE V3 sent_behind(const BounceJob& job, bool far, int layer, const Place& place,
-                          const SliceStep& step, VU bits) {
+HWY_INLINE Sent sent_behind(const BounceJob& job, bool far, int layer, const Place& place,
+                            const SliceStep& step, VU bits) {
   const DI di;
   const VI zero = set_int(0);
   const Interleaving& layout = job.march.scene.layout;
@@ -135,7 +148,8 @@ HWY_INLINE V3 sent_behind(const BounceJob& job, bool far, int layer, const Place
       sent = if_then_else(hn::RebindMask(D(), lit), sent, gather(job.far->sent, beyond));
     }
   }
-  return if_then_else_zero(hn::RebindMask(D(), shown), job.two_sided ? front_of(sent) : sent);
+  const M known = hn::RebindMask(D(), shown);
+  return {if_then_else_zero(known, job.two_sided ? front_of(sent) : sent), known};
 }
 
 /// M of a set of sectors: the integral of the cosine to the shading normal.
@@ -182,6 +196,24 @@ HWY_INLINE std::ptrdiff_t index_of_gatherer(const GatheredLight& light, const Pl
   return light.layout.index(place.y, place.column_phase, place.column);
 }
 
+/// What the solids of layer 0 send that those pixels hold.
+template <bool kOrthographic>
+HWY_INLINE Sent sent_by_front(const BounceJob& job, bool far, const MarchReceiver& p,
+                              const MetPixels& met) {
+  const InterleavedVectors& sending = far ? job.far->sent : *job.light;
+  for (const InterleavedPlane& channel : sending) prefetch_next(channel, met.q);
+  const V3 sent = load(sending, met.q);
+  if (!job.two_sided && !job.emitters && !job.march.other_views) return {sent, p.valid};
+  const M seen = faces<kOrthographic>(met.planes, met.q, met.step, p);
+  const auto from_side = [&](const V3& both) HWY_ATTR {
+    return job.two_sided ? if_then_else(seen, front_of(both), back_of(both)) : both;
+  };
+  if (!job.emitters) return {from_side(sent), seen};
+  const V3 of_all = load(far ? job.far_of_all->sent : *job.of_all, met.q);
+  return {without_emitted<kOrthographic>(job, p, met, seen, from_side(sent), from_side(of_all)),
+          seen};
+}
+
 template <bool kOrthographic>
 void gather_light(const BounceJob& job, const Window& part) {
   const March& march = job.march;
@@ -202,35 +234,46 @@ void gather_light(const BounceJob& job, const Window& part) {
               const M met = hn::RebindMask(D(), bits != set_bits(0));
               light.add(f.weight * measure_of(p, side, bits), if_then_else_zero(met, sent()));
             };
+            const FromOtherViews<decltype(receive)> from_others{job.sent_by_others, receive};
+            UnseenSenders unseen;
             march_side<kOrthographic>(
                 march, p, side, slice, forward,
                 [&](bool far, int layer, std::ptrdiff_t q, const SliceStep& step, VU bits)
                     HWY_ATTR {
-                      receive(bits, [&]() HWY_ATTR {
-                        if (layer > 0) return sent_behind(job, far, layer, p.place, step, bits);
-                        const InterleavedVectors& sending = far ? job.far->sent : *job.light;
-                        for (const InterleavedPlane& channel : sending) prefetch_next(channel, q);
-                        const V3 sent = load(sending, q);
-                        if (!job.two_sided && !job.emitters) return sent;
-                        const MarchPlanes& planes = far ? march.far->planes : march.scene;
-                        const M seen = faces<kOrthographic>(planes, q, step, p);
-                        const auto from_side = [&](const V3& both) HWY_ATTR {
-                          return job.two_sided ? if_then_else(seen, front_of(both), back_of(both))
-                                               : both;
-                        };
-                        if (!job.emitters) return from_side(sent);
-                        const V3 of_all = load(far ? job.far_of_all->sent : *job.of_all, q);
-                        return without_emitted<kOrthographic>(job, p, {planes, q, step}, seen,
-                                                              from_side(sent), from_side(of_all));
-                      });
+                      if (none(bits)) return;
+                      const MetPixels met{far ? march.far->planes : march.scene, q, step};
+                      const Sent sent = layer > 0
+                                            ? sent_behind(job, far, layer, p.place, step, bits)
+                                            : sent_by_front<kOrthographic>(job, far, p, met);
+                      if (march.other_views && !unseen.is_full()) {
+                        const VU shown = hn::VecFromMask(DU(), hn::RebindMask(DU(), sent.shown)),
+                                 hidden = hn::AndNot(shown, bits);
+                        bits = hn::And(shown, bits);
+                        if (!none(hidden)) {
+                          const V3 way =
+                              way_to<kOrthographic>(far ? march.far->scene : march.scene, p, met);
+                          unseen.add<kOrthographic>(p, side, way, layer > 0, hidden, sent.radiance);
+                        }
+                      }
+                      receive(bits, [&]() HWY_ATTR { return sent.radiance; });
                     },
-                FromOtherViews<decltype(receive)>{job.sent_by_others, receive},
+                from_others,
                 [&](bool far, const Border& border, VU bits) HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {
                     const BorderValues* sent = far ? job.far->border.data() : job.sent_border;
                     return V3{border(sent[0]), border(sent[1]), border(sent[2])};
                   });
                 });
+            if (unseen.count == 0) continue;
+            const auto reach = [&](int lane, int sector, float cosine, float sine) HWY_ATTR {
+              return std::min(march.radius, unseen.reach(lane, sector, cosine, sine));
+            };
+            const VU nearer =
+                sectors_hidden_in_other_views(march, p, side, unseen.all(), from_others, reach);
+            for (int i = 0; i < unseen.count; ++i) {
+              receive(hn::AndNot(nearer, unseen.bits[i]),
+                      [&]() HWY_ATTR { return unseen.sent[i]; });
+            }
           }
         }
         GatheredLight& out = *job.gathered;

@@ -124,11 +124,13 @@ struct SectorStrata {
   }
 };
 
-/// Returns which of the open sectors other views hide. Calls `on_met` with the sectors that one
-/// ray stands for in each lane, and with what the rays have met.
-template <class Met>
+/// Returns which of the open sectors other views hide, within `reach(lane, sector, cosine, sine)`,
+/// the last two being of the angle to V. Calls `on_met` with the sectors that one ray stands for in
+/// each lane, and with what the rays have met.
+template <class Met, class Reach>
 HWY_INLINE VU sectors_hidden_in_other_views(const March& march, const MarchReceiver& p,
-                                            const SideFrame& side, VU open, const Met& on_met) {
+                                            const SideFrame& side, VU open, const Met& on_met,
+                                            const Reach& reach) {
   const DU du;
   const Lanes3 start(start_of_rays(march.scene, p));
   const float first = hn::GetLane(side.start) - 0.5f;  // the same for all lanes
@@ -149,11 +151,13 @@ HWY_INLINE VU sectors_hidden_in_other_views(const March& march, const MarchRecei
     for (int lane = 0; lane < kLanes; ++lane) {
       hidden[lane] = 0;
       if (k >= strata[lane].count) continue;
-      const glm::vec3 to = sectors.direction(lane, strata[lane].sector[k]);
+      const int sector = strata[lane].sector[k];
+      const glm::vec3 to = sectors.direction(lane, sector);
+      const float end = reach(lane, sector, sectors.cosine[sector], sectors.sine[sector]);
       if constexpr (Met::kWantsHits) {
-        hits[lane] = march.other_views->first_hit(start[lane], to, march.radius);
+        hits[lane] = march.other_views->first_hit(start[lane], to, end);
         if (hits[lane].sender >= 0) hidden[lane] = strata[lane].bits[k];
-      } else if (march.other_views->is_blocked(start[lane], to, march.radius)) {
+      } else if (march.other_views->is_blocked(start[lane], to, end)) {
         hidden[lane] = strata[lane].bits[k];
       }
     }
@@ -163,6 +167,14 @@ HWY_INLINE VU sectors_hidden_in_other_views(const March& march, const MarchRecei
     all = hn::Or(all, of_stratum);
   }
   return all;
+}
+
+/// The same within the radius.
+template <class Met>
+HWY_INLINE VU sectors_hidden_in_other_views(const March& march, const MarchReceiver& p,
+                                            const SideFrame& side, VU open, const Met& on_met) {
+  const auto radius = [&](int, int, float, float) HWY_ATTR { return march.radius; };
+  return sectors_hidden_in_other_views(march, p, side, open, on_met, radius);
 }
 
 /// For who only asks what is hidden.
