@@ -56,6 +56,19 @@ void refuse_options(const Method& method, const ModelOptions& model) {
   }
 }
 
+/// Light of lamps is what rays to them find, and methods that know no solids send none: their ao
+/// says how much is open, not whether a lamp is seen.
+void refuse_lamps(const Plan& plan, const Scene& scene) {
+  const ProductSet& products = plan.request.products;
+  if (plan.method->takes.thickness || !(products.direct || products.bounce)) return;
+  for (const auto& source : scene.light.sources) {
+    if (source->name.empty()) continue;
+    throw Error(ExitCode::usage,
+                fmt::format("light {}: method {} knows no shadows of lamps; take bitmask or trace",
+                            source->name, plan.method->name));
+  }
+}
+
 /// A parameter that has an option of its own: slices or steps of a method that does not march.
 void set_by_option(Plan& plan, const std::string& name, std::optional<int> value,
                    const ModelOptions& model) {
@@ -282,6 +295,7 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
   plan.error = model.error;
   plan.composition = choose_composition(output, scene, gbuffer, plan.request.parameters);
   choose_products(plan, output, scene, gbuffer, file);
+  refuse_lamps(plan, scene);
   explain_composite(plan, output, scene, gbuffer);
   explain_reflection(plan, scene);
   check_multi_bounce(plan, scene, file);

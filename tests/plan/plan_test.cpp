@@ -9,8 +9,10 @@
 #include <cmath>
 #include <memory>
 
+#include "estimators/registry.h"
 #include "plan/make_plan.h"
 #include "support/error_matchers.h"
+#include "support/point_source.h"
 #include "support/scene_of.h"
 
 namespace ssdo::test {
@@ -27,6 +29,7 @@ struct Case {
   bool albedo = true, roughness = false, ambient = false, beauty = false, specular = false;
   float brightest_albedo = 0.5f;
   bool map = false;  ///< light from directions, not from everywhere alike
+  bool lamp = false;
 };
 
 Plan plan_of(const Case& c) {
@@ -41,6 +44,11 @@ Plan plan_of(const Case& c) {
       scene_of(geometry, c.map ? Environment(map, {}) : Environment::constant(glm::vec3(1)),
                c.brightest_albedo);
   if (!c.albedo) scene.senders.albedo = {};
+  if (c.lamp) {
+    const auto lamp = std::make_shared<PointSource>(glm::vec3(0, 1, -1));
+    lamp->name = "key";
+    scene.light.sources.push_back(lamp);
+  }
   if (c.roughness) scene.roughness = Plane<float>(1, 1);
   GBuffer gbuffer;
   if (c.ambient) gbuffer.ambient = Plane<glm::vec3>(1, 1);
@@ -189,6 +197,22 @@ TEST(Plan, RefusesProductsThatCannotBeMade) {
       IsError(ExitCode::usage,
               "method ssao makes no reflection for the composite; these do: "
               "bitmask, trace, gtao"));
+}
+
+TEST(Plan, RefusesLampsWhereTheMethodSendsNoRaysToThem) {
+  const OutputOptions light = to({"out.exr"}, {"direct"}), ao = to({"out.exr"}, {"ao"});
+  for (const Method& method : methods()) {
+    const Case lit{.model = of_method(std::string(method.name)), .output = light, .lamp = true};
+    Case open = lit;
+    open.output = ao;
+    EXPECT_NO_THROW(plan_of(open)) << method.name;
+    if (method.name == "bitmask" || method.name == "trace") {
+      EXPECT_NO_THROW(plan_of(lit)) << method.name;
+    } else if (method.products.direct) {
+      EXPECT_THAT(error_of([&] { plan_of(lit); }),
+                  IsError(ExitCode::usage, "knows no shadows of lamps; take bitmask or trace"));
+    }
+  }
 }
 
 TEST(Plan, SlicesAndStepsReachParametersOfTheseNames) {
