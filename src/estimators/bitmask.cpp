@@ -196,12 +196,10 @@ class Bitmask {
     const March march = march_of_rays();
     const float past = sun_past_beyond(march_scene_, scene_, request_);
     for (const auto& source : scene_.light.sources) {
-      // A place that is closed against the sky is not closed against a lamp, which stands in it.
-      const PassBeyond pass = source->distant() ? pass_beyond(past, source->held) : PassBeyond{};
       const auto find = [&](const Window& to, RaySet set) {
-        const std::vector<PointsOfSource> points =
-            points_of(*source, rays_to_source(request_.slices), request_.seed, set);
-        return find_source({march, bounds, points, *source, pass}, to, progress_);
+        const auto points = points_of(*source, rays_to_source(request_.slices), request_.seed, set);
+        return find_source({march, bounds, points, *source, pass_beyond(past, *source)}, to,
+                           progress_);
       };
       sources_.push_back(find(lit_part(), RaySet::of_light));
       if (request_.products.error)

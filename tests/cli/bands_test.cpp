@@ -118,6 +118,14 @@ TEST_F(Bands, HaveTheSameBitsWithinARadius) {
                    {"--mem-limit", "148M"});
 }
 
+TEST_F(Bands, HaveTheSameBitsUnderLampsInTheFrameAndBehindTheCamera) {
+  const Words lamps = {"--env",   "0,0,0",
+                       "--light", "sphere position=0,0,1.5 radius=0.1 intensity=9",
+                       "--light", "rect position=3,-6,4 direction=-0.4,0.8,-0.5 width=1 height=1"};
+  expect_same_bits("in.exr",
+                   placed("in.exr") + lamps + Words{"--radius", "0.2", "--products", "ao,direct"});
+}
+
 /// How much of a sun comes past the border depends on the mean ao of all bands, and on what they
 /// show above the horizon.
 TEST_F(Bands, OfADenseFrameHaveTheSameBitsUnderASun) {

@@ -74,6 +74,8 @@ TEST_F(Crop, PixelsOfTheDisplayWindowKeepTheirBits) {
   }
   expect_cropped({"--env", sky, "--products", "all", "--bounces", "2"});
   expect_cropped({"--method", "ssdo", "--products", "all"});
+  expect_cropped({"--env", "0,0,0", "--products", "direct,bounce", "--light",
+                  "sphere position=0,0,1.5 radius=0.1 intensity=9"});
   for (const char* method : {"bitmask", "trace", "ssao-fade", "sao"})
     expect_cropped({"--method", method, "--filter", "source", "--products", "ao,direct"});
 }

@@ -81,6 +81,18 @@ TEST_F(SameFiles, FromRunToRunAndForAnyThreads) {
   }
 }
 
+TEST_F(SameFiles, ForAnyThreadsUnderLamps) {
+  for (const char* method : {"bitmask", "trace"}) {
+    const Words by =
+        outputs() + Words{"--method",   method,
+                          "--products", "all",
+                          "--light",    "sphere position=1,-1,1 radius=0.2",
+                          "--light",    "disk position=0,-9,4 direction=0,1,-0.4 radius=1"};
+    const std::string once = files(by + Words{"--threads", "1"});
+    EXPECT_TRUE(files(by + Words{"--threads", "7"}) == once) << method;
+  }
+}
+
 TEST_F(SameFiles, ForOtherViewsInAnyOrder) {
   for (const char* method : {"bitmask", "trace"}) {
     Words views = {"back.exr", "beside.exr", "deep.exr"};

@@ -117,19 +117,6 @@ Camera from_above() {
 }
 Surface ground() { return plane({}, {0, 0, 1}); }
 
-/// A post that stands on the ground.
-Surface post(double radius, double height) {
-  return [=](const Ray& ray) -> std::optional<Hit> {
-    const glm::dvec2 o(ray.origin), d(ray.direction);
-    const double a = glm::dot(d, d), b = glm::dot(o, d), c = glm::dot(o, o) - radius * radius;
-    const double root = b * b - a * c;
-    if (root <= 0) return std::nullopt;
-    const double t = (-b - std::sqrt(root)) / a, z = ray.origin.z + t * ray.direction.z;
-    if (t < 1e-9 || z < 0 || z > height) return std::nullopt;
-    return Hit{t, glm::dvec3((o + t * d) / radius, 0)};
-  };
-}
-
 TEST(BitmaskShadows, AWallsShadowEndsWhereItEnds) {
   const Surface scene = all_of({ground(), Box{{-2, 0, 0}, {2, 0.25, 1.6}}.surface()});
   const Shadows s(scene, from_above(), {glm::normalize(glm::dvec3(0.3, 0.8, 1)), 0.4f});

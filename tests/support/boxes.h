@@ -57,4 +57,17 @@ inline void add_box(const Box& box, const Camera& camera, DeepPixels& pixels) {
   }
 }
 
+/// A round post around the z axis that stands on the ground.
+inline Surface post(double radius, double height) {
+  return [=](const Ray& ray) -> std::optional<Hit> {
+    const glm::dvec2 o(ray.origin), d(ray.direction);
+    const double a = glm::dot(d, d), b = glm::dot(o, d), c = glm::dot(o, o) - radius * radius;
+    const double root = b * b - a * c;
+    if (root <= 0) return std::nullopt;
+    const double t = (-b - std::sqrt(root)) / a, z = ray.origin.z + t * ray.direction.z;
+    if (t < 1e-9 || z < 0 || z > height) return std::nullopt;
+    return Hit{t, glm::dvec3((o + t * d) / radius, 0)};
+  };
+}
+
 }  // namespace ssdo::test

@@ -112,9 +112,10 @@ float sun_past_beyond(const Openness& frame) {
   return float(1 - closed * (1 - open * open));
 }
 
-PassBeyond pass_beyond(float sun_past, float held) {
+PassBeyond pass_beyond(float sun_past, const Source& source) {
   constexpr float kSky = 0.25f;
-  const float sky = std::min(1.0f, held / kSky);
+  if (!std::isinf(source.cone(glm::vec3(0)).distance)) return {};
+  const float sky = std::min(1.0f, source.held / kSky);
   return {sun_past + sky * (1 - sun_past), sky * kLightThroughBeyond};
 }
 

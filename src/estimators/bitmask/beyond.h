@@ -42,6 +42,7 @@
 #include "estimators/bitmask/rays/pass_beyond.h"
 #include "estimators/bitmask/slice_pattern.h"
 #include "estimators/estimator.h"
+#include "scene/light/source.h"
 
 namespace ssdo {
 
@@ -79,10 +80,12 @@ float sun_past_beyond(const Openness& frame);
 /// The same of a frame, or of the one that it is a band of; 1 where it does not count.
 float sun_past_beyond(const MarchScene& scene, const Scene& frame, const Request& request);
 
-/// The shares for one source. `held` is the part of its light that harmonics would keep. A source
-/// with 0.25 or more (a disc of 11 degrees) is treated as sky, and a smaller one the less so.
-/// Relative error of direct light of a room under two soft boxes: 0.141 if it is sky by `held`
-/// alone, 0.093 so.
-PassBeyond pass_beyond(float sun_past, float held);
+/// The shares for one source. One that harmonics would keep 0.25 or more of (a disc of 11 degrees)
+/// is treated as sky, and a smaller one the less so. Relative error of direct light of a room under
+/// two soft boxes: 0.141 if it is sky by Source::held alone, 0.093 so.
+///
+/// A place that is closed against the sky is not closed against a lamp, which stands in it: only
+/// surfaces that go on hide a source that is not endlessly far.
+PassBeyond pass_beyond(float sun_past, const Source& source);
 
 }  // namespace ssdo

@@ -12,6 +12,8 @@
 
 #include "estimators/bitmask/rays/border_extents.h"
 #include "estimators/bitmask/request.h"
+#include "scene/light/distant_source.h"
+#include "support/point_source.h"
 #include "support/sun_of.h"
 
 namespace ssdo::test {
@@ -78,11 +80,22 @@ double on_floor(const View& view, const Environment& environment, double y0, dou
 constexpr int kFromLeft = 0, kFromBehindLeft = 52, kRow30 = 10, kRow45 = 7;
 
 TEST(BitmaskBeyond, TheSkyComesThroughByHalfAndASunDoesNot) {
-  EXPECT_FLOAT_EQ(pass_beyond(1, 0).through, 0);
-  EXPECT_FLOAT_EQ(pass_beyond(1, 0.125f).through, 0.25f);
-  EXPECT_FLOAT_EQ(pass_beyond(0.5f, 0).past, 0.5f);
-  EXPECT_FLOAT_EQ(pass_beyond(0.5f, 1).through, 0.5f);
-  EXPECT_FLOAT_EQ(pass_beyond(0.5f, 1).past, 1);
+  const auto pass = [](float past, float held) {
+    DistantSource sun;
+    sun.held = held;
+    return pass_beyond(past, sun);
+  };
+  EXPECT_FLOAT_EQ(pass(1, 0).through, 0);
+  EXPECT_FLOAT_EQ(pass(1, 0.125f).through, 0.25f);
+  EXPECT_FLOAT_EQ(pass(0.5f, 0).past, 0.5f);
+  EXPECT_FLOAT_EQ(pass(0.5f, 1).through, 0.5f);
+  EXPECT_FLOAT_EQ(pass(0.5f, 1).past, 1);
+}
+
+TEST(BitmaskBeyond, APlaceThatIsClosedAgainstTheSkyIsOpenToALamp) {
+  const PassBeyond pass = pass_beyond(0.2f, PointSource(glm::vec3(0, 1, 2)));
+  EXPECT_FLOAT_EQ(pass.past, 1);
+  EXPECT_FLOAT_EQ(pass.through, 0);
 }
 
 /// What a frame of these scenes tells, seen level or from above.
