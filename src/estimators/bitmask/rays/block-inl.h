@@ -34,6 +34,22 @@ struct Block {
   }
 };
 
+/// Numbers of the pixels of a block, by Block::first_of().
+struct OfBlock {
+  alignas(64) float values[Block::kPixels];
+
+  HWY_INLINE V operator()(int i) const { return load(values + i); }
+  HWY_INLINE void set_at(int i, V value) { store(value, values + i); }
+};
+struct OfBlock3 {
+  OfBlock x, y, z;
+
+  HWY_INLINE V3 operator()(int i) const { return {x(i), y(i), z(i)}; }
+  HWY_INLINE void set_at(int i, const V3& v) {
+    x.set_at(i, v.x), y.set_at(i, v.y), z.set_at(i, v.z);
+  }
+};
+
 /// Calls `work(block)` for the blocks of a part of the raster.
 template <class Work>
 HWY_INLINE void for_each_block(const MarchScene& scene, const Window& part, const Work& work) {

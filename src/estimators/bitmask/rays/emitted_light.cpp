@@ -82,22 +82,6 @@ HWY_INLINE Chosen choose(const EmittedJob& job, const MarchReceiver& p, const Ch
   return {read3(points->position), read(points->solid), power * sum};
 }
 
-/// Numbers of the pixels of a block, by Block::first_of().
-struct OfBlock {
-  alignas(64) float values[Block::kPixels];
-
-  HWY_INLINE V operator()(int i) const { return load(values + i); }
-  HWY_INLINE void set_at(int i, V value) { store(value, values + i); }
-};
-struct OfBlock3 {
-  OfBlock x, y, z;
-
-  HWY_INLINE V3 operator()(int i) const { return {x(i), y(i), z(i)}; }
-  HWY_INLINE void set_at(int i, const V3& v) {
-    x.set_at(i, v.x), y.set_at(i, v.y), z.set_at(i, v.z);
-  }
-};
-
 /// The rays of a block, the light that comes along them if nothing is in their way, and what of
 /// that arrives.
 struct EmittedRays {

@@ -84,26 +84,17 @@ struct BlockSums {
   }
 };
 
-/// Rays from a vector of receivers to the points that their member of the pattern looks at.
+/// Rays of a block to the points that the members of the pattern look at.
 struct SourceRays {
-  MarchReceiver p;
-  V light;  ///< that of the point: its weight times the cosine to the normal; 0: there is no ray
-  Ray ray;
+  OfBlock3 to;
+  OfBlock length;
+  OfBlock light;  ///< that of the point: its weight times the cosine to the normal; 0: no ray
 };
 
 template <bool kOrthographic>
-HWY_INLINE SourceRays rays_to_points(const SourceJob& job, const PointsOfSource& points,
-                                     const Place& place) {
-  const MarchScene& scene = job.march.scene;
-  SourceRays rays{load_receiver(scene, place), {}, {}};
-  MarchReceiver& p = rays.p;
-  p.reach_px = reach_px(scene, p, job.march.radius);
-  const SourcePoints to = points_above(job, points, p);
-  const V light = to.weight * dot(p.normal, to.to);
-  const M above = hn::And(p.valid, light > set(0));
-  rays.light = hn::IfThenElseZero(above, light);
-  rays.ray = make_ray<kOrthographic>(scene, p, to.to, to.distance, above);
-  return rays;
+HWY_INLINE Ray ray_of(const MarchScene& scene, const MarchReceiver& p, const SourceRays& rays,
+                      int i) {
+  return make_ray<kOrthographic>(scene, p, rays.to(i), rays.length(i), rays.light(i) > set(0));
 }
 
 template <bool kOrthographic>
@@ -111,20 +102,29 @@ void source(const SourceJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
   Occluders<kOrthographic> occluders(job.march, job.bounds, Block::kPixels);
   BlockSums sums;
+  SourceRays rays;
   for_each_block(scene, part, [&](const Block& block) HWY_ATTR {
     for_each_vector(scene, block.part,
                     [&](const Place& place) HWY_ATTR { sums.clear(block.first_of(place)); });
     for (const PointsOfSource& points : job.points) {
       occluders.clear();
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
-        const auto [p, light, ray] = rays_to_points<kOrthographic>(job, points, place);
-        occluders.ask(block.places(place), p, ray);
+        MarchReceiver p = load_receiver(scene, place);
+        p.reach_px = reach_px(scene, p, job.march.radius);
+        const int i = block.first_of(place);
+        const SourcePoints to = points_above(job, points, p);
+        const V light = to.weight * dot(p.normal, to.to);
+        rays.to.set_at(i, to.to), rays.length.set_at(i, to.distance);
+        rays.light.set_at(i, hn::IfThenElseZero(hn::And(p.valid, light > set(0)), light));
+        occluders.ask(block.places(place), p, ray_of<kOrthographic>(scene, p, rays, i));
       });
       occluders.run();
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
-        const auto [p, light, ray] = rays_to_points<kOrthographic>(job, points, place);
+        const MarchReceiver p = load_receiver(scene, place);
+        const int i = block.first_of(place);
+        const Ray ray = ray_of<kOrthographic>(scene, p, rays, i);
         const Arrival a = occluders.arrival(block.places(place), p, ray, job.pass);
-        sums.add(block.first_of(place), light, a.share,
+        sums.add(i, rays.light(i), a.share,
                  penumbra_px<kOrthographic>(job, p, a.blocked_at, ray.length));
       });
     }
