@@ -102,7 +102,7 @@ void source(const SourceJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
   Occluders<kOrthographic> occluders(job.march, job.bounds, Block::kPixels);
   BlockSums sums;
-  SourceRays rays;
+  SourceRays rays{};
   for_each_block(scene, part, [&](const Block& block) HWY_ATTR {
     for_each_vector(scene, block.part,
                     [&](const Place& place) HWY_ATTR { sums.clear(block.first_of(place)); });
