@@ -28,7 +28,8 @@ void add_lamps(Frame& frame, const std::vector<Lamp>& lamps) {
     const double depth = -geometry.camera.to_camera(lamp.position).z;
     const double pixel =
         depth > 0 ? geometry.frame_height_at(float(depth)) / geometry.display.height() : 0;
-    scene.light.sources.push_back(make_source(lamp, geometry.camera, pixel / 2));
+    scene.light.sources.push_back(
+        make_source(lamp, {geometry.camera.rotation, geometry.camera.origin}, pixel / 2));
     frame.warn(warnings_of(lamp, *scene.light.sources.back(), geometry));
     names += (names.empty() ? "" : ", ") + lamp.name;
   }

@@ -12,7 +12,6 @@
 #include "fuzz/target.h"
 #include "io/pictures/picture_layers.h"
 #include "io/sequence.h"
-#include "scene/camera/camera.h"
 #include "scene/layers/layers.h"
 #include "scene/light/lamps/read_lamps.h"
 #include "support/temp_dir.h"
@@ -45,7 +44,7 @@ void find_files(const std::string& word) {
 
 /// What is taken for a lamp gives light that is finite, wherever a surface is.
 void light_with(const Lamp& lamp) {
-  const auto source = make_source(lamp, Camera(), 0);
+  const auto source = make_source(lamp, WorldToCamera(), 0);
   for (const float x : {0.0f, 1e-6f, 1.0f, 1e6f}) {
     const glm::vec3 light = source->unoccluded({x, -x, -2 * x}, {0, 0.6f, 0.8f});
     require(std::isfinite(light.x + light.y + light.z), "a lamp gives light that is not finite");

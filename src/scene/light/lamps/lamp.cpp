@@ -47,7 +47,7 @@ namespace {
 /// What stands for the radius of a point: it is less than any pixel.
 constexpr double kPointRadius = 1e-9;
 
-glm::vec3 turned(const Camera& camera, const glm::dvec3& direction) {
+glm::vec3 turned(const WorldToCamera& camera, const glm::dvec3& direction) {
   return glm::vec3(glm::normalize(camera.rotation * direction));
 }
 
@@ -68,7 +68,7 @@ std::shared_ptr<NearLamp> shape_of(const Lamp& lamp) {
   return round;
 }
 
-std::shared_ptr<DistantLamp> distant(const Lamp& lamp, const Camera& camera) {
+std::shared_ptr<DistantLamp> distant(const Lamp& lamp, const WorldToCamera& camera) {
   auto source = std::make_shared<DistantLamp>();
   source->direction = turned(camera, lamp.axes[2]);
   const double half_angle = glm::radians(lamp.angle) / 2;
@@ -78,7 +78,8 @@ std::shared_ptr<DistantLamp> distant(const Lamp& lamp, const Camera& camera) {
 
 }  // namespace
 
-std::shared_ptr<const Source> make_source(const Lamp& lamp, const Camera& camera, double nearest) {
+std::shared_ptr<const Source> make_source(const Lamp& lamp, const WorldToCamera& camera,
+                                          double nearest) {
   // What it gives to a surface for which received() is 1: that is over the area that it shows, a
   // quarter of that of a sphere and, of the sky, what is above the horizon.
   const double shown = lamp.type == LampType::sphere    ? lamp.area() / 4
@@ -92,7 +93,7 @@ std::shared_ptr<const Source> make_source(const Lamp& lamp, const Camera& camera
     source = distant(lamp, camera);
   } else {
     const std::shared_ptr<NearLamp> near = shape_of(lamp);
-    near->center = glm::vec3(camera.to_camera(lamp.position));
+    near->center = glm::vec3(camera.rotation * (lamp.position - camera.origin));
     near->axes = {turned(camera, lamp.axes[0]), turned(camera, lamp.axes[1]),
                   turned(camera, -lamp.axes[2])};
     // No receiver gets more than kBrightest: see NearLamp::received().

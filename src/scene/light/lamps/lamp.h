@@ -6,7 +6,6 @@
 #include <memory>
 #include <string>
 
-#include "scene/camera/camera.h"
 #include "scene/light/source.h"
 
 namespace ssdo {
@@ -45,8 +44,15 @@ struct Lamp {
   glm::dvec3 value() const;
 };
 
-/// The light of a lamp in the space of this camera. `nearest` is the distance at which a receiver
+/// camera = rotation * (p - origin), as of a Camera; the rotation mirrors a left-handed world.
+struct WorldToCamera {
+  glm::dmat3 rotation{1};
+  glm::dvec3 origin{0};
+};
+
+/// The light of a lamp in camera space. `nearest` is the distance at which a receiver
 /// is as near as can be told: half a pixel; nearer ones get no more light than there.
-std::shared_ptr<const Source> make_source(const Lamp& lamp, const Camera& camera, double nearest);
+std::shared_ptr<const Source> make_source(const Lamp& lamp, const WorldToCamera& camera,
+                                          double nearest);
 
 }  // namespace ssdo

@@ -81,10 +81,10 @@ std::vector<Lamp> lamps() {
 
 TEST(LampLanes, AreTheSameAsOneByOne) {
   for (const Lamp& lamp : lamps()) {
-    const auto source = make_source(lamp, Camera(), 0.01);
+    const auto source = make_source(lamp, WorldToCamera(), 0.01);
     Lamp open = lamp;
     open.has_cone = false;
-    const auto without_cone = make_source(open, Camera(), 0.01);
+    const auto without_cone = make_source(open, WorldToCamera(), 0.01);
     std::mt19937 random(4);
     LampLanes lanes;
     for (int i = 0; i < 100 * kMostLanes; ++i) {

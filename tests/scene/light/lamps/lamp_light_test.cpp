@@ -15,7 +15,7 @@ namespace ssdo::test {
 namespace {
 
 constexpr double kWanted = 1e-3;
-const Camera kCamera;  // camera space is the world
+const WorldToCamera kCamera;  // camera space is the world
 
 Lamp random_lamp(LampType type, std::mt19937& random) {
   Lamp lamp;
@@ -242,7 +242,7 @@ TEST(Lamp, FlatOnesSendFromTheirFrontOnly) {
 TEST(Lamp, IsPlacedByTheCamera) {
   std::mt19937 random(11);
   for (const double hand : {1.0, -1.0}) {
-    Camera camera;
+    WorldToCamera camera;
     camera.rotation = glm::transpose(about(random_unit(random)));
     camera.rotation = camera.rotation * glm::dmat3(hand, 0, 0, 0, 1, 0, 0, 0, 1);
     camera.origin = {5, -2, 30};
@@ -254,7 +254,7 @@ TEST(Lamp, IsPlacedByTheCamera) {
       const auto in_world = make_source(lamp, kCamera, 0), in_camera = make_source(lamp, camera, 0);
       for (int i = 0; i < 20; ++i) {
         const Receiver r(lamp, random);
-        const glm::dvec3 place = camera.to_camera(glm::dvec3(r.position)),
+        const glm::dvec3 place = camera.rotation * (glm::dvec3(r.position) - camera.origin),
                          normal = camera.rotation * glm::dvec3(r.normal);
         const float world = in_world->received(r.position, r.normal);
         EXPECT_NEAR(in_camera->received(glm::vec3(place), glm::vec3(normal)), world,
