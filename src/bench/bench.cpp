@@ -19,6 +19,7 @@
 #include "estimators/registry.h"
 #include "plan/make_plan.h"
 #include "relight/targets.h"
+#include "scene/light/named_light.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -65,6 +66,13 @@ class Bench {
     report_.filter = job_.frame.model.filter;
   }
 
+  /// Methods that know no solids take no light of lamps (plan/make_plan.cpp).
+  bool can_make(const Method& method, const std::string& name) const {
+    const Product& product = find_product(name);
+    const bool lit = product.kind == ProductKind::light && has_lamps(frame_.scene.light);
+    return makes(method, product) && (method.takes.thickness || !lit);
+  }
+
   void choose_methods() {
     const std::vector<std::string>& names = job_.options.methods;
     for (const std::string& name : names) find_method(name);
@@ -73,7 +81,7 @@ class Bench {
       if (!names.empty() && !asked) continue;
       const bool useful =
           std::any_of(report_.products.begin(), report_.products.end(),
-                      [&](const std::string& p) { return makes(method, find_product(p)); });
+                      [&](const std::string& product) { return can_make(method, product); });
       if (!useful && asked) {
         throw Error(ExitCode::usage, fmt::format("--methods {}: makes none of {}", method.name,
                                                  fmt::join(report_.products, ", ")));
@@ -98,7 +106,7 @@ class Bench {
   Plan plan_of(const Setting& setting) const {
     OutputOptions output;
     for (const std::string& product : report_.products) {
-      if (makes(*setting.method, find_product(product))) output.products.push_back(product);
+      if (can_make(*setting.method, product)) output.products.push_back(product);
     }
     return make_plan(setting.applied_to(job_.frame.model), output, frame_.scene, frame_.gbuffer,
                      job_.input);

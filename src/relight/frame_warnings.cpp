@@ -15,6 +15,7 @@
 #include "relight/idle_options.h"
 #include "scene/layers/advice.h"
 #include "scene/layers/windows.h"
+#include "scene/light/named_light.h"
 
 namespace ssdo {
 namespace {
@@ -117,6 +118,7 @@ void warn_of_plan(Frame& frame, const FrameOptions& options, bool has_deep_pixel
                                     .specular = !frame.gbuffer.specular.empty(),
                                     .lights = !frame.gbuffer.lights.empty(),
                                     .constant_light = frame.scene.light.environment.is_constant(),
+                                    .lamps = has_lamps(frame.scene.light),
                                     .overscan = has_overscan(frame, options.output)}));
 }
 

@@ -206,7 +206,9 @@ const std::vector<IdleRule<Facts>>& rules_of_frames() {
        },
        "the light is the same from everywhere"},
       {{"--env-up"},
-       [](const Asked& o, const Facts& f) { return o.light.up && f.constant_light; },
+       [](const Asked& o, const Facts& f) {
+         return o.light.up && f.constant_light && !f.lamps && o.model.prior == Prior::rules;
+       },
        "the light is the same from everywhere"},
       {{"--crop"},
        [](const Asked& o, const Facts& f) { return o.output.crop && !f.overscan; },

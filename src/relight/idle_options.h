@@ -25,6 +25,7 @@ struct FrameFacts {
   bool depth, position, normal, ambient, specular,
       lights;           ///< layers; depth may be that of deep pixels
   bool constant_light;  ///< the environment is the same from everywhere
+  bool lamps;
   bool overscan;        ///< a layer that outputs take has pixels beyond the display window
 };
 

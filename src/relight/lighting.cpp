@@ -164,9 +164,12 @@ void Lighting::check_exposure(float brightest) {
 
 FrameEnvironment Lighting::around(UpAxis up_of_frame,
                                   const std::optional<Chromaticities>& primaries) const {
-  if (!map_) return {Environment::constant(constant_), description_, warnings_};
   EnvironmentFrame frame;
   frame.up = options_.up.value_or(up_of_frame);
+  if (!map_) {
+    const UpAxis up = lamps_.empty() ? UpAxis::y : frame.up;
+    return {Environment::constant(constant_, up), description_, warnings_};
+  }
   frame.rotate_degrees = float(std::fmod(options_.rotate_degrees, 360.0));
   frame.exposure_stops = float(options_.exposure_stops);
   FrameEnvironment light{Environment(map_, frame), description_, warnings_};

@@ -38,8 +38,9 @@ class Lighting {
   /// kBrightest.
   explicit Lighting(const LightOptions& options);
 
-  /// Whether the axis that is up makes a difference, and the user gives none.
-  bool needs_up() const { return map_ && !options_.up; }
+  /// Whether the axis that is up makes a difference, and the user gives none: to a map, and to what
+  /// surfaces beyond the border hide of lamps.
+  bool needs_up() const { return (map_ || !lamps_.empty()) && !options_.up; }
 
   /// The environment of a frame. `up_of_frame` is used where the user gives no axis. A map that
   /// says which primaries its colours have is converted to `primaries` of the frame, if it has any.

@@ -86,4 +86,20 @@ inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometryOfASmallSc
      0.2930},
 };
 
+/// Of one lamp of data/truth/corner in a black world, relative to the mean of its light.
+struct RecordedLamp {
+  std::string lamp;
+  std::string file;               ///< of the scene
+  std::vector<std::string> also;  ///< further files of it
+  double direct, bounce;
+};
+
+inline const std::vector<std::string> kFourViews = {"also_left.exr", "also_pano.exr",
+                                                    "also_right.exr", "also_top.exr"};
+inline const std::vector<RecordedLamp> kRecordedLamps = {
+    {"point", "gbuffer.exr", {}, 0, 0},         {"area", "gbuffer.exr", {}, 0, 0},
+    {"spot", "gbuffer.exr", {}, 0, 0},          {"point", "overscan.exr", kFourViews, 0, 0},
+    {"area", "overscan.exr", kFourViews, 0, 0}, {"spot", "overscan.exr", kFourViews, 0, 0},
+};
+
 }  // namespace ssdo::test

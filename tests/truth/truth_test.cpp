@@ -148,13 +148,13 @@ Result shown(const Geometry& geometry, const Products& products) {
   return result;
 }
 
-Result run(const std::string& method, const Subject& scene, const std::string& environment,
+Result run(const std::string& method, const Subject& scene, const LightOptions& light,
            std::optional<double> radius, bool guessed = false) {
   FrameOptions options;
   options.model.method = method;
   if (method == "trace") options.model.set = {"samples=16"};
   if (find_method(method).takes.radius) options.model.radius = radius;
-  options.light.env = environment;
+  options.light = light;
   OtherPictures pictures;
   Frame frame =
       prepare_frame(options, Lighting(options.light), pictures, {scene.frame, {}, scene.also});
@@ -166,19 +166,26 @@ Result run(const std::string& method, const Subject& scene, const std::string& e
   return shown(frame.scene.geometry, filtered);
 }
 
+LightOptions environment(const std::string& env) {
+  LightOptions light;
+  light.env = env;
+  return light;
+}
+
 Error2 error_of_ao(const Result& r, const Subject& scene, const std::string& truth,
                    const std::string& layer) {
   return compare(r.geometry, read_truth(scene, truth, layer), 1,
                  [&](std::size_t i, int) { return r.products.ao[i]; });
 }
 
-Error2 error_of_direct(const Result& r, const Subject& scene) {
-  return compare(r.geometry, read_truth(scene, "env_direct", "DiffDir"), 1,
+Error2 error_of_direct(const Result& r, const Subject& scene, const std::string& of = "env") {
+  return compare(r.geometry, read_truth(scene, of + "_direct", "DiffDir"), 1,
                  [&](std::size_t i, int c) { return r.products.direct[i][c]; });
 }
 
-Error2 error_of_bounce(const Result& r, const Subject& scene) {
-  return compare(r.geometry, read_truth(scene, "env_bounce1", "DiffInd"), 4,
+Error2 error_of_bounce(const Result& r, const Subject& scene,
+                       const std::string& of = "env_bounce1") {
+  return compare(r.geometry, read_truth(scene, of, "DiffInd"), 4,
                  [&](std::size_t i, int c) { return r.products.bounce[i][c]; });
 }
 
@@ -197,12 +204,12 @@ class Truth : public testing::TestWithParam<Case> {};
 TEST_P(Truth, ErrorsAreThoseRecorded) {
   const auto& [method, scene, recorded] = GetParam();
   for (const double radius : {scene.radius_small, scene.radius_large}) {
-    const Error2 e =
-        error_of_ao(run(method, scene, "1", radius), scene, fmt::format("ao_{:g}", radius), "AO");
+    const Error2 e = error_of_ao(run(method, scene, environment("1"), radius), scene,
+                                 fmt::format("ao_{:g}", radius), "AO");
     expect_recorded(fmt::format("ao at {:g}", radius), e, 1,
                     radius == scene.radius_small ? recorded.ao_small : recorded.ao_large);
   }
-  const Result r = run(method, scene, scene.environment, std::nullopt);
+  const Result r = run(method, scene, environment(scene.environment), std::nullopt);
   const Error2 direct = error_of_direct(r, scene);
   expect_recorded("direct", direct, direct.mean, recorded.direct);
   if (r.products.bounce.empty()) return;
@@ -290,14 +297,14 @@ Prediction KnownGeometry::expect_recorded_over(const std::vector<Subject>& scene
     };
     const auto add_ao = [&](Error2& sum, std::optional<double> radius, const std::string& truth,
                             const std::string& layer) {
-      const Result r = run("bitmask", scene, "1", radius, true);
+      const Result r = run("bitmask", scene, environment("1"), radius, true);
       add(sum, truth, error_of_ao(r, scene, truth, layer), 1);
       prediction.add(r, scene, truth, layer);
     };
     add_ao(small, scene.radius_small, fmt::format("ao_{:g}", scene.radius_small), "AO");
     add_ao(large, scene.radius_large, fmt::format("ao_{:g}", scene.radius_large), "AO");
     add_ao(white, std::nullopt, "white", "DiffDir");
-    const Result r = run("bitmask", scene, scene.environment, std::nullopt);
+    const Result r = run("bitmask", scene, environment(scene.environment), std::nullopt);
     const Error2 d = error_of_direct(r, scene), b = error_of_bounce(r, scene);
     add(direct, "direct", d, d.mean);
     add(bounce, "bounce", b, b.mean);
@@ -327,6 +334,25 @@ class KnownGeometryOfASmallScene : public KnownGeometry {};
 TEST_P(KnownGeometryOfASmallScene, ErrorsAreThoseRecorded) {
   expect_recorded_over(small_scene(GetParam().file, GetParam().also));
 }
+
+/// One lamp in a black world.
+class Lamp : public testing::TestWithParam<RecordedLamp> {};
+
+TEST_P(Lamp, ErrorsAreThoseRecorded) {
+  const RecordedLamp& recorded = GetParam();
+  const Subject scene = small_scene(recorded.file, recorded.also).front();
+  LightOptions light = environment("0");
+  light.lamp_files = {kData + "truth/corner/light_" + recorded.lamp + ".json"};
+  const Result r = run("bitmask", scene, light, std::nullopt);
+  const Error2 direct = error_of_direct(r, scene, "light_" + recorded.lamp),
+               bounce = error_of_bounce(r, scene, "light_" + recorded.lamp + "_bounce");
+  expect_recorded("direct", direct, direct.mean, recorded.direct);
+  expect_recorded("bounce", bounce, bounce.mean, recorded.bounce);
+}
+
+INSTANTIATE_TEST_SUITE_P(Corner, Lamp, testing::ValuesIn(kRecordedLamps), [](const auto& one) {
+  return one.param.lamp + std::to_string(one.param.also.size());
+});
 
 std::string name_of(const testing::TestParamInfo<RecordedKnownGeometry>& one) {
   return std::filesystem::path(one.param.file).stem().string() +

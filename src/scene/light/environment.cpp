@@ -37,9 +37,10 @@ float mean_brightness(const Plane<glm::vec3>& map) {
 
 }  // namespace
 
-Environment Environment::constant(const glm::vec3& radiance) {
+Environment Environment::constant(const glm::vec3& radiance, UpAxis up) {
   Environment environment;
   environment.constant_ = radiance;
+  environment.frame_.up = up;
   return environment;
 }
 

@@ -28,8 +28,9 @@ struct EnvironmentFrame {
 /// date line and the poles. Radiance is scene-linear.
 class Environment {
  public:
-  /// The same radiance from everywhere.
-  static Environment constant(const glm::vec3& radiance);
+  /// The same radiance from everywhere; `up` tells which way surfaces are likely to go on that the
+  /// frame does not show.
+  static Environment constant(const glm::vec3& radiance, UpAxis up = UpAxis::y);
 
   /// A lat-long map of finite values, two to one or not.
   Environment(std::shared_ptr<const Plane<glm::vec3>> lat_long, const EnvironmentFrame& frame);
