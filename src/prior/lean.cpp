@@ -106,15 +106,6 @@ HWY_INLINE V leaned(V ao, const Prior& prior) {
   return hn::Clamp(hn::MulAdd(width, open / (open + closed) - s, ao), lo, hi);
 }
 
-/// A share of light that goes with ao: as much of it is lost as of ao, or of what is hidden comes
-/// in.
-HWY_INLINE V leaned_share(V share, V ao, V ao_after) {
-  const V one = set(1), tiny = set(1e-6f);
-  const V less = share * (ao_after / hn::Max(ao, tiny)),
-          more = one - (one - share) * ((one - ao_after) / hn::Max(one - ao, tiny));
-  return hn::IfThenElse(ao_after < ao, less, hn::IfThenElse(share < one, more, share));
-}
-
 /// Columns or rows of squares around pixels, and the shares of the second ones.
 struct Axis {
   std::vector<int> square;  ///< of the first one, by pixel, and `step` pixels farther
@@ -142,7 +133,6 @@ void lean_rows(const PriorField& field, const Geometry& geometry, int y0, int y1
              rows = make_axis(top, s.first.y, s.pixel.height, geometry.surfel.height, step);
   SpreadRow above(std::size_t(width), step), below(std::size_t(width), step);
   int spread_above = -1, spread_below = -1;
-  Plane<glm::vec3>& sky = products.shares.sky;
   for (int y = y0; y < y1; ++y) {
     const int row = rows.square[std::size_t(y)], next = rows.square[std::size_t(y + step)];
     if (row == spread_below) std::swap(above, below), std::swap(spread_above, spread_below);
@@ -160,11 +150,6 @@ void lean_rows(const PriorField& field, const Geometry& geometry, int y0, int y1
       const V ao = load_first(count, &products.ao[i]),
               after = hn::IfThenElse(surfels.surface, leaned(ao, prior), ao);
       store_first(count, after, &products.ao[i]);
-      if (sky.empty()) continue;
-      const V3 share = load_first(count, &sky[i]);
-      const V3 found{leaned_share(share.x, ao, after), leaned_share(share.y, ao, after),
-                     leaned_share(share.z, ao, after)};
-      store_first(count, if_then_else(surfels.surface, found, share), &sky[i]);
     }
   }
 }

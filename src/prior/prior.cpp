@@ -93,7 +93,7 @@ std::string describe_prior(bool up_is_known) {
   const Network& network = up_is_known ? models.upright : models.camera;
   return fmt::format(
       "prior learned: a network of {} weights, trained on {} made scenes, fills what no picture "
-      "shows, in ao and the light of the sky{}; bounce, bent and sources go by rules",
+      "shows in ao, and in direct under light of one colour{}; all else goes by rules",
       network.weights(), models.frames,
       up_is_known ? "" : ", without knowing which way is up: --env-up tells");
 }

@@ -42,7 +42,10 @@ struct PriorField {
 PriorField find_prior(const Scene& scene, const Request& request, const Products& found,
                       const std::optional<glm::vec3>& up);
 
-/// Changes ao after the filter; the shares of the light of a sky change with it.
+/// Changes ao after the filter, before light is made of it where that comes from everywhere alike.
+/// The shares of a sky with directions are left as they are: scaled with ao, direct light has 0.56
+/// of its error in families of made scenes that the training never saw, but 1.07 times its error,
+/// and up to 1.7 times, in five path-traced frames.
 void apply_prior(const PriorField& field, const Geometry& geometry, Products& products);
 
 /// One line: what it is, and what it was trained on.
