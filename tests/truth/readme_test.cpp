@@ -80,6 +80,17 @@ TEST(Readme, StatesTheRecordedErrorsOfTheMainExample) {
   expect_states(rows[1], 1, {with.ao_small, with.ao_large, with.direct, with.bounce});
 }
 
+TEST(Readme, StatesTheRecordedErrorsOfLamps) {
+  const std::vector<Row> rows = table_of("| a lamp | direct |");
+  ASSERT_EQ(2 * rows.size(), kRecordedLamps.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const RecordedLamp &alone = kRecordedLamps[i], &with = kRecordedLamps[rows.size() + i];
+    EXPECT_EQ(rows[i][0], alone.lamp);
+    EXPECT_EQ(with.lamp, alone.lamp);
+    expect_states(rows[i], 1, {alone.direct, alone.bounce, with.direct, with.bounce});
+  }
+}
+
 TEST(Readme, StatesTheRecordedErrorsOfTheDefaultMethod) {
   const std::vector<Row> rows = table_of("| frame | method | ao, small radius |");
   ASSERT_EQ(rows.size(), 4u);
