@@ -3,9 +3,12 @@
 // The composites. Rendered layers are premultiplied, and so is the result, so that edges whose
 // alpha is between 0 and 1 need no division.
 //
-//   relight   F[alpha albedo (direct + bounce)]
+//   relight   F[alpha (albedo (direct + bounce) + specular)]
 //   occlude   beauty - ambient (1 - S) - sum light_k (1 - S_k) - specular (1 - reflection)
-//   add       beauty + F[alpha albedo (direct + bounce)]
+//   add       beauty + F[alpha (albedo (direct + bounce) + specular)]
+//
+// In occlude, `specular` is a layer of the render. In the others it is the product, if the user
+// names that.
 //
 // F is the mean of the pixels of the G-buffer that a pixel of the output shows: one of them, or
 // those under the pixel filter with --downsample. The rendered layers have the output's size.
@@ -76,11 +79,13 @@ void append_found(NamedChannels& out, const Product& product, const std::string&
   append_made(out, product, prefix, std::move(plane));
 }
 
-/// albedo (direct + bounce).
+/// albedo (direct + bounce) + specular.
 glm::vec3 light_of(const Results& r, std::size_t i) {
   glm::vec3 light = r.products.direct[i];
   if (!r.products.bounce.empty()) light += r.products.bounce[i];
-  return within_range(r.scene.senders.albedo[i] * light);
+  light = r.scene.senders.albedo[i] * light;
+  if (r.composition.adds_specular) light += r.products.specular[i];
+  return within_range(light);
 }
 
 /// What surfaces send of the light that was found, premultiplied.

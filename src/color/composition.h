@@ -33,6 +33,7 @@ struct Composition {
   bool share_is_ao = false;
   /// Beside the products of all light stand those of each light.
   bool per_light = false;
+  bool adds_specular = false;  ///< to relight and add: the light that surfaces mirror
 };
 
 }  // namespace ssdo

@@ -103,7 +103,8 @@ Plane<float> product_at_output_size(const Product& product, const Plane<float>& 
 Plane<glm::vec3> product_at_output_size(const Product& product, const Plane<glm::vec3>& values,
                                         const Results& r) {
   if (r.gbuffer.downsampling.is_identity()) return values;
-  const bool is_light = product.kind == ProductKind::light;
+  // What is mirrored is not multiplied by albedo.
+  const bool is_light = product.kind == ProductKind::light && product.in != &ProductSet::specular;
   Plane<glm::vec3> mean =
       weighted_mean(values, is_light ? weights_by_albedo(r) : as_colors(weights_by_coverage(r)),
                     product.background, r.gbuffer);

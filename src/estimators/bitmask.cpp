@@ -58,15 +58,13 @@
 #include "estimators/bitmask/parts.h"
 #include "estimators/bitmask/patterns.h"
 #include "estimators/bitmask/raster.h"
+#include "estimators/bitmask/rays/find_reflection.h"
 #include "estimators/bitmask/rays/find_source.h"
 #include "estimators/guessed.h"
 #include "scene/light/light.h"
 
 namespace ssdo {
 namespace {
-
-/// Rays into what is mirrored, for every slice.
-constexpr int kReflectionRays = 2;
 
 /// The method on one frame.
 class Bitmask {
@@ -91,8 +89,9 @@ class Bitmask {
     if (wants_light() && !scene_.light.sources.empty()) gather_sources();
     gather_visibility();
     BouncedLights bounced;
-    if (request_.products.bounce) bounced = gather_bounce();
-    if (request_.products.reflection) gather_reflection();
+    if (request_.products.bounce) bounced = gather_bounces(bounce_inputs());
+    if (request_.products.reflection || request_.products.specular)
+      gather_reflection(bounced.all.bounce);
     end_marches();
     hand_out(std::move(bounced));
     if (request_.products.guessed)
@@ -110,7 +109,7 @@ class Bitmask {
     if (request_.products.bounce && request_.bounces > 0) {
       if (!scene_.light.sources.empty()) gather_sources();
       gather_visibility();
-      kept = gather_bounce().kept;
+      kept = gather_bounces(bounce_inputs()).kept;
     }
     kept_light_in_ = nullptr;
     MarchPlanes planes = raster_.in_whole_rows(s, raster);
@@ -130,7 +129,8 @@ class Bitmask {
   }
 
   bool wants_light() const {
-    return request_.products.direct || request_.products.bounce || request_.products.error;
+    const ProductSet& asked = request_.products;
+    return asked.direct || asked.bounce || asked.specular || asked.error;
   }
 
   /// Some solids are no guesses.
@@ -142,10 +142,9 @@ class Bitmask {
 
   /// The pixels whose own light is found: all of the raster where they send it to others.
   Window lit_part() const {
-    const bool sends =
-        request_.products.bounce && request_.bounces > 0 && scene_.senders.radiance.empty();
+    const int sent = scene_.senders.radiance.empty() ? times_sent(scene_, request_) : 0;
     const Window& receivers = march_scene_.receivers;
-    return sends ? with_senders(march_scene_, request_, receivers, request_.bounces) : receivers;
+    return sent > 0 ? with_senders(march_scene_, request_, receivers, sent) : receivers;
   }
 
   void gather_visibility() {
@@ -181,7 +180,7 @@ class Bitmask {
     if (request_.open_ao) out_.open_ao = raster_.picture(std::move(open_ao), 1.0f);
   }
 
-  /// A march of rays. In a band that marches on, the overview tells what they leave the frame by.
+  /// A march of rays. In a band that marches on, the overview tells where they leave the frame.
   March march_of_rays() {
     March march = march_;
     if (march.extend) march.cut = &cut_;
@@ -275,26 +274,18 @@ class Bitmask {
     return direct;
   }
 
-  void gather_reflection() {
-    InterleavedPlane open(layout_), roughness(layout_);
-    for_each_row(layout_.height(), [&](int y) {
-      roughness.fill_row(layout_, y, float(request_.parameters.at("roughness")));
-      if (scene_.roughness.empty()) return;
-      raster_.for_each_pixel(
-          y, [&](std::size_t pixel, std::ptrdiff_t i) { roughness[i] = scene_.roughness[pixel]; });
-    });
-    const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
-    const ReflectionJob job{march_of_rays(), bounds, &roughness, kReflectionRays * request_.slices,
-                            request_.seed,   &open};
-    for_each_band_of(
-        march_scene_.receivers, [&](const Window& part) { march_reflection(job, part); },
-        progress_);
-    out_.reflection = raster_.picture(std::move(open), 1.0f);
+  void gather_reflection(const InterleavedVectors& bounce) {
+    InterleavedVectors sent;
+    if (mirrors_surfaces(scene_, request_))
+      sent = sent_light(bounce_inputs(), as_one_light(scene_.light), lit_part(),
+                        bounce[0].data() ? &bounce : nullptr);
+    const bool two_sided = sends_two_sided(scene_);
+    find_reflection({march_of_rays(), raster_, scene_, request_, sent, two_sided}, out_, progress_);
   }
 
-  BouncedLights gather_bounce() const {
-    return gather_bounces({scene_, request_, progress_, raster_, bounce_march_, ao_, found_sky(),
-                           sources_, kept_light_in_});
+  BounceInputs bounce_inputs() const {
+    return {scene_, request_,    progress_, raster_,       bounce_march_,
+            ao_,    found_sky(), sources_,  kept_light_in_};
   }
 
   const Scene& scene_;
@@ -333,6 +324,7 @@ Method bitmask_method() {
       .products = {.ao = true,
                    .direct = true,
                    .bounce = true,
+                   .specular = true,
                    .bent = true,
                    .reflection = true,
                    .error = true,
@@ -345,7 +337,7 @@ Method bitmask_method() {
                 .prior = true},
       .pattern_size = Interleaving::kPeriod,
       .source_filter = {"geometry"},
-      .parameters = {kRoughness},
+      .parameters = {kRoughness, kIndexOfRefraction},
       .samples_per_pixel = [](const Request& r) { return 2 * r.slices * r.steps; },
       .estimate = estimate,
       .bands = {overview, reach_rows, band_needs_openness, add_openness},

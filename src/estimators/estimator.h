@@ -31,6 +31,11 @@ struct Parameter {
 inline constexpr Parameter kRoughness = {
     "roughness", 0.5, 0, 1, "", "of what mirrors, where there is no layer of it"};
 
+/// The index of refraction, which every method with specular light has.
+inline constexpr Parameter kIndexOfRefraction = {
+    "ior", 1.5, 1,
+    1e6,   "",  "of what mirrors, where there is no layer specular-color; 1e6: F0 is 1"};
+
 using ParameterValues = std::map<std::string, double, std::less<>>;
 
 /// A filter of a map of ao. `guide` has the size of the map: what each of its pixels shows.

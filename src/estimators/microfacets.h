@@ -36,19 +36,49 @@ inline float smith_share(float cosine, float alpha) {
   return 2 * cosine / (cosine + std::sqrt(cosine * cosine + alpha * alpha * sine2));
 }
 
+/// Facets by their distribution (GGX): the density of normals over the solid angle, times the
+/// cosine to that of the surface. `across2` is the squared sine to the latter.
+inline float facet_density(float cosine, float across2, float alpha) {
+  const float q = across2 + alpha * alpha * cosine * cosine;
+  return alpha * alpha / (glm::pi<float>() * q * q);
+}
+
+/// A mirror is not quite one.
+inline float alpha_of(float roughness) {
+  constexpr float kSharpest = 1e-3f;
+  return std::max(roughness * roughness, kSharpest);
+}
+
 /// Where light comes from that one facet sends to the viewer.
 struct FacetSample {
-  glm::vec3 to{0};  ///< unit
-  float share = 0;  ///< of it that other facets leave; 0: from below the surface
+  glm::vec3 to{0};     ///< unit
+  float share = 0;     ///< of it that other facets leave; 0: from below the surface
+  glm::vec3 facet{0};  ///< the normal of the facet
 };
 
 /// For one point of the unit square; all of them together are what the surface mirrors. `roughness`
-/// in 0..1; a mirror is not quite one.
+/// in 0..1.
 inline FacetSample mirror_at_facet(const glm::vec3& viewer, float roughness, const glm::vec2& u) {
-  constexpr float kSharpest = 1e-3f;
-  const float alpha = std::max(roughness * roughness, kSharpest);
-  const glm::vec3 to = glm::reflect(-viewer, visible_facet(viewer, alpha, u));
-  return {to, to.z > 0 ? smith_share(to.z, alpha) : 0};
+  const float alpha = alpha_of(roughness);
+  const glm::vec3 facet = visible_facet(viewer, alpha, u), to = glm::reflect(-viewer, facet);
+  return {to, to.z > 0 ? smith_share(to.z, alpha) : 0, facet};
+}
+
+/// The density of the directions of mirror_at_facet() over the solid angle, for a viewer above the
+/// surface.
+inline float density_of(const FacetSample& sample, const glm::vec3& viewer, float roughness) {
+  const float alpha = alpha_of(roughness), cosine = std::max(viewer.z, 1e-4f);
+  const glm::vec3& h = sample.facet;
+  return smith_share(cosine, alpha) * facet_density(h.z, h.x * h.x + h.y * h.y, alpha) /
+         (4 * cosine);
+}
+
+/// What a facet mirrors of light that meets it at this cosine beyond what it mirrors along its
+/// normal, as a part of the rest: Schlick 1994, An Inexpensive BRDF Model for Physically-based
+/// Rendering. F = F0 + (1 - F0) rise.
+inline float fresnel_rise(float cosine) {
+  const float c = std::clamp(1 - cosine, 0.0f, 1.0f), c2 = c * c;
+  return c2 * c2 * c;
 }
 
 }  // namespace ssdo

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -15,11 +16,14 @@
 
 namespace ssdo {
 
+struct MirrorModel;
+
 /// Those that a method may be asked for.
 struct ProductSet {
   bool ao = false;
   bool direct = false;
   bool bounce = false;
+  bool specular = false;
   bool bent = false;
   bool reflection = false;
   bool error = false;
@@ -46,6 +50,9 @@ struct LightShares {
   /// it apart. Empty: there is none.
   Plane<glm::vec3> emitted;
   bool are_ao = false;  ///< light comes from everywhere alike, and ao is its share; no planes then
+  /// Of what surfaces mirror of the sky, channel by channel; empty: `specular` is not made.
+  Plane<glm::vec3> mirrored_sky;
+  std::shared_ptr<const MirrorModel> mirror = {};  ///< what `specular` is computed with
 };
 
 /// What one light of a frame gives: the environment or a lamp (scene/light/named_light.h). The sums
@@ -63,6 +70,9 @@ struct Products {
   Plane<glm::vec3> direct, bounce;
   Plane<glm::vec3> bent;    ///< unit, camera space
   Plane<float> reflection;  ///< share of a reflection that is not occluded
+  /// Light that surfaces mirror. Until add_specular() (estimators/specular/specular.h): the mean
+  /// radiance of the surfaces that they mirror, 0 where those are none.
+  Plane<glm::vec3> specular;
   Plane<float> error;  ///< of the luminance of direct + bounce, with the sign of one draw of noise
   Plane<float> guessed;  ///< G of estimators/guessed.h; the product once it is filtered
   LightShares shares;    ///< what `direct` is made of, where the method knows
@@ -113,7 +123,7 @@ struct Product {
 };
 
 /// In the order of lists and files.
-inline constexpr std::array<Product, 10> kProducts = {{
+inline constexpr std::array<Product, 11> kProducts = {{
     {.name = "ao",
      .kind = ProductKind::share,
      .channels = "Y",
@@ -174,6 +184,15 @@ inline constexpr std::array<Product, 10> kProducts = {{
      .measured = true,
      .by_light = true,
      .aka = "diffind diffuseindirect"},
+    // The surfaces that are mirrored send direct and bounce light.
+    {.name = "specular",
+     .kind = ProductKind::light,
+     .channels = "RGB",
+     .in = &ProductSet::specular,
+     .plane = &Products::specular,
+     .made_of = {.direct = true, .specular = true},
+     .with = {.bounce = true},
+     .all_needs = "roughness"},
     {.name = "error",
      .kind = ProductKind::deviation,
      .channels = "Y",
@@ -236,8 +255,8 @@ void for_each_plane(const Visit& visit, First& first, Others&... others) {
 }
 
 /// Calls visit(plane of each of `all`) for what light is made of: the sky's share, then each sun's,
-/// then those by other points, then what is emitted, in all and by each light; some planes may be
-/// empty. `all` have as many as the first.
+/// then those by other points, then what is emitted, in all and by each light, then what is
+/// mirrored of the sky; some planes may be empty. `all` have as many as the first.
 template <class Visit, class First, class... Others>
 void for_each_share(const Visit& visit, First& first, Others&... others) {
   visit(first.shares.sky, others.shares.sky...);
@@ -248,6 +267,7 @@ void for_each_share(const Visit& visit, First& first, Others&... others) {
   visit(first.shares.emitted, others.shares.emitted...);
   for (std::size_t k = 0; k < first.lights.size(); ++k)
     visit(first.lights[k].emitted, others.lights[k].emitted...);
+  visit(first.shares.mirrored_sky, others.shares.mirrored_sky...);
 }
 
 }  // namespace ssdo

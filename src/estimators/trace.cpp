@@ -46,7 +46,9 @@
 #include "estimators/guessed.h"
 #include "estimators/microfacets.h"
 #include "estimators/other_views/other_view_rays.h"
+#include "estimators/specular/mirror_model.h"
 #include "estimators/trace/light_sums.h"
+#include "estimators/trace/mirrored_sums.h"
 #include "estimators/trace/ray_origin.h"
 #include "estimators/trace/ray_scene.h"
 #include "estimators/trace/senders.h"
@@ -91,7 +93,8 @@ class Trace {
         other_views_(OtherViewRays::of_added(scene.other_surfaces)) {}
 
   Products run() {
-    wants_light_ = request_.products.direct || request_.products.bounce || request_.products.error;
+    const ProductSet& r = request_.products;
+    wants_light_ = r.direct || r.bounce || r.specular || r.error;
     out_.ao = Plane<float>(width(), height(), 1.0f);
     if (request_.products.bent) out_.bent = Plane<glm::vec3>(width(), height(), glm::vec3(0));
     if (wants_light_) {
@@ -114,14 +117,10 @@ class Trace {
       for (int pass = 1; pass <= request_.bounces; ++pass) gather_bounce(pass);
     }
     if (request_.products.error) {
-      out_.error = Plane<float>(width(), height(), 0.0f);
-      for (std::size_t i = 0; i < luminances_.size(); ++i)
-        out_.error[i] = standard_error(luminances_[i]);
+      out_.error = Plane<float>(width(), height());
+      std::ranges::transform(luminances_.pixels, out_.error.pixels.begin(), standard_error);
     }
-    if (request_.products.reflection) {
-      out_.reflection = Plane<float>(width(), height(), 1.0f);
-      for_each_surface([&](std::size_t pixel, const Receiver& p) { gather_reflection(pixel, p); });
-    }
+    if (request_.products.reflection || request_.products.specular) gather_reflections();
     if (request_.products.guessed)
       out_.guessed = guessed_shares(scene_, {0, 0, width(), height()}, request_.radius,
                                     request_.seed, progress_);
@@ -131,7 +130,6 @@ class Trace {
  private:
   int width() const { return scene_.geometry.surfel.width; }
   int height() const { return scene_.geometry.surfel.height; }
-
   /// Whether the frame or another view shows something in the way, or the surface itself is.
   bool is_blocked(const Receiver& p, const glm::vec3& to, float distance = kInfinity) const {
     const float reach = std::min(distance, request_.radius);
@@ -206,22 +204,49 @@ class Trace {
     if (wants_light_) add_direct(pixel, p, light, ao);
   }
 
+  void gather_reflections() {
+    if (request_.products.reflection) out_.reflection = Plane<float>(width(), height(), 1.0f);
+    if (request_.products.specular) {
+      out_.shares.mirror = std::make_shared<const MirrorModel>(scene_, request_);
+      out_.specular = out_.shares.mirrored_sky = Plane<glm::vec3>(width(), height(), glm::vec3(0));
+      if (!scene_.senders.albedo.empty() || !scene_.senders.radiance.empty())
+        find_senders(scene_, out_, out_.bounce.empty() ? out_.specular : out_.bounce,
+                     mirrored_.emplace(TraceSenders{as_one_light(scene_.light), {}, {}, {}}));
+    }
+    for_each_surface([&](std::size_t pixel, const Receiver& p) { gather_reflection(pixel, p); });
+  }
+
   /// What facets mirror, each by as much as others leave of it.
   void gather_reflection(std::size_t pixel, const Receiver& p) {
     const float roughness = scene_.roughness.empty() ? float(request_.parameters.at("roughness"))
                                                      : scene_.roughness[pixel];
-    const glm::vec3 viewer = direction_to_viewer(scene_.geometry.surfel[pixel].position,
-                                                 scene_.geometry.camera.orthographic) *
-                             p.frame;
-    float open = 0, all = 0;
+    const bool is_orthographic = scene_.geometry.camera.orthographic;
+    const glm::vec3 viewer = direction_to_viewer(p.position, is_orthographic) * p.frame;
+    const glm::mat3 to_world = glm::transpose(scene_.geometry.world_to_camera);
+    MirroredSums sums;
+    if (request_.products.specular) sums.f0 = out_.shares.mirror->f0_at(scene_, pixel);
     for (int s = 0; s < samples_; ++s) {
-      const auto [to, share] =
+      const FacetSample sample =
           mirror_at_facet(viewer, roughness, sobol_point(std::uint32_t(s), p.seed ^ kFacetSeed));
-      if (share <= 0) continue;
-      all += share;
-      if (!is_blocked(p, p.frame * to)) open += share;
+      if (sample.share <= 0) continue;
+      const glm::vec3 to = p.frame * sample.to;
+      const bool is_open = !is_blocked(p, to);
+      sums.add_ray(sample, is_open);
+      if (request_.products.specular)
+        sums.add_light(sample, viewer, is_open, scene_.light.sky.radiance(to_world * to),
+                       is_open ? glm::vec3(0) : sent_along(p, to));
     }
-    if (all > 0) out_.reflection[pixel] = open / all;
+    if (request_.products.reflection) out_.reflection[pixel] = sums.share();
+    if (!request_.products.specular) return;
+    out_.shares.mirrored_sky[pixel] = sums.share_of_sky();
+    out_.specular[pixel] = sums.surfaces();
+  }
+
+  /// What the surface sends that a ray meets first; what only other views show sends nothing.
+  glm::vec3 sent_along(const Receiver& p, const glm::vec3& to) const {
+    if (!mirrored_ || glm::dot(to, p.surface) <= 0) return {};
+    const std::optional<Met> met = first_met(p, to);
+    return met && !met->other_view ? mirrored_->sent_by(*met, 0) : glm::vec3(0);
   }
 
   void add_direct(std::size_t pixel, const Receiver& p, const LightSums& light, float ao) {
@@ -330,6 +355,7 @@ class Trace {
   RayScene rays_;
   std::unique_ptr<OtherViewRays> other_views_;  ///< null: there are no other views
   std::vector<TraceSenders> senders_;           ///< of all light, then of each light apart
+  std::optional<TraceSenders> mirrored_;        ///< of all light, in mirrors; none: nothing
   bool wants_light_ = false;
   Plane<Groups> luminances_;  ///< of direct + bounce
   Products out_;
@@ -347,6 +373,7 @@ Method trace_method() {
           .products = {.ao = true,
                        .direct = true,
                        .bounce = true,
+                       .specular = true,
                        .bent = true,
                        .reflection = true,
                        .error = true,
@@ -355,7 +382,8 @@ Method trace_method() {
           .pattern_size = 1,
           .source_filter = {"none"},
           .parameters = {{"samples", 64, kGroups, 65536, "rays", "per pixel and bounce", true},
-                         kRoughness},
+                         kRoughness,
+                         kIndexOfRefraction},
           .samples_per_pixel = [](const Request& r) { return int(r.parameters.at("samples")); },
           .estimate = estimate,
           .ladder = {.rungs = rungs_of("samples", {4, 16, 64}),

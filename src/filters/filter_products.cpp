@@ -47,6 +47,7 @@ Products filter_products(const Filter& filter, Products noisy, const Plane<Surfe
       if (!suns_are_done) take(sun, kOfShares);
   take(shares.emitted, {});
   for (LightProducts& light : noisy.lights) take(light.emitted, {});
+  take(shares.mirrored_sky, kOfShares);
   planes = filter.apply(std::move(planes), guide, pattern_size);
   for (std::size_t k = 0; k < planes.size(); ++k) {
     const auto put_back = [&](auto* place) {

@@ -21,6 +21,8 @@
 // Bounce light of small bright senders is averaged apart and not limited by ao
 // (filters/geometry_filter.cpp), since few slices may have missed the senders.
 //
+// What surfaces mirror is put together from shares too (estimators/specular/specular.h).
+//
 // Where the share of all light is ao, there is nothing to be filtered but ao.
 //
 // What each light gives is its own unoccluded light times its share, or that of all light. So the
@@ -36,6 +38,7 @@
 #include <utility>
 
 #include "estimators/guessed.h"
+#include "estimators/specular/specular.h"
 #include "filters/filter_products.h"
 #include "filters/sun_errors.h"
 #include "scene/light/named_light.h"
@@ -205,6 +208,7 @@ Products filter_found(const Filter& filter, Products noisy, const Scene& scene, 
                             pattern_size);
   add_sun_errors(noisy, scene);
   if (amend) amend(noisy);
+  add_specular(noisy, scene);
   if (filter.apply) return from_shares(std::move(noisy), scene);
   find_lights(noisy, scene, true);
   return without_shares(std::move(noisy));

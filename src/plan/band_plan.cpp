@@ -15,9 +15,10 @@ namespace ssdo {
 namespace {
 
 /// Bytes of a process without a frame, of each pixel at the peak of ao, direct, bounce and
-/// composite, and what a sun adds, and bent and reflection, each. Measured, with a margin. An
-/// overview keeps as much for each pixel of its own.
-constexpr double kBytes = 60e6, kBytesPerPixel = 120, kBytesOfSun = 11, kBytesOfMore = 18;
+/// composite, and what a sun adds, bent and reflection, each, and specular. Measured, with a
+/// margin. An overview keeps as much for each pixel of its own.
+constexpr double kBytes = 60e6, kBytesPerPixel = 120, kBytesOfSun = 11, kBytesOfMore = 18,
+                 kBytesOfSpecular = 72;
 
 /// What bright senders add, which a layer of radiance may hold.
 constexpr double kBytesOfSenders = 20;
@@ -35,7 +36,8 @@ double bytes_per_pixel(const Request& request, const Scene& scene) {
   if (by_light != ProductSet()) bytes_of_light *= double(lights_of(scene.light).size());
   return bytes_of_light + kBytesPerPixel + kBytesOfSun * double(scene.light.sources.size()) +
          kBytesOfSenders * int(!scene.senders.radiance.empty()) +
-         kBytesOfMore * (int(products.bent) + int(products.reflection));
+         kBytesOfMore * (int(products.bent) + int(products.reflection)) +
+         kBytesOfSpecular * int(products.specular);
 }
 
 /// Bands end where chunks of every compression do.
@@ -101,6 +103,7 @@ std::string needs_whole_frame(const Scene& overview, const Plan& plan,
                               const OutputOptions& output) {
   if (!plan.method->bands.overview) return fmt::format("method {}", plan.method->name);
   if (plan.request.products.guessed) return "the product guessed";
+  if (plan.request.products.specular) return "the product specular";
   if (plan.request.products.error || plan.error) return "the error";
   if (plan.temporal) return "--temporal";
   if (!overview.views.empty() || !overview.other_surfaces.empty()) return "--also and --neighbours";

@@ -63,13 +63,19 @@ Composition choose_composition(const OutputOptions& output, const Scene& scene,
   const bool is_constant =
       scene.light.environment.is_constant() &&
       std::ranges::none_of(scene.light.sources, [](const auto& s) { return s->name.empty(); });
-  return {choose_compose(output, !gbuffer.ambient.empty() || !gbuffer.lights.empty()),
-          is_constant && !has_multi_bounce(parameters)};
+  const Compose compose =
+      choose_compose(output, !gbuffer.ambient.empty() || !gbuffer.lights.empty());
+  return {.compose = compose,
+          .share_is_ao = is_constant && !has_multi_bounce(parameters),
+          .adds_specular = compose != Compose::occlude && contains(output.products, "specular")};
 }
 
 Product composite_row(const Composition& composition, const GBuffer& gbuffer) {
   Product row = find_product("composite");
-  if (composition.compose != Compose::occlude) return row;
+  if (composition.compose != Compose::occlude) {
+    row.made_of.specular = composition.adds_specular;
+    return row;
+  }
   const bool ambient = !gbuffer.ambient.empty(), lights = !gbuffer.lights.empty();
   row.made_of = {.ao = composition.share_is_ao && (ambient || !lights),
                  .direct = lights || !composition.share_is_ao,
@@ -129,10 +135,12 @@ void explain_composite(Plan& plan, const OutputOptions& output, const Scene& sce
   if (!contains(plan.make, "composite")) return;
   const Compose compose = plan.composition.compose;
   const ComposeRow& row = kComposites[std::size_t(compose)];
-  plan.reasons.push_back(fmt::format("composite {}: {}; {}", row.name,
-                                     compose == Compose::occlude
-                                         ? describe_occlude(plan, gbuffer, has_lamps(scene.light))
-                                         : row.meaning,
+  std::string meaning(row.meaning);
+  if (compose == Compose::occlude)
+    meaning = describe_occlude(plan, gbuffer, has_lamps(scene.light));
+  else if (plan.composition.adds_specular)
+    meaning += " + specular, which --products names";
+  plan.reasons.push_back(fmt::format("composite {}: {}; {}", row.name, meaning,
                                      output.compose             ? "as asked"
                                      : !gbuffer.ambient.empty() ? "an ambient layer is given"
                                      : !gbuffer.lights.empty()  ? "a layer of a light is given"

@@ -102,10 +102,18 @@ void choose_filter(Plan& plan, const std::string& name) {
 }
 
 void explain_reflection(Plan& plan, const Scene& scene) {
-  if (!plan.request.products.reflection || !scene.roughness.empty()) return;
-  plan.reasons.push_back(
-      fmt::format("reflection: roughness {:g} everywhere, there is no layer of it",
-                  plan.request.parameters.at("roughness")));
+  const ProductSet& products = plan.request.products;
+  const ParameterValues& parameters = plan.request.parameters;
+  if ((products.reflection || products.specular) && scene.roughness.empty()) {
+    plan.reasons.push_back(fmt::format("{}: roughness {:g} everywhere, there is no layer of it",
+                                       products.reflection ? "reflection" : "specular",
+                                       parameters.at("roughness")));
+  }
+  if (products.specular && scene.specular_color.empty()) {
+    plan.reasons.push_back(
+        fmt::format("specular: index of refraction {:g} everywhere, no layer is specular-color",
+                    parameters.at("ior")));
+  }
 }
 
 /// Bounces by a fit belong to the light of a method, not to a product that could be left out.

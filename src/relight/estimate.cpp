@@ -224,6 +224,7 @@ Scene seen_by_filters(Scene scene) {
   seen.senders = std::move(scene.senders);
   seen.light = std::move(scene.light);
   seen.roughness = std::move(scene.roughness);
+  seen.specular_color = std::move(scene.specular_color);
   return seen;
 }
 

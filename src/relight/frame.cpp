@@ -43,6 +43,8 @@ Scene take_scene(GBuffer& gbuffer, Geometry geometry) {
   scene.senders = {in_half(gbuffer.albedo), std::move(gbuffer.radiance)};
   gbuffer.albedo = {};  // on its own line: an assignment of a plane keeps memory
   scene.roughness = std::move(gbuffer.roughness);
+  if (!gbuffer.specular_color.empty()) scene.specular_color = in_half(gbuffer.specular_color);
+  gbuffer.specular_color = {};
   return scene;
 }
 

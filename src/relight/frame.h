@@ -65,8 +65,9 @@ struct Frame {
   std::vector<std::string> losses() const;
 };
 
-/// What a scene takes of a G-buffer with this geometry: albedo and radiance of the senders, and the
-/// roughness, which are moved. What lies behind the surfaces, and the light, are left to be found.
+/// What a scene takes of a G-buffer with this geometry: albedo and radiance of the senders,
+/// roughness and the colour of mirrors, which are moved. What lies behind the surfaces, and the
+/// light, are left to be found.
 Scene take_scene(GBuffer& gbuffer, Geometry geometry);
 
 /// What the header of the frame's part says about colour.

@@ -117,6 +117,7 @@ void warn_of_plan(Frame& frame, const FrameOptions& options, bool has_deep_pixel
                                     .ambient = !frame.gbuffer.ambient.empty(),
                                     .specular = !frame.gbuffer.specular.empty(),
                                     .lights = !frame.gbuffer.lights.empty(),
+                                    .specular_color = !frame.scene.specular_color.empty(),
                                     .constant_light = frame.scene.light.environment.is_constant(),
                                     .lamps = has_lamps(frame.scene.light),
                                     .overscan = has_overscan(frame, options.output)}));

@@ -126,9 +126,14 @@ const std::vector<IdleRule<Purpose>>& rules_of_options() {
       {{"--set roughness"},
        [](const FrameOptions& o, Purpose purpose) {
          return purpose == Purpose::relight && sets(o.model, "roughness") &&
-                !asks_for(o, {"reflection"}) && !has_specular(o.input.aovs);
+                !asks_for(o, {"reflection", "specular"}) && !has_specular(o.input.aovs);
        },
-       "no output has reflection"},
+       "no output has reflection or specular"},
+      {{"--set ior"},
+       [](const FrameOptions& o, Purpose purpose) {
+         return purpose == Purpose::relight && sets(o.model, "ior") && !asks_for(o, {"specular"});
+       },
+       "no output has specular"},
       {{"--per-light"},
        [](const FrameOptions& o, Purpose purpose) {
          return purpose == Purpose::relight &&
@@ -219,6 +224,16 @@ const std::vector<IdleRule<Facts>>& rules_of_frames() {
       {{"--aov ambient"},
        [](const Asked&, const Facts& f) { return f.ambient && !occludes(f); },
        "{of_composite}"},
+      {{"--aov specular-color"},
+       [](const Asked&, const Facts& f) {
+         return f.specular_color && !f.plan.request.products.specular;
+       },
+       "no output has specular"},
+      {{"--set ior"},
+       [](const Asked& o, const Facts& f) {
+         return f.specular_color && f.plan.request.products.specular && sets(o.model, "ior");
+       },
+       "the layer specular-color stands in its place"},
       {{"--aov specular"},
        [](const Asked&, const Facts& f) { return f.specular && !occludes(f); },
        "{of_composite}"},

@@ -22,8 +22,8 @@ std::vector<std::string> idle_options(const std::set<std::string>& given,
 /// What a frame holds for options that other frames have no use for.
 struct FrameFacts {
   const Plan& plan;
-  bool depth, position, normal, ambient, specular,
-      lights;           ///< layers; depth may be that of deep pixels
+  /// Layers; depth may be that of deep pixels.
+  bool depth, position, normal, ambient, specular, lights, specular_color;
   bool constant_light;  ///< the environment is the same from everywhere
   bool lamps;
   bool overscan;        ///< a layer that outputs take has pixels beyond the display window

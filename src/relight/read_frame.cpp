@@ -13,11 +13,15 @@
 namespace ssdo {
 namespace {
 
+/// Whether a product is made that depends on roughness.
 bool wants_reflection(const OutputOptions& output, const std::vector<LayerRequest>& aovs) {
-  const auto is_reflection = [](const SaveRequest& save) { return save.product == "reflection"; };
+  const auto is_mirrored = [](std::string_view product) {
+    return product == "reflection" || product == "specular";
+  };
   const auto is_specular = [](const LayerRequest& aov) { return aov.role == Role::specular; };
-  return contains(output.products, "reflection") || contains(output.products, kAllProducts) ||
-         std::ranges::any_of(output.saves, is_reflection) ||
+  return std::ranges::any_of(output.products, is_mirrored) ||
+         contains(output.products, kAllProducts) ||
+         std::ranges::any_of(output.saves, is_mirrored, &SaveRequest::product) ||
          (choose_compose(output, aovs) == Compose::occlude &&
           std::ranges::any_of(aovs, is_specular));
 }

@@ -51,9 +51,10 @@ struct GBuffer {
   Plane<glm::vec3> ambient;   ///< the part of `beauty` that ambient light gave
   Plane<glm::vec3> specular;  ///< the part of `beauty` that mirrors the surroundings
   std::map<std::string, Plane<glm::vec3>> lights;  ///< the part that each lamp gave, by its name
-  Plane<float> depth, alpha;  ///< depth: along the axis or the ray, in scene units
-  Plane<float> roughness;     ///< of what mirrors, 0..1
-  Plane<glm::vec2> motion;    ///< pixels, x right and y down, to where it was in the frame before
+  Plane<float> depth, alpha;        ///< depth: along the axis or the ray, in scene units
+  Plane<float> roughness;           ///< of what mirrors, 0..1
+  Plane<glm::vec3> specular_color;  ///< what is mirrored of light along the normal (F0), 0..1
+  Plane<glm::vec2> motion;  ///< pixels, x right and y down, to where it was in the frame before
   DepthKind depth_kind = DepthKind::planar;  ///< planar or ray: the others are undone
   std::string depth_source = {};             ///< what tells its kind, "P"; empty: it is assumed
   std::string albedo_alpha = {};    ///< how alpha was in the albedo; empty: it makes no difference

@@ -29,7 +29,8 @@ struct Scene {
   OtherSurfaces other_surfaces;  ///< what they show that the frame does not
   Senders senders;
   Light light;
-  Plane<float> roughness;  ///< 0..1; empty: the same everywhere, a parameter of the method
+  Plane<float> roughness;           ///< 0..1; empty: the same everywhere, a parameter of the method
+  Plane<HalfColor> specular_color;  ///< F0, 0..1; empty: of an index of refraction, a parameter
 };
 
 }  // namespace ssdo

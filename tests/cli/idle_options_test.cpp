@@ -42,6 +42,9 @@ TEST_F(IdleOptions, AreWarnedOf) {
       {{"--crop"}, "--crop has no effect: the frame has no pixels beyond"},
       {{"--bounces", "2", "--products", "ao,direct"}, "--bounces has no effect: no output has"},
       {{"--set", "roughness=0.3"}, "--set roughness has no effect: no output has reflection"},
+      {{"--set", "ior=2"}, "--set ior has no effect: no output has specular"},
+      {{"--aov", "specular-color=ViewLayer.DiffCol"},
+       "--aov specular-color has no effect: no output has specular"},
   };
   for (const auto& [flags, says] : idle) {
     const Finished done = run("in.exr", flags);
@@ -120,7 +123,8 @@ TEST_F(IdleOptions, WithAnEffectAreNot) {
         {"-o", path("out.png"), "--bits", "16", "--view", "Raw", "--pixel-type", "float"},
         {"--offscreen", "open", "--bounces", "2", "--seed", "1"},
         {"--prior", "learned", "--products", "ao"},
-        {"--set", "roughness=0.3", "--products", "reflection"}}) {
+        {"--set", "roughness=0.3", "--products", "reflection"},
+        {"--set", "roughness=0.3", "--set", "ior=2", "--products", "specular"}}) {
     const Finished done = run("in.exr", flags);
     EXPECT_EQ(done.code, 0);
     EXPECT_EQ(done.err, "");

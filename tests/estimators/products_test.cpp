@@ -54,7 +54,7 @@ TEST(Products, AreFoundByNameOrListed) {
               IsError(ExitCode::usage, "product 'normals': no such product; there are ao, bent"));
   EXPECT_THAT(error, IsError(ExitCode::usage, "composite, and all"));
   EXPECT_EQ(product_names(),
-            "ao, bent, reflection, direct, unshadowed, shadow, bounce, error, guessed, "
+            "ao, bent, reflection, direct, unshadowed, shadow, bounce, specular, error, guessed, "
             "composite");
 }
 

@@ -151,8 +151,9 @@ TEST(Methods, AreFoundByNameAndOneIsTheReference) {
 }
 
 TEST(Methods, AreListedWithTheirProducts) {
-  EXPECT_THAT(describe_methods(),
-              HasSubstr("\n  products: ao, bent, reflection, direct, bounce, error, guessed\n"));
+  EXPECT_THAT(
+      describe_methods(),
+      HasSubstr("\n  products: ao, bent, reflection, direct, bounce, specular, error, guessed\n"));
   EXPECT_THAT(describe_methods(), HasSubstr("\n  products: ao, bent, reflection, direct\n"));
 }
 

@@ -99,7 +99,7 @@ struct Bound {
   double largest;  ///< of one pixel
 };
 constexpr Bound kBounds[] = {
-    {"bitmask", 5e-4, 0.05}, {"trace", 1e-6, 1e-5},      {"ssdo", 1e-6, 1e-5},
+    {"bitmask", 5e-4, 0.05}, {"trace", 2e-5, 2e-3},      {"ssdo", 1e-6, 1e-5},
     {"ssao", 1e-6, 1e-5},    {"ssao-range", 5e-4, 0.05}, {"ssao-fade", 1e-6, 1e-5},
     {"hbao", 1e-6, 1e-5},    {"gtao", 1e-6, 1e-5},       {"sao", 1e-6, 1e-5},
     {"msvo", 1e-6, 1e-5},

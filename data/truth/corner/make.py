@@ -4,7 +4,8 @@
 The scene is a box with blocks, a ball, a teapot and a head in it, open to the viewer, path-traced by
 Blender Cycles under a map of Poly Haven (CC0). Here are its G-buffer, the same with overscan, four
 other views, and the truth of ao at two radii and without one, of direct light and of one bounce, under the
-map and under each of three lamps alone.
+map and under each of three lamps alone, and of light that all surfaces mirror (GGX of two roughnesses,
+colour 1, no Fresnel, no bounces).
 
 Every third pixel of every third row is kept, the middle one of its block, and every fourth of the
 panorama, whose size three does not divide. So P still lies in the middle of its pixel, and the truth
@@ -89,8 +90,10 @@ def main():
     for name in ("gbuffer", "overscan", "also_left", "also_right", "also_top", "also_pano"):
         keep(f"{scene}/{name}.exr", name + ".exr", ("Position", "Depth", "Normal", "DiffCol"),
              4 if name == "also_pano" else 3)
-    for name in ("ao_0.5", "ao_2", "white", "env_direct", "env_bounce1"):
-        keep(f"{scene}/truth_{name}.exr", f"truth_{name}.exr", ("AO", "DiffDir", "DiffInd"))
+    for name in ("ao_0.5", "ao_2", "white", "env_direct", "env_bounce1", "gloss_0.2_white",
+                 "gloss_0.5_env"):
+        keep(f"{scene}/truth_{name}.exr", f"truth_{name}.exr",
+             ("AO", "DiffDir", "DiffInd", "GlossDir"))
     pixels, spec = read(environment)
     blocks = pixels.reshape(spec.height // 4, 4, spec.width // 4, 4, -1)[..., :3].mean(axis=(1, 3))
     write("environment.exr", blocks, ["R", "G", "B"])

@@ -40,14 +40,6 @@ struct Gathered {
 
 HWY_INLINE Gathered no_light() { return {set(glm::vec3(0)), set(0)}; }
 
-/// Both sides of a surface, from what they send.
-HWY_INLINE V3 front_of(const V3& sides) {
-  return {first_of_two(sides.x), first_of_two(sides.y), first_of_two(sides.z)};
-}
-HWY_INLINE V3 back_of(const V3& sides) {
-  return {second_of_two(sides.x), second_of_two(sides.y), second_of_two(sides.z)};
-}
-
 /// Whether the surface at `q`, `step` away from the receiver, turns to it the side that the camera
 /// sees: its tangent plane is in front of the receiver in the receiver's pixel.
 template <bool kOrthographic>

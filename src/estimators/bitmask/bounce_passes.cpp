@@ -35,8 +35,9 @@ class BouncePasses {
         request_(inputs.request),
         march_scene_(inputs.march.scene),
         overview_(request_.around_band ? request_.around_band->far.get() : nullptr),
+        times_sent_(times_sent(scene_, request_)),
         is_lit_(scene_.senders.radiance.empty()),
-        two_sided_(is_lit_ && !scene_.light.is_constant()),
+        two_sided_(sends_two_sided(scene_)),
         all_(follow(as_one_light(scene_.light))) {
     if (!request_.by_light.bounce) return;
     for (NamedLight& light : lights_of(scene_.light)) each_.push_back(follow(std::move(light)));
@@ -64,14 +65,14 @@ class BouncePasses {
   }
 
   void run(int number, BouncedLights& out) {
-    // What is lit reaches as far as the bounces that follow.
+    // What is lit reaches as far as light is sent on.
     const Window lit =
-        with_senders(march_scene_, request_, march_scene_.receivers, request_.bounces - number + 1);
-    // Light gathered in the last pass is not sent on: only receivers need it.
-    const Window to = is_lit_ && number < request_.bounces
-                          ? with_senders(march_scene_, request_, march_scene_.receivers,
-                                         request_.bounces - number)
-                          : march_scene_.receivers;
+        with_senders(march_scene_, request_, march_scene_.receivers, times_sent_ - number + 1);
+    // Light that is not sent on is needed by receivers only.
+    const Window to =
+        is_lit_ && number < times_sent_
+            ? with_senders(march_scene_, request_, march_scene_.receivers, times_sent_ - number)
+            : march_scene_.receivers;
     InterleavedVectors sent = sent_light(lit, all_, number);
     const FarLight* far_light = overview_ ? &overview_->light[std::size_t(number - 1)] : nullptr;
     const Emitters emitters = find_emitters(
@@ -97,19 +98,9 @@ class BouncePasses {
     all_.found.bounce = std::move(sent);
   }
 
-  /// The radiance that pixels send, given the bounce of the pass before.
+  /// Given the bounce of the pass before.
   InterleavedVectors sent_light(const Window& part, const Followed& light, int pass) const {
-    // A layer may say what is sent.
-    if (!is_lit_) return in_.raster.interleaved(scene_.senders.radiance);
-    InterleavedVectors sent = in_.raster.make_color();
-    const SenderJob senders{march_scene_,
-                            shares_of(light.light, in_.ao, in_.sky, in_.sources),
-                            scene_.senders.albedo,
-                            pass > 1 ? &light.found.bounce : nullptr,
-                            &sent,
-                            two_sided_};
-    for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
-    return sent;
+    return ssdo::sent_light(in_, light.light, part, pass > 1 ? &light.found.bounce : nullptr);
   }
 
   /// Replaces what a light sends by what of it arrives. Returns what bands need of the former,
@@ -152,6 +143,7 @@ class BouncePasses {
   const Request& request_;
   const MarchScene& march_scene_;
   const FarScene* overview_;
+  const int times_sent_;
   const bool is_lit_;  ///< what is sent is found, not given
   const bool two_sided_;
   Followed all_;
@@ -161,6 +153,35 @@ class BouncePasses {
 }  // namespace
 
 BouncedLights gather_bounces(const BounceInputs& inputs) { return BouncePasses(inputs).run(); }
+
+bool mirrors_surfaces(const Scene& scene, const Request& request) {
+  const Senders& senders = scene.senders;
+  return request.products.specular && !(senders.albedo.empty() && senders.radiance.empty());
+}
+
+int times_sent(const Scene& scene, const Request& request) {
+  return (request.products.bounce ? request.bounces : 0) + int(mirrors_surfaces(scene, request));
+}
+
+bool sends_two_sided(const Scene& scene) {
+  return scene.senders.radiance.empty() && !scene.light.is_constant();
+}
+
+InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& light,
+                              const Window& part, const InterleavedVectors* bounce) {
+  const Scene& scene = inputs.scene;
+  // A layer may say what is sent.
+  if (!scene.senders.radiance.empty()) return inputs.raster.interleaved(scene.senders.radiance);
+  InterleavedVectors sent = inputs.raster.make_color();
+  const SenderJob senders{inputs.march.scene,
+                          shares_of(light, inputs.ao, inputs.sky, inputs.sources),
+                          scene.senders.albedo,
+                          bounce,
+                          &sent,
+                          sends_two_sided(scene)};
+  for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
+  return sent;
+}
 
 Window with_senders(const MarchScene& scene, const Request& request, const Window& part,
                     int bounces) {

@@ -47,6 +47,20 @@ struct BouncedLights {
 
 BouncedLights gather_bounces(const BounceInputs& inputs);
 
+/// Whether specular light has that of surfaces of the frame: their light is known.
+bool mirrors_surfaces(const Scene& scene, const Request& request);
+
+/// How often light is sent on: by bounces, then to what mirrors it.
+int times_sent(const Scene& scene, const Request& request);
+
+/// Whether the sides of a surface send different light.
+bool sends_two_sided(const Scene& scene);
+
+/// The radiance that pixels of a part of the raster send of one light, or of all, as SenderJob has
+/// it. `bounce`: what has arrived of it so far; null: none.
+InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& light,
+                              const Window& part, const InterleavedVectors* bounce);
+
 /// A part of the raster with what may send light to it in so many bounces.
 Window with_senders(const MarchScene& scene, const Request& request, const Window& part,
                     int bounces);

@@ -14,6 +14,8 @@
 
 namespace ssdo {
 
+struct MirrorModel;
+
 /// The visibility of each pixel, and how much of the light reaches it.
 struct VisibilityJob {
   March march;
@@ -134,6 +136,16 @@ struct SourceJob {
   SourceShares* found = nullptr;
 };
 
+/// The light that rough surfaces mirror.
+struct MirroredLightJob {
+  const MirrorModel& model;
+  const Plane<HalfColor>& color;   ///< F0; empty: that of the model
+  const InterleavedVectors* sent;  ///< what surfaces send, as SenderJob has it; null: nothing
+  bool two_sided;
+  InterleavedVectors* sky;       ///< the part of the sky's light that is not blocked, by channel
+  InterleavedVectors* surfaces;  ///< the mean radiance of surfaces, 0 where none is met
+};
+
 /// How much of what rough surfaces mirror is not blocked.
 struct ReflectionJob {
   March march;
@@ -141,7 +153,8 @@ struct ReflectionJob {
   const InterleavedPlane* roughness;  ///< 0..1
   int rays;                           ///< of each pixel
   unsigned seed;
-  InterleavedPlane* open;  ///< 0..1
+  InterleavedPlane* open;         ///< 0..1
+  const MirroredLightJob* light;  ///< null: not wanted
 };
 
 /// All of these work on a part of the raster, and may write to pixels beside it in the same rows.

@@ -67,6 +67,14 @@ HWY_INLINE void store(const V3& value, std::array<InterleavedValues<T>, 3>& colo
   store(value.x, color[0], i), store(value.y, color[1], i), store(value.z, color[2], i);
 }
 
+/// Both sides of a surface, from what they send.
+HWY_INLINE V3 front_of(const V3& sides) {
+  return {first_of_two(sides.x), first_of_two(sides.y), first_of_two(sides.z)};
+}
+HWY_INLINE V3 back_of(const V3& sides) {
+  return {second_of_two(sides.x), second_of_two(sides.y), second_of_two(sides.z)};
+}
+
 /// holds_solid() of march_scene.h for a vector of depths: false where the depth is NaN.
 HWY_INLINE M holds_solid(V depth) { return depth == depth; }
 

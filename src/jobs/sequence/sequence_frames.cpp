@@ -38,8 +38,9 @@ std::optional<View> SequenceFrames::read(const FrameFiles& files, std::size_t mo
     try {
   std::error_code ignored;
   if (!std::filesystem::exists(files.input, ignored)) return std::nullopt;
-  const std::vector<Role> unused = {Role::albedo,   Role::beauty, Role::radiance,  Role::ambient,
-                                    Role::specular, Role::light,  Role::roughness, Role::motion};
+  const std::vector<Role> unused = {Role::albedo,    Role::beauty,         Role::radiance,
+                                    Role::ambient,   Role::specular,       Role::light,
+                                    Role::roughness, Role::specular_color, Role::motion};
   std::vector<LayerRequest> aovs = files.aovs;
   std::erase_if(aovs, [&](const LayerRequest& request) {
     return std::ranges::find(unused, request.role) != unused.end();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 #include <map>
@@ -321,7 +322,7 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
 
   std::vector<Role> roles = {Role::position, Role::depth,    Role::normal,    Role::albedo,
                              Role::radiance, Role::alpha,    Role::roughness, Role::motion,
-                             Role::ambient,  Role::specular, Role::light};
+                             Role::ambient,  Role::specular, Role::light,     Role::specular_color};
   if (options.beauty) roles.push_back(Role::beauty);
   check_display_windows(files, table, roles, g.downsampling);
   const LayerReader read(files, table, roles, g.window, g.grid, deep);
@@ -332,6 +333,7 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
   g.radiance = read.vector(table[Role::radiance], 0);
   g.alpha = read.scalar(table[Role::alpha], 0);
   g.roughness = read.scalar(table[Role::roughness], 0);
+  g.specular_color = read.vector(table[Role::specular_color], 0);
   g.motion = read.motion(table[Role::motion]);
   const glm::vec2 scale = options.motion_scale.value_or(glm::vec2(1));
   for (glm::vec2& to : g.motion.pixels) to = {scale.x * to.x, -scale.y * to.y};
@@ -352,6 +354,8 @@ GBuffer read_gbuffer(const std::vector<const ExrReader*>& files, const LayerTabl
     undo_alpha_of_albedo(g, albedo->premultiplied, options.known);
   clear_broken(g, g.roughness, "roughness", "smooth there");
   for (float& r : g.roughness.pixels) r = std::clamp(r, 0.0f, 1.0f);
+  clear_broken(g, g.specular_color, "specular-color", "black there");
+  for (glm::vec3& c : g.specular_color.pixels) c = glm::clamp(c, 0.0f, 1.0f);
   return g;
 }
 

@@ -19,8 +19,9 @@ std::vector<Components> vector_sets(const Components& in_full) {
 /// Plain `diffuse` is not among the names of albedo, since it is lit; `pref` and `rest` not among
 /// those of position, since they are in another space; `mist` not among those of depth, since it is
 /// no distance. `radiance`, `ambient`, `specular` and `light` have no name that could be trusted: a
-/// specular layer usually has the highlights of lamps too. Nor has motion of other renderers than
-/// Blender, whose units and signs differ.
+/// specular layer usually has the highlights of lamps too. `specular-color` has none, since
+/// renderers write tints, weights and F0 under the same names. Nor has motion of other renderers
+/// than Blender, whose units and signs differ.
 const std::array<RoleRow, kRoleCount>& table() {
   static const std::array<RoleRow, kRoleCount> rows = {{
       {.name = "position",
@@ -104,6 +105,11 @@ const std::array<RoleRow, kRoleCount>& table() {
        .layers = {"roughness", "specularroughness"},
        .components = {{"y"}, {"v"}, {"r"}, {"red"}, {"x"}},
        .outside = "have a roughness of 0"},
+      // A colour, or one value for all channels.
+      {.name = "specular-color",
+       .layers = {},
+       .components = {{"r", "g", "b"}, {"red", "green", "blue"}, {"y", "y", "y"}, {"v", "v", "v"}},
+       .outside = "mirror nothing along their normal"},
       {.name = "motion",
        .layers = {"vector"},
        .components = {{"x", "y"}, {"r", "g"}, {"red", "green"}, {"u", "v"}},

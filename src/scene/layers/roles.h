@@ -22,6 +22,7 @@ enum class Role {
   specular,
   light,
   roughness,
+  specular_color,
   motion,
 };
 inline constexpr std::size_t kRoleCount = std::size_t(Role::motion) + 1;

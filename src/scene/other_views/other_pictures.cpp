@@ -20,8 +20,9 @@ constexpr float kNothing = std::numeric_limits<float>::infinity();
 constexpr double kMostMissPx = 0.5;
 
 /// Layers that no other picture needs.
-const std::vector<Role> kUnused = {Role::motion,   Role::roughness, Role::radiance, Role::ambient,
-                                   Role::specular, Role::light,     Role::beauty};
+const std::vector<Role> kUnused = {Role::motion,  Role::roughness,     Role::radiance,
+                                   Role::ambient, Role::specular,      Role::light,
+                                   Role::beauty,  Role::specular_color};
 
 /// How a file is read.
 constexpr std::string_view kByNames = "--also", kAsInput = "INPUT";

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "estimators/bitmask/rays/find_reflection.h"
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "estimators/bitmask/parts.h"
+#include "estimators/bitmask/rays/depth_bounds.h"
+#include "estimators/specular/mirror_model.h"
+
+namespace ssdo {
+namespace {
+
+/// Rays into what is mirrored, for every slice.
+constexpr int kReflectionRays = 2;
+
+}  // namespace
+
+void find_reflection(const ReflectionInput& input, Products& products, const Progress& progress) {
+  const auto& [march, raster, scene, request, sent, two_sided] = input;
+  const Interleaving& layout = march.scene.layout;
+  InterleavedPlane roughness(layout), open;
+  for_each_row(layout.height(), [&](int y) {
+    roughness.fill_row(layout, y, float(request.parameters.at("roughness")));
+    if (scene.roughness.empty()) return;
+    raster.for_each_pixel(
+        y, [&](std::size_t pixel, std::ptrdiff_t i) { roughness[i] = scene.roughness[pixel]; });
+  });
+  if (request.products.reflection) open = InterleavedPlane(layout);
+  std::optional<MirroredLightJob> light;
+  InterleavedVectors sky, surfaces;
+  if (request.products.specular) {
+    products.shares.mirror = std::make_shared<const MirrorModel>(scene, request);
+    sky = raster.make_color(), surfaces = raster.make_color();
+    light.emplace(MirroredLightJob{*products.shares.mirror, scene.specular_color,
+                                   sent[0].data() ? &sent : nullptr, two_sided, &sky, &surfaces});
+  }
+  const std::vector<DepthBounds> bounds = depth_bounds(march.scene);
+  const ReflectionJob job{march,
+                          bounds,
+                          &roughness,
+                          kReflectionRays * request.slices,
+                          request.seed,
+                          open.data() ? &open : nullptr,
+                          light ? &*light : nullptr};
+  for_each_band_of(
+      march.scene.receivers, [&](const Window& part) { march_reflection(job, part); }, progress);
+  if (open.data()) products.reflection = raster.picture(std::move(open), 1.0f);
+  if (!light) return;
+  products.shares.mirrored_sky = raster.picture(std::move(sky));
+  products.specular = raster.picture(std::move(surfaces));
+}
+
+}  // namespace ssdo
