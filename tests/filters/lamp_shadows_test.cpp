@@ -29,7 +29,7 @@ Scene scene_with(const Surface& surface, const Camera& camera, const Lamp& lamp)
   const Geometry g = geometry_of(surface, camera, kWindow);
   Scene scene = scene_of(g, Environment::constant(glm::vec3(0)), 0.5f);
   scene.solids = guess_solids(g);
-  scene.light.sources.push_back(make_source(lamp, camera, 1e-4));
+  scene.light.sources.push_back(make_source(lamp, {camera.rotation, camera.origin}, 1e-4));
   return scene;
 }
 
