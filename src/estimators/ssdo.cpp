@@ -34,7 +34,6 @@
 #include "estimators/view_space/openness.h"
 #include "estimators/view_space/tiled_noise.h"
 #include "math/light_range.h"
-#include "scene/light/named_light.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/ssdo.cpp"
@@ -208,35 +207,16 @@ std::optional<OctahedralMap> radiance_of(const Scene& scene, int samples) {
 }
 
 /// What every pixel sends: its albedo times all the light that arrives, or the layer that says so.
-Plane<glm::vec3> sender_radiance(const Scene& scene, const Plane<glm::vec3>& direct,
-                                 const Plane<glm::vec3>& bounce) {
-  auto sent = Plane<glm::vec3>::like(bounce);
+Plane<glm::vec3> sender_radiance(const Scene& scene, const Products& so_far) {
+  Plane<glm::vec3> sent(so_far.ao.width, so_far.ao.height);
   for_each_row(sent.height, [&](int y) {
     for (std::size_t i = sent.index(0, y); i < sent.index(0, y + 1); ++i) {
       sent[i] = within_range(scene.senders.radiance.empty()
-                                 ? scene.senders.albedo[i] * (direct[i] + bounce[i])
+                                 ? scene.senders.albedo[i] * (so_far.direct[i] + so_far.bounce[i])
                                  : scene.senders.radiance[i]);
     }
   });
   return sent;
-}
-
-/// The direct light of one light: that of all, as far as it gives what would arrive without
-/// occluders. One share of all light is all that is known.
-Plane<glm::vec3> direct_of(const Scene& scene, const Light& light, const Plane<glm::vec3>& of_all) {
-  auto direct = Plane<glm::vec3>::like(of_all);
-  for_each_row(direct.height, [&](int y) {
-    for (std::size_t i = direct.index(0, y); i < direct.index(0, y + 1); ++i) {
-      const Surfel& s = scene.geometry.surfel[i];
-      direct[i] = glm::vec3(0);
-      if (!s.is_usable()) continue;
-      const glm::vec3 all = scene.light.unoccluded(s.position, s.normal),
-                      part = light.unoccluded(s.position, s.normal);
-      for (int c = 0; c < 3; ++c)
-        if (all[c] > 0) direct[i][c] = of_all[i][c] * (part[c] / all[c]);
-    }
-  });
-  return direct;
 }
 
 Products estimate(const Scene& scene, const Request& request, const Progress& progress) {
@@ -260,23 +240,13 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
   out.ao = find_openness(planes, progress, [&](const Tile& tile, Plane<float>& ao) {
     HWY_DYNAMIC_DISPATCH(direct_of_tile)(job, tile, ao, out.direct);
   });
-  const auto bounce_of = [&](const Plane<glm::vec3>& direct) {
-    Plane<glm::vec3> bounce = black;
-    for (int pass = 0; pass < request.bounces; ++pass) {
-      const Plane<glm::vec3> sent = sender_radiance(scene, direct, bounce);
-      const auto gather_light = [&](const Tile& tile) {
-        HWY_DYNAMIC_DISPATCH(bounce_of_tile)(job, tile, sent, bounce);
-      };
-      for_each_tile(planes.width(), planes.height(), gather_light, progress);
-    }
-    return bounce;
-  };
-  if (request.products.bounce) out.bounce = bounce_of(out.direct);
-  if (request.by_light.bounce) {
-    for (const NamedLight& light : lights_of(scene.light)) {
-      LightProducts& of_light = out.lights.emplace_back();
-      of_light.bounce = bounce_of(direct_of(scene, light.light, out.direct));
-    }
+  if (request.products.bounce) out.bounce = black;
+  for (int pass = 0; request.products.bounce && pass < request.bounces; ++pass) {
+    const Plane<glm::vec3> sent = sender_radiance(scene, out);
+    const auto gather_light = [&](const Tile& tile) {
+      HWY_DYNAMIC_DISPATCH(bounce_of_tile)(job, tile, sent, out.bounce);
+    };
+    for_each_tile(planes.width(), planes.height(), gather_light, progress);
   }
   return out;
 }

@@ -18,6 +18,8 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
+using Values = decltype(Plane<float>::pixels);
+
 class SpecularProduct : public testing::Test {
  protected:
   void write_with(const std::map<std::string, float>& layers) {
@@ -36,9 +38,9 @@ class SpecularProduct : public testing::Test {
     return done;
   }
 
-  std::vector<float> of(const std::string& name) { return channel(dir_ / "out.exr", name).pixels; }
+  Values of(const std::string& name) { return channel(dir_ / "out.exr", name).pixels; }
 
-  std::vector<float> red(std::vector<std::string> flags) {
+  Values red(std::vector<std::string> flags) {
     flags.insert(flags.end(), {"--products", "specular"});
     made(flags);
     EXPECT_THAT(channel_names(dir_ / "out.exr"),
@@ -51,10 +53,10 @@ class SpecularProduct : public testing::Test {
 
 TEST_F(SpecularProduct, TheColourComesFromALayerOrAnIndexOfRefraction) {
   write_with({{"tint.R", 1}, {"tint.G", 0.04f}, {"tint.B", 0}, {"grey.Y", 1}});
-  const std::vector<float> glass = red({}), metal = red({"--set", "ior=1e6"});
+  const Values glass = red({}), metal = red({"--set", "ior=1e6"});
   EXPECT_NE(glass, metal);
-  const std::vector<float> tinted = red({"--aov", "specular-color=tint"});
-  const std::vector<float> green = of("specular.G"), blue = of("specular.B");
+  const Values tinted = red({"--aov", "specular-color=tint"});
+  const Values green = of("specular.G"), blue = of("specular.B");
   ASSERT_EQ(tinted.size(), metal.size());
   for (std::size_t i = 0; i < tinted.size(); ++i) {
     ASSERT_NEAR(tinted[i], metal[i], 1e-4f);
@@ -82,9 +84,9 @@ TEST_F(SpecularProduct, IsPartOfTheCompositeIfProductsNamesIt) {
   write_with({{"roughness", 0.3f}});
   for (const char* compose : {"relight", "add"}) {
     made({"--products", "composite,direct,bounce,specular", "--compose", compose});
-    const std::vector<float> with = of("R"), specular = of("specular.R");
+    const Values with = of("R"), specular = of("specular.R");
     const Finished without = made({"--products", "all", "--compose", compose});
-    const std::vector<float> diffuse = of("R");
+    const Values diffuse = of("R");
     double most = 0;
     for (std::size_t i = 0; i < with.size(); ++i) {
       ASSERT_NEAR(with[i], diffuse[i] + specular[i], 1e-5f) << compose;

@@ -97,9 +97,9 @@ struct RecordedLamp {
 inline const std::vector<std::string> kFourViews = {"also_left.exr", "also_pano.exr",
                                                     "also_right.exr", "also_top.exr"};
 inline const std::vector<RecordedLamp> kRecordedLamps = {
-    {"point", "gbuffer.exr", {}, 0, 0},         {"area", "gbuffer.exr", {}, 0, 0},
-    {"spot", "gbuffer.exr", {}, 0, 0},          {"point", "overscan.exr", kFourViews, 0, 0},
-    {"area", "overscan.exr", kFourViews, 0, 0}, {"spot", "overscan.exr", kFourViews, 0, 0},
+    {"point", "gbuffer.exr", {}, 0.2891, 0.4889},         {"area", "gbuffer.exr", {}, 0.1561, 0.5368},
+    {"spot", "gbuffer.exr", {}, 0.1415, 0.3783},          {"point", "overscan.exr", kFourViews, 0.266, 0.5313},
+    {"area", "overscan.exr", kFourViews, 0.1463, 0.5225}, {"spot", "overscan.exr", kFourViews, 0.1228, 0.2287},
 };
 
 }  // namespace ssdo::test
