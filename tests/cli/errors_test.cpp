@@ -195,7 +195,8 @@ TEST(Refusals, OfMissingAndAmbiguousLayers) {
       << "nor do bent and the error of direct";
   EXPECT_THAT(channel_names(dir / "out.exr"),
               testing::ElementsAre("ao.Y", "bent.X", "bent.Y", "bent.Z", "direct.B", "direct.G",
-                                   "direct.R", "error.Y", "guessed.Y"));
+                                   "direct.R", "error.Y", "guessed.Y", "shadow.B", "shadow.G",
+                                   "shadow.R", "unshadowed.B", "unshadowed.G", "unshadowed.R"));
 }
 
 /// Issue 20: INPUT was that of `info` or of the main job, whichever came last.

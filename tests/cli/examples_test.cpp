@@ -26,6 +26,7 @@ const std::map<std::string, std::string> kNotRun = {
     {"blender ", "needs Blender; data/blender has what it makes"},
     {R"(\fBProduct )", "a table"},
     {"env = ", "a config file: ConfigFileOfTheManual"},
+    {R"(  { "lights")", "a file of lamps"},
 };
 
 constexpr int kShrunk = 9;  ///< every ninth pixel in x and y: still lifes of 64 x 36
@@ -96,6 +97,7 @@ class Examples : public testing::Test {
       fs::create_directories((*folder_ / file).parent_path());
       write_frame(*folder_ / file, shrunk(std::string(name) + ".exr"));
     }
+    fs::copy_file(data("still_life.lights.json"), *folder_ / "data/still_life.lights.json");
     for (const auto& entry : fs::directory_iterator(data("blender/exports")))
       fs::copy_file(entry.path(), *folder_ / entry.path().filename());
     write_maps();

@@ -154,7 +154,7 @@ TEST_F(LayersOfLights, AreTheSameInPartsAndByAnyThreads) {
   const nlohmann::json info = parse_json(run_tool({"info", path("tall.exr"), "--json"}).out);
   std::ofstream(path("camera.json")) << info["camera"].dump();
   const Words flags =
-      kLamps + kColors + Words{"--per-light", "--radius",         "0.2", "--thickness", "0.3",
+      kLamps + kColors + Words{"--per-light", "--radius",         "0.05", "--thickness", "0.3",
                                "--camera",    path("camera.json")};
   made("tall.exr", "one.exr", flags + Words{"--threads", "1"});
   made("tall.exr", "two.exr", flags + Words{"--threads", "2"});

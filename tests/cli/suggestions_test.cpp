@@ -116,7 +116,7 @@ TEST_F(Suggestions, OfProductsThatBenchMeasures) {
 TEST_F(Suggestions, AreNotMadeWhereNothingIsNear) {
   const std::vector<std::pair<std::string, std::string>> far = {
       {"--method", "magic"},     {"--filter", "median"},    {"--products", "glow"},
-      {"--save", "glow=b.exr"},  {"--set", "height=1"},     {"--aov", "height=P"},
+      {"--save", "glow=b.exr"},  {"--set", "height=1"},     {"--aov", "zebra=P"},
       {"--quality", "best"},     {"--compression", "lzma"}, {"--depth-kind", "near"},
       {"--display", "P3"},       {"--view", "Filmic"},      {"--look", "Punchy"},
       {"--colorspace", "magic"}, {"--completions", "fish"}};

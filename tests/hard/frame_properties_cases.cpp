@@ -51,8 +51,9 @@ Measured bad_outputs(const Subject& s) {
   for (const std::string& name : plan.make) {
     const NamedChannels made = product_channels(name, results);
     for (const NamedChannel& channel : made.channels) {
-      const bool is_share =
-          find_product(name).kind == ProductKind::share || (channel.name == "A" && makes_alpha);
+      // Shadow times unshadowed is direct, whatever a method finds: it is not held to 1.
+      const bool is_share = (find_product(name).kind == ProductKind::share && name != "shadow") ||
+                            (channel.name == "A" && makes_alpha);
       for (int i = 0; i < channel.pixels.width * channel.pixels.height; ++i) {
         const float v = channel.pixels[std::size_t(i)];
         worst.see(!is_in_range(v, is_share ? ProductKind::share : ProductKind::light),

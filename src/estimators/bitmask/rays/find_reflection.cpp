@@ -18,7 +18,11 @@ constexpr int kReflectionRays = 2;
 }  // namespace
 
 void find_reflection(const ReflectionInput& input, Products& products, const Progress& progress) {
-  const auto& [march, raster, scene, request, sent, two_sided] = input;
+  const March& march = input.march;
+  const Raster& raster = input.raster;
+  const Scene& scene = input.scene;
+  const Request& request = input.request;
+  const InterleavedVectors& sent = input.sent;
   const Interleaving& layout = march.scene.layout;
   InterleavedPlane roughness(layout), open;
   for_each_row(layout.height(), [&](int y) {
@@ -34,7 +38,8 @@ void find_reflection(const ReflectionInput& input, Products& products, const Pro
     products.shares.mirror = std::make_shared<const MirrorModel>(scene, request);
     sky = raster.make_color(), surfaces = raster.make_color();
     light.emplace(MirroredLightJob{*products.shares.mirror, scene.specular_color,
-                                   sent[0].data() ? &sent : nullptr, two_sided, &sky, &surfaces});
+                                   sent[0].data() ? &sent : nullptr, input.two_sided, &sky,
+                                   &surfaces});
   }
   const std::vector<DepthBounds> bounds = depth_bounds(march.scene);
   const ReflectionJob job{march,

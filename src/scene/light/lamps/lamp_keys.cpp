@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/json_text.h"
 #include "io/one_line.h"
 #include "nearest_name.h"
 #include "scene/light/lamps/blackbody.h"
@@ -54,7 +55,7 @@ std::vector<std::string> keys_of(LampType type) {
 /// A value as it stands in the file, short enough for a message.
 std::string shown(const json& value) {
   constexpr std::size_t kMost = 60;
-  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  std::string text = json_text(value);
   if (text.size() > kMost) text.replace(kMost, text.npos, "...");
   return printable(text);
 }
