@@ -157,6 +157,11 @@ std::vector<std::string> random_settings(RandomNumbers& random, const Method& me
   if (method.is_reference) set.push_back(fmt::format("samples={}", random.whole(4, 16)));
   const bool unusual = random.chance(0.3);
   for (const Parameter& p : method.parameters) {
+    if (p.name == kIndexOfRefraction.name) {
+      // Takes no random number, so that all else of a seed stays as it was.
+      if (unusual) set.push_back(fmt::format("{}=1.33", p.name));
+      continue;
+    }
     if (!unusual || !random.chance(0.4) || (method.is_reference && p.name == "samples")) continue;
     const double high = p.whole ? std::min(p.high, std::max(kMostCount, p.low)) : p.high;
     double value = random.chance(0.3) ? random.one_of({p.low, high}) : random.between(p.low, high);
