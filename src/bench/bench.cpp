@@ -66,11 +66,10 @@ class Bench {
     report_.filter = job_.frame.model.filter;
   }
 
-  /// Methods that know no solids take no light of lamps (plan/make_plan.cpp).
   bool can_make(const Method& method, const std::string& name) const {
     const Product& product = find_product(name);
     const bool lit = product.kind == ProductKind::light && has_lamps(frame_.scene.light);
-    return makes(method, product) && (method.takes.thickness || !lit);
+    return makes(method, product) && (takes_lamps(method) || !lit);
   }
 
   void choose_methods() {

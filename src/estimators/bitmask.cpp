@@ -249,6 +249,7 @@ class Bitmask {
   /// Takes out of the planes of lights that their senders are rounded one by one (two_in_one()):
   /// the sum becomes that of all.
   void add_up(const Plane<glm::vec3>& of_all, Plane<glm::vec3> LightProducts::*plane) {
+    if (out_.lights.empty()) return;
     constexpr float kMost = 0.01f;  // more is no rounding
     for_each_row(of_all.height, [&](int y) {
       for (std::size_t i = of_all.index(0, y); i < of_all.index(0, y + 1); ++i) {

@@ -85,6 +85,8 @@ bool makes(const Method& method, const Product& product) {
   return contains(method.products, product.made_of);
 }
 
+bool takes_lamps(const Method& method) { return method.takes.thickness; }
+
 const Parameter* find_parameter(const Method& method, std::string_view name) {
   for (const Parameter& parameter : method.parameters) {
     if (parameter.name == name) return &parameter;

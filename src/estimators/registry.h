@@ -22,6 +22,10 @@ const Method& reference_method();
 /// Whether the method makes what the product is made of.
 bool makes(const Method& method, const Product& product);
 
+/// Whether a method takes light of lamps: what rays to them find, which methods that know no solids
+/// do not send. Their ao says how much is open, not whether a lamp is seen.
+bool takes_lamps(const Method& method);
+
 /// Null where the method has none of that name.
 const Parameter* find_parameter(const Method& method, std::string_view name);
 

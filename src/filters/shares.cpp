@@ -25,8 +25,7 @@
 //
 // Where the share of all light is ao, there is nothing to be filtered but ao.
 //
-// What each light gives is its own unoccluded light times its share, or that of all light. So the
-// sum over the lights is the product.
+// What each light gives is its own unoccluded light times its share: the terms of that sum.
 //
 // ao is averaged as it is. What of ao is open by the normal alone would be divided out in
 // shares_of_row() and multiplied in light_of_row().
@@ -95,38 +94,28 @@ void shares_of_row(const Scene& scene, Products& products, int y) {
       });
 }
 
+/// Of some light, what arrives at a vector of pixels; `share_of(k)` of its source k does.
+template <class ShareOf>
+HWY_INLINE V3 arriving(const Light& light, const Surfels& s, const V3& sky,
+                       const ShareOf& share_of) {
+  V3 sum = saturate(sky) * unoccluded_sky(light, s.normal);
+  for (std::size_t k = 0; k < light.sources.size(); ++k)
+    sum = mul_add(unoccluded(*light.sources[k], s.position, s.normal), share_of(k), sum);
+  return sum;
+}
+
 /// The light of a row from its shares, light by light, before light_of_row() takes their room.
-/// `direct` holds light, not shares, where nothing was filtered.
-void lights_of_row(const Scene& scene, const std::vector<NamedLight>& lights, bool direct_is_light,
-                   Products& products, int y) {
+void lights_of_row(const Scene& scene, const std::vector<NamedLight>& lights, Products& products,
+                   int y) {
   const LightShares& shares = products.shares;
   for_each_vector(
       scene.geometry.surfel, y, [&](std::size_t i, int count, const Surfels& s) HWY_ATTR {
-        V3 of_all{};  // share of all light, where the parts are not known
-        if (shares.are_ao) {
-          const V ao = load_first(count, &products.ao[i]);
-          of_all = {ao, ao, ao};
-        } else if (shares.sky.empty()) {
-          of_all = load_first(count, &products.direct[i]);
-          const V3 all = unoccluded(scene.light, s.position, s.normal);
-          const auto divided = [](V part, V whole) HWY_ATTR {
-            return hn::IfThenElseZero(whole > set(0), part / whole);
-          };
-          if (direct_is_light)
-            of_all = {divided(of_all.x, all.x), divided(of_all.y, all.y), divided(of_all.z, all.z)};
-        }
+        const V3 sky = load_first(count, &shares.sky[i]);
         for (std::size_t l = 0; l < lights.size(); ++l) {
-          const Light& light = lights[l].light;
-          V3 sum;
-          if (shares.sky.empty()) {
-            sum = unoccluded(light, s.position, s.normal) * of_all;
-          } else {
-            sum = saturate(load_first(count, &shares.sky[i])) * unoccluded_sky(light, s.normal);
-            for (std::size_t k = 0; k < light.sources.size(); ++k) {
-              const V share = saturate(load_first(count, &shares.suns[lights[l].numbers[k]][i]));
-              sum = mul_add(unoccluded(*light.sources[k], s.position, s.normal), share, sum);
-            }
-          }
+          const auto share_of = [&](std::size_t k) HWY_ATTR {
+            return saturate(load_first(count, &shares.suns[lights[l].numbers[k]][i]));
+          };
+          const V3 sum = arriving(lights[l].light, s, sky, share_of);
           store_first(count, if_then_else_zero(s.surface, sum), &products.lights[l].direct[i]);
         }
       });
@@ -151,11 +140,10 @@ void light_of_row(const Scene& scene, Products& products, int y) {
         } else if (products.shares.sky.empty()) {
           sum = load_first(count, &products.direct[i]) * unoccluded(light, s.position, n);
         } else {
-          sum = saturate(load_first(count, &products.shares.sky[i])) * unoccluded_sky(light, n);
-          for (std::size_t k = 0; k < products.shares.suns.size(); ++k) {
-            const V share = saturate(load_first(count, &products.shares.suns[k][i]));
-            sum = mul_add(unoccluded(*light.sources[k], s.position, n), share, sum);
-          }
+          const auto share_of = [&](std::size_t k) HWY_ATTR {
+            return saturate(load_first(count, &products.shares.suns[k][i]));
+          };
+          sum = arriving(light, s, load_first(count, &products.shares.sky[i]), share_of);
         }
         store_first(count, if_then_else_zero(s.surface, sum), &found[i]);
       });
@@ -188,16 +176,14 @@ Products without_shares(Products products) {
   return products;
 }
 
-/// The direct light of each light, where the products have lights.
-void find_lights(Products& products, const Scene& scene, bool direct_is_light) {
-  const LightShares& shares = products.shares;
-  const bool is_known = shares.are_ao || !shares.sky.empty() || !products.direct.empty();
-  if (products.lights.empty() || !is_known) return;
+/// The direct light of each light, where there are several: methods that take lamps know the parts.
+void find_lights(Products& products, const Scene& scene) {
+  if (products.lights.size() < 2 || products.shares.sky.empty()) return;
   const std::vector<NamedLight> lights = lights_of(scene.light);
   for (LightProducts& light : products.lights)
     light.direct = Plane<glm::vec3>::like(scene.geometry.surfel);
   for_each_row(scene.geometry.surfel.height, [&](int y) {
-    HWY_DYNAMIC_DISPATCH(lights_of_row)(scene, lights, direct_is_light, products, y);
+    HWY_DYNAMIC_DISPATCH(lights_of_row)(scene, lights, products, y);
   });
 }
 
@@ -210,7 +196,7 @@ Products filter_found(const Filter& filter, Products noisy, const Scene& scene, 
   if (amend) amend(noisy);
   add_specular(noisy, scene);
   if (filter.apply) return from_shares(std::move(noisy), scene);
-  find_lights(noisy, scene, true);
+  find_lights(noisy, scene);
   return without_shares(std::move(noisy));
 }
 
@@ -263,7 +249,7 @@ Products to_shares(Products products, const Scene& scene) {
 
 Products from_shares(Products products, const Scene& scene) {
   add_emitted(products, 1);
-  find_lights(products, scene, false);
+  find_lights(products, scene);
   // The light of the sky's share takes its place.
   if (products.shares.are_ao) products.direct = Plane<glm::vec3>::like(scene.geometry.surfel);
   if (!products.direct.empty() || !products.shares.sky.empty() || !products.bent.empty()) {

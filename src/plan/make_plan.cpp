@@ -16,6 +16,7 @@
 #include "plan/product_choice.h"
 #include "prior/prior.h"
 #include "scene/light/distant_source.h"
+#include "scene/light/named_light.h"
 #include "scene/solids/width_of_run.h"
 
 namespace ssdo {
@@ -56,11 +57,9 @@ void refuse_options(const Method& method, const ModelOptions& model) {
   }
 }
 
-/// Light of lamps is what rays to them find, and methods that know no solids send none: their ao
-/// says how much is open, not whether a lamp is seen.
 void refuse_lamps(const Plan& plan, const Scene& scene) {
   const ProductSet& products = plan.request.products;
-  if (plan.method->takes.thickness || !(products.direct || products.bounce)) return;
+  if (takes_lamps(*plan.method) || !(products.direct || products.bounce)) return;
   for (const auto& source : scene.light.sources) {
     if (source->name.empty()) continue;
     throw Error(ExitCode::usage,
@@ -167,11 +166,9 @@ void explain_light(Plan& plan, const Light& light) {
         "% of it",
         shape_of(*sun), 100 * sun->share, luminance(sun->irradiance), 100 * sun->held));
   }
-  for (const auto& source : light.sources) {
-    if (source->name.empty()) continue;
-    plan.reasons.push_back(fmt::format(
-        "lamp {}: its light at each surface, times how much of it rays find open", source->name));
-  }
+  if (has_lamps(light))
+    plan.reasons.emplace_back(
+        "lamps: the light of each at each surface, times how much of it rays find open");
   if (light.environment.is_constant()) return;
   std::string energy;
   for (const double share : light.band_energy) energy += fmt::format(" {:.1f}", 100 * share);

@@ -183,10 +183,13 @@ class Round {
   /// Whether the method gathers the bounce light by light: that of a single light is all of it.
   bool bounces_by_light() const { return request_.by_light.bounce && names_.size() > 1; }
 
+  /// A single light is all of them.
   void finish_lights(Products& products) const {
+    const bool is_all = names_.size() == 1;
     for (LightProducts& light : products.lights) {
+      if (is_all) light.direct = products.direct, light.bounce = products.bounce;
       if (!request_.by_light.direct) light.direct = {};
-      if (request_.by_light.bounce && !bounces_by_light()) light.bounce = products.bounce;
+      if (!request_.by_light.bounce) light.bounce = {};
     }
   }
 

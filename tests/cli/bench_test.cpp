@@ -138,6 +138,17 @@ TEST_F(Bench, MeasuresEveryMethodWithTheFilterOfItsSource) {
   }
 }
 
+/// Their light of lamps would be wrong: they find no shadows.
+TEST_F(Bench, MeasuresNoLightOfLampsWithMethodsThatRefuseThem) {
+  const json report = report_of({"bench", frame_.frame, "--methods", "sao,gtao", "--products",
+                                 "ao,direct", "--light", "sphere position=0,0,1", "-q"});
+  ASSERT_GT(report["rows"].size(), 1u);
+  for (const json& row : report["rows"]) {
+    EXPECT_TRUE(row["errors"].contains("ao")) << row;
+    EXPECT_FALSE(row["errors"].contains("direct")) << row;
+  }
+}
+
 TEST_F(Bench, CsvAndTableSayWhatJsonSays) {
   const Finished done = run_tool(with_truth(
       {"--report", path("r.csv"), "--report", path("r.json"), "--products", "ao,direct"}));

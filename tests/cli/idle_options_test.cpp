@@ -123,6 +123,7 @@ TEST_F(IdleOptions, WithAnEffectAreNot) {
         {"-o", path("out.png"), "--bits", "16", "--view", "Raw", "--pixel-type", "float"},
         {"--offscreen", "open", "--bounces", "2", "--seed", "1"},
         {"--prior", "learned", "--products", "ao"},
+        {"--env", "0.5", "--env-up", "z", "--light", "distant direction=0,0,-1"},
         {"--set", "roughness=0.3", "--products", "reflection"},
         {"--set", "roughness=0.3", "--set", "ior=2", "--products", "specular"}}) {
     const Finished done = run("in.exr", flags);

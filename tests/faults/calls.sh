@@ -66,17 +66,21 @@ test_no_thread() {
   test_no_thread_in "a shot" "relit.1001.exr relit.1002.exr relit.1003.exr" "${shot[@]}" --threads 2 -o relit.####.exr
 }
 
-# test_each_of CALLS MOST ERROR...: up to MOST of the calls, at random if there are more.
+# test_each_of CALLS MOST ERROR...: up to MOST of the calls, at random if there are more; then not of those
+# that every run makes until main() has begun: while libraries are loaded, OpenImageIO's ends in a segmentation
+# fault where it gets no memory.
 test_each_of() {
-  local calls=$1 most=$2 count error i which good=0 bad=0
+  local calls=$1 most=$2 count start error i which good=0 bad=0
   new_case old a.exr a.png
+  start=$(calls_of "$calls" --version)
   count=$(calls_of "$calls" "${job[@]}" --overwrite --threads 2 -o a.exr -o a.png)
   [ "$count" -gt 0 ] || complain "${calls%%,*} is never called"
+  [ "$start" -lt "$count" ] || start=0
   for error in "${@:3}"; do
     for ((i = 1; i <= count && i <= most; i++)); do
       which=$i
-      draw "$count"
-      [ "$count" -le "$most" ] || which=$((1 + drawn))
+      draw $((count - start))
+      [ "$count" -le "$most" ] || which=$((start + 1 + drawn))
       new_case old a.exr a.png
       with_failing "$calls" "$error" "$which" "${job[@]}" --overwrite --threads 2 -o a.exr -o a.png
       if [ "$code" -ne 127 ]; then made_or_refused "1 2 3 4 5" "" a.exr a.png; fi

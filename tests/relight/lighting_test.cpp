@@ -99,6 +99,19 @@ TEST_F(LightRange, DimIsTheLightAndNotTheBrightestTexel) {
   EXPECT_THAT(warnings(light(dir_ / "star.exr", 3)), IsEmpty());
 }
 
+/// What surfaces beyond the border hide of lamps depends on it, in a constant light as well.
+TEST(Lighting, TakesTheAxisThatIsUpWithLamps) {
+  LightOptions options;
+  EXPECT_FALSE(Lighting(options).needs_up());
+  EXPECT_EQ(Lighting(options).around(UpAxis::z, {}).environment.frame().up, UpAxis::y);
+  options.lamps = {"distant direction=0,0,-1"};
+  EXPECT_TRUE(Lighting(options).needs_up());
+  EXPECT_EQ(Lighting(options).around(UpAxis::z, {}).environment.frame().up, UpAxis::z);
+  options.up = UpAxis::y;
+  EXPECT_FALSE(Lighting(options).needs_up());
+  EXPECT_EQ(Lighting(options).around(UpAxis::z, {}).environment.frame().up, UpAxis::y);
+}
+
 TEST_F(LightRange, ABlackMapIsMentioned) {
   EXPECT_THAT(warnings(light(map(0))), ElementsAre(HasSubstr("map.exr: is black")));
   EXPECT_THAT(warnings(light(map(0.1f))), IsEmpty());

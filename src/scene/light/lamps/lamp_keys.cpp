@@ -18,6 +18,7 @@
 #include "io/one_line.h"
 #include "nearest_name.h"
 #include "scene/light/lamps/blackbody.h"
+#include "scene/light/named_light.h"
 
 namespace ssdo {
 namespace {
@@ -29,8 +30,7 @@ constexpr double kLargest = 1e9;
 constexpr std::size_t kLongestName = 100;  ///< a channel has at most 255 bytes
 constexpr double kMostLight = 1e15;        ///< kBrightest, of which a float is a little less
 constexpr double kMostStops = 100;
-constexpr std::string_view kReserved = "env";  ///< the layers of the environment
-constexpr double kRigid = 1e-3;                ///< as for cameras
+constexpr double kRigid = 1e-3;  ///< as for cameras
 
 const std::vector<std::pair<std::string, LampType>> kTypes = {{"sphere", LampType::sphere},
                                                               {"disk", LampType::disk},
@@ -100,8 +100,9 @@ class LampReader {
     }
     const std::size_t number = origin_.text.rfind(' ') + 1;
     origin_.text = origin_.text.substr(0, number) + lamp_.name;
-    if (lamp_.name == kReserved)
-      refuse(fmt::format("name: '{}' is that of the environment map; give another", kReserved));
+    if (lamp_.name == kEnvironmentName)
+      refuse(
+          fmt::format("name: '{}' is that of the environment map; give another", kEnvironmentName));
   }
 
   void read_type() {
