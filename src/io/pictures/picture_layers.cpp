@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <string_view>
+#include <system_error>
 
 #include "error.h"
 #include "io/exr/file/exr_file.h"
@@ -58,7 +59,8 @@ bool ends_with_words(const std::string& text, const std::string& words) {
 
 PictureName parse_picture_name(const std::string& text) {
   const auto colon = text.rfind(':');
-  if (colon == std::string::npos || std::filesystem::exists(text)) return {text, ""};
+  std::error_code ignored;  // of a name that is too long for a file
+  if (colon == std::string::npos || std::filesystem::exists(text, ignored)) return {text, ""};
   return {text.substr(0, colon), text.substr(colon + 1)};
 }
 

@@ -31,6 +31,7 @@ TEST(PictureName, SplitsAtTheLastColonUnlessItIsAFile) {
   EXPECT_EQ(parse_picture_name(file + ":AO").file, file);
   EXPECT_EQ(parse_picture_name(file + ":AO").layer, "AO");
   EXPECT_EQ(parse_picture_name("gone.exr").layer, "");
+  EXPECT_EQ(parse_picture_name(std::string(5000, 'x') + ":AO").layer, "AO");  // no file's name
 }
 
 TEST(LayeredPicture, GroupsChannelsInTheOrderOfColoursAndCoordinates) {
