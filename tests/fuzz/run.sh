@@ -5,15 +5,16 @@
 # FOLDER is a build of the target `fuzz` by clang++, as tests/run.sh makes it in build/address.
 # Every target of tests/fuzz runs for SECONDS, as many at a time as there are processors.
 # FOLDER/fuzz/corpus keeps what reaches new code, and the next run goes on from there: run.sh FOLDER
-# 3600 runs for long, names of targets choose some of them. Without SECONDS, for 60, it makes the
-# same changes in the same order each time, so that what it finds comes of a change of the code.
+# 3600 runs for long, names of targets choose some of them. Without SECONDS it makes the same changes
+# in the same order each time, and as many on a fast machine as on a slow one (about a minute for
+# each target), so that what it finds comes of a change of the code.
 # An input that ends a target is a finding: it stays in FOLDER/fuzz/findings, the command that
 # repeats it is printed, and the exit code is 1. Where CI is set, the input is printed too.
 set -euo pipefail
 
 sources=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 build=$(realpath "${1:?run.sh FOLDER [SECONDS [TARGET...]]}")
-seconds=${2:-60}
+seconds=${2:-300}
 targets=("${@:3}")
 [ ${#targets[@]} -gt 0 ] || mapfile -t targets < <(basename -s _fuzz.cpp "$sources"/*_fuzz.cpp)
 corpus=$build/fuzz/corpus findings=$build/fuzz/findings logs=$build/fuzz/logs
@@ -22,7 +23,9 @@ corpus=$build/fuzz/corpus findings=$build/fuzz/findings logs=$build/fuzz/logs
 # size that a header claims.
 limits=(-max_len=65536 -timeout=30 -report_slow_units=30 -rss_limit_mb=2048)
 launch=()
+declare -A runs=()  # none: until the seconds are over
 if [ $# -lt 2 ]; then
+  runs=([camera]=60000 [deep]=50000 [environment]=6000 [exr]=12000 [frame]=18000 [options]=1500)
   limits+=(-seed=1)
   # At the same addresses: libFuzzer tries values that the code compares.
   ! setarch -R true 2>/dev/null || launch=(setarch -R)
@@ -33,6 +36,7 @@ export LSAN_OPTIONS=suppressions=$sources/../leaks.txt:print_suppressions=0
 fuzz_target() {
   local program=$build/fuzz/$1_fuzz options=("${limits[@]}" -artifact_prefix="$findings/$1-")
   [ ! -f "$sources/$1.dict" ] || options+=(-dict="$sources/$1.dict")
+  [ -z "${runs[$1]:-}" ] || options+=(-runs="${runs[$1]}")
   mkdir -p "$corpus/$1"
   [ -n "$(ls -A "$corpus/$1")" ] || "$program" --seeds "$corpus/$1" || return
   "${launch[@]}" "$program" "${options[@]}" -max_total_time="$seconds" -print_final_stats=1 \
