@@ -85,13 +85,10 @@ class Bitmask {
         bounce_march_(march_with(bounce_pattern_)) {}
 
   Products run() {
-    // Sources first: what bounds their rays needs more memory than any other light.
-    if (wants_light() && !scene_.light.sources.empty()) gather_sources();
-    gather_visibility();
+    gather_light_from_outside();
     BouncedLights bounced;
     if (request_.products.bounce) bounced = gather_bounces(bounce_inputs());
-    if (request_.products.reflection || request_.products.specular)
-      gather_reflection(bounced.all.bounce);
+    if (request_.products.reflection || request_.products.specular) gather_reflection(bounced.all);
     end_marches();
     hand_out(std::move(bounced));
     if (request_.products.guessed)
@@ -107,8 +104,7 @@ class Bitmask {
     kept_light_in_ = &raster;
     std::vector<FarLight> kept;
     if (request_.products.bounce && request_.bounces > 0) {
-      if (!scene_.light.sources.empty()) gather_sources();
-      gather_visibility();
+      gather_light_from_outside();
       kept = gather_bounces(bounce_inputs()).kept;
     }
     kept_light_in_ = nullptr;
@@ -147,14 +143,26 @@ class Bitmask {
     return sent > 0 ? with_senders(march_scene_, request_, receivers, sent) : receivers;
   }
 
+  /// Sources first: what bounds their rays needs more memory than any other light. But a prior is
+  /// asked about them when visibility is known.
+  void gather_light_from_outside() {
+    const bool has_sources = wants_light() && !scene_.light.sources.empty(),
+               asks = bool(request_.ask_prior);
+    if (has_sources && !asks) gather_sources();
+    gather_visibility();
+    if (has_sources && asks) gather_sources();
+  }
+
   void gather_visibility() {
     ao_ = InterleavedPlane(layout_);
     const Light& light = scene_.light;
     VisibilityJob job{.march = march_, .unoccluded = &light, .ao = &ao_};
     InterleavedVectors bent;
-    if (request_.products.bent) bent = raster_.make_color(), job.bent = &bent, job.order = 1;
+    const bool asks = bool(request_.ask_prior);
+    if (request_.products.bent || asks)
+      bent = raster_.make_color(), job.bent = &bent, job.order = 1;
     InterleavedPlane open_ao;
-    if (request_.open_ao) open_ao = InterleavedPlane(layout_), job.open_ao = &open_ao;
+    if (asks) open_ao = InterleavedPlane(layout_), job.open_ao = &open_ao;
     std::vector<float> weights;
     if (wants_light()) {
       out_.shares.are_ao = light.is_constant();
@@ -176,8 +184,22 @@ class Bitmask {
     }
     for_each_band_of(
         lit_part(), [&](const Window& part) { march_visibility(job, part); }, progress_);
+    if (asks) ask_prior(open_ao, bent);
     if (request_.products.bent) out_.bent = raster_.picture(std::move(bent));
-    if (request_.open_ao) out_.open_ao = raster_.picture(std::move(open_ao), 1.0f);
+  }
+
+  void ask_prior(const InterleavedPlane& open_ao, const InterleavedVectors& bent) {
+    const std::size_t width = std::size_t(layout_.width());
+    const auto found = [&](std::size_t pixel) {
+      const std::ptrdiff_t i = layout_.index(int(pixel % width), int(pixel / width));
+      return FoundVisibility{ao_[i], open_ao[i], {bent[0][i], bent[1][i], bent[2][i]}};
+    };
+    const bool sends = times_sent(scene_, request_) > 0 && scene_.senders.radiance.empty(),
+               has_suns = needs_openness(scene_, request_);
+    const LearnedVisibility learned =
+        request_.ask_prior({scene_, lit_part(), found, sends || has_suns});
+    if (sends) change_ = raster_.interleaved(learned.change);
+    if (has_suns) past_ = raster_.interleaved(learned.past);
   }
 
   /// A march of rays. In a band that marches on, the overview tells where they leave the frame.
@@ -193,12 +215,13 @@ class Bitmask {
   void gather_sources() {
     const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
     const March march = march_of_rays();
-    const float past = sun_past_beyond(march_scene_, scene_, request_);
+    const InterleavedPlane* const by_pixel = past_.data() ? &past_ : nullptr;
+    const float past = by_pixel ? 0 : sun_past_beyond(march_scene_, scene_, request_);
     for (const auto& source : scene_.light.sources) {
       const auto find = [&](const Window& to, RaySet set) {
         const auto points = points_of(*source, rays_to_source(request_.slices), request_.seed, set);
-        return find_source({march, bounds, points, *source, pass_beyond(past, *source)}, to,
-                           progress_);
+        return find_source({march, bounds, points, *source, pass_beyond(past, *source), by_pixel},
+                           to, progress_);
       };
       sources_.push_back(find(lit_part(), RaySet::of_light));
       if (request_.products.error)
@@ -228,8 +251,11 @@ class Bitmask {
     };
     if (request_.products.bounce) place(bounced.all, out_.bounce, out_.shares.emitted);
     out_.lights.resize(bounced.each.size());
-    for (std::size_t k = 0; k < bounced.each.size(); ++k)
+    out_.shares.sent = bounced.all.sent;
+    for (std::size_t k = 0; k < bounced.each.size(); ++k) {
       place(bounced.each[k], out_.lights[k].bounce, out_.lights[k].emitted);
+      out_.lights[k].sent = bounced.each[k].sent;
+    }
     add_up(out_.bounce, &LightProducts::bounce);
     add_up(out_.shares.emitted, &LightProducts::emitted);
     if (wants_light() && !request_.shares_suffice) out_.direct = raster_.picture(direct_light());
@@ -275,18 +301,20 @@ class Bitmask {
     return direct;
   }
 
-  void gather_reflection(const InterleavedVectors& bounce) {
+  void gather_reflection(const BouncedLight& bounce) {
     InterleavedVectors sent;
     if (mirrors_surfaces(scene_, request_))
       sent = sent_light(bounce_inputs(), as_one_light(scene_.light), lit_part(),
-                        bounce[0].data() ? &bounce : nullptr);
+                        bounce.bounce[0].data() ? &bounce : nullptr);
     const bool two_sided = sends_two_sided(scene_);
     find_reflection({march_of_rays(), raster_, scene_, request_, sent, two_sided}, out_, progress_);
   }
 
   BounceInputs bounce_inputs() const {
-    return {scene_, request_,    progress_, raster_,       bounce_march_,
-            ao_,    found_sky(), sources_,  kept_light_in_};
+    return {scene_,        request_,      progress_,
+            raster_,       bounce_march_, ao_,
+            found_sky(),   sources_,      change_.data() ? &change_ : nullptr,
+            kept_light_in_};
   }
 
   const Scene& scene_;
@@ -301,7 +329,8 @@ class Bitmask {
   March march_, bounce_march_;
   CutSurfaces cut_;
   InterleavedPlane ao_, error_;
-  InterleavedColorShares sky_share_;                   ///< empty where that is ao
+  InterleavedPlane change_, past_;    ///< as LearnedVisibility has them; empty: of no prior
+  InterleavedColorShares sky_share_;  ///< empty where that is ao
   std::vector<SourceShares> sources_, sources_again_;  ///< by source
   const FarRaster* kept_light_in_ = nullptr;  ///< where bands of the frame need what is sent
   Products out_;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <glm/vec3.hpp>
 #include <map>
 #include <memory>
 #include <optional>
@@ -64,6 +66,28 @@ struct AroundBand {
   std::optional<Openness> openness = {};  ///< of the frame; not known: that of `far`
 };
 
+/// What a method has found of a pixel: ao, the same if surfaces end at the border of the frame, and
+/// the bent normal, unit, in camera space.
+struct FoundVisibility {
+  float ao, open_ao;
+  glm::vec3 bent;
+};
+
+/// What a learned prior says of the pixels of a geometry, for the light that they send.
+struct LearnedVisibility {
+  Plane<float> change;  ///< of ao
+  Plane<float> past;    ///< share of a sun that comes past the border where nothing shown hides it
+};
+
+/// What a method asks a prior.
+struct PriorQuestion {
+  const Scene& scene;
+  Window part;  ///< pixels that are asked about, counted from the first of the geometry
+  std::function<FoundVisibility(std::size_t pixel)> found;  ///< by number in the geometry
+  bool for_light;                                           ///< whether the answer is looked at
+};
+using AskPrior = std::function<LearnedVisibility(const PriorQuestion&)>;
+
 /// What is asked of a method.
 struct Request {
   ProductSet products;
@@ -82,7 +106,7 @@ struct Request {
   /// empty.
   MapFilter filter_half = {};
   bool shares_suffice = false;  ///< `direct` may stay empty where Products::shares make it up
-  bool open_ao = false;         ///< Products::open_ao is made too, by methods that take a prior
+  AskPrior ask_prior = {};      ///< by methods that take it; empty: there is no prior
   /// Pixels that gather light: a part of the geometry's window. Products have the size of the part.
   /// All pixels of the geometry occlude and send light. Area 0: the whole window.
   Window receivers = {};

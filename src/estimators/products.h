@@ -49,6 +49,9 @@ struct LightShares {
   /// The part of `bounce` that small bright senders give, which ao does not bound: filters average
   /// it apart. Empty: there is none.
   Plane<glm::vec3> emitted;
+  /// With a learned prior: mean radiance that surfaces of the frame send. What is hidden but not
+  /// shown sends it.
+  glm::vec3 sent{0};
   bool are_ao = false;  ///< light comes from everywhere alike, and ao is its share; no planes then
   /// Of what surfaces mirror of the sky, channel by channel; empty: `specular` is not made.
   Plane<glm::vec3> mirrored_sky;
@@ -61,6 +64,7 @@ struct LightProducts {
   std::string name;
   Plane<glm::vec3> direct, bounce;  ///< empty where they were not asked for
   Plane<glm::vec3> emitted;         ///< the part of its bounce that LightShares::emitted has
+  glm::vec3 sent{0};                ///< as LightShares has it
 };
 
 /// Planes over the receivers of the request: those that were asked for, and others that the method
@@ -76,7 +80,6 @@ struct Products {
   Plane<float> error;  ///< of the luminance of direct + bounce, with the sign of one draw of noise
   Plane<float> guessed;  ///< G of estimators/guessed.h; the product once it is filtered
   LightShares shares;    ///< what `direct` is made of, where the method knows
-  Plane<float> open_ao;  ///< ao if surfaces end at the frame's border; not filtered
   std::vector<LightProducts> lights;  ///< in the order of lights_of(); empty: not asked for
 };
 

@@ -9,6 +9,7 @@
 #include "error.h"
 #include "io/images/image_file.h"
 #include "math/pixel_grid.h"
+#include "prior/prior.h"
 #include "scene/light/named_light.h"
 
 namespace ssdo {
@@ -150,7 +151,7 @@ BandPlan plan_bands(const std::string& file, const Window& frame, const Window& 
 int halo_rows(const Plan& plan, int reach_rows) {
   // What goes on beyond the border is measured within the radius of what rays meet there.
   const int reaches = 1 + plan.request.bounces + int(plan.request.extend_offscreen);
-  return plan.filter->reach + reaches * reach_rows;
+  return plan.filter->reach + (plan.prior ? kPriorReach : 0) + reaches * reach_rows;
 }
 
 std::string describe(const BandPlan& bands, const Window& frame) {

@@ -47,7 +47,8 @@ void refuse_options(const Method& method, const ModelOptions& model) {
       {"--slices", model.slices.has_value(), takes.march || find_parameter(method, "slices")},
       {"--steps", model.steps.has_value(), takes.march || find_parameter(method, "steps")},
       {"--error", model.error.has_value(), takes.march},
-      {"--prior learned", model.prior == Prior::learned, takes.prior}};
+      {"--prior learned, which corrects what method bitmask finds", model.prior == Prior::learned,
+       takes.prior}};
   for (const OptionOfModel& option : options) {
     if (option.given && !option.taken) {
       throw Error(ExitCode::usage,

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -15,6 +16,8 @@
 #include "plan/outputs.h"
 
 namespace ssdo {
+
+struct PriorContext;
 
 enum class Quality { draft, standard, final };
 
@@ -53,7 +56,8 @@ struct ModelOptions {
 
 /// What a learned prior is told of a frame by others than the estimate.
 struct LearnedPrior {
-  std::optional<glm::vec3> up;  ///< unit, camera space; not known: nothing
+  std::optional<glm::vec3> up;                        ///< unit, camera space; not known: nothing
+  std::shared_ptr<const PriorContext> of_frame = {};  ///< where a band of it is computed
 };
 
 /// What will be computed for a frame, and why.

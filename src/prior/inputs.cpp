@@ -25,6 +25,8 @@ int count_of(double cells, int larger, int most) {
   return std::clamp(int(cells / larger + 0.5), 1, most);
 }
 
+using enum PriorContext::Value;
+
 /// The cell that holds the centre of the i-th of `count` parts of the frame.
 int cell_of(int i, int count, int cells) {
   return int((2 * std::int64_t(i) + 1) * cells / (2 * std::int64_t(count)));
@@ -60,7 +62,8 @@ glm::mat3 prior_axes(const std::optional<glm::vec3>& up) {
 }
 
 PriorInputs::PriorInputs(const Squares& squares, const Geometry& geometry,
-                         const std::optional<glm::vec3>& up, float radius)
+                         const std::optional<glm::vec3>& up, float radius,
+                         const PriorContext* of_frame)
     : squares_(squares),
       axes_(prior_axes(up)),
       orthographic_(geometry.camera.orthographic),
@@ -71,14 +74,15 @@ PriorInputs::PriorInputs(const Squares& squares, const Geometry& geometry,
   lens_ = float(std::sqrt(width / 2 / camera.fx * (height / 2 / camera.fy)));
   log_lens_ = orthographic_ ? -3.0f : std::clamp(std::log(lens_), -3.0f, 1.0f);
   log_aspect_ = float(std::log(width / height));
-  find_log_depth();
-  find_cells(width / height);
+  if (of_frame) context_ = *of_frame;
+  find_log_depth(of_frame != nullptr);
+  if (!of_frame) find_cells(width / height);
   share();
 }
 
 /// Half of the logarithm of the depth over its geometric mean; orthographic: of the depth less its
 /// mean, in halves of the picture. 0 without a surface.
-void PriorInputs::find_log_depth() {
+void PriorInputs::find_log_depth(bool is_known) {
   const auto of = [&](const Surfel& s) {
     return orthographic_ ? -s.position.z / (4 * lens_) : 0.5f * std::log(-s.position.z);
   };
@@ -92,7 +96,8 @@ void PriorInputs::find_log_depth() {
       sum += double(log_depth_(x, y)), count += 1;
     }
   }
-  const auto mean = float(count > 0 ? sum / count : 0);
+  if (!is_known) context_.mean_log_depth = float(count > 0 ? sum / count : 0);
+  const float mean = context_.mean_log_depth;
   for (std::size_t i = 0; i < log_depth_.size(); ++i) {
     if (squares_.pixel[i] != kNoPixel)
       log_depth_[i] = std::clamp(log_depth_[i] - mean, -kMostLogDepth, kMostLogDepth);
@@ -136,11 +141,11 @@ void PriorInputs::find_cells(double aspect) {
     for (std::size_t c = 0; c < sum.of.size(); ++c) cell.sums[c] = float(sum.of[c] / count);
     return cell;
   };
-  frame_ = cell_with(frame);
-  for (std::size_t c = 0; c < frame_mean_.size(); ++c)
-    frame_mean_[c] = float(frame.of[c] / std::max(frame.surfaces, 1.0));
-  cells_[0] = Plane<Cell>(sums.width, sums.height);
-  for (std::size_t i = 0; i < sums.size(); ++i) cells_[0][i] = cell_with(sums[i]);
+  context_.frame = cell_with(frame);
+  for (std::size_t c = 0; c < context_.frame_mean.size(); ++c)
+    context_.frame_mean[c] = float(frame.of[c] / std::max(frame.surfaces, 1.0));
+  context_.cells[0] = Plane<Cell>(sums.width, sums.height);
+  for (std::size_t i = 0; i < sums.size(); ++i) context_.cells[0][i] = cell_with(sums[i]);
   // Larger cells are means of those whose centres they hold.
   for (std::size_t k = 1; k < kScales; ++k) {
     Plane<Sums> larger(count_of(across, kLarger[k], sums.width),
@@ -149,13 +154,13 @@ void PriorInputs::find_cells(double aspect) {
       for (int x = 0; x < sums.width; ++x) {
         Sums& sum =
             larger(cell_of(x, sums.width, larger.width), cell_of(y, sums.height, larger.height));
-        const Cell& cell = cells_[0](x, y);
+        const Cell& cell = context_.cells[0](x, y);
         sum.count += 1, sum.surfaces += double(cell.covered);
         for (std::size_t c = 0; c < cell.sums.size(); ++c) sum.of[c] += double(cell.sums[c]);
       }
     }
-    cells_[k] = Plane<Cell>(larger.width, larger.height);
-    for (std::size_t i = 0; i < larger.size(); ++i) cells_[k][i] = cell_with(larger[i]);
+    context_.cells[k] = Plane<Cell>(larger.width, larger.height);
+    for (std::size_t i = 0; i < larger.size(); ++i) context_.cells[k][i] = cell_with(larger[i]);
   }
 }
 
@@ -163,7 +168,7 @@ PriorInputs::Values PriorInputs::means(const Cell& cell) const {
   Values mean;
   const float scale = 1 / (cell.covered + kOfTheFrame);
   for (std::size_t c = 0; c < mean.size(); ++c)
-    mean[c] = (cell.sums[c] + kOfTheFrame * frame_mean_[c]) * scale;
+    mean[c] = (cell.sums[c] + kOfTheFrame * context_.frame_mean[c]) * scale;
   return mean;
 }
 
@@ -183,18 +188,18 @@ PriorInputs::Cell PriorInputs::look_up(const Plane<Cell>& cells, float across, f
 
 void PriorInputs::share() {
   const auto put = [&](float value) { shared_.push_back(value); };
-  const Values& f = frame_mean_;
+  const Values& f = context_.frame_mean;
   for (int c = 0; c < 3; ++c) put(f[std::size_t(c)]);
   put(glm::length(glm::vec3(f[0], f[1], f[2])));
   put(f[kLevel]);
   put(deviation(f[kLogDepth2], f[kLogDepth]));
-  put(frame_.covered);
+  put(context_.frame.covered);
   for (std::size_t c = kAo; c < kAo2; ++c) put(f[c]);
   put(deviation(f[kAo2], f[kAo]));
   put(deviation(f[kGuessed2], f[kGuessed]));
   put(pitch_);
   // Along a border.
-  const Plane<Cell>& cells = cells_[1];
+  const Plane<Cell>& cells = context_.cells[1];
   const auto put_side = [&](int count, const auto& at) {
     Cell side;
     const float each = 1 / float(count);
@@ -237,7 +242,7 @@ void PriorInputs::write(int y, std::size_t stride, float* rows) const {
     put(own[kLogDepth]);
     put(-glm::dot(normal, view));
     put(log_lens_), put(log_aspect_);
-    for (const Plane<Cell>& cells : cells_) {
+    for (const Plane<Cell>& cells : context_.cells) {
       const Cell cell = look_up(cells, across, down);
       const Values m = means(cell);
       for (int c = 0; c < 3; ++c) put(m[std::size_t(c)]);

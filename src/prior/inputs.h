@@ -28,25 +28,11 @@ namespace ssdo {
 /// continuously also where it looks straight down. Without it, they are the camera's.
 glm::mat3 prior_axes(const std::optional<glm::vec3>& up);
 
-class PriorInputs {
- public:
+/// What the prior is told of a frame as a whole: of one that is computed in bands, its overview
+/// tells it.
+struct PriorContext {
   static constexpr int kScales = 3;
-  static constexpr std::size_t kOfPixel = 19, kOfScale = 12, kOfFrame = 16, kOfSide = 6;
-  /// Inputs of a pixel, and those that all pixels have in common, which follow them.
-  static constexpr std::size_t kOwn = kOfPixel + kScales * kOfScale,
-                               kShared = kOfFrame + 4 * kOfSide;
 
-  /// `squares` with the means of what was found; `radius` in scene units, or infinity; `up` as
-  /// prior_axes() has it.
-  PriorInputs(const Squares& squares, const Geometry& geometry, const std::optional<glm::vec3>& up,
-              float radius);
-
-  std::span<const float> shared() const { return shared_; }
-
-  /// Writes the own inputs of a row of squares: kOwn rows, `stride` floats apart.
-  void write(int y, std::size_t stride, float* rows) const;
-
- private:
   /// What means are taken of; its squares, for deviations, stand last.
   enum Value {
     kNormal = 0,
@@ -69,7 +55,38 @@ class PriorInputs {
     Values sums = {};
   };
 
-  void find_log_depth();
+  float mean_log_depth = 0;  ///< see PriorInputs::find_log_depth()
+  Cell frame;                ///< all of it
+  Values frame_mean;         ///< over surfaces
+  std::array<Plane<Cell>, kScales> cells;
+};
+
+class PriorInputs {
+ public:
+  static constexpr int kScales = PriorContext::kScales;
+  static constexpr std::size_t kOfPixel = 19, kOfScale = 12, kOfFrame = 16, kOfSide = 6;
+  /// Inputs of a pixel, and those that all pixels have in common, which follow them.
+  static constexpr std::size_t kOwn = kOfPixel + kScales * kOfScale,
+                               kShared = kOfFrame + 4 * kOfSide;
+
+  /// `squares` with the means of what was found; `radius` in scene units, or infinity; `up` as
+  /// prior_axes() has it. `of_frame`: where the geometry is a band of a frame; null: the squares
+  /// tell it.
+  PriorInputs(const Squares& squares, const Geometry& geometry, const std::optional<glm::vec3>& up,
+              float radius, const PriorContext* of_frame = nullptr);
+
+  const PriorContext& context() const { return context_; }
+  std::span<const float> shared() const { return shared_; }
+
+  /// Writes the own inputs of a row of squares: kOwn rows, `stride` floats apart.
+  void write(int y, std::size_t stride, float* rows) const;
+
+ private:
+  using Value = PriorContext::Value;
+  using Values = PriorContext::Values;
+  using Cell = PriorContext::Cell;
+
+  void find_log_depth(bool is_known);
   void find_cells(double aspect);
   void share();
   Values values_of(int x, int y) const;
@@ -82,9 +99,7 @@ class PriorInputs {
   float lens_;  ///< geometric mean of half the width and half the height: slopes, or scene units
   float log_lens_, log_aspect_, pitch_, radius_;
   Plane<float> log_depth_;
-  Cell frame_;         ///< all of it
-  Values frame_mean_;  ///< over surfaces
-  std::array<Plane<Cell>, kScales> cells_;
+  PriorContext context_;
   std::vector<float> shared_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/matrix.hpp>
 #include <utility>
 #include <vector>
 
@@ -23,22 +24,22 @@ constexpr float kShiftUnit = 4, kMostShift = 12;
 
 /// Takes what was found at the pixels of the squares, and averages it as the geometry filter does,
 /// over patterns of 8 x 8 squares; guesses, of which a square has one ray, twice.
-void average_over_squares(const Scene& scene, const Request& request, const Products& found,
-                          Squares& s) {
+void average_over_squares(const PriorQuestion& question, const PriorAsked& asked, Squares& s) {
   const Filter& filter = find_filter("geometry");
-  s.guesses = guessed_shares(scene, s.pixel, s.first, request.radius, request.seed);
-  const auto at_squares = [&](const auto& plane) {
-    auto out = std::decay_t<decltype(plane)>(s.pixel.width, s.pixel.height);
-    for (std::size_t i = 0; i < out.size(); ++i)
-      if (s.pixel[i] != kNoPixel) out[i] = plane[std::size_t(s.pixel[i])];
-    return out;
-  };
+  s.guesses = guessed_shares(question.scene, s.pixel, s.first, asked.radius, asked.seed);
+  s.ao = s.open_ao = Plane<float>(s.pixel.width, s.pixel.height, 0.0f);
+  s.bent = Plane<glm::vec3>(s.pixel.width, s.pixel.height, glm::vec3(0));
+  for (std::size_t i = 0; i < s.pixel.size(); ++i) {
+    if (s.pixel[i] == kNoPixel) continue;
+    const FoundVisibility found = question.found(std::size_t(s.pixel[i]));
+    s.ao[i] = found.ao, s.open_ao[i] = found.open_ao, s.bent[i] = found.bent;
+  }
   const auto filtering = [](std::string_view name) { return find_product(name).filtering; };
   FilterPlanes planes;
-  planes.push_back({at_squares(found.ao), filtering("ao")});
-  planes.push_back({at_squares(found.open_ao), filtering("ao")});
+  planes.push_back({std::move(s.ao), filtering("ao")});
+  planes.push_back({std::move(s.open_ao), filtering("ao")});
   planes.push_back({std::move(s.guesses), filtering("guessed")});
-  planes.push_back({at_squares(found.bent), filtering("bent")});
+  planes.push_back({std::move(s.bent), filtering("bent")});
   planes = filter.apply(std::move(planes), s.surfel, kGuessedPattern);
   s.ao = std::get<Plane<float>>(std::move(planes[0].plane));
   s.open_ao = std::get<Plane<float>>(std::move(planes[1].plane));
@@ -50,50 +51,84 @@ void average_over_squares(const Scene& scene, const Request& request, const Prod
   s.bent = std::get<Plane<glm::vec3>>(std::move(planes[3].plane));
 }
 
+/// Less than this share of the sky tells nothing of a sun.
+constexpr float kLeastOpen = 0.03f;
+
+/// ao' of prior.h, of the mean of a square.
+float leaned(float ao, float g, float u) {
+  const float lo = std::max(ao - g, 0.0f), hi = std::min(ao + g, 1.0f), width = hi - lo,
+              s = std::clamp((ao - lo) / std::max(width, 1e-6f), 0.02f, 0.98f), open = s * u,
+              closed = (1 - s) * (1 - u);
+  return std::clamp(ao + width * (open / (open + closed) - s), lo, hi);
+}
+
+float sigmoid(float x) { return 1 / (1 + std::exp(-x)); }
+
 std::size_t rounded_up(std::size_t count) {
   return (count + kMostLanes - 1) / kMostLanes * kMostLanes;
 }
 
 }  // namespace
 
-PriorField find_prior(const Scene& scene, const Request& request, const Products& found,
-                      const std::optional<glm::vec3>& up) {
-  const Geometry& geometry = scene.geometry;
-  const Window whole{0, 0, geometry.surfel.width, geometry.surfel.height};
-  Window part = whole;
-  if (const Window& r = request.receivers; r.area() > 0) {
-    const int left = geometry.window.x0, top = geometry.window.y0;
-    part = {r.x0 - left, r.y0 - top, r.x1 - left, r.y1 - top};
-  }
-  PriorField field{make_squares(geometry, part), {}};
-  average_over_squares(scene, request, found, field.squares);
-  const PriorInputs inputs(field.squares, geometry, up, request.radius);
+PriorField find_prior(const PriorQuestion& question, const PriorAsked& asked) {
+  const Geometry& geometry = question.scene.geometry;
+  const std::optional<glm::vec3>& up = asked.up;
+  PriorField field;
+  Squares& squares = field.squares = make_squares(geometry, question.part);
+  average_over_squares(question, asked, squares);
+  const PriorInputs inputs(squares, geometry, up, asked.radius, asked.of_frame);
+  field.context = inputs.context();
   const Network& network = up ? prior_models().upright : prior_models().camera;
-  field.lean = Plane<float>(field.squares.pixel.width, field.squares.pixel.height, 0.5f);
+  const glm::mat3 from_axes = glm::transpose(prior_axes(up));
+  for (Plane<float>* plane : {&field.lean, &field.change, &field.past, &field.opens,
+                              &field.moment[0], &field.moment[1], &field.moment[2], &field.spread})
+    *plane = Plane<float>(squares.pixel.width, squares.pixel.height, 0.0f);
   const std::size_t width = std::size_t(field.lean.width), stride = rounded_up(width);
   // Some rows at a time: what all pixels have in common is added to the network once for each.
   for_each_band(field.lean.height, [&](int y0, int y1) {
-    std::vector<float> rows(PriorInputs::kOwn * stride), shifts(network.outputs() * stride);
+    std::vector<float> rows(PriorInputs::kOwn * stride), outputs(network.outputs() * stride);
     const NetworkWithShared told(network, inputs.shared());
     for (int y = y0; y < y1; ++y) {
       inputs.write(y, stride, rows.data());
-      told.evaluate(rows.data(), stride, width, shifts.data());
+      told.evaluate(rows.data(), stride, width, outputs.data());
       for (std::size_t x = 0; x < width; ++x) {
-        const float shift = std::clamp(kShiftUnit * shifts[x], -kMostShift, kMostShift);
-        if (field.squares.pixel(int(x), y) != kNoPixel)
-          field.lean(int(x), y) = 1 / (1 + std::exp(-shift));
+        const std::size_t i = squares.pixel.index(int(x), y);
+        if (squares.pixel[i] == kNoPixel) continue;
+        const auto output = [&](int k) { return outputs[std::size_t(k) * stride + x]; };
+        const float ao = std::clamp(squares.ao[i], 0.0f, 1.0f), guessed = squares.guessed[i],
+                    room = std::min(ao + guessed, 1.0f) - std::max(ao - guessed, 0.0f);
+        const float shift = std::clamp(kShiftUnit * output(0), -kMostShift, kMostShift);
+        field.lean[i] = sigmoid(shift) - 0.5f;
+        const float after = leaned(ao, guessed, sigmoid(shift));
+        field.change[i] = after - ao;
+        const float open = (after + kLeastOpen) / (squares.open_ao[i] + kLeastOpen),
+                    closed = std::max(1 - open, 0.0f);
+        field.past[i] = 1 - closed * closed;
+        field.opens[i] = squares.open_ao[i] - squares.ao[i];
+        const glm::vec3 change(output(1), output(2), output(3));
+        const glm::vec3 moment = room * (from_axes * change);
+        for (int c = 0; c < 3; ++c) field.moment[std::size_t(c)][i] = moment[c];
+        field.spread[i] = room * sigmoid(output(4) - 1);
       }
     }
   });
   return field;
 }
 
+AskPrior ask_prior(const PriorAsked& asked, std::optional<PriorField>& field) {
+  return [asked, &field](const PriorQuestion& question) {
+    field = find_prior(question, asked);
+    return question.for_light ? by_pixel(*field, question.scene.geometry) : LearnedVisibility();
+  };
+}
+
 std::string describe_prior(bool up_is_known) {
   const PriorModels& models = prior_models();
   const Network& network = up_is_known ? models.upright : models.camera;
   return fmt::format(
-      "prior learned: a network of {} weights, trained on {} made scenes, fills what no picture "
-      "shows in ao, and in direct under light of one colour{}; all else goes by rules",
+      "prior learned: a network of {} weights, trained on {} generated scenes, fills what no "
+      "picture shows in ao, bent, the light of sky and suns, and bounce{}; guessed is its expected "
+      "error of ao; lamps and reflection go by rules",
       network.weights(), models.frames,
       up_is_known ? "" : ", without knowing which way is up: --env-up tells");
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "prior/prior.h"
 #include "relight/targets.h"
 #include "scene/build_geometry.h"
 #include "stopwatch.h"
@@ -93,11 +94,27 @@ class BandJob {
   void look_around() {
     Stopwatch watch;
     const Plan& plan = frame_.plan;
-    around_ = {plan.method->bands.overview(relit_.scene, plan.request, float(bands_.march_px),
+    Request request = plan.request;
+    std::optional<PriorField> field;
+    if (plan.prior) request.ask_prior = asking(field);
+    around_ = {plan.method->bands.overview(relit_.scene, request, float(bands_.march_px),
                                            [&](std::size_t, std::size_t) {}),
                bands_.marches_on, bands_.reach_rows};
     relit_.times.estimate += watch.lap();
     on_progress_(begun_);
+  }
+
+  /// Finds what a prior is told of the frame, and has it answer for the overview.
+  AskPrior asking(std::optional<PriorField>& field) {
+    const Plan& plan = frame_.plan;
+    Request request = plan.request;
+    request.products = {.ao = true};
+    const PriorAsked asked{plan.prior->up, request.radius, request.seed};
+    request.ask_prior = ask_prior(asked, field);
+    plan.method->estimate(relit_.scene, request, {});
+    prior_.of_frame = std::make_shared<PriorContext>(std::move(field->context));
+    prior_.up = plan.prior->up;
+    return ask_prior({asked.up, asked.radius, asked.seed, prior_.of_frame.get()}, field);
   }
 
   bool needs_openness() const {
@@ -154,7 +171,9 @@ class BandJob {
   /// `scene` is left with what outputs need.
   Products estimate_band(Scene& scene, const Window& rows) {
     Plan plan = frame_.plan;
-    plan.request.receivers = with_rows_around(rows, plan.filter->reach);
+    if (plan.prior) plan.prior = prior_;
+    plan.request.receivers =
+        with_rows_around(rows, plan.filter->reach + (plan.prior ? kPriorReach : 0));
     plan.request.around_band = around_;
     const double before = double(rows.y0 - all_.y0) / all_.height(),
                  share = double(rows.height()) / all_.height();
@@ -185,6 +204,7 @@ class BandJob {
   const std::function<void(double)>& on_progress_;
   Relit& relit_;
   AroundBand around_;
+  LearnedPrior prior_;             ///< where it is used
   double begun_ = kOverviewShare;  ///< share of the time before bands are written
 };
 

@@ -63,7 +63,6 @@ Products over_geometry(Products found, const Geometry& geometry, const Window& r
   for_each_plane([&](const Product& product, auto& plane) { place(plane, product.background); },
                  found);
   for_each_share([&](auto& plane) { place(plane, 0); }, found);
-  place(found.open_ao, 1);
   for (ShadowDraw& draw : found.shares.draws) place(draw.weight, 0), place(draw.width_px, 0);
   for (ShadowDraw& draw : found.shares.draws_again) place(draw.weight, 0), place(draw.width_px, 0);
   return found;
@@ -134,20 +133,23 @@ class Round {
     const auto progress = [this](std::size_t done, std::size_t count) { tell(done, count); };
     Request request = request_;
     request.shares_suffice = plan_.filter->apply && !compares_steps_;
-    if (plan_.prior) request.open_ao = request.products.bent = true;
+    std::optional<PriorField> prior;
+    if (plan_.prior) {
+      request.ask_prior = asking(prior);
+      request.products.guessed = false;  // what the prior expects is in its place
+    }
     request.by_light.bounce = bounces_by_light();
     Products found = plan_.method->estimate(scene, request, progress);
     found.lights.resize(names_.size());
     for (std::size_t k = 0; k < names_.size(); ++k) found.lights[k].name = names_[k];
     Noisy out{over_geometry(std::move(found), scene.geometry, request.receivers), {}, {}};
-    if (plan_.prior) {
-      Products& products = out.products;
-      out.prior = find_prior(scene, request, products, plan_.prior->up);
-      products.open_ao = {};
-      if (!request_.products.bent) products.bent = {};
+    if (compares_steps_) {
+      Request fewer = request_;
+      std::optional<PriorField> again;
+      if (plan_.prior) fewer.ask_prior = asking(again);
+      out.change = change_by_steps(scene, *plan_.method, fewer, out.products, progress);
     }
-    if (compares_steps_)
-      out.change = change_by_steps(scene, *plan_.method, request_, out.products, progress);
+    out.prior = std::move(prior);
     return out;
   }
 
@@ -159,8 +161,9 @@ class Round {
     Products& products = out.products = std::move(noisy.products);
     scale_to_noise(products.error, *plan_.method);
     std::function<void(Products&)> lean;
-    if (noisy.prior) lean = [&](Products& found) { apply_prior(*noisy.prior, geometry, found); };
+    if (noisy.prior) lean = [&](Products& found) { apply_prior(*noisy.prior, scene, found); };
     products = filter_shares(*plan_.filter, std::move(products), scene, pattern, lean);
+    if (noisy.prior) finish_with_prior(*noisy.prior, scene, request_.products.guessed, products);
     finish_lights(products);
     if (plan_.temporal) {
       out.history = accumulate(temporal.history ? &*temporal.history : nullptr, geometry, products,
@@ -191,6 +194,12 @@ class Round {
       if (!request_.by_light.direct) light.direct = {};
       if (!request_.by_light.bounce) light.bounce = {};
     }
+  }
+
+  /// Has the prior answer, and keeps what it says in `field`.
+  AskPrior asking(std::optional<PriorField>& field) const {
+    return ask_prior({plan_.prior->up, request_.radius, request_.seed, plan_.prior->of_frame.get()},
+                     field);
   }
 
   void tell(std::size_t done, std::size_t count) {

@@ -97,9 +97,10 @@ const std::vector<IdleRule<Purpose>>& rules_of_options() {
        [](const FrameOptions& o, Purpose purpose) {
          return purpose == Purpose::relight && o.model.prior == Prior::learned &&
                 !shows_composite(o.output) &&
-                !asks_for(o, {"ao", "direct", "composite", "guessed"});
+                !asks_for(o, {"ao", "bent", "direct", "shadow", "bounce", "specular", "composite",
+                              "guessed"});
        },
-       "no output has ao, direct or the composite"},
+       "no output has a product that it changes"},
       {{"--quality", "--offscreen"},
        [](const FrameOptions& o, Purpose purpose) {
          return purpose != Purpose::bench && !method_of(o).takes.march;

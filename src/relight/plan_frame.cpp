@@ -29,15 +29,6 @@ void check_bands(const Frame& frame) {
                           frame.input));
 }
 
-/// The means of the frame that it takes are not known in a band.
-void refuse_prior_in_bands(const Frame& frame, const ModelOptions& model) {
-  if (model.prior == Prior::rules) return;
-  throw Error(ExitCode::usage,
-              fmt::format("{}: --prior learned takes all of the frame at once, which --mem-limit "
-                          "does not allow: raise it, or give --prior rules",
-                          frame.input));
-}
-
 /// In a part with several views, "direct.right.R" is the right view's light of all.
 void check_names_of_lights(const Frame& frame) {
   const std::vector<std::string> views = views_of(group_channels(frame.files.front(), 0));
@@ -57,16 +48,15 @@ void plan_frame(Frame& frame, const FrameOptions& options, int number, bool has_
   ModelOptions model = options.model;
   if (model.temporal) model.seed += unsigned(number);
   frame.plan = make_plan(model, options.output, frame.scene, frame.gbuffer, frame.input);
+  if (model.prior == Prior::learned) use_prior(frame.plan, {frame.up});
   if (options.output.per_light) check_names_of_lights(frame);
   if (frame.gbuffer.grid.is_coarse()) {
-    refuse_prior_in_bands(frame, model);
     check_bands(frame);
     const Window& all = frame.gbuffer.file_window;
     frame.bands = plan_bands(frame.input, all, frame.part().display_window, frame.scene, frame.plan,
                              options.output, options.memory);
     frame.plan.reasons.push_back(describe(*frame.bands, all));
   }
-  if (model.prior == Prior::learned) use_prior(frame.plan, {frame.up});
   warn_of_plan(frame, options, has_deep_pixels);
   explain_earlier_products(frame);
   explain_views(frame.plan, frame.views);

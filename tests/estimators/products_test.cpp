@@ -45,7 +45,7 @@ TEST(Products, EachRowHasItsOwnNameAndPlane) {
   // A plane or a place in a set without a row would be larger than all rows together.
   EXPECT_EQ(sizeof(ProductSet), std::size_t(sets));
   EXPECT_EQ(sizeof(Products), std::size_t(planes) * sizeof(Plane<float>) + sizeof(LightShares) +
-                                  sizeof(Products::open_ao) + sizeof(Products::lights));
+                                  sizeof(Products::lights));
 }
 
 TEST(Products, AreFoundByNameOrListed) {

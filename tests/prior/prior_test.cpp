@@ -64,29 +64,26 @@ struct Found {
 Found find(const Scene& scene, const std::optional<glm::vec3>& up, float radius = kNoLimit,
            const Window& receivers = {}) {
   const Method method = bitmask_method();
-  Request request{.products = {.ao = true, .bent = true},
-                  .radius = radius,
-                  .open_ao = true,
-                  .receivers = receivers};
+  Request request{.products = {.ao = true}, .radius = radius, .receivers = receivers};
+  Found found;
+  request.ask_prior = [&](const PriorQuestion& question) {
+    found.field = find_prior(question, {up, radius, request.seed});
+    return LearnedVisibility();
+  };
   Products noisy = method.estimate(scene, request, {});
   if (receivers.area() > 0) {
-    // As relight() does: planes of the whole geometry.
+    // As relight() does: a plane of the whole geometry.
     const Window& window = scene.geometry.window;
-    const auto place = [&](auto& part, auto background) {
-      auto whole = std::decay_t<decltype(part)>(window.width(), window.height(), background);
-      for (int y = 0; y < part.height; ++y)
-        for (int x = 0; x < part.width; ++x)
-          whole(receivers.x0 - window.x0 + x, receivers.y0 - window.y0 + y) = part(x, y);
-      part = std::move(whole);
-    };
-    place(noisy.ao, 1.0f), place(noisy.open_ao, 1.0f), place(noisy.bent, glm::vec3(0));
+    Plane<float> whole(window.width(), window.height(), 1.0f);
+    for (int y = 0; y < noisy.ao.height; ++y)
+      for (int x = 0; x < noisy.ao.width; ++x)
+        whole(receivers.x0 - window.x0 + x, receivers.y0 - window.y0 + y) = noisy.ao(x, y);
+    noisy.ao = std::move(whole);
   }
-  Found found;
-  found.field = find_prior(scene, request, noisy, up);
   const Filter& filter = find_filter("geometry");
   found.ao = filter_shares(filter, std::move(noisy), scene, 8, [&](Products& products) {
                found.rules = products.ao;
-               apply_prior(found.field, scene.geometry, products);
+               apply_prior(found.field, scene, products);
              }).ao;
   return found;
 }

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "estimators/bitmask/border_light.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <glm/vec4.hpp>
+#include <vector>
 
 #include "math/luminance.h"
 #include "math/two_in_one.h"
+#include "parallel/tiles.h"
 
 namespace ssdo {
 
@@ -40,6 +44,36 @@ std::array<BorderValues, 3> light_beyond(const MarchScene& scene,
     for (BorderValues& channel : beyond) channel[i] *= level / light;
   }
   return beyond;
+}
+
+glm::vec3 mean_sent(const MarchScene& scene, const Geometry& geometry, const SentByAll& sent) {
+  const Window& display = geometry.display;
+  const Window shown =
+      intersection(scene.raster(), {-scene.first_x, -scene.first_y, display.width() - scene.first_x,
+                                    display.height() - scene.first_y});
+  const std::uint32_t kept = sent.two_sided ? kFirstOfTwo : ~std::uint32_t(0);
+  const auto front_of = [&](const InterleavedVectors& light, std::ptrdiff_t i) {
+    glm::vec3 front;
+    for (int c = 0; c < 3; ++c)
+      front[c] =
+          std::bit_cast<float>(std::bit_cast<std::uint32_t>(light[std::size_t(c)][i]) & kept);
+    return front;
+  };
+  // By row, so that sums have one order.
+  std::vector<glm::dvec4> rows(std::size_t(std::max(shown.height(), 0)), glm::dvec4(0));
+  for_each_row(shown.height(), [&](int row) {
+    glm::dvec4& sum = rows[std::size_t(row)];
+    for (int x = shown.x0; x < shown.x1; ++x) {
+      const std::ptrdiff_t i = scene.layout.index(x, shown.y0 + row);
+      if (!scene.shows_surface(i)) continue;
+      const float light = luminance(front_of(sent.of_all, i)),
+                  times = light > sent.level ? sent.level / light : 1;
+      sum += glm::dvec4(times * front_of(sent.radiance, i), 1);
+    }
+  });
+  glm::dvec4 sum(0);
+  for (const glm::dvec4& row : rows) sum += row;
+  return glm::vec3(sum) / float(std::max(sum.w, 1.0));
 }
 
 }  // namespace ssdo

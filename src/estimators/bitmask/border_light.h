@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <glm/vec3.hpp>
 
 #include "estimators/bitmask/march_scene.h"
 #include "simd/interleaved.h"
@@ -18,5 +19,17 @@ std::array<BorderValues, 3> light_beyond(const MarchScene& scene,
                                          const InterleavedVectors& radiance,
                                          const InterleavedVectors& of_all, bool two_sided,
                                          float level);
+
+/// What surfaces send, as light_beyond() has it.
+struct SentByAll {
+  const InterleavedVectors& radiance;
+  const InterleavedVectors& of_all;
+  bool two_sided;
+  float level;
+};
+
+/// The mean over the surfaces of the display window of what their fronts send, no more than `level`
+/// each.
+glm::vec3 mean_sent(const MarchScene& scene, const Geometry& geometry, const SentByAll& sent);
 
 }  // namespace ssdo

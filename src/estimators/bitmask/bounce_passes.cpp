@@ -100,16 +100,21 @@ class BouncePasses {
 
   /// Given the bounce of the pass before.
   InterleavedVectors sent_light(const Window& part, const Followed& light, int pass) const {
-    return ssdo::sent_light(in_, light.light, part, pass > 1 ? &light.found.bounce : nullptr);
+    return ssdo::sent_light(in_, light.light, part, pass > 1 ? &light.found : nullptr);
   }
 
   /// Replaces what a light sends by what of it arrives. Returns what bands need of the former,
   /// where they do. `points`: what rays go to, with this light. `error` may be null.
   FarLight gather(Followed& light, InterleavedVectors& sent, const Pass& pass,
                   const FarLight* far_light, const Emitters& points, InterleavedPlane* error) {
+    if (request_.ask_prior)
+      light.found.sent = far_light
+                             ? far_light->mean
+                             : mean_sent(march_scene_, scene_.geometry,
+                                         {sent, pass.of_all, two_sided_, pass.emitters.bright});
     const std::array<BorderValues, 3> border =
         light_beyond(march_scene_, sent, pass.of_all, two_sided_, pass.emitters.bright);
-    FarLight kept{{}, {}, pass.emitters.bright, pass.emitters.level};
+    FarLight kept{{}, {}, pass.emitters.bright, pass.emitters.level, light.found.sent};
     if (in_.keep_in) kept.sent = in_.raster.in_whole_rows(sent, *in_.keep_in), kept.border = border;
     const Emitters* const bright = pass.emitters.points.empty() ? nullptr : &pass.emitters;
     const OtherViewLight* const from_others =
@@ -168,7 +173,7 @@ bool sends_two_sided(const Scene& scene) {
 }
 
 InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& light,
-                              const Window& part, const InterleavedVectors* bounce) {
+                              const Window& part, const BouncedLight* before) {
   const Scene& scene = inputs.scene;
   // A layer may say what is sent.
   if (!scene.senders.radiance.empty()) return inputs.raster.interleaved(scene.senders.radiance);
@@ -176,7 +181,9 @@ InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& ligh
   const SenderJob senders{inputs.march.scene,
                           shares_of(light, inputs.ao, inputs.sky, inputs.sources),
                           scene.senders.albedo,
-                          bounce,
+                          before ? &before->bounce : nullptr,
+                          inputs.change,
+                          before ? before->sent : glm::vec3(0),
                           &sent,
                           sends_two_sided(scene)};
   for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});

@@ -29,6 +29,7 @@ struct BounceInputs {
   const InterleavedPlane& ao;
   const InterleavedColorShares* sky;  ///< as FoundShares has it
   const std::vector<SourceShares>& sources;
+  const InterleavedPlane* change;  ///< as SenderJob has it
   const FarRaster* keep_in;  ///< the order in which bands of the frame need what is sent; or null
 };
 
@@ -36,6 +37,7 @@ struct BounceInputs {
 struct BouncedLight {
   InterleavedVectors bounce;
   InterleavedVectors emitted;  ///< the part of it that rays have found; empty: none
+  glm::vec3 sent{0};           ///< mean radiance that was sent for it
 };
 
 struct BouncedLights {
@@ -57,9 +59,9 @@ int times_sent(const Scene& scene, const Request& request);
 bool sends_two_sided(const Scene& scene);
 
 /// The radiance that pixels of a part of the raster send of one light, or of all, as SenderJob has
-/// it. `bounce`: what has arrived of it so far; null: none.
+/// it. `before`: what has arrived of it so far; null: none.
 InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& light,
-                              const Window& part, const InterleavedVectors* bounce);
+                              const Window& part, const BouncedLight* before);
 
 /// A part of the raster with what may send light to it in so many bounces.
 Window with_senders(const MarchScene& scene, const Request& request, const Window& part,

@@ -63,6 +63,8 @@ struct SenderJob {
   FoundShares found;
   const Plane<HalfColor>& albedo;
   const InterleavedVectors* bounce;  ///< that has arrived so far; null: none
+  const InterleavedPlane* change;    ///< of ao, as LearnedVisibility has it; null: none
+  glm::vec3 sent_before;             ///< the mean radiance that has given the bounce
   InterleavedVectors* sent;
   bool two_sided;  ///< `sent` holds front and back, as two_in_one(); else they send the same
 };
@@ -133,6 +135,7 @@ struct SourceJob {
   const std::vector<PointsOfSource>& points;  ///< that each ray goes to
   const Source& source;
   PassBeyond pass;
+  const InterleavedPlane* past = nullptr;  ///< by pixel, where pass.past is 0; null: of none
   SourceShares* found = nullptr;
 };
 

@@ -19,6 +19,7 @@ struct FarLight {
   InterleavedVectors sent;  ///< in the order of FarRaster
   std::array<BorderValues, 3> border;
   float bright, level;                ///< as Emitters has them, of the frame
+  glm::vec3 mean{0};                  ///< of `sent`, as BouncedLight has it
   std::vector<FarLight> lights = {};  ///< each light's part of it, where the bounce is by light
 };
 

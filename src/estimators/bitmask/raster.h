@@ -47,6 +47,16 @@ class Raster {
     return color;
   }
 
+  /// A value of every pixel of the raster.
+  InterleavedPlane interleaved(const Plane<float>& picture) const {
+    InterleavedPlane plane(layout_);
+    for_each_row(layout_.height(), [&](int y) {
+      plane.fill_row(layout_, y, 0);
+      for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) { plane[i] = picture[pixel]; });
+    });
+    return plane;
+  }
+
   /// Calls `work(pixel, index)` for each pixel of a row of the raster; index is that of the march.
   template <class Work>
   void for_each_pixel(int y, const Work& work) const {

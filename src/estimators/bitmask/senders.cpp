@@ -118,6 +118,19 @@ HWY_INLINE V3 albedo_at(const SenderJob& job, const Place& place) {
 #endif
 }
 
+/// What a prior that changes ao makes of the light that arrives, as prior/prior.h says: factors of
+/// that from outside and of the bounce, and what is added to the latter.
+struct Unshown {
+  V of_light, of_bounce;
+  V3 sent;
+};
+HWY_INLINE Unshown unshown_of(const SenderJob& job, V ao, V change) {
+  const V least = set(1e-2f), one = set(1), after = saturate(ao + change);
+  const V closer = hn::Max(ao - after, set(0)),
+          opener = (one - hn::Max(after, ao)) / hn::Max(one - ao, least);
+  return {(after + least) / (ao + least), hn::Min(opener, one), set(job.sent_before) * closer};
+}
+
 template <bool kOrthographic>
 void send_light(const SenderJob& job, const Window& part) {
   const MarchScene& scene = job.scene;
@@ -131,10 +144,17 @@ void send_light(const SenderJob& job, const Window& part) {
       return pixels.mean([&](std::ptrdiff_t q)
                              HWY_ATTR { return saturate((load(planes, q) + ...)); });
     };
-    V3 light = direct_light(scene, job.found, place, mean_share);
+    Unshown unshown{set(1), set(1), set(glm::vec3(0))};
+    if (job.change) unshown = unshown_of(job, mean(*job.found.ao), load(*job.change, i));
+    const auto share = [&](const auto&... planes) HWY_ATTR {
+      return job.change ? saturate(mean_share(planes...) * unshown.of_light)
+                        : mean_share(planes...);
+    };
+    V3 light = direct_light(scene, job.found, place, share);
     if (job.bounce) {
       const auto& [red, green, blue] = *job.bounce;
-      light = light + V3{mean(red), mean(green), mean(blue)};
+      const V3 bounce{mean(red), mean(green), mean(blue)};
+      light = light + (job.change ? mul_add(bounce, unshown.of_bounce, unshown.sent) : bounce);
     }
     const V3 albedo = albedo_at(job, place);
     const V3 front = within_range(albedo * light);
@@ -143,7 +163,7 @@ void send_light(const SenderJob& job, const Window& part) {
     const V3 behind = set(glm::vec3(0)) - usable(pixels.normal, valid);
     const V3 bounce = job.bounce ? load(*job.bounce, i) : set(glm::vec3(0));
     const V3 all = unoccluded(job.found.light, positions(scene, place), behind);
-    const V3 at_back = mul_add(all, mean(*job.found.ao), bounce);
+    const V3 at_back = mul_add(all, mean(*job.found.ao) * unshown.of_light, bounce);
     store(both_sides(front, within_range(albedo * at_back)), *job.sent, i);
   });
 }

@@ -118,7 +118,7 @@ HWY_INLINE void find_arriving(const EmittedJob& job, const Block& block, int set
     for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
       const int i = block.first_of(place);
       const MarchReceiver p = load_receiver(scene, place);
-      const Arrival a = occluders.arrival(block.places(place), p, ray(p, i), PassBeyond{});
+      const Arrival a = occluders.arrival(block.places(place), p, ray(p, i), PassLanes{set(1), 0});
       const V3 light = if_then_else_zero(a.share > zero, rays.light(i) * a.share);
       rays.arrived.set_at(i, mul_add(light, set(1 / float(job.rays)), rays.arrived(i)));
     });

@@ -122,12 +122,18 @@ HWY_INLINE Border beside_corner(const MarchScene& scene, const MarchReceiver& p,
   return border;
 }
 
+/// PassBeyond by lane.
+struct PassLanes {
+  V past;
+  float through;
+};
+
 /// The share of the rays that pass what is beyond the frame, 0..1: all that end in it, `through` of
 /// those that a surface which goes on is likely to hide, and `past` of the others that leave it
 /// within the radius. `turn` in 0..1 differs from member to member of the pattern.
 template <bool kOrthographic>
 HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const Ray& ray, float turn,
-                         const PassBeyond& pass) {
+                         const PassLanes& pass) {
   const MarchScene& scene = march.scene;
   const float apart_px = 2 * kWitnessReach *
                          std::hypot(float(scene.frame_width), float(scene.frame_height)) /
@@ -152,7 +158,7 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const Ray& 
   }
   const V hidden = hn::Max(near_exit, near_corner * set(kCornerTrust)) * set(1.0f / kWitnesses);
   // The more of the radius the frame shows, the less is left to meet beyond it.
-  const V past = hn::MulAdd(exit_at / set(march.radius), set(1 - pass.past), set(pass.past));
+  const V past = hn::MulAdd(exit_at / set(march.radius), set(1) - pass.past, pass.past);
   return hn::IfThenElse(leaves_frame, hn::MulAdd(hidden, set(pass.through) - past, past), set(1));
 }
 
@@ -235,7 +241,7 @@ class Occluders {
 
   /// What of the rays asked about arrives; `pass` is that of open_beyond().
   HWY_INLINE Arrival arrival(VI places, const MarchReceiver& p, const Ray& ray,
-                             const PassBeyond& pass) const {
+                             const PassLanes& pass) const {
     const V at_px = blocked_px(places);
     const M meets = at_px >= set(0);
     Arrival a;

@@ -159,7 +159,7 @@ void reflection(const ReflectionJob& job, const Window& part) {
       }
       occluders.run();
       for (int k = 0; k < count; ++k) {
-        const Arrival a = occluders.arrival(places(k), p, rays[k], PassBeyond{});
+        const Arrival a = occluders.arrival(places(k), p, rays[k], PassLanes{set(1), 0});
         open = hn::MulAdd(a.share, mirrors[k].share, open);
         all = all + hn::IfThenElseZero(p.valid, hn::Max(mirrors[k].share, set(0)));
         if (job.light) light.add<kOrthographic>(job, p, f0, mirrors[k], a);

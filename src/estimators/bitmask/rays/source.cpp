@@ -67,6 +67,12 @@ HWY_INLINE V penumbra_px(const SourceJob& job, const MarchReceiver& p, V distanc
   return hn::Clamp(px, set(1), set(float(4 * Interleaving::kPeriod)));
 }
 
+HWY_INLINE PassLanes pass_of(const SourceJob& job, const Place& place) {
+  const V least = set(job.pass.past);
+  if (!job.past) return {least, job.pass.through};
+  return {hn::MulAdd(load(*job.past, place.index), set(1) - least, least), job.pass.through};
+}
+
 /// What the rays of the pixels of a block have found, by Block::first_of().
 struct BlockSums {
   alignas(64) float weight[Block::kPixels];    ///< the light of the rays
@@ -123,7 +129,7 @@ void source(const SourceJob& job, const Window& part) {
         const MarchReceiver p = load_receiver(scene, place);
         const int i = block.first_of(place);
         const Ray ray = ray_of<kOrthographic>(scene, p, rays, i);
-        const Arrival a = occluders.arrival(block.places(place), p, ray, job.pass);
+        const Arrival a = occluders.arrival(block.places(place), p, ray, pass_of(job, place));
         sums.add(i, rays.light(i), a.share,
                  penumbra_px<kOrthographic>(job, p, a.blocked_at, ray.length));
       });
