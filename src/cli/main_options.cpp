@@ -133,6 +133,23 @@ void add_input(CLI::App& app, InputOptions& o) {
       ->check(positive());
 }
 
+void add_objects(CLI::App& app, ObjectOptions& o) {
+  Group group(app, "Objects");
+  const auto selection = [&](const Text& flag, Selection& field, const Text& help) {
+    group.text(
+        flag, "SEL", [flag, &field](const Text& text) { field = parse_selection(flag, text); },
+        help);
+  };
+  selection("--no-cast", o.no_cast, "this hides nothing and sends nothing; see --only");
+  selection("--shadow-of", o.shadow_of,
+            "add shadow_of: the light with this over the light without it");
+  selection("--only", o.only,
+            "change what is selected only: crypto:NAME (patterns), id:LAYER=1,5-7, LAYER or "
+            "FILE:LAYER (a matte), joined by + and -");
+  selection("--no-receive", o.no_receive, "keep this as it was rendered; it casts all the same");
+  selection("--holdout", o.holdout, "alpha 0 in the composite; it casts all the same");
+}
+
 void add_camera(CLI::App& app, CameraOptions& o) {
   Group group(app, "Camera");
   CLI::Option* file =
@@ -329,6 +346,7 @@ void add_messages(CLI::App& app, Verbosity& o) {
 
 void add_main_options(CLI::App& app, Options& o) {
   add_input(app, o.input);
+  add_objects(app, o.input.objects);
   add_camera(app, o.camera);
   add_light(app, o.light, o.output);
   add_model(app, o.model);

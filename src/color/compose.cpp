@@ -23,6 +23,13 @@
 // stays as rendered.
 //
 // occlude and add keep the beauty and its alpha where there is no geometry.
+//
+// Pixels that are kept (--only, --no-receive), by the share k, have S = 1 in occlude, and
+//
+//   relight   F[(1 - k) alpha (albedo (direct + bounce) + specular)] + F[k] beauty
+//   add       beauty + F[(1 - k) alpha (albedo (direct + bounce) + specular)]
+//
+// Without a beauty, relight shows them open. What is held out has the composite times 1 - F[h].
 #include "color/compose.h"
 
 #include <algorithm>
@@ -32,6 +39,7 @@
 #include <type_traits>
 
 #include "color/downsample.h"
+#include "color/kept_pixels.h"
 #include "color/light_colors.h"
 #include "math/light_range.h"
 #include "parallel/tiles.h"
@@ -80,20 +88,20 @@ void append_found(NamedChannels& out, const Product& product, const std::string&
 }
 
 /// albedo (direct + bounce) + specular.
-glm::vec3 light_of(const Results& r, std::size_t i) {
-  glm::vec3 light = r.products.direct[i];
-  if (!r.products.bounce.empty()) light += r.products.bounce[i];
+glm::vec3 light_of(const Results& r, const Products& products, std::size_t i) {
+  glm::vec3 light = products.direct[i];
+  if (!products.bounce.empty()) light += products.bounce[i];
   light = r.scene.senders.albedo[i] * light;
-  if (r.composition.adds_specular) light += r.products.specular[i];
+  if (r.composition.adds_specular) light += products.specular[i];
   return within_range(light);
 }
 
 /// What surfaces send of the light that was found, premultiplied.
-Plane<glm::vec3> sent_light(const Results& r, const Plane<float>& alpha) {
+Plane<glm::vec3> sent_light(const Results& r, const Products& products, const Plane<float>& alpha) {
   auto sent = Plane<glm::vec3>::like(alpha);
   for_each_row(sent.height, [&](int y) {
     for (std::size_t i = sent.index(0, y); i < sent.index(0, y + 1); ++i)
-      sent[i] = alpha[i] * light_of(r, i);
+      sent[i] = alpha[i] * light_of(r, products, i);
   });
   return at_output_size(std::move(sent), r.gbuffer);
 }
@@ -112,7 +120,7 @@ Arriving arriving_light(const Results& r, const LitBy* by) {
     for (std::size_t i = light.part.index(0, y); i < light.part.index(0, y + 1); ++i) {
       if (light.whole[i] == glm::vec3(0)) continue;  // without a surface there is no normal
       if (!by) {
-        light.part[i] *= r.products.ao[i];
+        light.part[i] *= r.shown().ao[i];
       } else {
         light.part[i] *= by->direct[i];
         const Surfel& s = r.scene.geometry.surfel[i];
@@ -168,14 +176,15 @@ class Hidden {
 Plane<glm::vec3> hidden_light(const Results& r) {
   Hidden hidden(r);
   const Plane<glm::vec3>& ambient = r.gbuffer.ambient;
-  const LitBy all{r.scene.light, r.products.direct};
+  const LitBy all{r.scene.light, r.shown().direct};
   const bool by_ao = r.composition.share_is_ao, has_ambient = !ambient.empty();
   if (has_ambient && by_ao) hidden.add(ambient, nullptr);
   if (has_ambient && !by_ao && !has_lamps(r.scene.light)) hidden.add(ambient, &all);
   if (!has_lamps(r.scene.light)) return hidden.take();
   const std::vector<NamedLight> lights = lights_of(r.scene.light);
-  for (std::size_t k = 0; k < lights.size() && k < r.products.lights.size(); ++k) {
-    const LitBy by{lights[k].light, r.products.lights[k].direct};
+  const std::vector<LightProducts>& found = r.shown().lights;
+  for (std::size_t k = 0; k < lights.size() && k < found.size(); ++k) {
+    const LitBy by{lights[k].light, found[k].direct};
     const auto layer = r.gbuffer.lights.find(lights[k].name);
     if (has_ambient && !by_ao && lights[k].name == kEnvironmentName) hidden.add(ambient, &by);
     if (layer != r.gbuffer.lights.end()) hidden.add(layer->second, &by);
@@ -188,7 +197,7 @@ Plane<glm::vec3> occluded(const Results& r) {
   Plane<glm::vec3> hidden = hidden_light(r);
   Plane<float> reflection;
   if (!specular.empty())
-    reflection = product_at_output_size(find_product("reflection"), r.products.reflection, r);
+    reflection = product_at_output_size(find_product("reflection"), r.shown().reflection, r);
   for_each_row(hidden.height, [&](int y) {
     for (std::size_t i = hidden.index(0, y); i < hidden.index(0, y + 1); ++i) {
       if (!specular.empty()) hidden[i] += specular[i] * (1 - reflection[i]);
@@ -199,8 +208,14 @@ Plane<glm::vec3> occluded(const Results& r) {
   return hidden;
 }
 
+/// The part of alpha that is not kept.
+Plane<float> changed(const Results& r, Plane<float> alpha) {
+  for (std::size_t i = 0; i < alpha.size(); ++i) alpha[i] *= changed_share(r.gbuffer, i);
+  return alpha;
+}
+
 Plane<glm::vec3> added(const Results& r, const Plane<float>& alpha) {
-  Plane<glm::vec3> out = sent_light(r, alpha);
+  Plane<glm::vec3> out = sent_light(r, r.products, changed(r, alpha));
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = within_range(rendered(r.gbuffer)[i] + out[i]);
   return out;
@@ -215,33 +230,60 @@ Plane<float> rendered_alpha(const Results& r, Plane<float> alpha) {
   return alpha;
 }
 
-}  // namespace
+/// The composite relight where pixels keep the beauty.
+Composite relit_beside_beauty(const Results& r, const Plane<float>& alpha) {
+  const Plane<float> kept = at_output_size(r.gbuffer.masks.kept, r.gbuffer);
+  Plane<float> all = rendered_alpha(r, alpha);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = std::lerp(alpha[i], all[i], r.gbuffer.masks.kept[i]);
+  Plane<glm::vec3> color = sent_light(r, r.products, changed(r, alpha));
+  for (std::size_t i = 0; i < color.size(); ++i)
+    color[i] = within_range(color[i] + kept[i] * r.gbuffer.beauty[i]);
+  return {std::move(color), at_output_size(std::move(all), r.gbuffer)};
+}
 
-Composite composite(const Results& r) {
+Composite composite_of_all(const Results& r) {
   Plane<float> alpha = coverage(r.scene, r.gbuffer);
   const Compose compose = r.composition.compose;
+  if (compose == Compose::relight && r.composition.keeps_beauty)
+    return relit_beside_beauty(r, alpha);
   if (compose == Compose::relight) {
-    Plane<glm::vec3> color = sent_light(r, alpha);
+    Plane<glm::vec3> color = sent_light(r, r.shown(), alpha);
     return {std::move(color), at_output_size(std::move(alpha), r.gbuffer)};
   }
   return {compose == Compose::occlude ? occluded(r) : added(r, alpha),
           at_output_size(rendered_alpha(r, alpha), r.gbuffer)};
 }
 
+}  // namespace
+
+Composite composite(const Results& r) {
+  Composite all = composite_of_all(r);
+  if (r.gbuffer.masks.held_out.empty()) return all;
+  const Plane<float> out = at_output_size(r.gbuffer.masks.held_out, r.gbuffer);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const float left = 1 - std::clamp(out[i], 0.0f, 1.0f);
+    all.color[i] *= left, all.alpha[i] *= left;
+  }
+  return all;
+}
+
 NamedChannels product_channels(const std::string& name, const Results& results) {
   const Product& product = find_product(name);
   NamedChannels out(product.background);
   if (const auto* scalar = std::get_if<Plane<float> Products::*>(&product.plane)) {
-    append_found(out, product, name + ".", results.products.*(*scalar), results);
+    append_found(out, product, name + ".", results.shown().*(*scalar), results);
   } else if (const auto* vector = std::get_if<Plane<glm::vec3> Products::*>(&product.plane)) {
-    append_found(out, product, name + ".", results.products.*(*vector), results);
+    append_found(out, product, name + ".", results.shown().*(*vector), results);
   } else if (name == kComposite) {
     Composite composed = composite(results);
     append(out, product, "", composed.color);
     append(out, product, "", composed.alpha);
     out.made = std::move(composed);
+  } else if (name == "shadow_of") {
+    append_made(out, product, name + ".", shadow_of_objects(product, results));
   } else {
-    const LitBy all{results.scene.light, results.products.direct};
+    const LitBy all{results.scene.light, results.shown().direct};
     append_made(out, product, name + ".", composed_of_light(product, all, results));
   }
   return out;
@@ -252,7 +294,7 @@ std::vector<NamedChannels> light_channels(const std::string& name, const Results
   std::vector<NamedChannels> out;
   if (!product.by_light || !results.composition.per_light) return out;
   const std::vector<NamedLight> lights = lights_of(results.scene.light);
-  const std::vector<LightProducts>& found = results.products.lights;
+  const std::vector<LightProducts>& found = results.shown().lights;
   for (std::size_t k = 0; k < lights.size(); ++k) {
     NamedChannels& channels = out.emplace_back(product.background);
     const std::string prefix = name + "." + lights[k].name + ".";

@@ -34,6 +34,10 @@ struct Composition {
   /// Beside the products of all light stand those of each light.
   bool per_light = false;
   bool adds_specular = false;  ///< to relight and add: the light that surfaces mirror
+  bool keeps_beauty = false;   ///< where GBuffer::masks say so
+
+  /// Whether rendered layers are in the composite.
+  bool shows_rendered() const { return compose != Compose::relight || keeps_beauty; }
 };
 
 }  // namespace ssdo

@@ -30,10 +30,10 @@ void apply_display(Plane<glm::vec3>& colors, const DisplayTransform& display) {
 /// What the display transform is given of a product that is light, and where it is shown.
 Composite colors_of(const Product& product, const Results& results, bool straight) {
   if (const auto* plane = std::get_if<Plane<glm::vec3> Products::*>(&product.plane))
-    return {product_at_output_size(product, results.products.*(*plane), results),
+    return {product_at_output_size(product, results.shown().*(*plane), results),
             at_output_size(coverage(results.scene, results.gbuffer), results.gbuffer)};
   if (product.name != kComposite) {
-    const LitBy all{results.scene.light, results.products.direct};
+    const LitBy all{results.scene.light, results.shown().direct};
     return {composed_of_light(product, all, results),
             at_output_size(coverage(results.scene, results.gbuffer), results.gbuffer)};
   }

@@ -17,18 +17,35 @@ Plane<glm::vec3> unoccluded_light(const Scene& scene, const Light& light) {
   return all;
 }
 
+namespace {
+
+/// Light over other light, channel by channel; `otherwise` where there is none.
+Plane<glm::vec3> ratio_of(Plane<glm::vec3> part, const Plane<glm::vec3>& whole, float otherwise) {
+  for_each_row(part.height, [&](int y) {
+    for (std::size_t i = part.index(0, y); i < part.index(0, y + 1); ++i)
+      for (int c = 0; c < 3; ++c)
+        part[i][c] = whole[i][c] > 0 ? part[i][c] / whole[i][c] : otherwise;
+  });
+  return part;
+}
+
+}  // namespace
+
+Plane<glm::vec3> shadow_of_objects(const Product& product, const Results& results) {
+  const Products& found = results.shown();
+  const auto at_output = [&](const Plane<glm::vec3>& light) {
+    return product_at_output_size(find_product("direct"), light, results);
+  };
+  return ratio_of(at_output(found.lit), at_output(found.lit_without), product.background);
+}
+
 Plane<glm::vec3> composed_of_light(const Product& product, const LitBy& by,
                                    const Results& results) {
   const Plane<glm::vec3> whole = product_at_output_size(
       find_product("unshadowed"), unoccluded_light(results.scene, by.light), results);
   if (product.name == "unshadowed") return whole;
-  Plane<glm::vec3> share = product_at_output_size(find_product("direct"), by.direct, results);
-  for_each_row(share.height, [&](int y) {
-    for (std::size_t i = share.index(0, y); i < share.index(0, y + 1); ++i)
-      for (int c = 0; c < 3; ++c)
-        share[i][c] = whole[i][c] > 0 ? share[i][c] / whole[i][c] : product.background;
-  });
-  return share;
+  return ratio_of(product_at_output_size(find_product("direct"), by.direct, results), whole,
+                  product.background);
 }
 
 }  // namespace ssdo

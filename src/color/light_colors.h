@@ -28,6 +28,9 @@ struct LitBy {
 /// E at every pixel of the scene; 0 where there is no surface.
 Plane<glm::vec3> unoccluded_light(const Scene& scene, const Light& light);
 
+/// `shadow_of`, over the window of the outputs.
+Plane<glm::vec3> shadow_of_objects(const Product& product, const Results& results);
+
 /// `unshadowed` or `shadow` of a light, over the window of the outputs.
 Plane<glm::vec3> composed_of_light(const Product& product, const LitBy& by, const Results& results);
 

@@ -14,6 +14,10 @@ struct Results {
   const GBuffer& gbuffer;
   const Products& products;
   Composition composition = {};
+  const Products* opened = nullptr;  ///< open_kept_pixels() of them; null: no pixels are kept
+
+  /// The products as outputs hold them.
+  const Products& shown() const { return opened ? *opened : products; }
 };
 
 }  // namespace ssdo

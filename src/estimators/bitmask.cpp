@@ -73,7 +73,8 @@ class Bitmask {
       : scene_(scene),
         request_(request),
         progress_(progress),
-        march_scene_(make_march_scene(scene.geometry, scene.solids, request.receivers)),
+        march_scene_(make_march_scene(scene.casters(), scene.solids, request.receivers,
+                                      scene.casting ? &scene.geometry : nullptr)),
         layout_(march_scene_.layout),
         raster_(march_scene_),
         far_(request.around_band && request.around_band->marches_on ? request.around_band->far.get()

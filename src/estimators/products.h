@@ -80,6 +80,9 @@ struct Products {
   Plane<float> error;  ///< of the luminance of direct + bounce, with the sign of one draw of noise
   Plane<float> guessed;  ///< G of estimators/guessed.h; the product once it is filtered
   LightShares shares;    ///< what `direct` is made of, where the method knows
+  /// direct + bounce with the objects of --shadow-of and without them. Where these stand, the pixel
+  /// beside them that the hole they leave is filled from. Empty: not asked for.
+  Plane<glm::vec3> lit, lit_without;
   std::vector<LightProducts> lights;  ///< in the order of lights_of(); empty: not asked for
 };
 
@@ -126,7 +129,7 @@ struct Product {
 };
 
 /// In the order of lists and files.
-inline constexpr std::array<Product, 11> kProducts = {{
+inline constexpr std::array<Product, 12> kProducts = {{
     {.name = "ao",
      .kind = ProductKind::share,
      .channels = "Y",
@@ -187,6 +190,14 @@ inline constexpr std::array<Product, 11> kProducts = {{
      .measured = true,
      .by_light = true,
      .aka = "diffind diffuseindirect"},
+    // The light with the objects of --shadow-of over the light without them.
+    {.name = "shadow_of",
+     .kind = ProductKind::share,
+     .channels = "RGB",
+     .made_of = {.direct = true},
+     .with = {.bounce = true},
+     .all_needs = "shadow-of",
+     .background = 1},
     // The surfaces that are mirrored send direct and bounce light.
     {.name = "specular",
      .kind = ProductKind::light,

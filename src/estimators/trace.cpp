@@ -89,7 +89,7 @@ class Trace {
         progress_(progress),
         samples_(int(request.parameters.at("samples"))),
         footprint_(scene.geometry.camera),
-        rays_(build_height_field(scene.geometry, scene.solids)),
+        rays_(build_height_field(scene.casters(), scene.solids)),
         other_views_(OtherViewRays::of_added(scene.other_surfaces)) {}
 
   Products run() {
@@ -316,7 +316,7 @@ class Trace {
     }
     if (hit.sender < 0) return std::nullopt;
     const auto q = std::size_t(hit.sender);
-    return Met{false, hit.layer == 0 && glm::dot(scene_.geometry.surfel[q].normal, to) > 0, q};
+    return Met{false, hit.layer == 0 && glm::dot(scene_.casters().surfel[q].normal, to) > 0, q};
   }
 
   /// The same rays gather the light of all and of each.

@@ -65,7 +65,7 @@ class Batch {
         overlaps_(resources.threads() > 1 && jobs_.size() > 1),
         // A temporal frame hands its surfaces to the next one, which therefore waits.
         writes_behind_(overlaps_ && !options.model.temporal),
-        pictures_(options.input.allow_partial),
+        pictures_(options.input.allow_partial, options.input.objects),
         frames_(options_, pictures_),
         progress_(options.batch.progress, options.verbosity.quiet),
         info_(options.verbosity.json, progress_),

@@ -7,6 +7,7 @@
 #include "io/standard_output.h"
 #include "jobs/describe.h"
 #include "jobs/listing.h"
+#include "jobs/object_listing.h"
 
 namespace ssdo {
 
@@ -24,8 +25,13 @@ void InfoReport::list(const FrameFiles& files) {
 void InfoReport::show(const Frame& frame) {
   if (entries_.back().contains("view") && entries_.back()["view"] != frame.view)
     entries_.push_back(entries_.back());
+  const ObjectListing objects = list_objects(frame);
   entries_.back().update(to_json(frame));
+  entries_.back()["objects"] = to_json(objects);
+  for (const std::string& warning : objects.warnings)
+    entries_.back()["warnings"].push_back(warning);
   print(describe(frame));
+  print(text_of(objects));
 }
 
 void InfoReport::note(const Error& error) {

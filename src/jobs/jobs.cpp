@@ -165,6 +165,7 @@ bool is_readable(const std::string& path) {
 FrameFiles files_at(const RunOptions& options, int frame) {
   FrameFiles files{expand_pattern(options.input_file, frame), options.input.aovs, {}};
   for (LayerRequest& request : files.aovs) request.file = expand_pattern(request.file, frame);
+  files.objects = at_frame(options.input.objects, frame);
   return files;
 }
 
@@ -212,7 +213,9 @@ FrameFiles files_named(const RunOptions& options) {
                             "shot.####.exr",
                             options.input_file));
   }
-  return {options.input_file, options.input.aovs, options.input.also};
+  FrameFiles files{options.input_file, options.input.aovs, options.input.also};
+  files.objects = options.input.objects;
+  return files;
 }
 
 std::vector<RunFile> inputs_of(const RunOptions& options, const FrameFiles& files) {
@@ -225,6 +228,9 @@ std::vector<RunFile> inputs_of(const RunOptions& options, const FrameFiles& file
   for (const LayerRequest& request : files.aovs) inputs.push_back({"--aov", request.file});
   for (const std::string& path : files.also) inputs.push_back({"--also", path});
   for (const std::string& path : options.light.lamp_files) inputs.push_back({"--lights", path});
+  for (const Selection* selection : files.objects.all())
+    for (const SelectionTerm& term : selection->terms)
+      inputs.push_back({selection->option, term.file});
   for (const FrameFiles& neighbour : files.neighbours) {
     inputs.push_back({"--neighbours", neighbour.input});
     for (const LayerRequest& request : neighbour.aovs) inputs.push_back({"--aov", request.file});

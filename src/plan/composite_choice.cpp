@@ -67,7 +67,8 @@ Composition choose_composition(const OutputOptions& output, const Scene& scene,
       choose_compose(output, !gbuffer.ambient.empty() || !gbuffer.lights.empty());
   return {.compose = compose,
           .share_is_ao = is_constant && !has_multi_bounce(parameters),
-          .adds_specular = compose != Compose::occlude && contains(output.products, "specular")};
+          .adds_specular = compose != Compose::occlude && contains(output.products, "specular"),
+          .keeps_beauty = !gbuffer.masks.kept.empty() && !gbuffer.beauty.empty()};
 }
 
 Product composite_row(const Composition& composition, const GBuffer& gbuffer) {

@@ -19,6 +19,9 @@ namespace {
 
 using Names = std::vector<std::string>;
 
+/// Stands for a layer that --shadow-of makes.
+constexpr std::string_view kOfObjects = "shadow-of";
+
 class ProductChoice {
  public:
   ProductChoice(Plan& plan, const OutputOptions& output, const Scene& scene, const GBuffer& gbuffer,
@@ -31,7 +34,8 @@ class ProductChoice {
         layers_{{"", true},
                 {"albedo", !scene.senders.albedo.empty()},
                 {"ambient", !gbuffer.ambient.empty()},
-                {"roughness", !scene.roughness.empty()}},
+                {"roughness", !scene.roughness.empty()},
+                {kOfObjects, scene.without != nullptr}},
         file_(file) {
     check_lights(scene.light, gbuffer, file);
     row("composite") = composite_row(plan.composition, gbuffer);
@@ -122,8 +126,9 @@ class ProductChoice {
       const bool possible =
           is_asked_for(product) ||
           (makes(method_, product) && has_layers(product) && layers_.at(product.all_needs));
-      const bool if_possible =
-          output_.products.empty() ? product.usual : contains(output_.products, kAllProducts);
+      const bool if_possible = output_.products.empty()
+                                   ? product.usual || product.all_needs == kOfObjects
+                                   : contains(output_.products, kAllProducts);
       if (contains(output_.products, product.name) || (if_possible && possible))
         names.emplace_back(product.name);
     }
@@ -164,6 +169,11 @@ class ProductChoice {
       }
       throw Error(ExitCode::usage, fmt::format("method {} makes no {}; these do: {}", method_.name,
                                                missing_of(product), fmt::join(others, ", ")));
+    }
+    if (product.all_needs == kOfObjects && !scene_.without) {
+      throw Error(ExitCode::usage,
+                  fmt::format("{}: {} is that of some objects; say which with --shadow-of SEL",
+                              file_, product.name));
     }
     if (!has_layers(product)) {
       throw Error(ExitCode::layer,

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "color/kept_pixels.h"
 #include "prior/prior.h"
 #include "relight/targets.h"
 #include "scene/build_geometry.h"
+#include "scene/objects/read_object_masks.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -32,11 +34,13 @@ Band read_band(const RelightJob& job, const Scene& overview, const Window& rows,
   const Frame& frame = job.frame;
   Stopwatch watch;
   GBufferOptions reading = job.options.input.gbuffer;
-  reading.beauty = frame.plan.composition.compose != Compose::relight;
+  reading.beauty = frame.plan.composition.shows_rendered();
   reading.grid = {.y0 = rows.y0, .y1 = rows.y1};
   reading.known = frame.gbuffer.encodings;
   Band band;
   band.gbuffer = read_gbuffer(frame.readers(), frame.layers, reading);
+  band.gbuffer.masks = read_object_masks(frame.objects, {frame.files, frame.view},
+                                         band.gbuffer.window, reading.grid);
   times.read += watch.lap();
   GeometryReport report;
   band.scene =
@@ -79,8 +83,10 @@ class BandJob {
       Band band = read(rows);
       const Products products = estimate_band(band.scene, rows);
       Stopwatch watch;
+      const auto opened = open_kept_pixels(products, band.scene, band.gbuffer);
       for (std::size_t i = 0; i < files.size(); ++i) {
-        const Results results{band.scene, band.gbuffer, products, frame_.plan.composition};
+        const Results results{band.scene, band.gbuffer, products, frame_.plan.composition,
+                              opened ? &*opened : nullptr};
         write(*files[i], job_.targets[i], results, rows, writers[i]);
       }
       relit_.times.write += watch.lap();

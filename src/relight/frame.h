@@ -34,7 +34,8 @@ struct StageTimes {
 struct Frame {
   std::string input;
   std::string view;             ///< of a stereo file; empty: it shows one
-  std::deque<ExrReader> files;  ///< the frame, then the files that --aov names
+  std::deque<ExrReader> files;  ///< the frame, those of --aov, then those of selections
+  ObjectOptions objects;        ///< with files of this very frame
   LayerTable layers;
   Scene scene;
   GBuffer gbuffer;  ///< what the scene has not taken: layers as rendered, alpha, motion

@@ -144,6 +144,12 @@ const std::vector<IdleRule<Purpose>>& rules_of_options() {
       {{"--per-light"},
        [](const FrameOptions&, Purpose purpose) { return purpose == Purpose::bench; },
        "bench measures the light of all"},
+      {{"--shadow-of"},
+       [](const FrameOptions& o, Purpose purpose) {
+         return purpose == Purpose::relight && !o.output.products.empty() &&
+                !asks_for(o, {"shadow_of"});
+       },
+       "no output has shadow_of"},
       {{"--env-exposure"},
        occlude_without({"direct", "bounce", "error"}),
        "composite occlude takes the share of the light that arrives, and no output has light"},
@@ -221,6 +227,11 @@ const std::vector<IdleRule<Facts>>& rules_of_frames() {
        "the frame has no pixels beyond its display window"},
       {{"--compose"},
        [](const Asked& o, const Facts& f) { return o.output.compose && !makes_composite(f); },
+       "{of_composite}"},
+      {{"--holdout"},
+       [](const Asked& o, const Facts& f) {
+         return !o.input.objects.holdout.empty() && !makes_composite(f);
+       },
        "{of_composite}"},
       {{"--aov ambient"},
        [](const Asked&, const Facts& f) { return f.ambient && !occludes(f); },

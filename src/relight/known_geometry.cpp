@@ -15,6 +15,7 @@
 #include "scene/other_views/back_faces.h"
 #include "scene/other_views/carve.h"
 #include "scene/other_views/registration.h"
+#include "scene/other_views/take_out.h"
 
 namespace ssdo {
 namespace {
@@ -53,7 +54,7 @@ std::vector<MergeCounts> use_back_faces(std::vector<OtherView>& views, Scene& sc
   std::vector<OtherView> others;
   std::vector<Plane<float>> distances;
   for (OtherView& view : views) {
-    auto found = find_back_faces(view, scene.geometry);
+    auto found = find_back_faces(view, scene.casters());
     if (!found) {
       others.push_back(std::move(view));
       continue;
@@ -106,6 +107,20 @@ void warn_of(const MergeCounts& view, std::vector<std::string>& warnings) {
 bool is_same_file(const std::string& a, const std::string& b) {
   std::error_code ignored;
   return a == b || fs::equivalent(a, b, ignored);
+}
+
+/// Leaves out of a view what is marked.
+void take_out(OtherView& view, unsigned char marks) {
+  const Plane<unsigned char>& taken = view.picture->taken;
+  if (taken.empty()) return;
+  OtherPicture picture = *view.picture;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    if (!(taken[i] & marks)) continue;
+    // Its depth stays: up to there nothing is in the way, and what is behind it is not known.
+    picture.surfel[i] = Surfel();
+    picture.surfel[i].rounding = Surfel::kBroken;
+  }
+  view.picture = std::make_shared<const OtherPicture>(std::move(picture));
 }
 
 /// Reads the views of one frame.
@@ -209,19 +224,26 @@ KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
 
 std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
                                             std::optional<float> thickness,
-                                            const GBufferOptions& reading) {
-  scene.solids = find_solids(scene.geometry, known.deep, thickness, reading, known.warnings);
+                                            const GBufferOptions& reading,
+                                            const TakenOut* taken_out) {
+  if (taken_out) {
+    register_views(known, scene.geometry);
+    for (OtherView& view : known.views) take_out(view, taken_out->marks);
+    scene.casting = take_out(scene.geometry, taken_out->coverage, known.views);
+  }
+  const Geometry& casters = scene.casters();
+  scene.solids = find_solids(casters, known.deep, thickness, reading, known.warnings);
   std::vector<MergeCounts> of_backs = use_back_faces(known.views, scene), counts;
-  register_views(known, scene.geometry);
+  if (!taken_out) register_views(known, scene.geometry);
   if (known.views.empty()) return of_backs;
-  scene.other_surfaces = merge_views(known.views, scene.geometry, scene.senders.albedo, counts);
+  scene.other_surfaces = merge_views(known.views, casters, scene.senders.albedo, counts);
   std::vector<OtherView> of_scene;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     warn_of(counts[i], known.warnings);
     if (!counts[i].is_of_another_scene()) of_scene.push_back(known.views[i]);
   }
   std::erase_if(counts, [](const MergeCounts& view) { return view.is_of_another_scene(); });
-  if (!thickness) carve(scene.solids, scene.geometry, of_scene);
+  if (!thickness) carve(scene.solids, casters, of_scene);
   scene.views = std::move(of_scene);
   counts.insert(counts.end(), of_backs.begin(), of_backs.end());
   return counts;

@@ -31,13 +31,21 @@ KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
                                   const FrameOptions& options, OtherPictures& pictures,
                                   const std::optional<DeepImage>& own);
 
+/// Objects that cast nothing.
+struct TakenOut {
+  const Plane<float>& coverage;  ///< of the frame
+  unsigned char marks;           ///< kNoCast, or that and kShadowOf, of the views
+};
+
 /// Fills the solids, guessed where nothing is known, and the surfaces of other views of a scene:
 /// measured where deep images or other views show them, guessed elsewhere, or as thick as
 /// `thickness`. Gives what each view added, those of back faces last, which are taken out of
-/// `known`; of views of another scene, unit or axes, warnings tell. Errors: ExitCode::layer for a
-/// deep image of another frame.
+/// `known`; of views of another scene, unit or axes, warnings tell. With `taken_out`, what that
+/// covers of the frame, and OtherPicture::taken of the views in `marks`, casts nothing. Errors:
+/// ExitCode::layer for a deep image of another frame.
 std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
                                             std::optional<float> thickness,
-                                            const GBufferOptions& reading);
+                                            const GBufferOptions& reading,
+                                            const TakenOut* taken_out = nullptr);
 
 }  // namespace ssdo

@@ -19,7 +19,7 @@ namespace {
 
 /// Bands have the rows of the frame.
 void check_bands(const Frame& frame) {
-  const bool composites = frame.plan.composition.compose != Compose::relight;
+  const bool composites = frame.plan.composition.shows_rendered();
   if (window_of_outputs(frame.readers(), frame.layers, composites, {}) == frame.gbuffer.file_window)
     return;
   throw Error(ExitCode::usage,

@@ -8,6 +8,7 @@
 
 #include "error.h"
 #include "plan/composite_choice.h"
+#include "scene/objects/read_object_masks.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -34,6 +35,17 @@ std::vector<Role> unused_roles(const FrameOptions& options, const FrameFiles& fi
   return unused;
 }
 
+/// Opens the files of selections that no layer has needed.
+void open_mattes(Frame& frame, bool allow_partial) {
+  for (const Selection* selection : frame.objects.all()) {
+    for (const SelectionTerm& term : selection->terms) {
+      const auto is_it = [&](const ExrReader& file) { return file.path() == term.file; };
+      if (!term.file.empty() && std::ranges::none_of(frame.files, is_it))
+        frame.files.emplace_back(term.file, allow_partial ? Salvage::done : Salvage::offered);
+    }
+  }
+}
+
 }  // namespace
 
 Frame read_frame(const FrameOptions& options, const FrameFiles& files, int lamps,
@@ -43,7 +55,8 @@ Frame read_frame(const FrameOptions& options, const FrameFiles& files, int lamps
   const double opening = watch.lap();
   InputOptions input = for_view(options.input, files);
   input.gbuffer.downsample = options.output.downsample;
-  input.gbuffer.beauty = choose_compose(options.output, files.aovs) != Compose::relight;
+  input.gbuffer.beauty = choose_compose(options.output, files.aovs) != Compose::relight ||
+                         files.objects.keeps_pixels();
   input.gbuffer.most_pixels = most_pixels_in(options.memory, options.output, lamps);
   View view =
       read_view(std::move(opened), files.aovs, input, options.camera, unused_roles(options, files));
@@ -57,10 +70,14 @@ Frame read_frame(const FrameOptions& options, const FrameFiles& files, int lamps
   frame.input = files.input;
   frame.view = files.view;
   frame.files = std::move(view.files);
+  frame.objects = files.objects;
   frame.layers = std::move(view.layers);
   frame.gbuffer = std::move(view.gbuffer);
   frame.report = std::move(view.report);
   frame.scene = take_scene(frame.gbuffer, std::move(view.geometry));
+  open_mattes(frame, options.input.allow_partial);
+  frame.gbuffer.masks = read_object_masks(frame.objects, {frame.files, frame.view},
+                                          frame.gbuffer.window, frame.gbuffer.grid);
   own = std::move(view.deep);
   frame.times.read = opening + view.read_ms;
   frame.times.prepare = watch.lap() - view.read_ms;

@@ -11,8 +11,12 @@
 // the other: relight/bands.h.
 #include "relight/relight.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <utility>
 
+#include "error.h"
 #include "estimators/registry.h"
 #include "relight/bands.h"
 #include "relight/frame_light.h"
@@ -21,6 +25,7 @@
 #include "relight/plan_frame.h"
 #include "relight/read_frame.h"
 #include "relight/targets.h"
+#include "scene/objects/selected_coverage.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -29,12 +34,52 @@ namespace {
 /// The share of a job's time that estimate and filter take, for progress.
 constexpr double kEstimateShare = 0.85;
 
+/// Objects that cast nothing take all of the frame at once, and a method that looks for what is
+/// behind things.
+void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameOptions& options) {
+  const Selection& which =
+      frame.objects.no_cast.empty() ? frame.objects.shadow_of : frame.objects.no_cast;
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ExitCode::usage, fmt::format("{}: {}: {}", frame.input, which.option, why));
+  };
+  if (which.empty()) return;
+  if (!find_method(options.model.method).takes.thickness)
+    refuse(fmt::format("method {} casts with all that is seen; take bitmask or trace",
+                       options.model.method));
+  if (frame.gbuffer.grid.is_coarse())
+    refuse("takes all of the frame at once, which --mem-limit does not allow: raise it");
+  if (!known.deep.empty())
+    refuse("deep samples do not say what they are of; leave the deep image out");
+  if (!frame.objects.shadow_of.empty() && options.model.temporal)
+    refuse("--temporal has no history of it; leave one of them out");
+}
+
 /// Finds the solids behind the surfaces, and takes what other views add.
 void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& options) {
+  refuse_objects(frame, known, options);
   if (find_method(options.model.method).takes.thickness) {
     std::optional<float> thickness;
     if (options.model.thickness) thickness = float(*options.model.thickness);
-    frame.views = use_known_geometry(known, frame.scene, thickness, options.input.gbuffer);
+    const ObjectOptions& objects = frame.objects;
+    const auto coverage = [&](const Selection& selection) {
+      return selected_coverage(selection, {frame.files, frame.view}, frame.gbuffer.window,
+                               frame.gbuffer.grid);
+    };
+    Plane<float> out;
+    if (!objects.no_cast.empty()) out = coverage(objects.no_cast);
+    if (!objects.shadow_of.empty()) {
+      Plane<float> more = coverage(objects.shadow_of);
+      for (std::size_t i = 0; i < out.size(); ++i) more[i] = std::max(more[i], out[i]);
+      KnownGeometry again = known;
+      frame.scene.without = std::make_shared<Scene>();
+      frame.scene.without->geometry = frame.scene.geometry;
+      frame.scene.without->senders.albedo = frame.scene.senders.albedo;
+      const TakenOut both{more, kNoCast | kShadowOf};
+      use_known_geometry(again, *frame.scene.without, thickness, options.input.gbuffer, &both);
+    }
+    const TakenOut one{out, kNoCast};
+    frame.views = use_known_geometry(known, frame.scene, thickness, options.input.gbuffer,
+                                     out.empty() ? nullptr : &one);
   }
   frame.warn(known.warnings);
   frame.losses_of_views = std::move(known.losses);
@@ -64,6 +109,42 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& lighting, Other
   return frame;
 }
 
+namespace {
+
+/// direct + bounce.
+Plane<glm::vec3> light_of(const Products& found) {
+  Plane<glm::vec3> light = found.direct;
+  for (std::size_t i = 0; i < light.size() && !found.bounce.empty(); ++i)
+    light[i] += found.bounce[i];
+  return light;
+}
+
+/// Estimates the light without the objects of --shadow-of, as the one with them was: noise that
+/// both have in common is none of their shadow.
+void find_shadow(Scene& without, Relit& relit) {
+  without.light = relit.scene.light;
+  without.senders = relit.scene.senders;
+  without.roughness = relit.scene.roughness;
+  without.specular_color = relit.scene.specular_color;
+  const Plane<int> sender = without.casting->sender;
+  Plan plan = relit.plan;
+  plan.error.reset();
+  plan.request.products = {.direct = true, .bounce = plan.request.products.bounce};
+  plan.request.by_light = {};
+  Estimate found = estimate(std::move(without), plan, [](double) {}, {});
+  relit.times.estimate += found.estimate_ms;
+  relit.times.filter += found.filter_ms;
+  relit.products.lit = light_of(relit.products);
+  relit.products.lit_without = light_of(found.products);
+  for (Plane<glm::vec3>* light : {&relit.products.lit, &relit.products.lit_without}) {
+    const Plane<glm::vec3> all = *light;
+    for (std::size_t i = 0; i < sender.size(); ++i)
+      if (sender[i] >= 0) (*light)[i] = all[std::size_t(sender[i])];
+  }
+}
+
+}  // namespace
+
 Relit relight(const RelightJob& job, Scene scene, const std::function<void(double)>& on_progress,
               const TemporalInput& temporal) {
   const Frame& frame = job.frame;
@@ -81,6 +162,7 @@ Relit relight(const RelightJob& job, Scene scene, const std::function<void(doubl
     relit.written = relight_in_bands(job, on_progress, relit);
     return relit;
   }
+  const std::shared_ptr<Scene> without = scene.without;
   Estimate found = estimate(
       std::move(scene), frame.plan, [&](double done) { on_progress(kEstimateShare * done); },
       temporal);
@@ -89,10 +171,11 @@ Relit relight(const RelightJob& job, Scene scene, const std::function<void(doubl
   relit.products = std::move(found.products);
   relit.history = std::move(found.history);
   relit.error = found.error;
-  append(relit.notes, found.notes);
-  append(relit.warnings, found.warnings);
   relit.times.estimate = found.estimate_ms;
   relit.times.filter = found.filter_ms;
+  append(relit.notes, found.notes);
+  append(relit.warnings, found.warnings);
+  if (contains(relit.plan.make, "shadow_of")) find_shadow(*without, relit);
   return relit;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "color/display_image.h"
+#include "color/kept_pixels.h"
 #include "io/images/image_file.h"
 #include "io/json_text.h"
 #include "io/size_guard.h"
@@ -23,8 +24,10 @@ const std::string& product_of_picture(const Target& target, const Plan& plan) {
   return target.product ? *target.product : plan.show;
 }
 
-Results results_of(const Shown& view) {
-  return {view.scene, view.job.frame.gbuffer, view.products, view.plan.composition};
+/// `opened` are the view's products with kept pixels open.
+Results results_of(const Shown& view, const std::optional<Products>& opened) {
+  return {view.scene, view.job.frame.gbuffer, view.products, view.plan.composition,
+          opened ? &*opened : nullptr};
 }
 
 /// The channels of the input that say where surfaces are and how they move.
@@ -76,7 +79,7 @@ void widen(ExrContents& contents, const Window& all, const Rendered* around = nu
 
 /// What the outputs of a frame cover, in pixels of its files.
 Window window_of_outputs(const Frame& frame) {
-  const bool composites = frame.plan.composition.compose != Compose::relight;
+  const bool composites = frame.plan.composition.shows_rendered();
   return ssdo::window_of_outputs(frame.readers(), frame.layers, composites,
                                  frame.gbuffer.downsampling);
 }
@@ -176,23 +179,31 @@ Written write_targets(const std::vector<Shown>& views,
                       const std::function<void(double)>& on_progress) {
   Stopwatch watch;
   Written out;
+  std::vector<std::optional<Products>> opened;
+  for (const Shown& view : views)
+    opened.push_back(open_kept_pixels(view.products, view.scene, view.job.frame.gbuffer));
   const RelightJob& any = views.front().job;
   for (const Target& target : any.targets) {
     const SafeFile& file =
         *out.files.emplace_back(std::make_unique<SafeFile>(target.path, any.policy));
-    std::vector<Shown> shown;
-    for (const Shown& view : views)
-      if (target.shows(view.job.frame.view)) shown.push_back(view);
+    std::vector<Results> shown;
+    std::vector<const Shown*> views_shown;
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      if (!target.shows(views[k].job.frame.view)) continue;
+      views_shown.push_back(&views[k]);
+      shown.push_back(results_of(views[k], opened[k]));
+    }
     if (has_exr_ending(target.path)) {
       std::vector<ExrContents> contents;
-      for (const Shown& view : shown)
-        contents.push_back(exr_contents(view.job, view.plan, target, results_of(view)));
+      for (std::size_t k = 0; k < shown.size(); ++k)
+        contents.push_back(
+            exr_contents(views_shown[k]->job, views_shown[k]->plan, target, shown[k]));
       share_windows(contents);
       out.clamped_values += write_exr(file, by_part(contents));
     } else {
-      const Shown& view = shown.front();
+      const Shown& view = *views_shown.front();
       const DisplayImage image =
-          make_display_image(product_of_picture(target, view.plan), results_of(view),
+          make_display_image(product_of_picture(target, view.plan), shown.front(),
                              {view.display, keeps_alpha(target.path)});
       out.compose_ms += watch.lap();
       write_image(file, image.spec(any.options.output.bits), image.values);

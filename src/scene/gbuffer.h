@@ -12,6 +12,7 @@
 #include "math/pixel_grid.h"
 #include "math/plane.h"
 #include "scene/depth_model.h"
+#include "scene/objects/object_masks.h"
 
 namespace ssdo {
 
@@ -61,7 +62,8 @@ struct GBuffer {
   std::optional<Space> space = {};  ///< of P and N, where the user says it
   Plane<unsigned char> valid;       ///< 1 geometry, 0 background or broken
   Plane<unsigned char> broken;      ///< 1 where P is; empty: nowhere
-  float position_step = 0;          ///< relative rounding step of P (or depth) as stored
+  ObjectMasks masks;
+  float position_step = 0;  ///< relative rounding step of P (or depth) as stored
   std::size_t background_pixels = 0;
   std::size_t bad_pixels = 0;  ///< pixels with a NaN or infinity in a role that is used
   std::vector<std::string> warnings;

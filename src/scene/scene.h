@@ -2,6 +2,8 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "math/half_color.h"
@@ -20,17 +22,30 @@ struct Senders {
   Plane<glm::vec3> radiance;  ///< what they send, where a layer says so; else empty
 };
 
+/// What hides and sends light, where that is not what the pixels show: objects that cast nothing
+/// are taken out, and what may be behind them is put in their place.
+struct Casting {
+  Geometry geometry;  ///< of the pixels of the scene's
+  Plane<int> sender;  ///< the pixel whose light such a pixel sends; -1: it is as it shows
+};
+
 /// All that is known about what a frame shows, in camera space and scene units: what an estimator
 /// looks at.
 struct Scene {
-  Geometry geometry;
-  Solids solids;
+  Geometry geometry;  ///< what receives light, and, without `casting`, hides and sends it
+  std::optional<Casting> casting;
+  Solids solids;                 ///< of what casts
   std::vector<OtherView> views;  ///< of other cameras
   OtherSurfaces other_surfaces;  ///< what they show that the frame does not
   Senders senders;
   Light light;
   Plane<float> roughness;           ///< 0..1; empty: the same everywhere, a parameter of the method
   Plane<HalfColor> specular_color;  ///< F0, 0..1; empty: of an index of refraction, a parameter
+  /// The same frame without the objects of --shadow-of; null: not asked for. Its light, roughness
+  /// and colours are those of this scene, and empty there.
+  std::shared_ptr<Scene> without;
+
+  const Geometry& casters() const { return casting ? casting->geometry : geometry; }
 };
 
 }  // namespace ssdo

@@ -13,6 +13,7 @@
 #include "scene/gbuffer/read_gbuffer.h"
 #include "scene/geometry.h"
 #include "scene/layers/layers.h"
+#include "scene/objects/object_options.h"
 
 namespace ssdo {
 
@@ -31,6 +32,7 @@ struct InputOptions {
   std::vector<std::string> views;  ///< those to relight of a stereo file; empty: its only one
   std::string view;                ///< of them, the one that is read
   GBufferOptions gbuffer;
+  ObjectOptions objects;
   bool allow_partial = false;  ///< take what is there of files with missing chunks
   bool listed = false;  ///< the user has seen the list of layers: errors need not say where it is
 };
@@ -42,6 +44,7 @@ struct FrameFiles {
   std::vector<std::string> also;  ///< other pictures of the same scene, in the order of --also
   std::vector<FrameFiles> neighbours = {};  ///< frames of the same sequence; need not exist
   std::string view = {};                    ///< of a stereo file; empty: --part chooses
+  ObjectOptions objects = {};
 };
 
 /// The frame with a view of its files and those of its neighbours.

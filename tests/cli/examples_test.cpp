@@ -97,6 +97,8 @@ class Examples : public testing::Test {
       fs::create_directories((*folder_ / file).parent_path());
       write_frame(*folder_ / file, shrunk(std::string(name) + ".exr"));
     }
+    for (const char* name : {"data/objects.exr", "set.exr"})
+      fs::copy_file(data("objects.exr"), *folder_ / name);
     fs::copy_file(data("still_life.lights.json"), *folder_ / "data/still_life.lights.json");
     for (const auto& entry : fs::directory_iterator(data("blender/exports")))
       fs::copy_file(entry.path(), *folder_ / entry.path().filename());

@@ -321,7 +321,7 @@ void spread(const BounceJob& job, const Window& part) {
     for_each_gatherer(job.march, place, [&](const Place& q, int dx, int dy) HWY_ATTR {
       const std::ptrdiff_t at = index_of_gatherer(from, q);
       const V weights = load(from.weights, at);
-      const M found = hn::And(holds_solid(load(scene.depth(), q.index)), weights > zero);
+      const M found = hn::And(holds_solid(load(scene.receiver_depth(), q.index)), weights > zero);
       if (!any(found)) return;
       const Gathered light{if_then_else_zero(found, load(from.sum, at)),
                            hn::IfThenElseZero(found, weights)};

@@ -27,6 +27,19 @@ struct Pass {
   GatheredLight& gathered;
 };
 
+/// What stands in place of objects that cast nothing sends what its sender does, a pixel beside it.
+void send_from_hole(const Raster& raster, const Plane<int>& senders, InterleavedVectors& sent) {
+  const Interleaving& layout = raster.layout();
+  for_each_row(senders.height, [&](int y) {
+    raster.for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
+      const int from = senders[pixel];
+      if (from < 0) return;
+      const std::ptrdiff_t q = layout.index(from % senders.width, from / senders.width);
+      for (InterleavedPlane& channel : sent) channel[i] = channel[q];
+    });
+  });
+}
+
 class BouncePasses {
  public:
   explicit BouncePasses(const BounceInputs& inputs)
@@ -176,7 +189,11 @@ InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& ligh
                               const Window& part, const BouncedLight* before) {
   const Scene& scene = inputs.scene;
   // A layer may say what is sent.
-  if (!scene.senders.radiance.empty()) return inputs.raster.interleaved(scene.senders.radiance);
+  if (!scene.senders.radiance.empty()) {
+    InterleavedVectors given = inputs.raster.interleaved(scene.senders.radiance);
+    if (scene.casting) send_from_hole(inputs.raster, scene.casting->sender, given);
+    return given;
+  }
   InterleavedVectors sent = inputs.raster.make_color();
   const SenderJob senders{inputs.march.scene,
                           shares_of(light, inputs.ao, inputs.sky, inputs.sources),
@@ -187,6 +204,7 @@ InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& ligh
                           &sent,
                           sends_two_sided(scene)};
   for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
+  if (scene.casting) send_from_hole(inputs.raster, scene.casting->sender, sent);
   return sent;
 }
 

@@ -139,10 +139,10 @@ HWY_INLINE V3 normal_of_tilt(const MarchScene& scene, const V2& tilt, const V2& 
   return {aside.x, aside.y, scene.orthographic ? one : one + dot(aside, slope)};
 }
 
-/// The unit normals of the tangent planes at index `q`.
-HWY_INLINE V3 load_normal(const MarchScene& scene, const MarchPlanes& planes, std::ptrdiff_t q,
-                          const V2& slope) {
-  const V2 tilt = with_rest(load(planes.tilt, q), load(planes.tilt_rest, q));
+/// The unit normals of tangent planes at index `q` of a tilt and its rest, as MarchPlanes has them.
+HWY_INLINE V3 load_normal(const MarchScene& scene, const InterleavedPlane& tilts,
+                          const InterleavedPlane& rests, std::ptrdiff_t q, const V2& slope) {
+  const V2 tilt = with_rest(load(tilts, q), load(rests, q));
   const V3 normal = normal_of_tilt(scene, tilt, slope);
   return normal * (set(1) / hn::Sqrt(dot(normal, normal)));
 }
@@ -160,13 +160,14 @@ HWY_INLINE MarchReceiver load_receiver(const MarchScene& scene, const Place& pla
   const auto [i, y, column_phase, column] = place;
   MarchReceiver p;
   p.place = place;
-  const V depth = load(scene.depth(), i);
+  const V depth = load(scene.receiver_depth(), i);
   p.x = lane_columns(scene.layout, column_phase, column), p.y = set(float(y));
   p.valid = holds_solid(depth);
   const V one = set(1), zero = set(0);
   p.slope_x = (p.x + set(float(scene.first_x)) - set(scene.axis_x)) * set(1 / scene.fx);
   p.slope_y = (set(scene.axis_y) - set(float(y + scene.first_y))) * set(1 / scene.fy);
-  p.normal = load_normal(scene, scene, i, {p.slope_x, p.slope_y});
+  p.normal = load_normal(scene, scene.receiver_tilt(), scene.receiver_tilt_rest(), i,
+                         {p.slope_x, p.slope_y});
   if (scene.orthographic) {
     p.position = {p.slope_x, p.slope_y, zero - depth};
     p.to_viewer = {zero, zero, one};
@@ -218,14 +219,14 @@ HWY_INLINE V height_above(const MarchReceiver& p, V rise, V depth) {
 template <bool kOrthographic>
 HWY_INLINE V likeness(const MarchScene& scene, const MarchReceiver& p, std::ptrdiff_t q, int dx,
                       int dy) {
-  const V depth = load(scene.depth(), q);
+  const V depth = load(scene.receiver_depth(), q);
   const M valid = hn::And(p.valid, holds_solid(depth));
   const V2 slope{p.slope_x + set(float(dx) / scene.fx), p.slope_y - set(float(dy) / scene.fy)};
   V x = slope.x, y = slope.y;
   if constexpr (!kOrthographic) x = x * depth, y = y * depth;
   const V3 to_q = V3{x, y, set(0) - depth} - p.position;
   const M near = within_sine(dot(to_q, p.normal), dot(to_q, to_q), kPlaneSine);
-  const V both = load(scene.tilt, q);
+  const V both = load(scene.receiver_tilt(), q);
   const V3 normal = normal_of_tilt(scene, {first_of_two(both), second_of_two(both)}, slope);
   const V cosine = dot(p.normal, normal) * reciprocal_sqrt(dot(normal, normal));
   return hn::IfThenElseZero(hn::And(valid, near), normal_weight(cosine));

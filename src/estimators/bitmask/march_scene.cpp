@@ -130,7 +130,39 @@ float reach_px(const Geometry& g, float radius) {
   return reach;
 }
 
-MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Window& receivers) {
+namespace {
+
+/// Calls `visit(index, x, y, cell)` for what the pixels of a geometry show, x beyond it where the
+/// planes of `scene` are padded.
+template <class Visit>
+void for_each_cell(const Geometry& g, const MarchScene& scene, const Cells& cells,
+                   const Visit& visit) {
+  const Interleaving& layout = scene.layout;
+  for_each_row(g.surfel.height, [&](int y) {
+    constexpr int kPad = Interleaving::kPad;
+    // From left to right: eight walks over every eighth pixel would each fetch three rows of
+    // surfels.
+    std::vector<glm::vec3> normals(std::size_t(g.surfel.width));
+    find_geometric_normals(g.surfel, y, g.camera.orthographic, normals);
+    std::vector<Cell> cells_of_row;
+    cells_of_row.reserve(normals.size());
+    for (int x = 0; x < g.surfel.width; ++x)
+      cells_of_row.push_back(cells.at(x, y, normals[std::size_t(x)]));
+    for (int column_phase = 0; column_phase < kPeriod; ++column_phase) {
+      const std::ptrdiff_t row = layout.index(y, column_phase, 0);
+      for (int column = -kPad; column < int(layout.stride()) - kPad; ++column) {
+        const int x = column * kPeriod + column_phase - layout.phase();
+        visit(row + column, x, y,
+              x >= 0 && x < g.surfel.width ? cells_of_row[std::size_t(x)] : Cell());
+      }
+    }
+  });
+}
+
+}  // namespace
+
+MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Window& receivers,
+                            const Geometry* receiving) {
   check_layers(solids);
   const Interleaving layout(g.surfel.width, g.surfel.height,
                             (g.window.x0 - g.display.x0) & (kPeriod - 1));
@@ -157,42 +189,37 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                    frame.width(),
                    frame.height(),
                    g.window.y0 - frame.y0,
-                   g.surfel,
+                   receiving ? receiving->surfel : g.surfel,
                    BorderLayout(layout),
+                   {},
+                   {},
+                   {},
                    {},
                    {},
                    {},
                    {}};
   if (receivers.area() == 0) scene.receivers = scene.raster();
   const Cells cells(g, scene);
-  for_each_row(g.surfel.height, [&](int y) {
-    constexpr int kPad = Interleaving::kPad;
-    // From left to right: eight walks over every eighth pixel would each fetch three rows of
-    // surfels.
-    std::vector<glm::vec3> normals(std::size_t(g.surfel.width));
-    find_geometric_normals(g.surfel, y, g.camera.orthographic, normals);
-    std::vector<Cell> cells_of_row;
-    cells_of_row.reserve(normals.size());
-    for (int x = 0; x < g.surfel.width; ++x)
-      cells_of_row.push_back(cells.at(x, y, normals[std::size_t(x)]));
-    for (int column_phase = 0; column_phase < kPeriod; ++column_phase) {
-      const std::ptrdiff_t row = layout.index(y, column_phase, 0);
-      for (int column = -kPad; column < int(layout.stride()) - kPad; ++column) {
-        const int x = column * kPeriod + column_phase - layout.phase();
-        const Cell cell = x >= 0 && x < g.surfel.width ? cells_of_row[std::size_t(x)] : Cell();
-        const std::ptrdiff_t i = row + column;
-        const glm::vec2 tilt = cells.tilt(cell);
-        scene.tilt[i] = two_in_one(tilt.x, tilt.y),
-        scene.tilt_rest[i] = rest_of_two(tilt.x, tilt.y);
-        for (int k = 0; k < solids.layers(); ++k) {
-          const Span span =
-              cell.is_surface() ? cells.span(cell, solids.at(k, g.surfel.index(x, y))) : Span();
-          MarchLayer& layer = scene.layers[std::size_t(k)];
-          layer.depth[i] = span.depth, layer.thickness[i] = span.thickness;
-        }
-      }
+  for_each_cell(g, scene, cells, [&](std::ptrdiff_t i, int x, int y, const Cell& cell) {
+    const glm::vec2 tilt = cells.tilt(cell);
+    scene.tilt[i] = two_in_one(tilt.x, tilt.y), scene.tilt_rest[i] = rest_of_two(tilt.x, tilt.y);
+    for (int k = 0; k < solids.layers(); ++k) {
+      const Span span =
+          cell.is_surface() ? cells.span(cell, solids.at(k, g.surfel.index(x, y))) : Span();
+      MarchLayer& layer = scene.layers[std::size_t(k)];
+      layer.depth[i] = span.depth, layer.thickness[i] = span.thickness;
     }
   });
+  if (receiving) {
+    scene.own_depth = plane(), scene.own_tilt = plane(), scene.own_tilt_rest = plane();
+    const Cells own(*receiving, scene);
+    for_each_cell(*receiving, scene, own, [&](std::ptrdiff_t i, int, int, const Cell& cell) {
+      const glm::vec2 tilt = own.tilt(cell);
+      scene.own_depth[i] = cell.depth;
+      scene.own_tilt[i] = two_in_one(tilt.x, tilt.y);
+      scene.own_tilt_rest[i] = rest_of_two(tilt.x, tilt.y);
+    });
+  }
   scene.border_depth =
       scene.border.gather([&](int x, int y) { return scene.depth()[layout.index(x, y)]; });
   for (int c = 0; c < 3; ++c) {

@@ -101,8 +101,19 @@ struct MarchScene : MarchPlanes {
   BorderValues border_depth, border_normal[3];
   BorderValues border_thickness;  ///< in scene units
   BorderValues border_beyond;     ///< how far it may go on beyond the frame; empty: without limit
+  /// The depth and tilt of receivers where what they show does not cast; else empty.
+  InterleavedPlane own_depth, own_tilt, own_tilt_rest;
 
   bool shows_surface(std::ptrdiff_t i) const { return holds_solid(depth()[i]); }
+
+  bool receives(std::ptrdiff_t i) const { return holds_solid(receiver_depth()[i]); }
+
+  /// Those of what receives.
+  const InterleavedPlane& receiver_depth() const { return own_depth.data() ? own_depth : depth(); }
+  const InterleavedPlane& receiver_tilt() const { return own_depth.data() ? own_tilt : tilt; }
+  const InterleavedPlane& receiver_tilt_rest() const {
+    return own_depth.data() ? own_tilt_rest : tilt_rest;
+  }
   /// Whether nothing is there. A pixel that shows neither tells nothing.
   bool shows_background(int x, int y) const {
     const Surfel& s = surfel(x, y);
@@ -126,8 +137,9 @@ float reach_px(float f, bool orthographic, const glm::vec3& point, float radius)
 float reach_px(const Geometry& geometry, float radius);
 
 /// `receivers` as Request has them: in the coordinates of the geometry's window, and within it;
-/// area 0: all of it.
+/// area 0: all of it. `receiving`: what receives where that is not `geometry`, whose solids are
+/// given.
 MarchScene make_march_scene(const Geometry& geometry, const Solids& solids,
-                            const Window& receivers = {});
+                            const Window& receivers = {}, const Geometry* receiving = nullptr);
 
 }  // namespace ssdo

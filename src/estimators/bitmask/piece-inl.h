@@ -141,7 +141,7 @@ HWY_INLINE VU sectors_between(const March& march, const MarchPlanes& planes, con
   const V3 way = position(before) - position(here);
   const auto from_plane_of = [&](const Front& f) HWY_ATTR {
     const V2 slope{p.slope_x + set(f.step->dx / scene.fx), p.slope_y - set(f.step->dy / scene.fy)};
-    return hn::Abs(dot(load_normal(scene, planes, f.pixel, slope), way));
+    return hn::Abs(dot(load_normal(scene, planes.tilt, planes.tilt_rest, f.pixel, slope), way));
   };
   const V gap = hn::Max(from_plane_of(here), from_plane_of(before));
   V most = set(kSurfaceGap / std::min(scene.fx, scene.fy));

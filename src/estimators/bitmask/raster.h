@@ -22,6 +22,8 @@ class Raster {
  public:
   explicit Raster(const MarchScene& scene) : scene_(scene), layout_(scene.layout) {}
 
+  const Interleaving& layout() const { return layout_; }
+
   /// One colour for each pixel, not initialised.
   InterleavedVectors make_color() const {
     return {InterleavedPlane(layout_), InterleavedPlane(layout_), InterleavedPlane(layout_)};
@@ -78,7 +80,7 @@ class Raster {
       for (int first = 0; first < std::min(kPeriod, to.width()); ++first) {
         std::ptrdiff_t i = layout_.index(to.x0 + first, to.y0 + y);
         for (int x = first; x < to.width(); x += kPeriod, ++i)
-          out(x, y) = scene_.shows_surface(i) ? value(i) : background;
+          out(x, y) = scene_.receives(i) ? value(i) : background;
       }
     });
     return out;

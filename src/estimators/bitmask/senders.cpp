@@ -67,7 +67,7 @@ HWY_INLINE Around around(const MarchScene& scene, const Place& place) {
 
 /// The normals by which light is weighed.
 HWY_INLINE V3 shading_normals(const MarchScene& scene, const Place& place) {
-  const M valid = holds_solid(load(scene.depth(), place.index));
+  const M valid = holds_solid(load(scene.receiver_depth(), place.index));
   return usable(load_shading(scene, place).normal, valid);
 }
 
@@ -159,7 +159,7 @@ void send_light(const SenderJob& job, const Window& part) {
     const V3 albedo = albedo_at(job, place);
     const V3 front = within_range(albedo * light);
     if (!job.two_sided) return store(front, *job.sent, i);
-    const M valid = holds_solid(load(scene.depth(), i));
+    const M valid = holds_solid(load(scene.receiver_depth(), i));
     const V3 behind = set(glm::vec3(0)) - usable(pixels.normal, valid);
     const V3 bounce = job.bounce ? load(*job.bounce, i) : set(glm::vec3(0));
     const V3 all = unoccluded(job.found.light, positions(scene, place), behind);

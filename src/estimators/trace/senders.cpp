@@ -18,6 +18,15 @@ glm::vec3 direct_of(const NamedLight& light, const Products& found, const Surfel
   return direct;
 }
 
+/// What stands in place of objects that cast nothing sends what its sender does, a pixel beside it.
+void send_from_hole(const Plane<int>& from, TraceSenders& senders) {
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (from[i] < 0) continue;
+    senders.front[i] = senders.front[std::size_t(from[i])];
+    if (!senders.back.empty()) senders.back[i] = senders.back[std::size_t(from[i])];
+  }
+}
+
 }  // namespace
 
 void find_senders(const Scene& scene, const Products& found, const Plane<glm::vec3>& bounce,
@@ -42,6 +51,7 @@ void find_senders(const Scene& scene, const Products& found, const Plane<glm::ve
       senders.back[i] = within_range(albedo * (behind + bounce[i]));
     }
   });
+  if (scene.casting) send_from_hole(scene.casting->sender, senders);
 }
 
 }  // namespace ssdo

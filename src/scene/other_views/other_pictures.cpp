@@ -9,6 +9,7 @@
 #include "error.h"
 #include "parallel/tiles.h"
 #include "scene/deep/channels.h"
+#include "scene/objects/selected_coverage.h"
 
 namespace ssdo {
 namespace {
@@ -52,8 +53,26 @@ void check(const View& view, const std::string& file) {
   }
 }
 
+/// Marks what a selection covers of a picture, as far as that tells. A matte of the frame says
+/// nothing about it.
+void mark(OtherPicture& picture, const Selection& selection, unsigned char with,
+          const SelectionFiles& in) {
+  if (selection.empty()) return;
+  try {
+    const Plane<float> coverage = selected_coverage(selection, in, picture.window, {});
+    if (picture.taken.empty())
+      picture.taken = Plane<unsigned char>(coverage.width, coverage.height, 0);
+    for (std::size_t i = 0; i < coverage.size(); ++i)
+      if (coverage[i] > 0) picture.taken[i] |= with;
+  } catch (const Error& error) {
+    picture.warnings.push_back(fmt::format("{}: shows what {} takes out: {}", picture.file,
+                                           selection.option, error.what()));
+  }
+}
+
 /// Keeps of a view what other pictures need.
-OtherPictures::Picture picture_of(View view, const std::string& file) {
+OtherPictures::Picture picture_of(View view, const std::string& file, const std::string& eye,
+                                  const ObjectOptions& objects) {
   check(view, file);
   OtherPicture out;
   out.file = file;
@@ -69,6 +88,8 @@ OtherPictures::Picture picture_of(View view, const std::string& file) {
     }
   });
   out.albedo = in_half(view.gbuffer.albedo);
+  mark(out, objects.no_cast, kNoCast, {view.files, eye});
+  mark(out, objects.shadow_of, kShadowOf, {view.files, eye});
   for (const auto* warnings : {&view.gbuffer.warnings, &view.report.warnings}) {
     for (const std::string& warning : *warnings)
       out.warnings.push_back(fmt::format("{}: {}", file, warning));
@@ -105,7 +126,7 @@ OtherPictures::Picture OtherPictures::also(const std::string& file) {
   return get({kByNames, file}, [&]() -> Picture {
     std::deque<ExrReader> opened = open_view(file, {}, allow_partial_);
     if (has_deep_part(opened.front())) return nullptr;
-    return picture_of(read_view(std::move(opened), {}, {}, {}, kUnused), file);
+    return picture_of(read_view(std::move(opened), {}, {}, {}, kUnused), file, "", objects_);
   });
 }
 
@@ -118,7 +139,7 @@ OtherPictures::Picture OtherPictures::alike(const FrameFiles& frame, const Input
     });
     return picture_of(read_view(open_view(frame.input, aovs, input.allow_partial), aovs,
                                 for_view(input, frame), camera, kUnused),
-                      name_of(frame));
+                      name_of(frame), frame.view, objects_);
   });
 }
 

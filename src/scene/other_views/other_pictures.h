@@ -21,8 +21,10 @@ class OtherPictures {
  public:
   using Picture = OtherView::Picture;
 
-  /// With `allow_partial`, missing chunks of the files of --also are no errors.
-  explicit OtherPictures(bool allow_partial = false) : allow_partial_(allow_partial) {}
+  /// With `allow_partial`, missing chunks of the files of --also are no errors. `objects`: what
+  /// casts nothing, which is marked by what the pictures themselves hold of it.
+  explicit OtherPictures(bool allow_partial = false, ObjectOptions objects = {})
+      : allow_partial_(allow_partial), objects_(std::move(objects)) {}
 
   /// A further frame will ask for its files, until it is released. Files that no frame expects any
   /// more are forgotten; those that none has expected are kept.
@@ -51,6 +53,7 @@ class OtherPictures {
   Picture get(const Key& key, const std::function<Picture()>& read);
 
   const bool allow_partial_;
+  const ObjectOptions objects_;
   std::mutex mutex_;
   std::map<Key, Entry> entries_;
 };

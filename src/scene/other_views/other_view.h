@@ -15,6 +15,9 @@
 
 namespace ssdo {
 
+/// Which selection a pixel of another picture belongs to: of --no-cast, of --shadow-of.
+inline constexpr unsigned char kNoCast = 1, kShadowOf = 2;
+
 /// What another camera shows of the scene, or a panorama, in its own camera space: the same for
 /// every frame.
 struct OtherPicture {
@@ -25,6 +28,8 @@ struct OtherPicture {
   Plane<Surfel> surfel;     ///< normals are on the side of its own camera
   Plane<float> depth;       ///< Camera::depth_of; infinite where there is no surface
   Plane<HalfColor> albedo;  ///< empty where the file has none
+  /// What cast nothing is of each pixel: kNoCast, kShadowOf; empty: nothing.
+  Plane<unsigned char> taken;
   std::vector<std::string> warnings;
   std::vector<std::string> losses;  ///< see ExrReader::losses()
 };

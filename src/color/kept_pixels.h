@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "estimators/products.h"
+#include "scene/gbuffer.h"
+#include "scene/scene.h"
+
+namespace ssdo {
+
+/// The products with the pixels open that GBuffer::masks keeps, as far as it does: ao and the like
+/// 1, direct light unoccluded, bent normals those of the surface, all else 0. Nothing where no
+/// pixel is kept.
+std::optional<Products> open_kept_pixels(const Products& found, const Scene& scene,
+                                         const GBuffer& gbuffer);
+
+/// What of a pixel changes: 1 where no pixel is kept.
+inline float changed_share(const GBuffer& gbuffer, std::size_t pixel) {
+  return gbuffer.masks.kept.empty() ? 1.0f : 1 - gbuffer.masks.kept[pixel];
+}
+
+}  // namespace ssdo

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "scene/objects/object_masks.h"
+#include "scene/objects/object_options.h"
+#include "scene/objects/selected_coverage.h"
+
+namespace ssdo {
+
+/// The masks of these options. Errors: those of selected_coverage().
+ObjectMasks read_object_masks(const ObjectOptions& options, const SelectionFiles& in,
+                              const Window& window, const PixelGrid& grid);
+
+}  // namespace ssdo

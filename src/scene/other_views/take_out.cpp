@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Objects that cast nothing are taken out of a frame. What is behind them no pixel shows, so each
+// pixel of the hole gets, in this order,
+//
+// - what another view shows on its view ray, behind the object,
+// - what the surfaces around the hole suggest. Of the lines through the pixel in four directions,
+//   each ends in two pixels beside the hole. Where both show one plane, that plane is there; depths
+//   of a plane change linearly in 1/z along a line of the picture. Else each of the two goes on as
+//   its tangent plane, or as background. What goes on from nearby counts more, by the square of the
+//   distance in pixels, and guesses that agree count together. So a floor goes on below a thing
+//   that stands on it, and a wall behind it.
+//
+// Where two guesses are of surfaces that meet in a corner, the nearer one is seen.
+//
+// Nothing that is put in may be before the object, which would have been hidden by it.
+//
+// A pixel shows one surface, while coverage is antialiased: a pixel that is covered in part belongs
+// to the object, unless it lies on the surface of a pixel beside it that is not covered at all. A
+// rim that is left behind would cast as a sheet.
+#include "scene/other_views/take_out.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <span>
+#include <utility>
+
+#include "parallel/tiles.h"
+#include "scene/normals/normals.h"
+#include "scene/pixel_footprint.h"
+#include "scene/same_surface.h"
+
+namespace ssdo {
+namespace {
+
+/// Coverage from which on a pixel is the object's alone, whatever it lies on.
+constexpr float kAll = 0.99f;
+
+/// Two ends of a line show one plane if each lies off the other's by less than this share of their
+/// distance, and their normals differ by less than 18 degrees.
+constexpr float kOnePlane = 0.05f, kOneNormal = 0.95f;
+
+/// Guesses agree if their depths differ by less than this share, and they have one normal.
+constexpr float kSameDepth = 0.03f;
+
+/// Share of the weight of the best guess from which on another one counts beside it.
+constexpr float kSecond = 0.1f;
+
+/// A plane that a line meets so many times farther away than the pixel that suggests it has ended.
+constexpr float kFarthest = 50;
+
+struct Step {
+  int dx, dy;
+};
+constexpr std::array<Step, 8> kWays = {
+    {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, 1}, {1, -1}, {-1, 1}}};
+
+constexpr int kNone = -1;
+
+/// What may stand in a pixel of the hole.
+struct Guess {
+  float nearness = 0;  ///< 1/z, or z where the camera is orthographic; not for background
+  bool is_background = false;
+  float weight = 0;
+  int end = kNone;  ///< the pixel that suggests it, or the nearer of two
+  glm::vec3 normal{0};
+};
+
+class Hole {
+ public:
+  Hole(const Geometry& geometry, const Plane<float>& coverage)
+      : shown_(geometry),
+        casting_{geometry, Plane<int>(geometry.surfel.width, geometry.surfel.height, kNone)},
+        is_open_(geometry.surfel.width, geometry.surfel.height, 0),
+        footprint_(geometry.camera) {
+    for_each_row(is_open_.height, [&](int y) {
+      for (int x = 0; x < is_open_.width; ++x) is_open_(x, y) = belongs(coverage, x, y);
+    });
+  }
+
+  Casting fill(const std::vector<OtherView>& views) {
+    const Ends of_frame = find_ends(0);
+    for (const OtherView& view : views) add(view);
+    const Ends more = views.empty() ? Ends() : find_ends(kMeasured);
+    const Ends& ends = views.empty() ? of_frame : more;
+    for_each_row(is_open_.height, [&](int y) {
+      for (int x = 0; x < is_open_.width; ++x) {
+        const std::size_t i = is_open_.index(x, y);
+        if (is_open_[i] == kUnknown) guess(x, y, at(ends, i));
+        if (is_open_[i] && casting_.geometry.surfel[i].is_surface())
+          casting_.sender[i] = sender(x, y, casting_.sender[i], at(of_frame, i));
+      }
+    });
+    return std::move(casting_);
+  }
+
+ private:
+  /// The nearest pixel that is known, in each direction of every pixel.
+  using Ends = std::array<Plane<int>, kWays.size()>;
+  using EndsOfPixel = std::array<int, kWays.size()>;
+
+  static constexpr unsigned char kUnknown = 1, kMeasured = 2;
+
+  static EndsOfPixel at(const Ends& ends, std::size_t pixel) {
+    EndsOfPixel out;
+    for (std::size_t k = 0; k < kWays.size(); ++k) out[k] = ends[k][pixel];
+    return out;
+  }
+
+  /// What a pixel sends is known of the frame's own pixels: `end`, if it is one of them, else the
+  /// nearest surface beside the hole.
+  int sender(int x, int y, int end, const EndsOfPixel& ends) const {
+    if (end != kNone && !is_open_[std::size_t(end)]) return end;
+    int nearest = kNone;
+    for (const int each : ends) {
+      if (each == kNone || !shown_.surfel[std::size_t(each)].is_surface()) continue;
+      if (nearest == kNone || distance_px(x, y, each) < distance_px(x, y, nearest)) nearest = each;
+    }
+    return nearest;
+  }
+
+  bool belongs(const Plane<float>& coverage, int x, int y) const {
+    const float covered = coverage(x, y);
+    if (!(covered > 0) || covered >= kAll) return covered >= kAll;
+    const Surfel& s = shown_.surfel(x, y);
+    if (!s.is_surface()) return covered >= 0.5f;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Surfel* q = surface_at(shown_.surfel, x + dx, y + dy);
+        if (!q || coverage(x + dx, y + dy) > 0) continue;
+        const bool is_alike = glm::dot(s.normal, q->normal) > kOneNormal;
+        if (is_alike &&
+            on_one_surface({s.position, s.normal}, {q->position, q->normal}, footprint_))
+          return false;
+      }
+    }
+    return true;
+  }
+
+  float nearness_of(const glm::vec3& p) const {
+    return shown_.camera.orthographic ? -p.z : -1 / p.z;
+  }
+
+  glm::vec3 place(int x, int y, float nearness) const {
+    const double depth = shown_.camera.orthographic ? double(nearness) : 1 / double(nearness);
+    return glm::vec3(
+        shown_.camera.unproject({shown_.window.x0 + x + 0.5, shown_.window.y0 + y + 0.5}, depth));
+  }
+
+  /// Whether something at this depth would have been hidden by the object.
+  bool is_behind(int x, int y, float depth) const {
+    const Surfel& s = shown_.surfel(x, y);
+    return !s.is_surface() || depth >= -s.position.z;
+  }
+
+  /// Puts in what another view shows behind the object; of several points, the nearest.
+  void add(const OtherView& view) {
+    const Plane<Surfel> seen = view.surfels_in_frame();
+    const bool ortho = shown_.camera.orthographic;
+    for (const Surfel& s : seen.pixels) {
+      if (!s.is_usable() || glm::dot(s.normal, direction_to_viewer(s.position, ortho)) <= 0)
+        continue;
+      const glm::dvec2 at = shown_.camera.project(glm::dvec3(s.position));
+      const double px = std::floor(at.x - shown_.window.x0),
+                   py = std::floor(at.y - shown_.window.y0);
+      if (!(px >= 0 && py >= 0 && px < is_open_.width && py < is_open_.height)) continue;
+      const std::size_t i = is_open_.index(int(px), int(py));
+      const bool is_filled = is_open_[i] == kMeasured;
+      if (!is_open_[i] || !is_behind(int(px), int(py), -s.position.z)) continue;
+      Surfel& put = casting_.geometry.surfel[i];
+      if (is_filled && put.position.z >= s.position.z) continue;
+      put = s;
+      is_open_[i] = kMeasured;
+    }
+  }
+
+  /// `known`: what counts as known beside the pixels around the hole.
+  Ends find_ends(unsigned char known) const {
+    Ends ends;
+    for_each_task(kWays.size(), [&](std::size_t k) {
+      const auto [dx, dy] = kWays[k];
+      Plane<int>& nearest = ends[k] = Plane<int>(is_open_.width, is_open_.height, kNone);
+      const int w = is_open_.width, h = is_open_.height;
+      const bool back_x = dx > 0, back_y = dy > 0;
+      for (int row = 0; row < h; ++row) {
+        const int y = back_y ? h - 1 - row : row;
+        for (int column = 0; column < w; ++column) {
+          const int x = back_x ? w - 1 - column : column, nx = x + dx, ny = y + dy;
+          const std::size_t i = is_open_.index(x, y);
+          if (!is_open_[i] || is_open_[i] == known)
+            nearest[i] = int(i);
+          else if (nx >= 0 && ny >= 0 && nx < w && ny < h)
+            nearest[i] = nearest(nx, ny);
+        }
+      }
+    });
+    return ends;
+  }
+
+  float distance_px(int x, int y, int end) const {
+    const int w = is_open_.width;
+    return std::hypot(float(end % w - x), float(end / w - y));
+  }
+
+  const Surfel& known(int end) const { return casting_.geometry.surfel[std::size_t(end)]; }
+
+  /// The tangent plane of an end, on the ray of a pixel.
+  Guess alone(int x, int y, int end) const {
+    const Surfel& s = known(end);
+    const float away = distance_px(x, y, end);
+    Guess guess{0, !s.is_surface(), 1 / (away * away), end, s.normal};
+    if (s.is_broken()) guess.weight = 0;
+    if (guess.is_background || guess.weight == 0) return guess;
+    const auto [origin, direction] =
+        shown_.camera.ray({shown_.window.x0 + x + 0.5, shown_.window.y0 + y + 0.5});
+    const double per = glm::dot(glm::dvec3(s.normal), direction),
+                 depth = glm::dot(glm::dvec3(s.normal), glm::dvec3(s.position) - origin) / per,
+                 own = -double(s.position.z);
+    if (!(per < 0) || !(depth > 0)) {
+      guess.weight = 0;  // it does not go there
+    } else if (depth > double(kFarthest) * own) {
+      guess.is_background = true;
+    } else {
+      guess.nearness = shown_.camera.orthographic ? float(depth) : float(1 / depth);
+    }
+    return guess;
+  }
+
+  /// What the plane that both ends of a line show has at a pixel between them; weight 0: they show
+  /// none.
+  Guess between(int x, int y, int a, int b) const {
+    const Surfel &s = known(a), &t = known(b);
+    if (!s.is_surface() || !t.is_surface() || glm::dot(s.normal, t.normal) < kOneNormal) return {};
+    const glm::vec3 way = t.position - s.position;
+    const float off =
+        std::max(std::abs(glm::dot(way, s.normal)), std::abs(glm::dot(way, t.normal)));
+    if (off > kOnePlane * glm::length(way)) return {};
+    const float to_a = distance_px(x, y, a), to_b = distance_px(x, y, b),
+                share = to_a / (to_a + to_b);
+    return {std::lerp(nearness_of(s.position), nearness_of(t.position), share), false,
+            1 / (to_a * to_a) + 1 / (to_b * to_b), to_a <= to_b ? a : b,
+            glm::normalize(glm::mix(s.normal, t.normal, share))};
+  }
+
+  void guess(int x, int y, const EndsOfPixel& ends) {
+    std::array<Guess, kWays.size()> guesses;
+    std::size_t count = 0;
+    const auto take = [&](const Guess& one) {
+      const float depth = shown_.camera.orthographic ? one.nearness : 1 / one.nearness;
+      if (one.weight > 0 && (one.is_background || is_behind(x, y, depth))) guesses[count++] = one;
+    };
+    for (std::size_t k = 0; k < kWays.size(); k += 2) {
+      const int a = ends[k], b = ends[k + 1];
+      const Guess both = a != kNone && b != kNone ? between(x, y, a, b) : Guess();
+      if (both.weight > 0) {
+        take(both);
+        continue;
+      }
+      for (const int end : {a, b})
+        if (end != kNone) take(alone(x, y, end));
+    }
+    put(x, y, {guesses.data(), count});
+  }
+
+  static bool agree(const Guess& a, const Guess& b) {
+    if (a.is_background || b.is_background) return a.is_background && b.is_background;
+    return glm::dot(a.normal, b.normal) > kOneNormal &&
+           std::abs(a.nearness - b.nearness) <= kSameDepth * std::max(a.nearness, b.nearness);
+  }
+
+  static float weight_of(const Guess& guess, std::span<const Guess> all) {
+    float weight = 0;
+    for (const Guess& other : all) weight += agree(guess, other) ? other.weight : 0.0f;
+    return weight;
+  }
+
+  /// Where two surfaces meet in a corner, each before the other's plane, the nearer one is seen.
+  const Guess* nearer_of_corner(const Guess& best, float most, std::span<const Guess> all) const {
+    const Guess* nearest = &best;
+    const Surfel& s = known(best.end);
+    for (const Guess& other : all) {
+      if (other.is_background || weight_of(other, all) < kSecond * most) continue;
+      const Surfel& t = known(other.end);
+      const glm::vec3 way = t.position - s.position;
+      const bool is_corner = glm::dot(way, s.normal) > 0 && glm::dot(way, t.normal) < 0;
+      const bool is_nearer = shown_.camera.orthographic ? other.nearness < nearest->nearness
+                                                        : other.nearness > nearest->nearness;
+      if (is_corner && is_nearer) nearest = &other;
+    }
+    return nearest;
+  }
+
+  void put(int x, int y, std::span<const Guess> guesses) {
+    Surfel& out = casting_.geometry.surfel(x, y);
+    const Guess* best = nullptr;
+    float most = 0;
+    for (const Guess& one : guesses) {
+      const float weight = weight_of(one, guesses);
+      if (weight > most) most = weight, best = &one;
+    }
+    if (!best || best->is_background) {
+      out = Surfel();
+      if (!best) out.rounding = Surfel::kBroken;  // nothing tells what is there
+      return;
+    }
+    best = nearer_of_corner(*best, most, guesses);
+    double nearness = 0, weights = 0;
+    glm::vec3 normal(0);
+    const Guess* nearest = best;
+    for (const Guess& one : guesses) {
+      if (!agree(*best, one)) continue;
+      nearness += double(one.weight) * double(one.nearness), weights += double(one.weight);
+      normal += one.weight * one.normal;
+      if (one.weight > nearest->weight) nearest = &one;
+    }
+    out.position = place(x, y, float(nearness / weights));
+    out.normal = glm::normalize(normal);
+    out.valid = 1;
+    out.rounding = known(nearest->end).rounding;
+    casting_.sender(x, y) = nearest->end;
+  }
+
+  const Geometry& shown_;
+  Casting casting_;
+  Plane<unsigned char> is_open_;  ///< kUnknown in the hole, kMeasured where another view shows it
+  PixelFootprint footprint_;
+};
+
+}  // namespace
+
+Casting take_out(const Geometry& geometry, const Plane<float>& coverage,
+                 const std::vector<OtherView>& views) {
+  return Hole(geometry, coverage).fill(views);
+}
+
+}  // namespace ssdo

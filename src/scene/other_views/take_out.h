@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "math/plane.h"
+#include "scene/other_views/other_view.h"
+#include "scene/scene.h"
+
+namespace ssdo {
+
+/// The surfaces of a frame without what a selection covers: a hole, in which stands what other
+/// views show there, else what the surfaces around it suggest (take_out.cpp). `coverage` is as
+/// selected_coverage() has it, over the window of the geometry.
+Casting take_out(const Geometry& geometry, const Plane<float>& coverage,
+                 const std::vector<OtherView>& views);
+
+}  // namespace ssdo

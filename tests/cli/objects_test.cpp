@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// --only, --no-receive, --holdout, --no-cast and --shadow-of.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "support/frame_file.h"
+#include "support/parse_json.h"
+#include "support/run_tool.h"
+
+namespace ssdo::test {
+namespace {
+
+using testing::HasSubstr;
+
+using Words = std::vector<std::string>;
+
+Words operator+(Words a, const Words& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+const std::string kBlender = std::string(SSDO_SOURCE_DIR) + "/data/objects.exr";
+constexpr Window kWindow{0, 0, 96, 72};
+
+/// A floor, a wall and a ball, with ids and a matte of the ball.
+FramePart frame(bool with_ball, const Window& window = kWindow) {
+  const Camera by =
+      look_at(camera_from_fov(50, window, 1), {0.3, -4, 2.2}, {0, 0.5, 0.4}, {0, 0, 1});
+  const Surface floor = plane({0, 0, 0}, {0, 0, 1}), wall = plane({0, 2, 0}, {0, -1, 0}),
+                ball = sphere({0.1, 0.6, 0.5}, 0.5);
+  const Picture picture =
+      take_picture(with_ball ? all_of({floor, wall, ball}) : all_of({floor, wall}), by, window);
+  FramePart part = frame_of(picture);
+  part.data = part.display = window;
+  Plane<float> ids(window.width(), window.height(), 1.0f);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const glm::dvec3 p(picture.position[i]);
+    if (with_ball && std::abs(glm::distance(p, {0.1, 0.6, 0.5}) - 0.5) < 1e-4) ids[i] = 2;
+  }
+  part.channels["IndexOB.X"] = ids;
+  Plane<float> matte = ids;
+  for (float& m : matte.pixels) m = m == 2 ? 1 : 0;
+  part.channels["ball.A"] = matte;
+  return part;
+}
+
+class Objects : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return dir_ / name; }
+
+  void run(const std::string& in, const std::string& out, const Words& flags) const {
+    const Finished done =
+        run_tool(Words{in, "-o", path(out), "--overwrite", "--pixel-type", "float", "-q"} + flags);
+    EXPECT_EQ(done.code, 0) << done.err;
+  }
+
+  Plane<float> at(const std::string& file, const std::string& name) const {
+    return channel(path(file), name);
+  }
+
+  Finished refused(const Words& flags, const std::string& in = kBlender) const {
+    return run_tool(Words{in, "-o", path("none.exr")} + flags);
+  }
+
+  const TempDir dir_;
+};
+
+double rms(const Plane<float>& a, const Plane<float>& b, const Plane<float>& where, float is) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (where[i] != is) continue;
+    sum += double(a[i] - b[i]) * double(a[i] - b[i]), count += 1;
+  }
+  return std::sqrt(sum / std::max(count, 1.0));
+}
+
+TEST_F(Objects, InfoListsTheNamesOfAFrame) {
+  const Finished text = run_tool({"info", kBlender});
+  EXPECT_THAT(text.out, HasSubstr("objects   ViewLayer.CryptoObject: "));
+  EXPECT_THAT(text.out, HasSubstr("objects   ViewLayer.IndexOB: "));
+  const nlohmann::json objects = parse_json(run_tool({"info", kBlender, "--json"}).out)["objects"];
+  ASSERT_EQ(objects.size(), 4u);
+  double sum = 0;
+  for (const double share : objects["ViewLayer.CryptoObject"]) sum += share;
+  EXPECT_NEAR(sum, 1, 0.2);
+  EXPECT_GT(objects["ViewLayer.CryptoObject"]["ball.001"], 0.03);
+}
+
+/// Coverage c gives c P + (1 - c) B by --only, and the other way round by --no-receive.
+TEST_F(Objects, OnlyAndNoReceiveShareThePixels) {
+  for (const Words& more : {Words{}, Words{"--downsample", "3"}, Words{"--compose", "add"}}) {
+    run(kBlender, "all.exr", more);
+    run(kBlender, "only.exr", more + Words{"--only", "crypto:ball.001"});
+    run(kBlender, "not.exr", more + Words{"--no-receive", "crypto:ball.001"});
+    run(kBlender, "beauty.exr", more + Words{"--only", "crypto:ball.001-crypto:ball.001"});
+    int changed = 0, kept = 0, mixed = 0;
+    for (const char* c : {"R", "G", "B"}) {
+      const Plane<float> all = at("all.exr", c), only = at("only.exr", c), other = at("not.exr", c),
+                         beauty = at("beauty.exr", c);
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        EXPECT_NEAR(only[i] + other[i], all[i] + beauty[i], 1e-5f) << i;
+        changed += std::abs(only[i] - all[i]) < 1e-6f, kept += only[i] == beauty[i];
+        mixed += (only[i] - all[i]) * (only[i] - beauty[i]) < -1e-6f;
+      }
+    }
+    if (more != Words{"--downsample", "3"}) {
+      EXPECT_GT(changed, 20);
+    }
+    EXPECT_GT(kept, 200);
+    EXPECT_GT(mixed, 20) << "edges are not antialiased";
+    if (!more.empty()) continue;
+    const Plane<float> rendered = channel(kBlender, "ViewLayer.Combined.G");
+    EXPECT_EQ(at("beauty.exr", "G").pixels, rendered.pixels);
+  }
+}
+
+TEST_F(Objects, WithoutABeautyPixelsAreOpen) {
+  FramePart part = frame(true);
+  write_frame(path("in.exr"), part);
+  run(path("in.exr"), "all.exr", {"--env", "1,2,3"});
+  run(path("in.exr"), "kept.exr", {"--env", "1,2,3", "--no-receive", "id:IndexOB=2"});
+  for (const auto& [name, open] : std::vector<std::pair<std::string, float>>{
+           {"ao.Y", 1}, {"direct.R", 1}, {"direct.B", 3}, {"bounce.G", 0}, {"G", 1}}) {
+    const Plane<float> all = at("all.exr", name), kept = at("kept.exr", name);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (part.channels["ball.A"][i] == 0) {
+        ASSERT_EQ(all[i], kept[i]) << name;
+      } else {
+        ASSERT_NEAR(kept[i], open, 1e-5f) << name;
+      }
+    }
+  }
+}
+
+TEST_F(Objects, OccludeLeavesKeptPixelsAsRendered) {
+  FramePart part = frame(true);
+  part.add("beauty", Plane<glm::vec3>(96, 72, glm::vec3(0.5f, 0.4f, 0.3f)), "RGB");
+  part.add("amb", Plane<glm::vec3>(96, 72, glm::vec3(0.4f)), "RGB");
+  write_frame(path("in.exr"), part);
+  run(path("in.exr"), "out.exr", {"--aov", "ambient=amb", "--only", "ball"});
+  const Plane<float> out = at("out.exr", "R");
+  int darker = 0;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (part.channels["ball.A"][i] == 0)
+      ASSERT_EQ(out[i], 0.5f);
+    else
+      darker += out[i] < 0.49f;
+  }
+  EXPECT_GT(darker, 50);
+}
+
+TEST_F(Objects, HoldoutTakesAlphaAndNothingElse) {
+  for (const Words& more : {Words{}, Words{"--downsample", "3"}}) {
+    run(kBlender, "all.exr", more);
+    run(kBlender, "held.exr", more + Words{"--holdout", "crypto:ball.001"});
+    int out = 0;
+    for (const char* c : {"R", "G", "B", "A"}) {
+      const Plane<float> all = at("all.exr", c), held = at("held.exr", c);
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        EXPECT_LE(held[i], all[i]);
+        out += held[i] == 0 && all[i] > 0;
+      }
+    }
+    if (more.empty()) {
+      EXPECT_GT(out, 20);
+    }
+    EXPECT_EQ(at("all.exr", "ao.Y").pixels, at("held.exr", "ao.Y").pixels);
+    EXPECT_EQ(at("all.exr", "direct.R").pixels, at("held.exr", "direct.R").pixels);
+  }
+}
+
+/// What is left out of a frame casts as if it had not been there.
+TEST_F(Objects, NoCastIsAsIfItWereNotThere) {
+  const FramePart with = frame(true);
+  write_frame(path("with.exr"), with), write_frame(path("without.exr"), frame(false));
+  const Plane<float>& ball = with.channels.at("ball.A");
+  for (const std::string method : {"bitmask", "trace"}) {
+    const Words flags = {"--method", method, "--env", "1,1,1"};
+    run(path("with.exr"), "with_out.exr", flags);
+    run(path("without.exr"), "truth.exr", flags);
+    run(path("with.exr"), "no_cast.exr", flags + Words{"--no-cast", "id:IndexOB=2"});
+    for (const std::string name : {"ao.Y", "direct.G", "bounce.G"}) {
+      const Plane<float> truth = at("truth.exr", name);
+      const double before = rms(at("with_out.exr", name), truth, ball, 0),
+                   after = rms(at("no_cast.exr", name), truth, ball, 0);
+      EXPECT_LT(after, 0.2 * before) << method << " " << name;
+      RecordProperty(method + name, fmt::format("{:.4f} of {:.4f}", after, before));
+    }
+    // The ball receives, but not from itself: it is open to all but floor and wall.
+    const Plane<float> own = at("no_cast.exr", "ao.Y");
+    double sum = 0, count = 0;
+    for (std::size_t i = 0; i < own.size(); ++i)
+      if (ball[i] == 1) sum += own[i], count += 1;
+    EXPECT_GT(sum / count, 0.4) << method;
+    EXPECT_LT(sum / count, 0.98) << method;
+  }
+}
+
+TEST_F(Objects, NoCastHasTheSameBitsForAnyThreads) {
+  write_frame(path("in.exr"), frame(true));
+  run(path("in.exr"), "one.exr", {"--no-cast", "ball", "--threads", "1"});
+  run(path("in.exr"), "three.exr", {"--no-cast", "ball", "--threads", "3"});
+  for (const std::string& name : channel_names(path("one.exr")))
+    EXPECT_EQ(at("one.exr", name).pixels, at("three.exr", name).pixels) << name;
+}
+
+/// A view that shows the ball does not bring it back, where it has its ids too.
+TEST_F(Objects, NoCastHoldsInOtherViews) {
+  const FramePart with = frame(true);
+  write_frame(path("in.exr"), with), write_frame(path("without.exr"), frame(false));
+  write_frame(path("view.exr"), with);
+  run(path("without.exr"), "truth.exr", {});
+  run(path("in.exr"), "out.exr", {"--no-cast", "id:IndexOB=2", "--also", path("view.exr")});
+  EXPECT_LT(rms(at("out.exr", "ao.Y"), at("truth.exr", "ao.Y"), with.channels.at("ball.A"), 0),
+            0.02);
+}
+
+/// With the shadow, the light without the object is the light with it.
+TEST_F(Objects, ShadowOfIsTheLightThatAnObjectTakes) {
+  const FramePart with = frame(true);
+  write_frame(path("in.exr"), with);
+  const Plane<float>& ball = with.channels.at("ball.A");
+  const Words light = {"--env", "2,1,1"};
+  run(path("in.exr"), "all.exr", light + Words{"--shadow-of", "ball"});
+  run(path("in.exr"), "with.exr", light);
+  run(path("in.exr"), "without.exr", light + Words{"--no-cast", "ball"});
+  EXPECT_EQ(at("all.exr", "direct.R").pixels, at("with.exr", "direct.R").pixels);
+  const Plane<float> shadow = at("all.exr", "shadow_of.R");
+  const Plane<float> a = at("with.exr", "direct.R"), a2 = at("with.exr", "bounce.R"),
+                     b = at("without.exr", "direct.R"), b2 = at("without.exr", "bounce.R");
+  int dark = 0, clear = 0;
+  for (std::size_t i = 0; i < shadow.size(); ++i) {
+    EXPECT_GT(shadow[i], 0);
+    if (ball[i] == 1) continue;
+    EXPECT_NEAR(shadow[i] * (b[i] + b2[i]), a[i] + a2[i], 1e-4f);
+    dark += shadow[i] < 0.8f, clear += std::abs(shadow[i] - 1) < 0.02f;
+  }
+  EXPECT_GT(dark, 20);
+  EXPECT_GT(clear, 1000);
+}
+
+TEST_F(Objects, RefuseInOneLine) {
+  const auto expect = [](const Finished& done, int code, const std::string& says) {
+    EXPECT_EQ(done.code, code) << done.err;
+    EXPECT_THAT(done.error_line(), HasSubstr(says));
+  };
+  expect(refused({"--only", "crypto:bal"}), 4, "did you mean ball");
+  expect(refused({"--only", "crypto:"}), 2, "expected crypto:NAME");
+  expect(refused({"--holdout", "IndexOB=1"}), 4, "no layer 'IndexOB=1'");
+  expect(refused({"--no-cast", "crypto:ball.001", "--method", "gtao"}), 2, "take bitmask or trace");
+  expect(refused({"--products", "shadow_of"}), 2, "say which with --shadow-of SEL");
+  expect(refused({"--no-cast", path("no.exr") + ":A"}), 4, "no layer");
+}
+
+/// Masks are read band by band; no-cast takes all of the frame.
+TEST_F(Objects, MasksAreTheSameInBands) {
+  constexpr Window kTall{0, 0, 320, 1600};
+  FramePart part = frame_of(small_picture(kTall, kTall));
+  part.data = part.display = kTall;
+  Plane<float> matte(320, 1600);
+  for (int y = 0; y < 1600; ++y)
+    for (int x = 0; x < 320; ++x) matte(x, y) = float((x + y) % 100) / 99;
+  part.channels["soft.A"] = matte;
+  part.add("beauty", Plane<glm::vec3>(320, 1600, glm::vec3(0.5f, 0.4f, 0.3f)), "RGB");
+  write_frame(path("in.exr"), part);
+  const nlohmann::json info = parse_json(run_tool({"info", path("in.exr"), "--json"}).out);
+  std::ofstream(path("camera.json")) << info["camera"].dump();
+  const Words flags = {
+      "--camera", path("camera.json"), "--thickness",    "0.3", "--radius", "0.3", "--only",
+      "soft",     "--holdout",         "soft - beauty.R"};
+  run(path("in.exr"), "whole.exr", flags);
+  run(path("in.exr"), "bands.exr", flags + Words{"--mem-limit", "124M"});
+  for (const std::string& name : channel_names(path("whole.exr")))
+    EXPECT_EQ(at("whole.exr", name).pixels, at("bands.exr", name).pixels) << name;
+  const Finished no_cast =
+      run_tool({path("in.exr"), "-o", path("no.exr"), "--no-cast", "soft", "--mem-limit", "124M"});
+  EXPECT_EQ(no_cast.code, 2);
+  EXPECT_THAT(no_cast.error_line(), HasSubstr("takes all of the frame at once"));
+}
+
+}  // namespace
+}  // namespace ssdo::test

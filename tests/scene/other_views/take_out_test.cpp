@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/other_views/take_out.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+#include "support/analytic_scene.h"
+
+namespace ssdo::test {
+namespace {
+
+constexpr Window kWindow{0, 0, 96, 72};
+
+Camera camera(const Window& window = kWindow) {
+  return look_at(camera_from_fov(50, window, 1), {0.3, -4, 2.2}, {0, 0.5, 0.4}, {0, 0, 1});
+}
+
+const Surface kFloor = plane({0, 0, 0}, {0, 0, 1}), kWall = plane({0, 2, 0}, {0, -1, 0}),
+              kBall = sphere({0.1, 0.6, 0.5}, 0.5);
+
+/// What a frame shows of a scene, and how much a ball covers of each pixel.
+struct Frame {
+  Geometry geometry;
+  Plane<float> coverage;
+};
+
+Frame frame_of(const std::vector<Surface>& around, const Camera& by = camera(),
+               const Window& window = kWindow) {
+  std::vector<Surface> all = around;
+  all.push_back(kBall);
+  const Geometry alone = geometry_of(kBall, by, window);
+  Frame out{geometry_of(all_of(all), by, window),
+            Plane<float>(window.width(), window.height(), 0.0f)};
+  for (std::size_t i = 0; i < out.coverage.size(); ++i) {
+    const bool shows =
+        alone.is_surface(i) && alone.surfel[i].position == out.geometry.surfel[i].position;
+    out.coverage[i] = shows ? 1.0f : 0.0f;
+  }
+  return out;
+}
+
+/// Pixels of the hole, and how many of them do not show what is behind the ball.
+struct Filled {
+  int pixels = 0, wrong = 0, off = 0;
+};
+
+Filled filled(const Frame& frame, const std::vector<Surface>& around, const Casting& casting,
+              const Camera& by = camera(), const Window& window = kWindow) {
+  const Geometry truth = geometry_of(all_of(around), by, window);
+  Filled out;
+  for (std::size_t i = 0; i < frame.coverage.size(); ++i) {
+    const Surfel &a = casting.geometry.surfel[i], &b = truth.surfel[i];
+    if (frame.coverage[i] == 0) {
+      EXPECT_EQ(a.position, frame.geometry.surfel[i].position) << "beside the hole";
+      EXPECT_EQ(casting.sender[i], -1);
+      continue;
+    }
+    ++out.pixels;
+    const bool alike = a.is_surface() == b.is_surface();
+    out.wrong += !alike || (a.is_surface() && glm::dot(a.normal, b.normal) < 0.99f);
+    out.off += alike && a.is_surface() && glm::distance(a.position, b.position) > 1e-3f;
+    if (!a.is_surface()) continue;
+    const int sender = casting.sender[i];
+    EXPECT_GE(sender, 0);
+    EXPECT_EQ(frame.coverage[std::size_t(sender)], 0) << "the ball sends";
+    EXPECT_LE(a.position.z, frame.geometry.surfel[i].position.z + 1e-4f) << "before the ball";
+  }
+  return out;
+}
+
+TEST(TakeOut, APlaneGoesOnBelowAThing) {
+  const std::vector<Surface> around = {kFloor};
+  const Frame frame = frame_of(around);
+  const Filled found = filled(frame, around, take_out(frame.geometry, frame.coverage, {}));
+  EXPECT_GT(found.pixels, 200);
+  EXPECT_EQ(found.wrong, 0);
+  EXPECT_EQ(found.off, 0);
+}
+
+/// A floor and a wall meet behind it: the line where they do is off by few pixels.
+TEST(TakeOut, AFloorAndAWallMeetBehindAThing) {
+  const std::vector<Surface> around = {kFloor, kWall};
+  const Frame frame = frame_of(around);
+  const Filled found = filled(frame, around, take_out(frame.geometry, frame.coverage, {}));
+  EXPECT_LT(found.wrong, found.pixels / 20);
+}
+
+TEST(TakeOut, BackgroundStaysBackground) {
+  const Frame frame = frame_of({});
+  const Casting casting = take_out(frame.geometry, frame.coverage, {});
+  for (const Surfel& s : casting.geometry.surfel.pixels) {
+    EXPECT_FALSE(s.is_surface());
+    EXPECT_FALSE(s.is_broken());
+  }
+}
+
+TEST(TakeOut, AnOrthographicFrameToo) {
+  const Camera by =
+      look_at(camera_from_ortho_width(4, kWindow, 1), {0.3, -4, 2.2}, {0, 0.5, 0.4}, {0, 0, 1});
+  const std::vector<Surface> around = {kFloor};
+  const Frame frame = frame_of(around, by);
+  const Filled found = filled(frame, around, take_out(frame.geometry, frame.coverage, {}), by);
+  EXPECT_GT(found.pixels, 100);
+  EXPECT_EQ(found.wrong, 0);
+  EXPECT_EQ(found.off, 0);
+}
+
+/// Of a frame that shows nothing but the thing, nothing is known.
+TEST(TakeOut, WhatNothingTellsIsBroken) {
+  const Frame frame = frame_of({kFloor});
+  const Casting casting =
+      take_out(frame.geometry, Plane<float>(kWindow.width(), kWindow.height(), 1.0f), {});
+  for (const Surfel& s : casting.geometry.surfel.pixels) EXPECT_TRUE(s.is_broken());
+}
+
+/// A pixel that is covered in part shows one of both.
+TEST(TakeOut, ARimGoesWithTheThing) {
+  const std::vector<Surface> around = {kFloor};
+  Frame frame = frame_of(around);
+  Plane<float> matte = frame.coverage;
+  int rim = 0, ground = 0;
+  for (int y = 1; y + 1 < matte.height; ++y) {
+    for (int x = 1; x + 1 < matte.width; ++x) {
+      float least = 1, most = 0;
+      for (int d = -1; d <= 1; ++d) {
+        least = std::min({least, frame.coverage(x + d, y), frame.coverage(x, y + d)});
+        most = std::max({most, frame.coverage(x + d, y), frame.coverage(x, y + d)});
+      }
+      if (least < most) matte(x, y) = frame.coverage(x, y) > 0 ? 0.2f : 0.8f;
+    }
+  }
+  const Geometry truth = geometry_of(kFloor, camera(), kWindow);
+  const Casting casting = take_out(frame.geometry, matte, {});
+  for (std::size_t i = 0; i < matte.size(); ++i) {
+    rim += matte[i] == 0.2f, ground += matte[i] == 0.8f;
+    if (matte[i] == 0) continue;
+    EXPECT_LT(glm::distance(casting.geometry.surfel[i].position, truth.surfel[i].position), 1e-3f)
+        << "a rim is left";
+    if (matte[i] == 0.8f) {
+      EXPECT_EQ(casting.sender[i], -1) << "the ground was taken out";
+    }
+  }
+  EXPECT_GT(rim, 20);
+  EXPECT_GT(ground, 20);
+}
+
+}  // namespace
+}  // namespace ssdo::test
