@@ -84,10 +84,26 @@ void behind_camera(Random& r, Scene& scene) {
 const std::vector<Family>& families() {
   static const std::vector<Family> all = [] {
     std::vector<Family> out;
-    for (const auto& part :
-         {room_families(), town_families(), nature_families(), object_families(), set_families()})
+    for (const auto& part : {room_families(), town_families(), nature_families(), object_families(),
+                             set_families(), open_set_families(), open_place_families()})
       out.insert(out.end(), part.begin(), part.end());
     return out;
   }();
   return all;
+}
+
+// The first frames are of the families that were there first, in turn. Later ones are of those
+// that are open: of one that is trained on three times as often as of one that is not.
+int family_of(int id) {
+  constexpr int kFirstFrames = 1200, kFirstFamilies = 38;
+  if (id < kFirstFrames) return id % kFirstFamilies;
+  static const std::vector<int> turns = [] {
+    std::vector<int> out;
+    const int kinds = int(families().size());
+    for (int round = 0; round < 3; ++round)
+      for (int i = kFirstFamilies; i < kinds; ++i)
+        if (round == 0 || !families()[size_t(i)].validation) out.push_back(i);
+    return out;
+  }();
+  return turns[size_t(id - kFirstFrames) % turns.size()];
 }
