@@ -84,26 +84,39 @@ void behind_camera(Random& r, Scene& scene) {
 const std::vector<Family>& families() {
   static const std::vector<Family> all = [] {
     std::vector<Family> out;
-    for (const auto& part : {room_families(), town_families(), nature_families(), object_families(),
-                             set_families(), open_set_families(), open_place_families()})
+    for (const auto& part :
+         {room_families(), town_families(), nature_families(), object_families(), set_families(),
+          open_set_families(), open_place_families(), cutaway_families(), backlot_families()})
       out.insert(out.end(), part.begin(), part.end());
     return out;
   }();
   return all;
 }
 
-// The first frames are of the families that were there first, in turn. Later ones are of those
-// that are open: of one that is trained on three times as often as of one that is not.
-int family_of(int id) {
-  constexpr int kFirstFrames = 1200, kFirstFamilies = 38;
-  if (id < kFirstFrames) return id % kFirstFamilies;
-  static const std::vector<int> turns = [] {
-    std::vector<int> out;
-    const int kinds = int(families().size());
-    for (int round = 0; round < 3; ++round)
-      for (int i = kFirstFamilies; i < kinds; ++i)
-        if (round == 0 || !families()[size_t(i)].validation) out.push_back(i);
-    return out;
-  }();
-  return turns[size_t(id - kFirstFrames) % turns.size()];
+namespace {
+// Frames from `id` on are of the families from `first` to before `end`.
+struct Part {
+  int id, first, end;
+  bool behind;  // things may stand behind the camera
+};
+constexpr Part kParts[] = {{0, 0, 38, true}, {1200, 38, 55, true}, {2200, 38, 57, false}};
+
+const Part& part_of(int id) {
+  const Part* part = kParts;
+  for (const Part& p : kParts)
+    if (id >= p.id) part = &p;
+  return *part;
 }
+}  // namespace
+
+// In turn; of the open families, those that are trained on three times as often as the others.
+int family_of(int id) {
+  const Part& part = part_of(id);
+  std::vector<int> turns;
+  for (int round = 0; round < (part.id ? 3 : 1); ++round)
+    for (int i = part.first; i < part.end; ++i)
+      if (round == 0 || !families()[size_t(i)].validation) turns.push_back(i);
+  return turns[size_t(id - part.id) % turns.size()];
+}
+
+bool may_have_behind(int id) { return part_of(id).behind; }

@@ -326,6 +326,36 @@ void wide_steps(Random& r, Scene& s) {
   c.target = {r(-.25f, .25f) * width, depth * r(.2f, .8f), top * r(.3f, .8f)};
   c.fov = r(28, 75);
 }
+
+// A street of which only the side that is seen was built.
+void backlot(Random& r, Scene& s) {
+  Mesh& m = s.mesh;
+  wide_ground(r, s);
+  float x = -r(4, 14);
+  for (int i = r.count(1, 4); i > 0; --i) {
+    const float w = r(4, 12);
+    m.add(facade(r, w, r.log(3, 14)), {}, {x, r.chance(.8f) ? 0 : r(0, 2), 0});
+    x += w + (r.chance(.2f) ? r(1, 4) : 0);
+  }
+  if (r.chance(.3f)) m.add(facade(r, r(5, 12), r(3, 10)), about_z(-kPi / 2), {x, 0, 0});
+  if (r.chance(.5f)) {
+    m.tint = r.floor_albedo();
+    m.block({-30, -2.5f, 0}, {30, 0, .12f});
+  }
+  for (int i = r.count(1, 14); i > 0; --i) {
+    const int kind = r.count(0, 4);
+    const Mesh o = kind == 0   ? tree(r)
+                   : kind == 1 ? car(r)
+                   : kind == 2 ? thing(r)
+                   : kind == 3 ? laid_table(r)
+                               : person(r);
+    place(r, m, o, {r(-9, 9), -r(.6f, 8), .05f}, kind == 0 ? r(2, 6) : kind == 2 ? .7f : 1);
+  }
+  Camera& c = s.camera;
+  c.eye = {r(-9, 9), -r(4, 16), r.chance(.8f) ? r(1, 2) : r(2, 6)};
+  c.target = {c.eye.x * .4f + r(-7, 7), 0, r(1, 4)};
+  c.fov = r(25, 70);
+}
 }  // namespace
 
 std::vector<Family> open_place_families() {
@@ -335,3 +365,5 @@ std::vector<Family> open_place_families() {
           {"country", country, false, false},     {"meadow", meadow, true, false},
           {"wide steps", wide_steps, true, false}};
 }
+
+std::vector<Family> backlot_families() { return {{"backlot", backlot, true, false}}; }

@@ -258,6 +258,43 @@ void prop(Random& r, Scene& s) {
   if (r.chance(.3f)) place(r, m, thing(r), {size * r(.3f, .8f), 0, 0}, size * r(.2f, .6f));
   s.camera = orbit(r, {0, 0, size * r(.3f, .6f)}, {size * 1.6f, size * 4}, {-15, 60}, {20, 55});
 }
+
+// A furnished room without what would stand before the camera: two walls or three, mostly no
+// ceiling, seen from inside, from outside or from above.
+void cutaway(Random& r, Scene& s) {
+  Mesh& m = s.mesh;
+  const RoomPlan p{r(2.5f, 7), r(2.5f, 6), r(2.3f, 3.2f)};
+  if (r.chance(.6f)) {
+    m.tint = r.floor_albedo();
+    ground(m, -.15f);
+  }
+  m.tint = r.floor_albedo();
+  m.block({-.1f, -.1f, -.12f}, {p.x + .1f, p.y + .1f, 0});
+  const Vec paint = r.albedo();
+  const auto side = [&](float width, const Rot& turn, Vec at) {
+    m.tint = r.chance(.7f) ? paint : r.albedo();
+    m.add(wall(width, p.height, .1f,
+               r.chance(.5f) ? windows(r, width, p.height) : std::vector<Opening>{}),
+          turn, at);
+  };
+  side(p.x, {}, {0, p.y, 0});
+  side(p.y, about_z(kPi / 2), {0, 0, 0});
+  const bool both = r.chance(.4f);
+  if (both) side(p.y, about_z(-kPi / 2), {p.x, p.y, 0});
+  if (r.chance(.25f))
+    m.block({-.1f, r.chance(.5f) ? 0 : p.y * r(.2f, .7f), p.height},
+            {p.x + .1f, p.y + .1f, p.height + .1f});
+  furnish(r, m, p, r.count(3, 10));
+  for (int i = r.count(0, 2); i > 0; --i)
+    place(r, m, person(r), {p.x * r(.2f, .8f), p.y * r(.3f, .8f), 0});
+  Camera& c = s.camera;
+  c.target = {p.x * r(.3f, .6f), p.y * r(.4f, .8f), p.height * r(.15f, .45f)};
+  const float a = both ? -kPi / 2 + r(-.35f, .35f) : -kPi / 4 + r(-.6f, .6f);
+  const float d = p.x * r(.6f, 1.6f) + p.y * .3f, e = r.chance(.4f) ? r(.4f, .9f) : r(0, .3f);
+  c.eye = c.target + Vec{std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e)} * d;
+  c.fov = r(25, 60);
+  if (r.chance(.15f)) c.ortho_width = p.x * r(1, 1.8f);
+}
 }  // namespace
 
 std::vector<Family> open_set_families() {
@@ -266,3 +303,5 @@ std::vector<Family> open_set_families() {
           {"pedestal", pedestal, true, false}, {"still life", still_life, false, false},
           {"picnic", picnic, true, true},      {"prop", prop, false, false}};
 }
+
+std::vector<Family> cutaway_families() { return {{"cutaway", cutaway, true, false}}; }

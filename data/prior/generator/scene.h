@@ -29,6 +29,9 @@ struct Family {
 const std::vector<Family>& families();
 /// The number of the family that frame `id` is of, where none is named.
 int family_of(int id);
+/// Whether things may be put behind the camera of frame `id`. Much of what is rendered was built
+/// for one camera: nothing is there that it does not show.
+bool may_have_behind(int id);
 
 // The families of each file.
 std::vector<Family> room_families();
@@ -38,6 +41,8 @@ std::vector<Family> object_families();
 std::vector<Family> set_families();
 std::vector<Family> open_set_families();
 std::vector<Family> open_place_families();
+std::vector<Family> cutaway_families();
+std::vector<Family> backlot_families();
 
 // Cameras as people place them (cameras.cpp).
 struct Range {
