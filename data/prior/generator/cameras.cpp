@@ -81,6 +81,30 @@ void behind_camera(Random& r, Scene& scene) {
   }
 }
 
+namespace {
+// Steps back, in the direction of the view, until everything near the target is in the picture, or
+// nearly so. What is more than a few times as far away as the camera was, is ground or background.
+void show_all(Random& r, Scene& scene) {
+  Camera& c = scene.camera;
+  const Vec view = c.target - c.eye, forward = unit(view);
+  const Vec right = unit(cross(forward, Vec{0, 0, 1})), up = cross(right, forward);
+  const float before = length(view), reach = 2.5f * before;
+  const float wide = std::tan(c.fov * kPi / 360), high = wide * .6f;
+  float distance = before, half_width = 0;
+  for (const Vec p : scene.mesh.points) {
+    const Vec v = p - c.target;
+    if (length(v) > reach) continue;
+    const float x = std::fabs(dot(v, right)), y = std::fabs(dot(v, up));
+    distance = std::max(distance, std::max(x / wide, y / high) - dot(v, forward));
+    half_width = std::max(half_width, std::max(x, y / .6f));
+  }
+  const float margin = r(.8f, 1.15f);
+  c.eye = c.target - forward * std::max(before, distance * margin);
+  c.eye.z = std::max(c.eye.z, .05f * before);
+  if (c.ortho_width > 0) c.ortho_width = std::max(c.ortho_width, 2 * half_width * margin);
+}
+}  // namespace
+
 const std::vector<Family>& families() {
   static const std::vector<Family> all = [] {
     std::vector<Family> out;
@@ -98,8 +122,12 @@ namespace {
 struct Part {
   int id, first, end;
   bool behind;  // things may stand behind the camera
+  float whole;  // probability that the camera steps back until it shows all that is there
 };
-constexpr Part kParts[] = {{0, 0, 38, true}, {1200, 38, 55, true}, {2200, 38, 57, false}};
+constexpr Part kParts[] = {{0, 0, 38, true, 0},
+                           {1200, 38, 55, true, 0},
+                           {2200, 38, 57, false, 0},
+                           {2500, 38, 57, false, .6f}};
 
 const Part& part_of(int id) {
   const Part* part = kParts;
@@ -119,4 +147,8 @@ int family_of(int id) {
   return turns[size_t(id - part.id) % turns.size()];
 }
 
-bool may_have_behind(int id) { return part_of(id).behind; }
+void surround(Random& r, Scene& s, int id) {
+  const Part& part = part_of(id);
+  if (part.behind) behind_camera(r, s);
+  if (part.whole > 0 && r.chance(part.whole)) show_all(r, s);
+}

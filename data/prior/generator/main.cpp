@@ -85,7 +85,7 @@ bool make_frame(RTCDevice device, const std::string& folder, int id, int family,
   const Family& kind = families()[size_t(family)];
   Scene s;
   kind.make(r, s);
-  if (kind.outdoor && may_have_behind(id)) behind_camera(r, s);
+  if (kind.outdoor) surround(r, s, id);
   const RayCaster rays(device, s.mesh);
   const Size size = frame_size(r);
   const float roll = r.chance(.12f) ? r(-.15f, .15f) : 0;

@@ -29,9 +29,9 @@ struct Family {
 const std::vector<Family>& families();
 /// The number of the family that frame `id` is of, where none is named.
 int family_of(int id);
-/// Whether things may be put behind the camera of frame `id`. Much of what is rendered was built
-/// for one camera: nothing is there that it does not show.
-bool may_have_behind(int id);
+/// What frame `id` has around an outdoor scene. Later frames have nothing behind the camera, and
+/// many show all that there is: much of what is rendered was built for one camera.
+void surround(Random& r, Scene& scene, int id);
 
 // The families of each file.
 std::vector<Family> room_families();
