@@ -20,7 +20,7 @@ run() {
   first=$1 last=$2 name=$3
   shift 3
   "$ssdo" "$work/frames/frame_#####.exr" --frames "$first-$last" -o "$work/tool/${name}_#####.exr" \
-    --compression none --on-error continue --skip-existing -q --env-up z "$@" || true
+    --compression none --on-error continue --skip-existing -q --env-up z --prior rules "$@" || true
 }
 first=0
 while [ "$first" -lt "$frames" ]; do

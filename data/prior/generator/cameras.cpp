@@ -81,13 +81,74 @@ void behind_camera(Random& r, Scene& scene) {
   }
 }
 
+namespace {
+// Steps back, in the direction of the view, until everything near the target is in the picture, or
+// nearly so. What is more than a few times as far away as the camera was, is ground or background.
+void show_all(Random& r, Scene& scene) {
+  Camera& c = scene.camera;
+  const Vec view = c.target - c.eye, forward = unit(view);
+  const Vec right = unit(cross(forward, Vec{0, 0, 1})), up = cross(right, forward);
+  const float before = length(view), reach = 2.5f * before;
+  const float wide = std::tan(c.fov * kPi / 360), high = wide * .6f;
+  float distance = before, half_width = 0;
+  for (const Vec p : scene.mesh.points) {
+    const Vec v = p - c.target;
+    if (length(v) > reach) continue;
+    const float x = std::fabs(dot(v, right)), y = std::fabs(dot(v, up));
+    distance = std::max(distance, std::max(x / wide, y / high) - dot(v, forward));
+    half_width = std::max(half_width, std::max(x, y / .6f));
+  }
+  const float margin = r(.8f, 1.15f);
+  c.eye = c.target - forward * std::max(before, distance * margin);
+  c.eye.z = std::max(c.eye.z, .05f * before);
+  if (c.ortho_width > 0) c.ortho_width = std::max(c.ortho_width, 2 * half_width * margin);
+}
+}  // namespace
+
 const std::vector<Family>& families() {
   static const std::vector<Family> all = [] {
     std::vector<Family> out;
     for (const auto& part :
-         {room_families(), town_families(), nature_families(), object_families(), set_families()})
+         {room_families(), town_families(), nature_families(), object_families(), set_families(),
+          open_set_families(), open_place_families(), cutaway_families(), backlot_families()})
       out.insert(out.end(), part.begin(), part.end());
     return out;
   }();
   return all;
+}
+
+namespace {
+// Frames from `id` on are of the families from `first` to before `end`.
+struct Part {
+  int id, first, end;
+  bool behind;  // things may stand behind the camera
+  float whole;  // probability that the camera steps back until it shows all that is there
+};
+constexpr Part kParts[] = {{0, 0, 38, true, 0},
+                           {1200, 38, 55, true, 0},
+                           {2200, 38, 57, false, 0},
+                           {2500, 38, 57, false, .6f}};
+
+const Part& part_of(int id) {
+  const Part* part = kParts;
+  for (const Part& p : kParts)
+    if (id >= p.id) part = &p;
+  return *part;
+}
+}  // namespace
+
+// In turn; of the open families, those that are trained on three times as often as the others.
+int family_of(int id) {
+  const Part& part = part_of(id);
+  std::vector<int> turns;
+  for (int round = 0; round < (part.id ? 3 : 1); ++round)
+    for (int i = part.first; i < part.end; ++i)
+      if (round == 0 || !families()[size_t(i)].validation) turns.push_back(i);
+  return turns[size_t(id - part.id) % turns.size()];
+}
+
+void surround(Random& r, Scene& s, int id) {
+  const Part& part = part_of(id);
+  if (part.behind) behind_camera(r, s);
+  if (part.whole > 0 && r.chance(part.whole)) show_all(r, s);
 }

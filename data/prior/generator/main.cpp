@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // generate FOLDER FIRST COUNT [FAMILY...]: frames FIRST.. of random scenes. The family of a frame
-// is its number modulo the number of families, or taken in turn from those that are named. Frames
-// that exist are kept.
+// is that of family_of(), or taken in turn from those that are named. Frames that exist are kept.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -86,7 +85,7 @@ bool make_frame(RTCDevice device, const std::string& folder, int id, int family,
   const Family& kind = families()[size_t(family)];
   Scene s;
   kind.make(r, s);
-  if (kind.outdoor) behind_camera(r, s);
+  if (kind.outdoor) surround(r, s, id);
   const RayCaster rays(device, s.mesh);
   const Size size = frame_size(r);
   const float roll = r.chance(.12f) ? r(-.15f, .15f) : 0;
@@ -130,7 +129,7 @@ int main(int argc, char** argv) try {
   const RTCDevice device = rtcNewDevice("threads=1");
   for (int id = first; id < first + count; ++id) {
     const int kinds = int(families().size());
-    const int family = argc > 4 ? std::atoi(argv[4 + id % (argc - 4)]) : id % kinds;
+    const int family = argc > 4 ? std::atoi(argv[4 + id % (argc - 4)]) : family_of(id);
     if (family < 0 || family >= kinds)
       throw std::runtime_error("family: 0 to " + std::to_string(kinds - 1));
     if (std::filesystem::exists(path_of(folder, "truth", id, "bin"))) continue;

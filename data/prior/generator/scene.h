@@ -27,6 +27,11 @@ struct Family {
 
 /// All families, in the order of their numbers: append only, the number is part of the data.
 const std::vector<Family>& families();
+/// The number of the family that frame `id` is of, where none is named.
+int family_of(int id);
+/// What frame `id` has around an outdoor scene. Later frames have nothing behind the camera, and
+/// many show all that there is: much of what is rendered was built for one camera.
+void surround(Random& r, Scene& scene, int id);
 
 // The families of each file.
 std::vector<Family> room_families();
@@ -34,6 +39,10 @@ std::vector<Family> town_families();
 std::vector<Family> nature_families();
 std::vector<Family> object_families();
 std::vector<Family> set_families();
+std::vector<Family> open_set_families();
+std::vector<Family> open_place_families();
+std::vector<Family> cutaway_families();
+std::vector<Family> backlot_families();
 
 // Cameras as people place them (cameras.cpp).
 struct Range {
