@@ -171,6 +171,19 @@ TEST_F(Bands, WithoutARadiusAreNearlyWhatTheFrameIsInOnePiece) {
   }
 }
 
+/// The overview tells a learned prior what the frame shows, and its mean light.
+TEST_F(Bands, WithAPriorAreNearlyWhatTheFrameIsInOnePiece) {
+  make_both("in.exr",
+            {"--env", data("environments/sky.exr"), "--env-up", "z", "--prior", "learned",
+             "--products", "ao,bent,direct,bounce"},
+            {"--mem-limit", "148M"});
+  EXPECT_LT(difference("ao.Y"), 0.02);
+  for (const char* c : {"R", "G", "B"}) {
+    EXPECT_LT(difference(std::string("direct.") + c), 0.04);
+    EXPECT_LT(difference(std::string("bounce.") + c), 0.15);
+  }
+}
+
 TEST_F(Bands, AreCroppedAsTheFrameIs) {
   const Window display{0, 0, 300, 1500}, data{-20, -30, 310, 1570};
   write("overscan.exr", data, display);

@@ -127,6 +127,22 @@ TEST_F(LayersOfLights, StandBesideTheLightOfAll) {
   }
 }
 
+/// What a learned prior finds to be hidden sends the light of each lamp in its part.
+TEST_F(LayersOfLights, AddUpWithAPrior) {
+  write("in.exr", kWindow);
+  made("in.exr", "each.exr",
+       kLamps + kColors +
+           Words{"--products", "direct,bounce", "--prior", "learned", "--per-light", "--bounces",
+                 "2"});
+  for (const std::string c : {".R", ".G", ".B"}) {
+    const auto parts = [&](const std::string& product) {
+      return Words{product + ".env" + c, product + ".key" + c, product + ".fill" + c};
+    };
+    EXPECT_LT(off("each.exr", "direct" + c, parts("direct")), 1e-5);
+    EXPECT_LT(off("each.exr", "bounce" + c, parts("bounce")), 5e-3);
+  }
+}
+
 TEST_F(LayersOfLights, OfALampAreThoseOfARunWithItAlone) {
   write("in.exr", kWindow);
   const Words flags = {"--products", "direct,bounce", "--method", "trace", "--set", "samples=16"};
