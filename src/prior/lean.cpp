@@ -27,9 +27,6 @@ constexpr float kLeastHidden = 1e-3f;
 /// What a square that shows another surface weighs, where none shows the pixel's own.
 constexpr float kOtherSurface = 1e-3f;
 
-/// s is held to kLeastShare..1 - kLeastShare.
-constexpr float kLeastShare = 0.02f;
-
 /// What the squares say of something, by square: values that are interpolated between them.
 template <int kCount>
 using SquareValues = std::array<const Plane<float>*, kCount>;

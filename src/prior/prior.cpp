@@ -57,8 +57,8 @@ constexpr float kLeastOpen = 0.03f;
 /// ao' of prior.h, of the mean of a square.
 float leaned(float ao, float g, float u) {
   const float lo = std::max(ao - g, 0.0f), hi = std::min(ao + g, 1.0f), width = hi - lo,
-              s = std::clamp((ao - lo) / std::max(width, 1e-6f), 0.02f, 0.98f), open = s * u,
-              closed = (1 - s) * (1 - u);
+              s = std::clamp((ao - lo) / std::max(width, 1e-6f), kLeastShare, 1 - kLeastShare),
+              open = s * u, closed = (1 - s) * (1 - u);
   return std::clamp(ao + width * (open / (open + closed) - s), lo, hi);
 }
 
