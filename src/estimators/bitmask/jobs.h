@@ -46,6 +46,8 @@ struct SourceShares {
       : share(layout), weight(layout), width(layout) {}
 
   InterleavedShares share, weight, width;
+  InterleavedShares unseen = {};  ///< what arrives at the sides that the camera does not see, as
+                                  ///< `share`; empty: of this source they get as much as of the sky
 };
 
 /// How much of the light arrives at each pixel, as LightShares has it.
@@ -133,6 +135,7 @@ struct SourceJob {
   const std::vector<PointsOfSource>& points;  ///< that each ray goes to
   const Source& source;
   PassBeyond pass;
+  bool unseen_sides = false;  ///< finds SourceShares::unseen, else all others
   SourceShares* found = nullptr;
 };
 
