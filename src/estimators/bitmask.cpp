@@ -225,6 +225,12 @@ class Bitmask {
                            to, progress_);
       };
       sources_.push_back(find(lit_part(), RaySet::of_light));
+      if (source->near_lamp() && times_sent(scene_, request_) > 0 && sends_two_sided(scene_)) {
+        const auto points =
+            points_of(*source, rays_to_source(request_.slices), request_.seed, RaySet::of_light);
+        find_unseen_light({march, bounds, points, *source, pass_beyond(past, *source)}, lit_part(),
+                          sources_.back());
+      }
       if (request_.products.error)
         sources_again_.push_back(find(march_scene_.receivers, RaySet::of_error));
     }

@@ -46,6 +46,8 @@ struct SourceShares {
       : share(layout), weight(layout), width(layout) {}
 
   InterleavedShares share, weight, width;
+  InterleavedShares unseen = {};  ///< what arrives at the sides that the camera does not see, as
+                                  ///< `share`; empty: of this source they get as much as of the sky
 };
 
 /// How much of the light arrives at each pixel, as LightShares has it.
@@ -136,6 +138,7 @@ struct SourceJob {
   const Source& source;
   PassBeyond pass;
   const InterleavedPlane* past = nullptr;  ///< by pixel, where pass.past is 0; null: of none
+  bool unseen_sides = false;  ///< finds SourceShares::unseen, else all others
   SourceShares* found = nullptr;
 };
 

@@ -6,15 +6,16 @@
 // same pixel: sent on as it is, it made the noise of the bounce 1.6 to 1.9 times as large (things
 // on a table, a box of a room). Compiled once for every instruction set.
 //
-// The back side of a surface, which the camera does not see, is assumed to receive the unoccluded
-// light of its own hemisphere times the ao of the front. The sources of the method let surfaces
-// that face away from a receiver send nothing: with that, five of seven frames were too dark by 20
-// % or more.
+// The side of a body that the camera does not see (scene/solids/unseen_side.h) is assumed to
+// receive the unoccluded light of its own hemisphere times the ao of the front; of a lamp, which
+// may be nearer than the solid is thick, the light that rays find there (SourceShares::unseen). The
+// sources of the method let surfaces that face away from a receiver send nothing: with that, five
+// of seven frames were too dark by 20 % or more.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/senders.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/bitmask/lanes-inl.h"
+#include "estimators/bitmask/unseen_side-inl.h"
 #include "scene/light/light-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,7 +27,6 @@ constexpr int kWindow = 4;
 
 /// The pixels around each of a vector, and what they count in a mean over its surface.
 struct Around {
-  V3 normal;  ///< of that surface
   std::ptrdiff_t index[kWindow * kWindow];
   V weight[kWindow * kWindow];
   int count = 0;
@@ -53,7 +53,7 @@ template <bool kOrthographic>
 HWY_INLINE Around around(const MarchScene& scene, const Place& place) {
   const MarchReceiver p = load_receiver(scene, place);
   Around pixels;
-  pixels.normal = p.normal, pixels.all = set(0);
+  pixels.all = set(0);
   for (int dy = -kWindow / 2; dy < kWindow / 2; ++dy) {
     if (place.y + dy < 0 || place.y + dy >= scene.layout.height()) continue;
     for (int dx = -kWindow / 2; dx < kWindow / 2; ++dx) {
@@ -94,6 +94,27 @@ HWY_INLINE V3 direct_light(const MarchScene& scene, const FoundShares& found, co
     sum = mul_add(light, share(found.sources[k]->share), sum);
   }
   return sum;
+}
+
+/// The direct light of the sides that the camera does not see.
+template <class Share>
+HWY_INLINE V3 light_behind(const SenderJob& job, const Place& place, const Share& share) {
+  const FoundShares& found = job.found;
+  const MarchReceiver p = load_receiver(job.scene, place);
+  const UnseenSide side = unseen_side(job.scene, p);
+  const V3 position = positions(job.scene, place), normal = usable(side.normal, p.valid),
+           opposite = if_then_else(hn::And(p.valid, side.ends), side.position, position);
+  V3 as_sky = unoccluded_sky(found.light, normal), sum = set(glm::vec3(0));
+  for (std::size_t k = 0; k < found.light.sources.size(); ++k) {
+    const Source& source = *found.light.sources[k];
+    if (found.sources.empty() || !found.sources[k]->unseen.data()) {
+      as_sky = as_sky + unoccluded(source, position, normal);
+      continue;
+    }
+    const V arrives = hn::IfThenElseZero(side.ends, share(found.sources[k]->unseen));
+    sum = mul_add(unoccluded(source, opposite, normal), arrives, sum);
+  }
+  return mul_add(as_sky, share(*found.ao), sum);
 }
 
 HWY_INLINE V3 both_sides(const V3& front, const V3& back) {
@@ -159,11 +180,8 @@ void send_light(const SenderJob& job, const Window& part) {
     const V3 albedo = albedo_at(job, place);
     const V3 front = within_range(albedo * light);
     if (!job.two_sided) return store(front, *job.sent, i);
-    const M valid = holds_solid(load(scene.receiver_depth(), i));
-    const V3 behind = set(glm::vec3(0)) - usable(pixels.normal, valid);
     const V3 bounce = job.bounce ? load(*job.bounce, i) : set(glm::vec3(0));
-    const V3 all = unoccluded(job.found.light, positions(scene, place), behind);
-    const V3 at_back = mul_add(all, mean(*job.found.ao) * unshown.of_light, bounce);
+    const V3 at_back = light_behind(job, place, share) + bounce;
     store(both_sides(front, within_range(albedo * at_back)), *job.sent, i);
   });
 }

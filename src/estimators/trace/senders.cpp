@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "estimators/trace/senders.h"
 
+#include <cmath>
+
 #include "math/light_range.h"
 #include "parallel/tiles.h"
+#include "scene/normals/normals.h"
+#include "scene/pixel_footprint.h"
+#include "scene/solids/unseen_side.h"
 
 namespace ssdo {
 namespace {
@@ -27,6 +32,26 @@ void send_from_hole(const Plane<int>& from, TraceSenders& senders) {
   }
 }
 
+/// The light of the side that is not seen (scene/solids/unseen_side.h), had it nothing around it.
+/// An endless solid has no such side that a lamp could be near to.
+glm::vec3 unoccluded_behind(const Scene& scene, const Light& light, std::size_t pixel) {
+  const Surfel& s = scene.geometry.surfel[pixel];
+  const Camera& camera = scene.geometry.camera;
+  const glm::vec3 view = direction_to_viewer(s.position, camera.orthographic),
+                  normal = unseen_normal(s.normal, view);
+  const float thickness = scene.solids.thickness_seen(int(pixel)),
+              width = PixelFootprint(camera).at(-s.position.z),
+              through = way_through(thickness, camera.orthographic ? width : width / view.z);
+  glm::vec3 sum = light.unoccluded_sky(normal);
+  for (const auto& source : light.sources) {
+    if (!source->near_lamp())
+      sum += source->unoccluded(s.position, normal);
+    else if (!std::isinf(thickness))
+      sum += source->unoccluded(s.position - through * view, normal);
+  }
+  return sum;
+}
+
 }  // namespace
 
 void find_senders(const Scene& scene, const Products& found, const Plane<glm::vec3>& bounce,
@@ -47,7 +72,7 @@ void find_senders(const Scene& scene, const Products& found, const Plane<glm::ve
       senders.front[i] = within_range(albedo * (direct_of(senders.light, found, s, i) + bounce[i]));
       if (!two_sided) continue;
       // The side that is not seen has the light of its own side, as far as the seen one is open.
-      const glm::vec3 behind = found.ao[i] * senders.light.light.unoccluded(s.position, -s.normal);
+      const glm::vec3 behind = found.ao[i] * unoccluded_behind(scene, senders.light.light, i);
       senders.back[i] = within_range(albedo * (behind + bounce[i]));
     }
   });

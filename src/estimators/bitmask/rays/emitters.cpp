@@ -14,7 +14,7 @@
 #include "math/sobol.h"
 #include "math/two_in_one.h"
 #include "parallel/tiles.h"
-#include "scene/solids/width_of_run.h"
+#include "scene/solids/unseen_side.h"
 
 namespace ssdo {
 namespace {
@@ -27,10 +27,6 @@ constexpr float kMostSlope = 8;
 
 /// Growth of u^2 from which on a body is round: at the rim of a ball 200 pixels wide.
 constexpr float kLeastGrowth = 0.02f;
-
-/// Least cosine to the viewer by which the depth of a body is divided: beside its rim a pixel tells
-/// it too roughly.
-constexpr float kLeastOfRound = 0.25f;
 
 /// One side of what a pixel shows: what it sends above the level.
 struct Side {
@@ -142,14 +138,11 @@ class Senders {
     const float area = width * width * shown.over_cosine / (per_depth * scene_.fx * scene_.fy),
                 pixel = width * per_depth / std::min(scene_.fx, scene_.fy);
     const float length = thickness * width * per_depth, light = luminance(radiance);
-    // Through a round body, whose depth is its width times u. Depths are guessed from runs of
-    // pixels, from the middle of the first to that of the last.
-    const float guessed = (length / kDepthOfWidth + 0.5f * pixel) / std::max(u, kLeastOfRound),
-                through = std::max(guessed, shown.width_px * pixel);
+    const float through = std::max(way_through(length, pixel), shown.width_px * pixel * u);
     Side out;
     out.light = light - level_;
-    out.point.position = is_back ? front - through * normal : front;
-    out.point.normal = is_back ? -normal : normal;
+    out.point.position = is_back ? front - through * view : front;
+    out.point.normal = is_back ? unseen_normal(normal, view) : normal;
     out.point.per_radiance = out.light / light * area;
     out.point.power = out.light / light * area * radiance;
     out.point.area = area;
@@ -212,11 +205,10 @@ struct Part {
 /// them.
 std::vector<Part> parts_of(const SentLight& sent, float level) {
   std::vector<Part> parts;
-  constexpr float kBeside = 1.5f;  // the pixel beside it
   const auto add = [&](const MarchScene& scene, const InterleavedVectors& radiance,
                        const Window& rows, const FarRaster* far) {
     // Rays that come from afar see pixels of the overview.
-    const float beside_px = sent.far && !far ? kBeside * Interleaving::kPeriod : kBeside;
+    const float beside_px = sent.far && !far ? kBesidePx * Interleaving::kPeriod : kBesidePx;
     if (rows.height() > 0) {
       parts.push_back(
           {{scene, radiance, sent.two_sided, level, beside_px}, Tiles(rows), scene.layout, far});

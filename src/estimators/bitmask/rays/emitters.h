@@ -19,9 +19,8 @@
 // distance d, rays gather the part pi d^2 / (pi d^2 + A), which bounds what a point can give as the
 // form factor of a disc is bounded, and the march the rest.
 //
-// A solid sends from its back as well, as it does to the march: from the point of a round body
-// opposite to that of the front, as far away as its guessed thickness says, with the normal
-// reversed. Of a body that is symmetric about its middle this is all of its hidden half.
+// A solid sends from its back as well, as it does to the march: from the image of what the camera
+// sees of it (scene/solids/unseen_side.h), which of a round body is all of its hidden half.
 #pragma once
 
 #include <cstddef>

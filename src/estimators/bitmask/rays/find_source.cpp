@@ -16,6 +16,14 @@ SourceShares find_source(SourceJob job, const Window& to, const Progress& progre
   return found;
 }
 
+void find_unseen_light(SourceJob job, const Window& to, SourceShares& found) {
+  const Interleaving& layout = job.march.scene.layout;
+  found.unseen = InterleavedShares(layout);
+  job.unseen_sides = true, job.found = &found;
+  job.march.cut = nullptr;
+  for_each_tall_part_of(layout, to, [&](const Window& part) { march_source(job, part); }, {});
+}
+
 void hand_out_sources(std::vector<SourceShares>& found, const Raster& raster,
                       std::vector<Plane<float>>& shares, std::vector<ShadowDraw>& draws) {
   for (SourceShares& source : found) {

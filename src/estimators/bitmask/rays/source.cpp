@@ -15,6 +15,7 @@
 
 #include "estimators/bitmask/rays/block-inl.h"
 #include "estimators/bitmask/rays/ray-inl.h"
+#include "estimators/bitmask/unseen_side-inl.h"
 #include "scene/light/light-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -103,6 +104,33 @@ HWY_INLINE Ray ray_of(const MarchScene& scene, const MarchReceiver& p, const Sou
   return make_ray<kOrthographic>(scene, p, rays.to(i), rays.length(i), rays.light(i) > set(0));
 }
 
+/// The points whose light is found.
+HWY_INLINE MarchReceiver lit_point(const SourceJob& job, const Place& place) {
+  MarchReceiver p = load_receiver(job.march.scene, place);
+  if (!job.unseen_sides) return p;
+  const UnseenSide side = unseen_side(job.march.scene, p);
+  p.position = side.position, p.normal = side.normal;
+  p.valid = hn::And(p.valid, side.ends);
+  return p;
+}
+
+/// Where their rays in the direction `to` begin: of unseen sides, past their own solids.
+HWY_INLINE MarchReceiver start_of_ray(const SourceJob& job, const Place& place, const V3& to) {
+  const MarchScene& scene = job.march.scene;
+  MarchReceiver p = load_receiver(scene, place);
+  if (job.unseen_sides) {
+    const UnseenSide side = unseen_side(scene, p);
+    p = moved_to(scene, p, mul_add(to, side.clear, side.position), to);
+  }
+  p.reach_px = reach_px(scene, p, job.march.radius);
+  return p;
+}
+
+HWY_INLINE V way_in_solid(const SourceJob& job, const Place& place) {
+  if (!job.unseen_sides) return set(0);
+  return unseen_side(job.march.scene, load_receiver(job.march.scene, place)).clear;
+}
+
 template <bool kOrthographic>
 void source(const SourceJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
@@ -115,19 +143,20 @@ void source(const SourceJob& job, const Window& part) {
     for (const PointsOfSource& points : job.points) {
       occluders.clear();
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
-        MarchReceiver p = load_receiver(scene, place);
-        p.reach_px = reach_px(scene, p, job.march.radius);
+        const MarchReceiver lit = lit_point(job, place);
         const int i = block.first_of(place);
-        const SourcePoints to = points_above(job, points, p);
-        const V light = to.weight * dot(p.normal, to.to);
-        rays.to.set_at(i, to.to), rays.length.set_at(i, to.distance);
-        rays.light.set_at(i, hn::IfThenElseZero(hn::And(p.valid, light > set(0)), light));
+        const SourcePoints to = points_above(job, points, lit);
+        const V light = to.weight * dot(lit.normal, to.to);
+        rays.to.set_at(i, to.to);
+        rays.length.set_at(i, hn::Max(to.distance - way_in_solid(job, place), set(0)));
+        rays.light.set_at(i, hn::IfThenElseZero(hn::And(lit.valid, light > set(0)), light));
+        const MarchReceiver p = start_of_ray(job, place, to.to);
         occluders.ask(block.places(place), p, ray_of<kOrthographic>(scene, p, rays, i));
       });
       occluders.run();
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
-        const MarchReceiver p = load_receiver(scene, place);
         const int i = block.first_of(place);
+        const MarchReceiver p = start_of_ray(job, place, rays.to(i));
         const Ray ray = ray_of<kOrthographic>(scene, p, rays, i);
         const Arrival a = occluders.arrival(block.places(place), p, ray, pass_of(job, place));
         sums.add(i, rays.light(i), a.share,
@@ -140,7 +169,9 @@ void source(const SourceJob& job, const Window& part) {
       const V zero = set(0), weight = load(sums.weight + from), arrives = load(sums.share + from),
               blocked = weight - arrives,
               widths = load(sums.width_px + from) * set(1 / kPenumbraUnit);
-      store(hn::IfThenElseZero(weight > zero, arrives / weight), job.found->share, i);
+      const V share = hn::IfThenElseZero(weight > zero, arrives / weight);
+      if (job.unseen_sides) return store(share, job.found->unseen, i);
+      store(share, job.found->share, i);
       store(weight / set(float(job.points.size())), job.found->weight, i);
       store(hn::IfThenElseZero(blocked > zero, widths / blocked), job.found->width, i);
     });

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The sides of bodies that the camera does not see, under lamps nearby, against rays in double.
+#include "scene/solids/unseen_side.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <memory>
+#include <optional>
+
+#include "estimators/bitmask/request.h"
+#include "math/frame.h"
+#include "math/sampling.h"
+#include "math/sobol.h"
+#include "scene/light/lamps/lamp.h"
+
+namespace ssdo::test {
+namespace {
+
+TEST(UnseenSide, OfABallIsTheOtherHalfOfIt) {
+  const glm::vec3 view(0, 0, 1);
+  for (const float radius : {0.5f, 3.0f}) {
+    for (const float aside : {0.0f, 0.5f, 0.9f, 0.99f}) {
+      const glm::vec3 normal(aside, 0, std::sqrt(1 - aside * aside));
+      const float chord = 2 * radius * normal.z;
+      const glm::vec3 behind = radius * normal - way_through(kDepthOfWidth * chord, 0) * view;
+      EXPECT_NEAR(glm::distance(behind, radius * unseen_normal(normal, view)), 0, 1e-6f * radius);
+    }
+  }
+}
+
+const Window kWindow{0, 0, 192, 144};
+const glm::dvec3 kCentre(0, 0, 0.6);
+constexpr double kRadius = 0.6;
+constexpr float kAlbedo = 0.8f;
+
+/// A ball on a floor, seen obliquely from above.
+struct BallOnFloor {
+  Surface ball = sphere(kCentre, kRadius), all = all_of({plane({}, {0, 0, 1}), ball});
+  Camera camera = tilted(camera_from_ortho_width(4, kWindow, 1), 55, 6, kCentre);
+  Geometry geometry = geometry_of(all, camera, kWindow);
+
+  std::shared_ptr<const Source> lamp_at(const glm::dvec3& position) const {
+    Lamp lamp;
+    lamp.position = position, lamp.radius = 0.05;
+    lamp.intensity = 400;
+    return make_source(lamp, {camera.rotation, camera.origin}, 0.005);
+  }
+
+  /// What of the lamp's light the ball sends to a point of the floor, over pi. It shadows itself
+  /// only where it turns away from the lamp.
+  double bounce_at(const Source& lamp, const Point& p) const {
+    constexpr int kRays = 512;
+    const glm::mat3 frame = frame_about(glm::vec3(p.normal));
+    double sum = 0;
+    for (std::uint32_t s = 0; s < kRays; ++s) {
+      const glm::dvec3 to(cosine_direction(frame, sobol_point(s, 1)));
+      const std::optional<Hit> hit = ball({p.position, to});
+      if (!hit) continue;
+      const glm::dvec3 at = p.position + hit->distance * to, normal = (at - kCentre) / kRadius;
+      sum += kAlbedo * double(lamp.unoccluded(camera.to_camera(at), camera.rotation * normal).x) /
+             kRays;
+    }
+    return sum;
+  }
+};
+
+struct LampCase {
+  const char* where;
+  glm::dvec3 position;
+};
+
+/// On the floor behind the ball. Pixels tell the ball's width and a guess its depth.
+TEST(UnseenSide, SendsWhatALampNearbyGivesIt) {
+  const BallOnFloor of;
+  const LampCase cases[] = {{"behind", {0, 1.3, 0.9}}, {"above", {0, 0.2, 1.8}}};
+  for (const LampCase& c : cases) {
+    Scene scene = scene_of(of.geometry, Environment::constant(glm::vec3(0)), kAlbedo);
+    scene.solids = guess_solids(of.geometry);
+    const auto lamp = of.lamp_at(c.position);
+    scene.light.sources = {lamp};
+    const Products out =
+        bitmask_method().estimate(scene,
+                                  {.products = {.ao = true, .direct = true, .bounce = true},
+                                   .radius = kNoLimit,
+                                   .bounces = 1,
+                                   .slices = 12,
+                                   .steps = 512,
+                                   .extend_offscreen = false},
+                                  {});
+    double sum = 0, exact = 0, lit = 0;
+    int count = 0;
+    for (int y = 0; y < kWindow.height(); y += 2) {
+      for (int x = 0; x < kWindow.width(); x += 2) {
+        const Point p = point_at(of.all, of.camera, kWindow, x, y);
+        const glm::dvec2 away(p.position.x, p.position.y - kCentre.y);
+        if (p.position.z > 1e-6 || away.y < 0.5 * std::abs(away.x) || away.y > 1.2) continue;
+        sum += double(out.bounce(x, y).x), exact += of.bounce_at(*lamp, p);
+        lit += double(out.direct(x, y).x), ++count;
+      }
+    }
+    fmt::print("lamp {}: bounce {:.4f}, by rays {:.4f}; direct {:.3f}\n", c.where, sum / count,
+               exact / count, lit / count);
+    ASSERT_GT(count, 100);
+    EXPECT_NEAR(sum, exact, 0.15 * exact + 0.003 * lit) << c.where;
+  }
+}
+
+}  // namespace
+}  // namespace ssdo::test
