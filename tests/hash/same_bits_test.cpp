@@ -30,9 +30,11 @@ constexpr float kRadius = 0.75f, kEndless = std::numeric_limits<float>::infinity
 struct Case {
   std::string_view method, filter;
   float radius = kRadius;
+  bool learned = false;  ///< the prior
 
   std::string name() const {
-    return fmt::format("{}{}/{}", method, radius == kEndless ? "-endless" : "", filter);
+    return fmt::format("{}{}{}/{}", method, learned ? "-learned" : "",
+                       radius == kEndless ? "-endless" : "", filter);
   }
 };
 
@@ -49,6 +51,7 @@ std::vector<Case> cases() {
     if (filter.name != "none" && filter.name != "geometry")
       all.push_back({methods().front().name, filter.name});
   }
+  all.push_back({methods().front().name, "geometry", kEndless, true});
   return all;
 }
 
@@ -58,6 +61,10 @@ Products products_of(const Case& of) {
   plan.method = &find_method(of.method);
   plan.filter = &find_filter(of.filter);
   plan.request = fixed_request(*plan.method, of.radius);
+  if (of.learned) {
+    const glm::dvec3 up(0, 0, 1);
+    plan.prior = LearnedPrior{glm::vec3(scene.geometry.camera.rotation * up)};
+  }
   return estimate(scene, plan, [](double) {}, {}).products;
 }
 
