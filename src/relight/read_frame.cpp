@@ -13,7 +13,16 @@
 namespace ssdo {
 namespace {
 
-/// Whether a product is made that depends on roughness.
+/// Names that nothing asks for are no reason to refuse a frame.
+std::vector<Role> unused_roles(const FrameOptions& options, const FrameFiles& files) {
+  std::vector<Role> unused;
+  if (!wants_reflection(options.output, files.aovs)) unused.push_back(Role::roughness);
+  if (!options.model.temporal) unused.push_back(Role::motion);
+  return unused;
+}
+
+}  // namespace
+
 bool wants_reflection(const OutputOptions& output, const std::vector<LayerRequest>& aovs) {
   const auto is_mirrored = [](std::string_view product) {
     return product == "reflection" || product == "specular";
@@ -25,16 +34,6 @@ bool wants_reflection(const OutputOptions& output, const std::vector<LayerReques
          (choose_compose(output, aovs) == Compose::occlude &&
           std::ranges::any_of(aovs, is_specular));
 }
-
-/// Names that nothing asks for are no reason to refuse a frame.
-std::vector<Role> unused_roles(const FrameOptions& options, const FrameFiles& files) {
-  std::vector<Role> unused;
-  if (!wants_reflection(options.output, files.aovs)) unused.push_back(Role::roughness);
-  if (!options.model.temporal) unused.push_back(Role::motion);
-  return unused;
-}
-
-}  // namespace
 
 Frame read_frame(const FrameOptions& options, const FrameFiles& files, int lamps,
                  std::optional<DeepImage>& own) {
