@@ -374,7 +374,8 @@ HWY_INLINE void for_each_vector(const MarchScene& scene, const Window& part, con
     for (int column_phase = 0; column_phase < Interleaving::kPeriod; ++column_phase) {
       for (int column = begin; column < end; column += kLanes) {
         const std::ptrdiff_t i = layout.index(y, column_phase, column);
-        if (any(holds_solid(load(scene.depth(), i)))) work(Place{i, y, column_phase, column});
+        if (any(holds_solid(load(scene.receiver_depth(), i))))
+          work(Place{i, y, column_phase, column});
       }
     }
   }
