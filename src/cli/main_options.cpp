@@ -148,6 +148,12 @@ void add_objects(CLI::App& app, ObjectOptions& o) {
             "FILE:LAYER (a matte), joined by + and -");
   selection("--no-receive", o.no_receive, "keep this as it was rendered; it casts all the same");
   selection("--holdout", o.holdout, "alpha 0 in the composite; it casts all the same");
+  group.choice("--backdrop", o.backdrop,
+               {{"auto", BackdropChoice::leave_out},
+                {"cast", BackdropChoice::cast},
+                {"off", BackdropChoice::ignore}},
+               "a sky dome around everything casts nothing (auto), casts with a warning, or is not "
+               "looked for");
 }
 
 void add_camera(CLI::App& app, CameraOptions& o) {

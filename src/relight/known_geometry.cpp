@@ -229,7 +229,7 @@ std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
   if (taken_out) {
     register_views(known, scene.geometry);
     for (OtherView& view : known.views) take_out(view, taken_out->marks);
-    scene.casting = take_out(scene.geometry, taken_out->coverage, known.views);
+    scene.casting = take_out(scene.geometry, taken_out->coverage, taken_out->backdrop, known.views);
   }
   const Geometry& casters = scene.casters();
   scene.solids = find_solids(casters, known.deep, thickness, reading, known.warnings);

@@ -33,8 +33,9 @@ KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
 
 /// Objects that cast nothing.
 struct TakenOut {
-  const Plane<float>& coverage;  ///< of the frame
-  unsigned char marks;           ///< kNoCast, or that and kShadowOf, of the views
+  Plane<float> coverage;  ///< of the frame
+  Plane<float> backdrop;  ///< 1 where it shows one; may be empty
+  unsigned char marks;    ///< OtherPicture::taken
 };
 
 /// Fills the solids, guessed where nothing is known, and the surfaces of other views of a scene:

@@ -25,6 +25,7 @@
 #include "relight/plan_frame.h"
 #include "relight/read_frame.h"
 #include "relight/targets.h"
+#include "scene/objects/backdrop.h"
 #include "scene/objects/selected_coverage.h"
 #include "stopwatch.h"
 
@@ -54,32 +55,54 @@ void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameO
     refuse("--temporal has no history of it; leave one of them out");
 }
 
+/// The sky dome that is left out of what casts, with a warning; empty where there is none.
+Plane<float> find_backdrop(Frame& frame, const FrameOptions& options, bool may_leave_out) {
+  const BackdropChoice choice = options.input.objects.backdrop;
+  if (choice == BackdropChoice::ignore) return {};
+  std::optional<Backdrop> dome = find_backdrop(frame.scene.geometry);
+  if (!dome) return {};
+  const bool leaves_out = choice == BackdropChoice::leave_out && may_leave_out;
+  frame.warn(
+      {fmt::format("{:.2g} % of the frame show a dome of radius {:.3g} around everything: it "
+                   "{}",
+                   100 * dome->share, dome->radius,
+                   leaves_out ? "casts nothing, unless --backdrop cast is given"
+                              : "hides the light behind it; take it out of the G-buffer")});
+  return leaves_out ? std::move(dome->coverage) : Plane<float>();
+}
+
 /// Finds the solids behind the surfaces, and takes what other views add.
 void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& options) {
   refuse_objects(frame, known, options);
-  if (find_method(options.model.method).takes.thickness) {
+  const bool sees_behind = find_method(options.model.method).takes.thickness;
+  // Bands and deep samples have no hole.
+  const bool is_whole = !frame.gbuffer.grid.is_coarse() && known.deep.empty();
+  const Plane<float> backdrop = find_backdrop(frame, options, sees_behind && is_whole);
+  if (sees_behind) {
     std::optional<float> thickness;
     if (options.model.thickness) thickness = float(*options.model.thickness);
     const ObjectOptions& objects = frame.objects;
+    const Plane<Surfel>& surfel = frame.scene.geometry.surfel;
     const auto coverage = [&](const Selection& selection) {
+      if (selection.empty()) return Plane<float>(surfel.width, surfel.height, 0.0f);
       return selected_coverage(selection, {frame.files, frame.view}, frame.gbuffer.window,
                                frame.gbuffer.grid);
     };
-    Plane<float> out;
-    if (!objects.no_cast.empty()) out = coverage(objects.no_cast);
+    TakenOut out{{}, backdrop, kNoCast | kBackdrop};
+    const bool has_hole = !objects.no_cast.empty() || !backdrop.empty();
+    if (has_hole || !objects.shadow_of.empty()) out.coverage = coverage(objects.no_cast);
     if (!objects.shadow_of.empty()) {
-      Plane<float> more = coverage(objects.shadow_of);
-      for (std::size_t i = 0; i < out.size(); ++i) more[i] = std::max(more[i], out[i]);
+      TakenOut both{coverage(objects.shadow_of), backdrop, kNoCast | kShadowOf | kBackdrop};
+      for (std::size_t i = 0; i < both.coverage.size(); ++i)
+        both.coverage[i] = std::max(both.coverage[i], out.coverage[i]);
       KnownGeometry again = known;
       frame.scene.without = std::make_shared<Scene>();
       frame.scene.without->geometry = frame.scene.geometry;
       frame.scene.without->senders.albedo = frame.scene.senders.albedo;
-      const TakenOut both{more, kNoCast | kShadowOf};
       use_known_geometry(again, *frame.scene.without, thickness, options.input.gbuffer, &both);
     }
-    const TakenOut one{out, kNoCast};
     frame.views = use_known_geometry(known, frame.scene, thickness, options.input.gbuffer,
-                                     out.empty() ? nullptr : &one);
+                                     has_hole ? &out : nullptr);
   }
   frame.warn(known.warnings);
   frame.losses_of_views = std::move(known.losses);

@@ -17,6 +17,7 @@ namespace ssdo::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 using Words = std::vector<std::string>;
 
@@ -26,6 +27,7 @@ Words operator+(Words a, const Words& b) {
 }
 
 const std::string kBlender = std::string(SSDO_SOURCE_DIR) + "/data/objects.exr";
+const std::string kSky = std::string(SSDO_SOURCE_DIR) + "/data/environments/sky.exr";
 constexpr Window kWindow{0, 0, 96, 72};
 
 /// A floor, a wall and a ball, with ids and a matte of the ball.
@@ -221,6 +223,25 @@ TEST_F(Objects, NoCastHoldsInOtherViews) {
             0.02);
 }
 
+/// What receives where nothing casts has light all the same: the floor of this room is taken out.
+TEST_F(Objects, WhatHasNothingBehindItReceives) {
+  FramePart part = frame(true);
+  for (float& id : part.channels["IndexOB.X"].pixels) id = 3 - id;
+  write_frame(path("in.exr"), part);
+  for (const Words& env : {Words{}, Words{"--env", kSky}}) {
+    run(path("in.exr"), "out.exr", env + Words{"--no-cast", "id:IndexOB=2"});
+    for (const std::string& name : channel_names(path("out.exr"))) {
+      for (const float value : at("out.exr", name).pixels)
+        ASSERT_TRUE(std::isfinite(value)) << name;
+    }
+    const Plane<float> ao = at("out.exr", "ao.Y");
+    for (std::size_t i = 0; i < ao.size(); ++i)
+      if (part.channels["ball.A"][i] == 0 && i % 96 < 20) {
+        ASSERT_GT(ao[i], 0.7f);
+      }
+  }
+}
+
 /// With the shadow, the light without the object is the light with it.
 TEST_F(Objects, ShadowOfIsTheLightThatAnObjectTakes) {
   const FramePart with = frame(true);
@@ -243,6 +264,39 @@ TEST_F(Objects, ShadowOfIsTheLightThatAnObjectTakes) {
   }
   EXPECT_GT(dark, 20);
   EXPECT_GT(clear, 1000);
+}
+
+/// A sky dome casts nothing, as if the frame showed the sky.
+TEST_F(Objects, ADomeHidesNoLight) {
+  const Camera by =
+      look_at(camera_from_fov(50, kWindow, 1), {0.3, -4, 2.2}, {0, 0.5, 1.2}, {0, 0, 1});
+  const Surface stage = cut(plane({0, 0, 0}, {0, 0, 1}),
+                            [](const glm::dvec3&p) { return glm::length(p) < 20; }),
+                ball = sphere({0.1, 0.6, 0.5}, 0.5);
+  const auto write = [&](const std::string& name, const std::vector<Surface>& shown) {
+    FramePart part = frame_of(take_picture(all_of(shown), by, kWindow));
+    part.data = part.display = kWindow;
+    write_frame(path(name), part);
+  };
+  write("open.exr", {stage, ball}), write("dome.exr", {stage, ball, dome({0, 0, 0}, 500)});
+  run(path("open.exr"), "truth.exr", {});
+  run(path("dome.exr"), "auto.exr", {});
+  run(path("dome.exr"), "cast.exr", {"--backdrop", "cast"});
+  run(path("dome.exr"), "off.exr", {"--backdrop", "off"});
+  const Picture open = take_picture(all_of({stage, ball}), by, kWindow);
+  Plane<float> shown(96, 72);
+  for (std::size_t i = 0; i < shown.size(); ++i) shown[i] = open.valid[i];
+  const Plane<float> truth = at("truth.exr", "ao.Y");
+  EXPECT_LT(rms(at("auto.exr", "ao.Y"), truth, shown, 1), 1e-5);
+  EXPECT_GT(rms(at("cast.exr", "ao.Y"), truth, shown, 1), 0.1);
+  EXPECT_EQ(at("cast.exr", "ao.Y").pixels, at("off.exr", "ao.Y").pixels);
+  const auto warning = [&](const std::string& choice) {
+    return run_tool({"info", path("dome.exr"), "--backdrop", choice}).out;
+  };
+  EXPECT_THAT(warning("auto"),
+              HasSubstr("a dome of radius 500 around everything: it casts nothing"));
+  EXPECT_THAT(warning("cast"), HasSubstr("it hides the light"));
+  EXPECT_THAT(warning("off"), Not(HasSubstr("a dome")));
 }
 
 TEST_F(Objects, RefuseInOneLine) {

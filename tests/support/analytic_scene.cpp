@@ -24,6 +24,17 @@ Surface sphere(const glm::dvec3& centre, double radius) {
   };
 }
 
+Surface dome(const glm::dvec3& centre, double radius) {
+  return [=](const Ray& ray) -> std::optional<Hit> {
+    const glm::dvec3 o = ray.origin - centre;
+    const double a = glm::dot(ray.direction, ray.direction), b = glm::dot(o, ray.direction) / a,
+                 d = b * b - (glm::dot(o, o) - radius * radius) / a;
+    if (d < 0 || std::sqrt(d) - b < 1e-9) return std::nullopt;
+    const double t = std::sqrt(d) - b;
+    return Hit{t, -(o + t * ray.direction) / radius};
+  };
+}
+
 Surface cut(Surface surface, std::function<bool(const glm::dvec3&)> keep) {
   return [=](const Ray& ray) -> std::optional<Hit> {
     const auto hit = surface(ray);

@@ -33,6 +33,9 @@ Surface plane(const glm::dvec3& point, const glm::dvec3& normal);
 
 Surface sphere(const glm::dvec3& centre, double radius);
 
+/// A sphere seen from its inside.
+Surface dome(const glm::dvec3& centre, double radius);
+
 /// The part of a surface where `keep` holds.
 Surface cut(Surface surface, std::function<bool(const glm::dvec3&)> keep);
 

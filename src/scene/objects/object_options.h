@@ -7,6 +7,13 @@
 
 namespace ssdo {
 
+/// What becomes of a sky dome (scene/objects/backdrop.h).
+enum class BackdropChoice {
+  leave_out,  ///< it casts nothing
+  cast,       ///< it casts, with a warning
+  ignore,     ///< it is not looked for
+};
+
 /// Which objects of a frame cast, receive, or are left alone. Each selection may be empty.
 struct ObjectOptions {
   Selection no_cast;     ///< hide nothing and send nothing
@@ -14,6 +21,8 @@ struct ObjectOptions {
   Selection only;        ///< all else stays as it is; empty: nothing does
   Selection holdout;     ///< have alpha 0 in the composite
   Selection shadow_of;   ///< whose shadow is a product of its own
+
+  BackdropChoice backdrop = BackdropChoice::leave_out;
 
   /// Whether pixels are to stay as they were rendered.
   bool keeps_pixels() const { return !no_receive.empty() || !only.empty(); }
@@ -25,9 +34,9 @@ struct ObjectOptions {
 
 /// These options at a frame of a sequence.
 inline ObjectOptions at_frame(const ObjectOptions& options, int frame) {
-  return {at_frame(options.no_cast, frame), at_frame(options.no_receive, frame),
-          at_frame(options.only, frame), at_frame(options.holdout, frame),
-          at_frame(options.shadow_of, frame)};
+  return {at_frame(options.no_cast, frame),   at_frame(options.no_receive, frame),
+          at_frame(options.only, frame),      at_frame(options.holdout, frame),
+          at_frame(options.shadow_of, frame), options.backdrop};
 }
 
 }  // namespace ssdo

@@ -9,6 +9,7 @@
 #include "error.h"
 #include "parallel/tiles.h"
 #include "scene/deep/channels.h"
+#include "scene/objects/backdrop.h"
 #include "scene/objects/selected_coverage.h"
 
 namespace ssdo {
@@ -70,6 +71,14 @@ void mark(OtherPicture& picture, const Selection& selection, unsigned char with,
   }
 }
 
+void mark_backdrop(OtherPicture& picture, const Geometry& geometry) {
+  const std::optional<Backdrop> dome = find_backdrop(geometry);
+  if (!dome) return;
+  picture.taken = Plane<unsigned char>(dome->coverage.width, dome->coverage.height, 0);
+  for (std::size_t i = 0; i < dome->coverage.size(); ++i)
+    if (dome->coverage[i] > 0) picture.taken[i] = kBackdrop;
+}
+
 /// Keeps of a view what other pictures need.
 OtherPictures::Picture picture_of(View view, const std::string& file, const std::string& eye,
                                   const ObjectOptions& objects) {
@@ -79,6 +88,7 @@ OtherPictures::Picture picture_of(View view, const std::string& file, const std:
   out.camera = view.geometry.camera;
   out.window = view.geometry.window;
   out.closed = out.camera.panorama && out.window.width() == view.geometry.display.width();
+  if (objects.backdrop == BackdropChoice::leave_out) mark_backdrop(out, view.geometry);
   out.surfel = std::move(view.geometry.surfel);
   out.depth = Plane<float>(out.surfel.width, out.surfel.height, kNothing);
   for_each_row(out.surfel.height, [&](int y) {

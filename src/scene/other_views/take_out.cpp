@@ -71,13 +71,16 @@ struct Guess {
 
 class Hole {
  public:
-  Hole(const Geometry& geometry, const Plane<float>& coverage)
+  Hole(const Geometry& geometry, const Plane<float>& coverage, const Plane<float>& backdrop)
       : shown_(geometry),
         casting_{geometry, Plane<int>(geometry.surfel.width, geometry.surfel.height, kNone)},
         is_open_(geometry.surfel.width, geometry.surfel.height, 0),
         footprint_(geometry.camera) {
     for_each_row(is_open_.height, [&](int y) {
-      for (int x = 0; x < is_open_.width; ++x) is_open_(x, y) = belongs(coverage, x, y);
+      for (int x = 0; x < is_open_.width; ++x) {
+        is_open_(x, y) = belongs(coverage, x, y);
+        if (!backdrop.empty() && backdrop(x, y) > 0) casting_.geometry.surfel(x, y) = Surfel();
+      }
     });
   }
 
@@ -116,7 +119,7 @@ class Hole {
     if (end != kNone && !is_open_[std::size_t(end)]) return end;
     int nearest = kNone;
     for (const int each : ends) {
-      if (each == kNone || !shown_.surfel[std::size_t(each)].is_surface()) continue;
+      if (each == kNone || !known(each).is_surface()) continue;
       if (nearest == kNone || distance_px(x, y, each) < distance_px(x, y, nearest)) nearest = each;
     }
     return nearest;
@@ -332,8 +335,8 @@ class Hole {
 }  // namespace
 
 Casting take_out(const Geometry& geometry, const Plane<float>& coverage,
-                 const std::vector<OtherView>& views) {
-  return Hole(geometry, coverage).fill(views);
+                 const Plane<float>& backdrop, const std::vector<OtherView>& views) {
+  return Hole(geometry, coverage, backdrop).fill(views);
 }
 
 }  // namespace ssdo

@@ -11,8 +11,9 @@ namespace ssdo {
 
 /// The surfaces of a frame without what a selection covers: a hole, in which stands what other
 /// views show there, else what the surfaces around it suggest (take_out.cpp). `coverage` is as
-/// selected_coverage() has it, over the window of the geometry.
+/// selected_coverage() has it, over the window of the geometry. Where `backdrop` is 1, nothing is
+/// left; it may be empty.
 Casting take_out(const Geometry& geometry, const Plane<float>& coverage,
-                 const std::vector<OtherView>& views);
+                 const Plane<float>& backdrop, const std::vector<OtherView>& views);
 
 }  // namespace ssdo

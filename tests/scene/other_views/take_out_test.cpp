@@ -73,7 +73,7 @@ Filled filled(const Frame& frame, const std::vector<Surface>& around, const Cast
 TEST(TakeOut, APlaneGoesOnBelowAThing) {
   const std::vector<Surface> around = {kFloor};
   const Frame frame = frame_of(around);
-  const Filled found = filled(frame, around, take_out(frame.geometry, frame.coverage, {}));
+  const Filled found = filled(frame, around, take_out(frame.geometry, frame.coverage, {}, {}));
   EXPECT_GT(found.pixels, 200);
   EXPECT_EQ(found.wrong, 0);
   EXPECT_EQ(found.off, 0);
@@ -83,13 +83,13 @@ TEST(TakeOut, APlaneGoesOnBelowAThing) {
 TEST(TakeOut, AFloorAndAWallMeetBehindAThing) {
   const std::vector<Surface> around = {kFloor, kWall};
   const Frame frame = frame_of(around);
-  const Filled found = filled(frame, around, take_out(frame.geometry, frame.coverage, {}));
+  const Filled found = filled(frame, around, take_out(frame.geometry, frame.coverage, {}, {}));
   EXPECT_LT(found.wrong, found.pixels / 20);
 }
 
 TEST(TakeOut, BackgroundStaysBackground) {
   const Frame frame = frame_of({});
-  const Casting casting = take_out(frame.geometry, frame.coverage, {});
+  const Casting casting = take_out(frame.geometry, frame.coverage, {}, {});
   for (const Surfel& s : casting.geometry.surfel.pixels) {
     EXPECT_FALSE(s.is_surface());
     EXPECT_FALSE(s.is_broken());
@@ -101,7 +101,7 @@ TEST(TakeOut, AnOrthographicFrameToo) {
       look_at(camera_from_ortho_width(4, kWindow, 1), {0.3, -4, 2.2}, {0, 0.5, 0.4}, {0, 0, 1});
   const std::vector<Surface> around = {kFloor};
   const Frame frame = frame_of(around, by);
-  const Filled found = filled(frame, around, take_out(frame.geometry, frame.coverage, {}), by);
+  const Filled found = filled(frame, around, take_out(frame.geometry, frame.coverage, {}, {}), by);
   EXPECT_GT(found.pixels, 100);
   EXPECT_EQ(found.wrong, 0);
   EXPECT_EQ(found.off, 0);
@@ -111,7 +111,7 @@ TEST(TakeOut, AnOrthographicFrameToo) {
 TEST(TakeOut, WhatNothingTellsIsBroken) {
   const Frame frame = frame_of({kFloor});
   const Casting casting =
-      take_out(frame.geometry, Plane<float>(kWindow.width(), kWindow.height(), 1.0f), {});
+      take_out(frame.geometry, Plane<float>(kWindow.width(), kWindow.height(), 1.0f), {}, {});
   for (const Surfel& s : casting.geometry.surfel.pixels) EXPECT_TRUE(s.is_broken());
 }
 
@@ -132,7 +132,7 @@ TEST(TakeOut, ARimGoesWithTheThing) {
     }
   }
   const Geometry truth = geometry_of(kFloor, camera(), kWindow);
-  const Casting casting = take_out(frame.geometry, matte, {});
+  const Casting casting = take_out(frame.geometry, matte, {}, {});
   for (std::size_t i = 0; i < matte.size(); ++i) {
     rim += matte[i] == 0.2f, ground += matte[i] == 0.8f;
     if (matte[i] == 0) continue;
