@@ -33,7 +33,7 @@ HWY_INLINE UnseenSide unseen_side(const MarchScene& scene, const MarchReceiver& 
   side.ends = thickness < set(scene.orthographic ? kEndlessLength : kEndlessShare);
   side.position = mul_add(p.to_viewer, hn::Neg(hn::IfThenElseZero(side.ends, through)), p.position);
   side.normal = mul_add(p.to_viewer, set(-2) * dot(p.normal, p.to_viewer), p.normal);
-  side.clear = hn::MulAdd(set(kBesidePx), pixel, set(0.5f) * through);
+  side.clear = set(kBesidePx) * pixel;
   return side;
 }
 
