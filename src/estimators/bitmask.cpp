@@ -313,8 +313,9 @@ class Bitmask {
     if (mirrors_surfaces(scene_, request_))
       sent = sent_light(bounce_inputs(), as_one_light(scene_.light), lit_part(),
                         bounce.bounce[0].data() ? &bounce : nullptr);
-    const bool two_sided = sends_two_sided(scene_);
-    find_reflection({march_of_rays(), raster_, scene_, request_, sent, two_sided}, out_, progress_);
+    find_reflection(
+        {march_of_rays(), raster_, scene_, request_, sent, lit_part(), sends_two_sided(scene_)},
+        out_, progress_);
   }
 
   BounceInputs bounce_inputs() const {

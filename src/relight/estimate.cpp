@@ -240,6 +240,33 @@ Scene seen_by_filters(Scene scene) {
   return seen;
 }
 
+/// The share of the light of a source that arrives at the surfaces of a frame.
+double arriving(const LightShares& shares, std::size_t source) {
+  const Plane<float>& share = shares.suns[source];
+  const bool weighs = source < shares.draws.size() && !shares.draws[source].weight.empty();
+  double all = 0, arrives = 0;
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    const double light = weighs ? double(shares.draws[source].weight[i]) : 1;
+    all += light, arrives += light * double(share[i]);
+  }
+  return all > 0 ? arrives / all : 1;
+}
+
+/// The lamps that light next to nothing of what the frame shows, and the share of their light that
+/// arrives.
+std::vector<std::pair<std::string, double>> unlit_lamps(const Light& light,
+                                                        const LightShares& shares) {
+  // So much passes where the frame has gaps and at its border, of lamps under the ground of frames.
+  constexpr double kNearlyNone = 0.03;
+  std::vector<std::pair<std::string, double>> found;
+  for (std::size_t k = 0; k < shares.suns.size(); ++k) {
+    const std::string& name = light.sources[k]->name;
+    const double share = name.empty() ? 1 : arriving(shares, k);
+    if (share < kNearlyNone) found.emplace_back(name, share);
+  }
+  return found;
+}
+
 /// Raises slices and steps towards the error `wanted`. False if they are at their most.
 bool refine(Request& request, double wanted, const ErrorFound& found) {
   const double each = wanted / std::sqrt(2.0), larger = std::max(found.noise, found.steps);
@@ -273,6 +300,7 @@ Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double
     Stopwatch watch;
     Round round(plan, request, scene.light, on_progress);
     Noisy noisy = round.estimate(scene);
+    const auto unlit = unlit_lamps(scene.light, noisy.products.shares);
     estimate_ms += watch.lap();
     // With --error another round may follow.
     if (!plan.error) scene = seen_by_filters(std::move(scene));
@@ -285,6 +313,7 @@ Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double
                       *plan.error, out.error->all, request.slices, request.steps));
     }
     if (out.error) out.notes.push_back(describe(*out.error, *plan.method, request));
+    out.unlit = unlit;
     out.scene = seen_by_filters(std::move(scene));
     out.request = request;
     out.estimate_ms = estimate_ms, out.filter_ms = filter_ms;

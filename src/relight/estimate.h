@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "estimators/estimator.h"
@@ -30,6 +31,8 @@ struct Estimate {
   History history;                  ///< of a temporal plan, for the next frame; without a geometry
   double estimate_ms = 0, filter_ms = 0;  ///< by the clock
   std::vector<std::string> notes, warnings;
+  /// Names of lamps whose light surfaces block, and the small share of it that arrives.
+  std::vector<std::pair<std::string, double>> unlit;
 };
 
 /// What a temporal plan takes from the frame before, both of them where there is one.

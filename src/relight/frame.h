@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,12 @@ struct StageTimes {
   double read = 0, known = 0, prepare = 0, estimate = 0, filter = 0, compose = 0, write = 0;
 };
 
+/// What messages call a lamp.
+struct OriginOfLamp {
+  std::string text;  ///< Lamp::origin
+  bool is_near;      ///< it has a position
+};
+
 /// A frame that has been read and understood: all that stands before the first estimate.
 struct Frame {
   std::string input;
@@ -42,7 +49,8 @@ struct Frame {
   GeometryReport report;
   /// What other views add: those of --also, then neighbours, then back faces.
   std::vector<MergeCounts> views;
-  std::string light;  ///< one line
+  std::string light;                          ///< one line
+  std::map<std::string, OriginOfLamp> lamps;  ///< by name
   std::optional<glm::vec3>
       up;  ///< unit, camera space; found for a learned prior, where it is known
   Plan plan;

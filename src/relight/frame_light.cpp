@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <glm/matrix.hpp>
 
+#include "io/pictures/primaries.h"
 #include "relight/lamp_warnings.h"
+#include "relight/read_frame.h"
 #include "scene/light/lamps/lamp.h"
 
 namespace ssdo {
@@ -18,19 +21,30 @@ WorldUp find_up(const Frame& frame, const FrameOptions& options) {
                        asks ? options.up_of_shot() : std::nullopt);
 }
 
+/// The colour of a black body in the primaries of the frame, which are Rec. 709 where its header
+/// names none; colours outside of them are cut off.
+glm::dvec3 in_primaries_of(const Frame& frame, const glm::dvec3& rec709) {
+  const auto primaries = chromaticities_of(frame.part().header);
+  if (!primaries || same_chromaticities(*primaries, kRec709)) return rec709;
+  const auto matrix = conversion_of_primaries(kRec709, *primaries);
+  return matrix ? glm::max(glm::dmat3(*matrix) * rec709, glm::dvec3(0)) : rec709;
+}
+
 /// The sources of lamps in camera space, after those of the map.
-void add_lamps(Frame& frame, const std::vector<Lamp>& lamps) {
+void add_lamps(Frame& frame, std::vector<Lamp> lamps) {
   if (lamps.empty()) return;
   Scene& scene = frame.scene;
   const Geometry& geometry = scene.geometry;
   std::string names;
-  for (const Lamp& lamp : lamps) {
+  for (Lamp& lamp : lamps) {
+    lamp.temperature = in_primaries_of(frame, lamp.temperature);
     const double depth = -geometry.camera.to_camera(lamp.position).z;
     const double pixel =
         depth > 0 ? geometry.frame_height_at(float(depth)) / geometry.display.height() : 0;
     scene.light.sources.push_back(
         make_source(lamp, {geometry.camera.rotation, geometry.camera.origin}, pixel / 2));
     frame.warn(warnings_of(lamp, *scene.light.sources.back(), geometry));
+    frame.lamps.emplace(lamp.name, OriginOfLamp{lamp.origin, lamp.type != LampType::distant});
     names += (names.empty() ? "" : ", ") + lamp.name;
   }
   frame.light +=
@@ -43,12 +57,15 @@ void add_lamps(Frame& frame, const std::vector<Lamp>& lamps) {
 
 }  // namespace
 
-void light_frame(Frame& frame, const Lighting& lighting, const FrameOptions& options) {
+void light_frame(Frame& frame, const Lighting& lighting, const FrameOptions& options,
+                 const FrameFiles& files) {
   Scene& scene = frame.scene;
   const bool world = scene.geometry.world_known;
   WorldUp up;
   const bool asks_prior = options.model.prior == Prior::learned && !options.light.up;
-  if (world && (lighting.needs_up() || asks_prior)) up = find_up(frame, options);
+  // Mirrors show ground that goes on beyond the frame.
+  const bool mirrors = !options.light.up && wants_reflection(options.output, files.aovs);
+  if (world && (lighting.needs_up() || asks_prior || mirrors)) up = find_up(frame, options);
   if (world && (options.light.up || (asks_prior && up.known))) {
     const UpAxis axis = options.light.up.value_or(up.axis);
     frame.up = scene.geometry.world_to_camera[axis == UpAxis::z ? 2 : 1];

@@ -167,8 +167,7 @@ FrameEnvironment Lighting::around(UpAxis up_of_frame,
   EnvironmentFrame frame;
   frame.up = options_.up.value_or(up_of_frame);
   if (!map_) {
-    const UpAxis up = lamps_.empty() ? UpAxis::y : frame.up;
-    return {Environment::constant(constant_, up), description_, warnings_};
+    return {Environment::constant(constant_, frame.up), description_, warnings_};
   }
   frame.rotate_degrees = float(std::fmod(options_.rotate_degrees, 360.0));
   frame.exposure_stops = float(options_.exposure_stops);

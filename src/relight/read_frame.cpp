@@ -14,19 +14,6 @@
 namespace ssdo {
 namespace {
 
-/// Whether a product is made that depends on roughness.
-bool wants_reflection(const OutputOptions& output, const std::vector<LayerRequest>& aovs) {
-  const auto is_mirrored = [](std::string_view product) {
-    return product == "reflection" || product == "specular";
-  };
-  const auto is_specular = [](const LayerRequest& aov) { return aov.role == Role::specular; };
-  return std::ranges::any_of(output.products, is_mirrored) ||
-         contains(output.products, kAllProducts) ||
-         std::ranges::any_of(output.saves, is_mirrored, &SaveRequest::product) ||
-         (choose_compose(output, aovs) == Compose::occlude &&
-          std::ranges::any_of(aovs, is_specular));
-}
-
 /// Names that nothing asks for are no reason to refuse a frame.
 std::vector<Role> unused_roles(const FrameOptions& options, const FrameFiles& files) {
   std::vector<Role> unused;
@@ -47,6 +34,18 @@ void open_mattes(Frame& frame, bool allow_partial) {
 }
 
 }  // namespace
+
+bool wants_reflection(const OutputOptions& output, const std::vector<LayerRequest>& aovs) {
+  const auto is_mirrored = [](std::string_view product) {
+    return product == "reflection" || product == "specular";
+  };
+  const auto is_specular = [](const LayerRequest& aov) { return aov.role == Role::specular; };
+  return std::ranges::any_of(output.products, is_mirrored) ||
+         contains(output.products, kAllProducts) ||
+         std::ranges::any_of(output.saves, is_mirrored, &SaveRequest::product) ||
+         (choose_compose(output, aovs) == Compose::occlude &&
+          std::ranges::any_of(aovs, is_specular));
+}
 
 Frame read_frame(const FrameOptions& options, const FrameFiles& files, int lamps,
                  std::optional<DeepImage>& own) {

@@ -8,6 +8,9 @@
 
 namespace ssdo {
 
+/// Whether a product is made of what surfaces mirror.
+bool wants_reflection(const OutputOptions& output, const std::vector<LayerRequest>& aovs);
+
 /// Layers, G-buffer, camera and geometry of a frame, of which an overview is read if it is too
 /// large for options.memory in the light of so many lamps. If the frame is read from a deep file,
 /// `own` gets its samples. Errors: those of the stages; ExitCode::layer for a lat-long panorama.

@@ -89,6 +89,18 @@ void append(std::vector<std::string>& lines, const std::vector<std::string>& mor
   lines.insert(lines.end(), more.begin(), more.end());
 }
 
+/// A lamp that stands in or behind surfaces, which only the rays to it tell in full.
+void warn_of_unlit(const Frame& frame, const std::string& lamp, double arrives,
+                   std::vector<std::string>& lines) {
+  const auto& [origin, is_near] = frame.lamps.at(lamp);
+  for (const std::string& line : frame.warnings())
+    if (line.starts_with(origin + ": ")) return;
+  lines.push_back(
+      fmt::format("{}: {}: surfaces block {:.0f} % of its light from what the frame shows; {}",
+                  origin, is_near ? "position" : "direction", 100 * (1 - arrives),
+                  is_near ? "move it out of them" : "turn it"));
+}
+
 }  // namespace
 
 Frame prepare_frame(const FrameOptions& options, const Lighting& lighting, OtherPictures& pictures,
@@ -99,7 +111,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& lighting, Other
   Stopwatch watch;
   KnownGeometry known = read_known_geometry(frame, files, options, pictures, own);
   frame.times.known = watch.lap();
-  light_frame(frame, lighting, options);
+  light_frame(frame, lighting, options, files);
   frame.times.prepare += watch.lap();
   find_occluders(frame, known, options);
   const bool is_known = !files.also.empty() || !files.neighbours.empty();
@@ -175,6 +187,7 @@ Relit relight(const RelightJob& job, Scene scene, const std::function<void(doubl
   relit.times.filter = found.filter_ms;
   append(relit.notes, found.notes);
   append(relit.warnings, found.warnings);
+  for (const auto& [name, share] : found.unlit) warn_of_unlit(frame, name, share, relit.warnings);
   if (contains(relit.plan.make, "shadow_of")) find_shadow(*without, relit);
   return relit;
 }

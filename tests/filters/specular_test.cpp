@@ -84,6 +84,46 @@ TEST(Specular, AMirrorShowsTheWallInTheColourThatItSends) {
     ASSERT_EQ(light, glm::vec3(0)) << "black surfaces send nothing";
 }
 
+TEST(Specular, AMirrorAboveTheHorizonShowsGroundThatLeavesThePicture) {
+  // A wall that a camera looks down at mirrors nothing but ground, most of which no pixel shows.
+  const Surface corner = floor_and_wall();
+  const Camera camera = tilted(camera_from_fov(75, kWindow, 1), 75, 4, {0, 0, 1.5});
+  const Environment sky = Environment::constant(glm::vec3(1), UpAxis::z);
+  Scene scene = scene_of(geometry_of(corner, camera, kWindow), sky);
+  scene.solids = guess_solids(scene.geometry);
+  const Method& method = find_method("bitmask");
+  const auto found = [&](bool extend) {
+    Request request = request_of(method, 0.1);
+    request.extend_offscreen = extend;
+    Products products = method.estimate(scene, request, {});
+    add_specular(products, scene);
+    return products.specular;
+  };
+  const Plane<glm::vec3> with = found(true), without = found(false);
+  double wall = 0, dark = 0, open = 0;
+  for (int y = 0; y < kWindow.height(); ++y) {
+    // Rays that leave the picture over the wall tell nothing of the ground.
+    for (int x = kWindow.width() / 3; x < 2 * kWindow.width() / 3; ++x) {
+      const Point p = point_at(corner, camera, kWindow, x, y);
+      if (p.normal.y > -0.5 || ray_through(camera, x + 0.5, y + 0.5).direction.z > -0.15) continue;
+      ++wall, dark += with(x, y).y<0.1f, open += without(x, y).y> 0.9f;
+    }
+  }
+  EXPECT_GT(wall, 500);
+  EXPECT_GT(open, 0.4 * wall) << "the picture alone shows little of it";
+  EXPECT_GT(dark, 0.95 * wall);
+
+  // That ground sends what it does where the border cuts it.
+  scene.senders.radiance =
+      Plane<glm::vec3>(kWindow.width(), kWindow.height(), glm::vec3(0.5f, 0.25f, 2));
+  const Plane<glm::vec3> lit = found(true);
+  for (std::size_t i = 0; i < lit.size(); ++i) {
+    const float dimmed = 1 - with[i].y;
+    ASSERT_NEAR(lit[i].x - with[i].x, 0.5f * dimmed, 0.05f);
+    ASSERT_NEAR(lit[i].z - with[i].z, 2 * dimmed, 0.2f);
+  }
+}
+
 TEST(Specular, TheFilterLeavesHighlightsOfNormalMapsAlone) {
   Geometry g =
       geometry_of(plane({}, {0, 0, 1}), tilted(camera_from_fov(10, kWindow, 1), 0, 20), kWindow);

@@ -148,8 +148,9 @@ struct MirroredLightJob {
   const Plane<HalfColor>& color;   ///< F0; empty: that of the model
   const InterleavedVectors* sent;  ///< what surfaces send, as SenderJob has it; null: nothing
   bool two_sided;
-  InterleavedVectors* sky;       ///< the part of the sky's light that is not blocked, by channel
-  InterleavedVectors* surfaces;  ///< the mean radiance of surfaces, 0 where none is met
+  const BorderValues* sent_border;  ///< as BounceJob has it; null: nothing
+  InterleavedVectors* sky;          ///< the part of the sky's light that is not blocked, by channel
+  InterleavedVectors* surfaces;     ///< the mean radiance of surfaces, 0 where none is met
 };
 
 /// How much of what rough surfaces mirror is not blocked.

@@ -104,6 +104,15 @@ struct MirrorFrame {
         hn::MulAdd(alpha2 * facet.z, facet.z, hn::MulAdd(facet.x, facet.x, facet.y * facet.y));
     return alpha2 / (set(glm::pi<float>()) * q * q);
   }
+
+  /// The same where the squares of alpha along x and y differ (Heitz 2018, equation 1).
+  HWY_INLINE V density(const V3& facet, V along2, V across2) const {
+    const V alpha2 = hn::Sqrt(along2 * across2), scale = alpha2 / along2;
+    const V q =
+        hn::MulAdd(alpha2 * facet.z, facet.z,
+                   hn::MulAdd(facet.x * scale, facet.x, alpha2 / across2 * facet.y * facet.y));
+    return alpha2 / (set(glm::pi<float>()) * q * q);
+  }
 };
 
 }  // namespace ssdo::HWY_NAMESPACE

@@ -12,14 +12,16 @@
 // exact with any number of them.
 //
 // w_k: points of the source. Each stands for a part of it, of the solid angle omega, which a mirror
-// shows as a spot: D' has the distribution of the facets widened by
+// shows as a spot: D' has the distribution of the facets widened, along the plane of the viewer and
+// across it, by
 //
-//   alpha'^2 = alpha^2 + 2 omega / (4 pi h.l)
+//   alpha_x'^2 = alpha^2 + 2 omega / (4 pi),  alpha_y'^2 = alpha^2 + 2 omega / (4 pi (h.l)^2)
 //
-// Without the 2, a mirror shows each part with its own radiance: the density of what it mirrors,
-// 1 / (pi alpha'^2 4 h.l), is 1 / omega. Rays that are sent at random, to the source or to
-// what facets mirror, would leave to luck what is small and bright. Compiled once for every
-// instruction set.
+// for facets turn by half of what mirrored light turns by, and aside by 1 / h.l more: a round spot
+// is a streak of facets at a grazing view. Without the 2, a mirror shows each part with its own
+// radiance: the density of what it mirrors, 1 / (pi alpha_x' alpha_y' 4 h.l), is 1 / omega. Rays
+// that are sent at random, to the source or to what facets mirror, would leave to luck what is
+// small and bright. Compiled once for every instruction set.
 #if defined(SSDO_SPECULAR_MIRRORED_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_SPECULAR_MIRRORED_LIGHT_INL_H_
 #undef SSDO_SPECULAR_MIRRORED_LIGHT_INL_H_
@@ -39,7 +41,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-constexpr int kSkyPoints = 32, kLeastSourcePoints = 8, kSourcePoints = 64;
+constexpr int kSkyPoints = 32, kLeastSourcePoints = 8, kSourcePoints = 256;
 
 /// How much larger than its part of the source the spot of a point is, so that spots blend. RMSE of
 /// a mirrored square that is 40 degrees wide, roughness 0.2 and 64 points, relative to the RMS,
@@ -122,9 +124,10 @@ HWY_INLINE V solid_angle_of(const V3* to, int count) {
 }
 
 /// How many points are summed for a source of this solid angle, a power of two, by how wide they
-/// make the lobe beside what the facets do.
-HWY_INLINE V points_for(V solid_angle, V alpha2) {
-  const V wanted = set(6) * solid_angle / alpha2;
+/// make the lobe, which is as narrow across as the viewer's cosine is small, beside what the facets
+/// do.
+HWY_INLINE V points_for(V solid_angle, V alpha2, V cosine) {
+  const V wanted = set(6) * solid_angle / (alpha2 * hn::Max(cosine, set(0.05f)));
   V count = set(kLeastSourcePoints);
   for (int n = kLeastSourcePoints; n < kSourcePoints; n *= 2)
     count = hn::IfThenElse(wanted > set(float(n)), set(float(2 * n)), count);
@@ -142,7 +145,7 @@ HWY_INLINE V3 mirrored_source(const MirroredSource& of, const V3& position,
   };
   for (int k = 0; k < kLeastSourcePoints; ++k) look_at(k, to[k], weight[k]);
   const V solid_angle = solid_angle_of(to, kLeastSourcePoints),
-          count = points_for(solid_angle, alpha2);
+          count = points_for(solid_angle, alpha2, frame.cosine);
   const V widening = solid_angle * set(kOverlap / (4 * glm::pi<float>())) / count;
   const int most = int(hn::GetLane(hn::MaxOfLanes(D(), count)));
   V3 sum = set(glm::vec3(0));
@@ -157,7 +160,8 @@ HWY_INLINE V3 mirrored_source(const MirroredSource& of, const V3& position,
     const V facing2 = hn::MulAdd(half, hn::MulAdd(frame.sine, lx, frame.cosine * lz), half),
             facing = hn::Sqrt(hn::Max(facing2, set(1e-6f))), scale = half / facing;
     const V3 facet{(frame.sine + lx) * scale, ly * scale, (frame.cosine + lz) * scale};
-    const V density = frame.density(facet, alpha2 + widening / facing);
+    const V density =
+        frame.density(facet, alpha2 + widening, alpha2 + widening / hn::Max(facing2, set(1e-6f)));
     const M counts = hn::And(lz > zero, set(float(k)) < count);
     const V mirrored = hn::IfThenElseZero(counts, light * density * smith_share(lz, frame.alpha));
     sum = mul_add(fresnel(f0, facing), mirrored, sum);

@@ -9,6 +9,7 @@
 #include "estimators/microfacets.h"
 #include "estimators/specular/specular_scene.h"
 #include "math/sobol.h"
+#include "scene/light/lamps/lamp.h"
 
 namespace ssdo::test {
 namespace {
@@ -212,6 +213,43 @@ TEST(MirroredLight, HighlightsOfSourcesAreTheSumOverTheirPoints) {
                c.radius, c.degrees, c.roughness, error.rmse, error.most);
     EXPECT_LT(error.rmse, c.within) << c.radius << " " << c.degrees << " " << c.roughness;
     EXPECT_LT(error.most, 1.05);
+  }
+}
+
+TEST(MirroredLight, HighlightsOfWideLampsAtGrazingViewsAreTheSumOverTheirPoints) {
+  struct Case {
+    const char* shape;
+    double roughness, within;
+  };
+  for (const Case& c :
+       {Case{"rect", 0.2, 0.07}, Case{"rect", 0.35, 0.04}, Case{"rect", 0.5, 0.02},
+        Case{"sphere", 0.2, 0.13}, Case{"sphere", 0.35, 0.05}, Case{"sphere", 0.5, 0.03}}) {
+    Scene scene = scene_of(floor_seen_at(80), Environment::constant(glm::vec3(0)));
+    const Surfel& s = scene.geometry.surfel(kWindow.width() / 2, kWindow.height() / 2);
+    const glm::vec3 to = glm::reflect(glm::normalize(s.position), s.normal);
+    Lamp lamp;
+    const bool is_rect = std::string(c.shape) == "rect";
+    lamp.type = is_rect ? LampType::rect : LampType::sphere;
+    // Twenty degrees wide.
+    lamp.position = glm::dvec3(s.position + 4.0f * to);
+    lamp.radius = 4 * std::sin(glm::radians(10.0));
+    lamp.width = lamp.height = 8 * std::tan(glm::radians(10.0));
+    lamp.axes[2] = glm::dvec3(to);
+    lamp.axes[0] = glm::normalize(glm::cross(glm::dvec3(0.3, 1, 0.2), lamp.axes[2]));
+    lamp.axes[1] = glm::cross(lamp.axes[2], lamp.axes[0]);
+    scene.light.sources = {make_source(lamp, {}, 0)};
+    const double alpha = c.roughness * c.roughness;
+    const Off error = off(
+        unoccluded(scene, c.roughness, 1.5),
+        [&](int x, int y) {
+          return mirrored_by_sum(*scene.light.sources[0], scene.geometry.surfel(x, y), alpha, 0.04);
+        },
+        7);
+    fmt::print(
+        "{} 20 degrees wide, seen at 80 degrees, roughness {}: RMSE {:.4f}, largest {:.3f}\n",
+        c.shape, c.roughness, error.rmse, error.most);
+    EXPECT_LT(error.rmse, c.within) << c.shape << " " << c.roughness;
+    EXPECT_LT(error.most, 1.05) << c.shape << " " << c.roughness;
   }
 }
 

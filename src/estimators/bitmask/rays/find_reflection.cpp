@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "estimators/bitmask/rays/find_reflection.h"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "estimators/bitmask/border_light.h"
 #include "estimators/bitmask/parts.h"
+#include "estimators/bitmask/rays/bright_level.h"
 #include "estimators/bitmask/rays/depth_bounds.h"
 #include "estimators/specular/mirror_model.h"
 
@@ -34,12 +37,18 @@ void find_reflection(const ReflectionInput& input, Products& products, const Pro
   if (request.products.reflection) open = InterleavedPlane(layout);
   std::optional<MirroredLightJob> light;
   InterleavedVectors sky, surfaces;
+  std::array<BorderValues, 3> beyond;
   if (request.products.specular) {
     products.shares.mirror = std::make_shared<const MirrorModel>(scene, request);
     sky = raster.make_color(), surfaces = raster.make_color();
+    const bool sends = sent[0].data() != nullptr;
+    if (sends) {
+      const float level = bright_level({march.scene, sent, input.two_sided, input.lit}).bright;
+      beyond = light_beyond(march.scene, sent, sent, input.two_sided, level);
+    }
     light.emplace(MirroredLightJob{*products.shares.mirror, scene.specular_color,
-                                   sent[0].data() ? &sent : nullptr, input.two_sided, &sky,
-                                   &surfaces});
+                                   sends ? &sent : nullptr, input.two_sided,
+                                   sends ? beyond.data() : nullptr, &sky, &surfaces});
   }
   const std::vector<DepthBounds> bounds = depth_bounds(march.scene);
   const ReflectionJob job{march,

@@ -15,6 +15,7 @@ struct ReflectionInput {
   const Scene& scene;
   const Request& request;
   const InterleavedVectors& sent;  ///< as SenderJob has it; no planes: surfaces send nothing
+  Window lit;                      ///< the pixels whose radiance is known
   bool two_sided;
 };
 

@@ -3,8 +3,8 @@
 
 namespace ssdo {
 
-/// The share of light, 0..1, that arrives along rays to a source that leave the frame: `past` if no
-/// surface continued beyond the border blocks the ray, `through` if one does.
+/// The share of light, 0..1, that arrives along rays that leave the frame: `past` if no surface
+/// continued beyond the border blocks the ray, `through` if one does.
 struct PassBeyond {
   float past = 1, through = 0;
 };

@@ -63,10 +63,10 @@ HWY_INLINE Ray in_far_pixels(Ray ray) {
 }
 
 /// How likely it is, 0..1, that rays which leave the frame at `leaves` meet the surface of a pixel
-/// at the border beyond it.
+/// at the border beyond it; `ground` is that of PassLanes.
 template <bool kOrthographic>
 HWY_INLINE V meets_beyond(const March& march, const MarchReceiver& p, const Ray& ray, V leaves,
-                          const Border& border) {
+                          const Border& border, bool ground) {
   const MarchScene& scene = march.scene;
   const V zero = set(0), depth = border(scene.border_depth);
   V3 pixel{hn::MulAdd(border.dx, set(1 / scene.fx), p.slope_x),
@@ -91,6 +91,7 @@ HWY_INLINE V meets_beyond(const March& march, const MarchReceiver& p, const Ray&
     seen[k] = gather(extents + k, at), most[k] = gather(extents + 4 + k, at);
   V likely = is_there(dot(beyond, right), seen, most) *
              is_there(dot(beyond, cross(normal, right)), seen + 2, most + 2);
+  if (ground) likely = hn::Max(likely, saturate(dot(normal, set(march.cut->up))));
   if (!scene.border_beyond.empty()) {
     const V end = border(scene.border_beyond);
     likely = hn::IfThenElseZero(dot(beyond, beyond) <= end * end, likely);
@@ -126,14 +127,19 @@ HWY_INLINE Border beside_corner(const MarchScene& scene, const MarchReceiver& p,
 struct PassLanes {
   V past;
   float through;
+  /// Whether surfaces that look up go on without end, whatever their extent in the frame
+  /// (rays/border_extents.h), and others the less the steeper they are: what is mirrored from below
+  /// the horizon is ground.
+  bool ground = false;
 };
 
 /// The share of the rays that pass what is beyond the frame, 0..1: all that end in it, `through` of
 /// those that a surface which goes on is likely to hide, and `past` of the others that leave it
-/// within the radius. `turn` in 0..1 differs from member to member of the pattern.
-template <bool kOrthographic>
+/// within the radius. `turn` in 0..1 differs from member to member of the pattern. Calls
+/// `on_met(border, likely)` for each surface that goes on.
+template <bool kOrthographic, class Met>
 HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const Ray& ray, float turn,
-                         const PassLanes& pass) {
+                         const PassLanes& pass, const Met& on_met) {
   const MarchScene& scene = march.scene;
   const float apart_px = 2 * kWitnessReach *
                          std::hypot(float(scene.frame_width), float(scene.frame_height)) /
@@ -146,15 +152,18 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const Ray& 
   if (!any(leaves_frame)) return set(1);
   const V leaves = hn::IfThenElse(leaves_frame, exit_at, set(kFarAway));
   V near_exit = set(0), near_corner = set(0);
+  const auto likely = [&](const Border& border) HWY_ATTR {
+    const V meets = meets_beyond<kOrthographic>(march, p, ray, leaves, border, pass.ground);
+    on_met(border, meets);
+    return meets;
+  };
   for (int k = 0; k < kWitnesses; ++k) {
     const float aside_px = std::round((float(k) + turn - 0.5f * kWitnesses) * apart_px),
                 inward_px = std::round((float(k) + turn) * apart_px);
     const Border border =
         border_along(scene, p, ray.in_slice.step_x, ray.in_slice.step_y, false, aside_px);
-    near_exit = near_exit + meets_beyond<kOrthographic>(march, p, ray, leaves, border);
-    near_corner =
-        near_corner + meets_beyond<kOrthographic>(march, p, ray, leaves,
-                                                  beside_corner(scene, p, border, inward_px));
+    near_exit = near_exit + likely(border);
+    near_corner = near_corner + likely(beside_corner(scene, p, border, inward_px));
   }
   const V hidden = hn::Max(near_exit, near_corner * set(kCornerTrust)) * set(1.0f / kWitnesses);
   // The more of the radius the frame shows, the less is left to meet beyond it.
@@ -200,8 +209,9 @@ HWY_INLINE Ray make_ray(const MarchScene& scene, const MarchReceiver& p, const V
 
 /// What becomes of rays.
 struct Arrival {
-  V share;       ///< of the ray, 0..1, that sees past all that is known
-  V blocked_at;  ///< way along it to what the frame shows in its way, or kFarAway
+  V share;        ///< of the ray, 0..1, that sees past all that is known
+  V lost_beyond;  ///< share that only what may be beyond the border takes
+  V blocked_at;   ///< way along it to what the frame shows in its way, or kFarAway
 };
 
 /// All that may be in the way of rays: the solids of the frame, those of the overview where the
@@ -239,9 +249,10 @@ class Occluders {
     if (far_) far_->run();
   }
 
-  /// What of the rays asked about arrives; `pass` is that of open_beyond().
+  /// What of the rays asked about arrives; `pass` and `on_met` are those of open_beyond().
+  template <class Met>
   HWY_INLINE Arrival arrival(VI places, const MarchReceiver& p, const Ray& ray,
-                             const PassLanes& pass) const {
+                             const PassLanes& pass, const Met& on_met) const {
     const V at_px = blocked_px(places);
     const M meets = at_px >= set(0);
     Arrival a;
@@ -255,11 +266,17 @@ class Occluders {
       const int rank = SlicePattern::rank(member_at(march_.scene, p.place));
       const float turn = (float(rank) + 0.5f) / kMembers;
       share = far_ ? open_beyond<kOrthographic>(*far_march_, in_far_pixels(march_, p),
-                                                in_far_pixels(ray), turn, pass)
-                   : open_beyond<kOrthographic>(march_, p, ray, turn, pass);
+                                                in_far_pixels(ray), turn, pass, on_met)
+                   : open_beyond<kOrthographic>(march_, p, ray, turn, pass, on_met);
     }
     a.share = hn::IfThenElseZero(open, share);
+    a.lost_beyond = hn::IfThenElseZero(open, set(1) - share);
     return a;
+  }
+
+  HWY_INLINE Arrival arrival(VI places, const MarchReceiver& p, const Ray& ray,
+                             const PassLanes& pass) const {
+    return arrival(places, p, ray, pass, [](const Border&, V) HWY_ATTR {});
   }
 
  private:

@@ -8,9 +8,9 @@
 //   w_i = F(w_i) G1(w_i)
 //
 // L is the sky as mirrored_light-inl.h takes it, sent_i the radiance of the surface in the pixel
-// where the ray ends: that of its back if it turns that to the ray. Other things in the way send
-// nothing: what only other views show, and what may go on beyond the border. Compiled once for
-// every instruction set.
+// where the ray ends: that of its back if it turns that to the ray. What goes on beyond the border
+// sends what its pixels there do; what only other views show sends nothing. Compiled once for every
+// instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/rays/reflection.cpp"
 #include <hwy/foreach_target.h>
@@ -18,7 +18,9 @@
 #include <algorithm>
 #include <glm/matrix.hpp>
 #include <limits>
+#include <memory>
 
+#include "estimators/bitmask/rays/block-inl.h"
 #include "estimators/bitmask/rays/ray-inl.h"
 #include "estimators/microfacets.h"
 #include "estimators/specular/mirrored_light-inl.h"
@@ -91,15 +93,32 @@ HWY_INLINE V3 sent_from(const MirroredLightJob& job, const MarchScene& scene,
   return if_then_else_zero(shown, sent);
 }
 
+/// What surfaces that go on beyond the border send to the receivers: the mean of those that rays
+/// may meet, by how likely that is.
+struct SentBeyond {
+  const BorderValues* sent;  ///< three; null: nothing
+  V3 sum;
+  V likely;
+
+  HWY_INLINE explicit SentBeyond(const BorderValues* from)
+      : sent(from), sum(set(glm::vec3(0))), likely(set(0)) {}
+  HWY_INLINE void add(const Border& border, V meets) {
+    if (!sent) return;
+    sum = mul_add(V3{border(sent[0]), border(sent[1]), border(sent[2])}, meets, sum);
+    likely = likely + meets;
+  }
+  HWY_INLINE V3 mean() const {
+    return sum * hn::IfThenElseZero(likely > set(0), set(1) / hn::Max(likely, set(1e-20f)));
+  }
+};
+
 /// The sums of the head of this file.
 struct MirroredSums {
   V3 open, all, met, weights;
 
-  HWY_INLINE void clear() { open = all = met = weights = set(glm::vec3(0)); }
-
   template <bool kOrthographic>
   HWY_INLINE void add(const ReflectionJob& job, const MarchReceiver& p, const V3& f0,
-                      const Mirrored& m, const Arrival& a) {
+                      const Mirrored& m, const Arrival& a, const SentBeyond& beyond) {
     const MirroredLightJob& light = *job.light;
     const V3 weight = if_then_else_zero(m.share > set(0), fresnel(f0, m.facing) * m.share),
              seen = weight * look_up(light.model.sky, m.to, set(1 / float(job.rays)) / m.density);
@@ -107,7 +126,9 @@ struct MirroredSums {
     all = all + seen;
     open = mul_add(seen, a.share, open);
     if (light.sent)
-      met = met + weight * sent_from<kOrthographic>(light, job.march.scene, p, m.to, a.blocked_at);
+      met = met + weight * mul_add(beyond.mean(), a.lost_beyond,
+                                   sent_from<kOrthographic>(light, job.march.scene, p, m.to,
+                                                            a.blocked_at));
   }
 
   /// `unlit`: the part of the sky that is not blocked, where a channel of it has no light.
@@ -124,50 +145,92 @@ struct MirroredSums {
   }
 };
 
+/// Rays of a block to what is mirrored, and what they have found.
+struct BlockOfMirrors {
+  OfBlock3 to;
+  OfBlock share, facing, density;  ///< as Mirrored has them
+  OfBlock open, all;
+  OfBlock3 open_sky, all_sky, met, weights;
+
+  HWY_INLINE void clear(int i) {
+    for (OfBlock* sum : {&open, &all}) sum->set_at(i, set(0));
+    for (OfBlock3* sum : {&open_sky, &all_sky, &met, &weights}) sum->set_at(i, set(glm::vec3(0)));
+  }
+  HWY_INLINE void put(int i, const Mirrored& m) {
+    to.set_at(i, m.to), share.set_at(i, m.share);
+    facing.set_at(i, m.facing), density.set_at(i, m.density);
+  }
+  HWY_INLINE Mirrored mirrored(int i) const { return {to(i), share(i), facing(i), density(i)}; }
+  HWY_INLINE MirroredSums light(int i) const {
+    return {open_sky(i), all_sky(i), met(i), weights(i)};
+  }
+  HWY_INLINE void set_light(int i, const MirroredSums& sums) {
+    open_sky.set_at(i, sums.open), all_sky.set_at(i, sums.all);
+    met.set_at(i, sums.met), weights.set_at(i, sums.weights);
+  }
+};
+
+template <bool kOrthographic>
+HWY_INLINE Ray ray_of(const MarchScene& scene, const MarchReceiver& p, const Mirrored& m) {
+  return make_ray<kOrthographic>(scene, p, m.to, set(std::numeric_limits<float>::infinity()),
+                                 hn::And(p.valid, m.share > set(0)));
+}
+
+/// The k-th ray of all pixels of a block goes over the frame together: one in so many parts of what
+/// facets mirror, as points of Sobol's sequence are, so that these rays are near to each other.
 template <bool kOrthographic>
 void reflection(const ReflectionJob& job, const Window& part) {
-  constexpr int kTogether = 8;  // rays of each pixel on their way at once
   const MarchScene& scene = job.march.scene;
-  Occluders<kOrthographic> occluders(job.march, job.bounds, kTogether * kLanes);
-  const auto places = [](int k) HWY_ATTR { return hn::Iota(DI(), k * kLanes); };
-  Ray rays[kTogether];
-  Mirrored mirrors[kTogether];
-  MirroredSums light;
-  for_each_vector(scene, part, [&](const Place& place) HWY_ATTR {
-    const int member = member_at(scene, place);
+  Occluders<kOrthographic> occluders(job.march, job.bounds, Block::kPixels);
+  const auto mirrors = std::make_unique<BlockOfMirrors>();
+  const PassLanes pass{set(1), 0, true};
+  const auto receiver = [&](const Place& place) HWY_ATTR {
     MarchReceiver p = load_receiver(scene, place);
     p.reach_px = reach_px(scene, p, job.march.radius);
-    const Lanes3 normals(usable(load_shading(scene, place).normal, p.valid)),
-        viewers(if_then_else(p.valid, p.to_viewer, set(glm::vec3(0, 0, 1))));
-    const Lanes roughness(hn::IfThenElse(p.valid, load(*job.roughness, place.index), set(1)));
-    V open = set(0), all = set(0);
-    light.clear();
-    const V3 f0 = job.light ? f0_at(*job.light, scene, place) : set(glm::vec3(0));
-    for (int first = 0; first < job.rays; first += kTogether) {
-      const int count = std::min(kTogether, job.rays - first);
+    return p;
+  };
+  for_each_block(scene, part, [&](const Block& block) HWY_ATTR {
+    for_each_vector(scene, block.part,
+                    [&](const Place& place) HWY_ATTR { mirrors->clear(block.first_of(place)); });
+    for (int k = 0; k < job.rays; ++k) {
       occluders.clear();
-      for (int k = 0; k < count; ++k) {
+      for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
+        const MarchReceiver p = receiver(place);
+        const Lanes3 normals(usable(load_shading(scene, place).normal, p.valid)),
+            viewers(if_then_else(p.valid, p.to_viewer, set(glm::vec3(0, 0, 1))));
+        const Lanes roughness(hn::IfThenElse(p.valid, load(*job.roughness, place.index), set(1)));
         // All members together cover the square evenly.
-        const int sample = SlicePattern::rank(member) * job.rays + first + k;
+        const int sample = SlicePattern::rank(member_at(scene, place)) * job.rays + k;
         const Mirrored m = mirrored(normals, viewers, roughness,
                                     sobol_point(std::uint32_t(sample), hash_of(job.seed, 0, 0)));
-        mirrors[k] = m;
-        rays[k] =
-            make_ray<kOrthographic>(scene, p, m.to, set(std::numeric_limits<float>::infinity()),
-                                    hn::And(p.valid, m.share > set(0)));
-        occluders.ask(places(k), p, rays[k]);
-      }
+        mirrors->put(block.first_of(place), m);
+        occluders.ask(block.places(place), p, ray_of<kOrthographic>(scene, p, m));
+      });
       occluders.run();
-      for (int k = 0; k < count; ++k) {
-        const Arrival a = occluders.arrival(places(k), p, rays[k], PassLanes{set(1), 0});
-        open = hn::MulAdd(a.share, mirrors[k].share, open);
-        all = all + hn::IfThenElseZero(p.valid, hn::Max(mirrors[k].share, set(0)));
-        if (job.light) light.add<kOrthographic>(job, p, f0, mirrors[k], a);
-      }
+      for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
+        const MarchReceiver p = receiver(place);
+        const int i = block.first_of(place);
+        const Mirrored m = mirrors->mirrored(i);
+        SentBeyond beyond(job.light ? job.light->sent_border : nullptr);
+        const Arrival a = occluders.arrival(
+            block.places(place), p, ray_of<kOrthographic>(scene, p, m), pass,
+            [&](const Border& border, V likely) HWY_ATTR { beyond.add(border, likely); });
+        mirrors->open.set_at(i, hn::MulAdd(a.share, m.share, mirrors->open(i)));
+        mirrors->all.set_at(
+            i, mirrors->all(i) + hn::IfThenElseZero(p.valid, hn::Max(m.share, set(0))));
+        if (!job.light) return;
+        MirroredSums light = mirrors->light(i);
+        light.add<kOrthographic>(job, p, f0_at(*job.light, scene, place), m, a, beyond);
+        mirrors->set_light(i, light);
+      });
     }
-    const V share = hn::IfThenElse(all > set(0), open / hn::Max(all, set(1e-20f)), set(1));
-    if (job.open) store(share, *job.open, place.index);
-    if (job.light) light.store_at(*job.light, share, place.index);
+    for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
+      const int i = block.first_of(place);
+      const V open = mirrors->open(i), all = mirrors->all(i);
+      const V share = hn::IfThenElse(all > set(0), open / hn::Max(all, set(1e-20f)), set(1));
+      if (job.open) store(share, *job.open, place.index);
+      if (job.light) mirrors->light(i).store_at(*job.light, share, place.index);
+    });
   });
 }
 

@@ -40,7 +40,7 @@ double Lamp::reach() const {
   return type == LampType::rect ? std::hypot(width, height) / 2 : radius;
 }
 
-glm::dvec3 Lamp::value() const { return color * (intensity * std::exp2(exposure)); }
+glm::dvec3 Lamp::value() const { return color * temperature * (intensity * std::exp2(exposure)); }
 
 namespace {
 

@@ -15,7 +15,7 @@ enum class LampType { sphere, disk, rect, distant };
 /// What a user says of one lamp, in the space and unit of the world of P. The meaning is that of
 /// UsdLux: a surface of the lamp has the radiance
 ///
-///   color * intensity * 2^exposure
+///   color * temperature * intensity * 2^exposure
 ///
 /// and with `normalize` that over the area of the lamp: 4 pi radius^2, pi radius^2, width * height,
 /// or pi sin^2 of half the angle. Lamps emit along -z of their axes, spheres in all directions.
@@ -28,7 +28,8 @@ struct Lamp {
   double radius = 0.5;           ///< of a sphere or disk; a sphere of radius 0 is a point
   double width = 1, height = 1;  ///< of a rect
   double angle = 0.53;           ///< degrees across, of a distant lamp
-  glm::dvec3 color{1};           ///< times that of the temperature
+  glm::dvec3 color{1};           ///< in the primaries of the frame
+  glm::dvec3 temperature{1};     ///< colour of a black body, in linear Rec. 709 as read
   double intensity = 1, exposure = 0;
   bool normalize = false;
   double cone_angle = 90, cone_softness = 0;  ///< degrees off the axis; see Cone
@@ -40,7 +41,7 @@ struct Lamp {
   /// Radius of a ball that holds it, about its position.
   double reach() const;
 
-  /// color * intensity * 2^exposure.
+  /// color * temperature * intensity * 2^exposure.
   glm::dvec3 value() const;
 };
 

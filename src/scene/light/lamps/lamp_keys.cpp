@@ -250,7 +250,7 @@ class LampReader {
     lamp_.intensity = number("intensity", lamp_.intensity, 0, kMostLight);
     lamp_.exposure = number("exposure", 0, -kMostStops, kMostStops);
     if (object_.contains("color_temperature")) {
-      lamp_.color *= blackbody_color(
+      lamp_.temperature = blackbody_color(
           number("color_temperature", kWhiteKelvin, kCoolestKelvin, kHottestKelvin));
     }
     if (object_.contains("normalize")) {
