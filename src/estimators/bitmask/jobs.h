@@ -160,7 +160,6 @@ struct ReflectionJob {
   const InterleavedPlane* roughness;  ///< 0..1
   int rays;                           ///< of each pixel
   unsigned seed;
-  PassBeyond pass;
   InterleavedPlane* open;         ///< 0..1
   const MirroredLightJob* light;  ///< null: not wanted
 };

@@ -56,7 +56,6 @@ void find_reflection(const ReflectionInput& input, Products& products, const Pro
                           &roughness,
                           kReflectionRays * request.slices,
                           request.seed,
-                          {.ground = true},
                           open.data() ? &open : nullptr,
                           light ? &*light : nullptr};
   for_each_band_of(

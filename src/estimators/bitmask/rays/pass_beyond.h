@@ -7,10 +7,6 @@ namespace ssdo {
 /// continued beyond the border blocks the ray, `through` if one does.
 struct PassBeyond {
   float past = 1, through = 0;
-  /// Whether surfaces that look up go on without end, whatever their extent in the frame
-  /// (rays/border_extents.h), and others the less the steeper they are: what is mirrored from below
-  /// the horizon is ground.
-  bool ground = false;
 };
 
 }  // namespace ssdo

@@ -63,7 +63,7 @@ HWY_INLINE Ray in_far_pixels(Ray ray) {
 }
 
 /// How likely it is, 0..1, that rays which leave the frame at `leaves` meet the surface of a pixel
-/// at the border beyond it; `ground` is that of PassBeyond.
+/// at the border beyond it; `ground` is that of PassLanes.
 template <bool kOrthographic>
 HWY_INLINE V meets_beyond(const March& march, const MarchReceiver& p, const Ray& ray, V leaves,
                           const Border& border, bool ground) {
@@ -127,6 +127,9 @@ HWY_INLINE Border beside_corner(const MarchScene& scene, const MarchReceiver& p,
 struct PassLanes {
   V past;
   float through;
+  /// Whether surfaces that look up go on without end, whatever their extent in the frame
+  /// (rays/border_extents.h), and others the less the steeper they are: what is mirrored from below
+  /// the horizon is ground.
   bool ground = false;
 };
 

@@ -183,7 +183,7 @@ void reflection(const ReflectionJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
   Occluders<kOrthographic> occluders(job.march, job.bounds, Block::kPixels);
   const auto mirrors = std::make_unique<BlockOfMirrors>();
-  const PassLanes pass{set(job.pass.past), job.pass.through, job.pass.ground};
+  const PassLanes pass{set(1), 0, true};
   const auto receiver = [&](const Place& place) HWY_ATTR {
     MarchReceiver p = load_receiver(scene, place);
     p.reach_px = reach_px(scene, p, job.march.radius);
