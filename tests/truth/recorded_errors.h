@@ -66,7 +66,7 @@ inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometry = {
      0.0476,
      0.0358,
      0.1264,
-     0.2233,
+     0.2185,
      0.80},
 };
 

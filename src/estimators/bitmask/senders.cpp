@@ -15,7 +15,7 @@
 #define HWY_TARGET_INCLUDE "estimators/bitmask/senders.cpp"
 #include <hwy/foreach_target.h>
 
-#include "estimators/bitmask/unseen_side-inl.h"
+#include "estimators/bitmask/rays/unseen_side-inl.h"
 #include "scene/light/light-inl.h"
 
 HWY_BEFORE_NAMESPACE();

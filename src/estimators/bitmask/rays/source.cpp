@@ -15,7 +15,7 @@
 
 #include "estimators/bitmask/rays/block-inl.h"
 #include "estimators/bitmask/rays/ray-inl.h"
-#include "estimators/bitmask/unseen_side-inl.h"
+#include "estimators/bitmask/rays/unseen_side-inl.h"
 #include "scene/light/light-inl.h"
 
 HWY_BEFORE_NAMESPACE();
