@@ -103,8 +103,9 @@ Subject read_subject(const BenchJob& job, std::vector<RunFile> inputs) {
   prepared.output.products.clear();
   prepared.output.compose.reset();  // no composite is measured
   const Lighting light(prepared.light);
-  OtherPictures pictures;
+  OtherPictures pictures(prepared.input.allow_partial, prepared.input.objects);
   FrameFiles files{job.input, prepared.input.aovs, prepared.input.also};
+  files.objects.no_cast = prepared.input.objects.no_cast;
   if (!prepared.input.views.empty()) files.view = prepared.input.views.front();
   subject.frame = prepare_frame(prepared, light, pictures, files);
   subject.products = choose_products(job, subject);

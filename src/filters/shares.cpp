@@ -193,11 +193,11 @@ Products filter_found(const Filter& filter, Products noisy, const Scene& scene, 
     noisy = filter_products(filter, to_shares(std::move(noisy), scene), scene.geometry.surfel,
                             pattern_size);
   add_sun_errors(noisy, scene);
+  // Unfiltered, direct is the method's own, and so are its parts.
+  if (!filter.apply) find_lights(noisy, scene);
   if (amend) amend(noisy);
   add_specular(noisy, scene);
-  if (filter.apply) return from_shares(std::move(noisy), scene);
-  find_lights(noisy, scene);
-  return without_shares(std::move(noisy));
+  return filter.apply ? from_shares(std::move(noisy), scene) : without_shares(std::move(noisy));
 }
 
 /// What the product `guessed` is made of.

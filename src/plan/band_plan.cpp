@@ -21,6 +21,9 @@ namespace {
 constexpr double kBytes = 60e6, kBytesPerPixel = 120, kBytesOfSun = 11, kBytesOfMore = 18,
                  kBytesOfSpecular = 72;
 
+/// What the learned prior adds: what it reads and changes of visibility, by pixel.
+constexpr double kBytesOfPrior = 32;
+
 /// What bright senders add, which a layer of radiance may hold.
 constexpr double kBytesOfSenders = 20;
 
@@ -30,13 +33,15 @@ constexpr int kUsualSuns = 3;
 /// What each light adds whose bounce, or direct light, is kept apart.
 constexpr double kBytesOfBounce = 50, kBytesOfDirect = 14;
 
-double bytes_per_pixel(const Request& request, const Scene& scene) {
+double bytes_per_pixel(const Plan& plan, const Scene& scene) {
+  const Request& request = plan.request;
   const ProductSet &products = request.products, &by_light = request.by_light;
   double bytes_of_light =
       kBytesOfBounce * int(by_light.bounce) + kBytesOfDirect * int(by_light.direct);
   if (by_light != ProductSet()) bytes_of_light *= double(lights_of(scene.light).size());
   return bytes_of_light + kBytesPerPixel + kBytesOfSun * double(scene.light.sources.size()) +
          kBytesOfSenders * int(!scene.senders.radiance.empty()) +
+         kBytesOfPrior * int(plan.prior.has_value()) +
          kBytesOfMore * (int(products.bent) + int(products.reflection)) +
          kBytesOfSpecular * int(products.specular);
 }
@@ -57,7 +62,7 @@ class Planner {
   Planner(const Window& frame, const Window& display, const Scene& overview, const Plan& plan,
           std::size_t memory)
       : frame_(frame), plan_(plan) {
-    const double of_pixel = bytes_per_pixel(plan.request, overview);
+    const double of_pixel = bytes_per_pixel(plan, overview);
     bytes_of_row_ = of_pixel * frame.width();
     bytes_ = kBytes + of_pixel * double(overview.geometry.surfel.size());
     rows_ = int(std::clamp((double(memory) - bytes_) / bytes_of_row_, 0.0, 1e9));
@@ -131,13 +136,13 @@ BandPlan plan_bands(const std::string& file, const Window& frame, const Window& 
                     std::size_t memory) {
   const std::string size = fmt::format("{}: {} x {} pixels", file, frame.width(), frame.height());
   if (const std::string what = needs_whole_frame(overview, plan, output); !what.empty()) {
-    throw Error(ExitCode::usage,
-                fmt::format("{} take {} of memory, and may take {}; {} needs all of the frame at "
-                            "once: leave that out, or raise --mem-limit",
-                            size,
-                            in_gigabytes(kBytes + bytes_per_pixel(plan.request, overview) *
-                                                      double(frame.area())),
-                            in_gigabytes(double(memory)), what));
+    throw Error(
+        ExitCode::usage,
+        fmt::format("{} take {} of memory, and may take {}; {} needs all of the frame at "
+                    "once: leave that out, or raise --mem-limit",
+                    size,
+                    in_gigabytes(kBytes + bytes_per_pixel(plan, overview) * double(frame.area())),
+                    in_gigabytes(double(memory)), what));
   }
   const Planner planner(frame, display, overview, plan, memory);
   const BandPlan bands = planner.choose();

@@ -241,11 +241,12 @@ Scene seen_by_filters(Scene scene) {
 }
 
 /// The share of the light of a source that arrives at the surfaces of a frame.
-double arriving(const LightShares& shares, std::size_t source) {
+double arriving(const LightShares& shares, std::size_t source, const Plane<Surfel>& surfel) {
   const Plane<float>& share = shares.suns[source];
   const bool weighs = source < shares.draws.size() && !shares.draws[source].weight.empty();
   double all = 0, arrives = 0;
   for (std::size_t i = 0; i < share.size(); ++i) {
+    if (!surfel[i].is_surface()) continue;
     const double light = weighs ? double(shares.draws[source].weight[i]) : 1;
     all += light, arrives += light * double(share[i]);
   }
@@ -255,13 +256,14 @@ double arriving(const LightShares& shares, std::size_t source) {
 /// The lamps that light next to nothing of what the frame shows, and the share of their light that
 /// arrives.
 std::vector<std::pair<std::string, double>> unlit_lamps(const Light& light,
-                                                        const LightShares& shares) {
+                                                        const LightShares& shares,
+                                                        const Plane<Surfel>& surfel) {
   // So much passes where the frame has gaps and at its border, of lamps under the ground of frames.
   constexpr double kNearlyNone = 0.03;
   std::vector<std::pair<std::string, double>> found;
   for (std::size_t k = 0; k < shares.suns.size(); ++k) {
     const std::string& name = light.sources[k]->name;
-    const double share = name.empty() ? 1 : arriving(shares, k);
+    const double share = name.empty() ? 1 : arriving(shares, k, surfel);
     if (share < kNearlyNone) found.emplace_back(name, share);
   }
   return found;
@@ -300,7 +302,7 @@ Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double
     Stopwatch watch;
     Round round(plan, request, scene.light, on_progress);
     Noisy noisy = round.estimate(scene);
-    const auto unlit = unlit_lamps(scene.light, noisy.products.shares);
+    const auto unlit = unlit_lamps(scene.light, noisy.products.shares, scene.geometry.surfel);
     estimate_ms += watch.lap();
     // With --error another round may follow.
     if (!plan.error) scene = seen_by_filters(std::move(scene));

@@ -144,6 +144,9 @@ const std::vector<IdleRule<Purpose>>& rules_of_options() {
       {{"--per-light"},
        [](const FrameOptions&, Purpose purpose) { return purpose == Purpose::bench; },
        "bench measures the light of all"},
+      {{"--shadow-of", "--only", "--no-receive", "--holdout"},
+       [](const FrameOptions&, Purpose purpose) { return purpose == Purpose::bench; },
+       "bench measures the whole frame, and writes none"},
       {{"--shadow-of"},
        [](const FrameOptions& o, Purpose purpose) {
          return purpose == Purpose::relight && !o.output.products.empty() &&

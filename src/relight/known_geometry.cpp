@@ -67,11 +67,12 @@ std::vector<MergeCounts> use_back_faces(std::vector<OtherView>& views, Scene& sc
   return counts;
 }
 
-/// Leaves out the files of --also that don't fit the frame, or changes them so that they do.
-void register_views(KnownGeometry& known, const Geometry& frame) {
+/// Leaves out the files of --also that don't fit the frame, or changes them so that they do. Those
+/// of back faces show nothing that it shows, and stay.
+void register_views(KnownGeometry& known, const Geometry& frame, bool may_be_backs = false) {
   std::vector<OtherView> fitting;
   for (OtherView& view : known.views) {
-    if (view.is_neighbour) {
+    if (view.is_neighbour || (may_be_backs && find_back_faces(view, frame))) {
       fitting.push_back(std::move(view));
       continue;
     }
@@ -141,8 +142,8 @@ class ViewReader {
     }
     if (!knows_place("--also " + path)) return;
     add(place(picture, frame_.scene.geometry));
-    known_.warnings.insert(known_.warnings.end(), picture->warnings.begin(),
-                           picture->warnings.end());
+    for (const auto* lines : {&picture->warnings, &picture->not_taken})
+      known_.warnings.insert(known_.warnings.end(), lines->begin(), lines->end());
   }
 
   void add_neighbour(const FrameFiles& files) {
@@ -173,6 +174,8 @@ class ViewReader {
     camera.shot = {};
     try {
       OtherView view = place(pictures_.alike(files, options_.input, camera), frame_.scene.geometry);
+      const std::vector<std::string>& kept = view.picture->not_taken;
+      known_.warnings.insert(known_.warnings.end(), kept.begin(), kept.end());
       view.is_neighbour = true;
       add(std::move(view));
     } catch (const Error& e) {
@@ -227,7 +230,7 @@ std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
                                             const GBufferOptions& reading,
                                             const TakenOut* taken_out) {
   if (taken_out) {
-    register_views(known, scene.geometry);
+    register_views(known, scene.geometry, true);
     for (OtherView& view : known.views) take_out(view, taken_out->marks);
     scene.casting = take_out(scene.geometry, taken_out->coverage, taken_out->backdrop, known.views);
   }

@@ -22,17 +22,6 @@ std::vector<Role> unused_roles(const FrameOptions& options, const FrameFiles& fi
   return unused;
 }
 
-/// Opens the files of selections that no layer has needed.
-void open_mattes(Frame& frame, bool allow_partial) {
-  for (const Selection* selection : frame.objects.all()) {
-    for (const SelectionTerm& term : selection->terms) {
-      const auto is_it = [&](const ExrReader& file) { return file.path() == term.file; };
-      if (!term.file.empty() && std::ranges::none_of(frame.files, is_it))
-        frame.files.emplace_back(term.file, allow_partial ? Salvage::done : Salvage::offered);
-    }
-  }
-}
-
 }  // namespace
 
 bool wants_reflection(const OutputOptions& output, const std::vector<LayerRequest>& aovs) {
@@ -74,7 +63,7 @@ Frame read_frame(const FrameOptions& options, const FrameFiles& files, int lamps
   frame.gbuffer = std::move(view.gbuffer);
   frame.report = std::move(view.report);
   frame.scene = take_scene(frame.gbuffer, std::move(view.geometry));
-  open_mattes(frame, options.input.allow_partial);
+  open_mattes(frame.objects, frame.files, options.input.allow_partial);
   frame.gbuffer.masks = read_object_masks(frame.objects, {frame.files, frame.view},
                                           frame.gbuffer.window, frame.gbuffer.grid);
   own = std::move(view.deep);

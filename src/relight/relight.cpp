@@ -40,19 +40,20 @@ constexpr double kEstimateShare = 0.85;
 void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameOptions& options) {
   const Selection& which =
       frame.objects.no_cast.empty() ? frame.objects.shadow_of : frame.objects.no_cast;
-  const auto refuse = [&](const std::string& why) {
-    throw Error(ExitCode::usage, fmt::format("{}: {}: {}", frame.input, which.option, why));
+  const auto refuse = [&](const std::string& why, const Selection& selection) {
+    throw Error(ExitCode::usage, fmt::format("{}: {}: {}", frame.input, selection.option, why));
   };
   if (which.empty()) return;
   if (!find_method(options.model.method).takes.thickness)
     refuse(fmt::format("method {} casts with all that is seen; take bitmask or trace",
-                       options.model.method));
+                       options.model.method),
+           which);
   if (frame.gbuffer.grid.is_coarse())
-    refuse("takes all of the frame at once, which --mem-limit does not allow: raise it");
+    refuse("takes all of the frame at once, which --mem-limit does not allow: raise it", which);
   if (!known.deep.empty())
-    refuse("deep samples do not say what they are of; leave the deep image out");
+    refuse("deep samples do not say what they are of; leave the deep image out", which);
   if (!frame.objects.shadow_of.empty() && options.model.temporal)
-    refuse("--temporal has no history of it; leave one of them out");
+    refuse("--temporal has no history of it; leave one of them out", frame.objects.shadow_of);
 }
 
 /// The sky dome that is left out of what casts, with a warning; empty where there is none.
@@ -69,6 +70,14 @@ Plane<float> find_backdrop(Frame& frame, const FrameOptions& options, bool may_l
                    leaves_out ? "casts nothing, unless --backdrop cast is given"
                               : "hides the light behind it; take it out of the G-buffer")});
   return leaves_out ? std::move(dome->coverage) : Plane<float>();
+}
+
+/// Whether another view shows a dome that is to cast nothing.
+bool shows_dome(const std::vector<OtherView>& views) {
+  return std::ranges::any_of(views, [](const OtherView& view) {
+    return std::ranges::any_of(view.picture->taken.pixels,
+                               [](unsigned char taken) { return taken & kBackdrop; });
+  });
 }
 
 /// Finds the solids behind the surfaces, and takes what other views add.
@@ -89,7 +98,8 @@ void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& opti
                                frame.gbuffer.grid);
     };
     TakenOut out{{}, backdrop, kNoCast | kBackdrop};
-    const bool has_hole = !objects.no_cast.empty() || !backdrop.empty();
+    const bool has_hole =
+        !objects.no_cast.empty() || !backdrop.empty() || (is_whole && shows_dome(known.views));
     if (has_hole || !objects.shadow_of.empty()) out.coverage = coverage(objects.no_cast);
     if (!objects.shadow_of.empty()) {
       TakenOut both{coverage(objects.shadow_of), backdrop, kNoCast | kShadowOf | kBackdrop};
@@ -112,7 +122,7 @@ void append(std::vector<std::string>& lines, const std::vector<std::string>& mor
   lines.insert(lines.end(), more.begin(), more.end());
 }
 
-/// A lamp that stands in or behind surfaces, which only the rays to it tell in full.
+/// Warns of a lamp whose light surfaces block nearly all of: it stands in or behind them.
 void warn_of_unlit(const Frame& frame, const std::string& lamp, double arrives,
                    std::vector<std::string>& lines) {
   const auto& [origin, is_near] = frame.lamps.at(lamp);

@@ -236,8 +236,9 @@ TEST_F(Objects, WhatHasNothingBehindItReceives) {
     }
     const Plane<float> ao = at("out.exr", "ao.Y");
     for (std::size_t i = 0; i < ao.size(); ++i)
+      // The ball, which alone casts, hides less than half.
       if (part.channels["ball.A"][i] == 0 && i % 96 < 20) {
-        ASSERT_GT(ao[i], 0.7f);
+        ASSERT_GT(ao[i], 0.5f);
       }
   }
 }

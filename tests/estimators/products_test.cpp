@@ -45,7 +45,8 @@ TEST(Products, EachRowHasItsOwnNameAndPlane) {
   // A plane or a place in a set without a row would be larger than all rows together.
   EXPECT_EQ(sizeof(ProductSet), std::size_t(sets));
   EXPECT_EQ(sizeof(Products), std::size_t(planes) * sizeof(Plane<float>) + sizeof(LightShares) +
-                                  sizeof(Products::lights));
+                                  sizeof(Products::lights) + sizeof(Products::lit) +
+                                  sizeof(Products::lit_without));
 }
 
 TEST(Products, AreFoundByNameOrListed) {
@@ -54,8 +55,8 @@ TEST(Products, AreFoundByNameOrListed) {
               IsError(ExitCode::usage, "product 'normals': no such product; there are ao, bent"));
   EXPECT_THAT(error, IsError(ExitCode::usage, "composite, and all"));
   EXPECT_EQ(product_names(),
-            "ao, bent, reflection, direct, unshadowed, shadow, bounce, specular, error, guessed, "
-            "composite");
+            "ao, bent, reflection, direct, unshadowed, shadow, bounce, shadow_of, specular, error, "
+            "guessed, composite");
 }
 
 TEST(ProductSet, HasTheOperationsOfASet) {

@@ -15,7 +15,7 @@ namespace ssdo {
 
 namespace {
 
-/// What the front sides of the pixels at the border send.
+/// What the front sides of the pixels at the border send; what shows no surface, nothing.
 std::array<BorderValues, 3> sent_at_border(const MarchScene& scene,
                                            const InterleavedVectors& radiance, bool two_sided) {
   std::array<BorderValues, 3> sent;
@@ -23,7 +23,8 @@ std::array<BorderValues, 3> sent_at_border(const MarchScene& scene,
   const std::uint32_t kept = two_sided ? kFirstOfTwo : ~std::uint32_t(0);
   for (std::size_t c = 0; c < 3; ++c) {
     sent[c] = scene.border.gather([&](int x, int y) {
-      const float both = radiance[c][scene.layout.index(x, y)];
+      const std::ptrdiff_t i = scene.layout.index(x, y);
+      const float both = scene.shows_surface(i) ? radiance[c][i] : 0.0f;
       return std::bit_cast<float>(std::bit_cast<std::uint32_t>(both) & kept);
     });
   }

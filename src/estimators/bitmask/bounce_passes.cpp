@@ -28,12 +28,18 @@ struct Pass {
 };
 
 /// What stands in place of objects that cast nothing sends what its sender does, a pixel beside it.
-void send_from_hole(const Raster& raster, const Plane<int>& senders, InterleavedVectors& sent) {
+/// Without one, nothing where no surface was shown: that has no light of its own.
+void send_from_hole(const Raster& raster, const Plane<Surfel>& shown, const Plane<int>& senders,
+                    InterleavedVectors& sent) {
   const Interleaving& layout = raster.layout();
   for_each_row(senders.height, [&](int y) {
     raster.for_each_pixel(y, [&](std::size_t pixel, std::ptrdiff_t i) {
       const int from = senders[pixel];
-      if (from < 0) return;
+      if (from < 0 && shown[pixel].is_usable()) return;
+      if (from < 0) {
+        for (InterleavedPlane& channel : sent) channel[i] = 0;
+        return;
+      }
       const std::ptrdiff_t q = layout.index(from % senders.width, from / senders.width);
       for (InterleavedPlane& channel : sent) channel[i] = channel[q];
     });
@@ -191,7 +197,8 @@ InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& ligh
   // A layer may say what is sent.
   if (!scene.senders.radiance.empty()) {
     InterleavedVectors given = inputs.raster.interleaved(scene.senders.radiance);
-    if (scene.casting) send_from_hole(inputs.raster, scene.casting->sender, given);
+    if (scene.casting)
+      send_from_hole(inputs.raster, scene.geometry.surfel, scene.casting->sender, given);
     return given;
   }
   InterleavedVectors sent = inputs.raster.make_color();
@@ -204,7 +211,8 @@ InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& ligh
                           &sent,
                           sends_two_sided(scene)};
   for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
-  if (scene.casting) send_from_hole(inputs.raster, scene.casting->sender, sent);
+  if (scene.casting)
+    send_from_hole(inputs.raster, scene.geometry.surfel, scene.casting->sender, sent);
   return sent;
 }
 

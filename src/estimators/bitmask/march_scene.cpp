@@ -190,6 +190,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                    frame.height(),
                    g.window.y0 - frame.y0,
                    receiving ? receiving->surfel : g.surfel,
+                   g.surfel,
                    BorderLayout(layout),
                    {},
                    {},

@@ -97,6 +97,7 @@ struct MarchScene : MarchPlanes {
   /// What only receivers need: the normal that shading sees, by which light is weighed, and the
   /// rounding.
   const Plane<Surfel>& surfel;
+  const Plane<Surfel>& casting;  ///< what the raster holds
   BorderLayout border;
   BorderValues border_depth, border_normal[3];
   BorderValues border_thickness;  ///< in scene units
@@ -116,7 +117,7 @@ struct MarchScene : MarchPlanes {
   }
   /// Whether nothing is there. A pixel that shows neither tells nothing.
   bool shows_background(int x, int y) const {
-    const Surfel& s = surfel(x, y);
+    const Surfel& s = casting(x, y);
     return !s.is_surface() && !s.is_broken();
   }
   Window raster() const { return {0, 0, layout.width(), layout.height()}; }

@@ -78,10 +78,11 @@ HWY_INLINE V3 positions(const MarchScene& scene, const Place& place) {
   return {gather(from, at), gather(from + 1, at), gather(from + 2, at)};
 }
 
-/// The direct light of pixels; `share(planes)`, their sum, of some light arrives.
-template <class Share>
+/// The direct light of pixels; `share(planes)`, their sum, of some light of the sky arrives, and
+/// `of_source(plane)` of that of a source.
+template <class Share, class OfSource>
 HWY_INLINE V3 direct_light(const MarchScene& scene, const FoundShares& found, const Place& place,
-                           const Share& share) {
+                           const Share& share, const OfSource& of_source) {
   const V3 normal = shading_normals(scene, place);
   const V3 sky = unoccluded_sky(found.light, normal);
   if (!found.sky) return sky * share(*found.ao);
@@ -91,14 +92,15 @@ HWY_INLINE V3 direct_light(const MarchScene& scene, const FoundShares& found, co
   const V3 position = positions(scene, place);
   for (std::size_t k = 0; k < found.sources.size(); ++k) {
     const V3 light = unoccluded(*found.light.sources[k], position, normal);
-    sum = mul_add(light, share(found.sources[k]->share), sum);
+    sum = mul_add(light, of_source(found.sources[k]->share), sum);
   }
   return sum;
 }
 
 /// The direct light of the sides that the camera does not see.
-template <class Share>
-HWY_INLINE V3 light_behind(const SenderJob& job, const Place& place, const Share& share) {
+template <class Share, class OfSource>
+HWY_INLINE V3 light_behind(const SenderJob& job, const Place& place, const Share& share,
+                           const OfSource& of_source) {
   const FoundShares& found = job.found;
   const MarchReceiver p = load_receiver(job.scene, place);
   const UnseenSide side = unseen_side(job.scene, p);
@@ -111,7 +113,7 @@ HWY_INLINE V3 light_behind(const SenderJob& job, const Place& place, const Share
       as_sky = as_sky + unoccluded(source, position, normal);
       continue;
     }
-    const V arrives = hn::IfThenElseZero(side.ends, share(found.sources[k]->unseen));
+    const V arrives = hn::IfThenElseZero(side.ends, of_source(found.sources[k]->unseen));
     sum = mul_add(unoccluded(source, opposite, normal), arrives, sum);
   }
   return mul_add(as_sky, share(*found.ao), sum);
@@ -171,7 +173,7 @@ void send_light(const SenderJob& job, const Window& part) {
       return job.change ? saturate(mean_share(planes...) * unshown.of_light)
                         : mean_share(planes...);
     };
-    V3 light = direct_light(scene, job.found, place, share);
+    V3 light = direct_light(scene, job.found, place, share, mean_share);
     if (job.bounce) {
       const auto& [red, green, blue] = *job.bounce;
       const V3 bounce{mean(red), mean(green), mean(blue)};
@@ -181,7 +183,7 @@ void send_light(const SenderJob& job, const Window& part) {
     const V3 front = within_range(albedo * light);
     if (!job.two_sided) return store(front, *job.sent, i);
     const V3 bounce = job.bounce ? load(*job.bounce, i) : set(glm::vec3(0));
-    const V3 at_back = light_behind(job, place, share) + bounce;
+    const V3 at_back = light_behind(job, place, share, mean_share) + bounce;
     store(both_sides(front, within_range(albedo * at_back)), *job.sent, i);
   });
 }
@@ -190,7 +192,7 @@ void direct_of_pixels(const DirectJob& job, const Window& part) {
   for_each_vector(job.scene, part, [&](const Place& place) HWY_ATTR {
     const auto own = [&](const auto&... planes)
                          HWY_ATTR { return saturate((load(planes, place.index) + ...)); };
-    store(direct_light(job.scene, job.found, place, own), *job.direct, place.index);
+    store(direct_light(job.scene, job.found, place, own, own), *job.direct, place.index);
   });
 }
 

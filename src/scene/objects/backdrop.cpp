@@ -7,8 +7,9 @@
 //
 // The sphere |p - c| = r is fitted as |p|^2 = 2 c.p + k, which is linear, to the far surfaces, then
 // again to those that lie on it. A room, a street or a terrain has far surfaces of which most lie
-// on no sphere, however it is fitted. How many pixels show the dome does not matter: the less of it
-// is in the picture, the less depends on whether it is found, so that nothing flips in a shot.
+// on no sphere, however it is fitted. How many pixels show the dome does not matter. The answer is
+// yes or no for a frame: where a shot's dome is hardly larger than the scene, it may change from
+// one frame to the next.
 #include "scene/objects/backdrop.h"
 
 #include <Eigen/Dense>

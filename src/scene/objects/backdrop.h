@@ -8,9 +8,6 @@
 
 namespace ssdo {
 
-/// Stands beside kNoCast and kShadowOf in OtherPicture::taken.
-inline constexpr unsigned char kBackdrop = 4;
-
 /// A sphere around the camera and all that a frame shows, far from it: a sky dome.
 struct Backdrop {
   Plane<float> coverage;  ///< 1 in pixels that show it

@@ -133,7 +133,10 @@ void check_header(const ExrReader& file, const CryptomatteHeader& header) {
 
 std::set<std::uint32_t> Cryptomatte::ids_of(const std::string& pattern) const {
   if (const auto own = ids.find(pattern); own != ids.end()) return {own->second};
-  if (!has_manifest) return {cryptomatte_id(pattern)};
+  if (!has_manifest) {
+    if (pattern.find_first_of("*?[") != pattern.npos) return {};  // there are no names to match
+    return {cryptomatte_id(pattern)};
+  }
   std::set<std::uint32_t> found;
   for (const auto& [each, id] : ids)
     if (fnmatch(pattern.c_str(), each.c_str(), 0) == 0) found.insert(id);

@@ -7,6 +7,9 @@
 
 namespace ssdo {
 
+/// Opens the files of these selections that are not among `files`. Errors: those of ExrReader.
+void open_mattes(const ObjectOptions& options, std::deque<ExrReader>& files, bool allow_partial);
+
 /// The masks of these options. Errors: those of selected_coverage().
 ObjectMasks read_object_masks(const ObjectOptions& options, const SelectionFiles& in,
                               const Window& window, const PixelGrid& grid);

@@ -44,10 +44,16 @@ Covered coverage_of_ids(const ExrReader& file, const Cryptomatte& matte,
                         const std::set<std::uint32_t>& ids, const PixelGrid& grid) {
   Covered sum{matte.ranks.front().part, {}};
   for (const Cryptomatte::Rank& rank : matte.ranks) {
+    const auto window = [&](int part) { return file.parts()[std::size_t(part)].data_window; };
+    if (window(rank.part) != window(sum.part)) {
+      throw Error(ExitCode::layer,
+                  fmt::format("{}: the ranks of Cryptomatte '{}' lie in parts with different data "
+                              "windows; write them alike",
+                              printable(file.path().string()), printable(matte.name)));
+    }
     const std::vector<std::string> channels = {rank.id, rank.coverage};
     const std::vector<Plane<float>> read = file.read(rank.part, channels, grid);
     if (sum.coverage.empty()) sum.coverage = Plane<float>(read[0].width, read[0].height, 0.0f);
-    if (read[0].size() != sum.coverage.size()) continue;  // a part of another window: refused later
     for_each_row(sum.coverage.height, [&](int y) {
       for (std::size_t i = sum.coverage.index(0, y); i < sum.coverage.index(0, y + 1); ++i) {
         if (ids.contains(std::bit_cast<std::uint32_t>(read[0][i])))
@@ -147,6 +153,7 @@ class Selector {
         const Plane<float> one = over_window(*file, coverage_of_ids(*file, matte, ids, grid_));
         for (std::size_t i = 0; i < all.size(); ++i) all[i] = std::max(all[i], one[i]);
       }
+      if (std::ranges::find(known, false) == known.end()) break;
     }
     for (std::size_t i = first; i < end; ++i)
       if (!known[i - first]) refuse_name(selection_.terms[i], names, has_any);

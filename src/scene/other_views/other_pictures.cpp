@@ -10,7 +10,7 @@
 #include "parallel/tiles.h"
 #include "scene/deep/channels.h"
 #include "scene/objects/backdrop.h"
-#include "scene/objects/selected_coverage.h"
+#include "scene/objects/read_object_masks.h"
 
 namespace ssdo {
 namespace {
@@ -66,8 +66,8 @@ void mark(OtherPicture& picture, const Selection& selection, unsigned char with,
     for (std::size_t i = 0; i < coverage.size(); ++i)
       if (coverage[i] > 0) picture.taken[i] |= with;
   } catch (const Error& error) {
-    picture.warnings.push_back(fmt::format("{}: shows what {} takes out: {}", picture.file,
-                                           selection.option, error.what()));
+    picture.not_taken.push_back(fmt::format("{}: shows what {} takes out: {}", picture.file,
+                                            selection.option, error.what()));
   }
 }
 
@@ -147,9 +147,10 @@ OtherPictures::Picture OtherPictures::alike(const FrameFiles& frame, const Input
     std::erase_if(aovs, [](const LayerRequest& request) {
       return std::find(kUnused.begin(), kUnused.end(), request.role) != kUnused.end();
     });
-    return picture_of(read_view(open_view(frame.input, aovs, input.allow_partial), aovs,
-                                for_view(input, frame), camera, kUnused),
-                      name_of(frame), frame.view, objects_);
+    View view = read_view(open_view(frame.input, aovs, input.allow_partial), aovs,
+                          for_view(input, frame), camera, kUnused);
+    open_mattes(frame.objects, view.files, input.allow_partial);
+    return picture_of(std::move(view), name_of(frame), frame.view, frame.objects);
   });
 }
 

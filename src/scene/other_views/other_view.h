@@ -15,8 +15,9 @@
 
 namespace ssdo {
 
-/// Which selection a pixel of another picture belongs to: of --no-cast, of --shadow-of.
-inline constexpr unsigned char kNoCast = 1, kShadowOf = 2;
+/// What a pixel of another picture belongs to: the selection of --no-cast, that of --shadow-of, a
+/// sky dome.
+inline constexpr unsigned char kNoCast = 1, kShadowOf = 2, kBackdrop = 4;
 
 /// What another camera shows of the scene, or a panorama, in its own camera space: the same for
 /// every frame.
@@ -28,10 +29,11 @@ struct OtherPicture {
   Plane<Surfel> surfel;     ///< normals are on the side of its own camera
   Plane<float> depth;       ///< Camera::depth_of; infinite where there is no surface
   Plane<HalfColor> albedo;  ///< empty where the file has none
-  /// What cast nothing is of each pixel: kNoCast, kShadowOf; empty: nothing.
+  /// The bits above, by pixel; empty: none anywhere.
   Plane<unsigned char> taken;
-  std::vector<std::string> warnings;
-  std::vector<std::string> losses;  ///< see ExrReader::losses()
+  std::vector<std::string> warnings;   ///< of reading it
+  std::vector<std::string> not_taken;  ///< warnings of selections that it does not know
+  std::vector<std::string> losses;     ///< see ExrReader::losses()
 };
 
 /// Another picture, placed in the camera space of a frame.
