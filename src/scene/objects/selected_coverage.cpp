@@ -166,6 +166,12 @@ class Selector {
       refuse(fmt::format("{} has no Cryptomatte; render one, or select by id:LAYER=N or a matte",
                          printable(in_.files.front().path().string())));
     }
+    if (names.empty()) {
+      refuse(
+          fmt::format("the Cryptomattes of the frame have no manifest of the names that '{}' may "
+                      "match; give a name in full",
+                      printable(term.name)));
+    }
     refuse(fmt::format("no Cryptomatte of the frame has the name '{}'; {}there are {}",
                        printable(term.name), printable(did_you_mean(term.name, names)),
                        printable(some_of(names, 10))));

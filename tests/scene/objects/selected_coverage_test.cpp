@@ -136,6 +136,7 @@ TEST_F(SelectedCoverage, HashesNamesWithoutAManifest) {
   part_.extra.erase("cryptomatte/1234567/manifest");
   EXPECT_FLOAT_EQ(select("crypto:c")(1, 0), 0.2f);
   EXPECT_FLOAT_EQ(select("crypto:unknown")(1, 0), 0);
+  EXPECT_THAT(fault("crypto:[bc]"), IsError(ExitCode::layer, "no manifest of the names"));
   attribute("hash", "fnv");
   EXPECT_THAT(fault("crypto:a"), IsError(ExitCode::input, "has hash 'fnv'"));
 }
@@ -184,6 +185,15 @@ TEST_F(SelectedCoverage, TakesTheLayoutsOfTools) {
   files.emplace_back(dir_ / "parts.exr");
   const Selection both = parse_selection("--only", "crypto:b+crypto:c");
   EXPECT_FLOAT_EQ(selected_coverage(both, {files, ""}, kWindow, {})(1, 0), 0.5f);
+  parts[2].data = {0, 0, 2, 2};
+  for (auto& [name, plane] : parts[2].channels) plane = Plane<float>(2, 2, 0.0f);
+  write_frame(dir_ / "cut.exr", parts);
+  std::deque<ExrReader> cut;
+  cut.emplace_back(dir_ / "cut.exr");
+  EXPECT_THAT(error_of([&] {
+                selected_coverage(both, {cut, ""}, kWindow, {});
+              }),
+              IsError(ExitCode::layer, "parts with different data windows"));
 }
 
 TEST_F(SelectedCoverage, RefusesBrokenCryptomattes) {
