@@ -25,8 +25,6 @@ int count_of(double cells, int larger, int most) {
   return std::clamp(int(cells / larger + 0.5), 1, most);
 }
 
-using enum PriorContext::Value;
-
 /// The cell that holds the centre of the i-th of `count` parts of the frame.
 int cell_of(int i, int count, int cells) {
   return int((2 * std::int64_t(i) + 1) * cells / (2 * std::int64_t(count)));
@@ -115,7 +113,7 @@ PriorInputs::Values PriorInputs::values_of(int x, int y) const {
 
 void PriorInputs::find_cells(double aspect) {
   struct Sums {
-    std::array<double, kValues> of = {};
+    std::array<double, PriorContext::kValues> of = {};
     double surfaces = 0, count = 0;
   };
   const double across = kCells * std::sqrt(aspect), down = kCells / std::sqrt(aspect);
@@ -191,12 +189,12 @@ void PriorInputs::share() {
   const Values& f = context_.frame_mean;
   for (int c = 0; c < 3; ++c) put(f[std::size_t(c)]);
   put(glm::length(glm::vec3(f[0], f[1], f[2])));
-  put(f[kLevel]);
-  put(deviation(f[kLogDepth2], f[kLogDepth]));
+  put(f[PriorContext::kLevel]);
+  put(deviation(f[PriorContext::kLogDepth2], f[PriorContext::kLogDepth]));
   put(context_.frame.covered);
-  for (std::size_t c = kAo; c < kAo2; ++c) put(f[c]);
-  put(deviation(f[kAo2], f[kAo]));
-  put(deviation(f[kGuessed2], f[kGuessed]));
+  for (std::size_t c = PriorContext::kAo; c < PriorContext::kAo2; ++c) put(f[c]);
+  put(deviation(f[PriorContext::kAo2], f[PriorContext::kAo]));
+  put(deviation(f[PriorContext::kGuessed2], f[PriorContext::kGuessed]));
   put(pitch_);
   // Along a border.
   const Plane<Cell>& cells = context_.cells[1];
@@ -206,11 +204,13 @@ void PriorInputs::share() {
     for (int i = 0; i < count; ++i) {
       const Cell& cell = at(i);
       side.covered += each * cell.covered;
-      for (std::size_t c = 0; c < kValues; ++c) side.sums[c] += each * cell.sums[c];
+      for (std::size_t c = 0; c < PriorContext::kValues; ++c) side.sums[c] += each * cell.sums[c];
     }
     const Values m = means(side);
     put(side.covered);
-    for (const int c : {int(kLogDepth), kNormal + 2, int(kAo), int(kGuessed), int(kOpen)})
+    for (const int c :
+         {int(PriorContext::kLogDepth), PriorContext::kNormal + 2, int(PriorContext::kAo),
+          int(PriorContext::kGuessed), int(PriorContext::kOpen)})
       put(m[std::size_t(c)]);
   };
   put_side(cells.width, [&](int i) -> const Cell& { return cells(i, 0); });
@@ -231,15 +231,17 @@ void PriorInputs::write(int y, std::size_t stride, float* rows) const {
                 down = (float(squares_.first.y + y) + 0.5f) / float(squares_.display.y);
     const glm::vec3 normal(own[0], own[1], own[2]),
         view = axes_ * (orthographic_ ? glm::vec3(0, 0, -1) : glm::normalize(s.position));
-    for (const Value c : {kAo, kGuessed, kOpen}) put(own[c]);
+    for (const PriorContext::Value c :
+         {PriorContext::kAo, PriorContext::kGuessed, PriorContext::kOpen})
+      put(own[c]);
     put(std::isinf(radius_)
             ? kMostLogRadius
             : std::clamp(0.5f * std::log(radius_ / extent), -kMostLogRadius, kMostLogRadius));
-    for (std::size_t c = kBent; c < kBent + 3; ++c) put(own[c]);
+    for (std::size_t c = PriorContext::kBent; c < PriorContext::kBent + 3; ++c) put(own[c]);
     for (int c = 0; c < 3; ++c) put(normal[c]);
     for (int c = 0; c < 3; ++c) put(view[c]);
     put(2 * across - 1), put(1 - 2 * down);
-    put(own[kLogDepth]);
+    put(own[PriorContext::kLogDepth]);
     put(-glm::dot(normal, view));
     put(log_lens_), put(log_aspect_);
     for (const Plane<Cell>& cells : context_.cells) {
@@ -247,12 +249,14 @@ void PriorInputs::write(int y, std::size_t stride, float* rows) const {
       const Values m = means(cell);
       for (int c = 0; c < 3; ++c) put(m[std::size_t(c)]);
       put(glm::length(glm::vec3(m[0], m[1], m[2])));
-      put(m[kLevel]);
-      put(m[kLogDepth] - own[kLogDepth]);
-      put(deviation(m[kLogDepth2], m[kLogDepth]));
+      put(m[PriorContext::kLevel]);
+      put(m[PriorContext::kLogDepth] - own[PriorContext::kLogDepth]);
+      put(deviation(m[PriorContext::kLogDepth2], m[PriorContext::kLogDepth]));
       put(cell.covered);
-      for (const Value c : {kAo, kGuessed, kOpen}) put(m[c]);
-      put(m[kBent + 2]);
+      for (const PriorContext::Value c :
+           {PriorContext::kAo, PriorContext::kGuessed, PriorContext::kOpen})
+        put(m[c]);
+      put(m[PriorContext::kBent + 2]);
     }
   }
 }
