@@ -10,6 +10,7 @@
 #include <bit>
 #include <deque>
 
+#include "io/exr/file/exr_parts.h"
 #include "scene/objects/object_hash.h"
 #include "support/error_matchers.h"
 #include "support/frame_file.h"
@@ -133,7 +134,7 @@ TEST_F(SelectedCoverage, AnswersUnknownNamesWithTheNearest) {
 }
 
 TEST_F(SelectedCoverage, HashesNamesWithoutAManifest) {
-  part_.extra.erase("cryptomatte/1234567/manifest");
+  take_out(part_.extra, "cryptomatte/1234567/manifest");
   EXPECT_FLOAT_EQ(select("crypto:c")(1, 0), 0.2f);
   EXPECT_FLOAT_EQ(select("crypto:unknown")(1, 0), 0);
   EXPECT_THAT(fault("crypto:[bc]"), IsError(ExitCode::layer, "no manifest of the names"));
@@ -197,11 +198,11 @@ TEST_F(SelectedCoverage, TakesTheLayoutsOfTools) {
 }
 
 TEST_F(SelectedCoverage, RefusesBrokenCryptomattes) {
-  part_.extra.erase("cryptomatte/1234567/conversion");
+  take_out(part_.extra, "cryptomatte/1234567/conversion");
   EXPECT_FLOAT_EQ(select("crypto:a")(2, 0), 1);
   attribute("conversion", "half");
   EXPECT_THAT(fault("crypto:a"), IsError(ExitCode::input, "has conversion 'half'"));
-  part_.extra.erase("cryptomatte/1234567/conversion");
+  take_out(part_.extra, "cryptomatte/1234567/conversion");
   const FramePart whole = part_;
   part_.channels.erase("Crypto00.g");
   EXPECT_THAT(fault("crypto:a"), IsError(ExitCode::input, "lacks channel g of Crypto00"));
