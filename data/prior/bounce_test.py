@@ -8,7 +8,6 @@ by ao' too: B" = q B + (ao - ao') L, with q the ratio of L to the mean of albedo
 RMSE over the mean, of the tool's bounce B, of B' and of B"."""
 import os
 import subprocess
-import sys
 
 import numpy as np
 import torch
@@ -17,8 +16,7 @@ import dataset
 import features
 import gbuffer
 import model
-import train
-from truth_test import load_model
+from truth_test import print_unseen
 
 
 def bounce_of(work, ssdo, number):
@@ -53,17 +51,8 @@ def errors(work, ssdo, number, net):
 
 
 def main():
-    torch.set_num_threads(1)
-    work, ssdo, count = sys.argv[1], sys.argv[2], int(sys.argv[3])
-    net, data = load_model(f"{work}/up.pt"), train.Data(work, "up")
-    result = {}
-    for f in np.flatnonzero(data.unseen)[:count]:
-        name = data.names[data.family[f]]
-        result.setdefault(name, []).append(errors(work, ssdo, f"{data.number[f]:05d}", net))
-    for name, rows in result.items():
-        rules, blocked, lit = np.mean(rows, 0)
-        print(f"{name:12s} {len(rows):3d} frames, bounce rules {rules:.3f}, what is blocked sends"
-              f" {blocked:.3f}, lit by the prior too {lit:.3f}")
+    print_unseen(errors, lambda rules, blocked, lit: f"bounce rules {rules:.3f}, what is blocked sends {blocked:.3f},"
+                 f" lit by the prior too {lit:.3f}")
 
 
 if __name__ == "__main__":

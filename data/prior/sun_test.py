@@ -12,7 +12,6 @@ Then, with the true moments, how well the best function of order 1 and of order 
 import json
 import os
 import subprocess
-import sys
 
 import numpy as np
 import torch
@@ -21,8 +20,7 @@ import dataset
 import features
 import gbuffer
 import model
-import train
-from truth_test import load_model
+from truth_test import print_unseen
 
 
 def sun_of(work, ssdo, number, header):
@@ -103,16 +101,8 @@ def errors(work, ssdo, number, net):
 
 
 def main():
-    torch.set_num_threads(1)
-    work, ssdo, count = sys.argv[1], sys.argv[2], int(sys.argv[3])
-    net, data = load_model(f"{work}/up.pt"), train.Data(work, "up")
-    result = {}
-    for f in np.flatnonzero(data.unseen)[:count]:
-        name = data.names[data.family[f]]
-        result.setdefault(name, []).append(errors(work, ssdo, f"{data.number[f]:05d}", net))
-    for name, rows in result.items():
-        print(f"{name:12s} {len(rows):3d} frames, sun: rules, with ao, with moments, truth of order"
-              " 1, of order 2: " + " ".join(f"{v:.3f}" for v in np.mean(rows, 0)), flush=True)
+    print_unseen(errors, lambda *means: "sun: rules, with ao, with moments, truth of order 1, of order 2: "
+                 + " ".join(f"{v:.3f}" for v in means))
 
 
 if __name__ == "__main__":

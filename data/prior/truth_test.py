@@ -22,10 +22,25 @@ import torch
 import features
 import gbuffer
 import model
+import train
 from train import rank_correlation
 
 UP = np.array([0, 0, 1.0])
 BLOCK = 8
+
+
+def print_unseen(errors, line):
+    """errors(work, ssdo, number, net) -> figures of a frame; prints line(*means) by family, of frames that were never
+    trained on. Arguments of the command: WORK SSDO FRAMES."""
+    torch.set_num_threads(1)
+    work, ssdo, count = sys.argv[1], sys.argv[2], int(sys.argv[3])
+    net, data = load_model(f"{work}/up.pt"), train.Data(work, "up")
+    result = {}
+    for f in np.flatnonzero(data.unseen)[:count]:
+        name = data.names[data.family[f]]
+        result.setdefault(name, []).append(errors(work, ssdo, f"{data.number[f]:05d}", net))
+    for name, rows in result.items():
+        print(f"{name:12s} {len(rows):3d} frames, {line(*np.mean(rows, 0))}", flush=True)
 
 
 def load_model(path):

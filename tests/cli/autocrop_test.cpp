@@ -8,20 +8,14 @@
 
 #include "support/frame_file.h"
 #include "support/run_tool.h"
+#include "support/words.h"
 
 namespace ssdo::test {
 namespace {
 
 using testing::ElementsAre;
 
-using Words = std::vector<std::string>;
-
 const Window kDisplay{0, 0, 64, 48}, kShown{6, 8, 58, 44};
-
-Words operator+(Words a, const Words& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
 
 /// A ball on a round table before a sky, seen through `window`.
 Picture ball_on_table(const Window& window) {

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "estimators/bitmask/request.h"
+#include "support/frame_file.h"
 #include "support/run_tool.h"
 #include "support/slab_and_ball.h"
 
@@ -56,6 +57,13 @@ TEST(BackFacesOfTheTool, OpenWhatIsBelowASlab) {
   }
   EXPECT_EQ(ao({"--also", back, "--threads", "1"}).pixels,
             ao({"--also", back, "--threads", "3"}).pixels);
+  // They stay where --no-cast takes things out, here none.
+  FramePart matte;
+  matte.data = matte.display = kFrame;
+  matte.channels["none.A"] = Plane<float>(kFrame.width(), kFrame.height(), 0.0f);
+  write_frame(folder / "matte.exr", matte);
+  const std::string none = (folder / "matte.exr").string() + ":none";
+  EXPECT_EQ(ao({"--also", back, "--no-cast", none}).pixels, ao({"--also", back}).pixels);
   EXPECT_THAT(run_tool({"info", frame, "--also", back}).out,
               ContainsRegex("back.exr: back faces .* in [1-9][0-9]* pixels"));
   EXPECT_THAT(run_tool({"info", frame, "--also", frame}).out, Not(ContainsRegex("back faces")));

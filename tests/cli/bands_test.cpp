@@ -15,6 +15,7 @@
 #include "support/frame_file.h"
 #include "support/parse_json.h"
 #include "support/run_tool.h"
+#include "support/words.h"
 
 namespace ssdo::test {
 namespace {
@@ -24,13 +25,6 @@ using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
-
-using Words = std::vector<std::string>;
-
-Words operator+(Words a, const Words& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
 
 class Bands : public testing::Test {
  protected:

@@ -14,6 +14,7 @@
 #include "support/frame_file.h"
 #include "support/parse_json.h"
 #include "support/run_tool.h"
+#include "support/words.h"
 
 namespace ssdo::test {
 namespace {
@@ -25,13 +26,6 @@ using testing::Each;
 using testing::HasSubstr;
 using testing::IsSupersetOf;
 using testing::Not;
-
-using Words = std::vector<std::string>;
-
-Words operator+(Words a, const Words& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
 
 /// A floor with a ball, seen from above at a slant, in the light of two lamps and a sky.
 class LayersOfLights : public testing::Test {
@@ -130,16 +124,18 @@ TEST_F(LayersOfLights, StandBesideTheLightOfAll) {
 /// What a learned prior finds to be hidden sends the light of each lamp in its part.
 TEST_F(LayersOfLights, AddUpWithAPrior) {
   write("in.exr", kWindow);
-  made("in.exr", "each.exr",
-       kLamps + kColors +
-           Words{"--products", "direct,bounce", "--prior", "learned", "--per-light", "--bounces",
-                 "2"});
-  for (const std::string c : {".R", ".G", ".B"}) {
-    const auto parts = [&](const std::string& product) {
-      return Words{product + ".env" + c, product + ".key" + c, product + ".fill" + c};
-    };
-    EXPECT_LT(off("each.exr", "direct" + c, parts("direct")), 1e-5);
-    EXPECT_LT(off("each.exr", "bounce" + c, parts("bounce")), 5e-3);
+  for (const std::string filter : {"geometry", "none"}) {
+    made("in.exr", "each.exr",
+         kLamps + kColors +
+             Words{"--products", "direct,bounce", "--prior", "learned", "--per-light", "--bounces",
+                   "2", "--filter", filter});
+    for (const std::string c : {".R", ".G", ".B"}) {
+      const auto parts = [&](const std::string& product) {
+        return Words{product + ".env" + c, product + ".key" + c, product + ".fill" + c};
+      };
+      EXPECT_LT(off("each.exr", "direct" + c, parts("direct")), 1e-5) << filter;
+      EXPECT_LT(off("each.exr", "bounce" + c, parts("bounce")), 5e-3) << filter;
+    }
   }
 }
 

@@ -12,19 +12,13 @@
 #include "support/frame_file.h"
 #include "support/parse_json.h"
 #include "support/run_tool.h"
+#include "support/words.h"
 
 namespace ssdo::test {
 namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-
-using Words = std::vector<std::string>;
-
-Words operator+(Words a, const Words& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
 
 const std::string kBlender = std::string(SSDO_SOURCE_DIR) + "/data/objects.exr";
 const std::string kSky = std::string(SSDO_SOURCE_DIR) + "/data/environments/sky.exr";
@@ -223,6 +217,26 @@ TEST_F(Objects, NoCastHoldsInOtherViews) {
             0.02);
 }
 
+/// Nor does a frame beside it, whose matte has a file of its own.
+TEST_F(Objects, NoCastHoldsInNeighbours) {
+  const FramePart with = frame(true);
+  FramePart without = frame(false), matte = with;
+  std::erase_if(matte.channels, [](const auto& c) { return c.first != "ball.A"; });
+  for (const std::string number : {"1001", "1002"}) {
+    write_frame(path("in." + number + ".exr"), with);
+    write_frame(path("matte." + number + ".exr"), matte);
+  }
+  write_frame(path("without.exr"), without);
+  run(path("without.exr"), "truth.exr", {});
+  const Finished done =
+      run_tool({path("in.####.exr"), "-o", path("out.####.exr"), "--frames", "1001", "--neighbours",
+                "1", "--no-cast", path("matte.####.exr") + ":ball", "--pixel-type", "float"});
+  EXPECT_EQ(done.code, 0);
+  EXPECT_THAT(done.err, Not(HasSubstr("shows what --no-cast takes out")));
+  EXPECT_LT(rms(at("out.1001.exr", "ao.Y"), at("truth.exr", "ao.Y"), with.channels.at("ball.A"), 0),
+            0.02);
+}
+
 /// What receives where nothing casts has light all the same: the floor of this room is taken out.
 TEST_F(Objects, WhatHasNothingBehindItReceives) {
   FramePart part = frame(true);
@@ -298,6 +312,31 @@ TEST_F(Objects, ADomeHidesNoLight) {
               HasSubstr("a dome of radius 500 around everything: it casts nothing"));
   EXPECT_THAT(warning("cast"), HasSubstr("it hides the light"));
   EXPECT_THAT(warning("off"), Not(HasSubstr("a dome")));
+}
+
+/// Nor one that only another view shows.
+TEST_F(Objects, ADomeOfAnotherViewHidesNoLight) {
+  const Surface stage = cut(plane({0, 0, 0}, {0, 0, 1}),
+                            [](const glm::dvec3&p) { return glm::length(p) < 20; }),
+                ball = sphere({0.1, 0.6, 0.5}, 0.5);
+  const Camera lens = camera_from_fov(50, kWindow, 1),
+               down = look_at(lens, {0.3, -2, 5}, {0, 0.5, 0}, {0, 0, 1}),
+               level = look_at(camera_from_fov(120, kWindow, 1), {0.3, -4, 2.2}, {0, 0.5, 4},
+                               {0, 0, 1});
+  const auto write = [&](const std::string& name, const Camera& by, const Surface& shown) {
+    FramePart part = frame_of(take_picture(shown, by, kWindow));
+    part.data = part.display = kWindow;
+    write_frame(path(name), part);
+  };
+  write("in.exr", down, all_of({stage, ball}));
+  write("open.exr", level, all_of({stage, ball}));
+  write("dome.exr", level, all_of({stage, ball, dome({0, 0, 0}, 500)}));
+  run(path("in.exr"), "truth.exr", {"--also", path("open.exr")});
+  run(path("in.exr"), "auto.exr", {"--also", path("dome.exr")});
+  run(path("in.exr"), "cast.exr", {"--also", path("dome.exr"), "--backdrop", "cast"});
+  const Plane<float> all(96, 72, 1.0f), truth = at("truth.exr", "ao.Y");
+  EXPECT_LT(rms(at("auto.exr", "ao.Y"), truth, all, 1), 0.01);
+  EXPECT_GT(rms(at("cast.exr", "ao.Y"), truth, all, 1), 0.05);
 }
 
 TEST_F(Objects, RefuseInOneLine) {

@@ -5,6 +5,7 @@
 
 #include "support/frame_file.h"
 #include "support/run_tool.h"
+#include "support/words.h"
 
 namespace ssdo::test {
 namespace {
@@ -14,13 +15,6 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::IsSupersetOf;
 using testing::Not;
-
-using Words = std::vector<std::string>;
-
-Words operator+(Words a, const Words& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
 
 /// Ground and a ball with a beauty in the layer `beauty` and its ambient part in Sky.
 FramePart rendered(const std::string& beauty) {

@@ -10,11 +10,10 @@
 #include "support/boxes.h"
 #include "support/frame_file.h"
 #include "support/run_tool.h"
+#include "support/words.h"
 
 namespace ssdo::test {
 namespace {
-
-using Words = std::vector<std::string>;
 
 const Window kFrame{0, 0, 64, 48};
 
@@ -61,11 +60,6 @@ class SameFiles : public testing::Test {
 
   TempDir dir_;
 };
-
-Words operator+(Words a, const Words& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
 
 TEST_F(SameFiles, FromRunToRunAndForAnyThreads) {
   const Words all = outputs() + Words{"--products", "all"};
