@@ -226,6 +226,14 @@ TEST_F(LampsByTheTool, AreWarnedOfWhereSurfacesBlockAllTheirLight) {
         << place;
   for (const std::string place : {"0,0,2", "0.8,0.8,0.3", "0,0.8,0.2", "0,-9,3"})
     EXPECT_THAT(warning(place), Not(HasSubstr("--light lost"))) << place;
+  // A thing that fills little of the frame is lit all the same; trace knows no weights.
+  write_frame(path("small.exr"),
+              frame_of(take_picture(sphere({0, 0, 0.5}, 0.2), camera_at(0), kWindow)));
+  const Finished done = run("small.exr", "out.exr",
+                            {"--light", "sphere name=lost radius=0.05 position=0.5,-5,3",
+                             "--products", "direct", "--method", "trace"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.err, Not(HasSubstr("--light lost")));
 }
 
 TEST_F(LampsByTheTool, OfARealFrameUnderTheGroundAreWarnedOf) {

@@ -305,6 +305,10 @@ TEST_F(Objects, ADomeHidesNoLight) {
   EXPECT_LT(rms(at("auto.exr", "ao.Y"), truth, shown, 1), 1e-5);
   EXPECT_GT(rms(at("cast.exr", "ao.Y"), truth, shown, 1), 0.1);
   EXPECT_EQ(at("cast.exr", "ao.Y").pixels, at("off.exr", "ao.Y").pixels);
+  // Where it was is background to suns too.
+  run(path("open.exr"), "truth.exr", {"--env", kSky, "--env-up", "z"});
+  run(path("dome.exr"), "auto.exr", {"--env", kSky, "--env-up", "z"});
+  EXPECT_LT(rms(at("auto.exr", "direct.R"), at("truth.exr", "direct.R"), shown, 1), 1e-4);
   const auto warning = [&](const std::string& choice) {
     return run_tool({"info", path("dome.exr"), "--backdrop", choice}).out;
   };
