@@ -19,7 +19,7 @@ const std::set<std::string> kRefused = {
     "--method",     "--quality",      "--slices",        "--steps",         "--error",
     "--temporal",   "--output",       "--save",          "--pixel-type",    "--compression",
     "--bits",       "--frames",       "--keep-channels", "--skip-existing", "--on-error",
-    "--crop",       "--dry-run",      "--stats",         "--neighbours",    "--list-methods",
+    "--crop",       "--dry-run",      "--stats",         "--shot",    "--list-methods",
     "--downsample", "--allow-partial"};
 
 /// Groups of options that change what the main job computes.

@@ -104,9 +104,6 @@ void add_input(CLI::App& app, InputOptions& o) {
   group.repeatable("--also", "FILE", o.also,
                    "another G-buffer of the same scene with P in world space: another camera, a "
                    "panorama, or a deep image of this frame");
-  group.text(
-      "--neighbours", "K[xSTEP]", [&](const Text& text) { o.neighbours = read_neighbours(text); },
-      "K frames before and after in the same sequence, every STEP, as other G-buffers");
   CLI::Option* part = group.value("--part", "NAME|N", o.part,
                                   "look for layers in this part or view, and what completes it");
   const Text left(kEyes[0]), right(kEyes[1]);
@@ -254,8 +251,24 @@ void add_model(CLI::App& app, ModelOptions& o) {
           },
           "of the sampling pattern:" + filter_list)
       ->default_str(o.filter);
-  group.flag("--temporal", o.temporal,
-             "average over the frames of a sequence what they show of the same surface");
+  CLI::Option* shot = group.text(
+      "--shot", "K[xSTEP]", [&](const Text& text) { o.shot = read_shot(text); },
+      "average what K frames before and K after find of the same surface, every STEP-th");
+  group
+      .text(
+          "--neighbours", "K[xSTEP]",
+          [](const Text& text) -> void {
+            throw Error(ExitCode::usage,
+                        fmt::format("--neighbours {0}: is now --shot {0}, which takes what frames "
+                                    "around have found; views of a still set go to --also",
+                                    text));
+          },
+          "the old name of --shot")
+      ->group("");
+  group
+      .flag("--temporal", o.temporal,
+            "average over the frames so far, as games do; light that moves lags")
+      ->excludes(shot);
 }
 
 Text describe_products() {

@@ -46,7 +46,7 @@ std::optional<std::pair<double, double>> read_pair(const std::string& text) {
 }
 
 /// All of them are in memory at once.
-constexpr int kMostNeighbours = 100;
+constexpr int kMostAround = 100;
 constexpr int kLargestStep = 10000;
 
 /// A whole number from 1 to `most`, in digits alone; nothing for any other text.
@@ -139,16 +139,16 @@ glm::vec2 read_motion_scale(const std::string& text) {
   return {float(scale->first), float(scale->second)};
 }
 
-Neighbours read_neighbours(const std::string& text) {
+ShotWindow read_shot(const std::string& text) {
   const auto cross = text.find('x');
   const bool stepped = cross != std::string::npos;
-  const auto count = read_whole(text.substr(0, cross), kMostNeighbours),
+  const auto count = read_whole(text.substr(0, cross), kMostAround),
              step = stepped ? read_whole(text.substr(cross + 1), kLargestStep) : 1;
   if (!count || !step) {
     throw_usage(
-        fmt::format("--neighbours {}: expected K or KxSTEP, K frames before and after from "
+        fmt::format("--shot {}: expected K or KxSTEP, K frames before and after from "
                     "1 to {} and a STEP from 1 to {}, such as 2 or 4x2",
-                    text, kMostNeighbours, kLargestStep));
+                    text, kMostAround, kLargestStep));
   }
   return {*count, *step};
 }

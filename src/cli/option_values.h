@@ -41,7 +41,7 @@ void read_compression(const std::string& text, OutputOptions& out);
 glm::vec2 read_motion_scale(const std::string& text);
 
 /// K or KxSTEP: whole numbers from 1 on.
-Neighbours read_neighbours(const std::string& text);
+ShotWindow read_shot(const std::string& text);
 
 /// A size as parse_size() takes it, in bytes.
 std::size_t read_mem_limit(const std::string& text);

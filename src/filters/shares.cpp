@@ -188,16 +188,15 @@ void find_lights(Products& products, const Scene& scene) {
 }
 
 Products filter_found(const Filter& filter, Products noisy, const Scene& scene, int pattern_size,
-                      const std::function<void(Products&)>& amend) {
+                      const std::function<void(Products&)>& amend, bool as_shares) {
+  if (as_shares) noisy = to_shares(std::move(noisy), scene);
   if (filter.apply)
-    noisy = filter_products(filter, to_shares(std::move(noisy), scene), scene.geometry.surfel,
-                            pattern_size);
+    noisy = filter_products(filter, std::move(noisy), scene.geometry.surfel, pattern_size);
   add_sun_errors(noisy, scene);
   // Unfiltered, direct is the method's own, and so are its parts.
-  if (!filter.apply) find_lights(noisy, scene);
+  if (!as_shares) find_lights(noisy, scene);
   if (amend) amend(noisy);
-  add_specular(noisy, scene);
-  return filter.apply ? from_shares(std::move(noisy), scene) : without_shares(std::move(noisy));
+  return noisy;
 }
 
 /// What the product `guessed` is made of.
@@ -218,14 +217,14 @@ Guesses mean_of_guesses(const Filter& filter, Guesses noisy, const Plane<Surfel>
 
 }  // namespace
 
-Products filter_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size,
-                       const std::function<void(Products&)>& amend) {
+Products find_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size,
+                     const std::function<void(Products&)>& amend, bool as_shares) {
   Guesses guesses;
   const Plane<Surfel>& guide = scene.geometry.surfel;
   const bool have_guesses = !noisy.guessed.empty(), apart = pattern_size != kGuessedPattern;
   if (have_guesses && apart)
     guesses = mean_of_guesses(filter, {std::exchange(noisy.guessed, {}), noisy.ao}, guide);
-  Products found = filter_found(filter, std::move(noisy), scene, pattern_size, amend);
+  Products found = filter_found(filter, std::move(noisy), scene, pattern_size, amend, as_shares);
   if (!have_guesses) return found;
   if (!apart) guesses.guessed = std::move(found.guessed), guesses.ao = found.ao;
   // One mean leaves steps, eight pixels apart, where a ray of one pixel passes other things than
@@ -235,6 +234,19 @@ Products filter_shares(const Filter& filter, Products noisy, const Scene& scene,
     guesses.guessed[i] = guessed_product(guesses.guessed[i], std::clamp(guesses.ao[i], 0.0f, 1.0f));
   found.guessed = std::move(guesses.guessed);
   return found;
+}
+
+Products light_of_shares(Products found, const Scene& scene, bool as_shares) {
+  add_specular(found, scene);
+  return as_shares ? from_shares(std::move(found), scene) : without_shares(std::move(found));
+}
+
+Products filter_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size,
+                       const std::function<void(Products&)>& amend) {
+  const bool as_shares = filter.apply != nullptr;
+  return light_of_shares(
+      find_shares(filter, std::move(noisy), scene, pattern_size, amend, as_shares), scene,
+      as_shares);
 }
 
 Products to_shares(Products products, const Scene& scene) {

@@ -11,11 +11,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <new>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 
 #include "io/files/stale_temporaries.h"
@@ -29,7 +28,9 @@
 #include "jobs/sequence/frame_changes.h"
 #include "jobs/sequence/place_in_sequence.h"
 #include "jobs/sequence/sequence_frames.h"
+#include "jobs/sequence/shot.h"
 #include "jobs/statistics.h"
+#include "jobs/work.h"
 #include "parallel/background.h"
 #include "relight/frame.h"
 #include "relight/relight.h"
@@ -38,23 +39,7 @@
 namespace ssdo {
 namespace {
 
-/// A view of a job on its way.
-struct WorkOnView {
-  Frame frame;
-  Relit relit = {};
-};
-
-/// A job on its way from its files to its outputs.
-struct Work {
-  std::size_t index = 0;               ///< of the job
-  OutputPolicy policy;                 ///< of its outputs
-  std::vector<WorkOnView> views = {};  ///< while there is something left to do with them
-  Messages messages;                   ///< to be printed
-  std::string advice = {};             ///< to be printed once the outputs are made
-  nlohmann::json statistics = {};      ///< of its views; null unless the outputs were made
-  std::set<std::string> losses = {};   ///< what --allow-partial has taken as background
-  std::optional<Error> error = {};
-};
+constexpr const char* kSkipped = ": skipped, its outputs exist";
 
 class Batch {
  public:
@@ -67,11 +52,14 @@ class Batch {
         writes_behind_(overlaps_ && !options.model.temporal),
         pictures_(options.input.allow_partial, options.input.objects),
         frames_(options_, pictures_),
+        shot_(jobs_, options.model.shot),
         progress_(options.batch.progress, options.verbosity.quiet),
         info_(options.verbosity.json, progress_),
         printer_(progress_) {
     const std::size_t views = std::max(std::size_t(1), options.input.views.size());
-    options_.memory = resources.memory() / ((overlaps_ ? 2 : 1) * views);
+    // Of a frame that waits for the rest of its shot, less than half is left.
+    const auto around = std::size_t(options.model.shot.count), waiting = around + (around + 1) / 2;
+    options_.memory = resources.memory() / (((overlaps_ ? 2 : 1) + waiting) * views);
     for (const Job& job : jobs_)
       for (const FrameFiles& files : job.views) pictures_.expect(files);
   }
@@ -103,9 +91,9 @@ class Batch {
       if (!light_) light_.emplace(options_.light);
       run_job(i);
     }
-    if (behind_ && !stopped_) {
-      write(*behind_, progress_of(behind_->index));
-      conclude(*behind_);
+    for (std::size_t i = 0; i < behind_.size() && !stopped_; ++i) {
+      write(behind_[i], progress_of(behind_[i].index));
+      conclude(behind_[i]);
     }
     return code_;
   }
@@ -125,37 +113,31 @@ class Batch {
     ahead_.reset();
     if (overlaps_) {
       beside_.start([this, i] {
-        if (behind_) write(*behind_, [](double) {});
+        for (Work& work : behind_) write(work, [](double) {});
         if (i + 1 < jobs_.size()) ahead_ = prepare(i + 1);
       });
     }
     compute(now);
-    if (!writes_behind_) write(now, progress_of(i));
+    std::vector<Work> made = shot_.complete(std::move(now));
+    if (!writes_behind_)
+      for (Work& work : made) write(work, progress_of(work.index));
     beside_.wait();
-    if (behind_) conclude(*behind_);
-    behind_.reset();
+    for (Work& work : behind_) conclude(work);
+    behind_.clear();
     if (stopped_) return;
-    if (now.views.empty())
-      conclude(now);
-    else
-      behind_ = std::move(now);
+    const bool is_empty =
+        std::ranges::all_of(made, [](const Work& work) { return work.views.empty(); });
+    if (!is_empty) {
+      behind_ = std::move(made);
+      return;
+    }
+    for (Work& work : made)
+      if (!stopped_) conclude(work);
   }
 
-  /// Calls `step`; what it throws becomes the error of the job.
   template <class Step>
   void attempt(Work& work, const Step& step) {
-    const std::string& input = jobs_[work.index].input();
-    try {
-      step();
-      return;
-    } catch (const Error& e) {
-      work.error = e;
-    } catch (const std::bad_alloc&) {
-      work.error = Error(ExitCode::failed, fmt::format("{}: {}", input, kNoMemory));
-    } catch (const std::exception& e) {
-      work.error = Error(ExitCode::failed, fmt::format("{}: {}", input, e.what()));
-    }
-    work.views.clear();
+    ssdo::attempt(work, jobs_[work.index].input(), step);
   }
 
   /// Up to the plan; there are no views where the job is skipped.
@@ -204,12 +186,17 @@ class Batch {
 
   /// Whether the outputs are there. Errors: those of check_output().
   bool may_skip(Work& work) const {
-    if (options_.command != Command::relight) return false;
     const Job& job = jobs_[work.index];
+    if (job.is_lent) {
+      if (!job.targets.empty() && (options_.verbosity.verbose || options_.verbosity.dry_run))
+        work.messages.add(job.input() + kSkipped);
+      return !shot_.is_wanted(work.index);
+    }
+    if (options_.command != Command::relight) return false;
     if (options_.batch.skip_existing) {
       if (is_done(job)) {
         if (options_.verbosity.verbose || options_.verbosity.dry_run)
-          work.messages.add(job.input() + ": skipped, its outputs exist");
+          work.messages.add(job.input() + kSkipped);
         return true;
       }
       work.policy.overwrite = true;  // some of its files are missing or incomplete
@@ -238,7 +225,7 @@ class Batch {
     if (options_.command == Command::info) return info_.show(frame);
     if (options_.verbosity.dry_run || options_.verbosity.verbose)
       work.messages.add_text(describe(frame));
-    else {
+    else if (!jobs_[work.index].is_lent) {
       work.messages.warn(frame.warnings(), frame.view);
       if (!jobs_[work.index].frame && !options_.verbosity.quiet) work.advice = frame.advice;
     }
@@ -248,8 +235,9 @@ class Batch {
       if (const auto display = make_display(job)) work.messages.add(display->description());
       return;
     }
-    if (!behind_) print(work);
+    if (behind_.empty() && !shot_.is_waiting()) print(work);
     view.relit = relight(job, std::move(frame.scene), on_progress, temporal);
+    if (jobs_[work.index].is_lent) return note_losses(work, frame);
     if (options_.verbosity.verbose)
       for (const std::string& note : view.relit.notes) work.messages.add(note);
     work.messages.warn(view.relit.warnings, frame.view);
@@ -291,6 +279,7 @@ class Batch {
   void conclude(Work& work) {
     for (const std::string& loss : work.losses) work.messages.add(loss + "; taken as background");
     if (!work.losses.empty() && code_ == ExitCode::done) code_ = ExitCode::input;
+    if (jobs_[work.index].is_lent) return conclude_lent(work);
     if (!work.error && !work.advice.empty())
       work.messages.add(jobs_[work.index].input() + ": " + work.advice);
     print(work);
@@ -304,6 +293,14 @@ class Batch {
       stopped_ = options_.batch.on_error == OnError::stop;
       if (stopped_) return;
     }
+    progress_of(work.index)(1);
+  }
+
+  /// A frame that others miss is no failure of theirs.
+  void conclude_lent(Work& work) {
+    print(work);
+    if (work.error)
+      printer_.print(fmt::format("the frames around it do without it: {}", work.error->what()));
     progress_of(work.index)(1);
   }
 
@@ -346,6 +343,7 @@ class Batch {
   std::optional<Lighting> light_;  ///< read after the first listing of `info`
   OtherPictures pictures_;         ///< of all frames
   SequenceFrames frames_;
+  Shot shot_;
   ProgressLine progress_;
   InfoReport info_;
   Printer printer_;
@@ -355,7 +353,7 @@ class Batch {
   std::vector<FrameLooks> looks_;  ///< of the views of the last frame that was prepared
   std::vector<std::optional<History>> histories_;  ///< of the frame before's views, for --temporal
   std::optional<Work> ahead_;                      ///< the next job, prepared
-  std::optional<Work> behind_;                     ///< the last one, computed and not concluded
+  std::vector<Work> behind_;                       ///< computed and not concluded
   Background beside_;                              ///< is waited for before any of the above goes
 };
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 
 #include "error.h"
 #include "io/exr/exr_reader.h"
@@ -66,23 +67,11 @@ void check_kinds(const std::vector<Target>& targets) {
   }
 }
 
-/// Those before and after a frame, whether they exist or not.
-std::vector<FrameFiles> neighbours_of(const RunOptions& options, int frame) {
-  std::vector<FrameFiles> neighbours;
-  const Neighbours& wanted = options.input.neighbours;
-  for (int k = -wanted.count; k <= wanted.count; ++k) {
-    const std::int64_t number = frame + std::int64_t(k) * wanted.step;
-    if (k != 0 && std::int64_t(int(number)) == number)
-      neighbours.push_back(files_at(options, int(number)));
-  }
-  return neighbours;
-}
-
 Job single_job(const RunOptions& options, std::vector<Target> targets) {
-  if (options.model.temporal) {
-    throw Error(
-        ExitCode::usage,
-        fmt::format("{}: --temporal needs a sequence, such as shot.####.exr", options.input_file));
+  if (options.model.temporal || options.model.shot.count > 0) {
+    throw Error(ExitCode::usage,
+                fmt::format("{}: {} needs a sequence, such as shot.####.exr", options.input_file,
+                            options.model.temporal ? "--temporal" : "--shot"));
   }
   if (options.batch.frames) {
     throw Error(ExitCode::usage,
@@ -103,10 +92,39 @@ Job job_of_frame(const RunOptions& options, const std::vector<Target>& targets, 
   FrameFiles files = files_at(options, frame);
   for (const std::string& path : options.input.also)
     files.also.push_back(expand_pattern(path, frame));
-  files.neighbours = neighbours_of(options, frame);
   Job job{frame, views_of(files, options.input.views), targets};
   for (Target& target : job.targets) target.path = expand_pattern(target.path, frame);
   return job;
+}
+
+/// The jobs of a shot in the order in which they are estimated: each frame after those before it,
+/// and before it goes on to the next, all that tell it what they have found. Frames that are not
+/// among `jobs` are lent where they exist.
+std::vector<Job> with_lent_frames(const RunOptions& options, std::vector<Job> jobs) {
+  std::map<int, Job> wanted;
+  std::vector<int> order;
+  for (Job& job : jobs) {
+    order.push_back(*job.frame);
+    wanted.emplace(*job.frame, std::move(job));
+  }
+  std::set<int> placed;
+  std::vector<Job> all;
+  for (const int frame : order) {
+    for (const int around : frames_around(options.model.shot, frame)) {
+      if (!placed.insert(around).second) continue;
+      if (const auto found = wanted.find(around); found != wanted.end()) {
+        // Others may still want what it finds.
+        found->second.is_lent = options.batch.skip_existing && is_done(found->second);
+        all.push_back(std::move(found->second));
+        continue;
+      }
+      Job lent = job_of_frame(options, {}, around);
+      lent.is_lent = true;
+      std::error_code ignored;
+      if (std::filesystem::exists(lent.input(), ignored)) all.push_back(std::move(lent));
+    }
+  }
+  return all;
 }
 
 std::vector<Job> jobs_of_sequence(const RunOptions& options, const std::vector<Target>& targets) {
@@ -126,7 +144,7 @@ std::vector<Job> jobs_of_sequence(const RunOptions& options, const std::vector<T
   }
   std::vector<Job> jobs;
   for (int frame : frames) jobs.push_back(job_of_frame(options, targets, frame));
-  return jobs;
+  return options.model.shot.count > 0 ? with_lent_frames(options, std::move(jobs)) : jobs;
 }
 
 RunFiles files_of(const RunOptions& options, const std::vector<Job>& jobs) {
@@ -161,6 +179,15 @@ bool is_readable(const std::string& path) {
 }
 
 }  // namespace
+
+std::vector<int> frames_around(const ShotWindow& shot, int frame) {
+  std::vector<int> frames;
+  for (int k = -shot.count; k <= shot.count; ++k) {
+    const std::int64_t number = frame + std::int64_t(k) * shot.step;
+    if (std::int64_t(int(number)) == number) frames.push_back(int(number));
+  }
+  return frames;
+}
 
 FrameFiles files_at(const RunOptions& options, int frame) {
   FrameFiles files{expand_pattern(options.input_file, frame), options.input.aovs, {}};
@@ -207,12 +234,6 @@ bool is_done(const Job& job) {
 }
 
 FrameFiles files_named(const RunOptions& options) {
-  if (options.input.neighbours.count > 0) {
-    throw Error(ExitCode::usage,
-                fmt::format("{}: --neighbours needs a frame pattern in the input's name, such as "
-                            "shot.####.exr",
-                            options.input_file));
-  }
   FrameFiles files{options.input_file, options.input.aovs, options.input.also};
   files.objects = options.input.objects;
   return files;
@@ -231,10 +252,6 @@ std::vector<RunFile> inputs_of(const RunOptions& options, const FrameFiles& file
   for (const Selection* selection : files.objects.all())
     for (const SelectionTerm& term : selection->terms)
       inputs.push_back({selection->option, term.file});
-  for (const FrameFiles& neighbour : files.neighbours) {
-    inputs.push_back({"--neighbours", neighbour.input});
-    for (const LayerRequest& request : neighbour.aovs) inputs.push_back({"--aov", request.file});
-  }
   return inputs;
 }
 

@@ -18,14 +18,19 @@ struct Job {
   std::optional<int> frame;
   std::vector<FrameFiles> views;  ///< those to relight, of one file; usually one
   std::vector<Target> targets;
+  bool is_lent = false;  ///< it makes nothing: only other frames of its shot want what it finds
 
   const std::string& input() const { return views.front().input; }
 };
 
-/// The frames of a run in their order.
-/// Errors: ExitCode::usage for patterns, frames and kinds of output that do not fit together;
-/// ExitCode::input for a sequence without frames; those of check_run_files, over all frames.
+/// The frames of a run in the order in which they are estimated: that of --frames, but for those of
+/// a shot, which come once the frames around them are in reach. Errors: ExitCode::usage for
+/// patterns, frames and kinds of output that do not fit together; ExitCode::input for a sequence
+/// without frames; those of check_run_files, over all frames.
 std::vector<Job> plan_jobs(const RunOptions& options);
+
+/// The frames that tell a frame of a shot what they have found, in their order, itself among them.
+std::vector<int> frames_around(const ShotWindow& shot, int frame);
 
 /// The folders that the outputs of all jobs go to.
 std::set<std::filesystem::path> output_folders(const std::vector<Job>& jobs);
@@ -36,8 +41,7 @@ void check_input(const Job& job);
 /// Whether all outputs of a job exist and can be read.
 bool is_done(const Job& job);
 
-/// The files of a frame whose names hold no patterns. Errors: ExitCode::usage for --neighbours,
-/// which such a frame has not.
+/// The files of a frame whose names hold no patterns.
 FrameFiles files_named(const RunOptions& options);
 
 /// The files of a frame of a sequence without other views, with its number in their patterns.

@@ -112,7 +112,8 @@ std::string needs_whole_frame(const Scene& overview, const Plan& plan,
   if (plan.request.products.specular) return "the product specular";
   if (plan.request.products.error || plan.error) return "the error";
   if (plan.temporal) return "--temporal";
-  if (!overview.views.empty() || !overview.other_surfaces.empty()) return "--also and --neighbours";
+  if (plan.shot) return "--shot";
+  if (!overview.views.empty() || !overview.other_surfaces.empty()) return "--also";
   if (output.keep_channels) return "--keep-channels";
   if (output.downsample > 1) return "--downsample";
   for (const std::string& path : output.files)

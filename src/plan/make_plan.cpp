@@ -267,7 +267,8 @@ void choose_receivers(Plan& plan, const OutputOptions& output, const Geometry& g
       fmt::format("writes {}x{} pixels of {}x{}: what lies beyond the display window blocks and "
                   "sends light, but is not written",
                   shown.width(), shown.height(), data.width(), data.height()));
-  if (!plan.method->takes.receivers || plan.temporal || plan.request.products.error) return;
+  if (!plan.method->takes.receivers || plan.temporal || plan.shot || plan.request.products.error)
+    return;
   const int reach = plan.filter->reach + gbuffer.downsampling.reach() + reach_of_prior;
   plan.request.receivers =
       intersection(data, {shown.x0 - reach, shown.y0 - reach, shown.x1 + reach, shown.y1 + reach});
@@ -297,6 +298,7 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
   set_by_option(plan, "steps", model.steps, model);
   choose_filter(plan, model.filter);
   plan.temporal = model.temporal;
+  plan.shot = model.shot.count > 0;
   plan.request.seed = model.seed;
   plan.error = model.error;
   plan.composition = choose_composition(output, scene, gbuffer, plan.request.parameters);

@@ -18,6 +18,7 @@ nlohmann::json to_json(const Plan& plan, const std::vector<std::string>& history
                       {"samples_per_pixel", plan.samples_per_pixel()},
                       {"filter", plan.filter_name()},
                       {"temporal", plan.temporal},
+                      {"shot", plan.shot},
                       {"downsample", plan.downsample},
                       {"reasons", reasons}};
   if (contains(plan.make, "composite")) j["compose"] = name_of(plan.composition.compose);

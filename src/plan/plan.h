@@ -37,6 +37,12 @@ constexpr int steps_of(Quality quality) { return kQualities[std::size_t(quality)
 /// What fills the directions that no picture shows.
 enum class Prior { rules, learned };
 
+/// Which frames around a frame of a sequence tell it what they have found.
+struct ShotWindow {
+  int count = 0;  ///< before, and as many after; 0: none do
+  int step = 1;   ///< frames from one to the next
+};
+
 /// What the user says about the method.
 struct ModelOptions {
   std::string method{methods().front().name};
@@ -51,7 +57,8 @@ struct ModelOptions {
   unsigned seed = 0;
   std::vector<std::string> set;     ///< NAME=VALUE of the method
   std::string filter = "geometry";  ///< may be kSourceFilter
-  bool temporal = false;            ///< frames of a sequence share what they find
+  bool temporal = false;            ///< frames of a sequence share what they find with later ones
+  ShotWindow shot = {};             ///< frames that share what they find with each other
 };
 
 /// What a learned prior is told of a frame by others than the estimate.
@@ -70,6 +77,7 @@ struct Plan {
   const Filter* half_filter = nullptr;
   std::optional<LearnedPrior> prior;  ///< where it is used
   bool temporal = false;              ///< then the mean with the frames before
+  bool shot = false;                  ///< then the mean with the frames before and after
   std::vector<std::string> make;      ///< products for any of the outputs
   std::vector<std::string> write;     ///< those that every EXR of -o holds, in their order there
   std::string show;                   ///< the one that every picture of -o holds

@@ -186,7 +186,8 @@ class BandJob {
     const auto tell = [&](double done) {
       on_progress_(begun_ + (1 - begun_) * (before + share * done));
     };
-    Estimate found = estimate(std::move(scene), plan, tell, {});
+    Estimate found = estimate(std::move(scene), plan, tell);
+    light_products(found, plan);
     scene = std::move(found.scene);
     relit_.times.estimate += found.estimate_ms;
     relit_.times.filter += found.filter_ms;

@@ -114,6 +114,22 @@ struct Noisy {
   std::optional<PriorField> prior;
 };
 
+/// Whether all that is made is composed of what is known without an estimate.
+bool is_idle(const Request& request) { return request.products == ProductSet(); }
+
+/// Whether the light is known by its shares between the filter and light_products().
+bool has_shares(const Plan& plan) { return plan.filter->apply || plan.shot; }
+
+/// A single light is all of them.
+void finish_lights(const ProductSet& by_light, Products& products) {
+  const bool is_all = products.lights.size() == 1;
+  for (LightProducts& light : products.lights) {
+    if (is_all) light.direct = products.direct, light.bounce = products.bounce;
+    if (!by_light.direct) light.direct = {};
+    if (!by_light.bounce) light.bounce = {};
+  }
+}
+
 /// Estimates and filters once.
 class Round {
  public:
@@ -129,7 +145,7 @@ class Round {
   }
 
   Noisy estimate(const Scene& scene) {
-    if (is_idle()) return {};
+    if (is_idle(request_)) return {};
     const auto progress = [this](std::size_t done, std::size_t count) { tell(done, count); };
     Request request = request_;
     request.shares_suffice = plan_.filter->apply && !compares_steps_;
@@ -153,23 +169,18 @@ class Round {
     return out;
   }
 
-  Estimate filter(Noisy noisy, const Scene& scene, const TemporalInput& temporal) const {
+  Estimate filter(Noisy noisy, const Scene& scene) const {
     Estimate out;
-    if (is_idle()) return out;
+    if (is_idle(request_)) return out;
     const Geometry& geometry = scene.geometry;
     const int pattern = plan_.method->pattern_size;
     Products& products = out.products = std::move(noisy.products);
     scale_to_noise(products.error, *plan_.method);
     std::function<void(Products&)> lean;
     if (noisy.prior) lean = [&](Products& found) { apply_prior(*noisy.prior, scene, found); };
-    products = filter_shares(*plan_.filter, std::move(products), scene, pattern, lean);
-    if (noisy.prior) finish_with_prior(*noisy.prior, scene, request_.products.guessed, products);
-    finish_lights(products);
-    if (plan_.temporal) {
-      out.history = accumulate(temporal.history ? &*temporal.history : nullptr, geometry, products,
-                               temporal.motion);
-      products = products_of(out.history);
-    }
+    products =
+        find_shares(*plan_.filter, std::move(products), scene, pattern, lean, has_shares(plan_));
+    if (noisy.prior) out.prior = std::move(noisy.prior);
     if (request_.products.error) {
       if (compares_steps_)
         noisy.change =
@@ -180,21 +191,8 @@ class Round {
   }
 
  private:
-  /// Whether all that is made is composed of what is known without an estimate.
-  bool is_idle() const { return request_.products == ProductSet(); }
-
   /// Whether the method gathers the bounce light by light: that of a single light is all of it.
   bool bounces_by_light() const { return request_.by_light.bounce && names_.size() > 1; }
-
-  /// A single light is all of them.
-  void finish_lights(Products& products) const {
-    const bool is_all = names_.size() == 1;
-    for (LightProducts& light : products.lights) {
-      if (is_all) light.direct = products.direct, light.bounce = products.bounce;
-      if (!request_.by_light.direct) light.direct = {};
-      if (!request_.by_light.bounce) light.bounce = {};
-    }
-  }
 
   /// Has the prior answer, and keeps what it says in `field`.
   AskPrior asking(std::optional<PriorField>& field) const {
@@ -294,8 +292,7 @@ std::string describe(const ErrorFound& found, const Method& method, const Reques
 
 }  // namespace
 
-Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double)>& on_progress,
-                  const TemporalInput& temporal) {
+Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double)>& on_progress) {
   Request request = plan.request;
   double estimate_ms = 0, filter_ms = 0;
   for (;;) {
@@ -306,7 +303,7 @@ Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double
     estimate_ms += watch.lap();
     // With --error another round may follow.
     if (!plan.error) scene = seen_by_filters(std::move(scene));
-    Estimate out = round.filter(std::move(noisy), scene, temporal);
+    Estimate out = round.filter(std::move(noisy), scene);
     filter_ms += watch.lap();
     if (plan.error && out.error->all > *plan.error) {
       if (refine(request, *plan.error, *out.error)) continue;
@@ -321,6 +318,22 @@ Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double
     out.estimate_ms = estimate_ms, out.filter_ms = filter_ms;
     return out;
   }
+}
+
+void light_products(Estimate& found, const Plan& plan, const TemporalInput& temporal) {
+  if (is_idle(found.request)) return;
+  Stopwatch watch;
+  Products& products = found.products;
+  products = light_of_shares(std::move(products), found.scene, has_shares(plan));
+  if (found.prior)
+    finish_with_prior(*found.prior, found.scene, found.request.products.guessed, products);
+  finish_lights(found.request.by_light, products);
+  if (plan.temporal) {
+    found.history = accumulate(temporal.history ? &*temporal.history : nullptr,
+                               found.scene.geometry, products, temporal.motion);
+    products = products_of(found.history);
+  }
+  found.filter_ms += watch.lap();
 }
 
 }  // namespace ssdo

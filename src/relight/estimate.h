@@ -10,6 +10,7 @@
 #include "estimators/estimator.h"
 #include "filters/temporal.h"
 #include "plan/plan.h"
+#include "prior/prior.h"
 #include "scene/scene.h"
 
 namespace ssdo {
@@ -22,12 +23,13 @@ struct ErrorFound {
   double steps = 0;  ///< of so many steps: no seed changes it
 };
 
-/// The products of a frame after the filter.
+/// What was found of a frame.
 struct Estimate {
-  Products products;
-  Scene scene;      ///< what is left of it: without solids, views and surfaces of other views
-  Request request;  ///< of the plan, with the slices and steps that were needed
+  Products products;  ///< after the filter; up to light_products() with shares in place of light
+  Scene scene;        ///< what is left of it: without solids, views and surfaces of other views
+  Request request;    ///< of the plan, with the slices and steps that were needed
   std::optional<ErrorFound> error;  ///< where the plan asks for it
+  std::optional<PriorField> prior;  ///< where there is one
   History history;                  ///< of a temporal plan, for the next frame; without a geometry
   double estimate_ms = 0, filter_ms = 0;  ///< by the clock
   std::vector<std::string> notes, warnings;
@@ -41,10 +43,13 @@ struct TemporalInput {
   Plane<glm::vec2> motion;  ///< pixels to where it was there; may be empty
 };
 
-/// Estimates and filters, with more and more slices and steps until the error is what the plan asks
-/// for, if it does. `on_progress` is called with the share that is done, 0..1. What only methods
-/// look at is freed before the last filter.
-Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double)>& on_progress,
-                  const TemporalInput& temporal);
+/// Estimates and filters the shares of the light that arrive, with more and more slices and steps
+/// until the error is what the plan asks for, if it does. `on_progress` is called with the share
+/// that is done, 0..1. What only methods look at is freed before the last filter.
+Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double)>& on_progress);
+
+/// Makes the light of what estimate() has found, and takes the mean with the frames before, where
+/// the plan is temporal.
+void light_products(Estimate& found, const Plan& plan, const TemporalInput& temporal = {});
 
 }  // namespace ssdo

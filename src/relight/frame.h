@@ -25,8 +25,8 @@
 
 namespace ssdo {
 
-/// Milliseconds of wall time per stage; `known` is what --also and --neighbours take, with the
-/// solids that they change.
+/// Milliseconds of wall time per stage; `known` is what --also takes, with the solids that it
+/// changes.
 struct StageTimes {
   double read = 0, known = 0, prepare = 0, estimate = 0, filter = 0, compose = 0, write = 0;
 };
@@ -47,7 +47,7 @@ struct Frame {
   Scene scene;
   GBuffer gbuffer;  ///< what the scene has not taken: layers as rendered, alpha, motion
   GeometryReport report;
-  /// What other views add: those of --also, then neighbours, then back faces.
+  /// What other views add: those of --also, then back faces.
   std::vector<MergeCounts> views;
   std::string light;                          ///< one line
   std::map<std::string, OriginOfLamp> lamps;  ///< by name

@@ -166,7 +166,7 @@ const std::vector<IdleRule<Purpose>>& rules_of_options() {
          return purpose != Purpose::bench && method_of(o).ladder.seeds == 1;
        },
        "the method has no noise"},
-      {{"--also", "--neighbours"},
+      {{"--also"},
        [](const FrameOptions& o, Purpose purpose) {
          return purpose != Purpose::bench && !method_of(o).takes.thickness;
        },

@@ -26,7 +26,7 @@ struct FrameFacts {
   bool depth, position, normal, ambient, specular, lights, specular_color;
   bool constant_light;  ///< the environment is the same from everywhere
   bool lamps;
-  bool overscan;        ///< a layer that outputs take has pixels beyond the display window
+  bool overscan;  ///< a layer that outputs take has pixels beyond the display window
 };
 
 /// A warning for each option that has no effect on this frame.

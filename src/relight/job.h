@@ -25,6 +25,7 @@ struct RelightJob {
 
 /// What came of a job.
 struct Relit {
+  Estimate found;     ///< of a frame in a shot, until it knows what the others have found
   Plan plan;          ///< of the frame, with the slices and steps that were needed
   Scene scene;        ///< as estimate() leaves it; of a frame in bands, its overview
   Products products;  ///< after the filter

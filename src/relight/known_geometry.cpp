@@ -105,11 +105,6 @@ void warn_of(const MergeCounts& view, std::vector<std::string>& warnings) {
                   view.file, 100.0 * double(view.contradictory) / double(view.in_common())));
 }
 
-bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code ignored;
-  return a == b || fs::equivalent(a, b, ignored);
-}
-
 /// Leaves out of a view what is marked.
 void take_out(OtherView& view, unsigned char marks) {
   const Plane<unsigned char>& taken = view.picture->taken;
@@ -144,12 +139,6 @@ class ViewReader {
     add(place(picture, frame_.scene.geometry));
     for (const auto* lines : {&picture->warnings, &picture->not_taken})
       known_.warnings.insert(known_.warnings.end(), lines->begin(), lines->end());
-  }
-
-  void add_neighbour(const FrameFiles& files) {
-    std::error_code ignored;
-    if (!fs::exists(files.input, ignored) || !knows_place("--neighbours")) return;
-    add_alike(files, options_.camera, "a neighbour");
   }
 
   /// Nobody has asked for it: where it is of no use, it is left out.
@@ -214,12 +203,6 @@ KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
   ViewReader reader(frame, options, pictures, known);
   for (const std::string& path : files.also) reader.add_also(path);
   const bool uses_views = find_method(options.model.method).takes.thickness;
-  for (const FrameFiles& neighbour : files.neighbours) {
-    const bool is_given =
-        std::any_of(files.also.begin(), files.also.end(),
-                    [&](const std::string& path) { return is_same_file(path, neighbour.input); });
-    if (uses_views && !is_given) reader.add_neighbour(neighbour);
-  }
   if (uses_views && !files.view.empty()) reader.add_other_eye(files);
   if (own) known.deep.push_back(*own);
   return known;

@@ -14,7 +14,7 @@
 
 namespace ssdo {
 
-/// What the files of --also, the neighbours in the sequence and the other eye show of a frame's
+/// What the files of --also and the other eye show of a frame's
 /// scene.
 struct KnownGeometry {
   std::vector<DeepImage> deep;   ///< of the frame itself
@@ -23,10 +23,9 @@ struct KnownGeometry {
   std::vector<std::string> losses;  ///< of the views; see ExrReader::losses()
 };
 
-/// Reads what `files` name beside the frame, but for neighbours that do not exist; of those, and of
-/// another eye, that cannot be read, a warning tells. `own` are the deep samples that the frame
-/// itself was read from. Errors: those of the stages that read; ExitCode::layer where the frame
-/// knows no world space to place other views in.
+/// Reads what `files` name beside the frame; of another eye that cannot be read, a warning tells.
+/// `own` are the deep samples that the frame itself was read from. Errors: those of the stages that
+/// read; ExitCode::layer where the frame knows no world space to place other views in.
 KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
                                   const FrameOptions& options, OtherPictures& pictures,
                                   const std::optional<DeepImage>& own);

@@ -46,8 +46,15 @@ void check_names_of_lights(const Frame& frame) {
 
 void plan_frame(Frame& frame, const FrameOptions& options, int number, bool has_deep_pixels) {
   ModelOptions model = options.model;
-  if (model.temporal) model.seed += unsigned(number);
+  if (model.temporal || model.shot.count > 0) model.seed += unsigned(number);
   frame.plan = make_plan(model, options.output, frame.scene, frame.gbuffer, frame.input);
+  if (frame.plan.shot && frame.scene.geometry.median_depth > 0 &&
+      !frame.scene.geometry.world_known) {
+    throw Error(ExitCode::layer,
+                fmt::format("{}: knows no world space to find its points in other frames; render P "
+                            "in world space, or give --camera FILE.json with its pose",
+                            frame.input));
+  }
   if (model.prior == Prior::learned) use_prior(frame.plan, {frame.up});
   if (options.output.per_light) check_names_of_lights(frame);
   if (frame.gbuffer.grid.is_coarse()) {

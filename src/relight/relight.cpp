@@ -54,6 +54,9 @@ void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameO
     refuse("deep samples do not say what they are of; leave the deep image out", which);
   if (!frame.objects.shadow_of.empty() && options.model.temporal)
     refuse("--temporal has no history of it; leave one of them out", frame.objects.shadow_of);
+  if (!frame.objects.shadow_of.empty() && options.model.shot.count > 0)
+    refuse("frames of a --shot do not tell it each other; leave one of them out",
+           frame.objects.shadow_of);
 }
 
 /// The sky dome that is left out of what casts, with a warning; empty where there is none.
@@ -147,14 +150,25 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& lighting, Other
   light_frame(frame, lighting, options, files);
   frame.times.prepare += watch.lap();
   find_occluders(frame, known, options);
-  const bool is_known = !files.also.empty() || !files.neighbours.empty();
-  (is_known ? frame.times.known : frame.times.prepare) += watch.lap();
+  (!files.also.empty() ? frame.times.known : frame.times.prepare) += watch.lap();
   plan_frame(frame, options, number, !known.deep.empty());
   frame.times.prepare += watch.lap();
   return frame;
 }
 
 namespace {
+
+/// Takes from what was found what outputs are made of.
+void take_products(Relit& relit) {
+  Estimate& found = relit.found;
+  relit.scene = std::move(found.scene);
+  relit.products = std::move(found.products);
+  relit.history = std::move(found.history);
+  relit.error = found.error;
+  relit.times.estimate = found.estimate_ms;
+  relit.times.filter = found.filter_ms;
+  found = {};
+}
 
 /// direct + bounce.
 Plane<glm::vec3> light_of(const Products& found) {
@@ -176,7 +190,8 @@ void find_shadow(Scene& without, Relit& relit) {
   plan.error.reset();
   plan.request.products = {.direct = true, .bounce = plan.request.products.bounce};
   plan.request.by_light = {};
-  Estimate found = estimate(std::move(without), plan, [](double) {}, {});
+  Estimate found = estimate(std::move(without), plan, [](double) {});
+  light_products(found, plan);
   relit.times.estimate += found.estimate_ms;
   relit.times.filter += found.filter_ms;
   relit.products.lit = light_of(relit.products);
@@ -208,21 +223,33 @@ Relit relight(const RelightJob& job, Scene scene, const std::function<void(doubl
     return relit;
   }
   const std::shared_ptr<Scene> without = scene.without;
-  Estimate found = estimate(
-      std::move(scene), frame.plan, [&](double done) { on_progress(kEstimateShare * done); },
-      temporal);
-  relit.scene = std::move(found.scene);
-  relit.plan.request = std::move(found.request);
-  relit.products = std::move(found.products);
-  relit.history = std::move(found.history);
-  relit.error = found.error;
-  relit.times.estimate = found.estimate_ms;
-  relit.times.filter = found.filter_ms;
-  append(relit.notes, found.notes);
-  append(relit.warnings, found.warnings);
-  for (const auto& [name, share] : found.unlit) warn_of_unlit(frame, name, share, relit.warnings);
+  relit.found = estimate(std::move(scene), frame.plan,
+                         [&](double done) { on_progress(kEstimateShare * done); });
+  relit.plan.request = relit.found.request;
+  append(relit.notes, relit.found.notes);
+  append(relit.warnings, relit.found.warnings);
+  for (const auto& [name, share] : relit.found.unlit)
+    warn_of_unlit(frame, name, share, relit.warnings);
+  if (frame.plan.shot) return relit;
+  light_products(relit.found, frame.plan, temporal);
+  take_products(relit);
   if (contains(relit.plan.make, "shadow_of")) find_shadow(*without, relit);
   return relit;
+}
+
+Findings take_findings(Relit& relit) {
+  return take_findings(relit.found.products, std::move(relit.found.scene.geometry),
+                       relit.found.scene.senders.radiance);
+}
+
+void relight_in_shot(const Findings& own, const std::vector<const Findings*>& others,
+                     Relit& relit) {
+  Stopwatch watch;
+  relit.found.scene.geometry = *own.geometry;
+  fuse(own, others, relit.found.scene.light, relit.found.products);
+  light_products(relit.found, relit.plan);
+  relit.found.filter_ms += watch.lap();
+  take_products(relit);
 }
 
 void write_outputs(const std::vector<RelitFrame>& views,

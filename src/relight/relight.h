@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "filters/shot/fusion.h"
 #include "relight/job.h"
 #include "relight/lighting.h"
 #include "scene/other_views/other_pictures.h"
@@ -19,9 +20,18 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& lighting, Other
                     const FrameFiles& files, int number = 0);
 
 /// Estimates and filters. `scene` is moved out of job.frame. `on_progress` is called with the
-/// share that is done, 0..1. Errors: those of the stages.
+/// share that is done, 0..1. With a plan for a shot, relight_in_shot() has to follow. Errors: those
+/// of the stages.
 Relit relight(const RelightJob& job, Scene scene, const std::function<void(double)>& on_progress,
               const TemporalInput& temporal);
+
+/// What a frame has found, for all frames of its shot, itself included. Leaves `relit` without the
+/// planes and the geometry.
+Findings take_findings(Relit& relit);
+
+/// The rest of relight() for a frame in a shot, once what it and the frames around it have found is
+/// known: `others` in the order of the shot.
+void relight_in_shot(const Findings& own, const std::vector<const Findings*>& others, Relit& relit);
 
 /// The rest of it: compose, colour, write. `views` are those of one frame, usually one. All targets
 /// appear, or none. Adds to the times and clamped values of the first. Errors: those of the stages.

@@ -152,7 +152,6 @@ void read_surfaces_by_right_depth(Reading reading, View& view) {
 
 FrameFiles in_view(FrameFiles files, std::string_view view) {
   files.view = view;
-  for (FrameFiles& neighbour : files.neighbours) neighbour.view = view;
   return files;
 }
 

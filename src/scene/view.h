@@ -17,17 +17,10 @@
 
 namespace ssdo {
 
-/// Which frames before and after a frame of a sequence show more of its scene.
-struct Neighbours {
-  int count = 0;  ///< before, and as many after; 0: none are used
-  int step = 1;   ///< frames from one to the next
-};
-
 /// Which files and layers are read, and how.
 struct InputOptions {
   std::vector<LayerRequest> aovs;
   std::vector<std::string> also;  ///< other pictures of the same scene, or their patterns
-  Neighbours neighbours;
   std::string part;                ///< name or number; empty: all
   std::vector<std::string> views;  ///< those to relight of a stereo file; empty: its only one
   std::string view;                ///< of them, the one that is read
@@ -42,12 +35,11 @@ struct FrameFiles {
   std::string input;
   std::vector<LayerRequest> aovs;
   std::vector<std::string> also;  ///< other pictures of the same scene, in the order of --also
-  std::vector<FrameFiles> neighbours = {};  ///< frames of the same sequence; need not exist
   std::string view = {};                    ///< of a stereo file; empty: --part chooses
   ObjectOptions objects = {};
 };
 
-/// The frame with a view of its files and those of its neighbours.
+/// The frame with a view of its files.
 FrameFiles in_view(FrameFiles files, std::string_view view);
 
 /// The frame as its other eye sees it. `files` have a view.

@@ -241,7 +241,7 @@ TEST_F(Bands, RefuseWhatNeedsTheWholeFrame) {
   refused({"--products", "ao,guessed"}, "the product guessed");
   refused({"--error", "0.1"}, "the error");
   refused({"--save", "ao=" + path("ao.png")}, "ao.png");
-  refused({"--also", path("in.exr")}, "--also and --neighbours");
+  refused({"--also", path("in.exr")}, "--also");
 }
 
 TEST_F(Bands, NeedSomeMemory) {

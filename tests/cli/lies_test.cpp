@@ -205,10 +205,11 @@ TEST_F(Lies, OfAFrameBesideItLeaveItOut) {
     ExrBytes bytes(path("good.exr"));
     lie.tell(bytes);
     bytes.write(path("shot.2.exr"));
-    const Finished done = run_tool({path("shot.@.exr"), "--frames", "1", "--neighbours", "1", "-o",
+    const Finished done = run_tool({path("shot.@.exr"), "--frames", "1", "--shot", "1", "-o",
                                     path("out.@.exr"), "--overwrite"});
     EXPECT_EQ(done.code, 0) << lie.name;
-    EXPECT_THAT(done.err, HasSubstr("left out as a neighbour: " + path("shot.2.exr"))) << lie.name;
+    EXPECT_THAT(done.err, HasSubstr("the frames around it do without it: " + path("shot.2.exr")))
+        << lie.name;
     expect_cheap(done);
   }
 }

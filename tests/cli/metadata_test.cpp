@@ -149,7 +149,7 @@ TEST_F(HeaderCameraFiles, PlacesOtherPicturesBesidePInCameraSpace) {
   EXPECT_EQ(lost.code, 4) << lost.err;
 }
 
-TEST_F(HeaderCameraFiles, GivePInCameraSpaceAHistoryAndNeighbours) {
+TEST_F(HeaderCameraFiles, GivePInCameraSpaceAHistoryAndAShot) {
   const auto run = [&](const HeaderNumbers& header, const std::vector<std::string>& options) {
     for (const char* name : {"f.0001.exr", "f.0002.exr"}) write(name, in_camera_space(), header);
     std::vector<std::string> words = {folder_ / "f.####.exr",
@@ -166,10 +166,10 @@ TEST_F(HeaderCameraFiles, GivePInCameraSpaceAHistoryAndNeighbours) {
   };
   EXPECT_THAT(run(standard(), {"--temporal"}).err, Not(HasSubstr("knows no world space")));
   EXPECT_THAT(run({}, {"--temporal"}).err, HasSubstr("knows no world space"));
-  const Finished beside = run(standard(), {"--neighbours", "1"});
+  const Finished beside = run(standard(), {"--shot", "1"});
   EXPECT_EQ(beside.code, 0) << beside.err;
-  EXPECT_THAT(beside.err, Not(HasSubstr("left out as a neighbour")));
-  EXPECT_EQ(run({}, {"--neighbours", "1"}).code, 4);
+  EXPECT_THAT(beside.err, Not(HasSubstr("do without it")));
+  EXPECT_EQ(run({}, {"--shot", "1"}).code, 4);
 }
 
 TEST_F(HeaderCameraFiles, AreThoseOfNukeAndOfAnotherPartToo) {

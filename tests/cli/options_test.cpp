@@ -142,17 +142,16 @@ TEST(Options, OfDepthNameAKindOrItsRange) {
 }
 
 TEST(Options, OfNeighboursTakeWholeNumbersFromOneOn) {
-  const auto neighbours = [](const std::string& text) {
-    const Neighbours found = parse({"--neighbours", text}).input.neighbours;
+  const auto shot = [](const std::string& text) {
+    const ShotWindow found = parse({"--shot", text}).model.shot;
     return std::pair(found.count, found.step);
   };
-  EXPECT_EQ(parse({}).input.neighbours.count, 0);
-  EXPECT_EQ(neighbours("2"), std::pair(2, 1));
-  EXPECT_EQ(neighbours("4x2"), std::pair(4, 2));
+  EXPECT_EQ(parse({}).model.shot.count, 0);
+  EXPECT_EQ(shot("2"), std::pair(2, 1));
+  EXPECT_EQ(shot("4x2"), std::pair(4, 2));
   for (const std::string text : {"0", "-1", "x2", "2x", "2x0", "2x-1", "1x2x3", "2.5", "a", "2 ",
                                  "+2", "101", "99999999999", "2x99999999999"}) {
-    EXPECT_THAT(refusal({"--neighbours", text}),
-                HasSubstr("--neighbours " + text + ": expected K or KxSTEP"));
+    EXPECT_THAT(refusal({"--shot", text}), HasSubstr("--shot " + text + ": expected K or KxSTEP"));
   }
 }
 

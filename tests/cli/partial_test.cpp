@@ -239,11 +239,11 @@ TEST_F(PartialShot, AnEarlierFailureHasItsOwnStatus) {
   EXPECT_EQ(run_shot({"--on-error", "continue"}, "2,1").code, 3);
 }
 
-TEST_F(PartialShot, ANeighbourToo) {
-  const Finished done = run_shot({"--neighbours", "1"}, "1");
+TEST_F(PartialShot, ALentFrameToo) {
+  const Finished done = run_shot({"--shot", "1"}, "1");
   EXPECT_EQ(done.code, 3);
   EXPECT_THAT(done.err,
-              AllOf(HasSubstr("shot.2.exr: part 0: 32 of 96 rows"), Not(HasSubstr("left out"))));
+              AllOf(HasSubstr("shot.2.exr: part 0: 32 of 96 rows"), Not(HasSubstr("do without"))));
 }
 
 TEST_F(PartialShot, AnOutputIsSkippedLikeAnyOther) {

@@ -269,12 +269,20 @@ TEST_F(Stereo, ASequenceHasBothViewsOfEveryFrame) {
   EXPECT_TRUE(fs::exists(folder / "out.2.exr"));
 }
 
-TEST_F(Stereo, NeighboursAreOfTheSameView) {
+/// Both eyes of a shot at once are each of them alone.
+TEST_F(Stereo, FramesOfAShotTellTheSameView) {
   for (const std::string number : {"1", "2"})
     write_frame(folder / ("in." + number + ".exr"), layouts()[1].parts);
-  const Finished done = run({"in.@.exr", "--stereo", "right", "--frames", "2", "--neighbours", "1",
-                             "-o", "out.@.exr", "-v"});
-  EXPECT_THAT(done.err, AllOf(HasSubstr("in.1.exr (right): "), HasSubstr("in.2.exr (left): ")));
+  const std::vector<std::string> shot = {"in.@.exr", "--shot", "1", "--products", "ao"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = shot;
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(run(words).code, 0);
+  };
+  with({"--stereo", "all", "-o", "both.@.exr"});
+  with({"--stereo", "right", "--frames", "2", "-o", "right.@.exr"});
+  EXPECT_EQ(channel(folder / "both.2.exr", "ao.right.Y").pixels,
+            channel(folder / "right.2.exr", "ao.right.Y").pixels);
 }
 
 TEST_F(Stereo, InfoTellsOfEachView) {

@@ -66,12 +66,12 @@ test_changing_inputs() {
   say "inputs that change: $count runs, $finished finished, the others refused; every output of one input"
 }
 
-# Frames, other pictures and neighbours that go between two frames. A neighbour that is gone is
-# left out: such a frame is compared with none.
+# Frames and other pictures that go between two frames. The frames of a shot do without one that is
+# gone: they are compared with none.
 test_changing_shots() {
   local i name finished=0 count=$((runs / 8)) kind victim
   local whole=$work/shots
-  local -A flags=([alone]="" [also]="--also $given/shot.1003.exr" [neighbours]="--neighbours 1")
+  local -A flags=([alone]="" [also]="--also $given/shot.1003.exr" [shot]="--shot 1")
   local render=("$tool" "$given/shot.####.exr" --frames 1001-1002 -q --env "$input/sky.exr")
   mkdir "$whole"
   cp "$input"/shot.*.exr "$given"
@@ -94,7 +94,7 @@ test_changing_shots() {
     for name in "$kind".*.exr; do
       [ -e "$name" ] || continue
       is_whole "$name"
-      [ "$kind" = neighbours ] || cmp -s "$name" "$whole/$name" || complain "$name is not as undisturbed"
+      [ "$kind" = shot ] || cmp -s "$name" "$whole/$name" || complain "$name is not as undisturbed"
     done
     holds "$kind".100{1,2}.exr
     [ "$code" -ne 0 ] || finished=$((finished + 1))

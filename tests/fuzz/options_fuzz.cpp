@@ -104,7 +104,7 @@ std::vector<std::string> seeds() {
       "\"matrix\": [[1, 0, 0, 4], [0, 0, -1, 5], [0, 1, 0, 6], [0, 0, 0, 1]], \"height\": 1e6}, "
       "{\"type\": \"distant\", \"angle\": 359, \"exposure\": -100}]}",
       "in.exr\n--dry-run\n--set\nfalloff=2\n--method\ngtao\n--save\nao=ao.png\n--mem-limit\n2G\n",
-      "in.exr\n-o\nout.exr\n--compression\nzip:9\n--neighbours\n2x3\n--motion-scale\n1,-1\n"
+      "in.exr\n-o\nout.exr\n--compression\nzip:9\n--shot\n2x3\n--motion-scale\n1,-1\n"
       "--thickness\nauto\n--radius\ninf\n--env\n1,2,3\n\n"
       "aov = [\"position=P\", \"normal=N\"]\nframes = \"1-3\"\nverbose = true\nradius = 0.5\n"};
 }

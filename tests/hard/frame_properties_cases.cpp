@@ -6,6 +6,7 @@
 
 #include "color/compose.h"
 #include "relight/relight.h"
+#include "support/estimate_light.h"
 #include "support/frame_file.h"
 #include "support/temp_dir.h"
 
@@ -95,7 +96,7 @@ void Worst::see(double a_value, const std::function<std::string()>& place) {
 
 Products relit(const Scene& scene, Plan plan) {
   plan.error.reset();
-  return estimate(scene, plan, [](double) {}, {}).products;
+  return estimate_light(scene, plan).products;
 }
 
 std::span<const FrameProperty> frame_properties() {

@@ -15,6 +15,7 @@
 #include "parallel/tiles.h"
 #include "plan/make_plan.h"
 #include "relight/estimate.h"
+#include "support/estimate_light.h"
 #include "support/random_frame.h"
 
 namespace ssdo::test {
@@ -78,7 +79,7 @@ Products fade_with_its_filter(const HardFrame& frame) {
   model.filter = kSourceFilter;
   OutputOptions output;
   output.products = {"ao", "direct"};
-  return estimate(scene, make_plan(model, output, scene, {}, ""), [](double) {}, {}).products;
+  return estimate_light(scene, make_plan(model, output, scene, {}, "")).products;
 }
 
 class HardCases : public testing::TestWithParam<HardCase> {

@@ -14,6 +14,7 @@
 
 #include "error.h"
 #include "hard/frame_properties.h"
+#include "support/estimate_light.h"
 #include "support/report.h"
 
 namespace ssdo::test {
@@ -80,7 +81,7 @@ class RandomFrames : public testing::TestWithParam<int> {
     const Frame frame = read_frame(shot);
     if (says_all)
       for (const std::string& reason : frame.plan.reasons) fmt::print("  {}\n", reason);
-    const Estimate found = estimate(frame.scene, frame.plan, [](double) {}, {});
+    const Estimate found = estimate_light(frame.scene, frame.plan);
     for (const FrameProperty& property : frame_properties()) {
       const Measured measured = property.measure({shot, frame, found});
       if (!measured) continue;

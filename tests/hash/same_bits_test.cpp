@@ -16,6 +16,7 @@
 #include "filters/registry.h"
 #include "parallel/task_order.h"
 #include "relight/estimate.h"
+#include "support/estimate_light.h"
 #include "support/chosen_isa.h"
 #include "support/crop.h"
 #include "support/fixed_frame.h"
@@ -65,7 +66,7 @@ Products products_of(const Case& of) {
     const glm::dvec3 up(0, 0, 1);
     plan.prior = LearnedPrior{glm::vec3(scene.geometry.camera.rotation * up)};
   }
-  return estimate(scene, plan, [](double) {}, {}).products;
+  return estimate_light(scene, plan).products;
 }
 
 /// Calls visit(name, plane) for each product that was made.

@@ -93,7 +93,7 @@ TEST(SourceFilter, OfSsaoFadeIsThreeRoundsAtHalfResolutionThatThenGoUp) {
   const Scene scene = scene_of(g);
   Plane<double> half = slow_half_map(g, 0.8f);
   for (int round = 0; round < 3; ++round) half = slow_pass(slow_pass(half, g, 1, 0), g, 0, 1);
-  const Estimate found = estimate(scene, plan_of(scene, "ssao-fade"), [](double) {}, {});
+  const Estimate found = estimate_light(scene, plan_of(scene, "ssao-fade"));
   expect_close(
       found.products.ao, [&](int x, int y) { return slow_bilinear(half, x, y); }, 2e-4, 0.02);
 }

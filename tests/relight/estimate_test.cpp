@@ -33,7 +33,7 @@ TEST(Estimate, TakesTheSceneAndLeavesItWithoutSolids) {
   for (const std::optional<double> error : {std::optional<double>(), std::optional(1e-3)}) {
     const Scene scene = boxes();
     const Plan plan = plan_of(scene, error);
-    const Estimate found = estimate(scene, plan, [](double) {}, {});
+    const Estimate found = estimate_light(scene, plan);
     EXPECT_FALSE(scene.solids.thickness.empty()) << "the test needs some";
     EXPECT_TRUE(found.scene.solids.thickness.empty());
     EXPECT_EQ(found.scene.geometry.surfel.size(), scene.geometry.surfel.size());

@@ -13,6 +13,7 @@
 #include "relight/estimate.h"
 #include "scene/light/named_light.h"
 #include "scene/light/painted_map.h"
+#include "support/estimate_light.h"
 #include "support/error_matchers.h"
 #include "support/point_source.h"
 
@@ -71,7 +72,7 @@ Plan plan_of(const Scene& scene, const std::string& method, bool per_light,
 }
 
 Estimate run(const Scene& scene, const Plan& plan) {
-  return estimate(scene, plan, [](double) {}, {});
+  return estimate_light(scene, plan);
 }
 
 /// Root mean square of a - b, relative to the mean of b.

@@ -114,7 +114,6 @@ OtherPictures::Picture picture_of(View view, const std::string& file, const std:
 std::vector<OtherPictures::Key> OtherPictures::keys_of(const FrameFiles& frame) {
   std::vector<Key> keys;
   for (const std::string& file : frame.also) keys.emplace_back(kByNames, file);
-  for (const FrameFiles& other : frame.neighbours) keys.emplace_back(kAsInput, name_of(other));
   if (!frame.view.empty()) keys.emplace_back(kAsInput, name_of(other_eye(frame)));
   return keys;
 }

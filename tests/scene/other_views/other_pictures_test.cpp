@@ -52,20 +52,6 @@ TEST_F(OtherPicturesOf, ARunAreKeptUntilNoFrameExpectsThem) {
   EXPECT_TRUE(pictures.also(path("a"))) << "read anew";
 }
 
-TEST_F(OtherPicturesOf, ASequenceAreKeptForTheFramesToCome) {
-  FrameFiles first, second;
-  first.neighbours = {{path("a"), {}, {}}};
-  second.neighbours = {{path("a"), {}, {}}, {path("b"), {}, {}}};
-  pictures.expect(first);
-  pictures.expect(second);
-  std::weak_ptr<const OtherPicture> a = pictures.alike(first.neighbours[0], {}, {});
-  pictures.release(first);
-  EXPECT_FALSE(a.expired());
-  EXPECT_EQ(pictures.alike(second.neighbours[0], {}, {}), a.lock());
-  pictures.release(second);
-  EXPECT_TRUE(a.expired());
-}
-
 TEST_F(OtherPicturesOf, ARunAreReadOnceByManyThreads) {
   std::vector<std::future<Picture>> asked;
   for (int i = 0; i < 8; ++i)

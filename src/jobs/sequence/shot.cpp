@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "jobs/sequence/shot.h"
+
+#include <algorithm>
+
+#include "relight/relight.h"
+
+namespace ssdo {
+
+Shot::Shot(const std::vector<Job>& jobs, const ShotWindow& window)
+    : jobs_(jobs), is_shot_(window.count > 0), around_(jobs.size()), wanting_(jobs.size()) {
+  if (!is_shot_) return;
+  std::map<int, std::size_t> at_frame;
+  for (std::size_t i = 0; i < jobs.size(); ++i)
+    if (jobs[i].frame) at_frame.emplace(*jobs[i].frame, i);
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (jobs[i].is_lent || !jobs[i].frame) continue;
+    for (const int frame : frames_around(window, *jobs[i].frame))
+      if (const auto found = at_frame.find(frame); found != at_frame.end())
+        around_[i].push_back(found->second);
+    for (const std::size_t other : around_[i]) ++wanting_[other];
+  }
+}
+
+std::vector<Work> Shot::complete(Work work) {
+  const std::size_t now = work.index;
+  if (is_shot_ && is_wanted(now)) {
+    for (std::size_t v = 0; v < work.views.size(); ++v)
+      findings_.insert_or_assign({now, v}, take_findings(work.views[v].relit));
+  }
+  waiting_.push_back(std::move(work));
+  std::vector<Work> made;
+  while (!waiting_.empty() && complete_after(waiting_.front().index) <= now) {
+    Work& first = waiting_.front();
+    if (is_shot_) make(first);
+    made.push_back(std::move(first));
+    waiting_.pop_front();
+  }
+  return made;
+}
+
+/// The job after which a job has all that it wants.
+std::size_t Shot::complete_after(std::size_t job) const {
+  return around_[job].empty() ? job : *std::ranges::max_element(around_[job]);
+}
+
+void Shot::make(Work& work) {
+  const std::size_t job = work.index;
+  if (jobs_[job].is_lent) return work.views.clear();
+  attempt(work, jobs_[job].input(), [&] {
+    for (std::size_t v = 0; v < work.views.size(); ++v) {
+      std::vector<const Findings*> others;
+      for (const std::size_t other : around_[job]) {
+        const auto found = findings_.find({other, v});
+        if (other != job && found != findings_.end()) others.push_back(&found->second);
+      }
+      relight_in_shot(findings_.at({job, v}), others, work.views[v].relit);
+    }
+  });
+  release(job);
+}
+
+/// A job wants nothing any more.
+void Shot::release(std::size_t job) {
+  for (const std::size_t other : around_[job]) {
+    if (--wanting_[other] > 0) continue;
+    findings_.erase(findings_.lower_bound({other, 0}), findings_.lower_bound({other + 1, 0}));
+  }
+}
+
+}  // namespace ssdo

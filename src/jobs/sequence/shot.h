@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "filters/shot/findings.h"
+#include "jobs/jobs.h"
+#include "jobs/work.h"
+
+namespace ssdo {
+
+/// The frames of a run with --shot: what each has found is kept as long as frames that are still to
+/// be made want it, and a frame waits until those around it have found what they can. Without
+/// --shot none waits.
+class Shot {
+ public:
+  /// `jobs` as plan_jobs() orders them; they have to outlive it.
+  Shot(const std::vector<Job>& jobs, const ShotWindow& window);
+
+  /// Whether a job that is still to be made wants what this one finds.
+  bool is_wanted(std::size_t job) const { return wanting_[job] > 0; }
+
+  bool is_waiting() const { return !waiting_.empty(); }
+
+  /// The frames that have all that they want, now that `work` has found what it can, made up to
+  /// their outputs and in order.
+  std::vector<Work> complete(Work work);
+
+ private:
+  std::size_t complete_after(std::size_t job) const;
+  void make(Work& work);
+  void release(std::size_t job);
+
+  const std::vector<Job>& jobs_;
+  const bool is_shot_;
+  std::vector<std::vector<std::size_t>> around_;  ///< of each job that makes something, by frame
+  std::vector<int> wanting_;                      ///< how many jobs want each
+  std::map<std::pair<std::size_t, std::size_t>, Findings> findings_;  ///< by job and view
+  std::deque<Work> waiting_;
+};
+
+}  // namespace ssdo

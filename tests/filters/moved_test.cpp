@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/shot/moved.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "filters/shot/fusion.h"
+#include "scene/light/light.h"
+#include "support/analytic_scene.h"
+
+namespace ssdo::test {
+namespace {
+
+const Window kWindow{0, 0, 96, 72};
+
+Surface ball_at(double x) { return all_of({plane({}, {0, 0, 1}), sphere({x, 0, 0.5}, 0.3)}); }
+
+Camera camera() { return look_at(camera_from_fov(45, kWindow, 1), {0, -4, 3}, {}, {0, 0, 1}); }
+
+TEST(Moved, ABallIsFoundWhereItWasAndWhereItIs) {
+  const Geometry now = geometry_of(ball_at(0.8), camera(), kWindow),
+                 other = geometry_of(ball_at(-0.8), camera(), kWindow);
+  const std::vector<MovedPiece> pieces = find_moved(now, other);
+  double area[2] = {0, 0};
+  for (const MovedPiece& piece : pieces) {
+    double nearest = 1e30;
+    int which = 0;
+    for (const int side : {0, 1}) {
+      const glm::dvec3 centre = camera().to_camera(glm::dvec3(side ? 0.8 : -0.8, 0, 0.5));
+      const double distance = glm::distance(centre, glm::dvec3(piece.centre));
+      if (distance < nearest) nearest = distance, which = side;
+    }
+    EXPECT_LT(nearest, 0.35);
+    EXPECT_LT(piece.radius, 0.4);
+    area[which] += double(piece.area);
+  }
+  // Its disk, without an edge that one of both misses.
+  for (const double found : area) EXPECT_NEAR(found, 3.14159 * 0.3 * 0.3, 0.25 * 3.14159 * 0.09);
+  EXPECT_TRUE(find_moved(now, now).empty());
+}
+
+/// A still scene has no pieces, whatever the camera does.
+TEST(Moved, ACameraMovesNothing) {
+  const Geometry now = geometry_of(ball_at(0), camera(), kWindow);
+  for (const double x : {-0.9, -0.1, 0.4, 1.3}) {
+    const Camera moved = look_at(camera_from_fov(45, kWindow, 1), {x, -4, 3}, {}, {0, 0, 1});
+    EXPECT_TRUE(find_moved(now, geometry_of(ball_at(0), moved, kWindow)).empty()) << x;
+  }
+}
+
+TEST(Moved, WeightsAreThoseOfWhatTheBallMayHide) {
+  const Geometry now = geometry_of(ball_at(0.8), camera(), kWindow),
+                 other = geometry_of(ball_at(-0.8), camera(), kWindow);
+  const MovedWeights weights(now, find_moved(now, other),
+                             model_light(Environment::constant(glm::vec3(1)), glm::mat3(1)));
+  const auto at = [&](const glm::dvec3& place) {
+    const glm::dvec2 px = camera().project(camera().to_camera(place));
+    return weights.at(-1, int(px.x), int(px.y));
+  };
+  EXPECT_EQ(at({-0.8, 0, 0}), 0);
+  EXPECT_EQ(at({0.8, 0.45, 0}), 0);
+  EXPECT_GT(at({1.3, 2.2, 0}), 0.5f);
+  EXPECT_GT(at({1.3, 2.2, 0}), at({1, 1, 0}));
+}
+
+Findings findings_of(double value, const Geometry& geometry) {
+  Products products;
+  products.ao = Plane<float>(kWindow.width(), kWindow.height(), float(value));
+  return take_findings(products, geometry, {});
+}
+
+TEST(Fusion, IsTheMeanAndKeepsWhatIsConstant) {
+  const Geometry now = geometry_of(ball_at(0), camera(), kWindow);
+  const Light light = model_light(Environment::constant(glm::vec3(1)), glm::mat3(1));
+  const Findings own = findings_of(0.75, now), same = findings_of(0.75, now),
+                 darker = findings_of(0.25, now);
+  Products products;
+  fuse(own, {&same}, light, products);
+  for (const float ao : products.ao.pixels) EXPECT_EQ(ao, 0.75f);
+  fuse(own, {&same, &darker, &darker}, light, products);
+  for (std::size_t i = 0; i < products.ao.size(); ++i)
+    EXPECT_NEAR(products.ao[i], now.is_surface(i) ? 0.5f : 0.75f, 1e-6f);
+}
+
+/// A bent normal is a direction of the world: seen by a camera that has rolled, it is the same.
+TEST(Fusion, TurnsDirectionsWithTheCamera) {
+  const auto rolled = [](double degrees) {
+    const double a = degrees * 0.0174533;
+    return look_at(camera_from_fov(45, kWindow, 1), {0, -4, 3}, {}, {std::sin(a), 0, std::cos(a)});
+  };
+  const glm::vec3 in_world = glm::normalize(glm::vec3(0.4f, -0.1f, 0.9f));
+  const auto bent_of = [&](const Camera& camera, Geometry& geometry) {
+    geometry = geometry_of(plane({}, {0, 0, 1}), camera, kWindow);
+    const glm::vec3 bent = glm::mat3(camera.rotation) * in_world,
+                    n = glm::mat3(camera.rotation) * glm::vec3(0, 0, 1), z(0, 0, 1), both = n + z;
+    // As N is turned to the view axis.
+    const glm::vec3 deviation =
+        bent - glm::dot(both, bent) / (1 + glm::dot(n, z)) * both + 2 * glm::dot(n, bent) * z;
+    Products products;
+    products.bent = Plane<glm::vec3>(kWindow.width(), kWindow.height(), deviation);
+    return products;
+  };
+  Geometry now, other;
+  Products own_products = bent_of(rolled(0), now), other_products = bent_of(rolled(40), other);
+  const glm::vec3 wanted = own_products.bent[2000];
+  const Findings own = take_findings(own_products, now, {}),
+                 told = take_findings(other_products, other, {});
+  Products products;
+  fuse(own, {&told, &told, &told}, model_light(Environment::constant(glm::vec3(1)), glm::mat3(1)),
+       products);
+  for (int y = 20; y < 50; ++y)
+    for (int x = 30; x < 60; ++x)
+      EXPECT_LT(glm::distance(products.bent(x, y), wanted), 0.002f) << x << " " << y;
+}
+
+}  // namespace
+}  // namespace ssdo::test
