@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A point of one frame has moved, come or gone if the other frame looks through its place at what
-// lies behind (SeenBefore::through). Points are taken on a grid, and joined to balls.
+// lies behind (SeenBefore::through), and so have points that go on from there on the same surface
+// where the other frame shows something else: of a ball that moves by less than its width, that
+// frame looks through a crescent. Points are taken on a grid, and joined to balls. A body is taken
+// to be as deep as it is wide, in its picture, along a row or a column, whichever is less: the
+// middles of the balls lie half as far behind what is seen.
 //
 // Around a receiver p with the normal n, a ball of the area A at the distance d hides at most about
 //
@@ -23,6 +27,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vec2.hpp>
 #include <numbers>
 
 #include "filters/reprojection.h"
@@ -40,44 +45,119 @@ constexpr int kPoints = 480, kPiece = 8;
 /// A piece of fewer points may be an edge that one of both cameras misses.
 constexpr int kFewestPoints = 3;
 
+/// Points of one surface lie closer than so many times the distance of points that face the viewer.
+constexpr float kJoined = 4;
+
 /// A ball reaches so much farther than the root mean square of its points.
 constexpr float kReach = 1.5f;
 
-/// Pieces of `stands` that `looks` does not show, in its own camera space.
-std::vector<MovedPiece> missing(const Geometry& stands, const Geometry& looks) {
-  const Plane<Surfel>& surfel = stands.surfel;
-  const int stride = std::max(1, surfel.width / kPoints), side = stride * kPiece,
-            columns = (surfel.width + side - 1) / side, rows = (surfel.height + side - 1) / side;
-  const Reprojection reprojection(looks, stands);
-  std::vector<std::vector<MovedPiece>> of_rows(static_cast<std::size_t>(rows));
-  for_each_row(rows, [&](int row) {
-    for (int column = 0; column < columns; ++column) {
-      glm::vec3 sum(0);
-      float squares = 0, area = 0;
-      int count = 0;
-      for (int y = row * side; y < std::min((row + 1) * side, surfel.height); y += stride) {
-        for (int x = column * side; x < std::min((column + 1) * side, surfel.width); x += stride) {
-          const Surfel& s = surfel(x, y);
-          if (!s.is_surface() || reprojection.find(s, glm::dvec2(NAN)).sight != SeenBefore::through)
-            continue;
-          const Camera& camera = stands.camera;
-          const float scale = float(stride) * (camera.orthographic ? 1.0f : -s.position.z);
-          area += scale * scale / float(camera.fx * camera.fy);
-          sum += s.position, squares += glm::dot(s.position, s.position);
-          ++count;
-        }
+/// Points of a frame on a grid, and which of them have moved.
+class MovedPoints {
+ public:
+  MovedPoints(const Geometry& stands, const Geometry& looks)
+      : stands_(stands),
+        stride_(std::max(1, stands.surfel.width / kPoints)),
+        columns_((stands.surfel.width + stride_ - 1) / stride_),
+        rows_((stands.surfel.height + stride_ - 1) / stride_),
+        state_(columns_, rows_, kSame) {
+    const Reprojection reprojection(looks, stands);
+    for_each_row(rows_, [&](int row) {
+      for (int column = 0; column < columns_; ++column)
+        state_(column, row) = state_of(surfel(column, row), reprojection, looks.window);
+    });
+    spread();
+  }
+
+  std::vector<MovedPiece> pieces() const {
+    std::vector<MovedPiece> pieces;
+    for (int top = 0; top < rows_; top += kPiece)
+      for (int left = 0; left < columns_; left += kPiece) add_piece(left, top, pieces);
+    return pieces;
+  }
+
+ private:
+  enum State : unsigned char { kSame, kOther, kMoved };
+
+  const Surfel& surfel(int column, int row) const {
+    return stands_.surfel(column * stride_, row * stride_);
+  }
+
+  /// From one point to the next, at the depth of one.
+  float spacing_at(const Surfel& s) const {
+    return float(stride_) * (stands_.camera.orthographic ? 1.0f : -s.position.z) /
+           float(stands_.camera.fx);
+  }
+
+  static State state_of(const Surfel& s, const Reprojection& reprojection, const Window& seen) {
+    if (!s.is_surface()) return kSame;
+    const glm::dvec2 at = reprojection.place(s.position);
+    if (!(at.x >= seen.x0 && at.x < seen.x1 && at.y >= seen.y0 && at.y < seen.y1)) return kSame;
+    const SeenBefore sight = reprojection.find(s, glm::dvec2(NAN)).sight;
+    return sight == SeenBefore::through ? kMoved : sight == SeenBefore::same ? kSame : kOther;
+  }
+
+  /// What goes on from points that have moved, has.
+  void spread() {
+    std::vector<glm::ivec2> open;
+    for (int row = 0; row < rows_; ++row)
+      for (int column = 0; column < columns_; ++column)
+        if (state_(column, row) == kMoved) open.emplace_back(column, row);
+    while (!open.empty()) {
+      const glm::ivec2 at = open.back();
+      open.pop_back();
+      const Surfel& from = surfel(at.x, at.y);
+      for (const glm::ivec2& step : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
+        const glm::ivec2 to = at + step;
+        if (to.x < 0 || to.y < 0 || to.x >= columns_ || to.y >= rows_) continue;
+        if (state_(to.x, to.y) != kOther) continue;
+        if (glm::distance(surfel(to.x, to.y).position, from.position) > kJoined * spacing_at(from))
+          continue;
+        state_(to.x, to.y) = kMoved;
+        open.push_back(to);
       }
-      if (count < kFewestPoints) continue;
-      const glm::vec3 centre = sum / float(count);
-      const float spread =
-          std::max(squares / float(count) - glm::dot(centre, centre), area / (4 * float(count)));
-      of_rows[std::size_t(row)].push_back({centre, kReach * std::sqrt(spread), area});
     }
-  });
-  std::vector<MovedPiece> pieces;
-  for (const auto& some : of_rows) pieces.insert(pieces.end(), some.begin(), some.end());
-  return pieces;
-}
+  }
+
+  /// Moved points in a line through one that has.
+  int run(glm::ivec2 from, glm::ivec2 step) const {
+    int length = 1;
+    for (const int sign : {-1, 1}) {
+      for (glm::ivec2 at = from + sign * step; at.x >= 0 && at.y >= 0 && at.x < columns_ &&
+                                               at.y < rows_ && state_(at.x, at.y) == kMoved;
+           at += sign * step)
+        ++length;
+    }
+    return length;
+  }
+
+  void add_piece(int left, int top, std::vector<MovedPiece>& pieces) const {
+    glm::vec3 sum(0);
+    float squares = 0, area = 0, deep = 0;
+    int count = 0;
+    for (int row = top; row < std::min(top + kPiece, rows_); ++row) {
+      for (int column = left; column < std::min(left + kPiece, columns_); ++column) {
+        if (state_(column, row) != kMoved) continue;
+        const Surfel& s = surfel(column, row);
+        const float spacing = spacing_at(s);
+        sum += s.position, squares += glm::dot(s.position, s.position);
+        area += spacing * spacing;
+        deep += spacing * float(std::min(run({column, row}, {1, 0}), run({column, row}, {0, 1})));
+        ++count;
+      }
+    }
+    if (count < kFewestPoints) return;
+    const glm::vec3 middle = sum / float(count), away = stands_.camera.orthographic
+                                                            ? glm::vec3(0, 0, -1)
+                                                            : glm::normalize(middle);
+    const float half = deep / float(2 * count),
+                spread = std::max(squares / float(count) - glm::dot(middle, middle), 0.0f);
+    pieces.push_back({middle + half * away, std::hypot(kReach * std::sqrt(spread), half), area});
+  }
+
+  const Geometry& stands_;
+  const int stride_, columns_, rows_;
+  Plane<State> state_;
+};
 
 /// About the largest share of the hemisphere, by the cosine, that a piece hides.
 float form_factor(const MovedPiece& piece, const Surfel& at) {
@@ -115,10 +195,10 @@ Plane<float> least_around(const Plane<float>& plane) {
 }  // namespace
 
 std::vector<MovedPiece> find_moved(const Geometry& now, const Geometry& other) {
-  std::vector<MovedPiece> pieces = missing(now, other);
+  std::vector<MovedPiece> pieces = MovedPoints(now, other).pieces();
   const glm::dmat3 turn = now.camera.rotation * glm::transpose(other.camera.rotation);
   const glm::dvec3 step = now.camera.rotation * (other.camera.origin - now.camera.origin);
-  for (MovedPiece piece : missing(other, now)) {
+  for (MovedPiece piece : MovedPoints(other, now).pieces()) {
     piece.centre = glm::vec3(turn * glm::dvec3(piece.centre) + step);
     pieces.push_back(piece);
   }
