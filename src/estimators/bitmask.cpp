@@ -208,8 +208,18 @@ class Bitmask {
     March march = march_;
     if (march.extend) march.cut = &cut_;
     if (march.extend && !far_ && cut_.extents.empty())
-      cut_ = find_cut_surfaces(march_scene_, up_in_camera(scene_), request_.radius);
+      cut_ = find_cut_surfaces(march_scene_, up_in_camera(scene_), request_.radius, asked_planes());
     return march;
+  }
+
+  /// The planes that rays to sources meet; those of mirrors may meet any.
+  MayMeetPlane asked_planes() const {
+    if (request_.products.reflection || request_.products.specular) return {};
+    return [this](const glm::vec3& position, const glm::vec3& normal) {
+      const auto& sources = scene_.light.sources;
+      return std::any_of(sources.begin(), sources.end(),
+                         [&](const auto& source) { return is_behind(*source, position, normal); });
+    };
   }
 
   /// Finds where sources are seen, and once more by other rays where the error is wanted.

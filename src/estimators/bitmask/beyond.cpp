@@ -25,6 +25,10 @@ constexpr double kSkyTells = 10, kAboveTellsAll = 1 / 3.0;
 /// pixels of an orthographic camera pass the horizon together.
 constexpr double kAllAbove = 0.1;
 
+bool is_endlessly_far(const Source& source) {
+  return std::isinf(source.cone(glm::vec3(0)).distance);
+}
+
 /// The sine of elevation at which a pixel looks, where that is above the horizon; else 0.
 float sine_above_horizon(const MarchScene& scene, int x, int y, const glm::vec3& up) {
   const glm::vec2 slope = scene.orthographic ? glm::vec2(0) : ray_slope(scene, x, y);
@@ -74,12 +78,21 @@ glm::vec3 up_in_camera(const Scene& scene) {
   return scene.geometry.world_to_camera[scene.light.environment.frame().up == UpAxis::z ? 2 : 1];
 }
 
+bool is_behind(const Source& source, const glm::vec3& position, const glm::vec3& normal) {
+  constexpr float kRounding = 1e-3f;
+  const SourceCone cone = source.cone(position);
+  return glm::dot(cone.to, normal) < std::sin(cone.angular_radius) + kRounding;
+}
+
 bool needs_openness(const Scene& scene, const Request& request) {
   const ProductSet& products = request.products;
+  const auto& sources = scene.light.sources;
+  const bool has_far = std::any_of(sources.begin(), sources.end(),
+                                   [](const auto& source) { return is_endlessly_far(*source); });
   // A panorama shows what stands beyond the border, and rays have asked it.
   const bool all_is_shown = std::any_of(scene.views.begin(), scene.views.end(),
                                         [](const OtherView& view) { return view.picture->closed; });
-  return (products.direct || products.bounce || products.error) && !scene.light.sources.empty() &&
+  return (products.direct || products.bounce || products.error) && has_far &&
          request.extend_offscreen && !all_is_shown;
 }
 
@@ -114,7 +127,7 @@ float sun_past_beyond(const Openness& frame) {
 
 PassBeyond pass_beyond(float sun_past, const Source& source) {
   constexpr float kSky = 0.25f;
-  if (!std::isinf(source.cone(glm::vec3(0)).distance)) return {};
+  if (!is_endlessly_far(source)) return {};
   const float sky = std::min(1.0f, source.held / kSky);
   return {sun_past + sky * (1 - sun_past), sky * kLightThroughBeyond};
 }

@@ -64,6 +64,10 @@ void add_openness(const Scene& band, const Request& request, Openness& sum);
 /// The way up in camera space, unit.
 glm::vec3 up_in_camera(const Scene& scene);
 
+/// Whether part of a source lies behind a plane, unit `normal`: rays to it from in front of the
+/// plane meet that.
+bool is_behind(const Source& source, const glm::vec3& position, const glm::vec3& normal);
+
 /// Whether the openness of the frame changes the light that is asked for.
 bool needs_openness(const Scene& scene, const Request& request);
 

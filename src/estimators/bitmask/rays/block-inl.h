@@ -26,11 +26,13 @@ struct Block {
     return ((at.y - part.y0) * Interleaving::kPeriod + at.column_phase) * kLanes;
   }
 
-  /// Numbers for the pixels of a vector; those of squares of kRows x kRows follow on each other.
-  HWY_INLINE VI places(const Place& at) const {
-    const int in_lane = at.column_phase / kRows * kRows * kRows + (at.y - part.y0) * kRows +
-                        at.column_phase % kRows;
-    return hn::Iota(DI(), 0) * set_int(kPixels / kLanes) + set_int(in_lane);
+  /// The k-th pixel of an order in which those of squares of kRows x kRows follow on each other, by
+  /// first_of().
+  static int in_squares(int k) {
+    constexpr int kSquare = kRows * kRows, kInLane = kPixels / kLanes;
+    const int in_lane = k % kInLane, row = in_lane % kSquare / kRows,
+              column_phase = in_lane / kSquare * kRows + in_lane % kRows;
+    return (row * Interleaving::kPeriod + column_phase) * kLanes + k / kInLane;
   }
 };
 

@@ -91,6 +91,8 @@ class CutSurface {
     for (int c = 0; c < 3; ++c) normal_[c] = scene.border_normal[c][std::size_t(border_index)];
   }
 
+  bool asked(const MayMeetPlane& may_meet) const { return !may_meet || may_meet(start_, normal_); }
+
   BorderExtent extent(const glm::vec3& up) const {
     const glm::vec3 axis = glm::cross(up, normal_) + kAxisOfLevelPlanes,
                     right = glm::normalize(axis - glm::dot(axis, normal_) * normal_),
@@ -183,12 +185,14 @@ class CutSurface {
 
 }  // namespace
 
-CutSurfaces find_cut_surfaces(const MarchScene& scene, const glm::vec3& up, float radius) {
+CutSurfaces find_cut_surfaces(const MarchScene& scene, const glm::vec3& up, float radius,
+                              const MayMeetPlane& may_meet) {
   const int w = scene.layout.width(), h = scene.layout.height();
   CutSurfaces cut{up, std::vector<BorderExtent>(scene.border.size())};
   const auto find = [&](int x, int y, std::ptrdiff_t index) {
     if (!scene.shows_surface(scene.layout.index(x, y))) return;
-    cut.extents[std::size_t(index)] = CutSurface(scene, {x, y}, index, radius).extent(up);
+    const CutSurface surface(scene, {x, y}, index, radius);
+    if (surface.asked(may_meet)) cut.extents[std::size_t(index)] = surface.extent(up);
   };
   for_each_row(w, [&](int x) {
     for (const bool last : {false, true}) find(x, last ? h - 1 : 0, scene.border.in_row(last, x));

@@ -12,6 +12,7 @@
 // So a sun that stands well above all that is seen of a wall is taken to be seen.
 #pragma once
 
+#include <functional>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -23,7 +24,7 @@ namespace ssdo {
 /// on at most. Scene units along the axes of its tangent plane: to the right, to the left, uphill,
 /// downhill.
 struct BorderExtent {
-  float seen[4] = {}, most[4] = {};
+  float seen[4] = {}, most[4] = {1, 1, 1, 1};
 };
 
 /// The surfaces that the border of a frame cuts.
@@ -32,8 +33,13 @@ struct CutSurfaces {
   std::vector<BorderExtent> extents;  ///< by the index of BorderLayout
 };
 
-/// Extents are measured within `radius` of each pixel.
-CutSurfaces find_cut_surfaces(const MarchScene& scene, const glm::vec3& up, float radius);
+/// Whether rays may meet the tangent plane of a border pixel, at this position and with this unit
+/// normal, from its front.
+using MayMeetPlane = std::function<bool(const glm::vec3& position, const glm::vec3& normal)>;
+
+/// Extents are measured within `radius` of each pixel, where `may_meet` says so; null: everywhere.
+CutSurfaces find_cut_surfaces(const MarchScene& scene, const glm::vec3& up, float radius,
+                              const MayMeetPlane& may_meet = {});
 
 /// The horizontal axis of a plane is cross(up, normal) plus this, made unit across the normal:
 /// level planes have one too.

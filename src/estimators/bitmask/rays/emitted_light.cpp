@@ -112,13 +112,13 @@ HWY_INLINE void find_arriving(const EmittedJob& job, const Block& block, int set
       rays.length.set_at(i, hn::Max(distance - chosen.solid, zero));
       rays.light.set_at(i, chosen.light);
       if (k == 0) rays.arrived.set_at(i, set(glm::vec3(0)));
-      occluders.ask(block.places(place), p, ray(p, i));
+      occluders.ask(i, p, ray(p, i));
     });
-    occluders.run();
+    occluders.run(false);
     for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
       const int i = block.first_of(place);
       const MarchReceiver p = load_receiver(scene, place);
-      const Arrival a = occluders.arrival(block.places(place), p, ray(p, i), PassLanes{set(1), 0});
+      const Arrival a = occluders.arrival(i, p, ray(p, i), PassLanes{set(1), 0});
       const V3 light = if_then_else_zero(a.share > zero, rays.light(i) * a.share);
       rays.arrived.set_at(i, mul_add(light, set(1 / float(job.rays)), rays.arrived(i)));
     });
@@ -128,7 +128,7 @@ HWY_INLINE void find_arriving(const EmittedJob& job, const Block& block, int set
 template <bool kOrthographic>
 void emitted(const EmittedJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
-  Occluders<kOrthographic> occluders(job.march, job.bounds, Block::kPixels);
+  Occluders<kOrthographic> occluders(job.march, job.bounds);
   EmittedRays rays;
   for_each_block(scene, part, [&](const Block& block) HWY_ATTR {
     // Twice where the error is wanted, which is what other points and rays change.

@@ -216,18 +216,17 @@ struct Arrival {
 
 /// All that may be in the way of rays: the solids of the frame, those of the overview where the
 /// raster is a part of the frame, what other views show, and what goes on beyond the border.
-/// Rays are asked about together, in places of a queue, and go over the frame between both calls:
+/// Rays of a block are asked about together, and go over the frame between both calls:
 ///
-///   clear(); ask(places, ...) for some vectors; run(); arrival(places, ...) for each of them
+///   clear(); ask(i, ...) for some vectors; run(); arrival(i, ...) for each of them
 template <bool kOrthographic>
 class Occluders {
  public:
-  /// As Walk.
-  Occluders(const March& march, const std::vector<DepthBounds>& bounds, int most)
-      : march_(march), near_(march, bounds, most, 0, march.far ? march.far->raster.from_px : 1e9f) {
+  Occluders(const March& march, const std::vector<DepthBounds>& bounds)
+      : march_(march), near_(march, bounds, 0, march.far ? march.far->raster.from_px : 1e9f) {
     if (!march.far) return;
     far_march_.emplace(march_in_overview(march));
-    far_.emplace(*far_march_, march.far->bounds, most,
+    far_.emplace(*far_march_, march.far->bounds,
                  march.far->raster.from_px / float(Interleaving::kPeriod));
   }
 
@@ -236,24 +235,25 @@ class Occluders {
     if (far_) far_->clear();
   }
 
-  HWY_INLINE void ask(VI places, const MarchReceiver& p, const Ray& ray) {
-    near_.put(places, p, ray.side, ray.in_slice, ray.open);
+  HWY_INLINE void ask(int i, const MarchReceiver& p, const Ray& ray) {
+    near_.put(i, p, ray.side, ray.in_slice, ray.open);
     if (far_) {
-      far_->put(places, in_far_pixels(march_, p), in_far_pixels(ray.side),
-                in_far_pixels(ray.in_slice), ray.open);
+      far_->put(i, in_far_pixels(march_, p), in_far_pixels(ray.side), in_far_pixels(ray.in_slice),
+                ray.open);
     }
   }
 
-  HWY_INLINE void run() {
-    near_.run();
-    if (far_) far_->run();
+  /// As Walk.
+  HWY_INLINE void run(bool together) {
+    near_.run(together);
+    if (far_) far_->run(false);
   }
 
   /// What of the rays asked about arrives; `pass` and `on_met` are those of open_beyond().
   template <class Met>
-  HWY_INLINE Arrival arrival(VI places, const MarchReceiver& p, const Ray& ray,
-                             const PassLanes& pass, const Met& on_met) const {
-    const V at_px = blocked_px(places);
+  HWY_INLINE Arrival arrival(int i, const MarchReceiver& p, const Ray& ray, const PassLanes& pass,
+                             const Met& on_met) const {
+    const V at_px = blocked_px(i);
     const M meets = at_px >= set(0);
     Arrival a;
     a.blocked_at = hn::IfThenElse(hn::And(ray.open, meets),
@@ -274,17 +274,17 @@ class Occluders {
     return a;
   }
 
-  HWY_INLINE Arrival arrival(VI places, const MarchReceiver& p, const Ray& ray,
+  HWY_INLINE Arrival arrival(int i, const MarchReceiver& p, const Ray& ray,
                              const PassLanes& pass) const {
-    return arrival(places, p, ray, pass, [](const Border&, V) HWY_ATTR {});
+    return arrival(i, p, ray, pass, [](const Border&, V) HWY_ATTR {});
   }
 
  private:
   /// As Walk.
-  HWY_INLINE V blocked_px(VI places) const {
-    const V near = near_.blocked_px(places);
+  HWY_INLINE V blocked_px(int i) const {
+    const V near = near_.blocked_px(i);
     if (!far_) return near;
-    const V far = far_->blocked_px(places) * set(float(Interleaving::kPeriod));
+    const V far = far_->blocked_px(i) * set(float(Interleaving::kPeriod));
     return hn::IfThenElse(far > set(0), hn::IfThenElse(near >= set(0), near, far), near);
   }
 

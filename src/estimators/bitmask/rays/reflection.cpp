@@ -181,7 +181,7 @@ HWY_INLINE Ray ray_of(const MarchScene& scene, const MarchReceiver& p, const Mir
 template <bool kOrthographic>
 void reflection(const ReflectionJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
-  Occluders<kOrthographic> occluders(job.march, job.bounds, Block::kPixels);
+  Occluders<kOrthographic> occluders(job.march, job.bounds);
   const auto mirrors = std::make_unique<BlockOfMirrors>();
   const PassLanes pass{set(1), 0, true};
   const auto receiver = [&](const Place& place) HWY_ATTR {
@@ -204,17 +204,17 @@ void reflection(const ReflectionJob& job, const Window& part) {
         const Mirrored m = mirrored(normals, viewers, roughness,
                                     sobol_point(std::uint32_t(sample), hash_of(job.seed, 0, 0)));
         mirrors->put(block.first_of(place), m);
-        occluders.ask(block.places(place), p, ray_of<kOrthographic>(scene, p, m));
+        occluders.ask(block.first_of(place), p, ray_of<kOrthographic>(scene, p, m));
       });
-      occluders.run();
+      occluders.run(false);
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
         const MarchReceiver p = receiver(place);
         const int i = block.first_of(place);
         const Mirrored m = mirrors->mirrored(i);
         SentBeyond beyond(job.light ? job.light->sent_border : nullptr);
-        const Arrival a = occluders.arrival(
-            block.places(place), p, ray_of<kOrthographic>(scene, p, m), pass,
-            [&](const Border& border, V likely) HWY_ATTR { beyond.add(border, likely); });
+        const Arrival a = occluders.arrival(i, p, ray_of<kOrthographic>(scene, p, m), pass,
+                                            [&](const Border& border, V likely)
+                                                HWY_ATTR { beyond.add(border, likely); });
         mirrors->open.set_at(i, hn::MulAdd(a.share, m.share, mirrors->open(i)));
         mirrors->all.set_at(
             i, mirrors->all(i) + hn::IfThenElseZero(p.valid, hn::Max(m.share, set(0))));

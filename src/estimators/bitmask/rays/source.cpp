@@ -134,7 +134,7 @@ HWY_INLINE V way_in_solid(const SourceJob& job, const Place& place) {
 template <bool kOrthographic>
 void source(const SourceJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
-  Occluders<kOrthographic> occluders(job.march, job.bounds, Block::kPixels);
+  Occluders<kOrthographic> occluders(job.march, job.bounds);
   BlockSums sums;
   SourceRays rays{};
   for_each_block(scene, part, [&](const Block& block) HWY_ATTR {
@@ -151,14 +151,14 @@ void source(const SourceJob& job, const Window& part) {
         rays.length.set_at(i, hn::Max(to.distance - way_in_solid(job, place), set(0)));
         rays.light.set_at(i, hn::IfThenElseZero(hn::And(lit.valid, light > set(0)), light));
         const MarchReceiver p = start_of_ray(job, place, to.to);
-        occluders.ask(block.places(place), p, ray_of<kOrthographic>(scene, p, rays, i));
+        occluders.ask(i, p, ray_of<kOrthographic>(scene, p, rays, i));
       });
-      occluders.run();
+      occluders.run(true);
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
         const int i = block.first_of(place);
         const MarchReceiver p = start_of_ray(job, place, rays.to(i));
         const Ray ray = ray_of<kOrthographic>(scene, p, rays, i);
-        const Arrival a = occluders.arrival(block.places(place), p, ray, pass_of(job, place));
+        const Arrival a = occluders.arrival(i, p, ray, pass_of(job, place));
         sums.add(i, rays.light(i), a.share,
                  penumbra_px<kOrthographic>(job, p, a.blocked_at, ray.length));
       });

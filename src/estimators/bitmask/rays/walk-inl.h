@@ -21,11 +21,9 @@
 #define SSDO_BITMASK_WALK_INL_H_
 #endif
 
-#include <hwy/aligned_allocator.h>
-
 #include <algorithm>
 
-#include "estimators/bitmask/rays/depth_bounds.h"
+#include "estimators/bitmask/rays/beams-inl.h"
 #include "estimators/bitmask/rays/ray_in_slice-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -37,33 +35,22 @@ namespace ssdo::HWY_NAMESPACE {
 template <bool kOrthographic>
 class Walk {
  public:
-  /// Room for `most` rays, which go from one distance in the picture to another.
-  Walk(const March& march, const std::vector<DepthBounds>& bounds, int most, float from_px = 0,
+  /// The rays go from one distance in the picture to another.
+  Walk(const March& march, const std::vector<DepthBounds>& bounds, float from_px = 0,
        float until_px = 1e9f)
-      : march_(march),
-        bounds_(bounds),
-        most_(most),
-        from_px_(from_px),
-        until_px_(until_px),
-        numbers_(hwy::AllocateAligned<float>(std::size_t(kStride * most))) {
+      : march_(march), bounds_(bounds), from_px_(from_px), until_px_(until_px) {
     clear();
   }
 
   /// Forgets all rays.
-  HWY_INLINE void clear() {
-    for (int place = 0; place < most_; ++place) number(place, kEnd) = 0;
-  }
+  HWY_INLINE void clear() { rays_.clear(); }
 
-  /// Takes the lanes of `looks`, into places 0 to `most` - 1 of the queue. Rays that are close to
-  /// each other there should be so in the picture too: they visit the same cells. The other lanes
-  /// meet nothing.
-  HWY_INLINE void put(VI places, const MarchReceiver& p, const SideFrame& side,
-                      const RayInSlice& ray, M looks) {
-    const VI at = places * set_int(kStride);
-    const auto write = [&](Number which, V value)
-                           HWY_ATTR { hn::ScatterIndex(value, D(), numbers_.get() + which, at); };
-    write(kBlockedPx, set(-1));
+  /// Takes the rays of a vector of pixels in the lanes of `looks`, `i` by Block::first_of(). The
+  /// other lanes meet nothing.
+  HWY_INLINE void put(int i, const MarchReceiver& p, const SideFrame& side, const RayInSlice& ray,
+                      M looks) {
     if (!any(looks)) return;
+    const auto write = [&](RayNumber which, V value) HWY_ATTR { rays_.set_at(which, i, value); };
     const Interleaving& layout = march_.scene.layout;
     const V right = set(float(layout.width() - 1)), bottom = set(float(layout.height() - 1));
     const V leaves_frame = hn::Min(Axis(ray.step_x).exit(set(0) - p.x, right),
@@ -73,20 +60,26 @@ class Walk {
     const M moves = hn::Max(hn::Abs(ray.step_x), hn::Abs(ray.step_y)) > set(0.5f);
     const V a = kOrthographic ? set(1) : p.plane;
     const V column = hn::Round(p.x), row = hn::Round(p.y);
-    write(kX, column), write(kY, row);
-    write(kAsideX, p.x - column), write(kAsideY, p.y - row);
-    write(kStepX, ray.step_x), write(kStepY, ray.step_y);
-    write(kA, a), write(kB, kOrthographic ? p.rise + p.plane : p.rise);
-    write(kRiseX, p.rise_x), write(kRiseY, p.rise_y);
-    write(kGrowth,
+    write(RayNumber::x, column), write(RayNumber::y, row);
+    write(RayNumber::aside_x, p.x - column), write(RayNumber::aside_y, p.y - row);
+    write(RayNumber::step_x, ray.step_x), write(RayNumber::step_y, ray.step_y);
+    write(RayNumber::nearing, ray.nearing);
+    write(RayNumber::a, a), write(RayNumber::b, kOrthographic ? p.rise + p.plane : p.rise);
+    write(RayNumber::rise_x, p.rise_x), write(RayNumber::rise_y, p.rise_y);
+    write(RayNumber::growth,
           hn::MulAdd(a, ray.nearing, hn::MulAdd(p.rise_x, ray.step_x, p.rise_y * ray.step_y)));
-    write(kAcrossX, side.across.x), write(kAcrossY, side.across.y), write(kSlope, side.slope);
-    const M has_way = hn::And(hn::And(looks, moves), end > set(from_px_));
-    write(kEnd, hn::IfThenElseZero(has_way, end));
+    write(RayNumber::across_x, side.across.x), write(RayNumber::across_y, side.across.y);
+    write(RayNumber::slope, side.slope);
+    // Their own pixels are not in the way.
+    const V zero = set(0),
+            leaves = hn::Min(Axis(ray.step_x).exit(zero, zero), Axis(ray.step_y).exit(zero, zero));
+    write(RayNumber::from, hn::Max(leaves + set(kPastBorder), set(from_px_)));
+    write(RayNumber::end, hn::IfThenElseZero(hn::And(looks, moves), end));
   }
 
-  /// Sends all rays that have been put.
-  HWY_INLINE void run() {
+  /// Sends all rays that have been put. `together`: those of neighbours go about the same way.
+  HWY_INLINE void run(bool together) {
+    if (together) shorten_ways(march_.scene, bounds_, rays_);
     const D d;
     const DI di;
     const Interleaving& layout = march_.scene.layout;
@@ -99,7 +92,8 @@ class Walk {
     M looks = set(0) > set(0);
     int next = 0;
     while (true) {
-      if (next < most_ && int(hn::CountTrue(d, looks)) <= kFewBusy) looks = fill(w, looks, next);
+      if (next < Block::kPixels && int(hn::CountTrue(d, looks)) <= kFewBusy)
+        looks = fill(w, looks, next);
       if (!any(looks)) return;
       const V at = hn::IfThenElseZero(looks, w.t);
       // Beyond the frame only by rounding.
@@ -143,7 +137,7 @@ class Walk {
 
   /// The distance in the picture of what is in the way of rays; negative: they see past what the
   /// frame shows.
-  HWY_INLINE V blocked_px(VI places) const { return numbers(places, kBlockedPx); }
+  HWY_INLINE V blocked_px(int i) const { return rays_(RayNumber::blocked_px, i); }
 
  private:
   /// Past the border of a cell, in pixels.
@@ -151,36 +145,6 @@ class Walk {
 
   /// With so few lanes busy it pays to fill the others.
   static constexpr int kFewBusy = kLanes * 3 / 4;
-
-  /// What is known of each ray.
-  enum Number {
-    kX,
-    kY,  ///< the receiver's pixel
-    kAsideX,
-    kAsideY,  ///< from its middle to the receiver
-    kStepX,
-    kStepY,
-    kA,
-    kB,
-    kRiseX,
-    kRiseY,
-    kGrowth,
-    kAcrossX,
-    kAcrossY,
-    kSlope,
-    kEnd,  ///< t where the ray leaves the frame, or the radius
-    kBlockedPx,
-    kNumbers,
-    kStride = 16  ///< those of a ray are in one line of the cache
-  };
-  static_assert(kNumbers <= kStride);
-
-  float& number(int place, Number which) const {
-    return numbers_[std::size_t(place * kStride + which)];
-  }
-  HWY_INLINE V numbers(VI places, Number which) const {
-    return gather(numbers_.get() + which, places * set_int(kStride));
-  }
 
   /// The way along an axis of the picture.
   struct Axis {
@@ -201,7 +165,7 @@ class Walk {
 
   /// A ray in each lane.
   struct Way {
-    VI place;            ///< in the queue
+    VI place;            ///< in the block
     VI x, y;             ///< the receiver's pixel in the grid of cells
     V aside_x, aside_y;  ///< from its middle to the receiver
     V step_x, step_y, a, b, rise_x, rise_y, growth, end;
@@ -217,34 +181,36 @@ class Walk {
     hn::Store(hn::VecFromMask(di, hn::RebindMask(di, looks)), di, busy);
     hn::Store(w.place, di, places);
     alignas(64) int starts[kLanes] = {};
+    const auto looks_for_nothing = [&](int k) {
+      const int at = Block::in_squares(k);
+      return !(rays_.of(RayNumber::end, at) > rays_.of(RayNumber::from, at));
+    };
     for (int lane = 0; lane < kLanes; ++lane) {
       if (busy[lane]) continue;
-      while (next < most_ && !(number(next, kEnd) > 0)) ++next;
-      if (next == most_) break;
-      starts[lane] = 1, places[lane] = next++;
+      while (next < Block::kPixels && looks_for_nothing(next)) ++next;
+      if (next == Block::kPixels) break;
+      starts[lane] = 1, places[lane] = Block::in_squares(next++);
     }
     w.place = hn::Load(di, places);
     const auto int_starts = hn::Load(di, starts) != set_int(0);
     const M fresh = hn::RebindMask(D(), int_starts);
-    const auto read = [&](Number which) HWY_ATTR { return numbers(w.place, which); };
-    w.aside_x = read(kAsideX), w.aside_y = read(kAsideY);
-    w.step_x = read(kStepX), w.step_y = read(kStepY);
-    w.a = read(kA), w.b = read(kB);
-    w.rise_x = read(kRiseX), w.rise_y = read(kRiseY);
-    w.growth = read(kGrowth), w.end = read(kEnd);
+    const auto read = [&](RayNumber which) HWY_ATTR { return rays_.of(which, w.place); };
+    w.aside_x = read(RayNumber::aside_x), w.aside_y = read(RayNumber::aside_y);
+    w.step_x = read(RayNumber::step_x), w.step_y = read(RayNumber::step_y);
+    w.a = read(RayNumber::a), w.b = read(RayNumber::b);
+    w.rise_x = read(RayNumber::rise_x), w.rise_y = read(RayNumber::rise_y);
+    w.growth = read(RayNumber::growth), w.end = read(RayNumber::end);
     w.along_x = Axis(w.step_x), w.along_y = Axis(w.step_y);
-    w.x = hn::ConvertTo(di, read(kX)) + set_int(bounds_[0].first_x());
-    w.y = hn::ConvertTo(di, read(kY)) + set_int(bounds_[0].first_y());
-    // Their own pixels are not in the way.
-    const V zero = set(0), leaves = hn::Min(w.along_x.exit(zero, zero), w.along_y.exit(zero, zero));
-    w.t = hn::IfThenElse(fresh, hn::Max(leaves + set(kPastBorder), set(from_px_)), w.t);
+    w.x = hn::ConvertTo(di, read(RayNumber::x)) + set_int(bounds_[0].first_x());
+    w.y = hn::ConvertTo(di, read(RayNumber::y)) + set_int(bounds_[0].first_y());
+    w.t = hn::IfThenElse(fresh, read(RayNumber::from), w.t);
     w.size = hn::IfThenElse(int_starts, set_int(DepthBounds::kSmallest), w.size);
     w.last_x = hn::IfThenElse(int_starts, w.x, w.last_x);
     w.last_y = hn::IfThenElse(int_starts, w.y, w.last_y);
     return hn::Or(looks, fresh);
   }
 
-  HWY_INLINE void note_blocked(const Way& w, M blocked) const {
+  HWY_INLINE void note_blocked(const Way& w, M blocked) {
     const DI di;
     alignas(64) int is_blocked[kLanes], places[kLanes];
     alignas(64) float t[kLanes];
@@ -252,7 +218,7 @@ class Walk {
     hn::Store(w.place, di, places);
     store(w.t, t);
     for (int lane = 0; lane < kLanes; ++lane)
-      if (is_blocked[lane]) number(places[lane], kBlockedPx) = t[lane];
+      if (is_blocked[lane]) rays_.of(RayNumber::blocked_px, places[lane]) = t[lane];
   }
 
   /// Whether something of the cells may be in the way from where rays are to `to`. The middles of
@@ -331,8 +297,8 @@ class Walk {
   HWY_INLINE M within_radius(const Way& w, V dx, V dy, V near, V e) const {
     const float radius = march_.radius;
     if (radius > kEndless) return e == e;
-    const V2 across{numbers(w.place, kAcrossX), numbers(w.place, kAcrossY)};
-    const V slope = numbers(w.place, kSlope);
+    const V2 across{rays_.of(RayNumber::across_x, w.place), rays_.of(RayNumber::across_y, w.place)};
+    const V slope = rays_.of(RayNumber::slope, w.place);
     const V scale = kOrthographic ? set(1) : set(1) / near;
     const V above = e * scale, s = dot(V2{dx, dy}, across) * scale;
     const SlicePoint front{s, hn::NegMulAdd(s, slope, above)};
@@ -341,9 +307,8 @@ class Walk {
 
   const March& march_;
   const std::vector<DepthBounds>& bounds_;  ///< by layer
-  const int most_;
   const float from_px_, until_px_;
-  hwy::AlignedFreeUniquePtr<float[]> numbers_;  ///< those of all rays, one Number after another
+  RaysOfBlock rays_;
 };
 
 }  // namespace ssdo::HWY_NAMESPACE

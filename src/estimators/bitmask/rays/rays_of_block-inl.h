@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The rays of a block of pixels, one from each; compiled once for every instruction set.
+#if defined(SSDO_BITMASK_RAYS_OF_BLOCK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SSDO_BITMASK_RAYS_OF_BLOCK_INL_H_
+#undef SSDO_BITMASK_RAYS_OF_BLOCK_INL_H_
+#else
+#define SSDO_BITMASK_RAYS_OF_BLOCK_INL_H_
+#endif
+
+#include <hwy/aligned_allocator.h>
+
+#include <algorithm>
+
+#include "estimators/bitmask/rays/block-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace ssdo::HWY_NAMESPACE {
+
+/// What is known of each ray; see walk-inl.h. A ray looks for something if its kEnd exceeds its
+/// kFrom.
+enum class RayNumber {
+  x,
+  y,  ///< the receiver's pixel
+  aside_x,
+  aside_y,  ///< from its middle to the receiver
+  step_x,
+  step_y,
+  nearing,
+  a,
+  b,
+  rise_x,
+  rise_y,
+  growth,
+  across_x,
+  across_y,
+  slope,
+  from,        ///< t up to which nothing is in its way
+  end,         ///< t where it leaves the frame, or the radius
+  blocked_px,  ///< t of what it has met; negative: it has met nothing
+  count
+};
+
+/// The numbers of all rays of a block, one RayNumber after another, by Block::first_of().
+class RaysOfBlock {
+ public:
+  RaysOfBlock()
+      : numbers_(hwy::AllocateAligned<float>(std::size_t(RayNumber::count) * Block::kPixels)) {
+    std::fill_n(numbers_.get(), std::size_t(RayNumber::count) * Block::kPixels, 0.0f);
+  }
+
+  /// Of a vector of pixels.
+  HWY_INLINE V operator()(RayNumber which, int i) const { return load(first(which) + i); }
+  HWY_INLINE void set_at(RayNumber which, int i, V value) { store(value, first(which) + i); }
+
+  /// Of single ones.
+  HWY_INLINE V of(RayNumber which, VI at) const { return gather(first(which), at); }
+  float& of(RayNumber which, int at) { return first(which)[at]; }
+  float of(RayNumber which, int at) const { return first(which)[at]; }
+
+  /// All rays look for nothing, and have met nothing.
+  HWY_INLINE void clear() {
+    std::fill_n(first(RayNumber::from), Block::kPixels, 0.0f);
+    std::fill_n(first(RayNumber::end), Block::kPixels, 0.0f);
+    std::fill_n(first(RayNumber::blocked_px), Block::kPixels, -1.0f);
+  }
+
+ private:
+  float* first(RayNumber which) const {
+    return numbers_.get() + std::size_t(which) * std::size_t(Block::kPixels);
+  }
+
+  hwy::AlignedFreeUniquePtr<float[]> numbers_;
+};
+
+}  // namespace ssdo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
