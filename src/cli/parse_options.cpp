@@ -210,12 +210,13 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   if (bench->parsed()) o.command = Command::bench;
   const std::set<std::string> given = names_given(app);
   if (!o.config_file.empty()) read_config_file(o.config_file, app);
-  if (o.command == Command::bench) finish_bench(app, o.bench);
+  const bool of_sequence = o.command == Command::bench && is_pattern(o.input_file);
+  if (o.command == Command::bench) finish_bench(app, of_sequence, o.bench);
   check(o, app);
   if (history) o.output.made_by = made_by({argv, std::size_t(argc)});
-  const Purpose purpose = o.command == Command::relight ? Purpose::relight
-                          : o.command == Command::bench ? Purpose::bench
-                                                        : Purpose::other;
+  const Purpose purpose = o.command == Command::relight                 ? Purpose::relight
+                          : o.command == Command::bench && !of_sequence ? Purpose::bench
+                                                                        : Purpose::other;
   o.warnings = idle_options(given, o, purpose);
   return parsed;
 }

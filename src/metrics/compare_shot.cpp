@@ -62,8 +62,7 @@ struct FrameChannels {
 
 class Shot {
  public:
-  explicit Shot(const CompareOptions& options)
-      : options_(options), points_(options.points, options.camera) {
+  explicit Shot(const CompareOptions& options) : options_(options) {
     shot_.has_b = !options.b.empty();
     shot_.has_points = !options.points.empty();
   }
@@ -147,15 +146,7 @@ class Shot {
   }
 
   static void add_error(const Difference& frame, int number, ShotError& all) {
-    Difference& sum = all.figures;
-    const double before = double(sum.count), more = double(frame.count), count = before + more;
-    const auto mean = [&](double a, double b) { return (a * before + b * more) / count; };
-    sum.rmse = std::sqrt(mean(sum.rmse * sum.rmse, frame.rmse * frame.rmse));
-    sum.bias = mean(sum.bias, frame.bias);
-    sum.mean_b = mean(sum.mean_b, frame.mean_b);
-    sum.largest = std::max(sum.largest, frame.largest);
-    sum.peak = std::max(sum.peak, frame.peak);
-    sum.count += frame.count;
+    all.figures.add(frame);
     if (frame.rmse <= all.worst) return;
     all.worst = frame.rmse;
     all.worst_frame = number;
@@ -163,8 +154,13 @@ class Shot {
 
   void measure_flicker(const FrameChannels& before, const FrameChannels& now, const Window& display,
                        const PictureMask& mask, ShotFrame& frame) {
+    CameraOptions camera;
+    camera.file = options_.camera;
+    FrameFiles files;
+    files.input = expand_pattern(options_.points, frame.number);
     const auto shared = points_.next(
-        frame.number, display, [&](int x, int y) { return mask.holds(x, y); }, frame.notes);
+        frame.number, read_points(files, {}, camera), display,
+        [&](int x, int y) { return mask.holds(x, y); }, frame.notes);
     if (!shared) return;
     for (const auto& [name, channels] : now.a) {
       const std::optional<FlickerFigures> of_a =
