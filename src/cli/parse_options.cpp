@@ -52,7 +52,7 @@ CLI::App* add_compare(CLI::App& app, CompareOptions& o) {
   compare
       ->add_option("--points", o.points,
                    "measure flicker, the change at the same points of these G-buffers' surfaces")
-      ->type_name("GBUFFER.####.exr");
+      ->type_name("FILE.####.exr");
   compare
       ->add_option("--camera", o.camera,
                    "their camera as JSON; without it, fitted from P or read from the header")

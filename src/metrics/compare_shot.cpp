@@ -90,7 +90,6 @@ class Shot {
       before_ = std::move(now);
     } catch (const Error& error) {
       frame.error = error;
-      points_.forget();
     }
   }
 

@@ -32,9 +32,6 @@ class ShotPoints {
   /// The surfaces of the frame of the last call of next(), which threw nothing.
   const Geometry& latest() const { return before_->geometry; }
 
-  /// Makes the next frame one without a frame before it.
-  void forget() { before_.reset(); }
-
  private:
   struct Seen {
     int number;

@@ -203,6 +203,29 @@ TEST(Flicker, ASurfaceThatSinksIsNotTheSame) {
       << "far away that is less than a tenth of a pixel";
 }
 
+/// Each surface has a value of its own, which a mean over two surfaces would change.
+TEST(Flicker, FourPixelsAreOfOneSurface) {
+  const auto change = [](const Surface& scene,
+                         const std::function<double(const glm::dvec3&)>& value) {
+    const Geometry before = geometry_of(scene, camera_at(0), kWindow),
+                   now = geometry_of(scene, camera_at(1), kWindow);
+    const SharedPoints shared = find_shared_points(before, now, {}, kEverywhere);
+    EXPECT_GT(shared.points.size(), kWindow.area() / 2);
+    return rms(shared, layer_of(before, value), layer_of(now, value));
+  };
+  const Surface ground = plane({}, {0, 0, 1});
+  // A slope of 30 degrees: the other surface has another normal.
+  EXPECT_EQ(change(all_of({ground, plane({0, 1, 0}, {0, -0.5, std::sqrt(0.75)})}),
+                   [](const glm::dvec3& p) { return p.z > 1e-4 ? 1 : 0; }),
+            0);
+  // A card three pixels above the ground: the other surface has another place.
+  const Surface card = cut(plane({0, 0, 0.1}, {0, 0, 1}), [](const glm::dvec3& p) {
+    return std::abs(p.x) < 1 && std::abs(p.y) < 1;
+  });
+  EXPECT_EQ(change(all_of({ground, card}), [](const glm::dvec3& p) { return p.z > 0.05 ? 1 : 0; }),
+            0);
+}
+
 TEST(Flicker, AMotionLayerOfOtherUnitsIsNotUsed) {
   const Geometry before = frame_at(0), now = frame_at(1);
   Plane<glm::vec2> motion = motion_of(before, now, glm::dvec3(0));
