@@ -258,6 +258,22 @@ TEST(Flicker, TheBorderIsSixteenPixelsWideInBothPictures) {
   EXPECT_GT(was, 0u);
 }
 
+TEST(Flicker, OverscanIsNoPartOfThePictureButShowsWhereItsPointsWere) {
+  const Window wide{-16, -16, 144, 112};
+  const auto frame = [&](double degrees) {
+    Geometry g = geometry_of(scene_with_ball(kBall), camera_at(degrees), wide);
+    g.display = kWindow;
+    return g;
+  };
+  const Geometry before = frame(0), now = frame(2);
+  const SharedPoints shared = find_shared_points(before, now, {}, kEverywhere);
+  for (const SharedPoint& point : shared.points)
+    EXPECT_TRUE(kWindow.contains(point.x, point.y)) << point.x << ", " << point.y;
+  EXPECT_GT(shared.points.size(),
+            find_shared_points(frame_at(0), frame_at(2), {}, kEverywhere).points.size());
+  EXPECT_LT(rms(shared, layer_of(before, sines(64)), layer_of(now, sines(64))), 0.002);
+}
+
 TEST(Flicker, OnlyPixelsThatCountAndAreFiniteAreAsked) {
   const Geometry before = frame_at(0), now = frame_at(1);
   const SharedPoints left = find_shared_points(before, now, {}, [](int x, int) { return x < 20; });
