@@ -163,7 +163,7 @@ ExitCode run_shot_bench(const RunOptions& options, const BenchOptions& bench,
   report.processors = processor_count();
   report.threads = resources.threads();
   report.isa = resources.isa();
-  const std::vector<ShotSetting> settings = shot_settings(subject.frames.size());
+  const std::vector<ShotSetting> settings = shot_settings(find_frames(options.input_file).size());
   ProgressLine progress(options.batch.progress, options.verbosity.quiet);
   for (std::size_t i = 0; i < settings.size(); ++i) {
     const ShotSetting& setting = settings[i];

@@ -22,7 +22,7 @@ struct ShotSetting {
 };
 
 /// Frames alone, --temporal, and 1, 2, 4 and 8 frames before and after, as far as a sequence of
-/// `count` frames has so many.
+/// `count` frames on disk has so many.
 std::vector<ShotSetting> shot_settings(std::size_t count);
 
 }  // namespace ssdo
