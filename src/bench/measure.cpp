@@ -16,27 +16,6 @@ namespace {
 constexpr int kMostRuns = 5;
 constexpr double kRepeatBelowMs = 600;
 
-double process_cpu_ms() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return double(t.tv_sec) * 1e3 + double(t.tv_nsec) * 1e-6;
-}
-
-/// Measures laps by both clocks.
-class CostWatch {
- public:
-  Cost lap() {
-    const double cpu = process_cpu_ms();
-    const Cost cost{cpu - cpu_, wall_.lap()};
-    cpu_ = cpu;
-    return cost;
-  }
-
- private:
-  Stopwatch wall_;
-  double cpu_ = process_cpu_ms();
-};
-
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
@@ -69,7 +48,22 @@ Plane<float> copy_of(const ChannelView& channel) {
   return plane;
 }
 
+double process_cpu_ms() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return double(t.tv_sec) * 1e3 + double(t.tv_nsec) * 1e-6;
+}
+
 }  // namespace
+
+CostWatch::CostWatch() : cpu_(process_cpu_ms()) {}
+
+Cost CostWatch::lap() {
+  const double cpu = process_cpu_ms();
+  const Cost cost{cpu - cpu_, wall_.lap()};
+  cpu_ = cpu;
+  return cost;
+}
 
 ProductChannels channels_of(const Frame& frame, const Plan& plan, const Products& products) {
   ProductChannels all;

@@ -8,12 +8,24 @@
 
 #include "metrics/difference.h"
 #include "relight/frame.h"
+#include "stopwatch.h"
 
 namespace ssdo {
 
 /// Cost of a stage: the time of all threads together, and the time by the clock.
 struct Cost {
   double cpu_ms = 0, wall_ms = 0;
+};
+
+/// Measures laps by both clocks.
+class CostWatch {
+ public:
+  CostWatch();
+  Cost lap();
+
+ private:
+  Stopwatch wall_;
+  double cpu_;
 };
 
 /// Each product by its name, as an EXR would hold it.

@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "error.h"
 #include "io/files/checked_file.h"
-#include "io/json_text.h"
 
 namespace ssdo {
 namespace {
@@ -23,11 +21,6 @@ std::string ending(const std::string& path) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return char(std::tolower(c)); });
   return text;
-}
-
-std::string text_of(const BenchReport& report, const std::string& kind) {
-  if (kind == ".csv") return to_csv(report);
-  return kind == ".json" ? json_text(to_json(report), 2) + "\n" : to_html(report);
 }
 
 }  // namespace
@@ -52,11 +45,11 @@ void check_report_files(const std::vector<std::string>& paths, std::vector<RunFi
   for (const std::string& path : paths) check_output(path, policy);
 }
 
-void write_reports(const BenchReport& report, const std::vector<std::string>& paths,
-                   const OutputPolicy& policy) {
+void write_reports(const std::function<std::string(const std::string& ending)>& text_of,
+                   const std::vector<std::string>& paths, const OutputPolicy& policy) {
   std::vector<std::unique_ptr<SafeFile>> files;
   for (const std::string& path : paths) {
-    const std::string text = text_of(report, ending(path));
+    const std::string text = text_of(ending(path));
     files.push_back(std::make_unique<SafeFile>(path, policy));
     CheckedFile checked(*files.back());
     checked.write(text.data(), text.size());

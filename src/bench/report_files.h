@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "bench/report.h"
 #include "io/files/run_files.h"
 #include "io/files/safe_file.h"
 
@@ -18,9 +18,9 @@ bool wants_page(const std::vector<std::string>& paths);
 void check_report_files(const std::vector<std::string>& paths, std::vector<RunFile> inputs,
                         const OutputPolicy& policy);
 
-/// Writes the report in the form that each ending asks for: all files appear, or none.
-/// Errors: ExitCode::output.
-void write_reports(const BenchReport& report, const std::vector<std::string>& paths,
-                   const OutputPolicy& policy);
+/// Writes what `text_of` gives for each ending, ".html", ".csv" or ".json": all files appear, or
+/// none. Errors: ExitCode::output.
+void write_reports(const std::function<std::string(const std::string& ending)>& text_of,
+                   const std::vector<std::string>& paths, const OutputPolicy& policy);
 
 }  // namespace ssdo

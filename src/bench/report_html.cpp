@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// page/page.html with its style, its scripts, Chart.js and the data in it. Pictures are PNG in data
-// URIs.
+// page/page.html, or page/shot.html of a sequence, with its style, its scripts, Chart.js and the
+// data in it. Pictures are PNG in data URIs.
 #include <OpenImageIO/strutil.h>
 
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "bench/report.h"
+#include "bench/shot/shot_report.h"
 #include "io/json_text.h"
 
 namespace ssdo {
@@ -18,6 +19,15 @@ constexpr std::string_view kPage =
     ;
 constexpr std::string_view kStyle =
 #include "bench_style.inc"
+    ;
+constexpr std::string_view kShotPage =
+#include "bench_shot_page.inc"
+    ;
+constexpr std::string_view kBasis =
+#include "bench_basis.inc"
+    ;
+constexpr std::string_view kShot =
+#include "bench_shot.inc"
     ;
 constexpr std::string_view kSpeed =
 #include "bench_speed.inc"
@@ -90,9 +100,17 @@ std::string to_html(const BenchReport& report) {
   return filled(kPage, {{"style", kStyle},
                         {"chart", kChart},
                         {"data", text},
+                        {"basis", kBasis},
                         {"speed", kSpeed},
                         {"maps", kMaps},
                         {"figures", kFigures}});
+}
+
+std::string to_html(const ShotReport& report) {
+  const std::string text = escaped(json_text(to_json(report)));
+  return filled(
+      kShotPage,
+      {{"style", kStyle}, {"chart", kChart}, {"data", text}, {"basis", kBasis}, {"shot", kShot}});
 }
 
 }  // namespace ssdo

@@ -7,6 +7,7 @@
 
 #include "bench/bench.h"
 #include "bench/report_files.h"
+#include "bench/shot/run_shot_bench.h"
 #include "io/json_text.h"
 #include "io/one_line.h"
 #include "io/sequence.h"
@@ -32,11 +33,7 @@ void print_findings(const Frame& frame, const Verbosity& verbosity) {
 ExitCode run_bench(const RunOptions& options, const BenchOptions& bench_options,
                    const Resources& resources) {
   const std::string& input = options.input_file;
-  if (is_pattern(input)) {
-    throw Error(ExitCode::usage,
-                fmt::format("{}: is a sequence, and bench measures one frame; name the file of one",
-                            input));
-  }
+  if (is_pattern(input)) return run_shot_bench(options, bench_options, resources);
   if (options.input.views.size() > 1) {
     throw Error(ExitCode::usage,
                 fmt::format("{}: bench measures one view; give --stereo left or right", input));
@@ -52,7 +49,11 @@ ExitCode run_bench(const RunOptions& options, const BenchOptions& bench_options,
   report.frame = json_text(to_json(subject.frame));
   report.threads = resources.threads();
   report.isa = resources.isa();
-  write_reports(report, bench_options.reports, options.output.policy);
+  const auto text_of = [&](const std::string& ending) {
+    if (ending == ".csv") return to_csv(report);
+    return ending == ".json" ? json_text(to_json(report), 2) + "\n" : to_html(report);
+  };
+  write_reports(text_of, bench_options.reports, options.output.policy);
   print_out(to_table(report));
   return bench_options.wants.empty() || report.recommended ? ExitCode::done : ExitCode::failed;
 }

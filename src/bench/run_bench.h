@@ -8,9 +8,10 @@
 
 namespace ssdo {
 
-/// `ssdo bench`: measures on one frame, writes the reports and prints the table. Gives
-/// ExitCode::failed where no setting has the error that is wanted.
-/// Errors: those of read_subject and bench; ExitCode::usage for a sequence; output for reports.
+/// `ssdo bench`: measures on one frame, or on a sequence as run_shot_bench() does, writes the
+/// reports and prints the table. Gives ExitCode::failed where no setting has the error that is
+/// wanted.
+/// Errors: those of read_subject and bench, or run_shot_bench; output for reports.
 ExitCode run_bench(const RunOptions& options, const BenchOptions& bench_options,
                    const Resources& resources);
 

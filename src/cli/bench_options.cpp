@@ -22,6 +22,10 @@ const std::set<std::string> kRefused = {
     "--crop",       "--dry-run",      "--stats",         "--shot",    "--list-methods",
     "--downsample", "--allow-partial"};
 
+/// Of those, the ones that a bench of a sequence takes, which measures one method and quality.
+const std::set<std::string> kOfSequences = {"--method", "--quality", "--slices",
+                                            "--steps",  "--error",   "--frames"};
+
 /// Groups of options that change what the main job computes.
 const std::set<std::string> kCarried = {"Input", "Camera", "Light", "Model"};
 
@@ -50,8 +54,9 @@ void carry(const CLI::Option& option, BenchOptions& out) {
 
 CLI::App* add_bench(CLI::App& app, BenchOptions& o) {
   CLI::App* bench = app.add_subcommand("bench",
-                                       "speed against error of methods and settings on "
-                                       "this frame, and the setting for a wanted error")
+                                       "speed against error of methods and settings on this "
+                                       "frame, and the setting for a wanted error; of a sequence, "
+                                       "its flicker")
                         ->fallthrough();
   bench->footer(
       "It takes INPUT and options of the main job that say what is measured: ssdo --help-all");
@@ -87,17 +92,17 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& o) {
 
 bool is_refused_by_bench(const std::string& flag) { return kRefused.contains(flag); }
 
-void finish_bench(const CLI::App& app, BenchOptions& o) {
+void finish_bench(const CLI::App& app, bool of_sequence, BenchOptions& o) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0) continue;
     const std::string name = option->get_name();
-    if (is_refused_by_bench(name)) {
+    if (is_refused_by_bench(name) && !(of_sequence && kOfSequences.contains(name))) {
       throw Error(ExitCode::usage,
                   fmt::format("bench takes no {}: {}", name,
                               name == "--method" ? "name methods with --methods"
                                                  : "it tries settings and writes reports alone"));
     }
-    if (kCarried.contains(option->get_group())) carry(*option, o);
+    if (kCarried.contains(option->get_group()) || name == "--frames") carry(*option, o);
   }
 }
 

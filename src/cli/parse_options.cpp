@@ -18,6 +18,7 @@
 #include "cli/option_values.h"
 #include "error.h"
 #include "io/one_line.h"
+#include "io/sequence.h"
 #include "relight/idle_options.h"
 
 namespace ssdo {
@@ -25,9 +26,12 @@ namespace {
 
 CLI::App* add_compare(CLI::App& app, CompareOptions& o) {
   CLI::App* compare =
-      app.add_subcommand("compare", "error between two images, layer by layer: FILE or FILE:LAYER");
-  compare->add_option("A", o.a, "image or layer to measure")->required();
-  compare->add_option("B", o.b, "image or layer to hold it to")->required();
+      app.add_subcommand("compare",
+                         "error between two images or sequences, layer by layer: FILE or "
+                         "FILE:LAYER; flicker of sequences");
+  compare->add_option("A", o.a, "image or layer to measure; a sequence: relit.####.exr")
+      ->required();
+  compare->add_option("B", o.b, "image or layer to hold it to; not needed with --points");
   compare->add_option("--mask", o.mask, "compare only pixels where this is not 0")
       ->type_name("FILE[:LAYER]");
   compare->add_option("--diff", o.diff, "write A - B")->type_name("OUT.exr");
@@ -40,6 +44,19 @@ CLI::App* add_compare(CLI::App& app, CompareOptions& o) {
       ->type_name("SHARE")
       ->capture_default_str()
       ->check(between(0, 1));
+  compare
+      ->add_option_function<std::string>(
+          "--frames", [&o](const std::string& text) { o.frames = parse_frames(text); },
+          "frames of sequences: 1001-1010,1020-1030x2; default: all that exist")
+      ->type_name("RANGE");
+  compare
+      ->add_option("--points", o.points,
+                   "measure flicker, the change at the same points of these G-buffers' surfaces")
+      ->type_name("FILE.####.exr");
+  compare
+      ->add_option("--camera", o.camera,
+                   "their camera as JSON; without it, fitted from P or read from the header")
+      ->type_name("FILE.json");
   compare->add_flag("--json", o.json, "as JSON");
   compare->add_flag("--overwrite", o.policy.overwrite, "replace the output of --diff");
   compare->add_flag("--create-dirs", o.policy.create_dirs, "make its folder");
@@ -193,12 +210,13 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   if (bench->parsed()) o.command = Command::bench;
   const std::set<std::string> given = names_given(app);
   if (!o.config_file.empty()) read_config_file(o.config_file, app);
-  if (o.command == Command::bench) finish_bench(app, o.bench);
+  const bool of_sequence = o.command == Command::bench && is_pattern(o.input_file);
+  if (o.command == Command::bench) finish_bench(app, of_sequence, o.bench);
   check(o, app);
   if (history) o.output.made_by = made_by({argv, std::size_t(argc)});
-  const Purpose purpose = o.command == Command::relight ? Purpose::relight
-                          : o.command == Command::bench ? Purpose::bench
-                                                        : Purpose::other;
+  const Purpose purpose = o.command == Command::relight                 ? Purpose::relight
+                          : o.command == Command::bench && !of_sequence ? Purpose::bench
+                                                                        : Purpose::other;
   o.warnings = idle_options(given, o, purpose);
   return parsed;
 }

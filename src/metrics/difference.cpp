@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ssdo {
 namespace {
@@ -18,6 +19,19 @@ void for_each_pixel(const Window& w, const Visit& visit) {
 
 double Difference::relative_rmse() const { return rmse / std::abs(mean_b); }
 double Difference::psnr() const { return 20 * std::log10(peak / rmse); }
+
+void Difference::add(const Difference& more) {
+  if (more.count == 0) return;
+  const double own = double(count), all = own + double(more.count);
+  const auto mean = [&](double a, double b) { return (a * own + b * double(more.count)) / all; };
+  rmse = std::sqrt(mean(rmse * rmse, more.rmse * more.rmse));
+  bias = mean(bias, more.bias);
+  mean_b = mean(mean_b, more.mean_b);
+  largest = std::max(largest, more.largest);
+  peak = std::max(peak, more.peak);
+  p99 = std::numeric_limits<double>::quiet_NaN();
+  count += more.count;
+}
 
 double ChannelsDifference::invalid_share() const {
   const auto missing = double(left_out.without_counterpart());

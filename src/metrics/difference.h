@@ -18,6 +18,9 @@ struct Difference {
   double peak = 1;               ///< largest |a| or |b|, at least 1
   double relative_rmse() const;  ///< to the mean of b
   double psnr() const;           ///< decibels, to the peak; infinite without any error
+
+  /// The difference of these numbers and more; without a percentile.
+  void add(const Difference& more);
 };
 
 /// The difference of two lists of finite numbers of the same length.

@@ -223,8 +223,8 @@ TEST_F(Bench, RefusesWhatItCannotMeasure) {
         "it has to show the same frame");
   fails({"--radius", "0"}, 2, "--radius");
   const Finished sequence = run_tool({"bench", path("shot.####.exr")});
-  EXPECT_EQ(sequence.code, 2);
-  EXPECT_THAT(sequence.error_line(), HasSubstr("bench measures one frame"));
+  EXPECT_EQ(sequence.code, 3);
+  EXPECT_THAT(sequence.error_line(), HasSubstr("no frame of this sequence exists"));
   const Finished missing = run_tool({"bench", path("none.exr")});
   EXPECT_EQ(missing.code, 3);
   EXPECT_THAT(missing.error_line(), HasSubstr("none.exr"));

@@ -290,6 +290,13 @@ TEST(Options, ChooseTheCommand) {
   EXPECT_EQ(compare.command, Command::compare);
   EXPECT_EQ(compare.compare.b, "b");
   EXPECT_EQ(compare.compare.fail_above, 0.1);
+  const Options shot =
+      parse_words({"compare", "a", "--points", "g", "--camera", "c", "--frames", "7-5"}).options;
+  EXPECT_EQ(shot.compare.b, "");
+  EXPECT_EQ(shot.compare.points, "g");
+  EXPECT_EQ(shot.compare.camera, "c");
+  EXPECT_THAT(*shot.compare.frames, ElementsAre(7, 6, 5));
+  EXPECT_EQ(shot.batch.frames, std::nullopt) << "those of the main job";
 }
 
 TEST(Options, OfTheBenchAreKeptForItsCommands) {

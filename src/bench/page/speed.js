@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of `ssdo bench`: everything comes from the JSON block beside it, which is what
-// `--report FILE.json` writes, and the pictures.
+// The page of `ssdo bench` for a frame: the chart of speed and error, and which setting to take.
 "use strict";
 
-const bench = JSON.parse(document.getElementById("data").textContent);
-const by = id => document.getElementById(id);
 const kColors = {
   bitmask: "#ffb347", trace: "#f2f2f2", ssdo: "#e5675b", ssao: "#6fb7ff", "ssao-range": "#4a84d8",
   "ssao-fade": "#9a8cff", hbao: "#67c98b", gtao: "#c8d65a", sao: "#4fc5c7", msvo: "#e58fd0"};
@@ -27,21 +24,6 @@ const errorOf = row => row.errors[state.product] ? row.errors[state.product][sta
 const metricOf = product => bench.metrics[product] === "rmse" ? "RMSE" : "relative RMSE";
 const rowsShown = () => bench.rows.filter(row => errorOf(row) !== null);
 
-function element(tag, text, parent) {
-  const e = document.createElement(tag);
-  if (text !== undefined) e.textContent = text;
-  if (parent) parent.append(e);
-  return e;
-}
-
-/// Three figures, without exponents where people have none.
-function figure(value) {
-  if (value === null || value === undefined) return "–";
-  if (value === 0) return "0";
-  const digits = Math.max(0, 2 - Math.floor(Math.log10(Math.abs(value))));
-  return value.toFixed(Math.min(digits, 5));
-}
-
 /// The rows of which no other is both as cheap and as good, cheapest first: as pareto_front() does
 /// it, but for the clock and the reference that are chosen here.
 function front() {
@@ -51,34 +33,6 @@ function front() {
 }
 
 // --- Speed and error ---
-
-Chart.defaults.color = "#a8a8ab";
-Chart.defaults.borderColor = "#38383b";
-Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
-Chart.defaults.font.size = 13;
-Chart.defaults.animation = false;
-Chart.defaults.maintainAspectRatio = false;
-
-/// Round numbers between two values: 1, 2 and 5 times powers of ten, and more within a decade.
-function logTicks(low, high) {
-  const ticks = [];
-  for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); ++e) {
-    for (const m of high / low < 10 ? [1, 1.5, 2, 3, 4, 5, 7] : [1, 2, 5]) {
-      const value = m * Math.pow(10, e);
-      if (value >= low * 0.999 && value <= high * 1.001) ticks.push({value});
-    }
-  }
-  return ticks;
-}
-
-function logAxis(title, values) {
-  const low = Math.min(...values) / 1.25, high = Math.max(...values) * 1.25;
-  return {
-    type: "logarithmic", min: low, max: high,
-    title: {display: true, text: title, color: "#d8d8d8"},
-    afterBuildTicks: axis => { axis.ticks = logTicks(low, high); },
-    ticks: {callback: value => Number(value.toPrecision(3)).toString(), autoSkip: false, maxRotation: 0}};
-}
 
 /// Names the points of the front, where there is room beside them.
 const frontNames = {
