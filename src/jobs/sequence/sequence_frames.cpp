@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <set>
 #include <vector>
 
 #include "io/sequence.h"
 #include "jobs/jobs.h"
 #include "plan/band_plan.h"
+#include "plan/make_plan.h"
 #include "relight/relight.h"
 #include "scene/camera/find_camera.h"
 
@@ -20,9 +20,13 @@ namespace {
 /// How far a frame is looked for whose P tells its camera.
 constexpr int kMostFramesAway = 8;
 
-/// The camera and samples of the surfaces tell which axis is up: an overview of larger frames has
-/// enough of them.
-constexpr std::size_t kEnoughForUp = 500000, kAllPixels = std::numeric_limits<std::size_t>::max();
+/// How many frames on disk tell the radius: the median is that of more than half of a shot,
+/// whatever comes close to the camera for a part of it.
+constexpr std::size_t kFramesForRadius = 5;
+
+/// The camera and samples of the surfaces tell which axis is up, and the median depth: an overview
+/// of larger frames has enough of them.
+constexpr std::size_t kEnoughPixels = 500000;
 
 /// None where the folder cannot be listed.
 std::vector<int> frames_on_disk(const std::string& pattern) try {
@@ -34,8 +38,7 @@ std::vector<int> frames_on_disk(const std::string& pattern) try {
 }  // namespace
 
 /// The surfaces of another frame; nothing where it cannot be read by itself.
-std::optional<View> SequenceFrames::read(const FrameFiles& files, std::size_t most_pixels) const
-    try {
+std::optional<View> SequenceFrames::read(const FrameFiles& files, const Looking& how) const try {
   std::error_code ignored;
   if (!std::filesystem::exists(files.input, ignored)) return std::nullopt;
   const std::vector<Role> unused = {Role::albedo,    Role::beauty,         Role::radiance,
@@ -47,7 +50,7 @@ std::optional<View> SequenceFrames::read(const FrameFiles& files, std::size_t mo
   });
   InputOptions input = for_view(options_.input, files);
   input.gbuffer.most_pixels =
-      std::min(most_pixels, most_pixels_in(options_.memory, options_.output, 0));
+      std::min(how.most_pixels, most_pixels_in(options_.memory, options_.output, 0));
   return read_view(open_view(files.input, aovs, input.allow_partial), aovs, input, options_.camera,
                    unused);
 } catch (const Error&) {
@@ -55,20 +58,24 @@ std::optional<View> SequenceFrames::read(const FrameFiles& files, std::size_t mo
 }
 
 std::optional<CameraBeside> SequenceFrames::camera_of(const FrameFiles& files) const {
-  const std::optional<View> view = read(files, kAllPixels);
+  const std::optional<View> view = read(files, {});
   if (!view) return std::nullopt;
   const Placement& placement = view->report.placement;
   if (placement.of_positions.panorama || placement.median_depth <= 0) return std::nullopt;
   return CameraBeside{placement.of_positions, view->gbuffer.display_of_file(), files.input};
 }
 
-/// Calls `at` for the first, the middle and the last frame on disk that show surfaces.
-void SequenceFrames::look(const std::string& name, std::size_t most_pixels,
+/// Calls `at` for frames on disk that are spread evenly over the shot from its first to its last,
+/// where they show surfaces.
+void SequenceFrames::look(const std::string& name, const Looking& how,
                           const std::function<void(const View&)>& at) const {
   const std::vector<int> frames = frames_on_disk(options_.input_file);
   if (frames.size() < 2) return;
-  for (const int number : std::set{frames.front(), frames[frames.size() / 2], frames.back()}) {
-    const auto view = read(in_view(files_at(options_, number), name), most_pixels);
+  std::set<int> chosen;
+  for (std::size_t i = 0; i < how.frames; ++i)
+    chosen.insert(frames[std::min(i * frames.size() / (how.frames - 1), frames.size() - 1)]);
+  for (const int number : chosen) {
+    const auto view = read(in_view(files_at(options_, number), name), how);
     if (view && view->report.placement.median_depth > 0) at(*view);
   }
 }
@@ -78,7 +85,7 @@ std::optional<UpEvidence> SequenceFrames::up(const std::string& name) {
   if (up_) return *up_;
   UpEvidence mean{};
   double count = 0;
-  look(name, kEnoughForUp, [&](const View& view) {
+  look(name, {.most_pixels = kEnoughPixels}, [&](const View& view) {
     if (!view.geometry.world_known) return;
     const UpEvidence found = up_evidence(view.geometry);
     count += 1;
@@ -92,12 +99,27 @@ std::string SequenceFrames::normal_space(const std::string& name) {
   if (normal_space_) return *normal_space_;
   double best = 0;
   normal_space_.emplace();
-  look(name, kAllPixels, [&](const View& view) {
+  look(name, {}, [&](const View& view) {
     const GeometryReport& report = view.report;
     if (!report.normals_known || report.normal_agreement <= best) return;
     best = report.normal_agreement, normal_space_ = report.normal_space;
   });
   return *normal_space_;
+}
+
+/// The median: its two in the middle are averaged.
+std::optional<float> SequenceFrames::radius(const std::string& name) {
+  if (!finds_radius(options_.model)) return std::nullopt;
+  const auto [at, is_new] = radius_.try_emplace(name);
+  if (!is_new) return at->second;
+  std::vector<float> found;
+  look(name, {.frames = kFramesForRadius, .most_pixels = kEnoughPixels},
+       [&](const View& view) { found.push_back(radius_by_frame(view.geometry)); });
+  std::ranges::sort(found);
+  const std::size_t half = found.size() / 2;
+  if (!found.empty())
+    at->second = found.size() % 2 == 1 ? found[half] : (found[half - 1] + found[half]) / 2;
+  return at->second;
 }
 
 Frame SequenceFrames::prepare(const FrameOptions& options, const Lighting& light,
@@ -124,6 +146,7 @@ Frame SequenceFrames::prepare(const Lighting& light, const FrameFiles& files,
   if (!number) return prepare_frame(options_, light, pictures_, files);
   FrameOptions options = options_;
   options.up_of_shot = [this, &files] { return up(files.view); };
+  options.model.radius_of_shot = radius(files.view);
   Frame frame = prepare(options, light, files, *number);
   if (frame.report.normals_known) return frame;
   options.camera.shot.normal_space = normal_space(files.view);
