@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "support/analytic_scene.h"
@@ -76,7 +77,7 @@ TEST(CameraSteps, OfAMovingCameraDoNotJump) {
 
 TEST(CameraSteps, AreInTheOrderOfTheirNumbers) {
   std::vector<CameraOfFrame> cameras = turning({0, 1, 2, 3, 40, 41, 42});
-  std::swap(cameras[0], cameras[5]);
+  std::ranges::reverse(cameras);
   EXPECT_THAT(jumps(cameras), ElementsAre(5));
   for (CameraOfFrame& camera : cameras) camera.number *= 10;
   EXPECT_THAT(jumps(cameras), IsEmpty()) << "ten frames apart, nobody knows";
