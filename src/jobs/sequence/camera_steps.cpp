@@ -35,7 +35,8 @@ double widths_between(const CameraOfFrame& before, const CameraOfFrame& now) {
   const Window &a = before.display, &b = now.display;
   double sum = 0;
   for (int k = 0; k < 9; ++k) {
-    const double x = 0.5 * (k % 3), y = 0.5 * (k / 3);  // 0 to 1 over the picture
+    const int column = k % 3, row = k / 3;
+    const double x = 0.5 * column, y = 0.5 * row;  // 0 to 1 over the picture
     const glm::dvec3 seen =
         before.camera.unproject({a.x0 + x * a.width(), a.y0 + y * a.height()}, before.depth);
     const glm::dvec3 point = glm::transpose(before.camera.rotation) * seen + before.camera.origin;

@@ -150,7 +150,7 @@ std::vector<std::string> ShotReport::summary() const {
     if (frames.size() < 2) continue;
     for (const std::string& line : differences(frames)) lines.push_back(warning_of(line, view));
     if (const std::string guessed = guessed_in(frames); !guessed.empty())
-      lines.push_back((view.empty() ? "" : " (" + view + ")") + ": " + guessed);
+      lines.push_back(fmt::format("{}: {}", view.empty() ? "" : " (" + view + ")", guessed));
   }
   return lines;
 }
