@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -26,7 +27,7 @@ constexpr std::size_t kFramesForRadius = 5;
 
 /// The camera and samples of the surfaces tell which axis is up, and the median depth: an overview
 /// of larger frames has enough of them.
-constexpr std::size_t kEnoughPixels = 500000;
+constexpr std::size_t kEnoughForUp = 500000, kAllPixels = std::numeric_limits<std::size_t>::max();
 
 /// None where the folder cannot be listed.
 std::vector<int> frames_on_disk(const std::string& pattern) try {
@@ -38,7 +39,8 @@ std::vector<int> frames_on_disk(const std::string& pattern) try {
 }  // namespace
 
 /// The surfaces of another frame; nothing where it cannot be read by itself.
-std::optional<View> SequenceFrames::read(const FrameFiles& files, const Looking& how) const try {
+std::optional<View> SequenceFrames::read(const FrameFiles& files, std::size_t most_pixels) const
+    try {
   std::error_code ignored;
   if (!std::filesystem::exists(files.input, ignored)) return std::nullopt;
   const std::vector<Role> unused = {Role::albedo,    Role::beauty,         Role::radiance,
@@ -50,7 +52,7 @@ std::optional<View> SequenceFrames::read(const FrameFiles& files, const Looking&
   });
   InputOptions input = for_view(options_.input, files);
   input.gbuffer.most_pixels =
-      std::min(how.most_pixels, most_pixels_in(options_.memory, options_.output, 0));
+      std::min(most_pixels, most_pixels_in(options_.memory, options_.output, 0));
   return read_view(open_view(files.input, aovs, input.allow_partial), aovs, input, options_.camera,
                    unused);
 } catch (const Error&) {
@@ -58,24 +60,24 @@ std::optional<View> SequenceFrames::read(const FrameFiles& files, const Looking&
 }
 
 std::optional<CameraBeside> SequenceFrames::camera_of(const FrameFiles& files) const {
-  const std::optional<View> view = read(files, {});
+  const std::optional<View> view = read(files, kAllPixels);
   if (!view) return std::nullopt;
   const Placement& placement = view->report.placement;
   if (placement.of_positions.panorama || placement.median_depth <= 0) return std::nullopt;
   return CameraBeside{placement.of_positions, view->gbuffer.display_of_file(), files.input};
 }
 
-/// Calls `at` for frames on disk that are spread evenly over the shot from its first to its last,
-/// where they show surfaces.
-void SequenceFrames::look(const std::string& name, const Looking& how,
-                          const std::function<void(const View&)>& at) const {
+/// Calls `at` for those of `count` frames on disk, spread evenly over the shot from its first to
+/// its last, that show surfaces.
+void SequenceFrames::look(const std::string& name, std::size_t most_pixels,
+                          const std::function<void(const View&)>& at, std::size_t count) const {
   const std::vector<int> frames = frames_on_disk(options_.input_file);
   if (frames.size() < 2) return;
   std::set<int> chosen;
-  for (std::size_t i = 0; i < how.frames; ++i)
-    chosen.insert(frames[std::min(i * frames.size() / (how.frames - 1), frames.size() - 1)]);
+  for (std::size_t i = 0; i < count; ++i)
+    chosen.insert(frames[std::min(i * frames.size() / (count - 1), frames.size() - 1)]);
   for (const int number : chosen) {
-    const auto view = read(in_view(files_at(options_, number), name), how);
+    const auto view = read(in_view(files_at(options_, number), name), most_pixels);
     if (view && view->report.placement.median_depth > 0) at(*view);
   }
 }
@@ -85,7 +87,7 @@ std::optional<UpEvidence> SequenceFrames::up(const std::string& name) {
   if (up_) return *up_;
   UpEvidence mean{};
   double count = 0;
-  look(name, {.most_pixels = kEnoughPixels}, [&](const View& view) {
+  look(name, kEnoughForUp, [&](const View& view) {
     if (!view.geometry.world_known) return;
     const UpEvidence found = up_evidence(view.geometry);
     count += 1;
@@ -99,7 +101,7 @@ std::string SequenceFrames::normal_space(const std::string& name) {
   if (normal_space_) return *normal_space_;
   double best = 0;
   normal_space_.emplace();
-  look(name, {}, [&](const View& view) {
+  look(name, kAllPixels, [&](const View& view) {
     const GeometryReport& report = view.report;
     if (!report.normals_known || report.normal_agreement <= best) return;
     best = report.normal_agreement, normal_space_ = report.normal_space;
@@ -113,8 +115,9 @@ std::optional<float> SequenceFrames::radius(const std::string& name) {
   const auto [at, is_new] = radius_.try_emplace(name);
   if (!is_new) return at->second;
   std::vector<float> found;
-  look(name, {.frames = kFramesForRadius, .most_pixels = kEnoughPixels},
-       [&](const View& view) { found.push_back(radius_by_frame(view.geometry)); });
+  look(
+      name, kEnoughForUp,
+      [&](const View& view) { found.push_back(radius_by_frame(view.geometry)); }, kFramesForRadius);
   std::ranges::sort(found);
   const std::size_t half = found.size() / 2;
   if (!found.empty())

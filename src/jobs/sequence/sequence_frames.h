@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -31,18 +30,12 @@ class SequenceFrames {
   Frame prepare(const Lighting& light, const FrameFiles& files, std::optional<int> number);
 
  private:
-  /// How other frames are read.
-  struct Looking {
-    std::size_t frames = 3;                                             ///< of the shot: at least 2
-    std::size_t most_pixels = std::numeric_limits<std::size_t>::max();  ///< else an overview
-  };
-
   Frame prepare(const FrameOptions& options, const Lighting& light, const FrameFiles& files,
                 int number);
-  std::optional<View> read(const FrameFiles& files, const Looking& how) const;
+  std::optional<View> read(const FrameFiles& files, std::size_t most_pixels) const;
   std::optional<CameraBeside> camera_of(const FrameFiles& files) const;
-  void look(const std::string& view, const Looking& how,
-            const std::function<void(const View&)>& at) const;
+  void look(const std::string& view, std::size_t most_pixels,
+            const std::function<void(const View&)>& at, std::size_t count = 3) const;
   std::optional<UpEvidence> up(const std::string& view);
   std::string normal_space(const std::string& view);
   std::optional<float> radius(const std::string& view);
