@@ -29,6 +29,7 @@
 #include "jobs/sequence/place_in_sequence.h"
 #include "jobs/sequence/sequence_frames.h"
 #include "jobs/sequence/shot.h"
+#include "jobs/sequence/shot_report.h"
 #include "jobs/statistics.h"
 #include "jobs/work.h"
 #include "parallel/background.h"
@@ -68,13 +69,19 @@ class Batch {
     ExitCode code = ExitCode::done;
     try {
       code = run_jobs();
-      printer_.print_summary(options_.input_file);
     } catch (const Error& e) {
       info_.note(e);
       info_.finish();
       throw;
     }
+    std::vector<std::string> summary = report_.summary();
+    for (const std::string& line : printer_.summary()) summary.push_back(line);
+    for (std::string& line : summary) {
+      line.insert(0, options_.input_file);
+      if (!options_.verbosity.quiet) printer_.print(line);
+    }
     info_.finish();
+    report_.add_to(statistics_, summary);
     if (has_statistics() && !options_.verbosity.dry_run)
       write_statistics(options_.verbosity.stats, policy_of_statistics(options_.output.policy),
                        statistics_);
@@ -174,13 +181,11 @@ class Batch {
 
   /// Says what the frame before had otherwise; frames are prepared one after the other.
   void note_changes(Work& work) {
-    std::vector<FrameLooks> before = std::exchange(looks_, {});
-    for (const WorkOnView& view : work.views) {
-      const Job& job = jobs_[work.index];
-      looks_.push_back(looks_of(view.frame, job.views[looks_.size()], job.frame.value_or(0)));
-      if (looks_.size() <= before.size())
-        work.messages.warn(changes(before[looks_.size() - 1], looks_.back()), view.frame.view,
-                           true);
+    const Job& job = jobs_[work.index];
+    for (std::size_t v = 0; v < work.views.size() && !job.is_lent; ++v) {
+      const Frame& frame = work.views[v].frame;
+      const FrameLooks looks = looks_of(frame, job.views[v], job.frame.value_or(0));
+      work.messages.warn(report_.add(work.index, looks), frame.view, true);
     }
   }
 
@@ -222,13 +227,20 @@ class Batch {
     TemporalInput temporal{std::move(before), {}};
     if (options_.model.temporal) place_in_sequence(frame, temporal, before_of(work.index));
     if (options_.command == Command::info || options_.verbosity.dry_run) note_losses(work, frame);
-    if (options_.command == Command::info) return info_.show(frame);
-    if (options_.verbosity.dry_run || options_.verbosity.verbose)
-      work.messages.add_text(describe(frame));
-    else if (!jobs_[work.index].is_lent) {
-      work.messages.warn(frame.warnings(), frame.view);
-      if (!jobs_[work.index].frame && !options_.verbosity.quiet) work.advice = frame.advice;
+    if (jobs_[work.index].is_lent) {
+      view.relit = relight(job_of(work, view), std::move(frame.scene), on_progress, temporal);
+      return note_losses(work, frame);
     }
+    const bool describes = options_.verbosity.dry_run || options_.verbosity.verbose;
+    if (describes || options_.command == Command::info)
+      work.messages.note(frame.warnings(), frame.view);
+    else
+      work.messages.warn(frame.warnings(), frame.view);
+    if (options_.command == Command::info) return info_.show(frame);
+    if (describes)
+      work.messages.add_text(describe(frame));
+    else if (!jobs_[work.index].frame && !options_.verbosity.quiet)
+      work.advice = frame.guessed.advice();
     const RelightJob job = job_of(work, view);
     if (options_.verbosity.dry_run) {
       // The last checks that come before the work of a real run.
@@ -237,7 +249,6 @@ class Batch {
     }
     if (behind_.empty() && !shot_.is_waiting()) print(work);
     view.relit = relight(job, std::move(frame.scene), on_progress, temporal);
-    if (jobs_[work.index].is_lent) return note_losses(work, frame);
     if (options_.verbosity.verbose)
       for (const std::string& note : view.relit.notes) work.messages.add(note);
     work.messages.warn(view.relit.warnings, frame.view);
@@ -350,7 +361,7 @@ class Batch {
   nlohmann::json statistics_ = nlohmann::json::array();
   ExitCode code_ = ExitCode::done;
   bool stopped_ = false;
-  std::vector<FrameLooks> looks_;  ///< of the views of the last frame that was prepared
+  ShotReport report_;
   std::vector<std::optional<History>> histories_;  ///< of the frame before's views, for --temporal
   std::optional<Work> ahead_;                      ///< the next job, prepared
   std::vector<Work> behind_;                       ///< computed and not concluded

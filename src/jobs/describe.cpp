@@ -7,6 +7,7 @@
 #include <array>
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "io/exr/file/exr_parts.h"
 #include "io/one_line.h"
@@ -20,7 +21,8 @@ using nlohmann::json;
 /// Before a frame is rendered, what to render with it is worth a warning too.
 std::vector<std::string> warnings_of(const Frame& frame) {
   std::vector<std::string> all = frame.warnings();
-  if (!frame.advice.empty()) all.push_back(frame.advice);
+  if (std::string advice = frame.guessed.advice(); !advice.empty())
+    all.push_back(std::move(advice));
   return all;
 }
 

@@ -144,7 +144,9 @@ std::vector<Job> jobs_of_sequence(const RunOptions& options, const std::vector<T
   }
   std::vector<Job> jobs;
   for (int frame : frames) jobs.push_back(job_of_frame(options, targets, frame));
-  return options.model.shot.count > 0 ? with_lent_frames(options, std::move(jobs)) : jobs;
+  const bool tells = options.model.shot.count > 0 && options.command == Command::relight &&
+                     !options.verbosity.dry_run;
+  return tells ? with_lent_frames(options, std::move(jobs)) : jobs;
 }
 
 RunFiles files_of(const RunOptions& options, const std::vector<Job>& jobs) {

@@ -15,15 +15,22 @@ std::string line_of(const std::string& text) { return "ssdo: " + printable(text)
 
 }  // namespace
 
+std::string warning_of(const std::string& warning, const std::string& view) {
+  return fmt::format("{}: warning: {}", view.empty() ? "" : " (" + view + ")", warning);
+}
+
 void Messages::add(const std::string& line) { add_text(line_of(line)); }
 
 void Messages::warn(const std::vector<std::string>& warnings, const std::string& view, bool every) {
-  if (verbosity_->quiet) return;
-  const std::string of_view = view.empty() ? "" : " (" + view + ")";
   for (const std::string& warning : warnings) {
-    const std::string text = fmt::format("{}: warning: {}", of_view, warning);
-    lines_.push_back({line_of(input_ + text), every || verbosity_->verbose ? "" : text});
+    const std::string text = warning_of(warning, view);
+    lines_.push_back(
+        {verbosity_->quiet ? "" : line_of(input_ + text), every ? "" : text, verbosity_->verbose});
   }
+}
+
+void Messages::note(const std::vector<std::string>& warnings, const std::string& view) {
+  for (const std::string& warning : warnings) lines_.push_back({"", warning_of(warning, view)});
 }
 
 std::vector<Line> Messages::take() { return std::exchange(lines_, {}); }
@@ -31,12 +38,10 @@ std::vector<Line> Messages::take() { return std::exchange(lines_, {}); }
 void Printer::print(const std::string& line) { print_text(line_of(line)); }
 
 void Printer::print(Messages& messages, std::size_t place, int number) {
-  for (const Line& line : messages.take())
-    if (line.warning.empty() || repeated_.add(place, number, line.warning)) print_text(line.text);
-}
-
-void Printer::print_summary(const std::string& input) {
-  for (const std::string& line : repeated_.summary()) print(input + line);
+  for (const Line& line : messages.take()) {
+    const bool is_new = line.warning.empty() || repeated_.add(place, number, line.warning);
+    if ((is_new || line.repeats) && !line.text.empty()) print_text(line.text);
+  }
 }
 
 void Printer::print_text(const std::string& text) {

@@ -11,6 +11,9 @@
 
 namespace ssdo {
 
+/// What follows the name of a file, of a view where it is not empty: " (left): warning: WARNING".
+std::string warning_of(const std::string& warning, const std::string& view);
+
 /// What is to be printed about a frame, in its order.
 class Messages {
  public:
@@ -23,6 +26,9 @@ class Messages {
   /// Warnings of a view of the frame, which is empty where there is one only. Those of `every`
   /// frame are no repetitions, whatever their wording.
   void warn(const std::vector<std::string>& warnings, const std::string& view, bool every = false);
+
+  /// Warnings that are printed elsewhere, and count in the summary.
+  void note(const std::vector<std::string>& warnings, const std::string& view);
 
   /// Gives them away.
   std::vector<Line> take();
@@ -44,8 +50,8 @@ class Printer {
   /// is left for the summary.
   void print(Messages& messages, std::size_t place, int number);
 
-  /// Which frames the warnings hold for that several have. `input` are all of them.
-  void print_summary(const std::string& input);
+  /// Which frames the warnings hold for that several have.
+  std::vector<std::string> summary() const { return repeated_.summary(); }
 
  private:
   void print_text(const std::string& text);

@@ -44,7 +44,12 @@ void use_prior(Plan& plan, const LearnedPrior& prior) {
   plan.reasons.push_back(describe_prior(prior.up.has_value()));
 }
 
-std::string explain_guessed(Plan& plan, const Scene& scene) {
+std::string GuessedShare::advice() const {
+  if (remedy.empty()) return {};
+  return fmt::format("{:.2f} of all directions are guessed; {}", *share, remedy);
+}
+
+GuessedShare explain_guessed(Plan& plan, const Scene& scene) {
   if (!plan.method->products.guessed) return {};
   const GuessedMean guessed = mean_guessed(scene, plan.request.radius);
   std::array<std::size_t, kUnseenPlaces.size()> most_first;
@@ -63,13 +68,11 @@ std::string explain_guessed(Plan& plan, const Scene& scene) {
   }
   const std::string share = fmt::format("{:.2f} of all directions", guessed.all),
                     where = parts.empty() ? "" : fmt::format(" ({})", fmt::join(parts, ", ")),
-                    remedy = remedies.empty()
-                                 ? ""
-                                 : fmt::format("; render {}", fmt::join(remedies, ", "));
-  plan.reasons.push_back(
-      fmt::format("guessed: {} lead past what no picture shows{}{}", share, where, remedy));
-  if (guessed.all <= kMuchGuessed) return {};
-  return fmt::format("{} are guessed{}", share, remedy);
+                    remedy =
+                        remedies.empty() ? "" : fmt::format("render {}", fmt::join(remedies, ", "));
+  plan.reasons.push_back(fmt::format("guessed: {} lead past what no picture shows{}{}{}", share,
+                                     where, remedy.empty() ? "" : "; ", remedy));
+  return {guessed.all, guessed.all > kMuchGuessed ? remedy : ""};
 }
 
 }  // namespace ssdo

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,17 @@ namespace ssdo {
 /// Adds what other views contribute to the reasons.
 void explain_views(Plan& plan, const std::vector<MergeCounts>& views);
 
-/// Adds how much of the result is guessed, and what would help, to the reasons. Where it is much,
-/// it gives a warning for who asks before rendering; nothing is wrong with the frame.
-std::string explain_guessed(Plan& plan, const Scene& scene);
+/// How much of a result is guessed.
+struct GuessedShare {
+  std::optional<float> share;  ///< of all directions; empty: the method does not know
+  std::string remedy;          ///< "render ..."; empty: it is not much
+
+  /// A line for who asks before rendering; nothing is wrong with the frame. Empty: it is not much.
+  std::string advice() const;
+};
+
+/// Adds how much of the result is guessed, and what would help, to the reasons.
+GuessedShare explain_guessed(Plan& plan, const Scene& scene);
 
 /// Has a plan use the learned prior, and says what it does.
 void use_prior(Plan& plan, const LearnedPrior& prior);

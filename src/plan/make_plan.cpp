@@ -193,10 +193,15 @@ void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geomet
     plan.request.radius = INFINITY;
     plan.reasons.push_back("radius inf: occluders at any distance count");
   } else {
-    plan.request.radius = kAutoRadius * geometry.frame_height_at(geometry.median_depth);
+    plan.radius_alone = radius_by_frame(geometry);
+    plan.request.radius = model.radius_of_shot.value_or(*plan.radius_alone);
     plan.reasons.push_back(
-        fmt::format("radius {:.4g}: {:g} of the frame's height at the median depth {:.4g}",
-                    plan.request.radius, kAutoRadius, geometry.median_depth));
+        model.radius_of_shot
+            ? fmt::format("radius {:.4g}: the median of frames of the sequence, by {:g} of the "
+                          "height of each at its median depth; {:.4g} by this frame alone",
+                          plan.request.radius, kAutoRadius, *plan.radius_alone)
+            : fmt::format("radius {:.4g}: {:g} of the frame's height at the median depth {:.4g}",
+                          plan.request.radius, kAutoRadius, geometry.median_depth));
   }
 }
 
@@ -287,6 +292,15 @@ void explain_downsampling(Plan& plan, const GBuffer& gbuffer) {
 }
 
 }  // namespace
+
+bool finds_radius(const ModelOptions& model) {
+  const Takes& takes = find_method(model.method).takes;
+  return takes.radius && !takes.endless_radius && !model.radius;
+}
+
+float radius_by_frame(const Geometry& geometry) {
+  return kAutoRadius * geometry.frame_height_at(geometry.median_depth);
+}
 
 Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Scene& scene,
                const GBuffer& gbuffer, const std::string& file) {

@@ -17,4 +17,10 @@ namespace ssdo {
 Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Scene& scene,
                const GBuffer& gbuffer, const std::string& file);
 
+/// Whether --radius auto is a length in scene units that is found in frames.
+bool finds_radius(const ModelOptions& model);
+
+/// This length by one frame: 0.3 of the height that it shows at the median depth of its surfaces.
+float radius_by_frame(const Geometry& geometry);
+
 }  // namespace ssdo

@@ -46,7 +46,10 @@ struct ShotWindow {
 /// What the user says about the method.
 struct ModelOptions {
   std::string method{methods().front().name};
-  std::optional<double> radius;     ///< scene units or infinity; chosen from the frame if not given
+  std::optional<double> radius;  ///< scene units or infinity; chosen from the frame if not given
+  /// What auto is for a method that needs a limit, by frames of the sequence; empty: the frame
+  /// tells.
+  std::optional<float> radius_of_shot = {};
   std::optional<double> thickness;  ///< scene units or infinity; found in the frame if not given
   bool extend_offscreen = true;     ///< surfaces go on beyond the frame
   Prior prior = Prior::rules;
@@ -70,9 +73,10 @@ struct LearnedPrior {
 /// What will be computed for a frame, and why.
 struct Plan {
   const Method* method = nullptr;
-  Request request;                 ///< what the method is asked for
-  std::optional<double> error;     ///< largest error of direct + bounce; empty: no bound
-  const Filter* filter = nullptr;  ///< after the estimate
+  Request request;                    ///< what the method is asked for
+  std::optional<float> radius_alone;  ///< where auto chose the radius: what the frame alone tells
+  std::optional<double> error;        ///< largest error of direct + bounce; empty: no bound
+  const Filter* filter = nullptr;     ///< after the estimate
   /// The filter of a map at half resolution (Request::filter_half); null where there is none.
   const Filter* half_filter = nullptr;
   std::optional<LearnedPrior> prior;  ///< where it is used

@@ -11,6 +11,7 @@
 #include "color/color.h"
 #include "io/exr/exr_reader.h"
 #include "plan/band_plan.h"
+#include "plan/explain.h"
 #include "plan/outputs.h"
 #include "plan/plan.h"
 #include "relight/frame_options.h"
@@ -54,7 +55,7 @@ struct Frame {
   std::optional<glm::vec3>
       up;  ///< unit, camera space; found for a learned prior, where it is known
   Plan plan;
-  std::string advice;                ///< what to render where much is guessed: see explain_guessed
+  GuessedShare guessed;
   std::vector<std::string> history;  ///< what a temporal plan takes from the frame before, and why
   std::vector<std::string> losses_of_views;  ///< of other views; see ExrReader::losses()
   StageTimes times;                          ///< of the stages up to here

@@ -170,14 +170,17 @@ TEST_F(Shot, AWarningThatRepeatsIsSaidOnce) {
   std::vector<std::string> lines;
   std::istringstream in(done.err);
   for (std::string line; std::getline(in, line);) lines.push_back(line);
-  EXPECT_THAT(lines,
-              ElementsAre(StartsWith("ssdo: " + file("in", 1) + ": warning: --radius 1e-05 is"),
-                          HasSubstr("in.0002.exr: warning: albedo is gone"),
-                          StartsWith("ssdo: " + file("in", 2) + ": warning: no layer for albedo"),
-                          AllOf(StartsWith(pattern + ": warning: --radius 1e-05 is"),
-                                EndsWith("is it in the unit of P?: frames 1 to 5")),
-                          AllOf(StartsWith(pattern + ": warning: no layer for albedo"),
-                                EndsWith(": frames 2 to 5"))));
+  EXPECT_THAT(
+      lines,
+      ElementsAre(StartsWith("ssdo: " + file("in", 1) + ": warning: --radius 1e-05 is"),
+                  HasSubstr("in.0002.exr: warning: albedo is gone"),
+                  StartsWith("ssdo: " + file("in", 2) + ": warning: no layer for albedo"),
+                  pattern + ": warning: albedo: 'ViewLayer.DiffCol' (float) in frame 1, none in "
+                            "frames 2 to 5",
+                  AllOf(StartsWith(pattern + ": warning: --radius 1e-05 is"),
+                        EndsWith("is it in the unit of P?: frames 1 to 5")),
+                  AllOf(StartsWith(pattern + ": warning: no layer for albedo"),
+                        EndsWith(": frames 2 to 5"))));
   for (const json& frame : stats()) {
     const std::string all = frame["warnings"].dump();
     EXPECT_THAT(all, HasSubstr("--radius 1e-05")) << "each frame has its own here";

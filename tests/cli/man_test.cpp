@@ -74,7 +74,7 @@ TEST(ManPage, HasTheFlagsOfTheHelpAndNoOthers) {
 }
 
 /// Those in ssdo-farm(7) that are not ours, but of sbatch, parallel and make.
-const Flags kOfSchedulers = {"--array",  "--cpus-per-task", "--mem",
+const Flags kOfSchedulers = {"--array",  "--cpus-per-task", "--dependency", "--mem",
                              "--joblog", "--resume-failed", "--keep-going"};
 
 TEST(ManPage, MentionsNoFlagThatDoesNotExist) {

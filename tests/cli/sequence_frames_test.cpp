@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What frames of a shot that tell too little take from the others: the camera, the axis that is up,
-// the space of N.
+// What frames of a shot take from the others: where they tell too little, the camera, the axis that
+// is up and the space of N; and the radius.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -246,6 +248,55 @@ TEST_F(SequenceFrames, TurnNormalsRoundAlike) {
     if (!turned) std::filesystem::copy_file(file("out", 2), plain = dir_ / "plain.exr");
   }
   EXPECT_LT(largest_difference(file("out", 2), plain), 1e-5);
+}
+
+/// Frames 1 to 9 of a still camera; a ball covers most of the picture of frames 4, 5
+/// and 9: of the first, the middle and the last, but not of most.
+void write_passing_ball(const std::function<void(int, const Picture&)>& write) {
+  const Camera camera = camera_at(camera_from_fov(40, kWindow, 1), 0);
+  const Surface near = all_of({court(), sphere({-0.4, -4.6, 2.2}, 0.6)});
+  for (int frame = 1; frame <= 9; ++frame)
+    write(frame,
+          take_picture(frame == 4 || frame == 5 || frame == 9 ? near : court(), camera, kWindow));
+}
+
+/// A thing that came close to the camera made the radius of methods that need one several times
+/// smaller.
+TEST_F(SequenceFrames, HaveOneRadius) {
+  write_passing_ball([&](int frame, const Picture& picture) { write(frame, picture); });
+  const auto radius = [&](const std::vector<std::string>& words) {
+    std::vector<std::string> all = {"info", "--json", "--method", "gtao"};
+    all.insert(all.end(), words.begin(), words.end());
+    return double(parse_json(run_tool(all).out)["plan"]["radius"]);
+  };
+  const double far = radius({file("in", 1)}), near = radius({file("in", 4)});
+  ASSERT_GT(far, 2 * near);
+  for (const char* frame : {"1", "4", "9"})
+    EXPECT_EQ(radius({dir_ / "in.####.exr", "--frames", frame}), far);
+  EXPECT_NEAR(radius({dir_ / "in.####.exr", "--frames", "4", "--radius", "0.7"}), 0.7, 1e-6);
+
+  const std::vector<std::string> by = {"--method", "gtao", "--products", "ao"};
+  const auto bits = [&](const std::string& frames) {
+    std::vector<std::string> flags = by;
+    flags.insert(flags.end(), {"--frames", frames});
+    EXPECT_EQ(run(flags).code, 0);
+    std::vector<std::string> files;
+    for (int frame = 3; frame <= 6; ++frame) files.push_back(read_file(file("out", frame)));
+    return files;
+  };
+  const std::vector<std::string> whole = bits("1-9"), chunk = bits("3-6");
+  EXPECT_TRUE(whole == chunk) << "however the shot is cut";
+  for (const char* frame : {"6", "5", "4", "3"}) bits(frame);
+  EXPECT_TRUE(bits("9") == whole);
+
+  std::vector<std::string> flags = by;
+  const std::string told = run(flags).err;
+  EXPECT_THAT(told,
+              HasSubstr(fmt::format("in.####.exr: warning: radius {:.4g} is that of the shot: "
+                                    "for frames 4 to 5, 9 alone it would be {:.4g}; give --radius",
+                                    far, near)));
+  flags.insert(flags.end(), {"--radius", "0.7"});
+  EXPECT_EQ(run(flags).err, "");
 }
 
 /// Where frames differ all the same, it is said.

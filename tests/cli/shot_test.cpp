@@ -10,6 +10,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
@@ -189,6 +190,28 @@ TEST_F(FarmShot, GoesInChunks) {
   EXPECT_THAT(codes, ElementsAre(3, 3, 3, 3, 5, 0));
   EXPECT_THAT(lines, are_the_failures());
   EXPECT_EQ(listing(dir_ / "out").size(), 44u) << "and what was published before";
+}
+
+/// Frames that are made with those around them read these from the disk where a chunk ends.
+TEST_F(FarmShot, HasTheSameBitsHoweverItIsCut) {
+  for (const std::vector<std::string>& with :
+       {std::vector<std::string>{"--neighbours", "2"}, {"--method", "gtao"}}) {
+    std::map<int, std::string> whole;
+    for (const int size : {48, 5, 1}) {
+      SCOPED_TRACE(with[0] + ", chunks of " + std::to_string(size));
+      for (int first = kFirst; first <= kLast; first += size) {
+        std::vector<std::string> flags = with;
+        const int last = std::min(first + size - 1, kLast);
+        flags.insert(flags.end(), {"--overwrite", "--threads", size == 5 ? "1" : "2", "--frames",
+                                   std::to_string(first) + "-" + std::to_string(last)});
+        ASSERT_EQ(run(flags).code, 0);
+      }
+      for (int frame = kFirst; frame <= kLast; ++frame) {
+        const std::string bits = read_file(out(frame));
+        EXPECT_TRUE(whole.try_emplace(frame, bits).first->second == bits) << frame;
+      }
+    }
+  }
 }
 
 /// A range that runs past the end, as OpenCue's #FRAME_END# does.

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # A shot on a farm: Slurm, GNU parallel and make run the commands of man/ssdo-farm.7 while tasks are
-# killed, cancelled and sent to other nodes. The shot ends complete, with the bits of a local run.
-# Usage: run.sh [SSDO]; by default the binary in build/release. As root, in 1 to 2 minutes.
+# killed, cancelled and sent to other nodes. The shot ends complete, with the bits of a local run. So
+# does a shot whose frames are made with those around them, in chunks of 1, 5 and 48 frames.
+# Usage: run.sh [SSDO]; by default the binary in build/release. As root, in 2 to 5 minutes.
 set -euo pipefail
 
 farm=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -106,7 +107,34 @@ test_slurm() {
   check_all_completed "$job"
   [ "$(oldest_frame)" = "$before" ] || fail "a frame that was done was made again"
   check_shot "slurm"
+}
+
+# On the cluster of test_slurm, both of whose nodes are used again.
+test_chunks() {
+  scontrol update nodename=n1 state=resume
+  example shot.sbatch >shot.sbatch
+  ssdo shot/shot.####.exr -o whole/relit.####.exr --env sky.exr --neighbours 2 --create-dirs
+  diff -q whole/relit.1024.exr local/relit.1024.exr >/dev/null && fail "neighbours change nothing"
+  local size job
+  rm log/*.json
+  for size in 1 5 48; do
+    rm -r relit
+    job=$(bash -euo pipefail -c "$(example shot | sed "s/:5/:$size/")" | grep -o '[0-9]*$')
+    wait_until 180 "job $job to end" job_has_ended "$job"
+    check_all_completed "$job"
+    diff -r whole relit || fail "chunks of $size: not the files of one local run"
+    say "slurm: chunks of $size frames have the bits of one local run"
+  done
   stop_cluster
+}
+
+# Statistics of chunks of one shot are joined in the order of its frames.
+test_statistics() {
+  command -v jq >/dev/null || { say "jq is missing: statistics are not joined"; return; }
+  run_example stats
+  [ "$(jq '[.[].frame] == [range(1001; 1049) | (., ., .)]' shot.json)" = true ] ||
+    fail "the statistics of the chunks are not those of the shot, three times"
+  say "statistics: $(jq length shot.json) objects joined"
 }
 
 test_parallel() {
@@ -181,6 +209,8 @@ make_shot
 run_locally
 say "local run: $(ls local/*.exr | wc -l) frames"
 test_slurm
+test_chunks
+test_statistics
 test_parallel
 test_make
 test_leftovers_of_other_machines

@@ -24,19 +24,54 @@ std::string normal_space_of(const Frame& frame) {
   return name;
 }
 
+std::string_view type_of(bool half) { return half ? "half" : "float"; }
+
 }  // namespace
 
 FrameLooks looks_of(const Frame& frame, const FrameFiles& files, int number) {
   const Window& display = frame.part().display_window;
-  FrameLooks looks{number, {}, display.width(), display.height(), normal_space_of(frame), {}, {}};
+  const Geometry& geometry = frame.scene.geometry;
+  FrameLooks looks;
+  looks.number = number;
+  looks.view = frame.view;
+  looks.width = display.width(), looks.height = display.height();
+  looks.normal_space = normal_space_of(frame);
+  if (frame.layers[Role::depth]) {
+    looks.depth_kind = frame.gbuffer.encodings.depth_is_wrong       ? "left out"
+                       : frame.gbuffer.depth_kind == DepthKind::ray ? "ray"
+                                                                    : "planar";
+  }
   // A frame without surfaces has no use for views, whether they fit or not.
   if (frame.report.placement.median_depth > 0) looks.also = files.also;
   for (const std::string& file : looks.also)
     looks.fits.push_back(std::ranges::find(frame.views, file, &MergeCounts::file) !=
                          frame.views.end());
   for (std::size_t i = 0; i < kRoleCount; ++i)
-    if (const auto& layer = frame.layers.layers[i]) looks.layers[i] = layer->name;
+    if (const auto& layer = frame.layers.layers[i])
+      looks.layers[i] = layer->name, looks.half[i] = layer->half;
+  looks.camera = geometry.camera;
+  looks.display = geometry.display;
+  looks.median_depth = geometry.median_depth;
+  looks.world_known = geometry.world_known;
+  looks.radius = frame.plan.request.radius;
+  looks.radius_alone = frame.plan.radius_alone;
+  looks.guessed = frame.guessed.share;
+  looks.remedy = frame.guessed.remedy;
   return looks;
+}
+
+std::vector<std::pair<std::string, std::string>> FrameLooks::properties() const {
+  std::vector<std::pair<std::string, std::string>> found;
+  for (std::size_t i = 0; i < kRoleCount; ++i)
+    found.emplace_back(
+        role_name(Role(i)),
+        layers[i].empty() ? "none" : fmt::format("'{}' ({})", layers[i], type_of(half[i])));
+  found.emplace_back("size", fmt::format("{} x {}", width, height));
+  if (!normal_space.empty()) found.emplace_back("space of normals", normal_space);
+  if (!depth_kind.empty()) found.emplace_back("kind of depth", depth_kind);
+  for (std::size_t i = 0; i < also.size(); ++i)
+    found.emplace_back("--also " + also[i], fits[i] ? "used" : "left out");
+  return found;
 }
 
 std::vector<std::string> changes(const FrameLooks& before, const FrameLooks& now) {
@@ -44,7 +79,13 @@ std::vector<std::string> changes(const FrameLooks& before, const FrameLooks& now
   for (std::size_t i = 0; i < kRoleCount; ++i) {
     const std::string &old = before.layers[i], &own = now.layers[i];
     const std::string_view role = role_name(Role(i));
-    if (old == own) continue;
+    if (old == own) {
+      if (before.half[i] != now.half[i])
+        lines.push_back(fmt::format("{} is of another type: {} in frame {}, {} in frame {}", role,
+                                    type_of(before.half[i]), before.number, type_of(now.half[i]),
+                                    now.number));
+      continue;
+    }
     lines.push_back(
         own.empty()   ? fmt::format("{} is gone: frame {} has it in '{}', frame {} has none", role,
                                     before.number, old, now.number)

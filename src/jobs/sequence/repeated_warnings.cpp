@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <iterator>
 #include <string_view>
 
 namespace ssdo {
@@ -47,23 +46,6 @@ std::string kind_of(std::string_view text, int number) {
     kind += counts || is_own ? "#" : digits;
   }
   return kind;
-}
-
-/// "frames 3 to 24, 30"; frames of the run that follow each other are joined.
-std::string text_of(const std::map<std::size_t, int>& frames) {
-  constexpr std::size_t kMostRanges = 8;
-  std::string text = "frames ";
-  std::size_t ranges = 0, left = frames.size();
-  for (auto first = frames.begin(); first != frames.end();) {
-    auto last = first, next = std::next(first);
-    while (next != frames.end() && next->first == last->first + 1) last = next++;
-    if (++ranges > kMostRanges) return text + fmt::format(" and {} more", left);
-    left -= std::size_t(std::distance(first, next));
-    text += fmt::format("{}{}", ranges > 1 ? ", " : "", first->second);
-    if (last != first) text += fmt::format(" to {}", last->second);
-    first = next;
-  }
-  return text;
 }
 
 }  // namespace

@@ -6,12 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "jobs/sequence/frame_ranges.h"
+
 namespace ssdo {
 
 /// Lines of a frame, to be printed.
 struct Line {
-  std::string text;
+  std::string text;          ///< empty: nothing is printed, and the warning counts all the same
   std::string warning = {};  ///< what it warns of, where other frames may say the same; else empty
+  bool repeats = false;      ///< printed for every frame that has it
 };
 
 /// The warnings of a run: each kind is printed where it first appears, and at the end with the
@@ -28,9 +31,9 @@ class RepeatedWarnings {
 
  private:
   struct Kind {
-    std::string first;                       ///< its wording where it first appears
-    bool varies = false;                     ///< in its numbers
-    std::map<std::size_t, int> frames = {};  ///< numbers by place
+    std::string first;    ///< its wording where it first appears
+    bool varies = false;  ///< in its numbers
+    FramesByPlace frames = {};
   };
   std::map<std::string, std::size_t> index_;
   std::vector<Kind> kinds_;  ///< in the order of their first appearance

@@ -11,6 +11,7 @@
 #include "io/sequence.h"
 #include "jobs/jobs.h"
 #include "plan/band_plan.h"
+#include "plan/make_plan.h"
 #include "relight/relight.h"
 #include "scene/camera/find_camera.h"
 
@@ -20,8 +21,12 @@ namespace {
 /// How far a frame is looked for whose P tells its camera.
 constexpr int kMostFramesAway = 8;
 
-/// The camera and samples of the surfaces tell which axis is up: an overview of larger frames has
-/// enough of them.
+/// How many frames on disk tell the radius: the median is that of more than half of a shot,
+/// whatever comes close to the camera for a part of it.
+constexpr std::size_t kFramesForRadius = 5;
+
+/// The camera and samples of the surfaces tell which axis is up, and the median depth: an overview
+/// of larger frames has enough of them.
 constexpr std::size_t kEnoughForUp = 500000, kAllPixels = std::numeric_limits<std::size_t>::max();
 
 /// None where the folder cannot be listed.
@@ -62,12 +67,16 @@ std::optional<CameraBeside> SequenceFrames::camera_of(const FrameFiles& files) c
   return CameraBeside{placement.of_positions, view->gbuffer.display_of_file(), files.input};
 }
 
-/// Calls `at` for the first, the middle and the last frame on disk that show surfaces.
+/// Calls `at` for those of `count` frames on disk, spread evenly over the shot from its first to
+/// its last, that show surfaces.
 void SequenceFrames::look(const std::string& name, std::size_t most_pixels,
-                          const std::function<void(const View&)>& at) const {
+                          const std::function<void(const View&)>& at, std::size_t count) const {
   const std::vector<int> frames = frames_on_disk(options_.input_file);
   if (frames.size() < 2) return;
-  for (const int number : std::set{frames.front(), frames[frames.size() / 2], frames.back()}) {
+  std::set<int> chosen;
+  for (std::size_t i = 0; i < count; ++i)
+    chosen.insert(frames[std::min(i * frames.size() / (count - 1), frames.size() - 1)]);
+  for (const int number : chosen) {
     const auto view = read(in_view(files_at(options_, number), name), most_pixels);
     if (view && view->report.placement.median_depth > 0) at(*view);
   }
@@ -100,6 +109,22 @@ std::string SequenceFrames::normal_space(const std::string& name) {
   return *normal_space_;
 }
 
+/// The median: its two in the middle are averaged.
+std::optional<float> SequenceFrames::radius(const std::string& name) {
+  if (!finds_radius(options_.model)) return std::nullopt;
+  const auto [at, is_new] = radius_.try_emplace(name);
+  if (!is_new) return at->second;
+  std::vector<float> found;
+  look(
+      name, kEnoughForUp,
+      [&](const View& view) { found.push_back(radius_by_frame(view.geometry)); }, kFramesForRadius);
+  std::ranges::sort(found);
+  const std::size_t half = found.size() / 2;
+  if (!found.empty())
+    at->second = found.size() % 2 == 1 ? found[half] : (found[half - 1] + found[half]) / 2;
+  return at->second;
+}
+
 Frame SequenceFrames::prepare(const FrameOptions& options, const Lighting& light,
                               const FrameFiles& files, int number) try {
   return prepare_frame(options, light, pictures_, files, number);
@@ -124,6 +149,7 @@ Frame SequenceFrames::prepare(const Lighting& light, const FrameFiles& files,
   if (!number) return prepare_frame(options_, light, pictures_, files);
   FrameOptions options = options_;
   options.up_of_shot = [this, &files] { return up(files.view); };
+  options.model.radius_of_shot = radius(files.view);
   Frame frame = prepare(options, light, files, *number);
   if (frame.report.normals_known) return frame;
   options.camera.shot.normal_space = normal_space(files.view);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -17,6 +18,7 @@ namespace ssdo {
 ///   the camera, where P leaves it open: that of the nearest frame whose P tells it, moved to fit P
 ///   which axis is up, where no header tells it: by the first, the middle and the last frame
 ///   the space of N, where the frame does not tell it: that which N of these has, if one is sure
+///   --radius auto of a method that needs a limit: the median of five frames spread over the shot
 class SequenceFrames {
  public:
   /// The arguments have to outlive it.
@@ -33,14 +35,16 @@ class SequenceFrames {
   std::optional<View> read(const FrameFiles& files, std::size_t most_pixels) const;
   std::optional<CameraBeside> camera_of(const FrameFiles& files) const;
   void look(const std::string& view, std::size_t most_pixels,
-            const std::function<void(const View&)>& at) const;
+            const std::function<void(const View&)>& at, std::size_t count = 3) const;
   std::optional<UpEvidence> up(const std::string& view);
   std::string normal_space(const std::string& view);
+  std::optional<float> radius(const std::string& view);
 
   const RunOptions& options_;
   OtherPictures& pictures_;
-  std::optional<std::optional<UpEvidence>> up_;  ///< of the shot, once it was asked for
-  std::optional<std::string> normal_space_;      ///< the same; empty: no frame is sure
+  std::optional<std::optional<UpEvidence>> up_;         ///< of the shot, once it was asked for
+  std::optional<std::string> normal_space_;             ///< the same; empty: no frame is sure
+  std::map<std::string, std::optional<float>> radius_;  ///< the same, by view
 };
 
 }  // namespace ssdo
