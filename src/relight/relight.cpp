@@ -61,20 +61,21 @@ void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameO
     refuse("--temporal has no history of it; leave one of them out", frame.objects.shadow_of);
 }
 
-/// The sky dome that is left out of what casts, with a warning; empty where there is none.
+/// The backdrop that is left out of what casts, with a warning; empty where there is none.
 Plane<float> find_backdrop(Frame& frame, const FrameOptions& options, bool may_leave_out) {
   const BackdropChoice choice = options.input.objects.backdrop;
   if (choice == BackdropChoice::ignore) return {};
-  std::optional<Backdrop> dome = find_backdrop(frame.scene.geometry);
-  if (!dome) return {};
+  std::optional<Backdrop> found = find_backdrop(frame.scene.geometry);
+  if (!found) return {};
+  // In a shot, all frames that show its shape have one answer.
+  const auto clearance =
+      options.backdrop_of_shot ? options.backdrop_of_shot() : std::optional<double>();
+  if (!(clearance.value_or(found->clearance) >= 1)) return {};
   const bool leaves_out = choice == BackdropChoice::leave_out && may_leave_out;
-  frame.warn(
-      {fmt::format("{:.2g} % of the frame show a dome of radius {:.3g} around everything: it "
-                   "{}",
-                   100 * dome->share, dome->radius,
-                   leaves_out ? "casts nothing, unless --backdrop cast is given"
-                              : "hides the light behind it; take it out of the G-buffer")});
-  return leaves_out ? std::move(dome->coverage) : Plane<float>();
+  frame.warn({fmt::format("{:.2g} % of the frame show {}: it {}", 100 * found->share, found->what,
+                          leaves_out ? "casts nothing, unless --backdrop cast is given"
+                                     : "hides the light behind it; take it out of the G-buffer")});
+  return leaves_out ? std::move(found->coverage) : Plane<float>();
 }
 
 /// Whether another view shows a dome that is to cast nothing.
