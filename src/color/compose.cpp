@@ -124,7 +124,7 @@ Arriving arriving_light(const Results& r, const LitBy* by) {
       } else {
         light.part[i] *= by->direct[i];
         const Surfel& s = r.scene.geometry.surfel[i];
-        light.whole[i] *= by->light.unoccluded(s.position, s.normal);
+        light.whole[i] *= by->light.unoccluded_in(i, s.position, s.normal);
       }
     }
   });

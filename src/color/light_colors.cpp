@@ -11,7 +11,7 @@ Plane<glm::vec3> unoccluded_light(const Scene& scene, const Light& light) {
   for_each_row(all.height, [&](int y) {
     for (std::size_t i = all.index(0, y); i < all.index(0, y + 1); ++i) {
       const Surfel& s = scene.geometry.surfel[i];
-      all[i] = s.is_usable() ? light.unoccluded(s.position, s.normal) : glm::vec3(0);
+      all[i] = s.is_usable() ? light.unoccluded_in(i, s.position, s.normal) : glm::vec3(0);
     }
   });
   return all;

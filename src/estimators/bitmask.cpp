@@ -60,6 +60,7 @@
 #include "estimators/bitmask/raster.h"
 #include "estimators/bitmask/rays/find_reflection.h"
 #include "estimators/bitmask/rays/find_source.h"
+#include "estimators/bitmask/rays/own_blockers.h"
 #include "estimators/guessed.h"
 #include "scene/light/light.h"
 
@@ -228,14 +229,18 @@ class Bitmask {
     const March march = march_of_rays();
     const InterleavedPlane* const by_pixel = past_.data() ? &past_ : nullptr;
     const float past = by_pixel ? 0 : sun_past_beyond(march_scene_, scene_, request_);
-    for (const auto& source : scene_.light.sources) {
+    for (std::size_t k = 0; k < scene_.light.sources.size(); ++k) {
+      const std::shared_ptr<const Source>& source = scene_.light.sources[k];
+      const auto own = OwnBlockers::of(scene_, k, request_, pattern_);
       const auto find = [&](const Window& to, RaySet set) {
         const auto points = points_of(*source, rays_to_source(request_.slices), request_.seed, set);
-        return find_source({march, bounds, points, *source, pass_beyond(past, *source), by_pixel},
-                           to, progress_);
+        SourceJob job{march, bounds, points, *source, pass_beyond(past, *source), by_pixel};
+        return find_source(own ? own->job(points, *source) : job, to, progress_);
       };
       sources_.push_back(find(lit_part(), RaySet::of_light));
-      if (source->near_lamp() && times_sent(scene_, request_) > 0 && sends_two_sided(scene_)) {
+      // What blocks a lamp of its own lacks the unseen sides of the rest.
+      if (!own && source->near_lamp() && times_sent(scene_, request_) > 0 &&
+          sends_two_sided(scene_)) {
         const auto points =
             points_of(*source, rays_to_source(request_.slices), request_.seed, RaySet::of_light);
         find_unseen_light({march, bounds, points, *source, pass_beyond(past, *source)}, lit_part(),

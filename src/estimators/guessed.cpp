@@ -67,6 +67,7 @@ class Guesses {
   Guesses(const Scene& scene, float radius)
       : scene_(scene),
         surfel_(scene.geometry.surfel),
+        casting_(scene.casters().surfel),
         footprint_(scene.geometry.camera),
         radius_(radius),
         other_views_(OtherViewRays::of_added(scene.other_surfaces)) {
@@ -127,10 +128,21 @@ class Guesses {
   static constexpr float kCloser = 0.7f;
   static constexpr int kSets = 16, kSpread = 5;
 
+  /// Whether a pixel shows what casts nothing: up to there nothing is in the way, and what is
+  /// behind it no pixel shows.
+  bool is_hole(std::size_t pixel) const {
+    return scene_.casting && scene_.casting->hole[pixel] != 0;
+  }
+
+  /// Where the view into a pixel ends.
+  const Surfel& shown(std::size_t pixel) const {
+    return is_hole(pixel) ? surfel_[pixel] : casting_[pixel];
+  }
+
   /// Along the axis; infinite where nothing is shown.
   float depth_at(std::size_t pixel) const {
     if (!depth_.empty()) return depth_[pixel];
-    const Surfel& s = surfel_[pixel];
+    const Surfel& s = shown(pixel);
     return s.is_usable() ? -s.position.z : kInfinity;
   }
 
@@ -180,7 +192,7 @@ class Guesses {
     const std::size_t pixel = pixel_at(line, r);
     const float behind = -line.origin.z - line.length_at(r) * line.to.z - depth_at(pixel);
     if (!(behind > 0)) return 0;
-    return glm::dot(surfel_[pixel].position - line.origin, normal) > 0 ? behind : 0;
+    return glm::dot(shown(pixel).position - line.origin, normal) > 0 ? behind : 0;
   }
 
   /// Whether a ray that is in front of what the picture shows at `before` and behind it at `after`
@@ -190,7 +202,8 @@ class Guesses {
       const float middle = 0.5f * (before + after);
       (behind_front(line, middle, normal) > 0 ? after : before) = middle;
     }
-    const Surfel &a = surfel_[pixel_at(line, before)], &b = surfel_[pixel_at(line, after)];
+    if (is_hole(pixel_at(line, after))) return false;
+    const Surfel &a = shown(pixel_at(line, before)), &b = shown(pixel_at(line, after));
     if (a.is_usable() && on_one_surface({a.position, a.normal}, {b.position, b.normal}, footprint_))
       return true;
     // Within a pixel the ray crosses the plane of what is seen there, and not far from it.
@@ -206,6 +219,7 @@ class Guesses {
   /// Whether a place on the view ray of a pixel, so far behind what that shows along the axis, is
   /// within a solid whose front and back other pictures have measured.
   bool is_in_measured_solid(std::size_t pixel, float behind) const {
+    if (is_hole(pixel)) return false;  // solids are of what stands there in its place
     const Solids& solids = scene_.solids;
     const glm::vec3& p = surfel_[pixel].position;
     const float distance =
@@ -263,7 +277,7 @@ class Guesses {
       }
       if (r >= end) break;
     }
-    if (unseen || stays || !surfel_[pixel_at(line, end - 0.5f)].is_usable()) return unseen;
+    if (unseen || stays || !shown(pixel_at(line, end - 0.5f)).is_usable()) return unseen;
     const Unseen out = to_camera ? Unseen::behind_camera : side;
     if (scene_.views.empty()) return out;
     const float start = line.length_at(border);
@@ -273,8 +287,9 @@ class Guesses {
   }
 
   const Scene& scene_;
-  const Plane<Surfel>& surfel_;
-  Plane<float> depth_;  ///< depth_at() of all pixels; empty: not gathered
+  const Plane<Surfel>& surfel_;   ///< what receives
+  const Plane<Surfel>& casting_;  ///< what casts
+  Plane<float> depth_;            ///< depth_at() of all pixels; empty: not gathered
   PixelFootprint footprint_;
   float radius_, far_;
   std::unique_ptr<OtherViewRays> other_views_;  ///< null: there are no other views

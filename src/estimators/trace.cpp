@@ -45,12 +45,12 @@
 
 #include "estimators/guessed.h"
 #include "estimators/microfacets.h"
-#include "estimators/other_views/other_view_rays.h"
+#include "estimators/other_views/other_view_light.h"
 #include "estimators/specular/mirror_model.h"
+#include "estimators/trace/frame_occluders.h"
 #include "estimators/trace/light_sums.h"
 #include "estimators/trace/mirrored_sums.h"
 #include "estimators/trace/ray_origin.h"
-#include "estimators/trace/ray_scene.h"
 #include "estimators/trace/senders.h"
 #include "math/frame.h"
 #include "math/luminance.h"
@@ -73,6 +73,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// A pixel that gathers light: where its rays start, and the normals that bound and weigh them.
 struct Receiver {
+  std::size_t pixel;
   glm::vec3 position;
   glm::dvec3 origin;          ///< in front of all triangles of the pixel
   glm::vec3 normal, surface;  ///< that of shading and that of the geometry
@@ -89,8 +90,7 @@ class Trace {
         progress_(progress),
         samples_(int(request.parameters.at("samples"))),
         footprint_(scene.geometry.camera),
-        rays_(build_height_field(scene.casters(), scene.solids)),
-        other_views_(OtherViewRays::of_added(scene.other_surfaces)) {}
+        occluders_(scene, request.radius) {}
 
   Products run() {
     const ProductSet& r = request_.products;
@@ -130,11 +130,16 @@ class Trace {
  private:
   int width() const { return scene_.geometry.surfel.width; }
   int height() const { return scene_.geometry.surfel.height; }
+
   /// Whether the frame or another view shows something in the way, or the surface itself is.
-  bool is_blocked(const Receiver& p, const glm::vec3& to, float distance = kInfinity) const {
-    const float reach = std::min(distance, request_.radius);
-    return glm::dot(to, p.surface) <= 0 || rays_.is_blocked(p.origin, to, reach) ||
-           (other_views_ && other_views_->is_blocked(glm::vec3(p.origin), to, reach));
+  bool is_blocked(const Receiver& p, const glm::vec3& to) const {
+    return glm::dot(to, p.surface) <= 0 || occluders_.is_blocked({p.origin, to}, kInfinity);
+  }
+
+  /// The same of a ray to a point of a source.
+  bool is_blocked(const Receiver& p, std::uint32_t source, const glm::vec3& to,
+                  float distance) const {
+    return glm::dot(to, p.surface) <= 0 || occluders_.is_blocked({p.origin, to}, distance, source);
   }
 
   int group_of(int sample) const { return sample * kGroups / samples_; }
@@ -145,8 +150,9 @@ class Trace {
     const glm::vec3 normal(s.normal), position(s.position),
         view = direction_to_viewer(position, g.camera.orthographic),
         surface = geometric_normal(g.surfel, x, y, view);
-    return {position,
-            ray_origin(rays_, s, {surface, view, footprint_.at(-position.z)}),
+    return {pixel,
+            position,
+            ray_origin(occluders_.solids(), s, {surface, view, footprint_.at(-position.z)}),
             normal,
             surface,
             frame_about(normal),
@@ -245,7 +251,7 @@ class Trace {
   /// What the surface sends that a ray meets first; what only other views show sends nothing.
   glm::vec3 sent_along(const Receiver& p, const glm::vec3& to) const {
     if (!mirrored_ || glm::dot(to, p.surface) <= 0) return {};
-    const std::optional<Met> met = first_met(p, to);
+    const std::optional<Met> met = occluders_.first_met({p.origin, to});
     return met && !met->other_view ? mirrored_->sent_by(*met, 0) : glm::vec3(0);
   }
 
@@ -269,10 +275,10 @@ class Trace {
   /// it may be that of a normal map, and a filter takes it for neighbours.
   glm::vec3 light_of(const Source& source, std::uint32_t number, const Receiver& p, Groups& groups,
                      float& share) const {
-    const glm::vec3 unoccluded = source.unoccluded(p.position, p.normal);
+    const glm::vec3 unoccluded = source.taken_at(p.pixel) * source.unoccluded(p.position, p.normal);
     if (unoccluded == glm::vec3(0)) {
       const SourceCone cone = source.cone(p.position);
-      share = !is_blocked(p, cone.to, cone.distance);
+      share = !is_blocked(p, number, cone.to, cone.distance);
       return unoccluded;
     }
     std::array<float, kGroups> seen{}, above{};
@@ -282,7 +288,7 @@ class Trace {
       const float light = point.weight * glm::dot(point.to, p.normal);
       if (light <= 0) continue;
       above[group_of(s)] += light;
-      if (!is_blocked(p, point.to, point.distance)) seen[group_of(s)] += light;
+      if (!is_blocked(p, number, point.to, point.distance)) seen[group_of(s)] += light;
     }
     float all_seen = 0, all_above = 0;
     for (int g = 0; g < kGroups; ++g) {
@@ -295,7 +301,7 @@ class Trace {
 
   TraceSenders senders_of(NamedLight light) const {
     TraceSenders senders{std::move(light), {}, {}, {}};
-    if (other_views_ && request_.bounces > 0)
+    if (occluders_.has_other_views() && request_.bounces > 0)
       senders.others =
           light_other_surfaces(scene_, senders.light, request_.bounces - 1, request_.radius);
     return senders;
@@ -304,19 +310,6 @@ class Trace {
   /// The bounce of the k-th of the senders.
   Plane<glm::vec3>& bounce_of(std::size_t k) {
     return k == 0 ? out_.bounce : out_.lights[k - 1].bounce;
-  }
-
-  /// The surface that a ray meets first.
-  std::optional<Met> first_met(const Receiver& p, const glm::vec3& to) const {
-    const auto [hit, distance] = rays_.first_hit(p.origin, to, request_.radius);
-    if (other_views_) {
-      const auto other = other_views_->first_hit(glm::vec3(p.origin), to, request_.radius);
-      if (other.sender >= 0 && other.distance < distance)
-        return Met{true, other.unseen, std::size_t(other.sender)};
-    }
-    if (hit.sender < 0) return std::nullopt;
-    const auto q = std::size_t(hit.sender);
-    return Met{false, hit.layer == 0 && glm::dot(scene_.casters().surfel[q].normal, to) > 0, q};
   }
 
   /// The same rays gather the light of all and of each.
@@ -332,7 +325,7 @@ class Trace {
         const glm::vec3 to = direction(p, s);
         ++number[group_of(s)];
         if (glm::dot(to, p.surface) <= 0) continue;
-        const std::optional<Met> met = first_met(p, to);
+        const std::optional<Met> met = occluders_.first_met({p.origin, to});
         if (!met) continue;
         sums[group_of(s)] += senders_[0].sent_by(*met, pass);
         for (std::size_t k = 1; k < senders_.size(); ++k)
@@ -352,10 +345,9 @@ class Trace {
   const Progress& progress_;
   int samples_;
   PixelFootprint footprint_;
-  RayScene rays_;
-  std::unique_ptr<OtherViewRays> other_views_;  ///< null: there are no other views
-  std::vector<TraceSenders> senders_;           ///< of all light, then of each light apart
-  std::optional<TraceSenders> mirrored_;        ///< of all light, in mirrors; none: nothing
+  FrameOccluders occluders_;
+  std::vector<TraceSenders> senders_;     ///< of all light, then of each light apart
+  std::optional<TraceSenders> mirrored_;  ///< of all light, in mirrors; none: nothing
   bool wants_light_ = false;
   Plane<Groups> luminances_;  ///< of direct + bounce
   Products out_;

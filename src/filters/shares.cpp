@@ -104,6 +104,12 @@ HWY_INLINE V3 arriving(const Light& light, const Surfels& s, const V3& sky,
   return sum;
 }
 
+/// The share of a source that arrives at pixels from `i` on and lights them.
+HWY_INLINE V lit_share(const Source& source, const Plane<float>& share, std::size_t i, int count) {
+  const V arrives = saturate(load_first(count, &share[i]));
+  return source.receivers ? arrives * taken_at(source, i, count) : arrives;
+}
+
 /// The light of a row from its shares, light by light, before light_of_row() takes their room.
 void lights_of_row(const Scene& scene, const std::vector<NamedLight>& lights, Products& products,
                    int y) {
@@ -113,7 +119,8 @@ void lights_of_row(const Scene& scene, const std::vector<NamedLight>& lights, Pr
         const V3 sky = load_first(count, &shares.sky[i]);
         for (std::size_t l = 0; l < lights.size(); ++l) {
           const auto share_of = [&](std::size_t k) HWY_ATTR {
-            return saturate(load_first(count, &shares.suns[lights[l].numbers[k]][i]));
+            return lit_share(*lights[l].light.sources[k], shares.suns[lights[l].numbers[k]], i,
+                             count);
           };
           const V3 sum = arriving(lights[l].light, s, sky, share_of);
           store_first(count, if_then_else_zero(s.surface, sum), &products.lights[l].direct[i]);
@@ -141,7 +148,7 @@ void light_of_row(const Scene& scene, Products& products, int y) {
           sum = load_first(count, &products.direct[i]) * unoccluded(light, s.position, n);
         } else {
           const auto share_of = [&](std::size_t k) HWY_ATTR {
-            return saturate(load_first(count, &products.shares.suns[k][i]));
+            return lit_share(*light.sources[k], products.shares.suns[k], i, count);
           };
           sum = arriving(light, s, load_first(count, &products.shares.sky[i]), share_of);
         }

@@ -33,8 +33,8 @@ void add_sun_errors(Products& products, const Scene& scene) {
         const float one = std::clamp(shares.suns[k][i], 0.0f, 1.0f),
                     other = std::clamp(shares.suns_again[k][i], 0.0f, 1.0f);
         if (one == other || !surfel[i].is_surface()) continue;
-        products.error[i] +=
-            light * source.received(surfel[i].position, surfel[i].normal) * (one - other);
+        products.error[i] += light * source.taken_at(i) *
+                             source.received(surfel[i].position, surfel[i].normal) * (one - other);
       }
     });
   }

@@ -19,6 +19,7 @@
 #include "scene/camera/world_up.h"
 #include "scene/gbuffer.h"
 #include "scene/layers/layers.h"
+#include "scene/objects/selected_coverage.h"
 #include "scene/other_views/merge.h"
 #include "scene/other_views/other_pictures.h"
 #include "scene/scene.h"
@@ -32,10 +33,12 @@ struct StageTimes {
   double read = 0, known = 0, prepare = 0, estimate = 0, filter = 0, compose = 0, write = 0;
 };
 
-/// What messages call a lamp.
-struct OriginOfLamp {
-  std::string text;  ///< Lamp::origin
-  bool is_near;      ///< it has a position
+/// What is known of a lamp beside its light.
+struct LampOfFrame {
+  std::string origin;  ///< Lamp::origin
+  bool is_near;        ///< it has a position
+  std::size_t source;  ///< its number in Light::sources
+  Selection cast;      ///< with files of this very frame
 };
 
 /// A frame that has been read and understood: all that stands before the first estimate.
@@ -50,8 +53,8 @@ struct Frame {
   GeometryReport report;
   /// What other views add: those of --also, then back faces.
   std::vector<MergeCounts> views;
-  std::string light;                          ///< one line
-  std::map<std::string, OriginOfLamp> lamps;  ///< by name
+  std::string light;                         ///< one line
+  std::map<std::string, LampOfFrame> lamps;  ///< by name
   std::optional<glm::vec3>
       up;  ///< unit, camera space; found for a learned prior, where it is known
   Plan plan;
@@ -69,6 +72,12 @@ struct Frame {
   std::vector<const ExrReader*> readers() const;  ///< of all its files, in their order
   std::vector<std::string> warnings() const;
   void warn(const std::vector<std::string>& lines);  ///< adds to the warnings
+
+  /// Where its selections are looked up. An overview of the frame may miss what it shows: then no
+  /// name is warned of.
+  SelectionFiles selections(std::vector<std::string>& warnings) const {
+    return {files, view, gbuffer.grid.is_coarse() ? nullptr : &warnings};
+  }
 
   /// What --allow-partial has found missing so far, in files of the frame and of other views: a
   /// line each. Rows may be read, and channels kept, until the outputs are written.

@@ -8,6 +8,7 @@
 #include <glm/matrix.hpp>
 
 #include "io/pictures/primaries.h"
+#include "relight/lamp_links.h"
 #include "relight/lamp_warnings.h"
 #include "relight/read_frame.h"
 #include "scene/light/lamps/lamp.h"
@@ -31,7 +32,7 @@ glm::dvec3 in_primaries_of(const Frame& frame, const glm::dvec3& rec709) {
 }
 
 /// The sources of lamps in camera space, after those of the map.
-void add_lamps(Frame& frame, std::vector<Lamp> lamps) {
+void add_lamps(Frame& frame, std::vector<Lamp> lamps, int number, bool allow_partial) {
   if (lamps.empty()) return;
   Scene& scene = frame.scene;
   const Geometry& geometry = scene.geometry;
@@ -41,10 +42,13 @@ void add_lamps(Frame& frame, std::vector<Lamp> lamps) {
     const double depth = -geometry.camera.to_camera(lamp.position).z;
     const double pixel =
         depth > 0 ? geometry.frame_height_at(float(depth)) / geometry.display.height() : 0;
-    scene.light.sources.push_back(
-        make_source(lamp, {geometry.camera.rotation, geometry.camera.origin}, pixel / 2));
-    frame.warn(warnings_of(lamp, *scene.light.sources.back(), geometry));
-    frame.lamps.emplace(lamp.name, OriginOfLamp{lamp.origin, lamp.type != LampType::distant});
+    const auto source =
+        make_source(lamp, {geometry.camera.rotation, geometry.camera.origin}, pixel / 2);
+    source->receivers = find_receivers(frame, lamp, number, allow_partial);
+    frame.warn(warnings_of(lamp, *source, geometry));
+    frame.lamps.emplace(lamp.name, LampOfFrame{lamp.origin, lamp.type != LampType::distant,
+                                               scene.light.sources.size(), lamp.cast});
+    scene.light.sources.push_back(source);
     names += (names.empty() ? "" : ", ") + lamp.name;
   }
   frame.light +=
@@ -58,7 +62,7 @@ void add_lamps(Frame& frame, std::vector<Lamp> lamps) {
 }  // namespace
 
 void light_frame(Frame& frame, const Lighting& lighting, const FrameOptions& options,
-                 const FrameFiles& files) {
+                 const FrameFiles& files, int number) {
   Scene& scene = frame.scene;
   const bool world = scene.geometry.world_known;
   WorldUp up;
@@ -86,7 +90,7 @@ void light_frame(Frame& frame, const Lighting& lighting, const FrameOptions& opt
   }
   if (has_directions && world && glm::determinant(scene.geometry.world_to_camera) < 0)
     frame.warn({"the world of P is left-handed: the map lies in its axes, and appears mirrored"});
-  add_lamps(frame, lighting.lamps());
+  add_lamps(frame, lighting.lamps(), number, options.input.allow_partial);
 }
 
 }  // namespace ssdo

@@ -26,6 +26,9 @@ struct FrameOptions {
   /// Which axis is up by other frames of the sequence too, asked where nothing but P tells it; for
   /// a frame alone it is empty.
   std::function<std::optional<UpEvidence>()> up_of_shot = {};
+  /// Backdrop::clearance of other frames of the sequence too, asked where this frame shows the
+  /// shape of one. Empty: of a frame alone.
+  std::function<std::optional<double>()> backdrop_of_shot = {};
   std::size_t memory = std::numeric_limits<std::size_t>::max();  ///< bytes that a frame may take
 };
 

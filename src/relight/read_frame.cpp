@@ -64,8 +64,10 @@ Frame read_frame(const FrameOptions& options, const FrameFiles& files, int lamps
   frame.report = std::move(view.report);
   frame.scene = take_scene(frame.gbuffer, std::move(view.geometry));
   open_mattes(frame.objects, frame.files, options.input.allow_partial);
-  frame.gbuffer.masks = read_object_masks(frame.objects, {frame.files, frame.view},
+  std::vector<std::string> warnings;
+  frame.gbuffer.masks = read_object_masks(frame.objects, frame.selections(warnings),
                                           frame.gbuffer.window, frame.gbuffer.grid);
+  frame.warn(warnings);
   own = std::move(view.deep);
   frame.times.read = opening + view.read_ms;
   frame.times.prepare = watch.lap() - view.read_ms;

@@ -22,8 +22,10 @@
 #include "relight/frame_light.h"
 #include "relight/frame_warnings.h"
 #include "relight/known_geometry.h"
+#include "relight/lamp_links.h"
 #include "relight/plan_frame.h"
 #include "relight/read_frame.h"
+#include "relight/shadow_of.h"
 #include "relight/targets.h"
 #include "scene/objects/backdrop.h"
 #include "scene/objects/selected_coverage.h"
@@ -38,8 +40,11 @@ constexpr double kEstimateShare = 0.85;
 /// Objects that cast nothing take all of the frame at once, and a method that looks for what is
 /// behind things.
 void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameOptions& options) {
-  const Selection& which =
-      frame.objects.no_cast.empty() ? frame.objects.shadow_of : frame.objects.no_cast;
+  const Selection* found = &frame.objects.no_cast;
+  if (found->empty()) found = &frame.objects.shadow_of;
+  for (const auto& [name, lamp] : frame.lamps)
+    if (found->empty()) found = &lamp.cast;
+  const Selection& which = *found;
   const auto refuse = [&](const std::string& why, const Selection& selection) {
     throw Error(ExitCode::usage, fmt::format("{}: {}: {}", frame.input, selection.option, why));
   };
@@ -59,20 +64,21 @@ void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameO
            frame.objects.shadow_of);
 }
 
-/// The sky dome that is left out of what casts, with a warning; empty where there is none.
+/// The backdrop that is left out of what casts, with a warning; empty where there is none.
 Plane<float> find_backdrop(Frame& frame, const FrameOptions& options, bool may_leave_out) {
   const BackdropChoice choice = options.input.objects.backdrop;
   if (choice == BackdropChoice::ignore) return {};
-  std::optional<Backdrop> dome = find_backdrop(frame.scene.geometry);
-  if (!dome) return {};
+  std::optional<Backdrop> found = find_backdrop(frame.scene.geometry);
+  if (!found) return {};
+  // In a shot, all frames that show its shape have one answer.
+  const auto clearance =
+      options.backdrop_of_shot ? options.backdrop_of_shot() : std::optional<double>();
+  if (!(clearance.value_or(found->clearance) >= 1)) return {};
   const bool leaves_out = choice == BackdropChoice::leave_out && may_leave_out;
-  frame.warn(
-      {fmt::format("{:.2g} % of the frame show a dome of radius {:.3g} around everything: it "
-                   "{}",
-                   100 * dome->share, dome->radius,
-                   leaves_out ? "casts nothing, unless --backdrop cast is given"
-                              : "hides the light behind it; take it out of the G-buffer")});
-  return leaves_out ? std::move(dome->coverage) : Plane<float>();
+  frame.warn({fmt::format("{:.2g} % of the frame show {}: it {}", 100 * found->share, found->what,
+                          leaves_out ? "casts nothing, unless --backdrop cast is given"
+                                     : "hides the light behind it; take it out of the G-buffer")});
+  return leaves_out ? std::move(found->coverage) : Plane<float>();
 }
 
 /// Whether another view shows a dome that is to cast nothing.
@@ -91,14 +97,17 @@ void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& opti
   const bool is_whole = !frame.gbuffer.grid.is_coarse() && known.deep.empty();
   const Plane<float> backdrop = find_backdrop(frame, options, sees_behind && is_whole);
   if (sees_behind) {
-    std::optional<float> thickness;
-    if (options.model.thickness) thickness = float(*options.model.thickness);
+    SolidOptions solids{{}, options.input.gbuffer};
+    if (options.model.thickness) solids.thickness = float(*options.model.thickness);
     const ObjectOptions& objects = frame.objects;
     const Plane<Surfel>& surfel = frame.scene.geometry.surfel;
     const auto coverage = [&](const Selection& selection) {
       if (selection.empty()) return Plane<float>(surfel.width, surfel.height, 0.0f);
-      return selected_coverage(selection, {frame.files, frame.view}, frame.gbuffer.window,
-                               frame.gbuffer.grid);
+      std::vector<std::string> warnings;
+      Plane<float> found = selected_coverage(selection, frame.selections(warnings),
+                                             frame.gbuffer.window, frame.gbuffer.grid);
+      frame.warn(warnings);
+      return found;
     };
     TakenOut out{{}, backdrop, kNoCast | kBackdrop};
     const bool has_hole =
@@ -112,9 +121,11 @@ void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& opti
       frame.scene.without = std::make_shared<Scene>();
       frame.scene.without->geometry = frame.scene.geometry;
       frame.scene.without->senders.albedo = frame.scene.senders.albedo;
-      use_known_geometry(again, *frame.scene.without, thickness, options.input.gbuffer, &both);
+      use_known_geometry(again, *frame.scene.without, solids.thickness, solids.reading, &both);
+      find_blockers(frame, both, solids, *frame.scene.without);
     }
-    frame.views = use_known_geometry(known, frame.scene, thickness, options.input.gbuffer,
+    find_blockers(frame, out, solids, frame.scene);
+    frame.views = use_known_geometry(known, frame.scene, solids.thickness, solids.reading,
                                      has_hole ? &out : nullptr);
   }
   frame.warn(known.warnings);
@@ -128,13 +139,13 @@ void append(std::vector<std::string>& lines, const std::vector<std::string>& mor
 /// Warns of a lamp whose light surfaces block nearly all of: it stands in or behind them.
 void warn_of_unlit(const Frame& frame, const std::string& lamp, double arrives,
                    std::vector<std::string>& lines) {
-  const auto& [origin, is_near] = frame.lamps.at(lamp);
+  const LampOfFrame& of = frame.lamps.at(lamp);
   for (const std::string& line : frame.warnings())
-    if (line.starts_with(origin + ": ")) return;
+    if (line.starts_with(of.origin + ": ")) return;
   lines.push_back(
       fmt::format("{}: {}: surfaces block {:.0f} % of its light from what the frame shows; {}",
-                  origin, is_near ? "position" : "direction", 100 * (1 - arrives),
-                  is_near ? "move it out of them" : "turn it"));
+                  of.origin, of.is_near ? "position" : "direction", 100 * (1 - arrives),
+                  of.is_near ? "move it out of them" : "turn it"));
 }
 
 }  // namespace
@@ -147,7 +158,7 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& lighting, Other
   Stopwatch watch;
   KnownGeometry known = read_known_geometry(frame, files, options, pictures, own);
   frame.times.known = watch.lap();
-  light_frame(frame, lighting, options, files);
+  light_frame(frame, lighting, options, files, number);
   frame.times.prepare += watch.lap();
   find_occluders(frame, known, options);
   (!files.also.empty() ? frame.times.known : frame.times.prepare) += watch.lap();
@@ -168,39 +179,6 @@ void take_products(Relit& relit) {
   relit.times.estimate = found.estimate_ms;
   relit.times.filter = found.filter_ms;
   found = {};
-}
-
-/// direct + bounce.
-Plane<glm::vec3> light_of(const Products& found) {
-  Plane<glm::vec3> light = found.direct;
-  for (std::size_t i = 0; i < light.size() && !found.bounce.empty(); ++i)
-    light[i] += found.bounce[i];
-  return light;
-}
-
-/// Estimates the light without the objects of --shadow-of, as the one with them was: noise that
-/// both have in common is none of their shadow.
-void find_shadow(Scene& without, Relit& relit) {
-  without.light = relit.scene.light;
-  without.senders = relit.scene.senders;
-  without.roughness = relit.scene.roughness;
-  without.specular_color = relit.scene.specular_color;
-  const Plane<int> sender = without.casting->sender;
-  Plan plan = relit.plan;
-  plan.error.reset();
-  plan.request.products = {.direct = true, .bounce = plan.request.products.bounce};
-  plan.request.by_light = {};
-  Estimate found = estimate(std::move(without), plan, [](double) {});
-  light_products(found, plan);
-  relit.times.estimate += found.estimate_ms;
-  relit.times.filter += found.filter_ms;
-  relit.products.lit = light_of(relit.products);
-  relit.products.lit_without = light_of(found.products);
-  for (Plane<glm::vec3>* light : {&relit.products.lit, &relit.products.lit_without}) {
-    const Plane<glm::vec3> all = *light;
-    for (std::size_t i = 0; i < sender.size(); ++i)
-      if (sender[i] >= 0) (*light)[i] = all[std::size_t(sender[i])];
-  }
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <glm/vec3.hpp>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -25,8 +27,9 @@ struct Senders {
 /// What hides and sends light, where that is not what the pixels show: objects that cast nothing
 /// are taken out, and what may be behind them is put in their place.
 struct Casting {
-  Geometry geometry;  ///< of the pixels of the scene's
-  Plane<int> sender;  ///< the pixel whose light such a pixel sends; -1: it is as it shows
+  Geometry geometry;          ///< of the pixels of the scene's
+  Plane<int> sender;          ///< the pixel whose light such a pixel sends; -1: it is as it shows
+  Plane<unsigned char> hole;  ///< 1 in the pixels of those objects
 };
 
 /// All that is known about what a frame shows, in camera space and scene units: what an estimator
@@ -39,6 +42,9 @@ struct Scene {
   OtherSurfaces other_surfaces;  ///< what they show that the frame does not
   Senders senders;
   Light light;
+  /// What blocks the light of a lamp that names its casters, by its number in Light::sources: this
+  /// frame without the rest. Geometry, casting and solids alone are filled.
+  std::map<std::size_t, std::shared_ptr<const Scene>> blockers;
   Plane<float> roughness;           ///< 0..1; empty: the same everywhere, a parameter of the method
   Plane<HalfColor> specular_color;  ///< F0, 0..1; empty: of an index of refraction, a parameter
   /// The same frame without the objects of --shadow-of; null: not asked for. Its light, roughness

@@ -195,7 +195,7 @@ TEST_F(FarmShot, GoesInChunks) {
 /// Frames that are made with those around them read these from the disk where a chunk ends.
 TEST_F(FarmShot, HasTheSameBitsHoweverItIsCut) {
   for (const std::vector<std::string>& with :
-       {std::vector<std::string>{"--neighbours", "2"}, {"--method", "gtao"}}) {
+       {std::vector<std::string>{"--shot", "2"}, {"--method", "gtao"}}) {
     std::map<int, std::string> whole;
     for (const int size : {48, 5, 1}) {
       SCOPED_TRACE(with[0] + ", chunks of " + std::to_string(size));

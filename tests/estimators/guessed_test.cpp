@@ -4,7 +4,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <glm/matrix.hpp>
+
 #include "estimators/bitmask/request.h"
+#include "scene/other_views/take_out.h"
 #include "support/boxes.h"
 
 namespace ssdo::test {
@@ -117,6 +121,32 @@ TEST(Guessed, SurfacesThatAreSeenAreKnown) {
   EXPECT_LT(middle(
                 kWindow, [&](int x, int y) { return double(guessed(x, y)); }, 16),
             0.01);
+}
+
+/// Of what casts nothing, the side that is seen is in no ray's way, and no picture shows the rest.
+TEST(Guessed, WhatIsTakenOutIsNotMet) {
+  const Surface floor = plane({}, {0, 0, 1}), ball = sphere({0, 0, 1}, 1);
+  const Camera by = look_at(camera_from_fov(50, kWindow, 1), {0, -6, 4}, {}, {0, 0, 1});
+  Scene seen = scene_of(geometry_of(all_of({floor, ball}), by, kWindow));
+  const Geometry open = geometry_of(floor, by, kWindow);
+  Plane<float> coverage(kWindow.width(), kWindow.height(), 0.0f);
+  for (std::size_t i = 0; i < coverage.size(); ++i)
+    coverage[i] = seen.geometry.surfel[i].position != open.surfel[i].position ? 1.0f : 0.0f;
+  Scene hole = scene_of(seen.geometry);
+  hole.casting = take_out(hole.geometry, coverage, {}, {});
+  const Plane<float> with = shares(seen, 3), without = shares(hole, 3);
+  // The floor before the ball looks up at the side that is seen; the ball itself looks at the
+  // floor.
+  double before = 0, after = 0, count = 0;
+  for (std::size_t i = 0; i < coverage.size(); ++i) {
+    const glm::dvec3 p =
+        glm::transpose(by.rotation) * glm::dvec3(open.surfel[i].position) + by.origin;
+    if (coverage[i] > 0 || std::abs(p.x) > 0.5 || p.y < -1.5 || p.y > -0.6) continue;
+    before += double(with[i]), after += double(without[i]), count += 1;
+  }
+  ASSERT_GT(count, 100);
+  fmt::print("before the ball: {:.3f}, taken out {:.3f}\n", before / count, after / count);
+  EXPECT_GT(after, before + 0.05 * count);
 }
 
 TEST(Guessed, CountsByHowOpenItsAnswerIs) {

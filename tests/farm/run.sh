@@ -113,8 +113,8 @@ test_slurm() {
 test_chunks() {
   scontrol update nodename=n1 state=resume
   example shot.sbatch >shot.sbatch
-  ssdo shot/shot.####.exr -o whole/relit.####.exr --env sky.exr --neighbours 2 --create-dirs
-  diff -q whole/relit.1024.exr local/relit.1024.exr >/dev/null && fail "neighbours change nothing"
+  ssdo shot/shot.####.exr -o whole/relit.####.exr --env sky.exr --shot 2 --create-dirs
+  diff -q whole/relit.1024.exr local/relit.1024.exr >/dev/null && fail "frames around change nothing"
   local size job
   rm log/*.json
   for size in 1 5 48; do

@@ -12,7 +12,7 @@ std::string ShotSetting::name() const {
 
 RunOptions ShotSetting::applied_to(RunOptions options) const {
   options.model.temporal = temporal;
-  options.input.neighbours = {frames, 1};
+  options.model.shot = {frames, 1};
   return options;
 }
 
@@ -22,7 +22,7 @@ std::vector<ShotSetting> shot_settings(std::size_t count) {
   settings.push_back({{"--temporal"}, 0, true});
   for (const int frames : {1, 2, 4, 8}) {
     if (std::size_t(frames) < count)
-      settings.push_back({{"--neighbours", std::to_string(frames)}, frames, false});
+      settings.push_back({{"--shot", std::to_string(frames)}, frames, false});
   }
   return settings;
 }

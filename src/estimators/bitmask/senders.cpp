@@ -71,6 +71,12 @@ HWY_INLINE V3 shading_normals(const MarchScene& scene, const Place& place) {
   return usable(load_shading(scene, place).normal, valid);
 }
 
+/// The share of the light of a source that those surfaces take.
+HWY_INLINE V taken_at(const MarchScene& scene, const Source& source, const Place& place) {
+  if (!source.receivers) return set(1);
+  return gather(&(*source.receivers)(0, place.y), columns_of(scene, place));
+}
+
 /// Where those surfaces are.
 HWY_INLINE V3 positions(const MarchScene& scene, const Place& place) {
   const float* from = &scene.surfel(0, place.y).position.x;
@@ -91,7 +97,8 @@ HWY_INLINE V3 direct_light(const MarchScene& scene, const FoundShares& found, co
   V3 sum = sky * V3{share(ao, more[0]), share(ao, more[1]), share(ao, more[2])};
   const V3 position = positions(scene, place);
   for (std::size_t k = 0; k < found.sources.size(); ++k) {
-    const V3 light = unoccluded(*found.light.sources[k], position, normal);
+    const Source& source = *found.light.sources[k];
+    const V3 light = unoccluded(source, position, normal) * taken_at(scene, source, place);
     sum = mul_add(light, of_source(found.sources[k]->share), sum);
   }
   return sum;
@@ -109,11 +116,12 @@ HWY_INLINE V3 light_behind(const SenderJob& job, const Place& place, const Share
   V3 as_sky = unoccluded_sky(found.light, normal), sum = set(glm::vec3(0));
   for (std::size_t k = 0; k < found.light.sources.size(); ++k) {
     const Source& source = *found.light.sources[k];
+    const V taken = taken_at(job.scene, source, place);
     if (found.sources.empty() || !found.sources[k]->unseen.data()) {
-      as_sky = as_sky + unoccluded(source, position, normal);
+      as_sky = mul_add(unoccluded(source, position, normal), taken, as_sky);
       continue;
     }
-    const V arrives = hn::IfThenElseZero(side.ends, of_source(found.sources[k]->unseen));
+    const V arrives = hn::IfThenElseZero(side.ends, of_source(found.sources[k]->unseen)) * taken;
     sum = mul_add(unoccluded(source, opposite, normal), arrives, sum);
   }
   return mul_add(as_sky, share(*found.ao), sum);

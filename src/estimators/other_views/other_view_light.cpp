@@ -135,6 +135,8 @@ class OtherViewSenders {
   }
 
   glm::vec3 light_of(const Source& source, std::uint32_t number, const Side& side) const {
+    // A selection says nothing about what the frame does not show.
+    if (source.receivers) return glm::vec3(0);
     const glm::vec3 unoccluded = source.unoccluded(side.start, side.normal);
     if (unoccluded == glm::vec3(0)) return unoccluded;
     float seen = 0, above = 0;

@@ -55,7 +55,8 @@ void specular_of_frame(const Scene& scene, Products& products) {
                surfaces = load_first(count, &products.specular[i]);
       V3 sum = even * (sky * share + surfaces);
       for (std::size_t k = 0; k < sources.size(); ++k) {
-        const V arrives = saturate(load_first(count, &products.shares.suns[k][i]));
+        const V arrives = saturate(load_first(count, &products.shares.suns[k][i])) *
+                          taken_at(*light.sources[k], i, count);
         sum = mul_add(mirrored_source(sources[k], position, frame, f0), arrives, sum);
       }
       store_first(count, if_then_else_zero(s.surface, within_range(sum)), &products.specular[i]);

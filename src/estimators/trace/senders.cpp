@@ -18,7 +18,8 @@ glm::vec3 direct_of(const NamedLight& light, const Products& found, const Surfel
   if (found.shares.are_ao || light.name.empty()) return found.direct[pixel];
   glm::vec3 direct = light.light.unoccluded_sky(s.normal) * found.shares.sky[pixel];
   for (std::size_t i = 0; i < light.numbers.size(); ++i)
-    direct += light.light.sources[i]->unoccluded(s.position, s.normal) *
+    direct += light.light.sources[i]->taken_at(pixel) *
+              light.light.sources[i]->unoccluded(s.position, s.normal) *
               found.shares.suns[light.numbers[i]][pixel];
   return direct;
 }
@@ -45,9 +46,9 @@ glm::vec3 unoccluded_behind(const Scene& scene, const Light& light, std::size_t 
   glm::vec3 sum = light.unoccluded_sky(normal);
   for (const auto& source : light.sources) {
     if (!source->near_lamp())
-      sum += source->unoccluded(s.position, normal);
+      sum += source->taken_at(pixel) * source->unoccluded(s.position, normal);
     else if (!std::isinf(thickness))
-      sum += source->unoccluded(s.position - through * view, normal);
+      sum += source->taken_at(pixel) * source->unoccluded(s.position - through * view, normal);
   }
   return sum;
 }

@@ -2,6 +2,7 @@
 #include "jobs/sequence/sequence_frames.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -14,6 +15,7 @@
 #include "plan/make_plan.h"
 #include "relight/relight.h"
 #include "scene/camera/find_camera.h"
+#include "scene/objects/backdrop.h"
 
 namespace ssdo {
 namespace {
@@ -96,6 +98,17 @@ std::optional<UpEvidence> SequenceFrames::up(const std::string& name) {
   return up_.emplace(count > 0 ? std::optional(mean) : std::nullopt);
 }
 
+/// The geometric mean over frames that show its shape.
+std::optional<double> SequenceFrames::backdrop(const std::string& name) {
+  if (backdrop_) return *backdrop_;
+  double sum = 0, count = 0;
+  look(name, kEnoughForUp, [&](const View& view) {
+    const std::optional<Backdrop> found = find_backdrop(view.geometry);
+    if (found) sum += std::log(found->clearance), count += 1;
+  });
+  return backdrop_.emplace(count > 0 ? std::optional(std::exp(sum / count)) : std::nullopt);
+}
+
 /// That of the frame whose N agrees best with P.
 std::string SequenceFrames::normal_space(const std::string& name) {
   if (normal_space_) return *normal_space_;
@@ -150,6 +163,7 @@ Frame SequenceFrames::prepare(const Lighting& light, const FrameFiles& files,
   FrameOptions options = options_;
   options.up_of_shot = [this, &files] { return up(files.view); };
   options.model.radius_of_shot = radius(files.view);
+  options.backdrop_of_shot = [this, &files] { return backdrop(files.view); };
   Frame frame = prepare(options, light, files, *number);
   if (frame.report.normals_known) return frame;
   options.camera.shot.normal_space = normal_space(files.view);

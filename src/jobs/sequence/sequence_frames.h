@@ -39,12 +39,14 @@ class SequenceFrames {
   std::optional<UpEvidence> up(const std::string& view);
   std::string normal_space(const std::string& view);
   std::optional<float> radius(const std::string& view);
+  std::optional<double> backdrop(const std::string& view);
 
   const RunOptions& options_;
   OtherPictures& pictures_;
   std::optional<std::optional<UpEvidence>> up_;         ///< of the shot, once it was asked for
   std::optional<std::string> normal_space_;             ///< the same; empty: no frame is sure
   std::map<std::string, std::optional<float>> radius_;  ///< the same, by view
+  std::optional<std::optional<double>> backdrop_;       ///< the same: Backdrop::clearance
 };
 
 }  // namespace ssdo

@@ -81,6 +81,11 @@ HWY_INLINE SourceCones cones(const Source& source, const V3& position) {
           by_lane([&](int lane) HWY_ATTR { return std::sin(found[lane].angular_radius); })};
 }
 
+/// Source::taken_at() of `count` pixels from `first` on; 1 in other lanes.
+HWY_INLINE V taken_at(const Source& source, std::size_t first, int count) {
+  return source.receivers ? load_first(count, &(*source.receivers)[first]) : set(1);
+}
+
 // Source::unoccluded(), Light::unoccluded_sky() and Light::unoccluded().
 
 HWY_INLINE V3 unoccluded(const Source& source, const V3& position, const V3& normal) {

@@ -188,6 +188,14 @@ glm::vec3 Light::unoccluded(const glm::vec3& position, const glm::vec3& normal) 
   return sum;
 }
 
+glm::vec3 Light::unoccluded_in(std::size_t pixel, const glm::vec3& position,
+                               const glm::vec3& normal) const {
+  glm::vec3 sum = unoccluded_sky(normal);
+  for (const auto& source : sources)
+    sum += source->taken_at(pixel) * source->unoccluded(position, normal);
+  return sum;
+}
+
 Light model_light(const Environment& environment, const glm::mat3& world_to_camera) {
   Light model;
   model.environment = model.sky = environment;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -48,8 +49,12 @@ struct Light {
 
   glm::vec3 unoccluded_sky(const glm::vec3& normal) const;
 
-  /// The same with that of the sources.
+  /// The same with that of the sources, as if each lit every surface.
   glm::vec3 unoccluded(const glm::vec3& position, const glm::vec3& normal) const;
+
+  /// That of the surface in a pixel, of what lights it.
+  glm::vec3 unoccluded_in(std::size_t pixel, const glm::vec3& position,
+                          const glm::vec3& normal) const;
 
   /// Whether it comes from everywhere alike: one colour, no directions.
   bool is_constant() const { return environment.is_constant() && sources.empty(); }

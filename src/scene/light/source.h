@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <memory>
 #include <string>
+
+#include "math/plane.h"
 
 namespace ssdo {
 
@@ -42,6 +46,12 @@ struct Source {
   std::string name;         ///< of its layers; empty: a part of the environment
   glm::vec3 irradiance{0};  ///< over pi, of a surface for which received() is 1
   float held = 0;           ///< share of its light that spherical harmonics would keep in its place
+
+  /// What it lights, 0..1 by pixel of the scene's geometry: the lamp's `receive`. Null: everything.
+  std::shared_ptr<const Plane<float>> receivers;
+
+  /// The share of its light that the surface of a pixel takes, with nothing in its way.
+  float taken_at(std::size_t pixel) const { return receivers ? (*receivers)[pixel] : 1.0f; }
 
   virtual float received(const glm::vec3& position, const glm::vec3& normal) const = 0;
 

@@ -5,14 +5,16 @@
 
 namespace ssdo {
 
-void open_mattes(const ObjectOptions& options, std::deque<ExrReader>& files, bool allow_partial) {
-  for (const Selection* selection : options.all()) {
-    for (const SelectionTerm& term : selection->terms) {
-      const auto is_it = [&](const ExrReader& file) { return file.path() == term.file; };
-      if (!term.file.empty() && std::ranges::none_of(files, is_it))
-        files.emplace_back(term.file, allow_partial ? Salvage::done : Salvage::offered);
-    }
+void open_mattes(const Selection& selection, std::deque<ExrReader>& files, bool allow_partial) {
+  for (const SelectionTerm& term : selection.terms) {
+    const auto is_it = [&](const ExrReader& file) { return file.path() == term.file; };
+    if (!term.file.empty() && std::ranges::none_of(files, is_it))
+      files.emplace_back(term.file, allow_partial ? Salvage::done : Salvage::offered);
   }
+}
+
+void open_mattes(const ObjectOptions& options, std::deque<ExrReader>& files, bool allow_partial) {
+  for (const Selection* selection : options.all()) open_mattes(*selection, files, allow_partial);
 }
 
 ObjectMasks read_object_masks(const ObjectOptions& options, const SelectionFiles& in,

@@ -7,7 +7,9 @@
 
 namespace ssdo {
 
-/// Opens the files of these selections that are not among `files`. Errors: those of ExrReader.
+/// Opens the files of a selection, or of all of these, that are not among `files`. Errors: those of
+/// ExrReader.
+void open_mattes(const Selection& selection, std::deque<ExrReader>& files, bool allow_partial);
 void open_mattes(const ObjectOptions& options, std::deque<ExrReader>& files, bool allow_partial);
 
 /// The masks of these options. Errors: those of selected_coverage().

@@ -18,6 +18,7 @@
 #include "scene/layers/groups.h"
 #include "scene/layers/names.h"
 #include "scene/objects/cryptomatte.h"
+#include "scene/objects/object_hash.h"
 
 namespace ssdo {
 namespace {
@@ -35,6 +36,7 @@ constexpr std::size_t kMostIds = 4096;
 struct Covered {
   int part = 0;
   Plane<float> coverage;
+  std::set<std::uint32_t> ids = {};  ///< that pixels have
 };
 
 float share_of(float value) { return value > 0 ? std::min(value, 1.0f) : 0.0f; }
@@ -42,7 +44,7 @@ float share_of(float value) { return value > 0 ? std::min(value, 1.0f) : 0.0f; }
 /// What the ranks of a Cryptomatte say of some ids.
 Covered coverage_of_ids(const ExrReader& file, const Cryptomatte& matte,
                         const std::set<std::uint32_t>& ids, const PixelGrid& grid) {
-  Covered sum{matte.ranks.front().part, {}};
+  Covered sum{matte.ranks.front().part, {}, {}};
   for (const Cryptomatte::Rank& rank : matte.ranks) {
     const auto window = [&](int part) { return file.parts()[std::size_t(part)].data_window; };
     if (window(rank.part) != window(sum.part)) {
@@ -53,6 +55,10 @@ Covered coverage_of_ids(const ExrReader& file, const Cryptomatte& matte,
     }
     const std::vector<std::string> channels = {rank.id, rank.coverage};
     const std::vector<Plane<float>> read = file.read(rank.part, channels, grid);
+    for (std::size_t i = 0; !matte.has_manifest && i < read[0].size(); ++i) {
+      const auto id = std::bit_cast<std::uint32_t>(read[0][i]);
+      if (read[1][i] > 0 && ids.contains(id)) sum.ids.insert(id);
+    }
     if (sum.coverage.empty()) sum.coverage = Plane<float>(read[0].width, read[0].height, 0.0f);
     for_each_row(sum.coverage.height, [&](int y) {
       for (std::size_t i = sum.coverage.index(0, y); i < sum.coverage.index(0, y + 1); ++i) {
@@ -132,7 +138,7 @@ class Selector {
   /// Terms `first` to `end`, which are names for Cryptomattes of the same files.
   Plane<float> coverage_of_names(std::size_t first, std::size_t end) const {
     Plane<float> all(window_.width(), window_.height(), 0.0f);
-    std::vector<bool> known(end - first, false);
+    std::vector<bool> known(end - first, false), shown = known;
     std::vector<std::string> names;
     bool has_any = false;
     for (const ExrReader* file : files_of(selection_.terms[first])) {
@@ -150,14 +156,28 @@ class Selector {
             for (const std::uint32_t id : own) ids.erase(id);
         }
         if (ids.empty()) continue;
-        const Plane<float> one = over_window(*file, coverage_of_ids(*file, matte, ids, grid_));
+        const Covered covered = coverage_of_ids(*file, matte, ids, grid_);
+        for (std::size_t i = first; i < end; ++i)
+          shown[i - first] = shown[i - first] || matte.has_manifest ||
+                             covered.ids.contains(cryptomatte_id(selection_.terms[i].name));
+        const Plane<float> one = over_window(*file, covered);
         for (std::size_t i = 0; i < all.size(); ++i) all[i] = std::max(all[i], one[i]);
       }
       if (std::ranges::find(known, false) == known.end()) break;
     }
     for (std::size_t i = first; i < end; ++i)
       if (!known[i - first]) refuse_name(selection_.terms[i], names, has_any);
+    for (std::size_t i = first; in_.warnings && i < end; ++i)
+      if (selection_.terms[i].adds && !shown[i - first]) warn_of(selection_.terms[i].name);
     return all;
+  }
+
+  /// A frame of a shot may well lack an object, so that this is no error.
+  void warn_of(const std::string& name) const {
+    in_.warnings->push_back(fmt::format(
+        "{} {}: no pixel has '{}', whose hash is {:08x}; the Cryptomatte has no manifest to check "
+        "the name with",
+        selection_.option, printable(selection_.text), printable(name), cryptomatte_id(name)));
   }
 
   [[noreturn]] void refuse_name(const SelectionTerm& term, const std::vector<std::string>& names,
@@ -184,7 +204,7 @@ class Selector {
       const std::optional<Layer> layer = layer_of(term, groups);
       for (const LayerGroup& group : groups) names.push_back(name_for_request(group));
       if (!layer) continue;
-      Covered covered{layer->part, {}};
+      Covered covered{layer->part, {}, {}};
       covered.coverage = std::move(file->read(layer->part, layer->channels, grid_)[0]);
       for (float& value : covered.coverage.pixels)
         value = term.kind == Kind::matte ? share_of(value) : is_selected(term, value);

@@ -17,6 +17,8 @@ struct SelectionFiles {
   const std::deque<ExrReader>&
       files;         ///< the frame, then others; those of the terms are among them
   std::string view;  ///< of a stereo file; empty: the only one
+  /// Gets a line for each name that no manifest knows and no pixel has; null: not wanted.
+  std::vector<std::string>* warnings = nullptr;
 };
 
 /// How much of each pixel of `window`, a part of `grid` of the frame, a selection covers, 0..1.

@@ -73,7 +73,7 @@ void mark(OtherPicture& picture, const Selection& selection, unsigned char with,
 
 void mark_backdrop(OtherPicture& picture, const Geometry& geometry) {
   const std::optional<Backdrop> dome = find_backdrop(geometry);
-  if (!dome) return;
+  if (!dome || !dome->is_far()) return;
   picture.taken = Plane<unsigned char>(dome->coverage.width, dome->coverage.height, 0);
   for (std::size_t i = 0; i < dome->coverage.size(); ++i)
     if (dome->coverage[i] > 0) picture.taken[i] = kBackdrop;

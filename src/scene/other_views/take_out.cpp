@@ -73,7 +73,7 @@ class Hole {
  public:
   Hole(const Geometry& geometry, const Plane<float>& coverage, const Plane<float>& backdrop)
       : shown_(geometry),
-        casting_{geometry, Plane<int>(geometry.surfel.width, geometry.surfel.height, kNone)},
+        casting_{geometry, Plane<int>(geometry.surfel.width, geometry.surfel.height, kNone), {}},
         is_open_(geometry.surfel.width, geometry.surfel.height, 0),
         footprint_(geometry.camera) {
     for_each_row(is_open_.height, [&](int y) {
@@ -97,6 +97,8 @@ class Hole {
           casting_.sender[i] = sender(x, y, casting_.sender[i], at(of_frame, i));
       }
     });
+    casting_.hole = std::move(is_open_);
+    for (unsigned char& open : casting_.hole.pixels) open = open != 0;
     return std::move(casting_);
   }
 

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/objects/backdrop.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/vec2.hpp>
 
 #include "support/analytic_scene.h"
 
@@ -21,13 +25,29 @@ Geometry frame(const std::vector<Surface>& shown, const Camera& by = camera()) {
   return geometry_of(all_of(shown), by, kWindow);
 }
 
+bool is_backdrop(const Geometry& geometry) {
+  const auto found = find_backdrop(geometry);
+  return found && found->is_far();
+}
+
+/// Upright, about the origin, seen from the inside.
+Surface cylinder(double radius) {
+  return [radius](const Ray& ray) -> std::optional<Hit> {
+    const glm::dvec2 o(ray.origin), d(ray.direction);
+    const double a = glm::dot(d, d), b = glm::dot(o, d) / a,
+                 t = -b + std::sqrt(b * b - (glm::dot(o, o) - radius * radius) / a);
+    const glm::dvec2 inward = -(o + t * d) / radius;
+    return Hit{t, {inward, 0}};
+  };
+}
+
 TEST(Backdrop, ADomeIsFound) {
   for (const double radius : {150.0, 1000.0, 1e6}) {
     const Geometry with = frame({kStage, kBall, dome({0, 0, 0}, radius)}),
                    without = frame({kStage, kBall});
     const auto found = find_backdrop(with);
-    ASSERT_TRUE(found) << radius;
-    EXPECT_NEAR(found->radius, radius, 1e-3 * radius);
+    ASSERT_TRUE(found && found->is_far()) << radius;
+    EXPECT_EQ(found->what, fmt::format("a dome of radius {:.3g} around everything", radius));
     double pixels = 0;
     for (std::size_t i = 0; i < found->coverage.size(); ++i) {
       EXPECT_EQ(found->coverage[i] > 0, !without.is_surface(i)) << i;
@@ -41,8 +61,77 @@ TEST(Backdrop, ADomeIsFound) {
 TEST(Backdrop, ADomeIsFoundWhereverTheCameraLooks) {
   for (const glm::dvec3& target : {glm::dvec3(0, 2, 8), {0, 2, -0.5}, {9, -6, 4}, {0.3, -5, 30}}) {
     const Geometry with = frame({kStage, kBall, dome({20, 30, -40}, 400)}, camera(target));
-    EXPECT_TRUE(find_backdrop(with));
+    EXPECT_TRUE(is_backdrop(with));
   }
+}
+
+/// Far from all else, with nothing in between: a card, the sides of a box and a cylinder.
+TEST(Backdrop, FarWallsBehindAGapAreFound) {
+  const auto shows = [](const std::vector<Surface>& shown, const std::string& what,
+                        const Camera& by = camera()) {
+    const Geometry with = frame(shown, by), without = frame({kStage, kBall}, by);
+    const auto found = find_backdrop(with);
+    ASSERT_TRUE(found && found->is_far()) << what;
+    EXPECT_TRUE(found->what.starts_with(what)) << found->what;
+    for (std::size_t i = 0; i < found->coverage.size(); ++i)
+      ASSERT_EQ(found->coverage[i] > 0, with.is_surface(i) && !without.is_surface(i)) << i;
+  };
+  const auto side = [](const glm::dvec3& normal) { return plane(-900.0 * normal, normal); };
+  shows({kStage, kBall, side({0, -1, 0})}, "a plane behind everything, from a distance of 9");
+  shows({kStage, kBall, side({0.6, -0.8, 0})}, "a plane behind everything");
+  shows({kStage, kBall, side({0.6, -0.8, 0}), side({-0.6, -0.8, 0})}, "2 planes behind everything");
+  // A narrow lens does not tell a cylinder from a dome.
+  const Camera wide =
+      look_at(camera_from_fov(110, kWindow, 1), {0.3, -6, 2.2}, {0, 2, 2.2}, {0, 0, 1});
+  shows({kStage, kBall, cylinder(700)}, "a cylinder of radius 700 around everything", wide);
+}
+
+/// A gap is a backdrop from ten times on; with a set behind the gap, or sky above, it is none.
+TEST(Backdrop, WallsNeedAWideGapAndNoSkyAboveThem) {
+  const auto card = [](double away, double top) {
+    return cut(plane({0, away, 0}, {0, -1, 0}),
+               [top](const glm::dvec3& p) { return p.z < top && p.z > -1e3; });
+  };
+  const Surface near_stage = cut(kFloor, [](const glm::dvec3& p) { return glm::length(p) < 5; });
+  EXPECT_TRUE(is_backdrop(frame({near_stage, kBall, card(140, 1e3)})));
+  const auto close = find_backdrop(frame({near_stage, kBall, card(60, 1e3)}));
+  ASSERT_TRUE(close);
+  EXPECT_FALSE(close->is_far());
+  EXPECT_FALSE(is_backdrop(frame({near_stage, kBall, card(140, 10)}))) << "sky above";
+  EXPECT_FALSE(is_backdrop(frame({kFloor, kBall, card(900, 1e4)}))) << "it stands on the ground";
+  const Surface hill = sphere({30, 260, 0}, 60);
+  EXPECT_FALSE(is_backdrop(frame({near_stage, kBall, card(300, 1e3), hill}))) << "hills";
+  const Surface post =
+      cut(plane({0, -4, 0}, {0, -1, 0}), [](const glm::dvec3& p) { return std::abs(p.x) < 0.05; });
+  EXPECT_FALSE(is_backdrop(frame({post, card(140, 1e3)}))) << "a post before a facade";
+}
+
+/// Each limit of a dome: what lies on it, how much larger it is, and from where it is seen.
+TEST(Backdrop, ADomeHasLimits) {
+  const auto clearance = [](const std::vector<Surface>& shown) {
+    const auto found = find_backdrop(frame(shown));
+    return found ? found->clearance : 0;
+  };
+  const double at_150 = clearance({kStage, kBall, dome({0, 0, 0}, 150)});
+  EXPECT_NEAR(clearance({kStage, kBall, dome({0, 0, 0}, 300)}), 2 * at_150, 0.02 * at_150);
+  // Nine tenths of the stage are nearer than 25 here.
+  EXPECT_GT(at_150, 150 / (3 * 31.0));
+  EXPECT_LT(at_150, 150 / (3 * 5.0));
+  // Half of the far surfaces lie off it: a wall that cuts through the dome.
+  const Surface wall =
+      cut(plane({0, 250, 0}, {0, -1, 0}), [](const glm::dvec3& p) { return p.x > 0; });
+  EXPECT_FALSE(is_backdrop(frame({kStage, kBall, dome({0, 0, 0}, 500), wall})));
+  // Normals that point out of it.
+  Geometry outward = frame({kStage, kBall, dome({0, 0, 0}, 500)});
+  const Geometry open = frame({kStage, kBall});
+  for (std::size_t i = 0; i < outward.surfel.size(); ++i)
+    if (!open.is_surface(i)) outward.surfel[i].normal = -outward.surfel[i].normal;
+  EXPECT_FALSE(is_backdrop(outward));
+  // A dome of few pixels.
+  Geometry sliver = frame({kStage, kBall});
+  const Geometry whole = frame({kStage, kBall, dome({0, 0, 0}, 500)});
+  for (int x = 0; x < 20; ++x) sliver.surfel(x, 0) = whole.surfel(x, 0);
+  EXPECT_FALSE(is_backdrop(sliver));
 }
 
 TEST(Backdrop, OtherFarThingsAreNone) {
@@ -60,9 +149,8 @@ TEST(Backdrop, OtherFarThingsAreNone) {
       {sphere({0, 500, 0}, 100)},
       {kStage, kBall, dome({0, 0, 0}, 31)},
   };
-  for (std::size_t i = 0; i < scenes.size(); ++i)
-    EXPECT_FALSE(find_backdrop(frame(scenes[i]))) << i;
-  EXPECT_FALSE(find_backdrop(geometry_of(
+  for (std::size_t i = 0; i < scenes.size(); ++i) EXPECT_FALSE(is_backdrop(frame(scenes[i]))) << i;
+  EXPECT_FALSE(is_backdrop(geometry_of(
       kFloor, look_at(camera_from_ortho_width(4, kWindow, 1), {0, -4, 2}, {0, 0, 0}, {0, 0, 1}),
       kWindow)));
 }

@@ -72,7 +72,9 @@ class SelectedCoverage : public testing::Test {
   Plane<float> select(const std::string& text, const Window& window = kWindow,
                       const PixelGrid& grid = {}) {
     const std::deque<ExrReader> files = open();
-    return selected_coverage(parse_selection("--only", text), {files, ""}, window, grid);
+    warnings_.clear();
+    return selected_coverage(parse_selection("--only", text), {files, "", &warnings_}, window,
+                             grid);
   }
 
   Error fault(const std::string& text) {
@@ -81,6 +83,7 @@ class SelectedCoverage : public testing::Test {
 
   const TempDir dir_;
   FramePart part_;
+  std::vector<std::string> warnings_;
 };
 
 using Values = std::vector<float>;
@@ -136,7 +139,13 @@ TEST_F(SelectedCoverage, AnswersUnknownNamesWithTheNearest) {
 TEST_F(SelectedCoverage, HashesNamesWithoutAManifest) {
   take_out(part_.extra, "cryptomatte/1234567/manifest");
   EXPECT_FLOAT_EQ(select("crypto:c")(1, 0), 0.2f);
-  EXPECT_FLOAT_EQ(select("crypto:unknown")(1, 0), 0);
+  EXPECT_TRUE(warnings_.empty());
+  EXPECT_FLOAT_EQ(select("crypto:c+crypto:unknown")(1, 0), 0.2f);
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_EQ(warnings_[0],
+            fmt::format("--only crypto:c+crypto:unknown: no pixel has 'unknown', whose hash is "
+                        "{:08x}; the Cryptomatte has no manifest to check the name with",
+                        cryptomatte_id("unknown")));
   EXPECT_THAT(fault("crypto:[bc]"), IsError(ExitCode::layer, "no manifest of the names"));
   attribute("hash", "fnv");
   EXPECT_THAT(fault("crypto:a"), IsError(ExitCode::input, "has hash 'fnv'"));

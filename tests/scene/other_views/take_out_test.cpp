@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/other_views/take_out.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,10 +28,10 @@ struct Frame {
 };
 
 Frame frame_of(const std::vector<Surface>& around, const Camera& by = camera(),
-               const Window& window = kWindow) {
+               const Window& window = kWindow, const Surface& ball = kBall) {
   std::vector<Surface> all = around;
-  all.push_back(kBall);
-  const Geometry alone = geometry_of(kBall, by, window);
+  all.push_back(ball);
+  const Geometry alone = geometry_of(ball, by, window);
   Frame out{geometry_of(all_of(all), by, window),
             Plane<float>(window.width(), window.height(), 0.0f)};
   for (std::size_t i = 0; i < out.coverage.size(); ++i) {
@@ -77,6 +78,33 @@ TEST(TakeOut, APlaneGoesOnBelowAThing) {
   EXPECT_GT(found.pixels, 200);
   EXPECT_EQ(found.wrong, 0);
   EXPECT_EQ(found.off, 0);
+}
+
+/// Normals that lean by two degrees, as those of bumps do, say less than both sides together.
+TEST(TakeOut, APlaneBetweenTwoSidesIsThatOfTheirPositions) {
+  const std::vector<Surface> around = {kFloor};
+  const Camera down =
+      look_at(camera_from_fov(50, kWindow, 1), {0.3, -2.5, 4}, {0.1, 0.6, 0.2}, {0, 0, 1});
+  Frame frame = frame_of(around, down);
+  for (std::size_t i = 0; i < frame.coverage.size(); ++i) {
+    glm::vec3& n = frame.geometry.surfel[i].normal;
+    if (frame.coverage[i] == 0) n = glm::normalize(n + glm::vec3(0.035f, 0, 0));
+  }
+  const Filled found =
+      filled(frame, around, take_out(frame.geometry, frame.coverage, {}, {}), down);
+  EXPECT_GT(found.pixels, 200);
+  EXPECT_EQ(found.off, 0);
+}
+
+/// Of two planes that meet in a corner of a room, what is seen is the nearer one, although the
+/// other is seen from closer by.
+TEST(TakeOut, ACornerEndsBothOfItsPlanes) {
+  const Surface near_ball = sphere({0.1, 1.3, 0.5}, 0.5);
+  const std::vector<Surface> around = {kFloor, kWall};
+  Frame frame = frame_of(around, camera(), kWindow, near_ball);
+  const Filled found = filled(frame, around, take_out(frame.geometry, frame.coverage, {}, {}));
+  fmt::print("{} of {}\n", found.wrong, found.pixels);
+  EXPECT_LT(found.wrong, found.pixels / 50);
 }
 
 /// A floor and a wall meet behind it: the line where they do is off by few pixels.

@@ -78,8 +78,7 @@ std::shared_ptr<DistantLamp> distant(const Lamp& lamp, const WorldToCamera& came
 
 }  // namespace
 
-std::shared_ptr<const Source> make_source(const Lamp& lamp, const WorldToCamera& camera,
-                                          double nearest) {
+std::shared_ptr<Source> make_source(const Lamp& lamp, const WorldToCamera& camera, double nearest) {
   // What it gives to a surface for which received() is 1: that is over the area that it shows, a
   // quarter of that of a sphere and, of the sky, what is above the horizon.
   const double shown = lamp.type == LampType::sphere    ? lamp.area() / 4

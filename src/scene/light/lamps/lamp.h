@@ -7,6 +7,7 @@
 #include <string>
 
 #include "scene/light/source.h"
+#include "scene/objects/selection.h"
 
 namespace ssdo {
 
@@ -34,6 +35,8 @@ struct Lamp {
   bool normalize = false;
   double cone_angle = 90, cone_softness = 0;  ///< degrees off the axis; see Cone
   bool has_cone = false;
+  Selection receive;  ///< what it lights; empty: everything
+  Selection cast;     ///< what blocks its light; empty: everything
 
   /// What `normalize` divides by; 1 for lamps without a size.
   double area() const;
@@ -52,8 +55,8 @@ struct WorldToCamera {
 };
 
 /// The light of a lamp in camera space. `nearest` is the distance at which a receiver
-/// is as near as can be told: half a pixel; nearer ones get no more light than there.
-std::shared_ptr<const Source> make_source(const Lamp& lamp, const WorldToCamera& camera,
-                                          double nearest);
+/// is as near as can be told: half a pixel; nearer ones get no more light than there. What it
+/// lights is left to be set.
+std::shared_ptr<Source> make_source(const Lamp& lamp, const WorldToCamera& camera, double nearest);
 
 }  // namespace ssdo

@@ -19,6 +19,7 @@
 #include "nearest_name.h"
 #include "scene/light/lamps/blackbody.h"
 #include "scene/light/named_light.h"
+#include "scene/objects/selection.h"
 
 namespace ssdo {
 namespace {
@@ -40,8 +41,8 @@ const std::vector<std::pair<std::string, LampType>> kTypes = {{"sphere", LampTyp
 /// What lamps of a type have besides what all of them have.
 std::vector<std::string> keys_of(LampType type) {
   std::vector<std::string> keys = {
-      "name",      "type",     "position",  "direction",        "up", "matrix", "color",
-      "intensity", "exposure", "normalize", "color_temperature"};
+      "name",      "type",     "position",  "direction",         "up",      "matrix", "color",
+      "intensity", "exposure", "normalize", "color_temperature", "receive", "cast"};
   const auto add = [&](std::initializer_list<const char*> more) {
     keys.insert(keys.end(), more.begin(), more.end());
   };
@@ -79,6 +80,8 @@ class LampReader {
     lamp_.cone_softness = number("cone_softness", lamp_.cone_softness, 0, 1);
     if (lamp_.type == LampType::disk) lamp_.radius = size("radius", lamp_.radius);
     read_light();
+    lamp_.receive = selection("receive");
+    lamp_.cast = selection("cast");
     lamp_.origin = origin_.text;
     return lamp_;
   }
@@ -153,6 +156,19 @@ class LampReader {
     const double length = number(key, otherwise, 0, kLargest);
     if (length == 0) refuse(fmt::format("{} is 0: the light has no surface to send from", key));
     return length;
+  }
+
+  Selection selection(const char* key) const {
+    if (!object_.contains(key)) return {};
+    const json& value = object_[key];
+    if (!value.is_string())
+      refuse(
+          fmt::format("{} is {}; it is a selection, such as \"crypto:ball\"", key, shown(value)));
+    try {
+      return parse_selection(fmt::format("{}: {}", origin_.text, key), value.get<std::string>());
+    } catch (const Error& error) {
+      throw Error(origin_.code, error.what());
+    }
   }
 
   glm::dvec3 numbers(const char* key, double low, double high) const {

@@ -5,7 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -44,6 +46,22 @@ json value_of(const std::string& text) {
   }
   return numbers;
 }
+
+/// The next word of a text; blanks within quotes are part of it.
+std::string next_word(std::istringstream& text) {
+  std::string word;
+  bool quoted = false;
+  text >> std::ws;
+  for (int c = text.get(); c != EOF && (quoted || !std::isspace(c)); c = text.get()) {
+    if (c == '"') quoted = !quoted;
+    word += char(c);
+  }
+  return word;
+}
+
+/// Whether the value of a key is taken as it stands: names may be spelt as numbers, and selections
+/// hold commas.
+bool is_text(const std::string& key) { return key == "name" || key == "receive" || key == "cast"; }
 
 [[noreturn]] void refuse_text(const std::string& text, const std::string& what) {
   throw Error(ExitCode::usage, fmt::format("--light '{}': {}", printable(text), what));
@@ -89,15 +107,14 @@ Lamp parse_lamp(const std::string& text) {
     refuse_text(
         text, fmt::format("begins with '{}'; the type of the light comes first", printable(type)));
   json light = {{"type", type}};
-  for (std::string word; words >> word;) {
+  for (std::string word = next_word(words); !word.empty(); word = next_word(words)) {
     const std::size_t equals = word.find('=');
     if (equals == word.npos || equals == 0)
       refuse_text(text, fmt::format("'{}' is not KEY=VALUE", printable(word)));
     const std::string key = word.substr(0, equals);
     if (light.contains(key)) refuse_text(text, fmt::format("{} is given twice", printable(key)));
-    // A name may be spelt as a number.
     const std::string value = word.substr(equals + 1);
-    light[key] = key == "name" ? json(value) : value_of(value);
+    light[key] = is_text(key) ? json(value) : value_of(value);
   }
   return read_lamp(light, {ExitCode::usage, "--light " + printable(type)});
 }

@@ -65,6 +65,11 @@ TEST_F(LampFile, AndTheCommandLineAreAlike) {
   EXPECT_EQ(in_file.color, given.color);
   EXPECT_EQ(in_file.normalize, given.normalize);
   EXPECT_EQ(parse_lamp("sphere name=12").name, "12");
+  const Lamp linked = parse_lamp("sphere receive=\"crypto:a ball\"+id:IndexOB=1,5-7 cast=m name=b");
+  EXPECT_EQ(linked.receive.terms.at(0).name, "a ball");
+  EXPECT_EQ(linked.receive.terms.at(1).ids.size(), 2u);
+  EXPECT_EQ(linked.cast.terms.at(0).layer, "m");
+  EXPECT_EQ(linked.name, "b");
   EXPECT_EQ(parse_lamp("rect matrix=1,0,0,4,0,1,0,5,0,0,1,6,0,0,0,1").position,
             glm::dvec3(4, 5, 6));
 }

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "estimators/other_views/other_view_rays.h"
+#include "estimators/trace/ray_scene.h"
+#include "estimators/trace/senders.h"
+#include "scene/scene.h"
+
+namespace ssdo {
+
+/// Where a ray begins, and where it goes: a unit direction in camera space.
+struct TraceRay {
+  const glm::dvec3& origin;
+  const glm::vec3& to;
+};
+
+/// What rays of method trace meet: the solids of a frame, and what other views add. May be asked
+/// from many threads at once.
+class FrameOccluders {
+ public:
+  /// `radius`: the farthest at which things occlude. Errors: those of RayScene.
+  FrameOccluders(const Scene& scene, float radius);
+
+  const RayScene& solids() const { return solids_; }
+  bool has_other_views() const { return other_views_ != nullptr; }
+
+  /// Whether something stands in the way before `distance`.
+  bool is_blocked(const TraceRay& ray, float distance) const;
+
+  /// The same of the light of a source, by its number: a lamp may name what blocks it.
+  bool is_blocked(const TraceRay& ray, float distance, std::size_t source) const;
+
+  /// The surface that a ray meets first.
+  std::optional<Met> first_met(const TraceRay& ray) const;
+
+ private:
+  const Scene& scene_;
+  float radius_;
+  RayScene solids_;
+  std::map<std::size_t, RayScene> of_lamps_;    ///< as Scene::blockers has them
+  std::unique_ptr<OtherViewRays> other_views_;  ///< null: there are no other views
+};
+
+}  // namespace ssdo

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "relight/lamp_links.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "error.h"
+#include "scene/objects/read_object_masks.h"
+#include "scene/objects/selected_coverage.h"
+
+namespace ssdo {
+namespace {
+
+/// Coverage from which on a pixel is the selection's alone: sums of ranks are rounded.
+constexpr float kAll = 0.99f;
+
+Plane<float> coverage_of(Frame& frame, const Selection& selection) {
+  std::vector<std::string> warnings;
+  Plane<float> coverage = selected_coverage(selection, frame.selections(warnings),
+                                            frame.gbuffer.window, frame.gbuffer.grid);
+  frame.warn(warnings);
+  return coverage;
+}
+
+/// The frame without what is not selected, and without `out`.
+std::shared_ptr<const Scene> selected_alone(Frame& frame, const Selection& selection,
+                                            const TakenOut& out, const SolidOptions& options) {
+  const Plane<Surfel>& surfel = frame.scene.geometry.surfel;
+  const Plane<float> selected = coverage_of(frame, selection);
+  TakenOut rest = out;
+  if (rest.coverage.empty()) rest.coverage = Plane<float>(surfel.width, surfel.height, 0.0f);
+  for (std::size_t i = 0; i < surfel.size(); ++i) {
+    const bool stays = selected[i] >= kAll || !surfel[i].is_surface();
+    if (!stays) rest.coverage[i] = std::max(rest.coverage[i], 1 - selected[i]);
+  }
+  auto scene = std::make_shared<Scene>();
+  scene->geometry = frame.scene.geometry;
+  KnownGeometry none;
+  use_known_geometry(none, *scene, options.thickness, options.reading, &rest);
+  scene->geometry = {};
+  return scene;
+}
+
+}  // namespace
+
+std::shared_ptr<const Plane<float>> find_receivers(Frame& frame, Lamp& lamp, int number,
+                                                   bool allow_partial) {
+  for (Selection* selection : {&lamp.receive, &lamp.cast}) {
+    *selection = at_frame(*selection, number);
+    if (!selection->empty() && frame.gbuffer.grid.is_coarse())
+      throw Error(ExitCode::usage,
+                  fmt::format("{}: {}: takes all of the frame at once, which --mem-limit does not "
+                              "allow: raise it",
+                              frame.input, selection->option));
+    open_mattes(*selection, frame.files, allow_partial);
+  }
+  if (lamp.receive.empty()) return nullptr;
+  return std::make_shared<const Plane<float>>(coverage_of(frame, lamp.receive));
+}
+
+void find_blockers(Frame& frame, const TakenOut& out, const SolidOptions& options, Scene& scene) {
+  std::map<std::string, std::shared_ptr<const Scene>> found;  // lamps share what they select alike
+  for (const auto& [name, lamp] : frame.lamps) {
+    if (lamp.cast.empty()) continue;
+    std::shared_ptr<const Scene>& blockers = found[lamp.cast.text];
+    if (!blockers) blockers = selected_alone(frame, lamp.cast, out, options);
+    scene.blockers[lamp.source] = blockers;
+  }
+}
+
+}  // namespace ssdo

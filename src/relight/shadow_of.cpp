@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The shadow of objects: light with them over light without them, a and b by channel. Both have
+// noise, and b may be hardly more than its own, where their ratio would be anything. So
+//
+//   b          = max(direct with, direct without) + bounce without
+//   shadow_of  = 1 + (a / b - 1) / (1 + (e / b)^2)
+//
+// Objects take direct light away and never add to it; what they add is bounce light. e is a share
+// of the light that a surface which faces each source would get there: few slices find bounce light
+// of so much by chance. What is brighter keeps its shadow to within (e / b)^2.
+#include "relight/shadow_of.h"
+
+#include <glm/common.hpp>
+#include <utility>
+
+#include "parallel/tiles.h"
+#include "relight/estimate.h"
+
+namespace ssdo {
+namespace {
+
+/// Of light that is this share of that of an open, facing surface, the ratio is half noise: on a
+/// still life under a lamp alone, the standard deviation over seeds is 0.6 below 0.03, 0.1 at 0.3.
+constexpr float kNoise = 0.03f;
+
+glm::vec3 of(const Plane<glm::vec3>& light, std::size_t i) {
+  return light.empty() ? glm::vec3(0) : light[i];
+}
+
+/// What a surface would get that faced each source, with nothing in front of it.
+glm::vec3 facing_light(const Light& light, const Surfel& s, std::size_t pixel) {
+  glm::vec3 sum = light.unoccluded_sky(s.normal);
+  for (const auto& source : light.sources)
+    sum += source->taken_at(pixel) * source->unoccluded(s.position, source->cone(s.position).to);
+  return sum;
+}
+
+}  // namespace
+
+void find_shadow(Scene& without, Relit& relit) {
+  const Scene& scene = relit.scene;
+  without.light = scene.light;
+  without.senders = scene.senders;
+  without.roughness = scene.roughness;
+  without.specular_color = scene.specular_color;
+  const Plane<int> sender = without.casting->sender;
+  Plan plan = relit.plan;
+  plan.error.reset();
+  plan.request.products = {.direct = true, .bounce = plan.request.products.bounce};
+  plan.request.by_light = {};
+  Estimate found = estimate(std::move(without), plan, [](double) {});
+  light_products(found, plan);
+  relit.times.estimate += found.estimate_ms;
+  relit.times.filter += found.filter_ms;
+  const Products& with = relit.products;
+  const Plane<Surfel>& surfel = scene.geometry.surfel;
+  auto lit = Plane<glm::vec3>::like(surfel), lit_without = lit;
+  for_each_row(surfel.height, [&](int y) {
+    for (std::size_t i = surfel.index(0, y); i < surfel.index(0, y + 1); ++i) {
+      // Where the objects stand, the pixel beside them that the hole is filled from.
+      const std::size_t from = sender[i] >= 0 ? std::size_t(sender[i]) : i;
+      if (!surfel[from].is_usable()) continue;
+      const glm::vec3 a = with.direct[from] + of(with.bounce, from),
+                      b = glm::max(with.direct[from], found.products.direct[from]) +
+                          of(found.products.bounce, from),
+                      noise = kNoise * facing_light(scene.light, surfel[from], from);
+      lit[i] = lit_without[i] = b;
+      for (int c = 0; c < 3; ++c) {
+        const float share = noise[c] / b[c];
+        if (b[c] > 0) lit[i][c] += (a[c] - b[c]) / (1 + share * share);
+      }
+    }
+  });
+  relit.products.lit = std::move(lit);
+  relit.products.lit_without = std::move(lit_without);
+}
+
+}  // namespace ssdo

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Lamps that are linked to objects: `receive` and `cast`.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "support/analytic_scene.h"
+#include "support/frame_file.h"
+#include "support/run_tool.h"
+#include "support/words.h"
+
+namespace ssdo::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr Window kWindow{0, 0, 96, 72};
+const std::string kLit = "ao,direct,bounce", kMade = kLit + ",specular,unshadowed,shadow";
+const std::string kBlender = std::string(SSDO_SOURCE_DIR) + "/data/objects.exr";
+
+/// A floor, a wall and a ball, with their ids, a matte of the ball and one of a part of all.
+class LampLinks : public testing::Test {
+ protected:
+  LampLinks() {
+    const Camera by =
+        look_at(camera_from_fov(50, kWindow, 1), {0.3, -4, 2.2}, {0, 0.5, 0.4}, {0, 0, 1});
+    const Surface floor = plane({0, 0, 0}, {0, 0, 1}), wall = plane({0, 2, 0}, {0, -1, 0}),
+                  ball = sphere({0.1, 0.6, 0.5}, 0.5);
+    const Picture picture = take_picture(all_of({floor, wall, ball}), by, kWindow);
+    FramePart part = frame_of(picture);
+    part.data = part.display = kWindow;
+    ball_ = part_ = Plane<float>(96, 72, 0.0f);
+    Plane<float> ids(96, 72, 1.0f);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const glm::dvec3 p(picture.position[i]);
+      if (std::abs(glm::distance(p, {0.1, 0.6, 0.5}) - 0.5) < 1e-4) ids[i] = 2, ball_[i] = 1;
+      part_[i] = float(i % 5) / 4;
+    }
+    part.channels["IndexOB.X"] = ids;
+    part.channels["ball.A"] = ball_;
+    part.channels["part.A"] = part_;
+    write_frame(dir_ / "in.exr", part);
+  }
+
+  std::string path(const std::string& name) const { return dir_ / name; }
+
+  /// The frame lit by a lamp with these links: a file, whose channels are read by name.
+  std::string lit(const std::string& links, const Words& flags = {},
+                  const std::string& products = kMade) const {
+    const std::string lamp =
+                          "sphere name=key position=-1,-1,2.5 radius=0.1 normalize=true "
+                          "intensity=90 " +
+                          links,
+                      out = path(fmt::format("out{}.exr", ++files_));
+    const Finished done =
+        run_tool(Words{path("in.exr"), "-o", out, "--pixel-type", "float", "-q", "--env", "0,0,0",
+                       "--light", lamp, "--products", products} +
+                 flags);
+    EXPECT_EQ(done.code, 0) << done.err;
+    return out;
+  }
+  Plane<float> made(const std::string& links, const std::string& name, const Words& flags = {},
+                    const std::string& products = kMade) const {
+    return channel(lit(links, flags, products), name);
+  }
+
+  mutable int files_ = 0;
+  const TempDir dir_;
+  Plane<float> ball_, part_;
+};
+
+double rms(const Plane<float>& a, const Plane<float>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(double(a[i]) - double(b[i]), 2);
+  return std::sqrt(sum / double(a.size()));
+}
+
+Plane<float> sum_of(Plane<float> a, const Plane<float>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i];
+  return a;
+}
+
+/// Methods that know the shadows of lamps.
+const std::vector<Words> kMethods = {{"--method", "bitmask"},
+                                     {"--method", "trace", "--set", "samples=16"}};
+
+/// A lamp lights what it is linked to, by its coverage, and nothing else, in all products.
+TEST_F(LampLinks, ReceiveIsWhatALampLights) {
+  for (const Words& by : kMethods) {
+    const std::string all = lit("", by), of_ball = lit("receive=ball", by),
+                      of_part = lit("receive=part", by);
+    for (const std::string name : {"direct.G", "unshadowed.G"}) {
+      const Plane<float> whole = channel(all, name), ball = channel(of_ball, name),
+                         part = channel(of_part, name);
+      for (std::size_t i = 0; i < whole.size(); ++i) {
+        ASSERT_NEAR(ball[i], ball_[i] * whole[i], 1e-5f) << by[1] << " " << name << " " << i;
+        ASSERT_NEAR(part[i], part_[i] * whole[i], 1e-5f) << by[1] << " " << name << " " << i;
+      }
+    }
+    const Plane<float> shadow = channel(of_ball, "shadow.G");
+    for (std::size_t i = 0; i < shadow.size(); ++i)
+      if (ball_[i] == 0) {
+        ASSERT_EQ(shadow[i], 1);
+      }
+  }
+}
+
+/// What it does not light sends none of its light: parts of a bounce add up.
+TEST_F(LampLinks, WhatALampDoesNotLightSendsNothingOfIt) {
+  for (const Words& by : kMethods) {
+    const std::string all_of = lit("", by), one_of = lit("receive=ball", by),
+                      rest_of = lit("receive=id:IndexOB=1", by);
+    for (const std::string name : {"bounce.G", "specular.G"}) {
+      const Plane<float> all = channel(all_of, name), one = channel(one_of, name),
+                         rest = channel(rest_of, name), none(all.width, all.height, 0.0f);
+      EXPECT_GT(rms(one, none), 0.04 * rms(all, none)) << by[1] << " " << name;
+      EXPECT_GT(rms(rest, none), 0.2 * rms(all, none)) << by[1] << " " << name;
+      EXPECT_LT(rms(sum_of(one, rest), all), 0.04 * rms(all, none)) << by[1] << " " << name;
+    }
+  }
+}
+
+/// All but the ball block the light of a lamp as if --no-cast had taken it out.
+TEST_F(LampLinks, CastIsWhatBlocksALamp) {
+  for (const Words& by : kMethods) {
+    const std::string plain = lit("", by);
+    const Plane<float> all = channel(plain, "direct.G"), open = channel(plain, "unshadowed.G"),
+                       rest = made("cast=id:IndexOB=1", "direct.G", by),
+                       out = made("", "direct.G", by + Words{"--no-cast", "ball"}),
+                       ball = made("cast=ball", "direct.G", by), none(all.width, all.height, 0.0f);
+    EXPECT_GT(rms(all, out), 0.05 * rms(all, none)) << "the ball throws a shadow";
+    EXPECT_LT(rms(rest, out), 0.01 * rms(all, none)) << by[1];
+    // Floor and wall shadow nothing here.
+    EXPECT_LT(rms(ball, all), 0.05 * rms(all, none)) << by[1];
+    int dark = 0, open_above = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      dark += ball_[i] == 0 && open[i] > 0.1f && ball[i] < 0.1f * open[i];
+      open_above += i / 96 < 8 && ball[i] > 0.98f * open[i];
+    }
+    EXPECT_GT(dark, 50) << by[1];
+    EXPECT_GT(open_above, 500) << by[1];
+  }
+}
+
+/// The other lamps, and the sky, do not notice.
+TEST_F(LampLinks, LinksAreOfOneLampAlone) {
+  const Words flags = {"--light", "sphere name=fill position=2,-1,1.5 radius=0.1 intensity=40",
+                       "--per-light"};
+  const std::string linked = lit("receive=ball cast=ball", flags, kLit),
+                    plain = lit("", flags, kLit), receives = lit("receive=ball", flags, kLit);
+  for (const std::string name : {"direct.fill.G", "bounce.fill.G", "ao.Y"}) {
+    const Plane<float> a = channel(linked, name), b = channel(plain, name);
+    // Which senders have rays of their own is decided by the light of all.
+    EXPECT_LT(rms(a, b), 0.02 * rms(b, Plane<float>(96, 72, 0.0f))) << name;
+  }
+  const Plane<float> key = channel(receives, "direct.key.G"), all = channel(plain, "direct.key.G");
+  for (std::size_t i = 0; i < key.size(); ++i) ASSERT_NEAR(key[i], ball_[i] * all[i], 1e-5f);
+}
+
+/// An object that does not block the lamps at all has no shadow of theirs.
+TEST_F(LampLinks, ShadowOfKnowsThem) {
+  const Words flags = {"--shadow-of", "ball", "--bounces", "0"};
+  const auto dark = [&](const std::string& links) {
+    int count = 0;
+    for (const float value : made(links, "shadow_of.G", flags, "direct,shadow_of").pixels)
+      count += value < 0.8f;
+    return count;
+  };
+  EXPECT_GT(dark(""), 50);
+  EXPECT_EQ(dark("cast=id:IndexOB=1"), 0);
+}
+
+TEST_F(LampLinks, RefusesInOneLine) {
+  const auto expect = [&](const std::string& key, int code, const std::string& says) {
+    std::ofstream(path("lights.json"))
+        << R"({"lights": [{"type": "sphere", "name": "key", )" << key << "}]}";
+    const Finished done =
+        run_tool({kBlender, "-o", path("no.exr"), "--lights", path("lights.json")});
+    EXPECT_EQ(done.code, code) << done.err;
+    EXPECT_THAT(done.error_line(), HasSubstr(says));
+    EXPECT_THAT(done.error_line(), HasSubstr("light key: "));
+  };
+  expect(R"("receive": "crypto:bal")", 4, "receive crypto:bal: no Cryptomatte");
+  expect(R"("cast": "crypto:bal")", 4, "did you mean ball");
+  expect(R"("cast": "nothing")", 4, "no layer 'nothing'");
+  expect(R"("receive": ["ball"])", 3, "receive is [\"ball\"]; it is a selection");
+  expect(R"("receive": "")", 3, "receive : expected crypto:NAME");
+  expect(R"("recieve": "ball")", 3, "did you mean receive");
+}
+
+}  // namespace
+}  // namespace ssdo::test
