@@ -25,7 +25,7 @@ const names = {
     chart.data.datasets.forEach((set, i) => chart.getDatasetMeta(i).data.forEach((point, k) => {
       const text = set.data[k].row.setting, width = context.measureText(text).width;
       const left = point.x + 10 + width > area.right ? point.x - 10 - width : point.x + 10;
-      context.fillText(text, left, point.y + (k % 2 === 0 ? -6 : 16));  // neighbours apart
+      context.fillText(text, left, point.y + (k % 2 === 0 ? -6 : 16));  // the next one apart
     }));
     context.restore();
   }};
