@@ -62,7 +62,6 @@
 #include "estimators/bitmask/rays/find_source.h"
 #include "estimators/bitmask/rays/own_blockers.h"
 #include "estimators/guessed.h"
-#include "scene/light/light.h"
 
 namespace ssdo {
 namespace {
@@ -131,11 +130,9 @@ class Bitmask {
     return asked.direct || asked.bounce || asked.specular || asked.error;
   }
 
-  /// Some solids are no guesses.
   bool may_be_thin() const {
-    const auto& ends = scene_.solids.end.pixels;
-    return std::any_of(ends.begin(), ends.end(),
-                       [](Provenance o) { return o != Provenance::guessed; });
+    return std::ranges::any_of(scene_.solids.end.pixels,
+                               [](Provenance o) { return o != Provenance::guessed; });
   }
 
   /// The pixels whose own light is found: all of the raster where they send it to others.
@@ -217,9 +214,9 @@ class Bitmask {
   MayMeetPlane asked_planes() const {
     if (request_.products.reflection || request_.products.specular) return {};
     return [this](const glm::vec3& position, const glm::vec3& normal) {
-      const auto& sources = scene_.light.sources;
-      return std::any_of(sources.begin(), sources.end(),
-                         [&](const auto& source) { return is_behind(*source, position, normal); });
+      return std::ranges::any_of(scene_.light.sources, [&](const auto& source) {
+        return is_behind(*source, position, normal);
+      });
     };
   }
 
@@ -229,22 +226,21 @@ class Bitmask {
     const March march = march_of_rays();
     const InterleavedPlane* const by_pixel = past_.data() ? &past_ : nullptr;
     const float past = by_pixel ? 0 : sun_past_beyond(march_scene_, scene_, request_);
+    const bool unseen = times_sent(scene_, request_) > 0 && sends_two_sided(scene_);
+    const auto rays = rays_to_source(request_.slices);
     for (std::size_t k = 0; k < scene_.light.sources.size(); ++k) {
-      const std::shared_ptr<const Source>& source = scene_.light.sources[k];
+      const Source& source = *scene_.light.sources[k];
+      const PassBeyond pass = pass_beyond(past, source);
       const auto own = OwnBlockers::of(scene_, k, request_, pattern_);
       const auto find = [&](const Window& to, RaySet set) {
-        const auto points = points_of(*source, rays_to_source(request_.slices), request_.seed, set);
-        SourceJob job{march, bounds, points, *source, pass_beyond(past, *source), by_pixel};
-        return find_source(own ? own->job(points, *source) : job, to, progress_);
+        const auto points = points_of(source, rays, request_.seed, set);
+        SourceJob job{march, bounds, points, source, pass, by_pixel};
+        return find_source(own ? own->job(points, source) : job, to, progress_);
       };
       sources_.push_back(find(lit_part(), RaySet::of_light));
-      // What blocks a lamp of its own lacks the unseen sides of the rest.
-      if (!own && source->near_lamp() && times_sent(scene_, request_) > 0 &&
-          sends_two_sided(scene_)) {
-        const auto points =
-            points_of(*source, rays_to_source(request_.slices), request_.seed, RaySet::of_light);
-        find_unseen_light({march, bounds, points, *source, pass_beyond(past, *source)}, lit_part(),
-                          sources_.back());
+      if (!own && unseen && source.near_lamp()) {
+        const auto points = points_of(source, rays, request_.seed, RaySet::of_light);
+        find_unseen_light({march, bounds, points, source, pass}, lit_part(), sources_.back());
       }
       if (request_.products.error)
         sources_again_.push_back(find(march_scene_.receivers, RaySet::of_error));

@@ -80,8 +80,8 @@ struct Products {
   Plane<float> error;  ///< of the luminance of direct + bounce, with the sign of one draw of noise
   Plane<float> guessed;  ///< G of estimators/guessed.h; the product once it is filtered
   LightShares shares;    ///< what `direct` is made of, where the method knows
-  /// direct + bounce with the objects of --shadow-of and without them. Where these stand, the pixel
-  /// beside them that the hole they leave is filled from. Empty: not asked for.
+  /// The light with the objects of --shadow-of and without them, as relight/shadow_of.cpp has it.
+  /// Empty: not asked for.
   Plane<glm::vec3> lit, lit_without;
   std::vector<LightProducts> lights;  ///< in the order of lights_of(); empty: not asked for
 };
@@ -190,7 +190,7 @@ inline constexpr std::array<Product, 12> kProducts = {{
      .measured = true,
      .by_light = true,
      .aka = "diffind diffuseindirect"},
-    // The light with the objects of --shadow-of over the light without them.
+    // The light with the objects of --shadow-of over the light without them; 1 where there is none.
     {.name = "shadow_of",
      .kind = ProductKind::share,
      .channels = "RGB",

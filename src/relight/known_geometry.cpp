@@ -214,7 +214,7 @@ std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
                                             const TakenOut* taken_out) {
   if (taken_out) {
     register_views(known, scene.geometry, true);
-    for (OtherView& view : known.views) take_out(view, taken_out->marks);
+    for (OtherView& view : known.views) take_out(view, taken_out->marks_of(view));
     scene.casting = take_out(scene.geometry, taken_out->coverage, taken_out->backdrop, known.views);
   }
   const Geometry& casters = scene.casters();

@@ -64,8 +64,14 @@ void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameO
            frame.objects.shadow_of);
 }
 
-/// The backdrop that is left out of what casts, with a warning; empty where there is none.
-Plane<float> find_backdrop(Frame& frame, const FrameOptions& options, bool may_leave_out) {
+/// A backdrop that casts nothing.
+struct BackdropOut {
+  Plane<float> coverage;                    ///< empty: there is none
+  unsigned char of_neighbours = kBackdrop;  ///< the bits of OtherPicture::taken that it has there
+};
+
+/// The backdrop that is left out of what casts, with a warning.
+BackdropOut find_backdrop(Frame& frame, const FrameOptions& options, bool may_leave_out) {
   const BackdropChoice choice = options.input.objects.backdrop;
   if (choice == BackdropChoice::ignore) return {};
   std::optional<Backdrop> found = find_backdrop(frame.scene.geometry);
@@ -73,19 +79,21 @@ Plane<float> find_backdrop(Frame& frame, const FrameOptions& options, bool may_l
   // In a shot, all frames that show its shape have one answer.
   const auto clearance =
       options.backdrop_of_shot ? options.backdrop_of_shot() : std::optional<double>();
-  if (!(clearance.value_or(found->clearance) >= 1)) return {};
+  if (!(clearance.value_or(found->clearance) >= 1)) return {{}, 0};
   const bool leaves_out = choice == BackdropChoice::leave_out && may_leave_out;
   frame.warn({fmt::format("{:.2g} % of the frame show {}: it {}", 100 * found->share, found->what,
                           leaves_out ? "casts nothing, unless --backdrop cast is given"
                                      : "hides the light behind it; take it out of the G-buffer")});
-  return leaves_out ? std::move(found->coverage) : Plane<float>();
+  if (!leaves_out) return {};
+  return {std::move(found->coverage), kBackdrop | kNearBackdrop};
 }
 
-/// Whether another view shows a dome that is to cast nothing.
-bool shows_dome(const std::vector<OtherView>& views) {
-  return std::ranges::any_of(views, [](const OtherView& view) {
+/// Whether another view shows a backdrop that is to cast nothing.
+bool shows_backdrop(const std::vector<OtherView>& views, const TakenOut& out) {
+  return std::ranges::any_of(views, [&](const OtherView& view) {
+    const unsigned char marks = out.marks_of(view) & (kBackdrop | kNearBackdrop);
     return std::ranges::any_of(view.picture->taken.pixels,
-                               [](unsigned char taken) { return taken & kBackdrop; });
+                               [&](unsigned char taken) { return taken & marks; });
   });
 }
 
@@ -95,7 +103,7 @@ void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& opti
   const bool sees_behind = find_method(options.model.method).takes.thickness;
   // Bands and deep samples have no hole.
   const bool is_whole = !frame.gbuffer.grid.is_coarse() && known.deep.empty();
-  const Plane<float> backdrop = find_backdrop(frame, options, sees_behind && is_whole);
+  const auto [backdrop, of_neighbours] = find_backdrop(frame, options, sees_behind && is_whole);
   if (sees_behind) {
     SolidOptions solids{{}, options.input.gbuffer};
     if (options.model.thickness) solids.thickness = float(*options.model.thickness);
@@ -109,12 +117,15 @@ void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& opti
       frame.warn(warnings);
       return found;
     };
-    TakenOut out{{}, backdrop, kNoCast | kBackdrop};
-    const bool has_hole =
-        !objects.no_cast.empty() || !backdrop.empty() || (is_whole && shows_dome(known.views));
+    TakenOut out{
+        {}, backdrop, kNoCast | kBackdrop, static_cast<unsigned char>(kNoCast | of_neighbours)};
+    const bool has_hole = !objects.no_cast.empty() || !backdrop.empty() ||
+                          (is_whole && shows_backdrop(known.views, out));
     if (has_hole || !objects.shadow_of.empty()) out.coverage = coverage(objects.no_cast);
     if (!objects.shadow_of.empty()) {
-      TakenOut both{coverage(objects.shadow_of), backdrop, kNoCast | kShadowOf | kBackdrop};
+      TakenOut both{coverage(objects.shadow_of), backdrop,
+                    static_cast<unsigned char>(out.marks | kShadowOf),
+                    static_cast<unsigned char>(out.marks_of_neighbours | kShadowOf)};
       for (std::size_t i = 0; i < both.coverage.size(); ++i)
         both.coverage[i] = std::max(both.coverage[i], out.coverage[i]);
       KnownGeometry again = known;

@@ -72,11 +72,11 @@ void mark(OtherPicture& picture, const Selection& selection, unsigned char with,
 }
 
 void mark_backdrop(OtherPicture& picture, const Geometry& geometry) {
-  const std::optional<Backdrop> dome = find_backdrop(geometry);
-  if (!dome || !dome->is_far()) return;
-  picture.taken = Plane<unsigned char>(dome->coverage.width, dome->coverage.height, 0);
-  for (std::size_t i = 0; i < dome->coverage.size(); ++i)
-    if (dome->coverage[i] > 0) picture.taken[i] = kBackdrop;
+  const std::optional<Backdrop> found = find_backdrop(geometry);
+  if (!found) return;
+  picture.taken = Plane<unsigned char>(found->coverage.width, found->coverage.height, 0);
+  for (std::size_t i = 0; i < found->coverage.size(); ++i)
+    if (found->coverage[i] > 0) picture.taken[i] = found->is_far() ? kBackdrop : kNearBackdrop;
 }
 
 /// Keeps of a view what other pictures need.

@@ -148,6 +148,8 @@ TEST(Backdrop, OtherFarThingsAreNone) {
       {kFloor, sphere({0, 300, 0}, 250)},
       {sphere({0, 500, 0}, 100)},
       {kStage, kBall, dome({0, 0, 0}, 31)},
+      // The ground of a valley.
+      {kBall, cut(dome({0, 0, 300}, 300), [](const glm::dvec3& p) { return p.z < 15; })},
   };
   for (std::size_t i = 0; i < scenes.size(); ++i) EXPECT_FALSE(is_backdrop(frame(scenes[i]))) << i;
   EXPECT_FALSE(is_backdrop(geometry_of(
