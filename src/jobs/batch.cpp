@@ -271,7 +271,8 @@ class Batch {
       }
       for (WorkOnView& view : work.views) {
         note_losses(work, view.frame);
-        work.statistics.push_back(
+        if (!work.statistics) work.statistics = std::make_shared<nlohmann::json>();
+        work.statistics->push_back(
             statistics_of(view.frame, jobs_[work.index], resources_, view.relit));
         if (!options_.model.temporal) continue;
         History& history = *histories_.emplace_back(std::move(view.relit.history));
@@ -294,7 +295,8 @@ class Batch {
     if (!work.error && !work.advice.empty())
       work.messages.add(jobs_[work.index].input() + ": " + work.advice);
     print(work);
-    for (nlohmann::json& view : work.statistics) statistics_.push_back(std::move(view));
+    if (work.statistics)
+      for (nlohmann::json& view : *work.statistics) statistics_.push_back(std::move(view));
     if (work.error) {
       // A job of one frame fails if that frame fails.
       if (jobs_.size() == 1) throw *work.error;

@@ -5,8 +5,9 @@
 
 #include <cstddef>
 #include <exception>
+#include <memory>
 #include <new>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -34,8 +35,8 @@ struct Work {
   std::vector<WorkOnView> views = {};  ///< while there is something left to do with them
   Messages messages;                   ///< to be printed
   std::string advice = {};             ///< to be printed once the outputs are made
-  nlohmann::json statistics = {};      ///< of its views; null unless the outputs were made
-  std::set<std::string> losses = {};   ///< what --allow-partial has taken as background
+  std::shared_ptr<nlohmann::json> statistics = {};  ///< of its views; null unless they were made
+  std::set<std::string> losses = {};  ///< what --allow-partial has taken as background
   std::optional<Error> error = {};
 };
 

@@ -27,8 +27,12 @@ namespace ssdo::HWY_NAMESPACE {
 
 /// Between what the numbers of some rays lie, in each lane.
 struct Between {
-  V least = set(std::numeric_limits<float>::infinity()),
-    most = set(-std::numeric_limits<float>::infinity());
+  V least, most;
+
+  /// Of none. Written out, so that it is compiled for the instruction set of those who call it.
+  HWY_INLINE Between()
+      : least(set(std::numeric_limits<float>::infinity())),
+        most(set(-std::numeric_limits<float>::infinity())) {}
 
   HWY_INLINE void add(M counts, V value) {
     least = hn::Min(least, hn::IfThenElse(counts, value, least));
