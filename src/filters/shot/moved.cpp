@@ -206,14 +206,13 @@ std::vector<MovedPiece> find_moved(const Geometry& now, const Geometry& other) {
 }
 
 MovedWeights::MovedWeights(const Geometry& now, const std::vector<MovedPiece>& pieces,
-                           const Light& light) {
+                           const Light& light)
+    : of_all_((now.surfel.width + kSquare - 1) / kSquare,
+              (now.surfel.height + kSquare - 1) / kSquare, 1.0f),
+      of_sources_(light.sources.size(), of_all_) {
   const Plane<Surfel>& surfel = now.surfel;
-  const int columns = (surfel.width + kSquare - 1) / kSquare,
-            rows = (surfel.height + kSquare - 1) / kSquare;
-  of_all_ = Plane<float>(columns, rows, 1.0f);
-  of_sources_.assign(light.sources.size(), of_all_);
-  for_each_row(rows, [&](int row) {
-    for (int column = 0; column < columns; ++column) {
+  for_each_row(of_all_.height, [&](int row) {
+    for (int column = 0; column < of_all_.width; ++column) {
       const Surfel& at = surfel(std::min(column * kSquare + kSquare / 2, surfel.width - 1),
                                 std::min(row * kSquare + kSquare / 2, surfel.height - 1));
       if (!at.is_surface()) continue;
