@@ -8,6 +8,7 @@
 #include "estimators/slow_ssao_fade.h"
 #include "plan/make_plan.h"
 #include "relight/estimate.h"
+#include "support/estimate_light.h"
 
 namespace ssdo::test {
 namespace {

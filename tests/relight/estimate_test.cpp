@@ -7,6 +7,7 @@
 
 #include "estimators/bitmask/request.h"
 #include "plan/make_plan.h"
+#include "support/estimate_light.h"
 
 namespace ssdo::test {
 namespace {

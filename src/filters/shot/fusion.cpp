@@ -33,7 +33,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <optional>
@@ -154,7 +153,7 @@ glm::mat3 rotation_of(const Geometry& geometry) { return glm::mat3(geometry.came
 
 template <class T>
 constexpr int channels_of() {
-  return int(sizeof(T) / sizeof(float));
+  return std::is_same_v<T, float> ? 1 : 3;
 }
 
 bool same_planes(const Findings& a, const Findings& b) {
@@ -276,6 +275,9 @@ void join_emitted(Plane<glm::vec3>& bounce, Plane<glm::vec3>& emitted) {
   emitted = {};
 }
 
+void store(float value, float* to) { *to = value; }
+void store(const glm::vec3& value, float* to) { std::copy_n(&value.x, 3, to); }
+
 /// Puts the means back into planes.
 void put(const FoundPlane& plane, const float* mean, const Surfel& surfel,
          const glm::mat3& to_camera, float& value) {
@@ -323,8 +325,7 @@ Findings take_findings(Products& products, Geometry geometry, const Plane<glm::v
               const Surfel& s = surfel(x, y);
               if (bends && s.is_surface()) value = to_world(value, s.normal, to_camera);
             }
-            std::memcpy(&row[std::size_t(x) * std::size_t(out.stride) + std::size_t(first)], &value,
-                        sizeof value);
+            store(value, &row[std::size_t(x) * std::size_t(out.stride) + std::size_t(first)]);
           }
           first += channels_of<T>();
         },
