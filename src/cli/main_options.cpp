@@ -255,17 +255,6 @@ void add_model(CLI::App& app, ModelOptions& o) {
       "--shot", "K[xSTEP]", [&](const Text& text) { o.shot = read_shot(text); },
       "average what K frames before and K after find of the same surface, every STEP-th");
   group
-      .text(
-          "--neighbours", "K[xSTEP]",
-          [](const Text& text) -> void {
-            throw Error(ExitCode::usage,
-                        fmt::format("--neighbours {0}: is now --shot {0}, which takes what frames "
-                                    "around have found; views of a still set go to --also",
-                                    text));
-          },
-          "the old name of --shot")
-      ->group("");
-  group
       .flag("--temporal", o.temporal,
             "average over the frames so far, as games do; light that moves lags")
       ->excludes(shot);

@@ -27,6 +27,7 @@ const std::map<std::string, std::string> kNotRun = {
     {R"(\fBProduct )", "a table"},
     {"env = ", "a config file: ConfigFileOfTheManual"},
     {R"(  { "lights")", "a file of lamps"},
+    {R"(  "sphere name=rim)", "the value of --light"},
 };
 
 constexpr int kShrunk = 9;  ///< every ninth pixel in x and y: still lifes of 64 x 36
@@ -121,6 +122,12 @@ class Examples : public testing::Test {
     for (int frame = 1001; frame <= 1012; ++frame) {
       write_frame(*folder_ / ("shot." + std::to_string(frame) + ".exr"), room);
       write_deep(*folder_ / ("shot_deep." + std::to_string(frame) + ".exr"), {deep_of(room)});
+      FramePart ao = room;
+      const Plane<float> half(room.data.width(), room.data.height(), 0.5f);
+      ao.channels = {{"ao.Y", half}};
+      write_frame(*folder_ / ("ao." + std::to_string(frame) + ".exr"), ao);
+      ao.channels = {{"AO.R", half}, {"AO.G", half}, {"AO.B", half}};
+      write_frame(*folder_ / ("truth." + std::to_string(frame) + ".exr"), ao);
     }
     for (const char* name : {"shot_pano.exr", "shot_side.exr"}) write_frame(*folder_ / name, room);
     for (const char* name : {"frame.exr", "wide.exr", "still_life_2x.exr", "lamps.exr"})

@@ -49,6 +49,10 @@ Names options_of(const CLI::App& app, const CLI::App* command) {
 Error unknown_option(const CLI::App& app, const std::string& word) {
   const CLI::App* const command = command_of(app);
   const std::string flag = word.substr(0, word.find('='));
+  if (flag == "--neighbours")
+    return usage(
+        "--neighbours: is now --shot, which takes what the frames around have found; "
+        "frames of a still set can be given with --also");
   for (const CLI::App* other : app.get_subcommands({})) {
     if (!command && other->get_option_no_throw(flag))
       return usage(fmt::format("{0}: is an option of ssdo {1}; see ssdo {1} --help", flag,
