@@ -106,7 +106,7 @@ std::string to_html(const BenchReport& report) {
                         {"figures", kFigures}});
 }
 
-std::string to_html(const ShotReport& report) {
+std::string to_html(const ShotBenchReport& report) {
   const std::string text = escaped(json_text(to_json(report)));
   return filled(
       kShotPage,

@@ -142,7 +142,7 @@ ExitCode run_shot_bench(const RunOptions& options, const BenchOptions& bench,
   Stopwatch watch;
   check_options(options, bench);
   ShotSubject subject{options, resources, frames_of(options), {}, {}};
-  ShotReport report;
+  ShotBenchReport report;
   find_truths(bench.truths, subject, report.truths);
   check_files(subject, bench, report.truths);
   {

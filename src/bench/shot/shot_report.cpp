@@ -54,12 +54,12 @@ json product_json(const std::string& product, const ShotFigures& f) {
 
 }  // namespace
 
-Cost ShotReport::seconds_per_frame(const ShotRow& row) const {
+Cost ShotBenchReport::seconds_per_frame(const ShotRow& row) const {
   const double scale = 1e-3 / double(frames.size());
   return {row.cost.cpu_ms * scale, row.cost.wall_ms * scale};
 }
 
-std::string to_table(const ShotReport& report) {
+std::string to_table(const ShotBenchReport& report) {
   std::string text = fmt::format(
       "{}: {} frames of {} x {}; {}, filter {}; {} thread(s), {} ({}); {:.0f} s\n",
       printable(report.input), report.frames.size(), report.width, report.height, report.method,
@@ -98,7 +98,7 @@ std::string to_table(const ShotReport& report) {
          "points within\n16 pixels of it; error: from --truth. Times are those of whole runs.\n";
 }
 
-std::string to_csv(const ShotReport& report) {
+std::string to_csv(const ShotBenchReport& report) {
   std::string text =
       "setting,cpu_s_per_frame,wall_s_per_frame,product,points,flicker,flicker_p99,flicker_border,"
       "error,flicker_of_error,command\n";
@@ -116,7 +116,7 @@ std::string to_csv(const ShotReport& report) {
   return text;
 }
 
-json to_json(const ShotReport& report) {
+json to_json(const ShotBenchReport& report) {
   json rows = json::array(), truths = json::object(), metrics = json::object();
   for (const ShotRow& row : report.rows) {
     const Cost seconds = report.seconds_per_frame(row);

@@ -35,7 +35,7 @@ struct ShotTruth {
   std::vector<int> frames;
 };
 
-struct ShotReport {
+struct ShotBenchReport {
   std::string input, method, filter;
   std::vector<int> frames;
   int width = 0, height = 0;  ///< of the display window
@@ -51,14 +51,14 @@ struct ShotReport {
 };
 
 /// The table for a terminal.
-std::string to_table(const ShotReport& report);
+std::string to_table(const ShotBenchReport& report);
 
 /// One line per row and product.
-std::string to_csv(const ShotReport& report);
+std::string to_csv(const ShotBenchReport& report);
 
-nlohmann::json to_json(const ShotReport& report);
+nlohmann::json to_json(const ShotBenchReport& report);
 
 /// A page that needs no other file and no network.
-std::string to_html(const ShotReport& report);
+std::string to_html(const ShotBenchReport& report);
 
 }  // namespace ssdo
