@@ -212,6 +212,26 @@ TEST(Structure, OneTableDecidesWhichOptionsHaveNoEffect) {
   });
 }
 
+/// Of two classes of one name, a program has the functions of either. Headers for vectors have a
+/// namespace of their own.
+TEST(Structure, EachTypeHasANameOfItsOwn) {
+  const std::regex definition(R"(^(?:class|struct|enum class) (\w+)[^;]*\{)");
+  std::map<std::pair<bool, std::string>, std::string> homes;
+  for_each_file([&](const std::string& path, const auto&) {
+    if (!path.ends_with(".h")) return;
+    std::ifstream in(kSource / path);
+    for (std::string line; std::getline(in, line);) {
+      std::smatch name;
+      if (!std::regex_search(line, name, definition)) continue;
+      const auto [home, is_first] =
+          homes.try_emplace({path.ends_with("-inl.h"), name[1].str()}, path);
+      EXPECT_TRUE(is_first || home->second == path)
+          << name[1] << " stands in " << home->second << " and in " << path;
+    }
+  });
+  EXPECT_GT(homes.size(), 300u);
+}
+
 TEST(Structure, FilesAndFoldersStaySmall) {
   constexpr int kMostLines = 400, kMostModules = 22, kMostOnTop = 12;
   std::map<fs::path, std::set<std::string>> modules;

@@ -123,6 +123,7 @@ struct Product {
   float background = 0;             ///< its value where there is no surface
   bool usual = false;               ///< made where --products is not given
   Filtering filtering = {};
+  bool of_view = false;       ///< depends on where the camera stands, not on the surface alone
   bool measured = false;      ///< by bench
   bool by_light = false;      ///< --per-light: each light has a layer of it
   std::string_view aka = "";  ///< names that renderers give such a layer, in lower case
@@ -157,7 +158,8 @@ inline constexpr std::array<Product, 12> kProducts = {{
      .made_of = {.reflection = true},
      .all_needs = "roughness",
      .background = 1,
-     .filtering = {.finish = Finish::clamp, .shadowed = true}},
+     .filtering = {.finish = Finish::clamp, .shadowed = true},
+     .of_view = true},
     {.name = "direct",
      .kind = ProductKind::light,
      .channels = "RGB",
@@ -206,7 +208,8 @@ inline constexpr std::array<Product, 12> kProducts = {{
      .plane = &Products::specular,
      .made_of = {.direct = true, .specular = true},
      .with = {.bounce = true},
-     .all_needs = "roughness"},
+     .all_needs = "roughness",
+     .of_view = true},
     {.name = "error",
      .kind = ProductKind::deviation,
      .channels = "Y",

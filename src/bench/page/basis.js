@@ -48,3 +48,17 @@ function logAxis(title, values) {
     afterBuildTicks: axis => { axis.ticks = logTicks(low, high); },
     ticks: {callback: value => Number(value.toPrecision(3)).toString(), autoSkip: false, maxRotation: 0}};
 }
+
+function define(list, term, text) {
+  element("dt", term, by(list));
+  element("dd", text, by(list));
+}
+
+function defineMachine() {
+  const {machine} = bench;
+  define("machine", "processor", machine.processor);
+  define("machine", "logical processors", machine.processors);
+  define("machine", "threads used", machine.threads);
+  define("machine", "instruction set", machine.isa);
+  define("machine", "ssdo", bench.version);
+}

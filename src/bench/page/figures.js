@@ -84,11 +84,6 @@ function drawTable() {
   }
 }
 
-function define(list, term, text) {
-  element("dt", term, by(list));
-  element("dd", text, by(list));
-}
-
 function drawFacts() {
   const {frame, machine} = bench, plan = frame.plan;
   document.title = "ssdo bench: " + bench.input;
@@ -103,11 +98,7 @@ function drawFacts() {
   define("plan", "bounces", plan.bounces);
   for (const reason of plan.reasons) define("plan", "", reason);
   for (const warning of frame.warnings) define("plan", "warning", warning);
-  define("machine", "processor", machine.processor);
-  define("machine", "logical processors", machine.processors);
-  define("machine", "threads used", machine.threads);
-  define("machine", "instruction set", machine.isa);
-  define("machine", "ssdo", bench.version);
+  defineMachine();
 }
 
 function drawAll() {

@@ -77,11 +77,6 @@ function drawTable() {
   }
 }
 
-function define(list, term, text) {
-  element("dt", term, by(list));
-  element("dd", text, by(list));
-}
-
 function drawFacts() {
   const {machine, frames} = bench;
   document.title = "ssdo bench: " + bench.input;
@@ -93,11 +88,7 @@ function drawFacts() {
   define("plan", "products", bench.products.join(", "));
   for (const [product, truth] of Object.entries(bench.truths))
     define("plan", "truth of " + product, `${truth.picture}, frames ${truth.frames.join(", ")}`);
-  define("machine", "processor", machine.processor);
-  define("machine", "logical processors", machine.processors);
-  define("machine", "threads used", machine.threads);
-  define("machine", "instruction set", machine.isa);
-  define("machine", "ssdo", bench.version);
+  defineMachine();
 }
 
 function drawAll() {

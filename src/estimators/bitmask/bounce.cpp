@@ -89,7 +89,7 @@ HWY_INLINE V3 without_emitted(const BounceJob& job, const MarchReceiver& p, cons
 }
 
 /// The pixels of the overview that stand for pixels of the raster.
-HWY_INLINE Pixels in_overview(const BounceJob& job, const Pixels& at) {
+HWY_INLINE OverviewPixels in_overview(const BounceJob& job, const OverviewPixels& at) {
   const MarchScene& scene = job.march.scene;
   const FarRaster& far = job.overview->raster;
   const auto block = [](VI pixel, int first, int far_first, int size) HWY_ATTR {
@@ -128,7 +128,7 @@ HWY_INLINE Sent sent_behind(const BounceJob& job, bool far, int layer, const Pla
   const VI sender =
       hn::GatherIndex(di, &senders(0, at.row + step.row), hn::IfThenElseZero(met, column));
   const auto shown = hn::AndNot(sender < zero, met);
-  const Pixels from = pixels_of(hn::IfThenElseZero(shown, sender), senders.width);
+  const OverviewPixels from = pixels_of(hn::IfThenElseZero(shown, sender), senders.width);
   V3 sent;
   if (far) {
     sent = gather(job.far->sent, index_of(job.overview->raster, from));

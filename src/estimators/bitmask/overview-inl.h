@@ -16,12 +16,12 @@ HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
 /// Pixels of a picture.
-struct Pixels {
+struct OverviewPixels {
   VI x, y;
 };
 
 /// The pixels with these numbers, row by row.
-HWY_INLINE Pixels pixels_of(VI number, int width) {
+HWY_INLINE OverviewPixels pixels_of(VI number, int width) {
   const DI di;
   const VI wide = set_int(width), one = set_int(1);
   VI y = hn::ConvertTo(di, hn::ConvertTo(D(), number) * set(1 / float(width)));
@@ -31,14 +31,14 @@ HWY_INLINE Pixels pixels_of(VI number, int width) {
   return {number - y * wide, y};
 }
 
-HWY_INLINE VI index_of(const Interleaving& layout, const Pixels& at) {
+HWY_INLINE VI index_of(const Interleaving& layout, const OverviewPixels& at) {
   const VI x = at.x + set_int(layout.phase());
   return (hn::ShiftLeft<Interleaving::kShift>(at.y) +
           hn::And(x, set_int(Interleaving::kPeriod - 1))) *
              set_int(int(layout.stride())) +
          hn::ShiftRight<Interleaving::kShift>(x) + set_int(Interleaving::kPad);
 }
-HWY_INLINE VI index_of(const FarRaster& far, const Pixels& at) {
+HWY_INLINE VI index_of(const FarRaster& far, const OverviewPixels& at) {
   return at.y * set_int(int(far.layout.stride())) + at.x + set_int(Interleaving::kPad);
 }
 

@@ -45,10 +45,9 @@ template <class Visit>
 void for_each_found(const Visit& visit, Products& products) {
   for_each_plane(
       [&](const Product& product, auto& plane) {
-        if (product.kind == ProductKind::deviation || product.name == "reflection" ||
-            product.name == "specular")
-          return;
-        visit(plane, product.name == "bounce" ? FoundPlane::kOfSenders : FoundPlane::kOfAll,
+        if (product.kind == ProductKind::deviation || product.of_view) return;
+        const bool is_sent = product.filtering.coupling == Coupling::occluders;
+        visit(plane, is_sent ? FoundPlane::kOfSenders : FoundPlane::kOfAll,
               product.kind == ProductKind::direction);
       },
       products);

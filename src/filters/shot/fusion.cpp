@@ -40,6 +40,7 @@
 
 #include "filters/reprojection.h"
 #include "filters/shot/moved.h"
+#include "filters/shot/saying.h"
 #include "math/luminance.h"
 #include "parallel/tiles.h"
 
@@ -47,26 +48,6 @@
 #define HWY_TARGET_INCLUDE "filters/shot/fusion.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-
-namespace ssdo {
-
-/// A pixel of another frame, and its part in the bilinear average.
-#ifndef SSDO_SHOT_TAP
-#define SSDO_SHOT_TAP
-struct Tap {
-  std::uint32_t pixel;
-  float weight;
-};
-
-/// What another frame says of a pixel.
-struct Saying {
-  const std::uint16_t* values;  ///< Findings::values
-  const float* weights;         ///< by channel
-  int first, count;             ///< of its taps
-};
-#endif
-
-}  // namespace ssdo
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -84,7 +65,7 @@ HWY_INLINE hn::Vec<Channels> load_half(const std::uint16_t* values) {
 
 /// The mean of a pixel, `stride` channels.
 void mean_of_pixel(const std::uint16_t* own, int stride, const Saying* sayings, int count,
-                   const Tap* taps, float* mean) {
+                   const SeenPixel* taps, float* mean) {
   const Channels d;
   for (int c = 0; c < stride; c += int(hn::Lanes(d))) {
     const auto base = load_half(own + c);
@@ -127,7 +108,8 @@ HWY_EXPORT(to_half);
 
 namespace {
 
-/// `v` turned as the unit vector `a` is turned to the unit vector `b` by the shortest way.
+/// `v` turned as the unit vector `a` is turned to the unit vector `b` by the shortest way, as
+/// find_shares() turns bent normals.
 glm::vec3 turned(const glm::vec3& v, const glm::vec3& a, const glm::vec3& b) {
   const glm::vec3 both = a + b;
   return v - glm::dot(both, v) / std::max(1 + glm::dot(a, b), 1e-6f) * both +
@@ -265,7 +247,7 @@ class RowOfMeans {
   const std::vector<Speaker>& speakers_;
   const std::vector<int> sources_;  ///< by channel
   std::vector<float> weights_;
-  std::vector<Tap> taps_;
+  std::vector<SeenPixel> taps_;
   std::vector<Saying> sayings_;
 };
 
@@ -278,18 +260,8 @@ void join_emitted(Plane<glm::vec3>& bounce, Plane<glm::vec3>& emitted) {
 void store(float value, float* to) { *to = value; }
 void store(const glm::vec3& value, float* to) { std::copy_n(&value.x, 3, to); }
 
-/// Puts the means back into planes.
-void put(const FoundPlane& plane, const float* mean, const Surfel& surfel,
-         const glm::mat3& to_camera, float& value) {
-  (void)plane, (void)surfel, (void)to_camera;
-  value = *mean;
-}
-
-void put(const FoundPlane& plane, const float* mean, const Surfel& surfel,
-         const glm::mat3& to_camera, glm::vec3& value) {
-  value = {mean[0], mean[1], mean[2]};
-  if (plane.bends && surfel.is_surface()) value = from_world(value, surfel.normal, to_camera);
-}
+void load(const float* from, float& value) { value = *from; }
+void load(const float* from, glm::vec3& value) { value = {from[0], from[1], from[2]}; }
 
 }  // namespace
 
@@ -361,7 +333,12 @@ void fuse(const Findings& own, const std::vector<const Findings*>& others, const
           [&](auto& plane, int, bool) {
             const FoundPlane& found = own.planes[plane_number++];
             if (found.channels == 0) return;
-            put(found, from, surfel(x, y), to_camera, plane(x, y));
+            auto& value = plane(x, y);
+            load(from, value);
+            if constexpr (std::is_same_v<std::decay_t<decltype(value)>, glm::vec3>) {
+              const Surfel& s = surfel(x, y);
+              if (found.bends && s.is_surface()) value = from_world(value, s.normal, to_camera);
+            }
             from += found.channels;
           },
           products);

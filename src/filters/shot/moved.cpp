@@ -12,8 +12,8 @@
 //   F = A / (pi (d^2 + r^2)) (n . to + r) / (d + r)
 //
 // of what arrives by the cosine. Where the sum over balls is F, another frame is wrong at p by no
-// more than that, and counts by (1 - F / kMostHidden)^2, 0 from kMostHidden on: the error that it
-// brings in is at most 4 / 27 of kMostHidden.
+// more than that, and counts by (1 - F / kMostHidden)^2, 0 from kMostHidden on: the mean with 16
+// such frames is wrong by less than half of kMostHidden.
 //
 // The shadow of a ball from a source is a cylinder that widens by the angle of the source. The
 // weight falls to 0 between twice its radius and once.

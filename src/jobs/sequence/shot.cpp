@@ -28,6 +28,7 @@ std::vector<Work> Shot::complete(Work work) {
     for (std::size_t v = 0; v < work.views.size(); ++v)
       findings_.insert_or_assign({now, v}, take_findings(work.views[v].relit));
   }
+  if (jobs_[now].is_lent) work.views.clear();
   waiting_.push_back(std::move(work));
   std::vector<Work> made;
   while (!waiting_.empty() && complete_after(waiting_.front().index) <= now) {
@@ -46,7 +47,6 @@ std::size_t Shot::complete_after(std::size_t job) const {
 
 void Shot::make(Work& work) {
   const std::size_t job = work.index;
-  if (jobs_[job].is_lent) return work.views.clear();
   attempt(work, jobs_[job].input(), [&] {
     for (std::size_t v = 0; v < work.views.size(); ++v) {
       std::vector<const Findings*> others;
