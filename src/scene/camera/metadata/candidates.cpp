@@ -26,17 +26,17 @@ struct RendererRow {
 };
 
 constexpr RendererRow kStandard = {"worldToCamera",
-                                   {Direction::to_camera, CameraAxes::along_z},
+                                   {PoseDirection::to_camera, CameraAxes::along_z},
                                    "",
                                    "CameraFocalLength",
                                    "CameraFilmApertureHorizontal"};
 constexpr RendererRow kVRay = {"cameraTransform",
-                               {Direction::to_world, CameraAxes::along_minus_y_z_down},
+                               {PoseDirection::to_world, CameraAxes::along_minus_y_z_down},
                                "cameraFov",
                                "cameraFocalLength",
                                "cameraAperture"};
 constexpr RendererRow kRedshift = {"rs/camera/transform",
-                                   {Direction::to_world, CameraAxes::along_z_x_left},
+                                   {PoseDirection::to_world, CameraAxes::along_z_x_left},
                                    "rs/camera/fov",
                                    "",
                                    ""};

@@ -72,10 +72,10 @@ std::string listed(const std::vector<std::string_view>& words) {
   return list;
 }
 
-PoseReading pose_of(const glm::dmat4& m, Direction direction, const AxesRow& axes) {
+PoseReading pose_of(const glm::dmat4& m, PoseDirection direction, const AxesRow& axes) {
   const glm::dmat3 to_ours = rows(axes.right, axes.up, axes.back), turn(m);
   const glm::dvec3 shift(m[3]);
-  if (direction == Direction::to_camera)
+  if (direction == PoseDirection::to_camera)
     return {to_ours * turn, -(glm::transpose(turn) * shift), false, ""};
   return {to_ours * glm::transpose(turn), shift, false, ""};
 }
@@ -115,11 +115,12 @@ bool is_parallel(const PixelRows& picture) {
 }  // namespace
 
 std::vector<PoseReading> read_pose(const StoredMatrix& stored, const PoseConvention& convention) {
-  const Direction inverse =
-      convention.direction == Direction::to_camera ? Direction::to_world : Direction::to_camera;
+  const PoseDirection inverse = convention.direction == PoseDirection::to_camera
+                                    ? PoseDirection::to_world
+                                    : PoseDirection::to_camera;
   std::vector<PoseReading> readings;
   for (const AxesRow& axes : starting_with(convention.axes)) {
-    for (const Direction direction : {convention.direction, inverse}) {
+    for (const PoseDirection direction : {convention.direction, inverse}) {
       for (const bool transposed : {false, true}) {
         const glm::dmat4 m = matrix_of(stored, transposed);
         if (!is_affine(m) || !is_orthogonal(glm::dmat3(m))) continue;

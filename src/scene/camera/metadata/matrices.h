@@ -16,7 +16,7 @@ namespace ssdo {
 /// A matrix of a header: 16 numbers, row by row as stored.
 using StoredMatrix = std::array<double, 16>;
 
-enum class Direction { to_camera, to_world };
+enum class PoseDirection { to_camera, to_world };
 
 /// The axes that a renderer gives camera space.
 enum class CameraAxes {
@@ -30,7 +30,7 @@ enum class CameraAxes {
 
 /// What a renderer says a matrix is.
 struct PoseConvention {
-  Direction direction;
+  PoseDirection direction;
   CameraAxes axes;
 };
 
