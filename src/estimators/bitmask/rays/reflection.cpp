@@ -79,7 +79,7 @@ HWY_INLINE V3 sent_from(const MirroredLightJob& job, const MarchScene& scene,
   const auto pixel = [&](V place, int size) HWY_ATTR {
     return hn::NearestInt(hn::Clamp(place, set(0), set(float(size - 1))));
   };
-  const Pixels met{pixel(x, scene.layout.width()), pixel(y, scene.layout.height())};
+  const OverviewPixels met{pixel(x, scene.layout.width()), pixel(y, scene.layout.height())};
   const VI index = index_of(scene.layout, met);
   const M shown = hn::And(way < set(kFarAway), holds_solid(gather(scene.depth().data(), index)));
   if (!any(shown)) return set(glm::vec3(0));
