@@ -6,7 +6,8 @@
 //   compose and write frame n - 1, then read and prepare frame n + 1
 //
 // The frame before is written and freed before the next one is read, so that no more than two are
-// in memory. Lines, errors and statistics of a frame wait until those of the frame before are out.
+// in memory, and those that wait for the rest of their shot (jobs/sequence/shot.h). Lines, errors
+// and statistics of a frame wait until those of the frame before are out.
 #include "jobs/batch.h"
 
 #include <fmt/format.h>
@@ -58,9 +59,9 @@ class Batch {
         info_(options.verbosity.json, progress_),
         printer_(progress_) {
     const std::size_t views = std::max(std::size_t(1), options.input.views.size());
-    // Of a frame that waits for the rest of its shot, less than half is left.
-    const auto around = std::size_t(options.model.shot.count), waiting = around + (around + 1) / 2;
-    options_.memory = resources.memory() / (((overlaps_ ? 2 : 1) + waiting) * views);
+    // What is left of a frame that waits for its shot, or of what one has found, is less than half.
+    const std::size_t of_shot = (shot_.most_waiting() + shot_.most_kept()) / 2;
+    options_.memory = resources.memory() / (((overlaps_ ? 2 : 1) + of_shot) * views);
     for (const Job& job : jobs_)
       for (const FrameFiles& files : job.views) pictures_.expect(files);
   }
@@ -95,7 +96,7 @@ class Batch {
     if (options_.command == Command::relight && !options_.verbosity.dry_run) clean_folders();
     for (std::size_t i = 0; i < jobs_.size() && !stopped_; ++i) {
       if (options_.command == Command::info) info_.list(jobs_[i].views.front());
-      if (!light_) light_.emplace(options_.light);
+      if (!light_) read_light();
       run_job(i);
     }
     for (std::size_t i = 0; i < behind_.size() && !stopped_; ++i) {
@@ -103,6 +104,11 @@ class Batch {
       conclude(behind_[i]);
     }
     return code_;
+  }
+
+  void read_light() {
+    light_.emplace(options_.light);
+    if (options_.command == Command::relight) check_lamp_files(jobs_, light_->lamps());
   }
 
   /// Removes what killed runs have left in the folders of the outputs.

@@ -97,34 +97,30 @@ Job job_of_frame(const RunOptions& options, const std::vector<Target>& targets, 
   return job;
 }
 
-/// The jobs of a shot in the order in which they are estimated: each frame after those before it,
-/// and before it goes on to the next, all that tell it what they have found. Frames that are not
-/// among `jobs` are lent where they exist.
+/// The jobs of a shot by the numbers of their frames, with frames that tell others what they have
+/// found and are not among `jobs`: those are lent, where they exist.
 std::vector<Job> with_lent_frames(const RunOptions& options, std::vector<Job> jobs) {
-  std::map<int, Job> wanted;
-  std::vector<int> order;
+  std::map<int, Job> all;
   for (Job& job : jobs) {
-    order.push_back(*job.frame);
-    wanted.emplace(*job.frame, std::move(job));
+    // Others may still want what it finds.
+    job.is_lent = options.batch.skip_existing && is_done(job);
+    all.emplace(*job.frame, std::move(job));
   }
-  std::set<int> placed;
-  std::vector<Job> all;
-  for (const int frame : order) {
-    for (const int around : frames_around(options.model.shot, frame)) {
-      if (!placed.insert(around).second) continue;
-      if (const auto found = wanted.find(around); found != wanted.end()) {
-        // Others may still want what it finds.
-        found->second.is_lent = options.batch.skip_existing && is_done(found->second);
-        all.push_back(std::move(found->second));
-        continue;
-      }
-      Job lent = job_of_frame(options, {}, around);
-      lent.is_lent = true;
-      std::error_code ignored;
-      if (std::filesystem::exists(lent.input(), ignored)) all.push_back(std::move(lent));
-    }
+  std::set<int> around;
+  for (const auto& [frame, job] : all) {
+    if (job.is_lent) continue;
+    for (const int other : frames_around(options.model.shot, frame)) around.insert(other);
   }
-  return all;
+  for (const int frame : around) {
+    if (all.contains(frame)) continue;
+    Job lent = job_of_frame(options, {}, frame);
+    lent.is_lent = true;
+    std::error_code ignored;
+    if (std::filesystem::exists(lent.input(), ignored)) all.emplace(frame, std::move(lent));
+  }
+  std::vector<Job> in_order;
+  for (auto& [frame, job] : all) in_order.push_back(std::move(job));
+  return in_order;
 }
 
 std::vector<Job> jobs_of_sequence(const RunOptions& options, const std::vector<Target>& targets) {
@@ -149,13 +145,22 @@ std::vector<Job> jobs_of_sequence(const RunOptions& options, const std::vector<T
   return tells ? with_lent_frames(options, std::move(jobs)) : jobs;
 }
 
+void add_outputs(const Job& job, RunFiles& files) {
+  for (const Target& target : job.targets)
+    files.outputs.push_back({target.product ? "--save" : "-o", target.path});
+}
+
+void add_mattes(const Selection& selection, RunFiles& files) {
+  for (const SelectionTerm& term : selection.terms)
+    files.inputs.push_back({selection.option, term.file});
+}
+
 RunFiles files_of(const RunOptions& options, const std::vector<Job>& jobs) {
   RunFiles files;
   for (const Job& job : jobs) {
     const auto inputs = inputs_of(options, job.views.front());
     files.inputs.insert(files.inputs.end(), inputs.begin(), inputs.end());
-    for (const Target& target : job.targets)
-      files.outputs.push_back({target.product ? "--save" : "-o", target.path});
+    add_outputs(job, files);
   }
   if (!options.verbosity.stats.empty())
     files.outputs.push_back({"--stats", options.verbosity.stats});
@@ -208,6 +213,17 @@ std::vector<Job> plan_jobs(const RunOptions& options) {
   return jobs;
 }
 
+void check_lamp_files(const std::vector<Job>& jobs, const std::vector<Lamp>& lamps) {
+  RunFiles files;
+  for (const Job& job : jobs) {
+    add_outputs(job, files);
+    for (const Lamp& lamp : lamps)
+      for (const Selection& selection : {lamp.receive, lamp.cast})
+        add_mattes(job.frame ? at_frame(selection, *job.frame) : selection, files);
+  }
+  check_run_files(files);
+}
+
 std::set<std::filesystem::path> output_folders(const std::vector<Job>& jobs) {
   std::set<std::filesystem::path> folders;
   for (const Job& job : jobs) {
@@ -251,9 +267,9 @@ std::vector<RunFile> inputs_of(const RunOptions& options, const FrameFiles& file
   for (const LayerRequest& request : files.aovs) inputs.push_back({"--aov", request.file});
   for (const std::string& path : files.also) inputs.push_back({"--also", path});
   for (const std::string& path : options.light.lamp_files) inputs.push_back({"--lights", path});
-  for (const Selection* selection : files.objects.all())
-    for (const SelectionTerm& term : selection->terms)
-      inputs.push_back({selection->option, term.file});
+  RunFiles mattes;
+  for (const Selection* selection : files.objects.all()) add_mattes(*selection, mattes);
+  inputs.insert(inputs.end(), mattes.inputs.begin(), mattes.inputs.end());
   return inputs;
 }
 

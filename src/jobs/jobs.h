@@ -10,6 +10,7 @@
 #include "io/files/run_files.h"
 #include "jobs/run_options.h"
 #include "relight/job.h"
+#include "scene/light/lamps/lamp.h"
 
 namespace ssdo {
 
@@ -23,14 +24,18 @@ struct Job {
   const std::string& input() const { return views.front().input; }
 };
 
-/// The frames of a run in the order in which they are estimated: that of --frames, but for those of
-/// a shot, which come once the frames around them are in reach. Errors: ExitCode::usage for
+/// The frames of a run in the order of --frames; those of a shot in the order of their numbers.
+/// Errors: ExitCode::usage for
 /// patterns, frames and kinds of output that do not fit together; ExitCode::input for a sequence
 /// without frames; those of check_run_files, over all frames.
 std::vector<Job> plan_jobs(const RunOptions& options);
 
 /// The frames that tell a frame of a shot what they have found, in their order, itself among them.
 std::vector<int> frames_around(const ShotWindow& shot, int frame);
+
+/// Refuses outputs that would replace a matte that a lamp is linked by: lamps are read after
+/// plan_jobs(). Errors: those of check_run_files.
+void check_lamp_files(const std::vector<Job>& jobs, const std::vector<Lamp>& lamps);
 
 /// The folders that the outputs of all jobs go to.
 std::set<std::filesystem::path> output_folders(const std::vector<Job>& jobs);

@@ -72,7 +72,7 @@ std::vector<MergeCounts> use_back_faces(std::vector<OtherView>& views, Scene& sc
 void register_views(KnownGeometry& known, const Geometry& frame, bool may_be_backs = false) {
   std::vector<OtherView> fitting;
   for (OtherView& view : known.views) {
-    if (view.is_neighbour || (may_be_backs && find_back_faces(view, frame))) {
+    if (view.is_other_eye || (may_be_backs && find_back_faces(view, frame))) {
       fitting.push_back(std::move(view));
       continue;
     }
@@ -89,12 +89,11 @@ void register_views(KnownGeometry& known, const Geometry& frame, bool may_be_bac
 constexpr double kMostContradiction = 0.1;
 
 void warn_of(const MergeCounts& view, std::vector<std::string>& warnings) {
-  if (view.is_neighbour) {
-    // What moves in a shot contradicts its frames, and needs no warning.
+  if (view.is_other_eye) {
     if (!view.is_of_another_scene()) return;
     warnings.push_back(fmt::format(
         "{}: left out: of {} pixels, {} show what the frame shows too, and {} lie before "
-        "it, as after a cut or in another unit",
+        "it, as in another scene or unit",
         view.file, view.added + view.in_common(), view.seen, view.contradictory));
     return;
   }
@@ -165,7 +164,7 @@ class ViewReader {
       OtherView view = place(pictures_.alike(files, options_.input, camera), frame_.scene.geometry);
       const std::vector<std::string>& kept = view.picture->not_taken;
       known_.warnings.insert(known_.warnings.end(), kept.begin(), kept.end());
-      view.is_neighbour = true;
+      view.is_other_eye = true;
       add(std::move(view));
     } catch (const Error& e) {
       known_.warnings.push_back(fmt::format("left out as {}: {}", role, e.what()));

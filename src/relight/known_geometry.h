@@ -32,14 +32,14 @@ KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
 
 /// Objects that cast nothing.
 struct TakenOut {
-  Plane<float> coverage;              ///< of the frame
-  Plane<float> backdrop;              ///< 1 where it shows one; may be empty
-  unsigned char marks;                ///< OtherPicture::taken
-  unsigned char marks_of_neighbours;  ///< the same of frames of the shot, which have one answer
-                                      ///< about a backdrop
+  Plane<float> coverage;             ///< of the frame
+  Plane<float> backdrop;             ///< 1 where it shows one; may be empty
+  unsigned char marks;               ///< OtherPicture::taken
+  unsigned char marks_of_other_eye;  ///< the same of the other eye, which follows the frame's
+                                     ///< answer about a backdrop
 
   unsigned char marks_of(const OtherView& view) const {
-    return view.is_neighbour ? marks_of_neighbours : marks;
+    return view.is_other_eye ? marks_of_other_eye : marks;
   }
 };
 

@@ -66,8 +66,8 @@ void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameO
 
 /// A backdrop that casts nothing.
 struct BackdropOut {
-  Plane<float> coverage;                    ///< empty: there is none
-  unsigned char of_neighbours = kBackdrop;  ///< the bits of OtherPicture::taken that it has there
+  Plane<float> coverage;                   ///< empty: there is none
+  unsigned char of_other_eye = kBackdrop;  ///< the bits of OtherPicture::taken that it has there
 };
 
 /// The backdrop that is left out of what casts, with a warning.
@@ -103,7 +103,7 @@ void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& opti
   const bool sees_behind = find_method(options.model.method).takes.thickness;
   // Bands and deep samples have no hole.
   const bool is_whole = !frame.gbuffer.grid.is_coarse() && known.deep.empty();
-  const auto [backdrop, of_neighbours] = find_backdrop(frame, options, sees_behind && is_whole);
+  const auto [backdrop, of_other_eye] = find_backdrop(frame, options, sees_behind && is_whole);
   if (sees_behind) {
     SolidOptions solids{{}, options.input.gbuffer};
     if (options.model.thickness) solids.thickness = float(*options.model.thickness);
@@ -118,14 +118,14 @@ void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& opti
       return found;
     };
     TakenOut out{
-        {}, backdrop, kNoCast | kBackdrop, static_cast<unsigned char>(kNoCast | of_neighbours)};
+        {}, backdrop, kNoCast | kBackdrop, static_cast<unsigned char>(kNoCast | of_other_eye)};
     const bool has_hole = !objects.no_cast.empty() || !backdrop.empty() ||
                           (is_whole && shows_backdrop(known.views, out));
     if (has_hole || !objects.shadow_of.empty()) out.coverage = coverage(objects.no_cast);
     if (!objects.shadow_of.empty()) {
       TakenOut both{coverage(objects.shadow_of), backdrop,
                     static_cast<unsigned char>(out.marks | kShadowOf),
-                    static_cast<unsigned char>(out.marks_of_neighbours | kShadowOf)};
+                    static_cast<unsigned char>(out.marks_of_other_eye | kShadowOf)};
       for (std::size_t i = 0; i < both.coverage.size(); ++i)
         both.coverage[i] = std::max(both.coverage[i], out.coverage[i]);
       KnownGeometry again = known;
@@ -236,8 +236,8 @@ void relight_in_shot(const Findings& own, const std::vector<const Findings*>& ot
   Stopwatch watch;
   relit.found.scene.geometry = *own.geometry;
   fuse(own, others, relit.found.scene.light, relit.found.products);
-  light_products(relit.found, relit.plan);
   relit.found.filter_ms += watch.lap();
+  light_products(relit.found, relit.plan);
   take_products(relit);
 }
 

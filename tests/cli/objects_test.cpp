@@ -217,6 +217,21 @@ TEST_F(Objects, NoCastHoldsInOtherViews) {
             0.02);
 }
 
+/// A matte is an input, whoever names it.
+TEST_F(Objects, NoOutputReplacesAMatte) {
+  write_frame(path("in.exr"), frame(true));
+  write_frame(path("matte.exr"), frame(true));
+  const std::string ball = path("matte.exr") + ":ball";
+  for (const Words& with :
+       {Words{"--no-cast", ball}, Words{"--light", "sphere position=0,2,2 receive=" + ball},
+        Words{"--light", "sphere position=0,2,2 cast=" + ball}}) {
+    const Finished done =
+        run_tool(Words{path("in.exr"), "-o", path("matte.exr"), "--overwrite"} + with);
+    EXPECT_EQ(done.code, 5);
+    EXPECT_THAT(done.error_line(), HasSubstr("is an input"));
+  }
+}
+
 /// Nor in frames of a shot, whose mattes have files of their own.
 TEST_F(Objects, NoCastHoldsInAShot) {
   const FramePart with = frame(true);

@@ -9,10 +9,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "estimators/bitmask/request.h"
 #include "support/boxes.h"
 #include "support/frame_file.h"
+#include "support/parse_json.h"
 #include "support/run_tool.h"
 #include "support/words.h"
 
@@ -207,6 +209,41 @@ TEST_F(AShot, ALampThatIsSwitchedOnIsNotDraggedAlong) {
   EXPECT_EQ(brightest(5), 0);
   EXPECT_GT(brightest(6), 0.3f);
   EXPECT_NEAR(brightest(6), brightest(9), 0.02f * brightest(9));
+}
+
+/// Light has any unit: half numbers, in which frames tell each other, have a range.
+TEST_F(AShot, ScalesWithTheLight) {
+  for (int frame = 1; frame <= 3; ++frame) {
+    FramePart part = frame_of(take_picture(boxes(), passing(frame), kFrame));
+    for (const char* c : {"R", "G", "B"})
+      part.channels[std::string("albedo.") + c] = Plane<float>(96, 72, 0.5f);
+    write(frame, part);
+  }
+  const Words bounce = {"--products", "bounce", "--frames", "2", "--shot", "1", "--env"};
+  ASSERT_EQ(run(bounce + Words{"1"}).code, 0);
+  const Plane<float> one = found(2, "bounce.R");
+  for (const double scale : {0x1p-27, 0x1p27}) {
+    ASSERT_EQ(run(bounce + Words{fmt::format("{}", scale)}).code, 0);
+    const Plane<float> scaled = found(2, "bounce.R");
+    for (std::size_t i = 0; i < one.size(); ++i)
+      ASSERT_NEAR(double(scaled[i]) / scale, double(one[i]), 1e-3) << scale;
+  }
+}
+
+/// Frames with a step between them come in their order, with their own lines.
+TEST_F(AShot, WithAStepKeepsTheOrderOfFrames) {
+  write_shot();
+  const Words stepped = {"--shot", "1x3", "--products", "ao"};
+  ASSERT_EQ(run(stepped + Words{"--stats", folder / "stats.json"}).code, 0);
+  const nlohmann::json stats = parse_json(read_file(folder / "stats.json"));
+  ASSERT_EQ(stats.size(), std::size_t(kFrames));
+  for (int frame = 1; frame <= kFrames; ++frame)
+    EXPECT_EQ(stats[std::size_t(frame - 1)]["frame"], frame);
+  const Plane<float> whole = found(5);
+  ASSERT_EQ(run(stepped + Words{"--frames", "5"}).code, 0);
+  EXPECT_EQ(found(5).pixels, whole.pixels);
+  ASSERT_EQ(run({"--shot", "1", "--products", "ao", "--frames", "5"}).code, 0);
+  EXPECT_NE(found(5).pixels, whole.pixels);
 }
 
 TEST_F(AShot, DoesWithoutFramesThatCannotBeUsed) {

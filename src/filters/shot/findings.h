@@ -28,6 +28,9 @@ struct Findings {
   std::shared_ptr<const Geometry> geometry;
   std::vector<FoundPlane> planes;  ///< in the order of for_each_found()
   int stride = 0;                  ///< channels of a pixel, with padding
+  /// By channel, a power of two near the mean of its plane, which values are stored in units of:
+  /// light has any scale, and half numbers have not.
+  std::vector<float> unit;
   /// Half numbers (IEEE 754), pixel after pixel: one that another frame looks up lies in one or two
   /// cache lines.
   std::vector<std::uint16_t> values;

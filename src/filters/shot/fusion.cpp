@@ -11,7 +11,8 @@
 // s(p') is what another frame has found at the point that p shows, the bilinear average of the
 // pixels around it that show the same surface (filters/reprojection.h). All frames count alike, so
 // that one that comes into reach, or leaves it, changes the mean least. Averaged are shares of
-// light, not light: shading by the normal stays that of the frame, and so does the light.
+// direct light, not light: shading by the normal stays that of the frame, and so does the light.
+// Bounce is averaged as it is.
 //
 // What is known is not the same at all times: things move, and light with them. w is less where
 // what stands in one of both frames, but not in the other, hides light from p
@@ -32,6 +33,7 @@
 #include "filters/shot/fusion.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -63,7 +65,7 @@ HWY_INLINE hn::Vec<Channels> load_half(const std::uint16_t* values) {
   return hn::PromoteTo(Channels(), hn::BitCast(Halves(), hn::LoadU(bits, values)));
 }
 
-/// The mean of a pixel, `stride` channels.
+/// The mean of a pixel, `stride` channels, in the units of `own`.
 void mean_of_pixel(const std::uint16_t* own, int stride, const Saying* sayings, int count,
                    const SeenPixel* taps, float* mean) {
   const Channels d;
@@ -72,11 +74,12 @@ void mean_of_pixel(const std::uint16_t* own, int stride, const Saying* sayings, 
     auto sum = hn::Zero(d), all = hn::Set(d, 1);
     for (int k = 0; k < count; ++k) {
       const Saying& saying = sayings[k];
+      const auto unit = hn::LoadU(d, saying.units + c);
       // Differences, so that what is constant stays as it is.
       auto change = hn::Zero(d);
       for (int t = saying.first; t < saying.first + saying.count; ++t) {
         const auto value = load_half(saying.values + std::size_t(taps[t].pixel) * stride + c);
-        change = hn::MulAdd(hn::Set(d, taps[t].weight), hn::Sub(value, base), change);
+        change = hn::MulAdd(hn::Set(d, taps[t].weight), hn::MulSub(value, unit, base), change);
       }
       const auto weight = hn::LoadU(d, saying.weights + c);
       sum = hn::MulAdd(weight, change, sum);
@@ -171,6 +174,7 @@ struct Speaker {
   Reprojection reprojection;
   std::optional<MovedWeights> moved;  ///< where something has moved
   std::vector<float> weights;         ///< by channel, where nothing has
+  std::vector<float> units;           ///< Saying::units
 };
 
 /// What each channel is of.
@@ -193,10 +197,12 @@ std::vector<Speaker> speakers_of(const Findings& own, const std::vector<const Fi
     if (!pieces.empty()) moved.emplace(*own.geometry, pieces, light);
     const Reprojection reprojection(*other->geometry, *own.geometry);
     const float glow = same_glow(own, *other, reprojection);
-    std::vector<float> weights;
+    std::vector<float> weights, units;
     for (const int source : sources_of(own))
       weights.push_back(source == FoundPlane::kOfSenders ? glow : 1);
-    speakers.push_back({*other, reprojection, std::move(moved), std::move(weights)});
+    for (std::size_t c = 0; c < own.unit.size(); ++c) units.push_back(other->unit[c] / own.unit[c]);
+    speakers.push_back(
+        {*other, reprojection, std::move(moved), std::move(weights), std::move(units)});
   }
   return speakers;
 }
@@ -222,8 +228,8 @@ class RowOfMeans {
         const Speaker& speaker = speakers_[k];
         const PixelsBefore at = speaker.reprojection.find(geometry.surfel[i], glm::dvec2(NAN));
         if (at.count == 0) continue;
-        sayings_[std::size_t(count++)] = {speaker.findings.values.data(), weights_of(k, x, y), taps,
-                                          at.count};
+        sayings_[std::size_t(count++)] = {speaker.findings.values.data(), weights_of(k, x, y),
+                                          speaker.units.data(), taps, at.count};
         for (int t = 0; t < at.count; ++t)
           taps_[std::size_t(taps++)] = {std::uint32_t(at.pixel[t]), at.weight[t]};
       }
@@ -231,6 +237,7 @@ class RowOfMeans {
     HWY_DYNAMIC_DISPATCH(mean_of_pixel)
     (&own_.values[i * std::size_t(own_.stride)], own_.stride, sayings_.data(), count, taps_.data(),
      mean);
+    for (std::size_t c = 0; c < own_.unit.size(); ++c) mean[c] *= own_.unit[c];
   }
 
  private:
@@ -257,6 +264,20 @@ void join_emitted(Plane<glm::vec3>& bounce, Plane<glm::vec3>& emitted) {
   emitted = {};
 }
 
+/// A power of two near the mean size of the values of a plane.
+template <class T>
+float unit_of(const Plane<T>& plane) {
+  double sum = 0;
+  for (const T& value : plane.pixels) {
+    if constexpr (std::is_same_v<T, float>)
+      sum += double(std::abs(value));
+    else
+      sum += double(std::abs(value.x) + std::abs(value.y) + std::abs(value.z)) / 3;
+  }
+  const double mean = plane.empty() ? 0 : sum / double(plane.size());
+  return mean > 0 && std::isfinite(mean) ? float(std::exp2(std::round(std::log2(mean)))) : 1;
+}
+
 void store(float value, float* to) { *to = value; }
 void store(const glm::vec3& value, float* to) { std::copy_n(&value.x, 3, to); }
 
@@ -277,10 +298,12 @@ Findings take_findings(Products& products, Geometry geometry, const Plane<glm::v
         using T = std::decay_t<decltype(plane[0])>;
         const int count = plane.empty() ? 0 : channels_of<T>();
         out.planes.push_back({count, source, bends});
+        out.unit.insert(out.unit.end(), std::size_t(count), unit_of(plane));
         channels += count;
       },
       products);
   out.stride = (channels + Findings::kGroup - 1) / Findings::kGroup * Findings::kGroup;
+  out.unit.resize(std::size_t(out.stride), 1);
   const Plane<Surfel>& surfel = geometry.surfel;
   const glm::mat3 to_camera = rotation_of(geometry);
   out.values.resize(surfel.size() * std::size_t(out.stride));
@@ -297,7 +320,9 @@ Findings take_findings(Products& products, Geometry geometry, const Plane<glm::v
               const Surfel& s = surfel(x, y);
               if (bends && s.is_surface()) value = to_world(value, s.normal, to_camera);
             }
-            store(value, &row[std::size_t(x) * std::size_t(out.stride) + std::size_t(first)]);
+            const auto channel = std::size_t(first);
+            store(value / out.unit[channel],
+                  &row[std::size_t(x) * std::size_t(out.stride) + channel]);
           }
           first += channels_of<T>();
         },

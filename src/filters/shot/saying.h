@@ -15,6 +15,7 @@ struct SeenPixel {
 struct Saying {
   const std::uint16_t* values;  ///< Findings::values
   const float* weights;         ///< by channel
+  const float* units;           ///< by channel, those of the frame over one's own
   int first, count;             ///< of its taps
 };
 

@@ -20,13 +20,29 @@ Shot::Shot(const std::vector<Job>& jobs, const ShotWindow& window)
         around_[i].push_back(found->second);
     for (const std::size_t other : around_[i]) ++wanting_[other];
   }
+  count();
+}
+
+/// Goes through the run as complete() will.
+void Shot::count() {
+  std::vector<int> wanting = wanting_;
+  std::size_t first = 0, kept = 0;  // the job that has waited longest
+  for (std::size_t now = 0; now < jobs_.size(); ++now) {
+    kept += wanting[now] > 0;
+    most_kept_ = std::max(most_kept_, kept);
+    most_waiting_ = std::max(most_waiting_, now - first + 1);
+    for (; first <= now && complete_after(first) <= now; ++first)
+      for (const std::size_t other : around_[first]) kept -= --wanting[other] == 0;
+  }
 }
 
 std::vector<Work> Shot::complete(Work work) {
   const std::size_t now = work.index;
   if (is_shot_ && is_wanted(now)) {
-    for (std::size_t v = 0; v < work.views.size(); ++v)
-      findings_.insert_or_assign({now, v}, take_findings(work.views[v].relit));
+    attempt(work, jobs_[now].input(), [&] {
+      for (std::size_t v = 0; v < work.views.size(); ++v)
+        findings_.insert_or_assign({now, v}, take_findings(work.views[v].relit));
+    });
   }
   if (jobs_[now].is_lent) work.views.clear();
   waiting_.push_back(std::move(work));

@@ -24,6 +24,10 @@ class Shot {
   /// Whether a job that is still to be made wants what this one finds.
   bool is_wanted(std::size_t job) const { return wanting_[job] > 0; }
 
+  /// The most frames that wait at one time, and the most whose findings are kept.
+  std::size_t most_waiting() const { return most_waiting_; }
+  std::size_t most_kept() const { return most_kept_; }
+
   bool is_waiting() const { return !waiting_.empty(); }
 
   /// The frames that have all that they want, now that `work` has found what it can, made up to
@@ -31,6 +35,7 @@ class Shot {
   std::vector<Work> complete(Work work);
 
  private:
+  void count();
   std::size_t complete_after(std::size_t job) const;
   void make(Work& work);
   void release(std::size_t job);
@@ -41,6 +46,7 @@ class Shot {
   std::vector<int> wanting_;                      ///< how many jobs want each
   std::map<std::pair<std::size_t, std::size_t>, Findings> findings_;  ///< by job and view
   std::deque<Work> waiting_;
+  std::size_t most_waiting_ = 0, most_kept_ = 0;
 };
 
 }  // namespace ssdo

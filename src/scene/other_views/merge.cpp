@@ -39,7 +39,7 @@ constexpr double kLeastInCommon = 0.5;
 
 /// A frame of the same sequence or pair sees of what the frame sees too, unless it is of another
 /// scene, place or unit.
-constexpr double kLeastSeenByNeighbour = 0.02;
+constexpr double kLeastSeenByOtherEye = 0.02;
 
 enum class Fate : unsigned char { none, added, repeated, seen, contradictory };
 
@@ -295,8 +295,8 @@ Plane<Fate> judge(const Plane<Surfel>& surfel, const Merger& merger, MergeCounts
 }  // namespace
 
 bool MergeCounts::is_of_another_scene() const {
-  if (!is_neighbour) return false;
-  if (double(seen) < kLeastSeenByNeighbour * double(added + in_common())) return true;
+  if (!is_other_eye) return false;
+  if (double(seen) < kLeastSeenByOtherEye * double(added + in_common())) return true;
   return in_common() >= kFewestInCommon && double(seen) < kLeastInCommon * double(in_common());
 }
 
@@ -320,7 +320,7 @@ OtherSurfaces merge_views(const std::vector<OtherView>& views, const Geometry& f
     const OtherView& view = views[k];
     counts[k].file = view.picture->file;
     counts[k].has_albedo = !view.picture->albedo.empty();
-    counts[k].is_neighbour = view.is_neighbour;
+    counts[k].is_other_eye = view.is_other_eye;
     Plane<Fate> fates = judge(view.surfels_in_frame(), merger, counts[k]);
     if (!counts[k].is_of_another_scene()) {
       judged.push_back({&view, std::move(fates)});

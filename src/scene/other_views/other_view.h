@@ -42,7 +42,7 @@ struct OtherView {
 
   Picture picture;
   Camera camera;              ///< from the frame's camera space to its own
-  bool is_neighbour = false;  ///< of the frame's own sequence or stereo pair
+  bool is_other_eye = false;  ///< of the frame's stereo pair
 
   /// Its surfels in the camera space of the frame.
   Plane<Surfel> surfels_in_frame() const;
