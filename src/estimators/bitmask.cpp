@@ -213,11 +213,7 @@ class Bitmask {
   /// The planes that rays to sources meet; those of mirrors may meet any.
   MayMeetPlane asked_planes() const {
     if (request_.products.reflection || request_.products.specular) return {};
-    return [this](const glm::vec3& position, const glm::vec3& normal) {
-      return std::ranges::any_of(scene_.light.sources, [&](const auto& source) {
-        return is_behind(*source, position, normal);
-      });
-    };
+    return met_by_rays_to_sources(scene_.light);
   }
 
   /// Finds where sources are seen, and once more by other rays where the error is wanted.
@@ -228,19 +224,23 @@ class Bitmask {
     const float past = by_pixel ? 0 : sun_past_beyond(march_scene_, scene_, request_);
     const bool unseen = times_sent(scene_, request_) > 0 && sends_two_sided(scene_);
     const auto rays = rays_to_source(request_.slices);
+    BlockersOfSources blockers(scene_, request_, pattern_);
     for (std::size_t k = 0; k < scene_.light.sources.size(); ++k) {
       const Source& source = *scene_.light.sources[k];
       const PassBeyond pass = pass_beyond(past, source);
-      const auto own = OwnBlockers::of(scene_, k, request_, pattern_);
+      const OwnBlockers* const own = blockers.of(k);
+      const auto job = [&](const std::vector<PointsOfSource>& points) -> SourceJob {
+        if (own) return own->job(points, source);
+        return {march, bounds, points, source, pass, by_pixel};
+      };
       const auto find = [&](const Window& to, RaySet set) {
         const auto points = points_of(source, rays, request_.seed, set);
-        SourceJob job{march, bounds, points, source, pass, by_pixel};
-        return find_source(own ? own->job(points, source) : job, to, progress_);
+        return find_source(job(points), to, progress_);
       };
       sources_.push_back(find(lit_part(), RaySet::of_light));
-      if (!own && unseen && source.near_lamp()) {
+      if (unseen && source.near_lamp()) {
         const auto points = points_of(source, rays, request_.seed, RaySet::of_light);
-        find_unseen_light({march, bounds, points, source, pass}, lit_part(), sources_.back());
+        find_unseen_light(job(points), march_scene_, lit_part(), sources_.back());
       }
       if (request_.products.error)
         sources_again_.push_back(find(march_scene_.receivers, RaySet::of_error));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "error.h"
 #include "scene/objects/read_object_masks.h"
@@ -14,22 +15,18 @@
 namespace ssdo {
 namespace {
 
-/// Coverage from which on a pixel is the selection's alone: sums of ranks are rounded.
+/// Share from which on a pixel is the selection's alone: sums of ranks are rounded.
 constexpr float kAll = 0.99f;
-
-Plane<float> coverage_of(Frame& frame, const Selection& selection) {
-  std::vector<std::string> warnings;
-  Plane<float> coverage = selected_coverage(selection, frame.selections(warnings),
-                                            frame.gbuffer.window, frame.gbuffer.grid);
-  frame.warn(warnings);
-  return coverage;
-}
 
 /// The frame without what is not selected, and without `out`.
 std::shared_ptr<const Scene> selected_alone(Frame& frame, const Selection& selection,
                                             const TakenOut& out, const SolidOptions& options) {
   const Plane<Surfel>& surfel = frame.scene.geometry.surfel;
-  const Plane<float> selected = coverage_of(frame, selection);
+  const GBuffer& from = frame.gbuffer;
+  std::vector<std::string> warnings;
+  const Plane<float> selected =
+      selected_share(selection, frame.selections(warnings), from.window, from.grid, from.alpha);
+  frame.warn(warnings);
   TakenOut rest = out;
   if (rest.coverage.empty()) rest.coverage = Plane<float>(surfel.width, surfel.height, 0.0f);
   for (std::size_t i = 0; i < surfel.size(); ++i) {
@@ -58,7 +55,11 @@ std::shared_ptr<const Plane<float>> find_receivers(Frame& frame, Lamp& lamp, int
     open_mattes(*selection, frame.files, allow_partial);
   }
   if (lamp.receive.empty()) return nullptr;
-  return std::make_shared<const Plane<float>>(coverage_of(frame, lamp.receive));
+  std::vector<std::string> warnings;
+  Plane<float> coverage = selected_coverage(lamp.receive, frame.selections(warnings),
+                                            frame.gbuffer.window, frame.gbuffer.grid);
+  frame.warn(warnings);
+  return std::make_shared<const Plane<float>>(std::move(coverage));
 }
 
 void find_blockers(Frame& frame, const TakenOut& out, const SolidOptions& options, Scene& scene) {

@@ -26,8 +26,9 @@ struct SolidOptions {
 };
 
 /// Fills Scene::blockers of a scene of the frame: what the lamps of Frame::lamps select is left, of
-/// what the frame shows, but for `out`; of other views, nothing. What is behind the rest is guessed
-/// as of objects that cast nothing. Errors: those of selected_coverage().
+/// what the frame shows, but for `out`; of other views, nothing. An edge
+/// between selected things and background is left. What is behind the rest is guessed as of objects
+/// that cast nothing. Errors: those of selected_coverage().
 void find_blockers(Frame& frame, const TakenOut& out, const SolidOptions& options, Scene& scene);
 
 }  // namespace ssdo

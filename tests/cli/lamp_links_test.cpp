@@ -50,15 +50,17 @@ class LampLinks : public testing::Test {
   /// The frame lit by a lamp with these links: a file, whose channels are read by name.
   std::string lit(const std::string& links, const Words& flags = {},
                   const std::string& products = kMade) const {
-    const std::string lamp =
-                          "sphere name=key position=-1,-1,2.5 radius=0.1 normalize=true "
-                          "intensity=90 " +
-                          links,
+    return lit_at("-1,-1,2.5", links, flags, products, path("in.exr"));
+  }
+  std::string lit_at(const std::string& position, const std::string& links, const Words& flags,
+                     const std::string& products, const std::string& input) const {
+    const std::string lamp = fmt::format(
+                          "sphere name=key position={} radius=0.1 normalize=true intensity=90 {}",
+                          position, links),
                       out = path(fmt::format("out{}.exr", ++files_));
-    const Finished done =
-        run_tool(Words{path("in.exr"), "-o", out, "--pixel-type", "float", "-q", "--env", "0,0,0",
-                       "--light", lamp, "--products", products} +
-                 flags);
+    const Finished done = run_tool(Words{input, "-o", out, "--pixel-type", "float", "-q", "--env",
+                                         "0,0,0", "--light", lamp, "--products", products} +
+                                   flags);
     EXPECT_EQ(done.code, 0) << done.err;
     return out;
   }
@@ -142,6 +144,35 @@ TEST_F(LampLinks, CastIsWhatBlocksALamp) {
     }
     EXPECT_GT(dark, 50) << by[1];
     EXPECT_GT(open_above, 500) << by[1];
+  }
+}
+
+/// A selection of all that the frame shows is no link, also for the sides of things that the camera
+/// does not see and for edges before the sky.
+TEST_F(LampLinks, CastOfEverythingIsNoLink) {
+  for (const Words& by : kMethods) {
+    for (const char* position : {"0.5,2.5,0.6", "-1,-1.5,1.2"}) {
+      const std::string plain = lit_at(position, "", by, kLit, kBlender);
+      for (const char* cast : {"cast=id:ViewLayer.IndexOB=0-100000", "cast=crypto:*"}) {
+        const std::string linked = lit_at(position, cast, by, kLit, kBlender);
+        for (const std::string name : {"direct.G", "bounce.G"})
+          EXPECT_EQ(channel(linked, name).pixels, channel(plain, name).pixels)
+              << by[1] << " " << position << " " << cast << " " << name;
+      }
+    }
+  }
+}
+
+/// Sides that the camera does not see are those of the things that are there, whatever blocks the
+/// light: a lamp between ball and wall lights the ball from behind.
+TEST_F(LampLinks, ThingsThatDoNotBlockALampAreLitByIt) {
+  for (const Words& by : kMethods) {
+    const auto bounce = [&](const std::string& links) {
+      return channel(lit_at("0.1,1.5,0.6", links, by, kLit, path("in.exr")), "bounce.G");
+    };
+    const Plane<float> plain = bounce("receive=ball"),
+                       linked = bounce("receive=ball cast=id:IndexOB=1"), none(96, 72, 0.0f);
+    EXPECT_LT(rms(plain, linked), 0.05 * rms(plain, none)) << by[1];
   }
 }
 

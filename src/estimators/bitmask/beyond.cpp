@@ -84,6 +84,13 @@ bool is_behind(const Source& source, const glm::vec3& position, const glm::vec3&
   return glm::dot(cone.to, normal) < std::sin(cone.angular_radius) + kRounding;
 }
 
+MayMeetPlane met_by_rays_to_sources(const Light& light) {
+  return [&light](const glm::vec3& position, const glm::vec3& normal) {
+    return std::ranges::any_of(
+        light.sources, [&](const auto& source) { return is_behind(*source, position, normal); });
+  };
+}
+
 bool needs_openness(const Scene& scene, const Request& request) {
   const ProductSet& products = request.products;
   const auto& sources = scene.light.sources;

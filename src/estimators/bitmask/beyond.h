@@ -39,9 +39,11 @@
 #include <glm/vec3.hpp>
 
 #include "estimators/bitmask/march_scene.h"
+#include "estimators/bitmask/rays/border_extents.h"
 #include "estimators/bitmask/rays/pass_beyond.h"
 #include "estimators/bitmask/slice_pattern.h"
 #include "estimators/estimator.h"
+#include "scene/light/light.h"
 #include "scene/light/source.h"
 
 namespace ssdo {
@@ -67,6 +69,9 @@ glm::vec3 up_in_camera(const Scene& scene);
 /// Whether part of a source lies behind a plane, unit `normal`: rays to it from in front of the
 /// plane meet that.
 bool is_behind(const Source& source, const glm::vec3& position, const glm::vec3& normal);
+
+/// The planes that rays to any of the sources of a light meet, which has to outlive this.
+MayMeetPlane met_by_rays_to_sources(const Light& light);
 
 /// Whether the openness of the frame changes the light that is asked for.
 bool needs_openness(const Scene& scene, const Request& request);

@@ -138,7 +138,9 @@ struct SourceJob {
   const Source& source;
   PassBeyond pass;
   const InterleavedPlane* past = nullptr;  ///< by pixel, where pass.past is 0; null: of none
-  bool unseen_sides = false;  ///< finds SourceShares::unseen, else all others
+  /// Finds SourceShares::unseen, of the solids of this raster, which may not be what blocks the
+  /// light; null: finds all others.
+  const MarchScene* unseen_of = nullptr;
   SourceShares* found = nullptr;
 };
 

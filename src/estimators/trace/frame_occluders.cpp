@@ -12,7 +12,13 @@ FrameOccluders::FrameOccluders(const Scene& scene, float radius)
       solids_(build_height_field(scene.casters(), scene.solids)),
       other_views_(OtherViewRays::of_added(scene.other_surfaces)) {
   for (const auto& [source, seen] : scene.blockers)
-    of_lamps_.emplace(source, build_height_field(seen->casters(), seen->solids));
+    if (!named_.contains(seen.get()))
+      named_.emplace(seen.get(), build_height_field(seen->casters(), seen->solids));
+}
+
+const RayScene* FrameOccluders::named_by(std::size_t source) const {
+  const auto blockers = scene_.blockers.find(source);
+  return blockers == scene_.blockers.end() ? nullptr : &named_.at(blockers->second.get());
 }
 
 bool FrameOccluders::is_blocked(const TraceRay& ray, float distance) const {
@@ -22,9 +28,9 @@ bool FrameOccluders::is_blocked(const TraceRay& ray, float distance) const {
 }
 
 bool FrameOccluders::is_blocked(const TraceRay& ray, float distance, std::size_t source) const {
-  const auto own = of_lamps_.find(source);
-  if (own == of_lamps_.end()) return is_blocked(ray, distance);
-  return own->second.is_blocked(ray.origin, ray.to, std::min(distance, radius_));
+  const RayScene* const own = named_by(source);
+  if (!own) return is_blocked(ray, distance);
+  return own->is_blocked(ray.origin, ray.to, std::min(distance, radius_));
 }
 
 std::optional<Met> FrameOccluders::first_met(const TraceRay& ray) const {

@@ -28,6 +28,11 @@ class FrameOccluders {
   FrameOccluders(const Scene& scene, float radius);
 
   const RayScene& solids() const { return solids_; }
+
+  /// What a lamp names as what blocks its light, by its number; null: all does. Lamps that name the
+  /// same things share it.
+  const RayScene* named_by(std::size_t source) const;
+
   bool has_other_views() const { return other_views_ != nullptr; }
 
   /// Whether something stands in the way before `distance`.
@@ -43,7 +48,7 @@ class FrameOccluders {
   const Scene& scene_;
   float radius_;
   RayScene solids_;
-  std::map<std::size_t, RayScene> of_lamps_;    ///< as Scene::blockers has them
+  std::map<const Scene*, RayScene> named_;      ///< those of Scene::blockers
   std::unique_ptr<OtherViewRays> other_views_;  ///< null: there are no other views
 };
 

@@ -37,9 +37,13 @@ struct Covered {
   int part = 0;
   Plane<float> coverage;
   std::set<std::uint32_t> ids = {};  ///< that pixels have
+  Plane<float> of_all = {};          ///< coverage by any id of a Cryptomatte
 };
 
 float share_of(float value) { return value > 0 ? std::min(value, 1.0f) : 0.0f; }
+
+/// The id of no object.
+constexpr std::uint32_t kNoObject = 0;
 
 /// What the ranks of a Cryptomatte say of some ids.
 Covered coverage_of_ids(const ExrReader& file, const Cryptomatte& matte,
@@ -59,11 +63,14 @@ Covered coverage_of_ids(const ExrReader& file, const Cryptomatte& matte,
       const auto id = std::bit_cast<std::uint32_t>(read[0][i]);
       if (read[1][i] > 0 && ids.contains(id)) sum.ids.insert(id);
     }
-    if (sum.coverage.empty()) sum.coverage = Plane<float>(read[0].width, read[0].height, 0.0f);
+    if (sum.coverage.empty())
+      sum.coverage = sum.of_all = Plane<float>(read[0].width, read[0].height, 0.0f);
     for_each_row(sum.coverage.height, [&](int y) {
       for (std::size_t i = sum.coverage.index(0, y); i < sum.coverage.index(0, y + 1); ++i) {
-        if (ids.contains(std::bit_cast<std::uint32_t>(read[0][i])))
-          sum.coverage[i] = share_of(sum.coverage[i] + share_of(read[1][i]));
+        const auto id = std::bit_cast<std::uint32_t>(read[0][i]);
+        const float more = share_of(read[1][i]);
+        if (id != kNoObject) sum.of_all[i] = share_of(sum.of_all[i] + more);
+        if (ids.contains(id)) sum.coverage[i] = share_of(sum.coverage[i] + more);
       }
     });
   }
@@ -76,7 +83,7 @@ class Selector {
            const PixelGrid& grid)
       : selection_(selection), in_(in), window_(window), grid_(grid) {}
 
-  Plane<float> select() const {
+  Plane<float> select() {
     Plane<float> all(window_.width(), window_.height(), 0.0f);
     for (std::size_t i = 0; i < selection_.terms.size();) {
       const SelectionTerm& term = selection_.terms[i];
@@ -92,6 +99,10 @@ class Selector {
     }
     return all;
   }
+
+  /// How much all objects of the Cryptomattes cover that select() has looked at; empty: there are
+  /// none.
+  const Plane<float>& of_objects() const { return of_objects_; }
 
  private:
   /// What is taken from an earlier plane is no set of ids.
@@ -109,6 +120,11 @@ class Selector {
       all[i] = share_of(all[i] + (adds ? term[i] : -term[i]));
   }
 
+  static void join_most(Plane<float>& all, const Plane<float>& one) {
+    if (all.empty()) all = Plane<float>(one.width, one.height, 0.0f);
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = std::max(all[i], one[i]);
+  }
+
   std::vector<const ExrReader*> files_of(const SelectionTerm& term) const {
     std::vector<const ExrReader*> files;
     for (const ExrReader& file : in_.files)
@@ -118,6 +134,10 @@ class Selector {
 
   /// Lays the coverage of a part onto the window.
   Plane<float> over_window(const ExrReader& file, const Covered& covered) const {
+    return over_window(file, covered, covered.coverage);
+  }
+  Plane<float> over_window(const ExrReader& file, const Covered& covered,
+                           const Plane<float>& coverage) const {
     const ExrPart& part = file.parts()[std::size_t(covered.part)];
     const Window own = grid_.of(part.data_window);
     const Window& display = in_.files.front().parts().front().display_window;
@@ -130,13 +150,13 @@ class Selector {
     const Window both = intersection(window_, own);
     for (int y = both.y0; y < both.y1; ++y) {
       for (int x = both.x0; x < both.x1; ++x)
-        out(x - window_.x0, y - window_.y0) = covered.coverage(x - own.x0, y - own.y0);
+        out(x - window_.x0, y - window_.y0) = coverage(x - own.x0, y - own.y0);
     }
     return out;
   }
 
   /// Terms `first` to `end`, which are names for Cryptomattes of the same files.
-  Plane<float> coverage_of_names(std::size_t first, std::size_t end) const {
+  Plane<float> coverage_of_names(std::size_t first, std::size_t end) {
     Plane<float> all(window_.width(), window_.height(), 0.0f);
     std::vector<bool> known(end - first, false), shown = known;
     std::vector<std::string> names;
@@ -161,7 +181,8 @@ class Selector {
           shown[i - first] = shown[i - first] || matte.has_manifest ||
                              covered.ids.contains(cryptomatte_id(selection_.terms[i].name));
         const Plane<float> one = over_window(*file, covered);
-        for (std::size_t i = 0; i < all.size(); ++i) all[i] = std::max(all[i], one[i]);
+        join_most(all, one);
+        join_most(of_objects_, over_window(*file, covered, covered.of_all));
       }
       if (std::ranges::find(known, false) == known.end()) break;
     }
@@ -241,6 +262,7 @@ class Selector {
   const SelectionFiles& in_;
   const Window& window_;
   const PixelGrid& grid_;
+  Plane<float> of_objects_;
 };
 
 /// Counts what the pixels of a frame show.
@@ -303,6 +325,21 @@ class Census {
 Plane<float> selected_coverage(const Selection& selection, const SelectionFiles& in,
                                const Window& window, const PixelGrid& grid) {
   return Selector(selection, in, window, grid).select();
+}
+
+Plane<float> selected_share(const Selection& selection, const SelectionFiles& in,
+                            const Window& window, const PixelGrid& grid,
+                            const Plane<float>& alpha) {
+  Selector selector(selection, in, window, grid);
+  Plane<float> selected = selector.select();
+  const Plane<float>& of_objects = selector.of_objects();
+  for (std::size_t i = 0; i < selected.size(); ++i) {
+    float covered = 1;
+    for (const Plane<float>* by : {&alpha, &of_objects})
+      if (!by->empty()) covered = std::min(covered, share_of((*by)[i]));
+    if (selected[i] > 0) selected[i] = selected[i] < covered ? selected[i] / covered : 1;
+  }
+  return selected;
 }
 
 std::vector<ObjectShare> objects_of(const ExrReader& file, const std::string& view,

@@ -16,10 +16,11 @@ SourceShares find_source(SourceJob job, const Window& to, const Progress& progre
   return found;
 }
 
-void find_unseen_light(SourceJob job, const Window& to, SourceShares& found) {
+void find_unseen_light(SourceJob job, const MarchScene& solids, const Window& to,
+                       SourceShares& found) {
   const Interleaving& layout = job.march.scene.layout;
   found.unseen = InterleavedShares(layout);
-  job.unseen_sides = true, job.found = &found;
+  job.unseen_of = &solids, job.found = &found;
   job.march.cut = nullptr;
   for_each_tall_part_of(layout, to, [&](const Window& part) { march_source(job, part); }, {});
 }

@@ -14,9 +14,11 @@ namespace ssdo {
 /// set here.
 SourceShares find_source(SourceJob job, const Window& to, const Progress& progress);
 
-/// How much of it arrives at the sides of solids that the camera does not see, as SourceShares has
-/// it: what goes on beyond the frame hides nothing from them.
-void find_unseen_light(SourceJob job, const Window& to, SourceShares& found);
+/// How much of it arrives at the sides of `solids` that the camera does not see, as SourceShares
+/// has it: what goes on beyond the frame hides nothing from them. The job's scene, of the same
+/// pixels, is what blocks the light.
+void find_unseen_light(SourceJob job, const MarchScene& solids, const Window& to,
+                       SourceShares& found);
 
 /// Turns what was found of sources into pictures, as LightShares has them, and frees it.
 void hand_out_sources(std::vector<SourceShares>& found, const Raster& raster,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "estimators/bitmask/rays/own_blockers.h"
 
+#include <algorithm>
+
 #include "estimators/bitmask/beyond.h"
 
 namespace ssdo {
@@ -13,21 +15,25 @@ OwnBlockers::OwnBlockers(const Scene& blockers, const Scene& scene, const Reques
       march_{scene_, pattern, request.radius, request.extend_offscreen},
       past_(sun_past_beyond(scene_, scene, request)) {
   if (!march_.extend) return;
-  cut_ = find_cut_surfaces(scene_, up_in_camera(scene), request.radius);
+  cut_ = find_cut_surfaces(scene_, up_in_camera(scene), request.radius,
+                           met_by_rays_to_sources(scene.light));
   march_.cut = &cut_;
-}
-
-std::unique_ptr<const OwnBlockers> OwnBlockers::of(const Scene& scene, std::size_t source,
-                                                   const Request& request,
-                                                   const SlicePattern& pattern) {
-  const auto found = scene.blockers.find(source);
-  if (found == scene.blockers.end()) return nullptr;
-  return std::unique_ptr<const OwnBlockers>(
-      new OwnBlockers(*found->second, scene, request, pattern));
 }
 
 SourceJob OwnBlockers::job(const std::vector<PointsOfSource>& points, const Source& source) const {
   return {march_, bounds_, points, source, pass_beyond(past_, source)};
+}
+
+const OwnBlockers* BlockersOfSources::of(std::size_t source) {
+  const auto& named = scene_.blockers;
+  std::erase_if(built_, [&](const auto& built) {
+    return std::none_of(named.lower_bound(source), named.end(),
+                        [&](const auto& by) { return by.second.get() == built.first; });
+  });
+  const auto found = named.find(source);
+  if (found == named.end()) return nullptr;
+  const Scene& blockers = *found->second;
+  return &built_.try_emplace(&blockers, blockers, scene_, request_, pattern_).first->second;
 }
 
 }  // namespace ssdo

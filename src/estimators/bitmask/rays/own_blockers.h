@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
+#include <map>
 #include <vector>
 
 #include "estimators/bitmask/jobs.h"
@@ -10,25 +10,40 @@
 
 namespace ssdo {
 
-/// What blocks the light of a lamp that names it (Scene::blockers), as rays read it.
+/// What blocks the light of lamps that name it (Scene::blockers), as rays read it.
 class OwnBlockers {
  public:
-  /// Null: all that casts blocks the light of this source.
-  static std::unique_ptr<const OwnBlockers> of(const Scene& scene, std::size_t source,
-                                               const Request& request, const SlicePattern& pattern);
+  OwnBlockers(const Scene& blockers, const Scene& scene, const Request& request,
+              const SlicePattern& pattern);
+  OwnBlockers(const OwnBlockers&) = delete;  // a march refers to the others
+  OwnBlockers& operator=(const OwnBlockers&) = delete;
 
   /// To be finished by find_source().
   SourceJob job(const std::vector<PointsOfSource>& points, const Source& source) const;
 
  private:
-  OwnBlockers(const Scene& blockers, const Scene& scene, const Request& request,
-              const SlicePattern& pattern);
-
   const MarchScene scene_;
   const std::vector<DepthBounds> bounds_;
   CutSurfaces cut_;
   March march_;
   float past_;  ///< as sun_past_beyond() has it
+};
+
+/// Those of all sources of a scene. Lamps that name the same things share them.
+class BlockersOfSources {
+ public:
+  BlockersOfSources(const Scene& scene, const Request& request, const SlicePattern& pattern)
+      : scene_(scene), request_(request), pattern_(pattern) {}
+
+  /// Null: all that casts blocks the light of this source. Sources are asked for in ascending
+  /// order: what no source from this one on names is freed.
+  const OwnBlockers* of(std::size_t source);
+
+ private:
+  const Scene& scene_;
+  const Request& request_;
+  const SlicePattern& pattern_;
+  std::map<const Scene*, OwnBlockers> built_;
 };
 
 }  // namespace ssdo

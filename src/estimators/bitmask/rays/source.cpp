@@ -107,8 +107,8 @@ HWY_INLINE Ray ray_of(const MarchScene& scene, const MarchReceiver& p, const Sou
 /// The points whose light is found.
 HWY_INLINE MarchReceiver lit_point(const SourceJob& job, const Place& place) {
   MarchReceiver p = load_receiver(job.march.scene, place);
-  if (!job.unseen_sides) return p;
-  const UnseenSide side = unseen_side(job.march.scene, p);
+  if (!job.unseen_of) return p;
+  const UnseenSide side = unseen_side(*job.unseen_of, p);
   p.position = side.position, p.normal = side.normal;
   p.valid = hn::And(p.valid, side.ends);
   return p;
@@ -118,8 +118,8 @@ HWY_INLINE MarchReceiver lit_point(const SourceJob& job, const Place& place) {
 HWY_INLINE MarchReceiver start_of_ray(const SourceJob& job, const Place& place, const V3& to) {
   const MarchScene& scene = job.march.scene;
   MarchReceiver p = load_receiver(scene, place);
-  if (job.unseen_sides) {
-    const UnseenSide side = unseen_side(scene, p);
+  if (job.unseen_of) {
+    const UnseenSide side = unseen_side(*job.unseen_of, p);
     p = moved_to(scene, p, mul_add(to, side.clear, side.position), to);
   }
   p.reach_px = reach_px(scene, p, job.march.radius);
@@ -127,8 +127,8 @@ HWY_INLINE MarchReceiver start_of_ray(const SourceJob& job, const Place& place, 
 }
 
 HWY_INLINE V way_in_solid(const SourceJob& job, const Place& place) {
-  if (!job.unseen_sides) return set(0);
-  return unseen_side(job.march.scene, load_receiver(job.march.scene, place)).clear;
+  if (!job.unseen_of) return set(0);
+  return unseen_side(*job.unseen_of, load_receiver(job.march.scene, place)).clear;
 }
 
 template <bool kOrthographic>
@@ -170,7 +170,7 @@ void source(const SourceJob& job, const Window& part) {
               blocked = weight - arrives,
               widths = load(sums.width_px + from) * set(1 / kPenumbraUnit);
       const V share = hn::IfThenElseZero(weight > zero, arrives / weight);
-      if (job.unseen_sides) return store(share, job.found->unseen, i);
+      if (job.unseen_of) return store(share, job.found->unseen, i);
       store(share, job.found->share, i);
       store(weight / set(float(job.points.size())), job.found->weight, i);
       store(hn::IfThenElseZero(blocked > zero, widths / blocked), job.found->width, i);
