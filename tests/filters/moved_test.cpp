@@ -83,6 +83,27 @@ TEST(Fusion, IsTheMeanAndKeepsWhatIsConstant) {
     EXPECT_NEAR(products.ao[i], now.is_surface(i) ? 0.5f : 0.75f, 1e-6f);
 }
 
+/// Not every frame shows small bright senders, whose light filters keep apart.
+TEST(Fusion, JoinsTheLightOfSmallSenders) {
+  const Geometry now = geometry_of(ball_at(0), camera(), kWindow);
+  const auto light = [&](float value) {
+    return Plane<glm::vec3>(kWindow.width(), kWindow.height(), glm::vec3(value));
+  };
+  Products with, without, fused;
+  with.bounce = light(0.5f), with.shares.emitted = light(2);
+  without.bounce = light(0.5f);
+  for (Products* products : {&with, &without, &fused}) products->lights.resize(1);
+  with.lights[0].bounce = light(0.25f), with.lights[0].emitted = light(1);
+  without.lights[0].bounce = light(0.25f);
+  const Findings own = take_findings(with, now, {}), other = take_findings(without, now, {});
+  fuse(own, {&other}, model_light(Environment::constant(glm::vec3(1)), glm::mat3(1)), fused);
+  for (std::size_t i = 0; i < fused.bounce.size(); ++i) {
+    if (!now.is_surface(i)) continue;
+    EXPECT_NEAR(fused.bounce[i].x, 1.5f, 1e-3f);
+    EXPECT_NEAR(fused.lights[0].bounce[i].x, 0.75f, 1e-3f);
+  }
+}
+
 /// A bent normal is a direction of the world: seen by a camera that has rolled, it is the same.
 TEST(Fusion, TurnsDirectionsWithTheCamera) {
   const auto rolled = [](double degrees) {

@@ -121,7 +121,7 @@ glm::vec3 turned(const glm::vec3& v, const glm::vec3& a, const glm::vec3& b) {
 
 const glm::vec3 kAxis(0, 0, 1);
 
-/// Points across a frame, at most, that are asked for their radiance.
+/// Points across a frame, about, that are asked for their radiance.
 constexpr int kPointsOfGlow = 480;
 
 /// From the deviation of a bent normal from N, as find_shares() leaves it, to world space.

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A point of one frame has moved, come or gone if the other frame looks through its place at what
-// lies behind (SeenBefore::through), and so have points that go on from there on the same surface
-// where the other frame shows something else: of a ball that moves by less than its width, that
-// frame looks through a crescent. Points are taken on a grid, and joined to balls. A body is taken
-// to be as deep as it is wide, in its picture, along a row or a column, whichever is less: the
-// middles of the balls lie half as far behind what is seen.
+// lies behind (SeenBefore::through). Points are taken on a grid, and joined to balls. A body is
+// taken to be as deep as it is wide, in its picture, along a row or a column, whichever is less:
+// the middles of the balls lie half as far behind what is seen.
 //
 // Around a receiver p with the normal n, a ball of the area A at the distance d hides at most about
 //
@@ -23,7 +21,6 @@
 #include "filters/shot/moved.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -39,14 +36,11 @@ namespace {
 constexpr float kMostHidden = 0.1f;
 constexpr int kSquare = 4;
 
-/// Points across a frame, at most, and points across a piece.
+/// Points across a frame, about, and across a piece.
 constexpr int kPoints = 480, kPiece = 8;
 
 /// A piece of fewer points may be an edge that one of both cameras misses.
 constexpr int kFewestPoints = 3;
-
-/// Points of one surface lie closer than so many times the distance of points that face the viewer.
-constexpr float kJoined = 4;
 
 /// A ball reaches so much farther than the root mean square of its points.
 constexpr float kReach = 1.5f;
@@ -59,13 +53,15 @@ class MovedPoints {
         stride_(std::max(1, stands.surfel.width / kPoints)),
         columns_((stands.surfel.width + stride_ - 1) / stride_),
         rows_((stands.surfel.height + stride_ - 1) / stride_),
-        state_(columns_, rows_, kSame) {
+        moved_(columns_, rows_, 0) {
     const Reprojection reprojection(looks, stands);
     for_each_row(rows_, [&](int row) {
-      for (int column = 0; column < columns_; ++column)
-        state_(column, row) = state_of(surfel(column, row), reprojection, looks.window);
+      for (int column = 0; column < columns_; ++column) {
+        const Surfel& s = surfel(column, row);
+        moved_(column, row) =
+            s.is_surface() && reprojection.find(s, glm::dvec2(NAN)).sight == SeenBefore::through;
+      }
     });
-    spread();
   }
 
   std::vector<MovedPiece> pieces() const {
@@ -76,8 +72,6 @@ class MovedPoints {
   }
 
  private:
-  enum State : unsigned char { kSame, kOther, kMoved };
-
   const Surfel& surfel(int column, int row) const {
     return stands_.surfel(column * stride_, row * stride_);
   }
@@ -88,42 +82,12 @@ class MovedPoints {
            float(stands_.camera.fx);
   }
 
-  static State state_of(const Surfel& s, const Reprojection& reprojection, const Window& seen) {
-    if (!s.is_surface()) return kSame;
-    const glm::dvec2 at = reprojection.place(s.position);
-    if (!(at.x >= seen.x0 && at.x < seen.x1 && at.y >= seen.y0 && at.y < seen.y1)) return kSame;
-    const SeenBefore sight = reprojection.find(s, glm::dvec2(NAN)).sight;
-    return sight == SeenBefore::through ? kMoved : sight == SeenBefore::same ? kSame : kOther;
-  }
-
-  /// What goes on from points that have moved, has.
-  void spread() {
-    std::vector<glm::ivec2> open;
-    for (int row = 0; row < rows_; ++row)
-      for (int column = 0; column < columns_; ++column)
-        if (state_(column, row) == kMoved) open.emplace_back(column, row);
-    while (!open.empty()) {
-      const glm::ivec2 at = open.back();
-      open.pop_back();
-      const Surfel& from = surfel(at.x, at.y);
-      for (const glm::ivec2& step : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
-        const glm::ivec2 to = at + step;
-        if (to.x < 0 || to.y < 0 || to.x >= columns_ || to.y >= rows_) continue;
-        if (state_(to.x, to.y) != kOther) continue;
-        if (glm::distance(surfel(to.x, to.y).position, from.position) > kJoined * spacing_at(from))
-          continue;
-        state_(to.x, to.y) = kMoved;
-        open.push_back(to);
-      }
-    }
-  }
-
   /// Moved points in a line through one that has.
   int run(glm::ivec2 from, glm::ivec2 step) const {
     int length = 1;
     for (const int sign : {-1, 1}) {
-      for (glm::ivec2 at = from + sign * step; at.x >= 0 && at.y >= 0 && at.x < columns_ &&
-                                               at.y < rows_ && state_(at.x, at.y) == kMoved;
+      for (glm::ivec2 at = from + sign * step;
+           at.x >= 0 && at.y >= 0 && at.x < columns_ && at.y < rows_ && moved_(at.x, at.y);
            at += sign * step)
         ++length;
     }
@@ -136,7 +100,7 @@ class MovedPoints {
     int count = 0;
     for (int row = top; row < std::min(top + kPiece, rows_); ++row) {
       for (int column = left; column < std::min(left + kPiece, columns_); ++column) {
-        if (state_(column, row) != kMoved) continue;
+        if (!moved_(column, row)) continue;
         const Surfel& s = surfel(column, row);
         const float spacing = spacing_at(s);
         sum += s.position, squares += glm::dot(s.position, s.position);
@@ -156,7 +120,7 @@ class MovedPoints {
 
   const Geometry& stands_;
   const int stride_, columns_, rows_;
-  Plane<State> state_;
+  Plane<unsigned char> moved_;
 };
 
 /// About the largest share of the hemisphere, by the cosine, that a piece hides.
