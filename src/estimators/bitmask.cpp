@@ -274,8 +274,8 @@ class Bitmask {
       place(bounced.each[k], out_.lights[k].bounce, out_.lights[k].emitted);
       out_.lights[k].sent = bounced.each[k].sent;
     }
-    add_up(out_.bounce, &LightProducts::bounce);
-    add_up(out_.shares.emitted, &LightProducts::emitted);
+    make_add_up(out_.lights, &LightProducts::bounce, out_.bounce);
+    make_add_up(out_.lights, &LightProducts::emitted, out_.shares.emitted);
     if (wants_light() && !request_.shares_suffice) out_.direct = raster_.picture(direct_light());
     if (request_.products.error) {
       const InterleavedPlane& more = bounced.error;
@@ -288,26 +288,6 @@ class Bitmask {
     if (wants_light() && !out_.shares.are_ao)
       out_.shares.sky = raster_.picture(std::move(sky_share_), ao_);
     out_.ao = raster_.picture(std::move(ao_), 1.0f);
-  }
-
-  /// Takes out of the planes of lights that their senders are rounded one by one (two_in_one()):
-  /// the sum becomes that of all.
-  void add_up(const Plane<glm::vec3>& of_all, Plane<glm::vec3> LightProducts::*plane) {
-    if (out_.lights.empty()) return;
-    constexpr float kMost = 0.01f;  // more is no rounding
-    for_each_row(of_all.height, [&](int y) {
-      for (std::size_t i = of_all.index(0, y); i < of_all.index(0, y + 1); ++i) {
-        glm::vec3 sum(0);
-        for (const LightProducts& light : out_.lights)
-          if (!(light.*plane).empty()) sum += (light.*plane)[i];
-        for (int c = 0; c < 3; ++c) {
-          if (!(sum[c] > 0)) continue;
-          const float times = std::clamp(of_all[i][c] / sum[c], 1 - kMost, 1 + kMost);
-          for (LightProducts& light : out_.lights)
-            if (!(light.*plane).empty()) (light.*plane)[i][c] *= times;
-        }
-      }
-    });
   }
 
   InterleavedVectors direct_light() const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "estimators/bitmask/bounce_passes.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "estimators/bitmask/border_light.h"
@@ -177,6 +178,25 @@ class BouncePasses {
 }  // namespace
 
 BouncedLights gather_bounces(const BounceInputs& inputs) { return BouncePasses(inputs).run(); }
+
+void make_add_up(std::vector<LightProducts>& lights, Plane<glm::vec3> LightProducts::*plane,
+                 const Plane<glm::vec3>& of_all) {
+  if (lights.empty()) return;
+  constexpr float kMost = 0.01f;  // more is no rounding
+  for_each_row(of_all.height, [&](int y) {
+    for (std::size_t i = of_all.index(0, y); i < of_all.index(0, y + 1); ++i) {
+      glm::vec3 sum(0);
+      for (const LightProducts& light : lights)
+        if (!(light.*plane).empty()) sum += (light.*plane)[i];
+      for (int c = 0; c < 3; ++c) {
+        if (!(sum[c] > 0)) continue;
+        const float times = std::clamp(of_all[i][c] / sum[c], 1 - kMost, 1 + kMost);
+        for (LightProducts& light : lights)
+          if (!(light.*plane).empty()) (light.*plane)[i][c] *= times;
+      }
+    }
+  });
+}
 
 bool mirrors_surfaces(const Scene& scene, const Request& request) {
   const Senders& senders = scene.senders;

@@ -6,7 +6,7 @@
 // the same slices, masks and rays, and its next pass is lit by its own. Two things depend on how
 // bright a sender is, and are decided by all lights together: what rays gather in place of the
 // march (rays/emitters.h), and what goes on beyond the border (border_light.h). So the sum over the
-// lights is the light of all, up to the rounding of two_in_one(), which bitmask.cpp takes out.
+// lights is the light of all, up to the rounding of two_in_one(), which make_add_up() takes out.
 #pragma once
 
 #include <vector>
@@ -48,6 +48,11 @@ struct BouncedLights {
 };
 
 BouncedLights gather_bounces(const BounceInputs& inputs);
+
+/// Takes out of planes of lights, of one size or empty, that their senders are rounded one by one
+/// (two_in_one()): their sum becomes `of_all`.
+void make_add_up(std::vector<LightProducts>& lights, Plane<glm::vec3> LightProducts::*plane,
+                 const Plane<glm::vec3>& of_all);
 
 /// Whether specular light has that of surfaces of the frame: their light is known.
 bool mirrors_surfaces(const Scene& scene, const Request& request);

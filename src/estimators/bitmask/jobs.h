@@ -141,6 +141,7 @@ struct SourceJob {
   /// Finds SourceShares::unseen, of the solids of this raster, which may not be what blocks the
   /// light; null: finds all others.
   const MarchScene* unseen_of = nullptr;
+  bool together = true;  ///< as Walk::run(): the same to the bit, and slower without
   SourceShares* found = nullptr;
 };
 

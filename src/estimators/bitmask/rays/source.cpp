@@ -153,7 +153,7 @@ void source(const SourceJob& job, const Window& part) {
         const MarchReceiver p = start_of_ray(job, place, to.to);
         occluders.ask(i, p, ray_of<kOrthographic>(scene, p, rays, i));
       });
-      occluders.run(true);
+      occluders.run(job.together);
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
         const int i = block.first_of(place);
         const MarchReceiver p = start_of_ray(job, place, rays.to(i));
