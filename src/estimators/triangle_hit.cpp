@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "estimators/triangle_hit.h"
 
-#include <embree3/rtcore_ray.h>
-
 #include <algorithm>
 #include <glm/geometric.hpp>
+
+#include "estimators/embree.h"
 
 namespace ssdo {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "estimators/triangle_rays.h"
 
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include <cmath>
 #include <utility>
 
 #include "error.h"
+#include "estimators/embree.h"
 #include "math/endless.h"
 
 namespace ssdo {
@@ -44,19 +44,17 @@ RTCRay ray_of(const TriangleRays::Ray& from) {
 }  // namespace
 
 /// A ray that asks for what counts and is within its reach.
-class TriangleRays::Query : public RTCIntersectContext {
+class TriangleRays::Query : public RayContext {
  public:
   Query(const std::vector<Mesh>& meshes, float reach, const Rule* rule)
       : meshes_(meshes), reach_(reach), rule_(rule) {
-    rtcInitIntersectContext(this);
-    filter = &Query::look;
+    init_context(*this);
   }
 
   /// What the ray meets first, once it was traced.
   const std::optional<TriangleHit>& first() const { return first_; }
 
- private:
-  /// Embree asks about one hit at a time.
+  /// The filter of the query: Embree asks about one hit at a time.
   static void look(const RTCFilterFunctionNArguments* hits) {
     auto& query = *static_cast<Query*>(hits->context);
     const RTCHit hit = rtcGetHitFromHitN(hits->hit, 1, 0);
@@ -72,6 +70,7 @@ class TriangleRays::Query : public RTCIntersectContext {
     RTCRayN_tfar(hits->ray, 1, 0) = float(query.first_->distance) * kReachForEmbree;
   }
 
+ private:
   const std::vector<Mesh>& meshes_;
   float reach_;
   const Rule* rule_;
@@ -112,8 +111,8 @@ TriangleRays::TriangleRays(std::vector<Mesh> meshes, std::string_view what)
     : meshes_(std::move(meshes)), embree_(std::make_unique<Embree>()) {
   std::size_t triangles = 0;
   for (const Mesh& mesh : meshes_) triangles += mesh.triangles.size();
-  const int flags = RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION |
-                    (triangles < kLarge ? 0 : RTC_SCENE_FLAG_COMPACT);
+  const int flags =
+      RTC_SCENE_FLAG_ROBUST | kFilterOfQuery | (triangles < kLarge ? 0 : RTC_SCENE_FLAG_COMPACT);
   rtcSetSceneFlags(embree_->scene, RTCSceneFlags(flags));
   for (std::size_t i = 0; i < meshes_.size(); ++i)
     if (!meshes_[i].triangles.empty()) embree_->attach(meshes_[i], unsigned(i));
@@ -132,8 +131,8 @@ bool TriangleRays::is_blocked(const Ray& ray, const Rule* rule) const {
   if (!is_traceable(ray.origin) || !is_traceable(ray.direction)) return false;
   RTCRay traced = ray_of(ray);
   Query query(meshes_, ray.reach, rule);
-  if (!rule) query.filter = nullptr;  // whatever is met blocks
-  rtcOccluded1(embree_->scene, &query, &traced);
+  // Without a rule, whatever is met blocks.
+  trace_any(embree_->scene, query, rule ? &Query::look : nullptr, traced);
   return traced.tfar < 0;
 }
 
@@ -142,7 +141,7 @@ std::optional<TriangleHit> TriangleRays::first_hit(const Ray& ray, const Rule* r
   RTCRayHit traced{ray_of(ray), {}};
   traced.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   Query query(meshes_, ray.reach, rule);
-  rtcIntersect1(embree_->scene, &query, &traced);
+  trace_first(embree_->scene, query, &Query::look, traced);
   return query.first();
 }
 

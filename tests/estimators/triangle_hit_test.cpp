@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "estimators/triangle_hit.h"
 
-#include <embree3/rtcore_ray.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <random>
+
+#include "estimators/embree.h"
 
 namespace ssdo::test {
 namespace {
