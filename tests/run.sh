@@ -3,14 +3,18 @@
 # Installs what is needed, builds, and passes the tests. `all` passes them with sanitizers too,
 # fuzzes for a minute each, and tries a shot on a farm, the package, faults, cppcheck and clang-tidy.
 # `edit` is for between two edits: it builds and runs the tests whose files or names hold NAME, with
-# what these need, for one instruction set.
-#   tests/run.sh [all | edit NAME... | (release|address|fuzz|thread|farm|package|faults|lint|tidy)...]
+# what these need, for one instruction set. `clang` and `debian13` pass the tests with another compiler,
+# and on another release; $SSDO_OPTIONS goes to cmake, for example -DSSDO_ONE_ISA=avx2.
+#   tests/run.sh [all | edit NAME... |
+#     (release|address|fuzz|thread|farm|package|faults|lint|tidy|clang|debian13)...]
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 mkdir -p "$root/build"
 release=$root/build/release
 options=(-DSSDO_TESTS=ON)
 [ -z "${CI:-}" ] || options+=(-DSSDO_WERROR=ON)
+read -ra more_options <<<"${SSDO_OPTIONS:-}"
+options+=("${more_options[@]}")
 
 build_release() {
   echo "tests/run.sh: building build/release"
@@ -124,6 +128,18 @@ run_fuzz() {
 run_thread() {
   build_sanitized thread all_tests -DSSDO_SANITIZE=thread -DSSDO_ONE_ISA=scalar
   test_sanitized thread "$(names threaded.txt)"
+}
+
+run_clang() {
+  install_packages "${build_packages[@]}" "${test_packages[@]}" clang
+  CXX=clang++ build "$root/build/clang" all "${options[@]}"
+  run_tests "$root/build/clang"
+}
+
+# Not of `all`: it builds everything once more.
+run_debian13() {
+  install_packages debootstrap
+  as_root env CI="${CI:-}" SSDO_OPTIONS="${SSDO_OPTIONS:-}" "$root/tests/platforms/run.sh" trixie
 }
 
 run_farm() {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Sourced by tests/run.sh and data/demo.sh: installs what a Debian 12 machine lacks, and builds.
+# Sourced by tests/run.sh and data/demo.sh: installs what a Debian machine lacks, and builds.
 
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
