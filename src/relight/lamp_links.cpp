@@ -9,14 +9,12 @@
 #include <utility>
 
 #include "error.h"
+#include "scene/objects/covered_pixels.h"
 #include "scene/objects/read_object_masks.h"
 #include "scene/objects/selected_coverage.h"
 
 namespace ssdo {
 namespace {
-
-/// Share from which on a pixel is the selection's alone: sums of ranks are rounded.
-constexpr float kAll = 0.99f;
 
 /// The frame without what is not selected, and without `out`.
 std::shared_ptr<const Scene> selected_alone(Frame& frame, const Selection& selection,
@@ -24,15 +22,14 @@ std::shared_ptr<const Scene> selected_alone(Frame& frame, const Selection& selec
   const Plane<Surfel>& surfel = frame.scene.geometry.surfel;
   const GBuffer& from = frame.gbuffer;
   std::vector<std::string> warnings;
-  const Plane<float> selected =
-      selected_share(selection, frame.selections(warnings), from.window, from.grid, from.alpha);
+  const Plane<unsigned char> selected = covered_pixels(
+      surfel, frame.scene.geometry.camera,
+      selected_coverage(selection, frame.selections(warnings), from.window, from.grid));
   frame.warn(warnings);
   TakenOut rest = out;
   if (rest.coverage.empty()) rest.coverage = Plane<float>(surfel.width, surfel.height, 0.0f);
-  for (std::size_t i = 0; i < surfel.size(); ++i) {
-    const bool stays = selected[i] >= kAll || !surfel[i].is_surface();
-    if (!stays) rest.coverage[i] = std::max(rest.coverage[i], 1 - selected[i]);
-  }
+  for (std::size_t i = 0; i < surfel.size(); ++i)
+    if (surfel[i].is_surface() && !selected[i]) rest.coverage[i] = 1;
   auto scene = std::make_shared<Scene>();
   scene->geometry = frame.scene.geometry;
   KnownGeometry none;

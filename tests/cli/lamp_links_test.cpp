@@ -163,6 +163,49 @@ TEST_F(LampLinks, CastOfEverythingIsNoLink) {
   }
 }
 
+/// Antialiased mattes select the same pixels, of thin things too, and of edges before the sky,
+/// which no alpha tells.
+TEST_F(LampLinks, CastOfSoftMattesIsWhole) {
+  const Camera by =
+      look_at(camera_from_fov(50, kWindow, 1), {0.3, -4, 1.2}, {0, 0.5, 1.2}, {0, 0, 1});
+  const Surface stage = cut(plane({0, 0, 0}, {0, 0, 1}),
+                            [](const glm::dvec3&p) { return glm::length(p) < 5; }),
+                post = cut(plane({-0.5, 0.3, 0}, {0, -1, 0}), [](const glm::dvec3&p) {
+                  return std::abs(p.x + 0.5) < 0.03 && p.z < 2;
+                });
+  FramePart part =
+      frame_of(take_picture(all_of({stage, sphere({0.4, 0.6, 1.6}, 0.6), post}), by, kWindow));
+  part.data = part.display = kWindow;
+  const Picture alone = take_picture(stage, by, kWindow),
+                all =
+                    take_picture(all_of({stage, sphere({0.4, 0.6, 1.6}, 0.6), post}), by, kWindow);
+  Plane<float> hard(96, 72, 0.0f);
+  for (std::size_t i = 0; i < hard.size(); ++i)
+    hard[i] = all.valid[i] && (!alone.valid[i] || all.position[i] != alone.position[i]);
+  Plane<float> soft = hard;
+  for (int y = 1; y < 71; ++y) {
+    for (int x = 1; x < 95; ++x) {
+      float most = 0, least = 1;
+      for (int d = -1; d <= 1; ++d) {
+        most = std::max({most, hard(x + d, y), hard(x, y + d)});
+        least = std::min({least, hard(x + d, y), hard(x, y + d)});
+      }
+      if (least < most) soft(x, y) = hard(x, y) > 0 ? 0.3f : 0.4f;
+    }
+  }
+  part.channels["hard.A"] = hard, part.channels["soft.A"] = soft;
+  write_frame(path("soft.exr"), part);
+  for (const Words& by_method : kMethods) {
+    const auto direct = [&](const std::string& links) {
+      return channel(lit_at("-1,-1,2.5", links, by_method, "direct", path("soft.exr")), "direct.G");
+    };
+    const Plane<float> of_hard = direct("cast=hard"), of_soft = direct("cast=soft"),
+                       of_none = direct("cast=id:hard=7");
+    EXPECT_GT(rms(of_hard, of_none), 0.02) << by_method[1];
+    EXPECT_EQ(of_soft.pixels, of_hard.pixels) << by_method[1];
+  }
+}
+
 /// Sides that the camera does not see are those of the things that are there, whatever blocks the
 /// light: a lamp between ball and wall lights the ball from behind.
 TEST_F(LampLinks, ThingsThatDoNotBlockALampAreLitByIt) {

@@ -37,13 +37,9 @@ struct Covered {
   int part = 0;
   Plane<float> coverage;
   std::set<std::uint32_t> ids = {};  ///< that pixels have
-  Plane<float> of_all = {};          ///< coverage by any id of a Cryptomatte
 };
 
 float share_of(float value) { return value > 0 ? std::min(value, 1.0f) : 0.0f; }
-
-/// The id of no object.
-constexpr std::uint32_t kNoObject = 0;
 
 /// What the ranks of a Cryptomatte say of some ids.
 Covered coverage_of_ids(const ExrReader& file, const Cryptomatte& matte,
@@ -63,13 +59,11 @@ Covered coverage_of_ids(const ExrReader& file, const Cryptomatte& matte,
       const auto id = std::bit_cast<std::uint32_t>(read[0][i]);
       if (read[1][i] > 0 && ids.contains(id)) sum.ids.insert(id);
     }
-    if (sum.coverage.empty())
-      sum.coverage = sum.of_all = Plane<float>(read[0].width, read[0].height, 0.0f);
+    if (sum.coverage.empty()) sum.coverage = Plane<float>(read[0].width, read[0].height, 0.0f);
     for_each_row(sum.coverage.height, [&](int y) {
       for (std::size_t i = sum.coverage.index(0, y); i < sum.coverage.index(0, y + 1); ++i) {
         const auto id = std::bit_cast<std::uint32_t>(read[0][i]);
         const float more = share_of(read[1][i]);
-        if (id != kNoObject) sum.of_all[i] = share_of(sum.of_all[i] + more);
         if (ids.contains(id)) sum.coverage[i] = share_of(sum.coverage[i] + more);
       }
     });
@@ -100,10 +94,6 @@ class Selector {
     return all;
   }
 
-  /// How much all objects of the Cryptomattes cover that select() has looked at; empty: there are
-  /// none.
-  const Plane<float>& of_objects() const { return of_objects_; }
-
  private:
   /// What is taken from an earlier plane is no set of ids.
   static bool is_joined(const SelectionTerm& first, const SelectionTerm& term) {
@@ -121,7 +111,6 @@ class Selector {
   }
 
   static void join_most(Plane<float>& all, const Plane<float>& one) {
-    if (all.empty()) all = Plane<float>(one.width, one.height, 0.0f);
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = std::max(all[i], one[i]);
   }
 
@@ -134,10 +123,6 @@ class Selector {
 
   /// Lays the coverage of a part onto the window.
   Plane<float> over_window(const ExrReader& file, const Covered& covered) const {
-    return over_window(file, covered, covered.coverage);
-  }
-  Plane<float> over_window(const ExrReader& file, const Covered& covered,
-                           const Plane<float>& coverage) const {
     const ExrPart& part = file.parts()[std::size_t(covered.part)];
     const Window own = grid_.of(part.data_window);
     const Window& display = in_.files.front().parts().front().display_window;
@@ -150,7 +135,7 @@ class Selector {
     const Window both = intersection(window_, own);
     for (int y = both.y0; y < both.y1; ++y) {
       for (int x = both.x0; x < both.x1; ++x)
-        out(x - window_.x0, y - window_.y0) = coverage(x - own.x0, y - own.y0);
+        out(x - window_.x0, y - window_.y0) = covered.coverage(x - own.x0, y - own.y0);
     }
     return out;
   }
@@ -180,9 +165,7 @@ class Selector {
         for (std::size_t i = first; i < end; ++i)
           shown[i - first] = shown[i - first] || matte.has_manifest ||
                              covered.ids.contains(cryptomatte_id(selection_.terms[i].name));
-        const Plane<float> one = over_window(*file, covered);
-        join_most(all, one);
-        join_most(of_objects_, over_window(*file, covered, covered.of_all));
+        join_most(all, over_window(*file, covered));
       }
       if (std::ranges::find(known, false) == known.end()) break;
     }
@@ -262,7 +245,6 @@ class Selector {
   const SelectionFiles& in_;
   const Window& window_;
   const PixelGrid& grid_;
-  Plane<float> of_objects_;
 };
 
 /// Counts what the pixels of a frame show.
@@ -325,21 +307,6 @@ class Census {
 Plane<float> selected_coverage(const Selection& selection, const SelectionFiles& in,
                                const Window& window, const PixelGrid& grid) {
   return Selector(selection, in, window, grid).select();
-}
-
-Plane<float> selected_share(const Selection& selection, const SelectionFiles& in,
-                            const Window& window, const PixelGrid& grid,
-                            const Plane<float>& alpha) {
-  Selector selector(selection, in, window, grid);
-  Plane<float> selected = selector.select();
-  const Plane<float>& of_objects = selector.of_objects();
-  for (std::size_t i = 0; i < selected.size(); ++i) {
-    float covered = 1;
-    for (const Plane<float>* by : {&alpha, &of_objects})
-      if (!by->empty()) covered = std::min(covered, share_of((*by)[i]));
-    if (selected[i] > 0) selected[i] = selected[i] < covered ? selected[i] / covered : 1;
-  }
-  return selected;
 }
 
 std::vector<ObjectShare> objects_of(const ExrReader& file, const std::string& view,

@@ -33,12 +33,6 @@ struct SelectionFiles {
 Plane<float> selected_coverage(const Selection& selection, const SelectionFiles& in,
                                const Window& window, const PixelGrid& grid);
 
-/// How much of what covers each pixel is selected, 0..1: 1 where selected things and background
-/// show, and nothing else. What is covered `alpha` tells, over the same window, and all objects of
-/// the Cryptomattes that hold the selection, if fewer; alpha may be empty. Errors: the same.
-Plane<float> selected_share(const Selection& selection, const SelectionFiles& in,
-                            const Window& window, const PixelGrid& grid, const Plane<float>& alpha);
-
 /// An object, material, asset or id of a frame.
 struct ObjectShare {
   std::string layer, name;

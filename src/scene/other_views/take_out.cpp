@@ -15,9 +15,12 @@
 //
 // Nothing that is put in may be before the object, which would have been hidden by it.
 //
-// A pixel shows one surface, while coverage is antialiased: a pixel that is covered in part belongs
-// to the object, unless it lies on the surface of a pixel beside it that is not covered at all. A
-// rim that is left behind would cast as a sheet.
+// A surface goes on by twice the length that is seen of it in that direction, and past that it
+// counts less, by the square of the distance again: what rests on the object, or ends beside it,
+// is not continued below it.
+//
+// Which pixels show the object, covered_pixels() says: a rim that is left behind would cast as a
+// sheet.
 #include "scene/other_views/take_out.h"
 
 #include <algorithm>
@@ -30,14 +33,10 @@
 
 #include "parallel/tiles.h"
 #include "scene/normals/normals.h"
-#include "scene/pixel_footprint.h"
-#include "scene/same_surface.h"
+#include "scene/objects/covered_pixels.h"
 
 namespace ssdo {
 namespace {
-
-/// Coverage from which on a pixel is the object's alone, whatever it lies on.
-constexpr float kAll = 0.99f;
 
 /// Two ends of a line show one plane if each lies off the other's by less than this share of their
 /// distance, and their normals differ by less than 18 degrees.
@@ -48,6 +47,10 @@ constexpr float kSameDepth = 0.03f;
 
 /// Share of the weight of the best guess from which on another one counts beside it.
 constexpr float kSecond = 0.1f;
+
+/// A surface goes on by so many times the length that is seen of it, which is followed for so many
+/// pixels.
+constexpr float kGoesOn = 2, kFollowed = 256;
 
 /// A plane that a line meets so many times farther away than the pixel that suggests it has ended.
 constexpr float kFarthest = 50;
@@ -74,14 +77,9 @@ class Hole {
   Hole(const Geometry& geometry, const Plane<float>& coverage, const Plane<float>& backdrop)
       : shown_(geometry),
         casting_{geometry, Plane<int>(geometry.surfel.width, geometry.surfel.height, kNone), {}},
-        is_open_(geometry.surfel.width, geometry.surfel.height, 0),
-        footprint_(geometry.camera) {
-    for_each_row(is_open_.height, [&](int y) {
-      for (int x = 0; x < is_open_.width; ++x) {
-        is_open_(x, y) = belongs(coverage, x, y);
-        if (!backdrop.empty() && backdrop(x, y) > 0) casting_.geometry.surfel(x, y) = Surfel();
-      }
-    });
+        is_open_(covered_pixels(geometry.surfel, geometry.camera, coverage)) {
+    for (std::size_t i = 0; i < backdrop.size(); ++i)
+      if (backdrop[i] > 0) casting_.geometry.surfel[i] = Surfel();
   }
 
   Casting fill(const std::vector<OtherView>& views) {
@@ -125,24 +123,6 @@ class Hole {
       if (nearest == kNone || distance_px(x, y, each) < distance_px(x, y, nearest)) nearest = each;
     }
     return nearest;
-  }
-
-  bool belongs(const Plane<float>& coverage, int x, int y) const {
-    const float covered = coverage(x, y);
-    if (!(covered > 0) || covered >= kAll) return covered >= kAll;
-    const Surfel& s = shown_.surfel(x, y);
-    if (!s.is_surface()) return covered >= 0.5f;
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        const Surfel* q = surface_at(shown_.surfel, x + dx, y + dy);
-        if (!q || coverage(x + dx, y + dy) > 0) continue;
-        const bool is_alike = glm::dot(s.normal, q->normal) > kOneNormal;
-        if (is_alike &&
-            on_one_surface({s.position, s.normal}, {q->position, q->normal}, footprint_))
-          return false;
-      }
-    }
-    return true;
   }
 
   float nearness_of(const glm::vec3& p) const {
@@ -210,15 +190,34 @@ class Hole {
     return std::hypot(float(end % w - x), float(end / w - y));
   }
 
+  /// How far the plane of an end is expected to go on, in pixels, up to `away` or a little more.
+  float goes_on(int end, const Step& way, float away) const {
+    const int w = is_open_.width, x = end % w, y = end / w;
+    const Surfel& s = known(end);
+    float on = kGoesOn;
+    for (int k = 1; on < std::min(away, kFollowed); ++k, on += kGoesOn) {
+      const int nx = x + k * way.dx, ny = y + k * way.dy;
+      // Nothing is known of where it ends.
+      if (nx < 0 || ny < 0 || nx >= w || ny >= is_open_.height || is_open_(nx, ny)) return away;
+      const Surfel& q = shown_.surfel(nx, ny);
+      if (!q.is_surface() || glm::dot(q.normal, s.normal) < kOneNormal) return on;
+      const glm::vec3 to = q.position - s.position;
+      if (std::abs(glm::dot(to, s.normal)) > kOnePlane * glm::length(to)) return on;
+    }
+    return away;
+  }
+
   const Surfel& known(int end) const { return casting_.geometry.surfel[std::size_t(end)]; }
 
-  /// The tangent plane of an end, on the ray of a pixel.
-  Guess alone(int x, int y, int end) const {
+  /// The tangent plane of an end, on the ray of a pixel; `way` leads on from the hole.
+  Guess alone(int x, int y, int end, const Step& way) const {
     const Surfel& s = known(end);
     const float away = distance_px(x, y, end);
     Guess guess{0, !s.is_surface(), 1 / (away * away), end, s.normal};
     if (s.is_broken()) guess.weight = 0;
     if (guess.is_background || guess.weight == 0) return guess;
+    const float on = std::min(1.0f, goes_on(end, way, away) / away);
+    guess.weight *= on * on;
     const auto [origin, direction] =
         shown_.camera.ray({shown_.window.x0 + x + 0.5, shown_.window.y0 + y + 0.5});
     const double per = glm::dot(glm::dvec3(s.normal), direction),
@@ -264,8 +263,8 @@ class Hole {
         take(both);
         continue;
       }
-      for (const int end : {a, b})
-        if (end != kNone) take(alone(x, y, end));
+      if (a != kNone) take(alone(x, y, a, kWays[k]));
+      if (b != kNone) take(alone(x, y, b, kWays[k + 1]));
     }
     put(x, y, {guesses.data(), count});
   }
@@ -331,7 +330,6 @@ class Hole {
   const Geometry& shown_;
   Casting casting_;
   Plane<unsigned char> is_open_;  ///< kUnknown in the hole, kMeasured where another view shows it
-  PixelFootprint footprint_;
 };
 
 }  // namespace

@@ -99,22 +99,6 @@ TEST_F(SelectedCoverage, SumsAllRanks) {
   EXPECT_FLOAT_EQ(select("crypto:?")(3, 1), 0.25f);
 }
 
-/// What is beside the selection in a pixel counts only if it is a thing.
-TEST_F(SelectedCoverage, IsAShareOfWhatIsCovered) {
-  part_.channels["Crypto00.a"](3, 1) = 0.75f;  // of id 0, which is that of no object
-  const std::deque<ExrReader> files = open();
-  const auto share = [&](const std::string& text, const Plane<float>& alpha = {}) {
-    return values(selected_share(parse_selection("cast", text), {files, ""}, kWindow, {}, alpha));
-  };
-  EXPECT_EQ(share("crypto:b"), (Values{0, 0.3f, 0, 0, 0, 0, 0, 1}));
-  EXPECT_EQ(share("crypto:a"), (Values{0, 0.5f, 1, 0, 0, 0, 0, 0}));
-  EXPECT_EQ(share("mask"), (Values{0.5f, 1, 0, 0, 0, 0, 0, 0}));
-  Plane<float> alpha(4, 2, 1.0f);
-  alpha(0, 0) = 0.625f, alpha(1, 0) = 0.625f, alpha(2, 0) = 0;
-  EXPECT_EQ(share("mask", alpha), (Values{0.8f, 1, 0, 0, 0, 0, 0, 0}));
-  EXPECT_EQ(share("crypto:a", alpha), (Values{0, 0.8f, 1, 0, 0, 0, 0, 0}));
-}
-
 TEST_F(SelectedCoverage, JoinsNamesAsSets) {
   EXPECT_FLOAT_EQ(select("crypto:a+crypto:b")(1, 0), 0.8f);
   EXPECT_FLOAT_EQ(select("crypto:a+crypto:*")(1, 0), 1);

@@ -115,6 +115,37 @@ TEST(TakeOut, AFloorAndAWallMeetBehindAThing) {
   EXPECT_LT(found.wrong, found.pixels / 20);
 }
 
+/// What rests on a thing ends there: below it, the wall behind both goes on.
+TEST(TakeOut, WhatRestsOnAThingDoesNotHangBelowIt) {
+  const Surface rests = sphere({0.1, 0.6, 1.25}, 0.25);
+  const std::vector<Surface> around = {kFloor, kWall, rests};
+  const Camera low =
+      look_at(camera_from_fov(50, kWindow, 1), {0.3, -4, 0.7}, {0.1, 0.5, 0.7}, {0, 0, 1});
+  const Frame frame = frame_of(around, low);
+  const Casting casting = take_out(frame.geometry, frame.coverage, {}, {});
+  const glm::vec3 middle(low.to_camera({0.1, 0.6, 1.25}));
+  int hanging = 0, pixels = 0;
+  for (std::size_t i = 0; i < frame.coverage.size(); ++i) {
+    const Surfel& s = casting.geometry.surfel[i];
+    if (frame.coverage[i] == 0 || !s.is_surface()) continue;
+    ++pixels, hanging += glm::distance(s.position, middle) < 0.9f;
+  }
+  EXPECT_GT(pixels, 200);
+  EXPECT_LT(hanging, pixels / 20);
+}
+
+/// A wall that goes on beside its hole does so however far.
+TEST(TakeOut, WhatIsSeenAtLengthGoesOn) {
+  const std::vector<Surface> around = {kWall};
+  const Camera level =
+      look_at(camera_from_fov(50, kWindow, 1), {0.3, -4, 0.6}, {0.1, 0.6, 0.5}, {0, 0, 1});
+  const Frame frame = frame_of(around, level, kWindow, sphere({0.1, 0.6, 0.5}, 1.2));
+  const Filled found =
+      filled(frame, around, take_out(frame.geometry, frame.coverage, {}, {}), level);
+  EXPECT_GT(found.pixels, 1000);
+  EXPECT_EQ(found.wrong, 0);
+}
+
 TEST(TakeOut, BackgroundStaysBackground) {
   const Frame frame = frame_of({});
   const Casting casting = take_out(frame.geometry, frame.coverage, {}, {});
