@@ -59,9 +59,6 @@ void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameO
     refuse("deep samples do not say what they are of; leave the deep image out", which);
   if (!frame.objects.shadow_of.empty() && options.model.temporal)
     refuse("--temporal has no history of it; leave one of them out", frame.objects.shadow_of);
-  if (!frame.objects.shadow_of.empty() && options.model.shot.count > 0)
-    refuse("frames of a --shot do not tell it each other; leave one of them out",
-           frame.objects.shadow_of);
 }
 
 /// A backdrop that casts nothing.
@@ -192,6 +189,22 @@ void take_products(Relit& relit) {
   found = {};
 }
 
+/// The shadow of objects in a frame of a shot is made of what this frame has found alone: the light
+/// without the objects has the same noise and the same guesses, which the frames around do not
+/// have.
+void find_own_shadow(Scene& without, Relit& relit) {
+  Relit own;
+  own.plan = relit.plan;
+  own.found = relit.found;
+  light_products(own.found, own.plan);
+  take_products(own);
+  find_shadow(without, own);
+  relit.found.estimate_ms = own.times.estimate;
+  relit.found.filter_ms = own.times.filter;
+  relit.products.lit = std::move(own.products.lit);
+  relit.products.lit_without = std::move(own.products.lit_without);
+}
+
 }  // namespace
 
 Relit relight(const RelightJob& job, Scene scene, const std::function<void(double)>& on_progress,
@@ -219,10 +232,15 @@ Relit relight(const RelightJob& job, Scene scene, const std::function<void(doubl
   append(relit.warnings, relit.found.warnings);
   for (const auto& [name, share] : relit.found.unlit)
     warn_of_unlit(frame, name, share, relit.warnings);
-  if (frame.plan.shot) return relit;
+  const bool has_shadow = contains(relit.plan.make, "shadow_of");
+  if (frame.plan.shot) {
+    // A frame without outputs is there for what others of its shot want of it.
+    if (has_shadow && !job.targets.empty()) find_own_shadow(*without, relit);
+    return relit;
+  }
   light_products(relit.found, frame.plan, temporal);
   take_products(relit);
-  if (contains(relit.plan.make, "shadow_of")) find_shadow(*without, relit);
+  if (has_shadow) find_shadow(*without, relit);
   return relit;
 }
 
@@ -238,7 +256,11 @@ void relight_in_shot(const Findings& own, const std::vector<const Findings*>& ot
   fuse(own, others, relit.found.scene.light, relit.found.products);
   relit.found.filter_ms += watch.lap();
   light_products(relit.found, relit.plan);
+  Plane<glm::vec3> lit = std::move(relit.products.lit),
+                   lit_without = std::move(relit.products.lit_without);
   take_products(relit);
+  relit.products.lit = std::move(lit);
+  relit.products.lit_without = std::move(lit_without);
 }
 
 void write_outputs(const std::vector<RelitFrame>& views,

@@ -251,6 +251,31 @@ TEST_F(Objects, NoCastHoldsInAShot) {
             0.02);
 }
 
+/// The shadow of an object in a frame of a shot is that of the frame alone, with its seed.
+TEST_F(Objects, ShadowOfInAShotIsThatOfTheFrame) {
+  const FramePart with = frame(true);
+  for (const std::string number : {"0001", "0002", "0003"})
+    write_frame(path("in." + number + ".exr"), with);
+  const Words flags = {"--shadow-of",  "ball",       "--env",
+                       "2,1,1",        "--products", "direct,bounce,shadow_of",
+                       "--pixel-type", "float"};
+  const auto made = [&](const std::string& out, const Words& more) {
+    const Finished done = run_tool(
+        Words{path("in.####.exr"), "-o", path(out + ".####.exr"), "--frames", "2"} + flags + more);
+    EXPECT_EQ(done.code, 0) << done.err;
+  };
+  made("alone", {"--seed", "7"});
+  made("shot", {"--seed", "5", "--shot", "1"});
+  for (const std::string c : {"R", "G", "B"})
+    EXPECT_EQ(at("shot.0002.exr", "shadow_of." + c).pixels,
+              at("alone.0002.exr", "shadow_of." + c).pixels);
+  EXPECT_NE(at("shot.0002.exr", "bounce.R").pixels, at("alone.0002.exr", "bounce.R").pixels)
+      << "the light is that of the shot";
+  int dark = 0;
+  for (const float shadow : at("shot.0002.exr", "shadow_of.R").pixels) dark += shadow < 0.8f;
+  EXPECT_GT(dark, 20);
+}
+
 /// What receives where nothing casts has light all the same: the floor of this room is taken out.
 TEST_F(Objects, WhatHasNothingBehindItReceives) {
   FramePart part = frame(true);
@@ -480,6 +505,8 @@ TEST_F(Objects, RefuseInOneLine) {
   expect(refused({"--no-cast", "crypto:ball.001", "--method", "gtao"}), 2, "take bitmask or trace");
   expect(refused({"--products", "shadow_of"}), 2, "say which with --shadow-of SEL");
   expect(refused({"--no-cast", path("no.exr") + ":A"}), 4, "no layer");
+  expect(refused({"--shadow-of", "crypto:ball.001", "--products", "shadow_of", "--temporal"}), 2,
+         "--temporal");
 }
 
 /// Masks are read band by band; no-cast takes all of the frame.

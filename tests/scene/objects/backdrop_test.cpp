@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <vector>
 
 #include "support/analytic_scene.h"
 
@@ -132,6 +135,39 @@ TEST(Backdrop, ADomeHasLimits) {
   const Geometry whole = frame({kStage, kBall, dome({0, 0, 0}, 500)});
   for (int x = 0; x < 20; ++x) sliver.surfel(x, 0) = whole.surfel(x, 0);
   EXPECT_FALSE(is_backdrop(sliver));
+}
+
+/// Nine tenths of what is not on a dome are to be nearer than a third of its radius.
+TEST(Backdrop, ADomeIsThreeTimesAsLargeAsItsScene) {
+  const auto at = [](double radius) {
+    return find_backdrop(frame({kStage, kBall, dome({0, 0, 0}, radius)}));
+  };
+  const auto found = at(150);
+  ASSERT_TRUE(found);
+  std::vector<double> others;
+  const Geometry stage = frame({kStage, kBall});
+  for (const Surfel& s : stage.surfel.pixels)
+    if (s.is_surface()) others.push_back(glm::length(glm::dvec3(s.position)));
+  std::ranges::sort(others);
+  const double most = others[others.size() * 9 / 10];
+  EXPECT_NEAR(found->clearance, 150 / (3 * most), 0.05 * found->clearance);
+  // On both sides of the limit.
+  const auto above = at(3.3 * most), below = at(2.7 * most);
+  ASSERT_TRUE(above && below);
+  EXPECT_TRUE(above->is_far());
+  EXPECT_FALSE(below->is_far());
+}
+
+/// A ball is a sphere too, seen from outside; so is a bowl whose middle the camera is not in,
+/// though it is seen from its inside.
+TEST(Backdrop, TheCameraIsInADome) {
+  const Camera at = camera({0.3, 10, 2.2});
+  const Surface bowl =
+      cut(dome({0, 3000, 2.2}, 1000), [](const glm::dvec3& p) { return p.y > 3000; });
+  EXPECT_FALSE(is_backdrop(frame({kStage, kBall, bowl}, at)));
+  // The same dome, around the camera.
+  const Surface half = cut(dome({0, 0, 2.2}, 4000), [](const glm::dvec3& p) { return p.y > 3000; });
+  EXPECT_TRUE(is_backdrop(frame({kStage, kBall, half}, at)));
 }
 
 TEST(Backdrop, OtherFarThingsAreNone) {
