@@ -10,16 +10,13 @@
 namespace ssdo {
 namespace {
 
-constexpr double kSameNormal = 0.9;  ///< normals 26 degrees apart belong to two surfaces
-constexpr double kLeastShare = 0.1;  ///< of the bilinear weight
-constexpr double kSlant = 2;         ///< length of a motion over the part of it across the view
-constexpr double kBehind = 0.02;     ///< of the depth: a surface farther by this share is occluded
+constexpr double kSlant = 2;  ///< length of a motion over the part of it across the view
 
 bool shows_same(const Surfel& q, const glm::dvec3& p, const glm::dvec3& normal, double limit) {
   const glm::dvec3 away = glm::dvec3(q.position) - p, other(q.normal);
   limit += q.rounding;
-  return glm::dot(normal, other) >= kSameNormal && std::abs(glm::dot(normal, away)) <= limit &&
-         std::abs(glm::dot(other, away)) <= limit;
+  return glm::dot(normal, other) >= Reprojection::kSameNormal &&
+         std::abs(glm::dot(normal, away)) <= limit && std::abs(glm::dot(other, away)) <= limit;
 }
 
 }  // namespace

@@ -29,6 +29,10 @@ struct PixelsBefore {
 /// the camera's own step, which stay exact however far away the world's origin is.
 class Reprojection {
  public:
+  static constexpr double kSameNormal = 0.9;  ///< normals 26 degrees apart belong to two surfaces
+  static constexpr double kLeastShare = 0.1;  ///< of the bilinear weight
+  static constexpr double kBehind = 0.02;     ///< of the depth: what is farther is another surface
+
   /// Both must know the world.
   Reprojection(const Geometry& before, const Geometry& now);
 

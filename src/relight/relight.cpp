@@ -245,15 +245,15 @@ Relit relight(const RelightJob& job, Scene scene, const std::function<void(doubl
 }
 
 Findings take_findings(Relit& relit) {
-  return take_findings(relit.found.products, std::move(relit.found.scene.geometry),
-                       relit.found.scene.senders.radiance);
+  const Scene& scene = relit.found.scene;
+  return take_findings(relit.found.products, scene.geometry, scene.senders.radiance);
 }
 
-void relight_in_shot(const Findings& own, const std::vector<const Findings*>& others,
-                     Relit& relit) {
+void relight_in_shot(const Findings& own, const std::vector<OtherFindings>& others, Relit& relit) {
   Stopwatch watch;
-  relit.found.scene.geometry = *own.geometry;
-  fuse(own, others, relit.found.scene.light, relit.found.products);
+  Fusion fusion(own, relit.found.scene.light);
+  fusion.add(others);
+  fusion.finish(relit.found.scene.geometry, relit.found.products);
   relit.found.filter_ms += watch.lap();
   light_products(relit.found, relit.plan);
   Plane<glm::vec3> lit = std::move(relit.products.lit),

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "filters/shot/fusion.h"
+#include "filters/shot/moved_weights.h"
 #include "scene/light/light.h"
 #include "support/analytic_scene.h"
 
@@ -17,6 +18,11 @@ const Window kWindow{0, 0, 96, 72};
 Surface ball_at(double x) { return all_of({plane({}, {0, 0, 1}), sphere({x, 0, 0.5}, 0.3)}); }
 
 Camera camera() { return look_at(camera_from_fov(45, kWindow, 1), {0, -4, 3}, {}, {0, 0, 1}); }
+
+std::vector<MovedPiece> find_moved(const Geometry& now, const Geometry& other) {
+  const KeptSurfaces a = keep_surfaces(now), b = keep_surfaces(other);
+  return moved_pieces(a.camera, b.camera, find_pieces(a, b), find_pieces(b, a));
+}
 
 TEST(Moved, ABallIsFoundWhereItWasAndWhereItIs) {
   const Geometry now = geometry_of(ball_at(0.8), camera(), kWindow),
@@ -52,11 +58,13 @@ TEST(Moved, ACameraMovesNothing) {
 TEST(Moved, WeightsAreThoseOfWhatTheBallMayHide) {
   const Geometry now = geometry_of(ball_at(0.8), camera(), kWindow),
                  other = geometry_of(ball_at(-0.8), camera(), kWindow);
-  const MovedWeights weights(now, find_moved(now, other),
+  const MovedWeights weights(keep_surfaces(now), find_moved(now, other),
                              model_light(Environment::constant(glm::vec3(1)), glm::mat3(1)));
   const auto at = [&](const glm::dvec3& place) {
     const glm::dvec2 px = camera().project(camera().to_camera(place));
-    return weights.at(-1, int(px.x), int(px.y));
+    float weight;
+    weights.row(-1, {int(px.x), int(px.y), 1, 1}, &weight);
+    return weight;
   };
   EXPECT_EQ(at({-0.8, 0, 0}), 0);
   EXPECT_EQ(at({0.8, 0.45, 0}), 0);
@@ -70,15 +78,23 @@ Findings findings_of(double value, const Geometry& geometry) {
   return take_findings(products, geometry, {});
 }
 
+void fuse(const Findings& own, const std::vector<const Findings*>& others, const Light& light,
+          const Geometry& geometry, Products& products) {
+  Fusion fusion(own, light);
+  const std::vector<MovedPiece> nothing;
+  for (const Findings* other : others) fusion.add({{other, &nothing, &nothing}});
+  fusion.finish(geometry, products);
+}
+
 TEST(Fusion, IsTheMeanAndKeepsWhatIsConstant) {
   const Geometry now = geometry_of(ball_at(0), camera(), kWindow);
   const Light light = model_light(Environment::constant(glm::vec3(1)), glm::mat3(1));
   const Findings own = findings_of(0.75, now), same = findings_of(0.75, now),
                  darker = findings_of(0.25, now);
   Products products;
-  fuse(own, {&same}, light, products);
+  fuse(own, {&same}, light, now, products);
   for (const float ao : products.ao.pixels) EXPECT_EQ(ao, 0.75f);
-  fuse(own, {&same, &darker, &darker}, light, products);
+  fuse(own, {&same, &darker, &darker}, light, now, products);
   for (std::size_t i = 0; i < products.ao.size(); ++i)
     EXPECT_NEAR(products.ao[i], now.is_surface(i) ? 0.5f : 0.75f, 1e-6f);
 }
@@ -96,7 +112,7 @@ TEST(Fusion, JoinsTheLightOfSmallSenders) {
   with.lights[0].bounce = light(0.25f), with.lights[0].emitted = light(1);
   without.lights[0].bounce = light(0.25f);
   const Findings own = take_findings(with, now, {}), other = take_findings(without, now, {});
-  fuse(own, {&other}, model_light(Environment::constant(glm::vec3(1)), glm::mat3(1)), fused);
+  fuse(own, {&other}, model_light(Environment::constant(glm::vec3(1)), glm::mat3(1)), now, fused);
   for (std::size_t i = 0; i < fused.bounce.size(); ++i) {
     if (!now.is_surface(i)) continue;
     EXPECT_NEAR(fused.bounce[i].x, 1.5f, 1e-3f);
@@ -129,7 +145,7 @@ TEST(Fusion, TurnsDirectionsWithTheCamera) {
                  told = take_findings(other_products, other, {});
   Products products;
   fuse(own, {&told, &told, &told}, model_light(Environment::constant(glm::vec3(1)), glm::mat3(1)),
-       products);
+       now, products);
   for (int y = 20; y < 50; ++y)
     for (int x = 30; x < 60; ++x)
       EXPECT_LT(glm::distance(products.bent(x, y), wanted), 0.002f) << x << " " << y;

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
+#include <algorithm>
 #include <cstdint>
-#include <memory>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <type_traits>
 #include <vector>
 
 #include "estimators/products.h"
+#include "filters/shot/kept_surfaces.h"
+#include "math/uninitialized.h"
 #include "scene/geometry.h"
 
 namespace ssdo {
@@ -25,21 +29,36 @@ struct FoundPlane {
 struct Findings {
   static constexpr int kGroup = 8;  ///< channels of a pixel are padded to a multiple
 
-  std::shared_ptr<const Geometry> geometry;
+  KeptSurfaces surfaces;
   std::vector<FoundPlane> planes;  ///< in the order of for_each_found()
   int stride = 0;                  ///< channels of a pixel, with padding
   /// By channel, a power of two near the mean of its plane, which values are stored in units of:
   /// light has any scale, and half numbers have not.
   std::vector<float> unit;
-  /// Half numbers (IEEE 754), pixel after pixel: one that another frame looks up lies in one or two
-  /// cache lines.
-  std::vector<std::uint16_t> values;
-  Plane<float> glow;  ///< luminance of the radiance; empty: nothing glows
+  /// Finite half numbers (IEEE 754), pixel after pixel by KeptSurfaces::index(): one that another
+  /// frame looks up lies in one or two cache lines.
+  std::vector<std::uint16_t, Uninitialized<std::uint16_t>> values;
+  /// Luminance of the radiance, in the same order; empty: nothing glows.
+  std::vector<float> glow;
 };
 
-/// Moves what frames share out of `products`, and the geometry with it. `radiance` is that of
-/// surfaces that glow; it may be empty.
-Findings take_findings(Products& products, Geometry geometry, const Plane<glm::vec3>& radiance);
+/// Moves what frames share out of `products`. `radiance` is that of surfaces that glow; it may be
+/// empty.
+Findings take_findings(Products& products, const Geometry& geometry,
+                       const Plane<glm::vec3>& radiance);
+
+/// `v` turned as the unit vector `a` is turned to the unit vector `b` by the shortest way, as
+/// find_shares() turns bent normals.
+inline glm::vec3 turned(const glm::vec3& v, const glm::vec3& a, const glm::vec3& b) {
+  const glm::vec3 both = a + b;
+  return v - glm::dot(both, v) / std::max(1 + glm::dot(a, b), 1e-6f) * both +
+         2 * glm::dot(a, v) * b;
+}
+
+template <class T>
+constexpr int channels_of() {
+  return std::is_same_v<T, float> ? 1 : 3;
+}
 
 /// Calls visit(plane, number of its source or what else it is of, whether it holds directions) for
 /// all planes that frames share, some of which may be empty. What the view of a camera decides,

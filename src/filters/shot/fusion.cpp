@@ -9,16 +9,16 @@
 //   value(p) = (own(p) + sum over others of w s(p')) / (1 + sum of w)
 //
 // s(p') is what another frame has found at the point that p shows, the bilinear average of the
-// pixels around it that show the same surface (filters/reprojection.h). All frames count alike, so
+// pixels around it that show the same surface (filters/shot/sights.h). All frames count alike, so
 // that one that comes into reach, or leaves it, changes the mean least. Averaged are shares of
 // direct light, not light: shading by the normal stays that of the frame, and so does the light.
 // Bounce is averaged as it is.
 //
 // What is known is not the same at all times: things move, and light with them. w is less where
 // what stands in one of both frames, but not in the other, hides light from p
-// (filters/shot/moved.h): for a source if it may throw its shadow there, for all other light by the
-// form factor. Lamps in the picture are switched: of the light that surfaces send, another frame
-// counts by
+// (filters/shot/moved_weights.h): for a source if it may throw its shadow there, for all other
+// light by the form factor. Lamps in the picture are switched: of the light that surfaces send,
+// another frame counts by
 //
 //   sum of min(L, L') / sum of max(L, L')
 //
@@ -36,20 +36,40 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 #include <optional>
+#include <span>
 #include <type_traits>
 
-#include "filters/reprojection.h"
-#include "filters/shot/moved.h"
-#include "filters/shot/saying.h"
-#include "math/luminance.h"
+#include "filters/shot/moved_weights.h"
+#include "filters/shot/sights.h"
 #include "parallel/tiles.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filters/shot/fusion.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#ifndef SSDO_FILTERS_SHOT_SAYING_
+#define SSDO_FILTERS_SHOT_SAYING_
+namespace ssdo {
+
+/// What another frame says of at most ShotPoints::kMost points in a row.
+struct Saying {
+  const Sights* sights;
+  const std::uint16_t* values;  ///< Findings::values
+  int row;                      ///< KeptSurfaces::stride()
+  const float* units;           ///< by channel, those of the frame over one's own
+  const float* weights;         ///< by channel, where nothing has moved
+  /// By kind of light, and by point: how much of it counts. Null where nothing has moved.
+  const float* moved;
+  const float* weights_of_kinds;  ///< `weights` by kind and channel, 0 in those of other kinds
+};
+
+/// The kinds of light that a group of channels holds: 0 all that is not of a source, then sources.
+using KindsOfGroup = std::span<const std::vector<int>>;
+
+}  // namespace ssdo
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -65,38 +85,59 @@ HWY_INLINE hn::Vec<Channels> load_half(const std::uint16_t* values) {
   return hn::PromoteTo(Channels(), hn::BitCast(Halves(), hn::LoadU(bits, values)));
 }
 
-/// The mean of a pixel, `stride` channels, in the units of `own`.
-void mean_of_pixel(const std::uint16_t* own, int stride, const Saying* sayings, int count,
-                   const SeenPixel* taps, float* mean) {
+/// How much of each channel of a group counts at point `i`.
+HWY_INLINE hn::Vec<Channels> weights_at(const Saying& saying, const std::vector<int>& kinds,
+                                        int stride, int i, int c) {
   const Channels d;
-  for (int c = 0; c < stride; c += int(hn::Lanes(d))) {
-    const auto base = load_half(own + c);
-    auto sum = hn::Zero(d), all = hn::Set(d, 1);
-    for (int k = 0; k < count; ++k) {
-      const Saying& saying = sayings[k];
-      const auto unit = hn::LoadU(d, saying.units + c);
-      // Differences, so that what is constant stays as it is.
-      auto change = hn::Zero(d);
-      for (int t = saying.first; t < saying.first + saying.count; ++t) {
-        const auto value = load_half(saying.values + std::size_t(taps[t].pixel) * stride + c);
-        change = hn::MulAdd(hn::Set(d, taps[t].weight), hn::MulSub(value, unit, base), change);
+  if (!saying.moved) return hn::LoadU(d, saying.weights + c);
+  auto weight = hn::Zero(d);
+  for (const int kind : kinds) {
+    const auto of_kind = hn::LoadU(d, saying.weights_of_kinds + kind * stride + c);
+    const auto counts = hn::Set(d, saying.moved[kind * ShotPoints::kMost + i]);
+    weight = hn::MulAdd(of_kind, counts, weight);
+  }
+  return weight;
+}
+
+/// Adds to the sums of `count` points, `stride` channels each, what other frames say; `own` are the
+/// frame's values, whose units the sums have. `all` are the sums of the weights.
+void add_sayings(const std::uint16_t* own, int stride, int count, std::span<const Saying> sayings,
+                 KindsOfGroup kinds, float* sums, float* all) {
+  const Channels d;
+  for (int i = 0; i < count; ++i) {
+    for (int c = 0; c < stride; c += int(hn::Lanes(d))) {
+      const std::ptrdiff_t at = std::ptrdiff_t(i) * stride + c;
+      const auto base = load_half(own + at);
+      auto sum = hn::LoadU(d, sums + at), weights = hn::LoadU(d, all + at);
+      for (const Saying& saying : sayings) {
+        const int pixel = saying.sights->pixel[i];
+        if (pixel < 0) continue;
+        const auto unit = hn::LoadU(d, saying.units + c);
+        // Differences, so that what is constant stays as it is.
+        const std::uint16_t* from = saying.values + std::ptrdiff_t(pixel) * stride + c;
+        const auto tap = [&](int k, const std::uint16_t* value) HWY_ATTR {
+          return hn::Mul(hn::Set(d, saying.sights->weight[k][i]),
+                         hn::MulSub(load_half(value), unit, base));
+        };
+        const std::ptrdiff_t below = std::ptrdiff_t(saying.row) * stride;
+        const auto change = hn::Add(hn::Add(tap(0, from), tap(1, from + stride)),
+                                    hn::Add(tap(2, from + below), tap(3, from + below + stride)));
+        const auto weight =
+            weights_at(saying, kinds[std::size_t(c) / Findings::kGroup], stride, i, c);
+        sum = hn::MulAdd(weight, change, sum);
+        weights = hn::Add(weights, weight);
       }
-      const auto weight = hn::LoadU(d, saying.weights + c);
-      sum = hn::MulAdd(weight, change, sum);
-      all = hn::Add(all, weight);
+      hn::StoreU(sum, d, sums + at), hn::StoreU(weights, d, all + at);
     }
-    hn::StoreU(hn::Add(base, hn::Div(sum, all)), d, mean + c);
   }
 }
 
-/// Half numbers of `count` values, a multiple of Findings::kGroup.
-void to_half(const float* values, int count, std::uint16_t* half) {
+/// The means of `count` values from their sums, in place of these.
+void finish_means(const std::uint16_t* own, int count, const float* all, float* sums) {
   const Channels d;
-  const hn::Rebind<std::uint16_t, Channels> bits;
-  const auto most = hn::Set(d, 65504.0f);
   for (int c = 0; c < count; c += int(hn::Lanes(d))) {
-    const auto value = hn::Min(hn::Max(hn::LoadU(d, values + c), hn::Neg(most)), most);
-    hn::StoreU(hn::BitCast(bits, hn::DemoteTo(Halves(), value)), bits, half + c);
+    const auto step = hn::Div(hn::LoadU(d, sums + c), hn::LoadU(d, all + c));
+    hn::StoreU(hn::Add(load_half(own + c), step), d, sums + c);
   }
 }
 
@@ -106,40 +147,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace ssdo {
 
-HWY_EXPORT(mean_of_pixel);
-HWY_EXPORT(to_half);
+HWY_EXPORT(add_sayings);
+HWY_EXPORT(finish_means);
 
 namespace {
 
-/// `v` turned as the unit vector `a` is turned to the unit vector `b` by the shortest way, as
-/// find_shares() turns bent normals.
-glm::vec3 turned(const glm::vec3& v, const glm::vec3& a, const glm::vec3& b) {
-  const glm::vec3 both = a + b;
-  return v - glm::dot(both, v) / std::max(1 + glm::dot(a, b), 1e-6f) * both +
-         2 * glm::dot(a, v) * b;
-}
-
-const glm::vec3 kAxis(0, 0, 1);
-
 /// Points across a frame, about, that are asked for their radiance.
 constexpr int kPointsOfGlow = 480;
-
-/// From the deviation of a bent normal from N, as find_shares() leaves it, to world space.
-glm::vec3 to_world(const glm::vec3& deviation, const glm::vec3& normal,
-                   const glm::mat3& to_camera) {
-  return glm::transpose(to_camera) * turned(deviation, kAxis, normal);
-}
-
-glm::vec3 from_world(const glm::vec3& bent, const glm::vec3& normal, const glm::mat3& to_camera) {
-  return turned(to_camera * bent, normal, kAxis);
-}
-
-glm::mat3 rotation_of(const Geometry& geometry) { return glm::mat3(geometry.camera.rotation); }
-
-template <class T>
-constexpr int channels_of() {
-  return std::is_same_v<T, float> ? 1 : 3;
-}
 
 bool same_planes(const Findings& a, const Findings& b) {
   return std::ranges::equal(a.planes, b.planes, [](const FoundPlane& one, const FoundPlane& other) {
@@ -148,227 +162,178 @@ bool same_planes(const Findings& a, const Findings& b) {
 }
 
 /// How much of the radiance of the points that both show is the same.
-float same_glow(const Findings& own, const Findings& other, const Reprojection& reprojection) {
+float same_glow(const Findings& own, const Findings& other, const ShotReprojection& reprojection) {
   if (own.glow.empty() && other.glow.empty()) return 1;
-  const Plane<Surfel>& surfel = own.geometry->surfel;
-  const int stride = std::max(1, surfel.width / kPointsOfGlow);
+  const Window& window = own.surfaces.window;
+  const int step = std::max(1, window.width() / kPointsOfGlow);
   double same = 0, all = 0;
-  for (int y = 0; y < surfel.height; y += stride) {
-    for (int x = 0; x < surfel.width; x += stride) {
-      if (!surfel(x, y).is_surface()) continue;
-      const PixelsBefore at = reprojection.find(surfel(x, y), glm::dvec2(NAN));
-      if (at.count == 0) continue;
-      const float here = own.glow.empty() ? 0 : own.glow(x, y);
+  for_each_points_of_grid(own.surfaces, step, [&](const RowOfPixels& row) {
+    ShotPoints points;
+    Sights sights;
+    load_points(own.surfaces, row, points);
+    if (!reprojection.find(points, sights)) return;
+    for (int i = 0; i < row.count; ++i) {
+      if (sights.pixel[i] < 0) continue;
+      const float here =
+          own.glow.empty() ? 0 : own.glow[own.surfaces.index(row.x + i * step, row.y)];
       float there = 0;
-      for (int k = 0; k < at.count && !other.glow.empty(); ++k)
-        there += at.weight[k] * other.glow[at.pixel[k]];
+      for (int k = 0; k < 4 && !other.glow.empty(); ++k)
+        there += sights.weight[k][i] *
+                 other.glow[std::size_t(sights.pixel[i] + k % 2 + k / 2 * other.surfaces.stride())];
       same += double(std::min(here, there)), all += double(std::max(here, there));
     }
-  }
+  });
   return all > 0 ? float(same / all) : 1;
+}
+
+/// The kind of light of each channel, as KindsOfGroup has it.
+std::vector<int> kinds_of(const Findings& findings) {
+  std::vector<int> kinds;
+  for (const FoundPlane& plane : findings.planes)
+    kinds.insert(kinds.end(), std::size_t(plane.channels), std::max(plane.source + 1, 0));
+  kinds.resize(std::size_t(findings.stride), 0);
+  return kinds;
 }
 
 /// Another frame that says something.
 struct Speaker {
   const Findings& findings;
-  Reprojection reprojection;
-  std::optional<MovedWeights> moved;  ///< where something has moved
-  std::vector<float> weights;         ///< by channel, where nothing has
-  std::vector<float> units;           ///< Saying::units
+  ShotReprojection reprojection;
+  std::optional<MovedWeights> moved;                    ///< where something has moved
+  std::vector<float> weights, weights_of_kinds, units;  ///< of Saying
 };
 
-/// What each channel is of.
-std::vector<int> sources_of(const Findings& findings) {
-  std::vector<int> sources;
-  for (const FoundPlane& plane : findings.planes)
-    sources.insert(sources.end(), std::size_t(plane.channels), plane.source);
-  sources.resize(std::size_t(findings.stride), FoundPlane::kOfAll);
-  return sources;
-}
-
-std::vector<Speaker> speakers_of(const Findings& own, const std::vector<const Findings*>& others,
-                                 const Light& light) {
-  std::vector<Speaker> speakers;
-  if (!own.geometry->world_known || own.stride == 0) return speakers;
-  for (const Findings* other : others) {
-    if (!other->geometry->world_known || !same_planes(own, *other)) continue;
-    const std::vector<MovedPiece> pieces = find_moved(*own.geometry, *other->geometry);
-    std::optional<MovedWeights> moved;
-    if (!pieces.empty()) moved.emplace(*own.geometry, pieces, light);
-    const Reprojection reprojection(*other->geometry, *own.geometry);
-    const float glow = same_glow(own, *other, reprojection);
-    std::vector<float> weights, units;
-    for (const int source : sources_of(own))
-      weights.push_back(source == FoundPlane::kOfSenders ? glow : 1);
-    for (std::size_t c = 0; c < own.unit.size(); ++c) units.push_back(other->unit[c] / own.unit[c]);
-    speakers.push_back(
-        {*other, reprojection, std::move(moved), std::move(weights), std::move(units)});
+Speaker speaker_of(const Findings& own, const OtherFindings& other, const Light& light,
+                   const std::vector<int>& kinds) {
+  const Findings& findings = *other.findings;
+  Speaker speaker{findings, {findings.surfaces, own.surfaces}, {}, {}, {}, {}};
+  const std::vector<MovedPiece> pieces =
+      moved_pieces(own.surfaces.camera, findings.surfaces.camera, *other.gone, *other.come);
+  if (!pieces.empty()) speaker.moved.emplace(own.surfaces, pieces, light);
+  const float glow = same_glow(own, findings, speaker.reprojection);
+  for (const FoundPlane& plane : own.planes)
+    speaker.weights.insert(speaker.weights.end(), std::size_t(plane.channels),
+                           plane.source == FoundPlane::kOfSenders ? glow : 1);
+  const auto stride = std::size_t(own.stride);
+  speaker.weights.resize(stride, 1);
+  speaker.weights_of_kinds.resize((light.sources.size() + 1) * stride, 0);
+  for (std::size_t c = 0; c < stride; ++c) {
+    speaker.weights_of_kinds[std::size_t(kinds[c]) * stride + c] = speaker.weights[c];
+    speaker.units.push_back(findings.unit[c] / own.unit[c]);
   }
-  return speakers;
+  return speaker;
 }
-
-/// Takes the mean of one row after the other.
-class RowOfMeans {
- public:
-  RowOfMeans(const Findings& own, const std::vector<Speaker>& speakers)
-      : own_(own),
-        speakers_(speakers),
-        sources_(sources_of(own)),
-        weights_(speakers.size() * std::size_t(own.stride)),
-        taps_(4 * speakers.size()),
-        sayings_(speakers.size()) {}
-
-  /// `mean` has own.stride values.
-  void pixel(int x, int y, float* mean) {
-    const Geometry& geometry = *own_.geometry;
-    const std::size_t i = geometry.surfel.index(x, y);
-    int count = 0, taps = 0;
-    if (geometry.is_surface(i)) {
-      for (std::size_t k = 0; k < speakers_.size(); ++k) {
-        const Speaker& speaker = speakers_[k];
-        const PixelsBefore at = speaker.reprojection.find(geometry.surfel[i], glm::dvec2(NAN));
-        if (at.count == 0) continue;
-        sayings_[std::size_t(count++)] = {speaker.findings.values.data(), weights_of(k, x, y),
-                                          speaker.units.data(), taps, at.count};
-        for (int t = 0; t < at.count; ++t)
-          taps_[std::size_t(taps++)] = {std::uint32_t(at.pixel[t]), at.weight[t]};
-      }
-    }
-    HWY_DYNAMIC_DISPATCH(mean_of_pixel)
-    (&own_.values[i * std::size_t(own_.stride)], own_.stride, sayings_.data(), count, taps_.data(),
-     mean);
-    for (std::size_t c = 0; c < own_.unit.size(); ++c) mean[c] *= own_.unit[c];
-  }
-
- private:
-  const float* weights_of(std::size_t k, int x, int y) {
-    const Speaker& speaker = speakers_[k];
-    if (!speaker.moved) return speaker.weights.data();
-    float* weights = &weights_[k * sources_.size()];
-    for (std::size_t c = 0; c < sources_.size(); ++c)
-      weights[c] = speaker.weights[c] * speaker.moved->at(sources_[c], x, y);
-    return weights;
-  }
-
-  const Findings& own_;
-  const std::vector<Speaker>& speakers_;
-  const std::vector<int> sources_;  ///< by channel
-  std::vector<float> weights_;
-  std::vector<SeenPixel> taps_;
-  std::vector<Saying> sayings_;
-};
-
-/// Filters keep the light of small bright senders apart; not every frame shows some.
-void join_emitted(Plane<glm::vec3>& bounce, Plane<glm::vec3>& emitted) {
-  for (std::size_t i = 0; i < emitted.size(); ++i) bounce[i] += emitted[i];
-  emitted = {};
-}
-
-/// A power of two near the mean size of the values of a plane.
-template <class T>
-float unit_of(const Plane<T>& plane) {
-  double sum = 0;
-  for (const T& value : plane.pixels) {
-    if constexpr (std::is_same_v<T, float>)
-      sum += double(std::abs(value));
-    else
-      sum += double(std::abs(value.x) + std::abs(value.y) + std::abs(value.z)) / 3;
-  }
-  const double mean = plane.empty() ? 0 : sum / double(plane.size());
-  return mean > 0 && std::isfinite(mean) ? float(std::exp2(std::round(std::log2(mean)))) : 1;
-}
-
-void store(float value, float* to) { *to = value; }
-void store(const glm::vec3& value, float* to) { std::copy_n(&value.x, 3, to); }
 
 void load(const float* from, float& value) { value = *from; }
 void load(const float* from, glm::vec3& value) { value = {from[0], from[1], from[2]}; }
 
 }  // namespace
 
-Findings take_findings(Products& products, Geometry geometry, const Plane<glm::vec3>& radiance) {
-  join_emitted(products.bounce, products.shares.emitted);
-  for (LightProducts& light : products.lights) join_emitted(light.bounce, light.emitted);
-  Findings out;
-  for (const glm::vec3& color : radiance.pixels) out.glow.pixels.push_back(luminance(color));
-  out.glow.width = radiance.width, out.glow.height = radiance.height;
-  int channels = 0;
-  for_each_found(
-      [&](auto& plane, int source, bool bends) {
-        using T = std::decay_t<decltype(plane[0])>;
-        const int count = plane.empty() ? 0 : channels_of<T>();
-        out.planes.push_back({count, source, bends});
-        out.unit.insert(out.unit.end(), std::size_t(count), unit_of(plane));
-        channels += count;
-      },
-      products);
-  out.stride = (channels + Findings::kGroup - 1) / Findings::kGroup * Findings::kGroup;
-  out.unit.resize(std::size_t(out.stride), 1);
-  const Plane<Surfel>& surfel = geometry.surfel;
-  const glm::mat3 to_camera = rotation_of(geometry);
-  out.values.resize(surfel.size() * std::size_t(out.stride));
-  for_each_row(channels > 0 ? surfel.height : 0, [&](int y) {
-    std::vector<float> row(std::size_t(surfel.width) * std::size_t(out.stride));
-    int first = 0;
-    for_each_found(
-        [&](auto& plane, int, bool bends) {
-          using T = std::decay_t<decltype(plane[0])>;
-          if (plane.empty()) return;
-          for (int x = 0; x < surfel.width; ++x) {
-            T value = plane(x, y);
-            if constexpr (std::is_same_v<T, glm::vec3>) {
-              const Surfel& s = surfel(x, y);
-              if (bends && s.is_surface()) value = to_world(value, s.normal, to_camera);
-            }
-            const auto channel = std::size_t(first);
-            store(value / out.unit[channel],
-                  &row[std::size_t(x) * std::size_t(out.stride) + channel]);
-          }
-          first += channels_of<T>();
-        },
-        products);
-    HWY_DYNAMIC_DISPATCH(to_half)
-    (row.data(), int(row.size()), &out.values[surfel.index(0, y) * std::size_t(out.stride)]);
+/// What a block of points needs.
+struct Fusion::Room {
+  Room(std::size_t speakers, std::size_t kinds)
+      : sights(speakers), moved(speakers * kinds * ShotPoints::kMost) {
+    sayings.reserve(speakers);
+  }
+
+  ShotPoints points = {};
+  std::vector<Sights> sights;
+  std::vector<float> moved;
+  std::vector<Saying> sayings;
+};
+
+Fusion::Fusion(const Findings& own, const Light& light)
+    : own_(own), light_(light), kinds_(kinds_of(own)) {
+  for (std::size_t c = 0; c < kinds_.size(); c += Findings::kGroup) {
+    const auto first = kinds_.begin() + std::ptrdiff_t(c);
+    std::vector<int> group(first, first + Findings::kGroup);
+    std::ranges::sort(group);
+    const auto rest = std::ranges::unique(group);
+    group.erase(rest.begin(), rest.end());
+    groups_.push_back(std::move(group));
+  }
+  const std::size_t count = own.stride > 0 ? own.values.size() : 0;
+  sums_.resize(count), all_.resize(count);
+  for_each_row(own.stride > 0 ? own.surfaces.window.height() + 2 : 0, [&](int row) {
+    const std::size_t of_row = std::size_t(own.surfaces.stride()) * std::size_t(own.stride),
+                      first = std::size_t(row) * of_row;
+    std::fill_n(&sums_[first], of_row, 0.0f), std::fill_n(&all_[first], of_row, 1.0f);
   });
-  for_each_found([](auto& plane, int, bool) { plane = {}; }, products);
-  out.geometry = std::make_shared<const Geometry>(std::move(geometry));
-  return out;
 }
 
-void fuse(const Findings& own, const std::vector<const Findings*>& others, const Light& light,
-          Products& products) {
-  const Plane<Surfel>& surfel = own.geometry->surfel;
+void Fusion::add(const std::vector<OtherFindings>& others) {
+  if (!own_.surfaces.world_known || own_.stride == 0) return;
+  std::vector<Speaker> speakers;
+  for (const OtherFindings& other : others)
+    if (other.findings->surfaces.world_known && same_planes(own_, *other.findings))
+      speakers.push_back(speaker_of(own_, other, light_, kinds_));
+  if (speakers.empty()) return;
+  const Window& window = own_.surfaces.window;
+  const std::size_t kinds = light_.sources.size() + 1;
+  for_each_row(window.height(), [&](int y) {
+    Room room(speakers.size(), kinds);
+    for (int x = 0; x < window.width(); x += ShotPoints::kMost) {
+      const RowOfPixels row{x, y, 1, std::min(ShotPoints::kMost, window.width() - x)};
+      load_points(own_.surfaces, row, room.points);
+      room.sayings.clear();
+      for (std::size_t k = 0; k < speakers.size(); ++k) {
+        const Speaker& s = speakers[k];
+        if (!s.reprojection.find(room.points, room.sights[k])) continue;
+        const float* moved = nullptr;
+        if (s.moved) {
+          float* to = &room.moved[k * kinds * ShotPoints::kMost];
+          for (std::size_t kind = 0; kind < kinds; ++kind)
+            s.moved->row(int(kind) - 1, row, to + kind * ShotPoints::kMost);
+          moved = to;
+        }
+        room.sayings.push_back({&room.sights[k], s.findings.values.data(),
+                                s.findings.surfaces.stride(), s.units.data(), s.weights.data(),
+                                moved, s.weights_of_kinds.data()});
+      }
+      if (room.sayings.empty()) continue;
+      const std::size_t first = own_.surfaces.index(x, y) * std::size_t(own_.stride);
+      HWY_DYNAMIC_DISPATCH(add_sayings)
+      (&own_.values[first], own_.stride, row.count, room.sayings, groups_, &sums_[first],
+       &all_[first]);
+    }
+  });
+}
+
+void Fusion::finish(const Geometry& geometry, Products& products) {
+  const Plane<Surfel>& surfel = geometry.surfel;
   std::size_t number = 0;
   for_each_found(
       [&](auto& plane, int, bool) {
-        using T = std::decay_t<decltype(plane[0])>;
-        if (own.planes[number++].channels > 0) plane = Plane<T>(surfel.width, surfel.height);
+        if (own_.planes[number++].channels > 0)
+          plane = std::remove_reference_t<decltype(plane)>::like(surfel);
       },
       products);
-  const std::vector<Speaker> speakers = speakers_of(own, others, light);
-  const glm::mat3 to_camera = rotation_of(*own.geometry);
-  for_each_row(own.stride > 0 ? surfel.height : 0, [&](int y) {
-    RowOfMeans means(own, speakers);
-    std::vector<float> mean(std::size_t(own.stride));
-    for (int x = 0; x < surfel.width; ++x) {
-      means.pixel(x, y, mean.data());
-      std::size_t plane_number = 0;
-      const float* from = mean.data();
-      for_each_found(
-          [&](auto& plane, int, bool) {
-            const FoundPlane& found = own.planes[plane_number++];
-            if (found.channels == 0) return;
+  const glm::mat3 to_camera(geometry.camera.rotation);
+  const auto stride = std::size_t(own_.stride);
+  for_each_row(own_.stride > 0 ? surfel.height : 0, [&](int y) {
+    const std::size_t at = own_.surfaces.index(0, y) * stride;
+    float* means = &sums_[at];
+    HWY_DYNAMIC_DISPATCH(finish_means)
+    (&own_.values[at], surfel.width * own_.stride, &all_[at], means);
+    std::size_t plane_number = 0, channel = 0;
+    for_each_found(
+        [&](auto& plane, int, bool) {
+          const FoundPlane& found = own_.planes[plane_number++];
+          for (int x = 0; found.channels > 0 && x < surfel.width; ++x) {
             auto& value = plane(x, y);
-            load(from, value);
+            load(&means[std::size_t(x) * stride + channel], value);
+            value *= own_.unit[channel];
             if constexpr (std::is_same_v<std::decay_t<decltype(value)>, glm::vec3>) {
               const Surfel& s = surfel(x, y);
-              if (found.bends && s.is_surface()) value = from_world(value, s.normal, to_camera);
+              if (found.bends && s.is_surface())
+                value = turned(to_camera * value, s.normal, glm::vec3(0, 0, 1));
             }
-            from += found.channels;
-          },
-          products);
-    }
+          }
+          channel += std::size_t(found.channels);
+        },
+        products);
   });
+  sums_ = {}, all_ = {};
 }
 
 }  // namespace ssdo

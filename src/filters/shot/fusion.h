@@ -1,18 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "filters/shot/findings.h"
+#include "filters/shot/moved.h"
+#include "math/uninitialized.h"
 #include "scene/light/light.h"
 
 namespace ssdo {
 
-/// Fills the planes of `products` that take_findings() has left empty with the mean of what a frame
-/// and others of its shot have found of the same points; see fusion.cpp. `light` is in the camera
-/// space of the frame. Others without a world, or with other planes, say nothing. The same bits for
-/// the same frames in the same order.
-void fuse(const Findings& own, const std::vector<const Findings*>& others, const Light& light,
-          Products& products);
+/// Another frame of the shot, and what moved between it and the frame that takes the mean.
+struct OtherFindings {
+  const Findings* findings;
+  const std::vector<MovedPiece>* gone;  ///< find_pieces(frame, other)
+  const std::vector<MovedPiece>* come;  ///< find_pieces(other, frame)
+};
+
+/// The mean of what a frame and others of its shot have found of the same points; see fusion.cpp.
+/// The same bits for the same frames in the same order, however many are added at one time.
+class Fusion {
+ public:
+  /// `light` is in the camera space of the frame. Both have to outlive this.
+  Fusion(const Findings& own, const Light& light);
+
+  /// Others without a world, or with other planes, say nothing.
+  void add(const std::vector<OtherFindings>& others);
+
+  /// Fills the planes of `products` that take_findings() has left empty. `geometry` is that of the
+  /// frame. Nothing can be added after that.
+  void finish(const Geometry& geometry, Products& products);
+
+ private:
+  struct Room;
+
+  const Findings& own_;
+  const Light& light_;
+  std::vector<int> kinds_;                               ///< of light, by channel
+  std::vector<std::vector<int>> groups_;                 ///< those of each group of channels
+  std::vector<float, Uninitialized<float>> sums_, all_;  ///< of changes, and of weights
+};
 
 }  // namespace ssdo

@@ -65,10 +65,11 @@ void Shot::make(Work& work) {
   const std::size_t job = work.index;
   attempt(work, jobs_[job].input(), [&] {
     for (std::size_t v = 0; v < work.views.size(); ++v) {
-      std::vector<const Findings*> others;
+      std::vector<OtherFindings> others;
       for (const std::size_t other : around_[job]) {
         const auto found = findings_.find({other, v});
-        if (other != job && found != findings_.end()) others.push_back(&found->second);
+        if (other == job || found == findings_.end()) continue;
+        others.push_back({&found->second, &pieces(job, other, v), &pieces(other, job, v)});
       }
       relight_in_shot(findings_.at({job, v}), others, work.views[v].relit);
     }
@@ -76,11 +77,24 @@ void Shot::make(Work& work) {
   release(job);
 }
 
+/// What `looks` looks through of what stands in another job: found once for both of them.
+const std::vector<MovedPiece>& Shot::pieces(std::size_t stands, std::size_t looks,
+                                            std::size_t view) {
+  const auto [place, is_new] = pieces_.try_emplace({stands, looks, view});
+  if (is_new)
+    place->second =
+        find_pieces(findings_.at({stands, view}).surfaces, findings_.at({looks, view}).surfaces);
+  return place->second;
+}
+
 /// A job wants nothing any more.
 void Shot::release(std::size_t job) {
   for (const std::size_t other : around_[job]) {
     if (--wanting_[other] > 0) continue;
     findings_.erase(findings_.lower_bound({other, 0}), findings_.lower_bound({other + 1, 0}));
+    std::erase_if(pieces_, [&](const auto& of_two) {
+      return of_two.first[0] == other || of_two.first[1] == other;
+    });
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <deque>
 #include <map>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "filters/shot/findings.h"
+#include "filters/shot/moved.h"
 #include "jobs/jobs.h"
 #include "jobs/work.h"
 
@@ -38,6 +40,7 @@ class Shot {
   void count();
   std::size_t complete_after(std::size_t job) const;
   void make(Work& work);
+  const std::vector<MovedPiece>& pieces(std::size_t stands, std::size_t looks, std::size_t view);
   void release(std::size_t job);
 
   const std::vector<Job>& jobs_;
@@ -45,6 +48,8 @@ class Shot {
   std::vector<std::vector<std::size_t>> around_;  ///< of each job that makes something, by frame
   std::vector<int> wanting_;                      ///< how many jobs want each
   std::map<std::pair<std::size_t, std::size_t>, Findings> findings_;  ///< by job and view
+  /// What the second of two jobs looks through in the first: by both, and view.
+  std::map<std::array<std::size_t, 3>, std::vector<MovedPiece>> pieces_;
   std::deque<Work> waiting_;
   std::size_t most_waiting_ = 0, most_kept_ = 0;
 };

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What other frames of a shot show at the places of the points of one, for many points at a time.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "filters/shot/kept_surfaces.h"
+
+namespace ssdo {
+
+/// Points of a frame, side by side or a few pixels apart in a row.
+struct ShotPoints {
+  static constexpr int kMost = 64;
+
+  int count = 0;
+  /// Camera space; not-a-number where there is no surface, and from `count` on.
+  alignas(64) float position[3][kMost];
+  alignas(64) float normal[3][kMost], rounding[kMost];
+};
+
+/// Points at (x, y), (x + step, y), ...; at most ShotPoints::kMost.
+struct RowOfPixels {
+  int x, y, step, count;
+};
+void load_points(const KeptSurfaces& own, const RowOfPixels& row, ShotPoints& points);
+
+/// Calls visit(RowOfPixels) for all pixels of a grid of that step, in order.
+template <class Visit>
+void for_each_points_of_grid(const KeptSurfaces& own, int step, const Visit& visit) {
+  const int width = own.window.width(), columns = (width + step - 1) / step;
+  for (int y = 0; y < own.window.height(); y += step) {
+    for (int column = 0; column < columns; column += ShotPoints::kMost)
+      visit(RowOfPixels{column * step, y, step, std::min(ShotPoints::kMost, columns - column)});
+  }
+}
+
+/// Where another frame shows the points.
+struct Sights {
+  /// The upper left one of four pixels, by KeptSurfaces::index(); -1: it does not show the point.
+  alignas(64) std::int32_t pixel[ShotPoints::kMost];
+  /// Of the four, row by row; their sum is 1. 0: that pixel shows another surface.
+  alignas(64) float weight[4][ShotPoints::kMost];
+};
+
+/// Finds the points of a frame in another one, as Reprojection does, which is the reference: for
+/// points that stand still, and by numbers in single precision, which moves them by a thousandth of
+/// a pixel at most where they are no farther than 10,000 times the camera's step. The same bits for
+/// every instruction set.
+class ShotReprojection {
+ public:
+  /// Both must know the world, and `other` has to outlive it.
+  ShotReprojection(const KeptSurfaces& other, const KeptSurfaces& own);
+
+  /// False where it shows none of them; `sights` then hold nothing.
+  bool find(const ShotPoints& points, Sights& sights) const;
+
+  /// Sets through[i] to 1 where it looks through the place of a point at what lies behind, which
+  /// find() does not find, else to 0: SeenBefore::through.
+  void find_through(const ShotPoints& points, unsigned char* through) const;
+
+  /// From the camera space of `own` to that of `other`, row by row, and its projection to places in
+  /// KeptSurfaces from the centre of its first pixel.
+  struct View {
+    float turn[9], step[3];
+    float fx, fy, cx, cy;
+    float half_pixel;  ///< half the width of a pixel at depth 1
+    bool orthographic;
+    int width, height, stride;
+    std::uint32_t least_rounding;
+    const KeptSurface* pixels;
+  };
+
+ private:
+  View view_;
+};
+
+}  // namespace ssdo
