@@ -54,7 +54,7 @@ class Batch {
         writes_behind_(overlaps_ && !options.model.temporal),
         pictures_(options.input.allow_partial, options.input.objects),
         frames_(options_, pictures_),
-        shot_(jobs_, options.model.shot),
+        shot_(jobs_, options.model.shot, options.command == Command::info),
         progress_(options.batch.progress, options.verbosity.quiet),
         info_(options.verbosity.json, progress_),
         printer_(progress_) {
@@ -95,7 +95,8 @@ class Batch {
       check_output(options_.verbosity.stats, policy_of_statistics(options_.output.policy));
     if (options_.command == Command::relight && !options_.verbosity.dry_run) clean_folders();
     for (std::size_t i = 0; i < jobs_.size() && !stopped_; ++i) {
-      if (options_.command == Command::info) info_.list(jobs_[i].views.front());
+      if (options_.command == Command::info && !jobs_[i].is_lent)
+        info_.list(jobs_[i].views.front());
       if (!light_) read_light();
       run_job(i);
     }
@@ -132,6 +133,7 @@ class Batch {
     }
     compute(now);
     std::vector<Work> made = shot_.complete(std::move(now));
+    for (Work& work : made) show_shot(work);
     if (!writes_behind_)
       for (Work& work : made) write(work, progress_of(work.index));
     beside_.wait();
@@ -223,8 +225,17 @@ class Batch {
     attempt(work, [&] {
       for (std::size_t v = 0; v < work.views.size(); ++v)
         compute(work, work.views[v], before[v], share_of(work, v));
+      if (shot_.only_looks()) return;
       if (options_.command == Command::info || options_.verbosity.dry_run) work.views.clear();
     });
+  }
+
+  /// Says what the other frames of its shot show of a frame of `info`.
+  void show_shot(Work& work) {
+    if (!shot_.only_looks()) return;
+    for (const WorkOnView& view : work.views)
+      if (view.shown) info_.show(view.frame, *view.shown);
+    work.views.clear();
   }
 
   void compute(Work& work, WorkOnView& view, std::optional<History>& before,
@@ -234,6 +245,7 @@ class Batch {
     if (options_.model.temporal) place_in_sequence(frame, temporal, before_of(work.index));
     if (options_.command == Command::info || options_.verbosity.dry_run) note_losses(work, frame);
     if (jobs_[work.index].is_lent) {
+      if (options_.command == Command::info) return;
       view.relit = relight(job_of(work, view), std::move(frame.scene), on_progress, temporal);
       return note_losses(work, frame);
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "jobs/info_report.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "io/json_text.h"
@@ -32,6 +34,22 @@ void InfoReport::show(const Frame& frame) {
     entries_.back()["warnings"].push_back(warning);
   print(describe(frame));
   print(text_of(objects));
+}
+
+void InfoReport::show(const Frame& frame, const SeenByOthers& shown) {
+  for (nlohmann::json& entry : entries_) {
+    if (entry["file"] != frame.input || entry["view"] != frame.view) continue;
+    entry["shot"] = {{"frames", shown.frames},
+                     {"shown", shown.some},
+                     {"times", shown.times},
+                     {"through", shown.through}};
+  }
+  if (shown.frames == 0)
+    return print(fmt::format("{}: no frame around it knows its world\n", frame.input));
+  print(fmt::format("{}: {} frames around it show {:.3g} % of its surfaces, {:.3g} of them each in "
+                    "the mean, and look through {:.2g} %, which move\n",
+                    frame.input, shown.frames, 100 * shown.some, shown.times,
+                    100 * shown.through));
 }
 
 void InfoReport::note(const Error& error) {

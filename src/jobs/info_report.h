@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "error.h"
+#include "filters/shot/seen_by_others.h"
 #include "jobs/progress.h"
 #include "relight/frame.h"
 
@@ -22,6 +23,9 @@ class InfoReport {
 
   /// What was found in the frame that was listed last. Of several views, each has an entry.
   void show(const Frame& frame);
+
+  /// What the frames around it show of a frame that show() had, which may be some frames ago.
+  void show(const Frame& frame, const SeenByOthers& shown);
 
   /// Why the frame that was listed last has failed.
   void note(const Error& error);

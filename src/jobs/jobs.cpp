@@ -140,8 +140,8 @@ std::vector<Job> jobs_of_sequence(const RunOptions& options, const std::vector<T
   }
   std::vector<Job> jobs;
   for (int frame : frames) jobs.push_back(job_of_frame(options, targets, frame));
-  const bool tells = options.model.shot.count > 0 && options.command == Command::relight &&
-                     !options.verbosity.dry_run;
+  const bool tells = options.model.shot.count > 0 && !options.verbosity.dry_run &&
+                     (options.command == Command::relight || options.command == Command::info);
   return tells ? with_lent_frames(options, std::move(jobs)) : jobs;
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "error.h"
+#include "filters/shot/seen_by_others.h"
 #include "io/files/safe_file.h"
 #include "jobs/machine/memory.h"
 #include "jobs/messages.h"
@@ -26,6 +27,7 @@ namespace ssdo {
 struct WorkOnView {
   Frame frame;
   Relit relit = {};
+  std::optional<SeenByOthers> shown = {};  ///< by the other frames of its shot, once that was looked at
 };
 
 /// A job on its way from its files to its outputs.

@@ -7,8 +7,12 @@
 
 namespace ssdo {
 
-Shot::Shot(const std::vector<Job>& jobs, const ShotWindow& window)
-    : jobs_(jobs), is_shot_(window.count > 0), around_(jobs.size()), wanting_(jobs.size()) {
+Shot::Shot(const std::vector<Job>& jobs, const ShotWindow& window, bool only_looks)
+    : jobs_(jobs),
+      is_shot_(window.count > 0),
+      only_looks_(only_looks && is_shot_),
+      around_(jobs.size()),
+      wanting_(jobs.size()) {
   if (!is_shot_) return;
   std::map<int, std::size_t> at_frame;
   for (std::size_t i = 0; i < jobs.size(); ++i)
@@ -41,7 +45,9 @@ std::vector<Work> Shot::complete(Work work) {
   if (is_shot_ && is_wanted(now)) {
     attempt(work, jobs_[now].input(), [&] {
       for (std::size_t v = 0; v < work.views.size(); ++v)
-        findings_.insert_or_assign({now, v}, take_findings(work.views[v].relit));
+        findings_.insert_or_assign(
+            {now, v}, only_looks_ ? Findings{keep_surfaces(work.views[v].frame.scene.geometry)}
+                                  : take_findings(work.views[v].relit));
     });
   }
   if (jobs_[now].is_lent) work.views.clear();
@@ -64,17 +70,26 @@ std::size_t Shot::complete_after(std::size_t job) const {
 void Shot::make(Work& work) {
   const std::size_t job = work.index;
   attempt(work, jobs_[job].input(), [&] {
-    for (std::size_t v = 0; v < work.views.size(); ++v) {
-      std::vector<OtherFindings> others;
-      for (const std::size_t other : around_[job]) {
-        const auto found = findings_.find({other, v});
-        if (other == job || found == findings_.end()) continue;
-        others.push_back({&found->second, &pieces(job, other, v), &pieces(other, job, v)});
-      }
-      relight_in_shot(findings_.at({job, v}), others, work.views[v].relit);
-    }
+    for (std::size_t v = 0; v < work.views.size(); ++v) make(job, v, work.views[v]);
   });
   release(job);
+}
+
+void Shot::make(std::size_t job, std::size_t view, WorkOnView& work) {
+  std::vector<OtherFindings> others;
+  std::vector<const KeptSurfaces*> surfaces;
+  for (const std::size_t other : around_[job]) {
+    const auto found = findings_.find({other, view});
+    if (other == job || found == findings_.end()) continue;
+    surfaces.push_back(&found->second.surfaces);
+    if (only_looks_) continue;
+    others.push_back({&found->second, &pieces(job, other, view), &pieces(other, job, view)});
+  }
+  const Findings& own = findings_.at({job, view});
+  if (only_looks_)
+    work.shown = seen_by(surfaces, own.surfaces);
+  else
+    relight_in_shot(own, others, work.relit);
 }
 
 /// What `looks` looks through of what stands in another job: found once for both of them.

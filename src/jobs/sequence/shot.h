@@ -21,7 +21,10 @@ namespace ssdo {
 class Shot {
  public:
   /// `jobs` as plan_jobs() orders them; they have to outlive it.
-  Shot(const std::vector<Job>& jobs, const ShotWindow& window);
+  /// With `only_looks`, frames find nothing, and are told what the others show of them.
+  Shot(const std::vector<Job>& jobs, const ShotWindow& window, bool only_looks);
+
+  bool only_looks() const { return only_looks_; }
 
   /// Whether a job that is still to be made wants what this one finds.
   bool is_wanted(std::size_t job) const { return wanting_[job] > 0; }
@@ -40,11 +43,12 @@ class Shot {
   void count();
   std::size_t complete_after(std::size_t job) const;
   void make(Work& work);
+  void make(std::size_t job, std::size_t view, WorkOnView& work);
   const std::vector<MovedPiece>& pieces(std::size_t stands, std::size_t looks, std::size_t view);
   void release(std::size_t job);
 
   const std::vector<Job>& jobs_;
-  const bool is_shot_;
+  const bool is_shot_, only_looks_;
   std::vector<std::vector<std::size_t>> around_;  ///< of each job that makes something, by frame
   std::vector<int> wanting_;                      ///< how many jobs want each
   std::map<std::pair<std::size_t, std::size_t>, Findings> findings_;  ///< by job and view
