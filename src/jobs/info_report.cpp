@@ -46,10 +46,10 @@ void InfoReport::show(const Frame& frame, const SeenByOthers& shown) {
   }
   if (shown.frames == 0)
     return print(fmt::format("{}: no frame around it knows its world\n", frame.input));
-  print(fmt::format("{}: {} frames around it show {:.3g} % of its surfaces, {:.3g} of them each in "
-                    "the mean, and look through {:.2g} %, which move\n",
-                    frame.input, shown.frames, 100 * shown.some, shown.times,
-                    100 * shown.through));
+  print(
+      fmt::format("{}: {} frames around it show {:.3g} % of its surfaces, {:.3g} of them each in "
+                  "the mean, and look through {:.2g} %, which move\n",
+                  frame.input, shown.frames, 100 * shown.some, shown.times, 100 * shown.through));
 }
 
 void InfoReport::note(const Error& error) {

@@ -27,7 +27,8 @@ namespace ssdo {
 struct WorkOnView {
   Frame frame;
   Relit relit = {};
-  std::optional<SeenByOthers> shown = {};  ///< by the other frames of its shot, once that was looked at
+  std::optional<SeenByOthers> shown =
+      {};  ///< by the other frames of its shot, once that was looked at
 };
 
 /// A job on its way from its files to its outputs.

@@ -279,6 +279,33 @@ TEST_F(AShot, DoesWithoutFramesThatCannotBeUsed) {
   EXPECT_EQ(found(5).pixels, with_two.pixels);
 }
 
+TEST_F(AShot, IsDescribedByInfo) {
+  // A camera at rest, and a ball that comes from outside in the last of three frames.
+  for (int frame = 1; frame <= 3; ++frame) {
+    std::vector<Surface> things = {boxes()};
+    if (frame == 3) things.push_back(sphere({0.5, -1.5, 0.4}, 0.4));
+    write(frame, all_of(things), passing(5));
+  }
+  const auto shot_of = [&](const char* frames) {
+    return parse_json(run_tool({"info", folder / "in.####.exr", "--json", "--shot", "1", "--frames",
+                                frames})
+                          .out)
+        .at("shot");
+  };
+  const nlohmann::json still = shot_of("1"), before = shot_of("2"), ball = shot_of("3");
+  EXPECT_EQ(still.at("frames"), 1);
+  EXPECT_GE(still.at("shown"), 0.99);
+  EXPECT_EQ(still.at("through"), 0);
+  EXPECT_EQ(before.at("frames"), 2);
+  EXPECT_GT(before.at("times"), 1.5);
+  EXPECT_EQ(before.at("through"), 0);  // what the ball hides has not moved
+  EXPECT_EQ(ball.at("frames"), 1);
+  EXPECT_GT(ball.at("through"), 0.02);
+  EXPECT_NEAR(double(ball.at("shown")) + double(ball.at("through")), 1, 0.05);
+  EXPECT_THAT(run_tool({"info", folder / "in.####.exr", "--shot", "1"}).out,
+              HasSubstr("in.0002.exr: 2 frames around it show "));
+}
+
 TEST_F(AShot, IsRefusedWithoutAWorldOrASequence) {
   Picture own = take_picture(boxes(), passing(3), kFrame);
   for (std::size_t i = 0; i < own.position.size(); ++i)

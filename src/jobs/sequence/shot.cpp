@@ -45,9 +45,7 @@ std::vector<Work> Shot::complete(Work work) {
   if (is_shot_ && is_wanted(now)) {
     attempt(work, jobs_[now].input(), [&] {
       for (std::size_t v = 0; v < work.views.size(); ++v)
-        findings_.insert_or_assign(
-            {now, v}, only_looks_ ? Findings{keep_surfaces(work.views[v].frame.scene.geometry)}
-                                  : take_findings(work.views[v].relit));
+        findings_.insert_or_assign({now, v}, take_findings(work.views[v]));
     });
   }
   if (jobs_[now].is_lent) work.views.clear();
@@ -60,6 +58,13 @@ std::vector<Work> Shot::complete(Work work) {
     waiting_.pop_front();
   }
   return made;
+}
+
+Findings Shot::take_findings(WorkOnView& work) const {
+  if (!only_looks_) return ssdo::take_findings(work.relit);
+  Findings findings;
+  findings.surfaces = keep_surfaces(std::exchange(work.frame.scene, {}).geometry);
+  return findings;
 }
 
 /// The job after which a job has all that it wants.

@@ -42,6 +42,7 @@ class Shot {
  private:
   void count();
   std::size_t complete_after(std::size_t job) const;
+  Findings take_findings(WorkOnView& work) const;
   void make(Work& work);
   void make(std::size_t job, std::size_t view, WorkOnView& work);
   const std::vector<MovedPiece>& pieces(std::size_t stands, std::size_t looks, std::size_t view);
