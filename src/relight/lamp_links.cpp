@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "error.h"
-#include "scene/objects/covered_pixels.h"
 #include "scene/objects/read_object_masks.h"
 #include "scene/objects/selected_coverage.h"
+#include "scene/other_views/covered_pixels.h"
 
 namespace ssdo {
 namespace {

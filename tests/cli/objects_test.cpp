@@ -469,6 +469,38 @@ TEST_F(Objects, ACardHidesNoLight) {
   EXPECT_GT(rms(at("cast.exr", "ao.Y"), truth, shown, 1), 0.05);
 }
 
+/// One that stands on the ground is not told from a wall: it casts, without a word, until it is
+/// selected.
+TEST_F(Objects, ACardOnTheGroundIsTakenOutByASelection) {
+  const Camera by =
+      look_at(camera_from_fov(50, kWindow, 1), {0.3, -4, 2.2}, {0, 0.5, 1.2}, {0, 0, 1});
+  const Surface ground =
+                    cut(plane({0, 0, 0}, {0, 0, 1}), [](const glm::dvec3&p) { return p.y < 40; }),
+                ball = sphere({0.1, 0.6, 0.5}, 0.5), card = plane({0, 40, 0}, {0, -1, 0});
+  const Picture open = take_picture(all_of({ground, ball}), by, kWindow);
+  const auto write = [&](const std::string& name, const std::vector<Surface>& shown) {
+    FramePart part = frame_of(take_picture(all_of(shown), by, kWindow));
+    part.data = part.display = kWindow;
+    part.channels["card.A"] = Plane<float>(96, 72, 0.0f);
+    for (std::size_t i = 0; i < open.valid.size(); ++i)
+      part.channels["card.A"][i] = open.valid[i] ? 0.0f : 1.0f;
+    write_frame(path(name), part);
+  };
+  write("open.exr", {ground, ball}), write("card.exr", {ground, ball, card});
+  run(path("open.exr"), "truth.exr", {});
+  run(path("card.exr"), "auto.exr", {});
+  run(path("card.exr"), "out.exr", {"--no-cast", "card"});
+  EXPECT_THAT(run_tool({"info", path("card.exr")}).out, Not(HasSubstr("casts nothing")));
+  Plane<float> shown(96, 72);
+  for (std::size_t i = 0; i < shown.size(); ++i) shown[i] = open.valid[i];
+  const Plane<float> truth = at("truth.exr", "ao.Y");
+  const double before = rms(at("auto.exr", "ao.Y"), truth, shown, 1),
+               after = rms(at("out.exr", "ao.Y"), truth, shown, 1);
+  RecordProperty("rms", fmt::format("{:.4f} of {:.4f}", after, before));
+  EXPECT_GT(before, 0.05);
+  EXPECT_LT(after, 0.1 * before) << before;
+}
+
 /// Nor one that only another view shows.
 TEST_F(Objects, ADomeOfAnotherViewHidesNoLight) {
   const Surface stage = cut(plane({0, 0, 0}, {0, 0, 1}),

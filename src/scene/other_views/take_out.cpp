@@ -33,7 +33,7 @@
 
 #include "parallel/tiles.h"
 #include "scene/normals/normals.h"
-#include "scene/objects/covered_pixels.h"
+#include "scene/other_views/covered_pixels.h"
 
 namespace ssdo {
 namespace {

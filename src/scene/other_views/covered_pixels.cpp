@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/objects/covered_pixels.h"
+#include "scene/other_views/covered_pixels.h"
 
 #include <glm/geometric.hpp>
 
