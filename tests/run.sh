@@ -3,10 +3,11 @@
 # Installs what is needed, builds, and passes the tests. `all` passes them with sanitizers too,
 # fuzzes for a minute each, and tries a shot on a farm, the package, faults, cppcheck and clang-tidy.
 # `edit` is for between two edits: it builds and runs the tests whose files or names hold NAME, with
-# what these need, for one instruction set. `clang` and `debian13` pass the tests with another compiler,
-# and on another release; $SSDO_OPTIONS goes to cmake, for example -DSSDO_ONE_ISA=avx2.
-#   tests/run.sh [all | edit NAME... |
-#     (release|address|fuzz|thread|farm|package|faults|lint|tidy|clang|debian13)...]
+# what these need, for one instruction set.
+#   tests/run.sh [all | edit NAME... | STAGE...]
+# A STAGE is release, address, fuzz, thread, farm, package, faults, system (the last three at once),
+# lint, tidy, clang (the tests by another compiler) or debian13 (on another release); $SSDO_OPTIONS
+# goes to cmake, for example -DSSDO_ONE_ISA=avx2.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 mkdir -p "$root/build"
@@ -157,9 +158,26 @@ run_faults() {
   as_root "$root/tests/faults/run.sh" "$release/ssdo" 24
 }
 
+# Each of these waits for daemons, disks and signals for much of its time. What they print is shown
+# when all have ended.
+run_system() (
+  install_packages "${farm_packages[@]}" "${fault_packages[@]}"  # apt serves one at a time
+  logs=$(mktemp -d) failed=0
+  trap 'rm -rf "$logs"' EXIT
+  for stage in farm package faults; do
+    (SECONDS=0; "run_$stage"; echo "tests/run.sh: $stage took $SECONDS s") >"$logs/$stage" 2>&1 &
+    pids[$!]=$stage
+  done
+  for pid in "${!pids[@]}"; do
+    wait "$pid" || { failed=1; echo "tests/run.sh: ${pids[$pid]} failed"; }
+    cat "$logs/${pids[$pid]}"
+  done
+  exit $failed
+)
+
 case "${1:-}" in
   "") set -- release ;;
-  all) set -- release address fuzz thread farm package faults lint ;;
+  all) set -- release address fuzz thread system lint ;;
   edit) shift; run_edit "$@"; exit ;;
 esac
 number=0
