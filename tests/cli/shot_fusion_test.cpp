@@ -279,6 +279,25 @@ TEST_F(AShot, DoesWithoutFramesThatCannotBeUsed) {
   EXPECT_EQ(found(5).pixels, with_two.pixels);
 }
 
+TEST_F(AShot, WhatAFrameLacksIsTakenFromTheOthers) {
+  write_shot();
+  const Words middle = {"--frames", "5", "--shot", "2"};
+  ASSERT_EQ(run(middle).code, 0);
+  ASSERT_EQ(run({"--frames", "5", "--shot", "1"}, "near").code, 0);
+  for (const int frame : {3, 7}) {  // no albedo: they make no bounce
+    FramePart part = frame_of(take_picture(boxes(), passing(frame), kFrame));
+    for (const char* c : {"R", "G", "B"})
+      part.channels.erase(std::string("ViewLayer.DiffCol.") + c);
+    write(frame, part);
+  }
+  ASSERT_EQ(run(middle, "lacks").code, 0);
+  std::puts(done.err.c_str());
+  EXPECT_EQ(found(5, "ao.Y", "lacks").pixels, found(5, "ao.Y").pixels);
+  EXPECT_EQ(found(5, "direct.G", "lacks").pixels, found(5, "direct.G").pixels);
+  EXPECT_EQ(found(5, "bounce.G", "lacks").pixels, found(5, "bounce.G", "near").pixels);
+  EXPECT_NE(found(5, "bounce.G").pixels, found(5, "bounce.G", "near").pixels);
+}
+
 TEST_F(AShot, IsDescribedByInfo) {
   // A camera at rest, and a ball that comes from outside in the last of three frames.
   for (int frame = 1; frame <= 3; ++frame) {

@@ -155,10 +155,37 @@ namespace {
 /// Points across a frame, about, that are asked for their radiance.
 constexpr int kPointsOfGlow = 480;
 
-bool same_planes(const Findings& a, const Findings& b) {
-  return std::ranges::equal(a.planes, b.planes, [](const FoundPlane& one, const FoundPlane& other) {
-    return one.channels == other.channels && one.source == other.source;
+/// Whether planes are of the same things, though a frame may lack some of them.
+bool same_things(const Findings& a, const Findings& b) {
+  return std::ranges::equal(a.planes, b.planes, {}, &FoundPlane::source, &FoundPlane::source);
+}
+
+/// The channel of another frame that holds what each channel of `own` does; -1: it lacks that.
+std::vector<int> channels_in(const Findings& other, const Findings& own) {
+  std::vector<int> channels;
+  int there = 0;
+  for (std::size_t k = 0; k < own.planes.size(); ++k) {
+    const int count = other.planes[k].channels;
+    for (int c = 0; c < own.planes[k].channels; ++c) channels.push_back(count > 0 ? there + c : -1);
+    there += count;
+  }
+  channels.resize(std::size_t(own.stride), -1);
+  return channels;
+}
+
+/// The values of another frame in the order of one's own channels.
+std::vector<std::uint16_t> arrange(const Findings& other, const std::vector<int>& channels) {
+  std::vector<std::uint16_t> values(other.surfaces.size() * channels.size());
+  for_each_row(other.surfaces.window.height() + 2, [&](int row) {
+    const auto stride = std::size_t(other.surfaces.stride());
+    for (std::size_t i = std::size_t(row) * stride; i < std::size_t(row + 1) * stride; ++i)
+      for (std::size_t c = 0; c < channels.size(); ++c)
+        values[i * channels.size() + c] =
+            channels[c] < 0
+                ? 0
+                : other.values[i * std::size_t(other.stride) + std::size_t(channels[c])];
   });
+  return values;
 }
 
 /// How much of the radiance of the points that both show is the same.
@@ -199,6 +226,7 @@ std::vector<int> kinds_of(const Findings& findings) {
 struct Speaker {
   const Findings& findings;
   ShotReprojection reprojection;
+  std::vector<std::uint16_t> arranged;                  ///< where it has other layers
   std::optional<MovedWeights> moved;                    ///< where something has moved
   std::vector<float> weights, weights_of_kinds, units;  ///< of Saying
 };
@@ -206,7 +234,7 @@ struct Speaker {
 Speaker speaker_of(const Findings& own, const OtherFindings& other, const Light& light,
                    const std::vector<int>& kinds) {
   const Findings& findings = *other.findings;
-  Speaker speaker{findings, {findings.surfaces, own.surfaces}, {}, {}, {}, {}};
+  Speaker speaker{findings, {findings.surfaces, own.surfaces}, {}, {}, {}, {}, {}};
   const std::vector<MovedPiece> pieces =
       moved_pieces(own.surfaces.camera, findings.surfaces.camera, *other.gone, *other.come);
   if (!pieces.empty()) speaker.moved.emplace(own.surfaces, pieces, light);
@@ -216,10 +244,16 @@ Speaker speaker_of(const Findings& own, const OtherFindings& other, const Light&
                            plane.source == FoundPlane::kOfSenders ? glow : 1);
   const auto stride = std::size_t(own.stride);
   speaker.weights.resize(stride, 1);
+  const std::vector<int> channels = channels_in(findings, own);
+  if (!std::ranges::equal(findings.planes, own.planes, {}, &FoundPlane::channels,
+                          &FoundPlane::channels))
+    speaker.arranged = arrange(findings, channels);
   speaker.weights_of_kinds.resize((light.sources.size() + 1) * stride, 0);
   for (std::size_t c = 0; c < stride; ++c) {
+    if (channels[c] < 0) speaker.weights[c] = 0;
     speaker.weights_of_kinds[std::size_t(kinds[c]) * stride + c] = speaker.weights[c];
-    speaker.units.push_back(findings.unit[c] / own.unit[c]);
+    speaker.units.push_back(
+        channels[c] < 0 ? 1 : findings.unit[std::size_t(channels[c])] / own.unit[c]);
   }
   return speaker;
 }
@@ -265,7 +299,7 @@ void Fusion::add(const std::vector<OtherFindings>& others) {
   if (!own_.surfaces.world_known || own_.stride == 0) return;
   std::vector<Speaker> speakers;
   for (const OtherFindings& other : others)
-    if (other.findings->surfaces.world_known && same_planes(own_, *other.findings))
+    if (other.findings->surfaces.world_known && same_things(own_, *other.findings))
       speakers.push_back(speaker_of(own_, other, light_, kinds_));
   if (speakers.empty()) return;
   const Window& window = own_.surfaces.window;
@@ -286,7 +320,8 @@ void Fusion::add(const std::vector<OtherFindings>& others) {
             s.moved->row(int(kind) - 1, row, to + kind * ShotPoints::kMost);
           moved = to;
         }
-        room.sayings.push_back({&room.sights[k], s.findings.values.data(),
+        room.sayings.push_back({&room.sights[k],
+                                s.arranged.empty() ? s.findings.values.data() : s.arranged.data(),
                                 s.findings.surfaces.stride(), s.units.data(), s.weights.data(),
                                 moved, s.weights_of_kinds.data()});
       }

@@ -25,7 +25,8 @@ class Fusion {
   /// `light` is in the camera space of the frame. Both have to outlive this.
   Fusion(const Findings& own, const Light& light);
 
-  /// Others without a world, or with other planes, say nothing.
+  /// Others without a world, or with other sources, say nothing; those that lack layers say
+  /// nothing of what is made from them.
   void add(const std::vector<OtherFindings>& others);
 
   /// Fills the planes of `products` that take_findings() has left empty. `geometry` is that of the
