@@ -291,7 +291,6 @@ TEST_F(AShot, WhatAFrameLacksIsTakenFromTheOthers) {
     write(frame, part);
   }
   ASSERT_EQ(run(middle, "lacks").code, 0);
-  std::puts(done.err.c_str());
   EXPECT_EQ(found(5, "ao.Y", "lacks").pixels, found(5, "ao.Y").pixels);
   EXPECT_EQ(found(5, "direct.G", "lacks").pixels, found(5, "direct.G").pixels);
   EXPECT_EQ(found(5, "bounce.G", "lacks").pixels, found(5, "bounce.G", "near").pixels);

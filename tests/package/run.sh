@@ -1,13 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Makes the Debian package, installs it on a bare Debian of this machine's release, tries it there as a
-# plain user and purges it; then the same trial of `cmake --install`, in a folder that was moved.
+# plain user and purges it; then the same trial of `cmake --install`, in a folder that was moved, and of
+# the bundle, on bare systems of two releases, or of one where CI is set. Those are kept in $SSDO_ROOTS.
 # Usage: run.sh [BUILD]; by default build/release, which holds a finished build. As root.
 set -euo pipefail
 
 folder=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-export PATH=$PATH:/usr/sbin:/sbin
+source "$folder/../platforms/roots.sh"
+roots=${SSDO_ROOTS:-/var/tmp/ssdo_roots}
 data=$folder/../../data
+# Another release is one more debootstrap, which CI has no time for.
+releases=(bookworm)
+[ -n "${CI:-}" ] || releases+=(trixie)
 build=$(realpath -m "${1:-$folder/../../build/release}")
 
 say() { echo "[${SECONDS}s] $*"; }
@@ -20,17 +25,11 @@ fail() {
 check_machine() {
   local program
   [ "$(id -u)" -eq 0 ] || fail "a bare Debian is made by root; run this as root"
-  for program in debootstrap dpkg-shlibdeps cpack setpriv; do
-    command -v "$program" >/dev/null || fail "$program is missing; install debootstrap and dpkg-dev"
+  for program in debootstrap dpkg-shlibdeps cpack setpriv patchelf; do
+    command -v "$program" >/dev/null || fail "$program is missing; install debootstrap, dpkg-dev and patchelf"
   done
   [ -x "$build/ssdo" ] || fail "$build holds no binary; build it or name another folder"
   unshare --mount true || fail "this container may not mount /proc for the bare Debian; allow SYS_ADMIN"
-}
-
-# The mirror that this machine's apt takes its own release from.
-mirror_of() {
-  apt-get indextargets --format '$(CODENAME) $(REPO_URI)' 'Created-By: Packages' 'Origin: Debian' |
-    sed -n "s/^$1 //p" | sed -n 1p
 }
 
 make_package() {
@@ -42,21 +41,10 @@ make_package() {
   dpkg --contents "$package"
 }
 
-make_root() {
-  local release mirror
-  release=$(. /etc/os-release && echo "$VERSION_CODENAME")
-  mirror=$(mirror_of "$release")
-  [ -n "$mirror" ] || fail "apt knows no mirror of $release; run apt-get update"
-  debootstrap --variant=minbase "$release" "$work/root" "$mirror" >"$work/debootstrap.log" ||
-    { tail -5 "$work/debootstrap.log"; fail "debootstrap failed"; }
-  say "a bare Debian, $(du -sh "$work/root" | cut -f1)"
-}
-
-# in_root USER COMMAND...: with /proc, which goes away with the command.
-in_root() {
-  unshare --mount sh -c 'mount -t proc proc "$0/proc" && exec chroot --userspec="$1" "$0" env -i \
-    PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 sh -c "$2"' \
-    "$work/root" "$@"
+# bare_root RELEASE: a bare Debian, which is kept for the next run and stays bare.
+bare_root() {
+  [ -d "$roots/bare-$1" ] || make_root "$1" "$roots/bare-$1"
+  echo "$roots/bare-$1"
 }
 
 # What the tool of the build folder makes of a frame.
@@ -73,14 +61,17 @@ trial_folder() {
 }
 
 test_package() {
+  local bare
+  bare=$(bare_root "$(. /etc/os-release && echo "$VERSION_CODENAME")")
+  cp -a "$bare" "$work/root"
   trial_folder "$work/root/trial"
   cp "$package" "$work/root/ssdo.deb"
-  in_root root "apt-get update -qq && apt-get install -qq --no-install-recommends \
+  in_root "$work/root" root "apt-get update -qq && apt-get install -qq --no-install-recommends \
     -o Dpkg::Options::=--force-unsafe-io /ssdo.deb" >"$work/apt.log" 2>&1 ||
     { tail -20 "$work/apt.log"; fail "the package does not install"; }
   say "package installed, with what it depends on: $(du -sh "$work/root" | cut -f1)"
-  in_root nobody "cd /trial && sh smoke.sh /usr"
-  in_root root "apt-get purge -qq ssdo" >"$work/apt.log" 2>&1 || fail "the package cannot be purged"
+  in_root "$work/root" nobody "cd /trial && sh smoke.sh /usr"
+  in_root "$work/root" root "apt-get purge -qq ssdo" >"$work/apt.log" 2>&1 || fail "the package cannot be purged"
   rm -r "$work"/root/{ssdo.deb,trial}
   local left
   left=$(find "$work/root" -xdev -name '*ssdo*' -not -path '*/lib/apt/lists/*' -not -path "$work/root/tmp/*")
@@ -96,6 +87,24 @@ test_install() {
   say "cmake --install: tried by a plain user, after its folder was moved"
 }
 
+# The trial folder is the only thing that a bare system gets: its own libraries are those of apt.
+test_bundle() {
+  local release bare
+  (cd "$build" && cpack -G TGZ -B "$work/bundle") >"$work/cpack.log" 2>&1 ||
+    { cat "$work/cpack.log"; fail "cpack -G TGZ failed"; }
+  say "$(basename "$work"/bundle/*.tar.gz), $(stat --format=%s "$work"/bundle/*.tar.gz) bytes"
+  mkdir "$work/trials"
+  for release in "${releases[@]}"; do
+    bare=$(bare_root "$release")
+    trial_folder "$work/trials/$release"
+    tar -xzf "$work"/bundle/*.tar.gz -C "$work/trials/$release"
+    mv "$work/trials/$release"/ssdo-* "$work/trials/$release/any where"
+    binds=("$work/trials/$release /mnt")
+    in_root "$bare" nobody "cd /mnt && sh smoke.sh '/mnt/any where'"
+    say "bundle of $(du -sh "$work/trials/$release/any where" | cut -f1): tried on a bare $release"
+  done
+}
+
 check_machine
 work=$(mktemp -d)
 chmod 755 "$work"
@@ -104,6 +113,6 @@ trap 'exit 143' INT TERM
 make_expected
 make_package
 test_install
-make_root
 test_package
+test_bundle
 say "all passed"

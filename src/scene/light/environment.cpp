@@ -72,10 +72,13 @@ glm::vec3 Environment::texel_direction(int x, int y) const {
 
 glm::vec2 Environment::texel_at(const glm::vec3& d) const {
   const bool z_up = frame_.up == UpAxis::z;
-  const float azimuth =
-      (z_up ? std::atan2(d.y, d.x) : std::atan2(d.x, d.z)) - glm::radians(frame_.rotate_degrees);
-  const float height = glm::clamp(z_up ? d.z : d.y, -1.0f, 1.0f);
-  const float u = 0.5f - azimuth / (2 * kPi), v = std::acos(height) / kPi;
+  // Angles are found in double and rounded: releases of the C library differ in the last bit of
+  // those that they find in float.
+  const glm::dvec3 to(d);
+  const float azimuth = float(z_up ? std::atan2(to.y, to.x) : std::atan2(to.x, to.z)) -
+                        glm::radians(frame_.rotate_degrees);
+  const float polar = float(std::acos(glm::clamp(z_up ? to.z : to.y, -1.0, 1.0)));
+  const float u = 0.5f - azimuth / (2 * kPi), v = polar / kPi;
   return {(u - std::floor(u)) * float(map_->width), v * float(map_->height)};
 }
 

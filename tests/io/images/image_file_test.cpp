@@ -268,7 +268,8 @@ TEST(ReadImage, TellsTheColourSpace) {
   save(dir / "a.png", {1, 1, 3, 8, 1}, {1, 0.2f, 0.4f});
   EXPECT_EQ(read_image(dir / "a.png").color_space, "sRGB");
   write_floats(dir / "a.hdr", OIIO::ImageSpec(1, 1, 3, OIIO::TypeDesc::FLOAT), {1, 1, 1});
-  EXPECT_EQ(read_image(dir / "a.hdr").color_space, "linear");
+  // "linear", which OpenImageIO 2.5 calls "lin_srgb".
+  EXPECT_THAT(read_image(dir / "a.hdr").color_space, testing::StartsWith("lin"));
 }
 
 /// A damaged picture of Maya's kind ended the tool by a signal in OpenImageIO's reader.

@@ -7,9 +7,11 @@
 #include <ImfMultiPartInputFile.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <random>
 
 #include "io/exr/exr_reader.h"
@@ -31,6 +33,21 @@ std::vector<Bytes> buffers(const ExrPart& part, std::vector<ChannelRows>& to) {
     const bool two_bytes = rows.channel.type == Imf::HALF && !rows.as_float;
     read.emplace_back(part.data_window.area() * (two_bytes ? 2 : 4));
     rows.pixels = read.back().data();
+  }
+  return read;
+}
+
+/// The same with one not-a-number: some processors mark it where they turn half into float, which
+/// OpenEXR from 3.1.13 on leaves to them.
+std::vector<Bytes> with_one_nan(std::vector<Bytes> read, const ChannelRows& form) {
+  if (!form.as_float) return read;
+  for (Bytes& bytes : read) {
+    for (std::size_t i = 0; i + sizeof(float) <= bytes.size(); i += sizeof(float)) {
+      float value;
+      std::memcpy(&value, &bytes[i], sizeof value);
+      if (std::isnan(value)) value = std::numeric_limits<float>::quiet_NaN();
+      std::memcpy(&bytes[i], &value, sizeof value);
+    }
   }
   return read;
 }
@@ -103,7 +120,8 @@ TEST(ZipLines, AreThoseOfOpenExr) {
           std::vector<ChannelRows> to = {form};
           const std::vector<Bytes> found = buffers(part, to);
           ASSERT_TRUE(read_zip_lines(reader, part, part.data_window, to));
-          EXPECT_EQ(found, by_openexr(reader, to)) << form.channel.name << form.as_float;
+          EXPECT_EQ(with_one_nan(found, form), with_one_nan(by_openexr(reader, to), form))
+              << form.channel.name << form.as_float;
         }
         std::vector<ChannelRows> to;
         for (const ExrChannel& channel : part.channels) to.push_back({channel, nullptr, false});
