@@ -59,8 +59,9 @@ class Batch {
         info_(options.verbosity.json, progress_),
         printer_(progress_) {
     const std::size_t views = std::max(std::size_t(1), options.input.views.size());
-    // What is left of a frame that waits for its shot, or of what one has found, is less than half.
-    const std::size_t of_shot = (shot_.most_waiting() + shot_.most_kept()) / 2;
+    // What is left of a frame that waits for its shot is less than half, and what one has found, in
+    // half numbers and packed surfaces, less than a quarter.
+    const std::size_t of_shot = (2 * shot_.most_waiting() + shot_.most_kept() + 3) / 4;
     options_.memory = resources.memory() / (((overlaps_ ? 2 : 1) + of_shot) * views);
     for (const Job& job : jobs_)
       for (const FrameFiles& files : job.views) pictures_.expect(files);
