@@ -193,12 +193,13 @@ TEST(MainJob, PicturesGoThroughTheColourPipeline) {
     flags.insert(flags.begin(), {dir / "in.exr", "-o", dir / "out.png", "--overwrite", "--env",
                                  "0.36", "--bounces", "0"});
     relight(flags);
-    const auto image = OIIO::ImageInput::open((dir / "out.png").string());
+    OIIO::ImageSpec as_written;  // releases of OpenImageIO multiply by alpha in different ways
+    as_written.attribute("oiio:UnassociatedAlpha", 1);
+    const auto image = OIIO::ImageInput::open((dir / "out.png").string(), &as_written);
     std::vector<float> values(64 * 48 * 4);
     EXPECT_TRUE(image && image->read_image(0, 0, 0, 4, OIIO::TypeDesc::FLOAT, values.data()));
-    // OpenImageIO multiplies by alpha on the way in.
     EXPECT_NEAR(values[3], 0.5, 0.003);
-    return values[0] / values[3];
+    return values[0];
   };
   EXPECT_NEAR(ground({"--bits", "16"}), 0.3560, 1e-3) << "ACES, SDR";
   EXPECT_NEAR(ground({}), 0.3560, 0.005);
