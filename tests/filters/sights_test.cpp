@@ -29,9 +29,9 @@ Counts compare(const Geometry& now, const Geometry& other) {
   const ShotReprojection reprojection(kept, own);
   Counts counts;
   for_each_points_of_grid(own, 1, [&](const RowOfPixels& row) {
-    ShotPoints points;
+    RowOfPoints points;
     Sights sights;
-    unsigned char through[ShotPoints::kMost];
+    unsigned char through[RowOfPoints::kMost];
     load_points(own, row, points);
     const bool some = reprojection.find(points, sights);
     reprojection.find_through(points, through);
@@ -92,7 +92,7 @@ TEST(Sights, UnderACameraAtRestAPixelIsItself) {
   const KeptSurfaces own = keep_surfaces(geometry_of(things(0.3), camera, window));
   const ShotReprojection reprojection(own, own);
   for_each_points_of_grid(own, 1, [&](const RowOfPixels& row) {
-    ShotPoints points;
+    RowOfPoints points;
     Sights sights;
     load_points(own, row, points);
     if (!reprojection.find(points, sights)) return;

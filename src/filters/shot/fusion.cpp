@@ -53,7 +53,7 @@
 #define SSDO_FILTERS_SHOT_SAYING_
 namespace ssdo {
 
-/// What another frame says of at most ShotPoints::kMost points in a row.
+/// What another frame says of at most RowOfPoints::kMost points in a row.
 struct Saying {
   const Sights* sights;
   const std::uint16_t* values;  ///< Findings::values
@@ -93,7 +93,7 @@ HWY_INLINE hn::Vec<Channels> weights_at(const Saying& saying, const std::vector<
   auto weight = hn::Zero(d);
   for (const int kind : kinds) {
     const auto of_kind = hn::LoadU(d, saying.weights_of_kinds + kind * stride + c);
-    const auto counts = hn::Set(d, saying.moved[kind * ShotPoints::kMost + i]);
+    const auto counts = hn::Set(d, saying.moved[kind * RowOfPoints::kMost + i]);
     weight = hn::MulAdd(of_kind, counts, weight);
   }
   return weight;
@@ -195,7 +195,7 @@ float same_glow(const Findings& own, const Findings& other, const ShotReprojecti
   const int step = std::max(1, window.width() / kPointsOfGlow);
   double same = 0, all = 0;
   for_each_points_of_grid(own.surfaces, step, [&](const RowOfPixels& row) {
-    ShotPoints points;
+    RowOfPoints points;
     Sights sights;
     load_points(own.surfaces, row, points);
     if (!reprojection.find(points, sights)) return;
@@ -266,11 +266,11 @@ void load(const float* from, glm::vec3& value) { value = {from[0], from[1], from
 /// What a block of points needs.
 struct Fusion::Room {
   Room(std::size_t speakers, std::size_t kinds)
-      : sights(speakers), moved(speakers * kinds * ShotPoints::kMost) {
+      : sights(speakers), moved(speakers * kinds * RowOfPoints::kMost) {
     sayings.reserve(speakers);
   }
 
-  ShotPoints points = {};
+  RowOfPoints points = {};
   std::vector<Sights> sights;
   std::vector<float> moved;
   std::vector<Saying> sayings;
@@ -306,8 +306,8 @@ void Fusion::add(const std::vector<OtherFindings>& others) {
   const std::size_t kinds = light_.sources.size() + 1;
   for_each_row(window.height(), [&](int y) {
     Room room(speakers.size(), kinds);
-    for (int x = 0; x < window.width(); x += ShotPoints::kMost) {
-      const RowOfPixels row{x, y, 1, std::min(ShotPoints::kMost, window.width() - x)};
+    for (int x = 0; x < window.width(); x += RowOfPoints::kMost) {
+      const RowOfPixels row{x, y, 1, std::min(RowOfPoints::kMost, window.width() - x)};
       load_points(own_.surfaces, row, room.points);
       room.sayings.clear();
       for (std::size_t k = 0; k < speakers.size(); ++k) {
@@ -315,9 +315,9 @@ void Fusion::add(const std::vector<OtherFindings>& others) {
         if (!s.reprojection.find(room.points, room.sights[k])) continue;
         const float* moved = nullptr;
         if (s.moved) {
-          float* to = &room.moved[k * kinds * ShotPoints::kMost];
+          float* to = &room.moved[k * kinds * RowOfPoints::kMost];
           for (std::size_t kind = 0; kind < kinds; ++kind)
-            s.moved->row(int(kind) - 1, row, to + kind * ShotPoints::kMost);
+            s.moved->row(int(kind) - 1, row, to + kind * RowOfPoints::kMost);
           moved = to;
         }
         room.sayings.push_back({&room.sights[k],

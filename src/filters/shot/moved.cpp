@@ -39,9 +39,9 @@ class MovedPoints {
         moved_(Plane<unsigned char>::like(Plane<unsigned char>(columns_, rows_))) {
     const ShotReprojection reprojection(looks, stands);
     for_each_row(rows_, [&](int row) {
-      ShotPoints points;
-      for (int column = 0; column < columns_; column += ShotPoints::kMost) {
-        const int count = std::min(ShotPoints::kMost, columns_ - column);
+      RowOfPoints points;
+      for (int column = 0; column < columns_; column += RowOfPoints::kMost) {
+        const int count = std::min(RowOfPoints::kMost, columns_ - column);
         load_points(stands, {column * stride_, row * stride_, stride_, count}, points);
         reprojection.find_through(points, &moved_(column, row));
       }

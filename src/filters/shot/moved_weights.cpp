@@ -36,8 +36,8 @@ namespace ssdo {
 
 /// The cones in which receivers see a source.
 struct ConesOfPoints {
-  alignas(64) float to[3][ShotPoints::kMost];
-  alignas(64) float distance[ShotPoints::kMost], tangent[ShotPoints::kMost];
+  alignas(64) float to[3][RowOfPoints::kMost];
+  alignas(64) float distance[RowOfPoints::kMost], tangent[RowOfPoints::kMost];
 };
 
 }  // namespace ssdo
@@ -46,7 +46,7 @@ struct ConesOfPoints {
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-constexpr int kApart = ShotPoints::kMost;
+constexpr int kApart = RowOfPoints::kMost;
 constexpr float kMostHidden = 0.1f;
 
 HWY_INLINE V dot_of(const V3& a, const V3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -60,7 +60,7 @@ HWY_INLINE V form_factor(const MovedPiece& piece, const V3& position, const V3& 
 }
 
 /// How much of light from everywhere counts at each of the points; 1 where there is no surface.
-void weigh_all(const ShotPoints& points, const MovedPiece* pieces, std::size_t count,
+void weigh_all(const RowOfPoints& points, const MovedPiece* pieces, std::size_t count,
                float* weights) {
   for (int i = 0; i < points.count; i += kLanes) {
     const V3 position = load_apart(&points.position[0][i], kApart),
@@ -85,7 +85,7 @@ HWY_INLINE V lit_beside(const MovedPiece& piece, const V3& position, const V3& c
   return hn::IfThenElse(between, lit, set(1));
 }
 
-void weigh_source(const ShotPoints& points, const ConesOfPoints& cones, const MovedPiece* pieces,
+void weigh_source(const RowOfPoints& points, const ConesOfPoints& cones, const MovedPiece* pieces,
                   std::size_t count, float* weights) {
   for (int i = 0; i < points.count; i += kLanes) {
     const V3 position = load_apart(&points.position[0][i], kApart),
@@ -130,7 +130,7 @@ Plane<float> least_around(const Plane<float>& plane) {
 }
 
 /// Of the receivers, those that exist.
-void find_cones(const Source& source, const ShotPoints& points, ConesOfPoints& cones) {
+void find_cones(const Source& source, const RowOfPoints& points, ConesOfPoints& cones) {
   for (int i = 0; i < points.count; ++i) {
     const glm::vec3 at(points.position[0][i], points.position[1][i], points.position[2][i]);
     const SourceCone cone = std::isnan(at.z) ? SourceCone() : source.cone(at);
@@ -148,15 +148,15 @@ MovedWeights::MovedWeights(const KeptSurfaces& now, const std::vector<MovedPiece
       of_sources_(light.sources.size(), of_all_) {
   const int width = now.window.width(), height = now.window.height();
   for_each_row(of_all_.height, [&](int row) {
-    ShotPoints points;
+    RowOfPoints points;
     ConesOfPoints cones;
-    alignas(64) float weights[ShotPoints::kMost];
+    alignas(64) float weights[RowOfPoints::kMost];
     const int y = std::min(row * kSquare + kSquare / 2, height - 1);
     for (int column = 0; column < of_all_.width;) {
       // The middle of the last square may lie outside.
       const int x = column * kSquare + kSquare / 2, inside = (width - 1 - x) / kSquare + 1;
       const RowOfPixels middles =
-          x < width ? RowOfPixels{x, y, kSquare, std::min(ShotPoints::kMost, inside)}
+          x < width ? RowOfPixels{x, y, kSquare, std::min(RowOfPoints::kMost, inside)}
                     : RowOfPixels{width - 1, y, kSquare, 1};
       load_points(now, middles, points);
       HWY_DYNAMIC_DISPATCH(weigh_all)(points, pieces.data(), pieces.size(), weights);

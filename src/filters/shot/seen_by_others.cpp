@@ -21,14 +21,14 @@ SeenByOthers seen_by(const std::vector<const KeptSurfaces*>& others, const KeptS
     if (other->world_known) reprojections.emplace_back(*other, own);
   shown.frames = int(reprojections.size());
   long points = 0, some = 0, times = 0, through = 0;
-  ShotPoints at;
+  RowOfPoints at;
   Sights sights;
   for_each_points_of_grid(
       own, std::max(1, own.window.width() / kPoints), [&](const RowOfPixels& row) {
         load_points(own, row, at);
-        int shows[ShotPoints::kMost] = {}, looks[ShotPoints::kMost] = {};
+        int shows[RowOfPoints::kMost] = {}, looks[RowOfPoints::kMost] = {};
         for (const ShotReprojection& reprojection : reprojections) {
-          unsigned char is_through[ShotPoints::kMost];
+          unsigned char is_through[RowOfPoints::kMost];
           const bool found = reprojection.find(at, sights);
           reprojection.find_through(at, is_through);
           for (int i = 0; i < row.count; ++i) {

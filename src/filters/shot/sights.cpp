@@ -25,7 +25,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-constexpr int kMost = ShotPoints::kMost;
+constexpr int kMost = RowOfPoints::kMost;
 static_assert(kMost % kMostLanes == 0);
 
 /// A vector of what pixels show. `normal` has the length `length`.
@@ -63,7 +63,7 @@ HWY_INLINE KeptLanes load_kept(const float* from, std::uint32_t least_rounding) 
 HWY_INLINE V dot_unfused(const V3& a, const V3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /// The kept pixels as points.
-void unpack_points(const float (*from)[4], std::uint32_t least_rounding, ShotPoints* points) {
+void unpack_points(const float (*from)[4], std::uint32_t least_rounding, RowOfPoints* points) {
   for (int i = 0; i < points->count; i += kLanes) {
     KeptLanes kept = load_kept(from[i], least_rounding);
     V3& p = kept.position;
@@ -98,7 +98,7 @@ HWY_INLINE V to_steps(V pixels) {
 }
 
 /// False where all are outside.
-HWY_INLINE bool find_places(const ShotReprojection::View& view, const ShotPoints& points,
+HWY_INLINE bool find_places(const ShotReprojection::View& view, const RowOfPoints& points,
                             Places& places) {
   const DI di;
   bool some = false;
@@ -150,7 +150,7 @@ struct Tested {
   M same, through;
   V weights[4], sum;
 };
-HWY_INLINE Tested test(const ShotReprojection::View& view, const ShotPoints& points,
+HWY_INLINE Tested test(const ShotReprojection::View& view, const RowOfPoints& points,
                        const Places& places, const Around& around, int i) {
   const V3 p = load_apart(&places.position[0][i], kMost),
            normal = turn(view.turn, load_apart(&points.normal[0][i], kMost));
@@ -182,7 +182,7 @@ HWY_INLINE Tested test(const ShotReprojection::View& view, const ShotPoints& poi
   return tested;
 }
 
-bool find_points(const ShotReprojection::View& view, const ShotPoints& points, Sights* sights) {
+bool find_points(const ShotReprojection::View& view, const RowOfPoints& points, Sights* sights) {
   Places places;
   if (!find_places(view, points, places)) return false;
   Around around;
@@ -202,7 +202,7 @@ bool find_points(const ShotReprojection::View& view, const ShotPoints& points, S
 }
 
 /// Whether the frame may look through some place: all that is around it lies behind.
-HWY_INLINE bool may_look_through(const ShotReprojection::View& view, const ShotPoints& points,
+HWY_INLINE bool may_look_through(const ShotReprojection::View& view, const RowOfPoints& points,
                                  const Places& places) {
   alignas(64) float nearest[kMost];
   for (int i = 0; i < points.count; ++i) {
@@ -223,7 +223,7 @@ HWY_INLINE bool may_look_through(const ShotReprojection::View& view, const ShotP
   return any(some);
 }
 
-void find_points_through(const ShotReprojection::View& view, const ShotPoints& points,
+void find_points_through(const ShotReprojection::View& view, const RowOfPoints& points,
                          unsigned char* through) {
   std::fill_n(through, points.count, static_cast<unsigned char>(0));
   Places places;
@@ -251,13 +251,13 @@ HWY_EXPORT(unpack_points);
 HWY_EXPORT(find_points);
 HWY_EXPORT(find_points_through);
 
-void load_points(const KeptSurfaces& own, const RowOfPixels& row, ShotPoints& points) {
-  alignas(64) float kept[ShotPoints::kMost][4];
+void load_points(const KeptSurfaces& own, const RowOfPixels& row, RowOfPoints& points) {
+  alignas(64) float kept[RowOfPoints::kMost][4];
   const KeptSurface* from = &own.pixels[own.index(row.x, row.y)];
   points.count = row.count;
   for (int i = 0; i < row.count; ++i) std::memcpy(kept[i], from + i * row.step, sizeof(*from));
   const KeptSurface nothing{{0, 0, -std::numeric_limits<float>::infinity()}, 0};
-  for (int i = row.count; i < ShotPoints::kMost; ++i)
+  for (int i = row.count; i < RowOfPoints::kMost; ++i)
     std::memcpy(kept[i], &nothing, sizeof(nothing));
   HWY_DYNAMIC_DISPATCH(unpack_points)(kept, own.least_rounding, &points);
 }
@@ -282,11 +282,11 @@ ShotReprojection::ShotReprojection(const KeptSurfaces& other, const KeptSurfaces
   view_.pixels = other.pixels.data();
 }
 
-bool ShotReprojection::find(const ShotPoints& points, Sights& sights) const {
+bool ShotReprojection::find(const RowOfPoints& points, Sights& sights) const {
   return HWY_DYNAMIC_DISPATCH(find_points)(view_, points, &sights);
 }
 
-void ShotReprojection::find_through(const ShotPoints& points, unsigned char* through) const {
+void ShotReprojection::find_through(const RowOfPoints& points, unsigned char* through) const {
   HWY_DYNAMIC_DISPATCH(find_points_through)(view_, points, through);
 }
 

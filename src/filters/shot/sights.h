@@ -11,7 +11,7 @@
 namespace ssdo {
 
 /// Points of a frame, side by side or a few pixels apart in a row.
-struct ShotPoints {
+struct RowOfPoints {
   static constexpr int kMost = 64;
 
   int count = 0;
@@ -20,28 +20,28 @@ struct ShotPoints {
   alignas(64) float normal[3][kMost], rounding[kMost];
 };
 
-/// Points at (x, y), (x + step, y), ...; at most ShotPoints::kMost.
+/// Points at (x, y), (x + step, y), ...; at most RowOfPoints::kMost.
 struct RowOfPixels {
   int x, y, step, count;
 };
-void load_points(const KeptSurfaces& own, const RowOfPixels& row, ShotPoints& points);
+void load_points(const KeptSurfaces& own, const RowOfPixels& row, RowOfPoints& points);
 
 /// Calls visit(RowOfPixels) for all pixels of a grid of that step, in order.
 template <class Visit>
 void for_each_points_of_grid(const KeptSurfaces& own, int step, const Visit& visit) {
   const int width = own.window.width(), columns = (width + step - 1) / step;
   for (int y = 0; y < own.window.height(); y += step) {
-    for (int column = 0; column < columns; column += ShotPoints::kMost)
-      visit(RowOfPixels{column * step, y, step, std::min(ShotPoints::kMost, columns - column)});
+    for (int column = 0; column < columns; column += RowOfPoints::kMost)
+      visit(RowOfPixels{column * step, y, step, std::min(RowOfPoints::kMost, columns - column)});
   }
 }
 
 /// Where another frame shows the points.
 struct Sights {
   /// The upper left one of four pixels, by KeptSurfaces::index(); -1: it does not show the point.
-  alignas(64) std::int32_t pixel[ShotPoints::kMost];
+  alignas(64) std::int32_t pixel[RowOfPoints::kMost];
   /// Of the four, row by row; their sum is 1. 0: that pixel shows another surface.
-  alignas(64) float weight[4][ShotPoints::kMost];
+  alignas(64) float weight[4][RowOfPoints::kMost];
 };
 
 /// Finds the points of a frame in another one, as Reprojection does, which is the reference: for
@@ -54,11 +54,11 @@ class ShotReprojection {
   ShotReprojection(const KeptSurfaces& other, const KeptSurfaces& own);
 
   /// False where it shows none of them; `sights` then hold nothing.
-  bool find(const ShotPoints& points, Sights& sights) const;
+  bool find(const RowOfPoints& points, Sights& sights) const;
 
   /// Sets through[i] to 1 where it looks through the place of a point at what lies behind, which
   /// find() does not find, else to 0: SeenBefore::through.
-  void find_through(const ShotPoints& points, unsigned char* through) const;
+  void find_through(const RowOfPoints& points, unsigned char* through) const;
 
   /// From the camera space of `own` to that of `other`, row by row, and its projection to places in
   /// KeptSurfaces from the centre of its first pixel.
