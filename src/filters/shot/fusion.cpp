@@ -282,8 +282,7 @@ Fusion::Fusion(const Findings& own, const Light& light)
     const auto first = kinds_.begin() + std::ptrdiff_t(c);
     std::vector<int> group(first, first + Findings::kGroup);
     std::ranges::sort(group);
-    const auto rest = std::ranges::unique(group);
-    group.erase(rest.begin(), rest.end());
+    group.erase(std::unique(group.begin(), group.end()), group.end());
     groups_.push_back(std::move(group));
   }
   const std::size_t count = own.stride > 0 ? own.values.size() : 0;

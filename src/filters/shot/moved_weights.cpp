@@ -109,8 +109,6 @@ HWY_EXPORT(weigh_source);
 
 namespace {
 
-constexpr int kSquare = MovedWeights::kSquare;
-
 /// The least of the squares around each.
 Plane<float> least_around(const Plane<float>& plane) {
   Plane<float> across = Plane<float>::like(plane), out = Plane<float>::like(plane);
