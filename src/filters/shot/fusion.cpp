@@ -152,9 +152,6 @@ HWY_EXPORT(finish_means);
 
 namespace {
 
-/// Points across a frame, about, that are asked for their radiance.
-constexpr int kPointsOfGlow = 480;
-
 /// Whether planes are of the same things, though a frame may lack some of them.
 bool same_things(const Findings& a, const Findings& b) {
   return std::ranges::equal(a.planes, b.planes, {}, &FoundPlane::source, &FoundPlane::source);
@@ -191,8 +188,7 @@ std::vector<std::uint16_t> arrange(const Findings& other, const std::vector<int>
 /// How much of the radiance of the points that both show is the same.
 float same_glow(const Findings& own, const Findings& other, const ShotReprojection& reprojection) {
   if (own.glow.empty() && other.glow.empty()) return 1;
-  const Window& window = own.surfaces.window;
-  const int step = std::max(1, window.width() / kPointsOfGlow);
+  const int step = grid_step(own.surfaces);
   double same = 0, all = 0;
   for_each_points_of_grid(own.surfaces, step, [&](const RowOfPixels& row) {
     RowOfPoints points;

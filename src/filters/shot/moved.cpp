@@ -19,8 +19,8 @@
 namespace ssdo {
 namespace {
 
-/// Points across a frame, about, and across a piece.
-constexpr int kPoints = 480, kPiece = 8;
+/// Points across a piece.
+constexpr int kPiece = 8;
 
 /// A piece of fewer points may be an edge that one of both cameras misses.
 constexpr int kFewestPoints = 3;
@@ -33,7 +33,7 @@ class MovedPoints {
  public:
   MovedPoints(const KeptSurfaces& stands, const KeptSurfaces& looks)
       : stands_(stands),
-        stride_(std::max(1, stands.window.width() / kPoints)),
+        stride_(grid_step(stands)),
         columns_((stands.window.width() + stride_ - 1) / stride_),
         rows_((stands.window.height() + stride_ - 1) / stride_),
         moved_(Plane<unsigned char>::like(Plane<unsigned char>(columns_, rows_))) {

@@ -26,6 +26,9 @@ struct RowOfPixels {
 };
 void load_points(const KeptSurfaces& own, const RowOfPixels& row, RowOfPoints& points);
 
+/// The step of a grid that has about 480 points across a frame: enough to find what moves or glows.
+inline int grid_step(const KeptSurfaces& own) { return std::max(1, own.window.width() / 480); }
+
 /// Calls visit(RowOfPixels) for all pixels of a grid of that step, in order.
 template <class Visit>
 void for_each_points_of_grid(const KeptSurfaces& own, int step, const Visit& visit) {
