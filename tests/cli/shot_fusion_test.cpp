@@ -281,9 +281,9 @@ TEST_F(AShot, DoesWithoutFramesThatCannotBeUsed) {
 
 TEST_F(AShot, WhatAFrameLacksIsTakenFromTheOthers) {
   write_shot();
-  const Words middle = {"--frames", "5", "--shot", "2"};
+  const Words middle = {"--frames", "5", "--shot", "2", "--products", "all"};
   ASSERT_EQ(run(middle).code, 0);
-  ASSERT_EQ(run({"--frames", "5", "--shot", "1"}, "near").code, 0);
+  ASSERT_EQ(run({"--frames", "5", "--shot", "1", "--products", "all"}, "near").code, 0);
   for (const int frame : {3, 7}) {  // no albedo: they make no bounce
     FramePart part = frame_of(take_picture(boxes(), passing(frame), kFrame));
     for (const char* c : {"R", "G", "B"})
@@ -292,6 +292,7 @@ TEST_F(AShot, WhatAFrameLacksIsTakenFromTheOthers) {
   }
   ASSERT_EQ(run(middle, "lacks").code, 0);
   EXPECT_EQ(found(5, "ao.Y", "lacks").pixels, found(5, "ao.Y").pixels);
+  EXPECT_EQ(found(5, "bent.X", "lacks").pixels, found(5, "bent.X").pixels);
   EXPECT_EQ(found(5, "direct.G", "lacks").pixels, found(5, "direct.G").pixels);
   EXPECT_EQ(found(5, "bounce.G", "lacks").pixels, found(5, "bounce.G", "near").pixels);
   EXPECT_NE(found(5, "bounce.G").pixels, found(5, "bounce.G", "near").pixels);
