@@ -73,13 +73,13 @@ TEST(ManPage, HasTheFlagsOfTheHelpAndNoOthers) {
   EXPECT_EQ(flags_of_headings(), binary);
 }
 
-/// Those in ssdo-farm(7) that are not ours, but of sbatch, parallel and make.
-const Flags kOfSchedulers = {"--array",  "--cpus-per-task", "--dependency", "--mem",
-                             "--joblog", "--resume-failed", "--keep-going"};
+/// Those in ssdo-farm(7) that are not ours, but of sbatch, parallel, make and apt-get.
+const Flags kOfOthers = {"--array",  "--cpus-per-task", "--dependency", "--mem",
+                         "--joblog", "--resume-failed", "--keep-going", "--no-install-recommends"};
 
 TEST(ManPage, MentionsNoFlagThatDoesNotExist) {
   Flags binary = flags_of_binary();
-  binary.insert(kOfSchedulers.begin(), kOfSchedulers.end());
+  binary.insert(kOfOthers.begin(), kOfOthers.end());
   static const std::regex flag("(?:^|[^-\\w])(--[a-z][a-z-]*)");
   const std::string text = page(kManual) + page(kMethods) + page(kFarm);
   for (std::sregex_iterator it(text.begin(), text.end(), flag), end; it != end; ++it) {
