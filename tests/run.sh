@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Installs what is needed, builds, and passes the tests. `all` passes them with sanitizers too,
-# fuzzes for a minute each, and tries a shot on a farm, the package, faults, cppcheck and clang-tidy.
+# fuzzes for half a minute each, and tries a shot on a farm, the package, faults, cppcheck and
+# clang-tidy.
 # `edit` is for between two edits: it builds and runs the tests whose files or names hold NAME, with
 # what these need, for one instruction set.
 #   tests/run.sh [all | edit NAME... | STAGE...]
