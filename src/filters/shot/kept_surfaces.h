@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -26,6 +27,11 @@ struct KeptSurface {
   static constexpr float kNormalSteps = 2047;  ///< from 0 to 1
 };
 static_assert(sizeof(KeptSurface) == 16);
+
+/// As four numbers for vectors.
+inline void copy_bits(const KeptSurface& from, float (&to)[4]) {
+  std::memcpy(to, static_cast<const void*>(&from), sizeof(from));
+}
 
 /// Those of a frame, with a border of one pixel that shows nothing.
 struct KeptSurfaces {

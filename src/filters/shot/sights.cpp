@@ -9,7 +9,6 @@
 #include "filters/shot/sights.h"
 
 #include <algorithm>
-#include <cstring>
 #include <glm/matrix.hpp>
 #include <limits>
 
@@ -137,10 +136,10 @@ HWY_INLINE void copy_around(const ShotReprojection::View& view, const Places& pl
     const KeptSurface* above = view.pixels + std::max(places.pixel[i], 0);
     const KeptSurface* below = above + view.stride;
     // cppcheck-suppress uninitvar
-    std::memcpy(around.pixel[0][i], above, sizeof(KeptSurface));
-    std::memcpy(around.pixel[1][i], above + 1, sizeof(KeptSurface));
-    std::memcpy(around.pixel[2][i], below, sizeof(KeptSurface));
-    std::memcpy(around.pixel[3][i], below + 1, sizeof(KeptSurface));
+    copy_bits(above[0], around.pixel[0][i]);
+    copy_bits(above[1], around.pixel[1][i]);
+    copy_bits(below[0], around.pixel[2][i]);
+    copy_bits(below[1], around.pixel[3][i]);
   }
 }
 
@@ -213,14 +212,14 @@ HWY_INLINE bool may_look_through(const ShotReprojection::View& view, const RowOf
     nearest[i] = nearer(down, nearer(across, above->position.z, above[1].position.z),
                         nearer(across, below->position.z, below[1].position.z));
   }
-  M some = set(0) > set(0);
+  bool some = false;
   for (int i = 0; i < points.count; i += kLanes) {
     const V z = load(&places.position[2][i]);
     const M inside = hn::RebindMask(D(), hn::Not(hn::LoadU(DI(), &places.pixel[i]) < set_int(0)));
     const V behind = z - set(float(Reprojection::kBehind)) * hn::Abs(z);
-    some = hn::Or(some, hn::And(inside, load(&nearest[i]) < behind));
+    some = some || any(hn::And(inside, load(&nearest[i]) < behind));
   }
-  return any(some);
+  return some;
 }
 
 void find_points_through(const ShotReprojection::View& view, const RowOfPoints& points,
@@ -255,10 +254,9 @@ void load_points(const KeptSurfaces& own, const RowOfPixels& row, RowOfPoints& p
   alignas(64) float kept[RowOfPoints::kMost][4];
   const KeptSurface* from = &own.pixels[own.index(row.x, row.y)];
   points.count = row.count;
-  for (int i = 0; i < row.count; ++i) std::memcpy(kept[i], from + i * row.step, sizeof(*from));
+  for (int i = 0; i < row.count; ++i) copy_bits(from[i * row.step], kept[i]);
   const KeptSurface nothing{{0, 0, -std::numeric_limits<float>::infinity()}, 0};
-  for (int i = row.count; i < RowOfPoints::kMost; ++i)
-    std::memcpy(kept[i], &nothing, sizeof(nothing));
+  for (int i = row.count; i < RowOfPoints::kMost; ++i) copy_bits(nothing, kept[i]);
   HWY_DYNAMIC_DISPATCH(unpack_points)(kept, own.least_rounding, &points);
 }
 
