@@ -18,14 +18,20 @@ inline constexpr RTCSceneFlags kFilterOfQuery = RTC_SCENE_FLAG_FILTER_FUNCTION_I
 
 inline void init_context(RayContext& context) { rtcInitRayQueryContext(&context); }
 
+/// `arguments` of either query, initialised.
+template <class Arguments>
+void set_filter(Arguments& arguments, RayContext& context, RTCFilterFunctionN filter) {
+  arguments.context = &context;
+  arguments.filter = filter;
+  arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+}
+
 /// Traces a ray up to the first triangle that `filter` accepts; null: that is met.
 inline void trace_first(RTCScene scene, RayContext& context, RTCFilterFunctionN filter,
                         RTCRayHit& ray) {
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
-  arguments.context = &context;
-  arguments.filter = filter;
-  arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+  set_filter(arguments, context, filter);
   rtcIntersect1(scene, &ray, &arguments);
 }
 
@@ -33,9 +39,7 @@ inline void trace_first(RTCScene scene, RayContext& context, RTCFilterFunctionN 
 inline void trace_any(RTCScene scene, RayContext& context, RTCFilterFunctionN filter, RTCRay& ray) {
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
-  arguments.context = &context;
-  arguments.filter = filter;
-  arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+  set_filter(arguments, context, filter);
   rtcOccluded1(scene, &ray, &arguments);
 }
 

@@ -44,12 +44,14 @@ void InfoReport::show(const Frame& frame, const SeenByOthers& shown) {
                      {"times", shown.times},
                      {"through", shown.through}};
   }
+  const std::string name =
+      frame.view.empty() ? frame.input : fmt::format("{} (view {})", frame.input, frame.view);
   if (shown.frames == 0)
-    return print(fmt::format("{}: no frame around it knows its world\n", frame.input));
+    return print(fmt::format("{}: no frame around it knows its world\n", name));
   print(
       fmt::format("{}: {} frames around it show {:.3g} % of its surfaces, {:.3g} of them each in "
                   "the mean, and look through {:.2g} %, which move\n",
-                  frame.input, shown.frames, 100 * shown.some, shown.times, 100 * shown.through));
+                  name, shown.frames, 100 * shown.some, shown.times, 100 * shown.through));
 }
 
 void InfoReport::note(const Error& error) {
