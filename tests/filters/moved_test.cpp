@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "filters/shot/fusion.h"
@@ -70,6 +71,22 @@ TEST(Moved, WeightsAreThoseOfWhatTheBallMayHide) {
   EXPECT_EQ(at({0.8, 0.45, 0}), 0);
   EXPECT_GT(at({1.3, 2.2, 0}), 0.5f);
   EXPECT_GT(at({1.3, 2.2, 0}), at({1, 1, 0}));
+}
+
+/// A ball above a floor that the camera looks down on.
+TEST(Moved, WeightsAreThoseOfTheFormFactor) {
+  const Camera above = look_at(camera_from_fov(45, kWindow, 1), {0, 0, 4}, {}, {0, 1, 0});
+  const KeptSurfaces floor = keep_surfaces(geometry_of(plane({}, {0, 0, 1}), above, kWindow));
+  const float radius = 0.3f, height = 2;
+  for (const float hidden : {0.02f, 0.05f, 0.09f, 0.2f}) {
+    const float area = hidden * 3.14159265f * (height * height + radius * radius);
+    const MovedWeights weights(floor, {{{0, 0, -2}, radius, area}},
+                               model_light(Environment::constant(glm::vec3(1)), glm::mat3(1)));
+    float weight;
+    weights.row(-1, {kWindow.width() / 2, kWindow.height() / 2, 1, 1}, &weight);
+    const float left = std::max(1 - hidden / 0.1f, 0.0f);
+    EXPECT_NEAR(weight, left * left, 0.01f) << hidden;
+  }
 }
 
 Findings findings_of(double value, const Geometry& geometry) {

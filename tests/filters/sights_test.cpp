@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "filters/reprojection.h"
 #include "support/analytic_scene.h"
@@ -62,6 +63,33 @@ Counts compare(const Geometry& now, const Geometry& other) {
     }
   });
   return counts;
+}
+
+/// Normals that look away from the camera too, and roundings over a factor of 1000.
+TEST(KeptSurfaces, KeepNormalsAndRoundings) {
+  const Window window{0, 0, 70, 30};
+  const Camera camera = look_at(camera_from_fov(45, window, 1), {0, 0, 4}, {}, {0, 1, 0});
+  Geometry geometry = geometry_of(plane({}, {0, 0, 1}), camera, window);
+  const int count = int(geometry.surfel.size());
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count, turn = 2.4 * i, across = std::sqrt(1 - z * z);
+    Surfel& s = geometry.surfel[std::size_t(i)];
+    s.normal = glm::vec3(across * std::cos(turn), across * std::sin(turn), z);
+    s.rounding = float(1e-4 * std::pow(1000, double(i) / count));
+  }
+  const KeptSurfaces kept = keep_surfaces(geometry);
+  for_each_points_of_grid(kept, 1, [&](const RowOfPixels& row) {
+    RowOfPoints points;
+    load_points(kept, row, points);
+    for (int i = 0; i < row.count; ++i) {
+      const Surfel& s = geometry.surfel(row.x + i, row.y);
+      const glm::vec3 normal(points.normal[0][i], points.normal[1][i], points.normal[2][i]);
+      EXPECT_LT(glm::distance(normal, s.normal), 5e-4f);
+      EXPECT_GE(points.rounding[i], s.rounding);
+      EXPECT_LE(points.rounding[i], 1.1251f * s.rounding);
+      EXPECT_EQ(points.position[2][i], s.position.z);
+    }
+  });
 }
 
 TEST(Sights, AreThoseOfTheScalarForm) {
