@@ -8,6 +8,7 @@
 
 #include "filters/shot/fusion.h"
 #include "filters/shot/moved_weights.h"
+#include "scene/light/lamps/lamp.h"
 #include "scene/light/light.h"
 #include "support/analytic_scene.h"
 
@@ -87,6 +88,25 @@ TEST(Moved, WeightsAreThoseOfTheFormFactor) {
     const float left = std::max(1 - hidden / 0.1f, 0.0f);
     EXPECT_NEAR(weight, left * left, 0.01f) << hidden;
   }
+}
+
+/// The shadow of a ball is as wide as the ball and the penumbra of the lamp.
+TEST(Moved, TheShadowOfAWideLampIsWider) {
+  const Camera above = look_at(camera_from_fov(45, kWindow, 1), {0, 0, 4}, {}, {0, 1, 0});
+  const KeptSurfaces floor = keep_surfaces(geometry_of(plane({}, {0, 0, 1}), above, kWindow));
+  const std::vector<MovedPiece> pieces = {{{0, 0, -2}, 0.3f, 0.28f}};
+  const glm::dvec2 px = above.project(above.to_camera({1.2, 0, 0}));  // 0.8 off the ball's middle
+  const auto weight_under = [&](double radius) {
+    Lamp lamp;
+    lamp.position = {0, 0, 6}, lamp.radius = radius;
+    Light light = model_light(Environment::constant(glm::vec3(0)), glm::mat3(1));
+    light.sources = {make_source(lamp, {above.rotation, above.origin}, 1e-4)};
+    float weight;
+    MovedWeights(floor, pieces, light).row(0, {int(px.x), int(px.y), 1, 1}, &weight);
+    return weight;
+  };
+  EXPECT_EQ(weight_under(0.01), 1);
+  EXPECT_LT(weight_under(1), 0.5f);
 }
 
 Findings findings_of(double value, const Geometry& geometry) {

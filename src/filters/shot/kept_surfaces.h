@@ -48,7 +48,7 @@ struct KeptSurfaces {
   std::size_t size() const { return std::size_t(stride()) * std::size_t(window.height() + 2); }
 };
 
-/// Normals are kept to 0.0005 radians, and roundings to an eighth, upward.
+/// Normals are kept to 0.001 radians, and roundings to an eighth, upward.
 KeptSurfaces keep_surfaces(const Geometry& geometry);
 
 }  // namespace ssdo
