@@ -7,8 +7,8 @@
 # what these need, for one instruction set.
 #   tests/run.sh [all | edit NAME... | STAGE...]
 # A STAGE is release, address, fuzz, thread, farm, package, faults, system (the last three at once),
-# lint, tidy, clang (the tests by another compiler) or debian13 (on another release); $SSDO_OPTIONS
-# goes to cmake, for example -DSSDO_ONE_ISA=avx2.
+# lint, tidy, clang (the tests by another compiler), debian13 or testing (on another release) or aarch64
+# (tests of estimators under qemu); $SSDO_OPTIONS goes to cmake, for example -DSSDO_ONE_ISA=avx2.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 mkdir -p "$root/build"
@@ -138,10 +138,15 @@ run_clang() {
   run_tests "$root/build/clang"
 }
 
-# Not of `all`: it builds everything once more.
-run_debian13() {
+# Not of `all`: these build everything once more.
+run_debian13() { on_platform trixie; }
+run_testing() { on_platform testing; }
+run_aarch64() { on_platform bookworm tests/platforms/aarch64.sh; }
+
+# on_platform RELEASE [COMMAND]
+on_platform() {
   install_packages debootstrap
-  as_root env CI="${CI:-}" SSDO_OPTIONS="${SSDO_OPTIONS:-}" "$root/tests/platforms/run.sh" trixie
+  as_root env CI="${CI:-}" SSDO_OPTIONS="${SSDO_OPTIONS:-}" "$root/tests/platforms/run.sh" "$@"
 }
 
 run_farm() {

@@ -61,7 +61,7 @@ TEST_P(BitmaskIsa, GivesWhatTheScalarBuildGives) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Vectors, BitmaskIsa, testing::Values("avx2", "avx512"),
+INSTANTIATE_TEST_SUITE_P(Vectors, BitmaskIsa, testing::ValuesIn(kVectorIsas),
                          [](const auto& isa) { return isa.param; });
 
 TEST(BitmaskIsaNames, OthersAreRefused) {

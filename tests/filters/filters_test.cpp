@@ -43,7 +43,7 @@ TEST_P(EveryFilter, AgreesAmongInstructionSets) {
     return filtered(GetParam(), in, g);
   };
   const Products scalar = run("scalar");
-  for (const char* isa : {"avx2", "avx512"}) {
+  for (const char* isa : kVectorIsas) {
     if (!has_isa(isa)) continue;
     SCOPED_TRACE(isa);
     const Products vector = run(isa);

@@ -294,7 +294,7 @@ TEST(Shares, AgreeAmongInstructionSets) {
         return from_shares(to_shares(in, scene), scene);
       };
       const Products scalar = run("scalar");
-      for (const char* isa : {"avx2", "avx512"}) {
+      for (const char* isa : kVectorIsas) {
         if (!has_isa(isa)) continue;
         const Products vector = run(isa);
         for (std::size_t i = 0; i < in.ao.size(); ++i) {

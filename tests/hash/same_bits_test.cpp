@@ -88,7 +88,7 @@ std::map<std::string, std::string> hashes_of(const Products& products) {
 
 TEST(SameBits, AsRecorded) {
   RecordedHashes recorded;
-  for (const char* isa : {"scalar", "avx2", "avx512"}) {
+  for (const char* isa : kIsas) {
     if (!has_isa(isa)) continue;
     const ChosenIsa chosen(isa);
     for (const Case& one : cases()) {
@@ -155,7 +155,7 @@ TEST(SameBits, VectorsAreWithinABoundOfOneLane) {
     const Case one{bound.method, "none"};
     if (!has_isa("scalar")) return;
     const Products scalar = products_by("scalar", one);
-    for (const char* isa : {"avx2", "avx512"}) {
+    for (const char* isa : kVectorIsas) {
       if (!has_isa(isa)) continue;
       const Products vector = products_by(isa, one);
       Distance distance;

@@ -51,7 +51,7 @@ TEST(PriorNetwork, HasTheSameBitsOnEveryInstructionSet) {
       const ChosenIsa scalar("scalar");
       first = evaluated(vector, 16);
     }
-    for (const char* name : {"avx2", "avx512"}) {
+    for (const char* name : kVectorIsas) {
       if (!has_isa(name)) continue;
       const ChosenIsa isa(name);
       EXPECT_EQ(evaluated(vector, 16), first) << name;

@@ -44,7 +44,7 @@ TEST_P(PointMethods, VectorsGiveWhatOneLaneGives) {
   };
   const Plane<float> scalar = ao("scalar");
   int compared = 0;
-  for (const char* name : {"avx2", "avx512"}) {
+  for (const char* name : kVectorIsas) {
     if (!has_isa(name)) continue;
     const Plane<float> vector = ao(name);
     expect_close(
