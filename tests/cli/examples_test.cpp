@@ -14,7 +14,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::examples_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -225,4 +225,4 @@ TEST_F(Examples, ConfigFileOfTheManual) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::examples_test

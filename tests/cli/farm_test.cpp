@@ -11,7 +11,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::farm_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -164,4 +164,4 @@ TEST_F(Farm, InfoOfASequenceIsAnArray) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::farm_test

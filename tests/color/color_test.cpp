@@ -14,7 +14,7 @@
 
 #include "support/color_fixture.h"
 
-namespace ssdo::test {
+namespace ssdo::test::color_test {
 namespace {
 
 using Color = ColorFixture;
@@ -261,4 +261,4 @@ TEST_F(Color, TransformsMayMove) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::color_test

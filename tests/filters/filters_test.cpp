@@ -14,7 +14,7 @@
 #include "support/error_matchers.h"
 #include "support/random_frame.h"
 
-namespace ssdo::test {
+namespace ssdo::test::filters_test {
 namespace {
 
 Products filtered(std::string_view name, const Products& in, const Geometry& g) {
@@ -131,4 +131,4 @@ TEST(Filters, AreFoundByNameAndNoneChangesNothing) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::filters_test

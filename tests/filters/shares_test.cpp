@@ -17,7 +17,7 @@
 #include "support/scene_of.h"
 #include "support/sun_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::shares_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 64};
@@ -359,4 +359,4 @@ TEST(Shares, GuessesHaveNoPattern) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::shares_test

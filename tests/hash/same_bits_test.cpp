@@ -23,7 +23,7 @@
 #include "support/recorded_hashes.h"
 #include "support/report.h"
 
-namespace ssdo::test {
+namespace ssdo::test::same_bits_test {
 namespace {
 
 constexpr float kRadius = 0.75f, kEndless = std::numeric_limits<float>::infinity();
@@ -260,4 +260,4 @@ std::vector<Case> longest_cases() {
 INSTANTIATE_TEST_SUITE_P(Methods, AnyOrder, testing::ValuesIn(longest_cases()), test_name);
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::same_bits_test

@@ -14,7 +14,7 @@
 #include "support/chosen_isa.h"
 #include "support/error_matchers.h"
 
-namespace ssdo::test {
+namespace ssdo::test::network_test {
 namespace {
 
 /// All outputs at `places` places that are told the same.
@@ -81,4 +81,4 @@ TEST(PriorNetwork, RefusesWeightsThatAreCutShortOrTooLong) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::network_test

@@ -12,7 +12,7 @@
 #include "parallel/tiles.h"
 #include "support/crop.h"
 
-namespace ssdo::test {
+namespace ssdo::test::point_methods_test {
 namespace {
 
 struct Case {
@@ -132,4 +132,4 @@ INSTANTIATE_TEST_SUITE_P(All, PointMethods,
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::point_methods_test
