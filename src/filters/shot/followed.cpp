@@ -189,20 +189,22 @@ bool Followed::find(const CameraChange& change, const KeptSurfaces& to, const Sp
   return true;
 }
 
-FollowedPoint Followed::followed(const Spot& start, const Spot& there, const Beside& beside, int x,
-                                 double speed) const {
+/// Adds to `points` where `beside` shows the point in column `x`, unless it is at rest there.
+void Followed::add(int x, const Spot& start, const Spot& there, double speed, const Beside& beside,
+                   std::vector<FollowedPoint>& points) const {
   const glm::dvec3 rest = beside.from_own.position(start.position);
   const double from_rest = glm::distance(there.at, beside.from_own.place(rest)),
-               way = glm::distance(glm::dvec3(there.position), rest);
+               way = glm::distance(glm::dvec3(there.position), rest),
+               follows = speed * ramp(from_rest, kAtRest, kFollowed);
+  if (!(follows > 0)) return;
   const Camera& camera = own_.surfaces.camera;
   const double depth = camera.orthographic ? 1.0 : double(-start.position.z),
                reach = kReach * own_.surfaces.window.width() * depth / camera.fx,
                turn = 1 - double(glm::dot(there.normal, beside.from_own.direction(start.normal)));
-  FollowedPoint point{x, there.pixel, {}, 0, 0};
+  const double counts = std::exp(-(way / reach) * (way / reach)) * ramp(turn, kTurn, 0);
+  FollowedPoint point{x, there.pixel, {}, float(follows), float(counts)};
   std::copy_n(there.weight, 4, point.weight);
-  point.follows = float(speed * ramp(from_rest, kAtRest, kFollowed));
-  point.counts = float(std::exp(-(way / reach) * (way / reach)) * ramp(turn, kTurn, 0));
-  return point;
+  points.push_back(point);
 }
 
 void Followed::follow_back(int x, const Spot& start,
@@ -212,7 +214,7 @@ void Followed::follow_back(int x, const Spot& start,
   for (const Beside& beside : before_) {
     const Link& link = beside.link;
     if (!find(link.back, *link.before, last, last.at + motion_at(link, last), next)) return;
-    points[beside.other].push_back(followed(start, next, beside, x, speed));
+    add(x, start, next, speed, beside, points[beside.other]);
     last = next;
   }
 }
@@ -238,7 +240,7 @@ void Followed::follow_forth(int x, const Spot& start, std::size_t from,
       if (!found) guess -= off;
     }
     if (!found) return;
-    points[beside.other].push_back(followed(start, next, beside, x, speed));
+    add(x, start, next, speed, beside, points[beside.other]);
     const glm::dvec2 own = next.at - rest;
     last = next;
     if (&beside == &after_.back()) return;

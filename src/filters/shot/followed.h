@@ -51,8 +51,8 @@ class Followed {
   void follow_back(int x, const Spot& start, std::vector<std::vector<FollowedPoint>>& points) const;
   void follow_forth(int x, const Spot& start, std::size_t from,
                     std::vector<std::vector<FollowedPoint>>& points) const;
-  FollowedPoint followed(const Spot& start, const Spot& there, const Beside& beside, int x,
-                         double speed) const;
+  void add(int x, const Spot& start, const Spot& there, double speed, const Beside& beside,
+           std::vector<FollowedPoint>& points) const;
   static bool find(const CameraChange& change, const KeptSurfaces& to, const Spot& from,
                    const glm::dvec2& at, Spot& found);
   static glm::dvec2 motion_at(const Link& link, const Spot& spot);
