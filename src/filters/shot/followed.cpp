@@ -29,7 +29,7 @@ namespace ssdo {
 namespace {
 
 /// Fitted on made shots of moving things, by error and flicker of white ao.
-constexpr double kReach = 0.06, kTurn = 0.2;
+constexpr double kReach = 0.06, kTurn = 0.03;
 
 /// Pixels from rest.
 constexpr double kAtRest = 0.25, kFollowed = 0.75;

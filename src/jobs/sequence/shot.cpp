@@ -126,9 +126,10 @@ void Shot::make(std::size_t job, std::size_t view, WorkOnView& work) {
 const std::vector<MovedPiece>& Shot::pieces(std::size_t stands, std::size_t looks,
                                             std::size_t view) {
   const auto [place, is_new] = pieces_.try_emplace({stands, looks, view});
-  if (is_new)
-    place->second =
-        find_pieces(findings_.at({stands, view}).surfaces, findings_.at({looks, view}).surfaces);
+  if (!is_new) return place->second;
+  const Findings& standing = findings_.at({stands, view});
+  place->second =
+      find_pieces(standing.surfaces, findings_.at({looks, view}).surfaces, standing.motion);
   return place->second;
 }
 
