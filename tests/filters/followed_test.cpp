@@ -150,7 +150,7 @@ TEST_F(AMovingBox, IsFoundWhereItWasAndWhereItWillBe) {
       }
     }
   }
-  EXPECT_GT(box, 500);
+  EXPECT_GT(box, 400);
   EXPECT_GT(whole, 4 * box);
 }
 
