@@ -11,22 +11,27 @@
 
 namespace ssdo {
 
+struct RowOfPixels;
+struct Speaker;
+
 /// Another frame of the shot, and what moved between it and the frame that takes the mean.
 struct OtherFindings {
   const Findings* findings;
+  int away;                             ///< its number less that of the frame
   const std::vector<MovedPiece>* gone;  ///< find_pieces(frame, other)
   const std::vector<MovedPiece>* come;  ///< find_pieces(other, frame)
 };
 
 /// The mean of what a frame and others of its shot have found of the same points; see fusion.cpp.
-/// The same bits for the same frames in the same order, however many are added at one time.
+/// The same bits for the same frames in the same order.
 class Fusion {
  public:
   /// `light` is in the camera space of the frame. Both have to outlive this.
   Fusion(const Findings& own, const Light& light);
 
-  /// Others without a world, or with other sources, say nothing; those that lack layers say
-  /// nothing of what is made from them.
+  /// All of the others at one time, since what moves is followed from one to the next. Others
+  /// without a world, or with other sources, say nothing; those that lack layers say nothing of
+  /// what is made from them.
   void add(const std::vector<OtherFindings>& others);
 
   /// Fills the planes of `products` that take_findings() has left empty. `geometry` is that of the
@@ -35,6 +40,9 @@ class Fusion {
 
  private:
   struct Room;
+
+  static void add_speaker(const Speaker& speaker, std::size_t number, const RowOfPixels& row,
+                          Room& room);
 
   const Findings& own_;
   const Light& light_;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "jobs/sequence/shot.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdint>
 
 #include "relight/relight.h"
 
@@ -11,6 +14,7 @@ Shot::Shot(const std::vector<Job>& jobs, const ShotWindow& window, bool only_loo
     : jobs_(jobs),
       is_shot_(window.count > 0),
       only_looks_(only_looks && is_shot_),
+      follows_(is_shot_ && !only_looks && window.step == 1),
       around_(jobs.size()),
       wanting_(jobs.size()) {
   if (!is_shot_) return;
@@ -44,8 +48,10 @@ std::vector<Work> Shot::complete(Work work) {
   const std::size_t now = work.index;
   if (is_shot_ && is_wanted(now)) {
     attempt(work, jobs_[now].input(), [&] {
-      for (std::size_t v = 0; v < work.views.size(); ++v)
+      for (std::size_t v = 0; v < work.views.size(); ++v) {
         findings_.insert_or_assign({now, v}, take_findings(work.views[v]));
+        if (follows_) find_motion(now, v, work);
+      }
     });
   }
   if (jobs_[now].is_lent) work.views.clear();
@@ -65,6 +71,24 @@ Findings Shot::take_findings(WorkOnView& work) const {
   Findings findings;
   findings.surfaces = keep_surfaces(std::exchange(work.frame.scene, {}).geometry);
   return findings;
+}
+
+/// Where the frame before in time is not there, nothing that moves is followed through the gap.
+void Shot::find_motion(std::size_t job, std::size_t view, Work& work) {
+  Frame& frame = work.views[view].frame;
+  const Plane<glm::vec2> layer = std::exchange(frame.gbuffer.motion, {});
+  if (layer.empty() || job == 0 || std::int64_t(*jobs_[job - 1].frame) + 1 != *jobs_[job].frame)
+    return;
+  const auto before = findings_.find({job - 1, view});
+  if (before == findings_.end()) return;
+  Findings& own = findings_.at({job, view});
+  own.motion = find_own_motion(layer, own.surfaces, before->second.surfaces);
+  if (!own.motion.contradicts) return;
+  work.messages.warn(
+      {fmt::format("{} moves other ways than the cameras say, and is not used; are its units "
+                   "pixels to the frame before, y up? give --motion-scale",
+                   frame.layers[Role::motion]->name)},
+      frame.view);
 }
 
 /// The job after which a job has all that it wants.
@@ -88,7 +112,8 @@ void Shot::make(std::size_t job, std::size_t view, WorkOnView& work) {
     if (other == job || found == findings_.end()) continue;
     surfaces.push_back(&found->second.surfaces);
     if (only_looks_) continue;
-    others.push_back({&found->second, &pieces(job, other, view), &pieces(other, job, view)});
+    others.push_back({&found->second, *jobs_[other].frame - *jobs_[job].frame,
+                      &pieces(job, other, view), &pieces(other, job, view)});
   }
   const Findings& own = findings_.at({job, view});
   if (only_looks_)
@@ -101,9 +126,10 @@ void Shot::make(std::size_t job, std::size_t view, WorkOnView& work) {
 const std::vector<MovedPiece>& Shot::pieces(std::size_t stands, std::size_t looks,
                                             std::size_t view) {
   const auto [place, is_new] = pieces_.try_emplace({stands, looks, view});
-  if (is_new)
-    place->second =
-        find_pieces(findings_.at({stands, view}).surfaces, findings_.at({looks, view}).surfaces);
+  if (!is_new) return place->second;
+  const Findings& standing = findings_.at({stands, view});
+  place->second =
+      find_pieces(standing.surfaces, findings_.at({looks, view}).surfaces, standing.motion);
   return place->second;
 }
 

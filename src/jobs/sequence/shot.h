@@ -43,13 +43,14 @@ class Shot {
   void count();
   std::size_t complete_after(std::size_t job) const;
   Findings take_findings(WorkOnView& work) const;
+  void find_motion(std::size_t job, std::size_t view, Work& work);
   void make(Work& work);
   void make(std::size_t job, std::size_t view, WorkOnView& work);
   const std::vector<MovedPiece>& pieces(std::size_t stands, std::size_t looks, std::size_t view);
   void release(std::size_t job);
 
   const std::vector<Job>& jobs_;
-  const bool is_shot_, only_looks_;
+  const bool is_shot_, only_looks_, follows_;
   std::vector<std::vector<std::size_t>> around_;  ///< of each job that makes something, by frame
   std::vector<int> wanting_;                      ///< how many jobs want each
   std::map<std::pair<std::size_t, std::size_t>, Findings> findings_;  ///< by job and view
