@@ -12,7 +12,7 @@
 #include "scene/light/light.h"
 #include "support/boxes.h"
 
-namespace ssdo::test {
+namespace ssdo::test::followed_test {
 namespace {
 
 const Window kWindow{3, -2, 99, 70};
@@ -204,4 +204,4 @@ TEST_F(AMovingBox, ALayerOfAnotherSignIsNotUsed) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::followed_test
