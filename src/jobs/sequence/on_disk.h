@@ -3,7 +3,9 @@
 // The large arrays of what waits in a shot, and how they go to disk.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -13,10 +15,12 @@
 
 namespace ssdo {
 
-/// Calls visit(std::vector<T>) for the arrays of what a frame has found.
+/// Calls visit(std::vector<T>) for the arrays of what a frame has found, surfaces and motion first.
+constexpr std::size_t kArraysOfGeometry = 2;
 template <class Visit>
 void for_each_array(Findings& findings, const Visit& visit) {
   visit(findings.surfaces.pixels);
+  visit(findings.motion.pixels);
   visit(findings.values);
   visit(findings.glow);
 }
@@ -71,11 +75,12 @@ class OnDisk {
     });
   }
 
-  /// Fills the arrays of the same thing, or of its copy.
+  /// Fills the arrays of the same thing, or of its copy: the first `count` of them.
   template <class Thing>
-  void read(Thing& thing) const {
+  void read(Thing& thing, std::size_t count = std::numeric_limits<std::size_t>::max()) const {
     std::size_t number = 0, from = 0;
     for_each_array(thing, [&](auto& array) {
+      if (number == std::min(count, sizes_.size())) return;
       array.resize(sizes_[number++]);
       const std::size_t bytes = array.size() * sizeof(array[0]);
       file_.read(from, array.data(), bytes);

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "jobs/sequence/shot.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "plan/band_plan.h"
@@ -12,10 +16,12 @@ namespace ssdo {
 namespace {
 
 /// Findings in memory: those that are kept, or `copy`, which is filled with those on disk.
-const Findings& in_memory(const auto& kept, std::optional<Findings>& copy) {
+/// Of these, the first `arrays` suffice.
+const Findings& in_memory(const auto& kept, std::optional<Findings>& copy,
+                          std::size_t arrays = std::numeric_limits<std::size_t>::max()) {
   copy.reset();
   if (!kept.arrays) return kept.findings;
-  kept.arrays->read(copy.emplace(kept.findings));
+  kept.arrays->read(copy.emplace(kept.findings), arrays);
   return *copy;
 }
 
@@ -27,6 +33,7 @@ Shot::Shot(const std::vector<Job>& jobs, const ShotWindow& window, bool only_loo
       memory_(memory),
       is_shot_(window.count > 0),
       only_looks_(only_looks && is_shot_),
+      follows_(is_shot_ && !only_looks && window.step == 1),
       around_(jobs.size()),
       wanting_(jobs.size()) {
   if (!is_shot_) return;
@@ -73,11 +80,32 @@ Findings Shot::take_findings(WorkOnView& work) const {
   return findings;
 }
 
+/// Where the frame before in time is not there, nothing that moves is followed through the gap.
+void Shot::find_motion(std::size_t job, std::size_t view, Work& work, Findings& own) const {
+  Frame& frame = work.views[view].frame;
+  const Plane<glm::vec2> layer = std::exchange(frame.gbuffer.motion, {});
+  if (layer.empty() || job == 0 || std::int64_t(*jobs_[job - 1].frame) + 1 != *jobs_[job].frame)
+    return;
+  const auto before = findings_.find({job - 1, view});
+  if (before == findings_.end()) return;
+  std::optional<Findings> copy;
+  const Findings& then = in_memory(before->second, copy, kArraysOfGeometry);
+  own.motion = find_own_motion(layer, own.surfaces, then.surfaces);
+  if (!own.motion.contradicts) return;
+  work.messages.warn(
+      {fmt::format("{} moves other ways than the cameras say, and is not used; are its units "
+                   "pixels to the frame before, y up? give --motion-scale",
+                   frame.layers[Role::motion]->name)},
+      frame.view);
+}
+
 void Shot::keep(Waiting& waiting) {
   const std::size_t job = waiting.work.index, room = room_beside(waiting.work);
   std::size_t found = 0, waits = 0;
   for (std::size_t v = 0; v < waiting.work.views.size(); ++v) {
-    KeptFindings kept{take_findings(waiting.work.views[v]), {}, 0};
+    KeptFindings kept{take_findings(waiting.work.views[v]), {}, 0, false};
+    if (follows_) find_motion(job, v, waiting.work, kept.findings);
+    kept.moves = !kept.findings.motion.pixels.empty();
     const std::size_t bytes = bytes_of(kept.findings);
     if (kept_bytes_ + waiting_bytes_ + bytes > room)
       kept.arrays.emplace(kept.findings);
@@ -148,15 +176,39 @@ void Shot::make(std::size_t job, std::size_t view, WorkOnView& work) {
   std::optional<Findings> copy;
   const Findings& own = in_memory(findings_.at({job, view}), copy);
   Fusion fusion(own, work.relit.found.scene.light);
+  follow_on_disk(job, view, fusion);
   std::vector<OtherFindings> others;
   for_each_other(job, view, [&](std::size_t other, const Findings& findings, bool is_copy) {
-    others.push_back({&findings, &pieces({job, other, view}, own, findings),
+    others.push_back({&findings, *jobs_[other].frame - *jobs_[job].frame,
+                      &pieces({job, other, view}, own, findings),
                       &pieces({other, job, view}, findings, own)});
     if (is_copy) fusion.add(std::exchange(others, {}));
   });
   fusion.add(others);
   work.relit.found.filter_ms += watch.lap();
   relight_in_shot(fusion, work.relit);
+}
+
+/// Where frames around one are on disk, what moves is followed through their surfaces before they
+/// are read one by one.
+void Shot::follow_on_disk(std::size_t job, std::size_t view, Fusion& fusion) const {
+  bool on_disk = false, moves = false;
+  for (const std::size_t other : around_[job]) {
+    const auto found = findings_.find({other, view});
+    if (found == findings_.end()) continue;
+    on_disk = on_disk || found->second.arrays;
+    moves = moves || found->second.moves;
+  }
+  if (!on_disk) return;
+  std::deque<std::optional<Findings>> copies;
+  std::vector<OtherFindings> others;
+  for (const std::size_t other : around_[job]) {
+    const auto found = findings_.find({other, view});
+    if (!moves || other == job || found == findings_.end()) continue;
+    others.push_back({&in_memory(found->second, copies.emplace_back(), kArraysOfGeometry),
+                      *jobs_[other].frame - *jobs_[job].frame, nullptr, nullptr});
+  }
+  fusion.follow(others);
 }
 
 /// For `info`.

@@ -56,6 +56,7 @@ class Shot {
     Findings findings;
     std::optional<OnDisk> arrays;  ///< where they are not in `findings`
     std::size_t bytes;             ///< in memory
+    bool moves;                    ///< a motion layer tells that something does
   };
   struct Waiting {
     Work work;
@@ -67,9 +68,11 @@ class Shot {
   std::size_t complete_after(std::size_t job) const;
   std::size_t room_beside(const Work& work) const;
   Findings take_findings(WorkOnView& work) const;
+  void find_motion(std::size_t job, std::size_t view, Work& work, Findings& own) const;
   void keep(Waiting& waiting);
   void make(Waiting& waiting);
   void make(std::size_t job, std::size_t view, WorkOnView& work);
+  void follow_on_disk(std::size_t job, std::size_t view, Fusion& fusion) const;
   void look(std::size_t job, std::size_t view, WorkOnView& work);
   template <class Visit>
   void for_each_other(std::size_t job, std::size_t view, const Visit& visit) const;
@@ -79,7 +82,7 @@ class Shot {
 
   const std::vector<Job>& jobs_;
   const ShotMemory memory_;
-  const bool is_shot_, only_looks_;
+  const bool is_shot_, only_looks_, follows_;
   std::vector<std::vector<std::size_t>> around_;  ///< of each job that makes something, by frame
   std::vector<int> wanting_;                      ///< how many jobs want each
   std::map<std::pair<std::size_t, std::size_t>, KeptFindings> findings_;  ///< by job and view
