@@ -166,8 +166,9 @@ void Shot::for_each_other(std::size_t job, std::size_t view, const Visit& visit)
   std::optional<Findings> copy;
   for (const std::size_t other : around_[job]) {
     const auto found = findings_.find({other, view});
-    if (other != job && found != findings_.end())
-      visit(other, in_memory(found->second, copy), copy.has_value());
+    if (other == job || found == findings_.end()) continue;
+    const Findings& findings = in_memory(found->second, copy);
+    visit(other, findings, copy.has_value());
   }
 }
 
