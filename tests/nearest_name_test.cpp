@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace ssdo::test {
+namespace ssdo::test::nearest_name_test {
 namespace {
 
 const std::vector<std::string> kNames = {"bitmask", "trace", "ssdo",
@@ -66,4 +66,4 @@ TEST(SomeOf, NamesTheFirstAndCountsTheRest) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::nearest_name_test

@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Installs what is needed, builds, and passes the tests. `all` passes them with sanitizers too,
-# fuzzes for half a minute each, and tries a shot on a farm, the package, faults, cppcheck and
-# clang-tidy.
+# fuzzes for half a minute each, and tries a shot on a farm, the package, faults, the add-on for
+# Blender, cppcheck and clang-tidy.
 # `edit` is for between two edits: it builds and runs the tests whose files or names hold NAME, with
 # what these need, for one instruction set.
 #   tests/run.sh [all | edit NAME... | STAGE...]
-# A STAGE is release, address, fuzz, thread, farm, package, faults, system (the last three at once),
-# lint, tidy, clang (the tests by another compiler) or debian13 (on another release); $SSDO_OPTIONS
-# goes to cmake, for example -DSSDO_ONE_ISA=avx2.
+# A STAGE is release, address, fuzz, thread, farm, package, faults, blender, system (the last four at
+# once), lint, tidy, clang (the tests by another compiler), debian13 or testing (on another release) or
+# aarch64 (tests of estimators under qemu); $SSDO_OPTIONS goes to cmake, for example
+# -DSSDO_ONE_ISA=avx2.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 mkdir -p "$root/build"
@@ -138,10 +139,15 @@ run_clang() {
   run_tests "$root/build/clang"
 }
 
-# Not of `all`: it builds everything once more.
-run_debian13() {
+# Not of `all`: these build everything once more.
+run_debian13() { on_platform trixie; }
+run_testing() { on_platform testing; }
+run_aarch64() { on_platform bookworm tests/platforms/aarch64.sh; }
+
+# on_platform RELEASE [COMMAND]
+on_platform() {
   install_packages debootstrap
-  as_root env CI="${CI:-}" SSDO_OPTIONS="${SSDO_OPTIONS:-}" "$root/tests/platforms/run.sh" trixie
+  as_root env CI="${CI:-}" SSDO_OPTIONS="${SSDO_OPTIONS:-}" "$root/tests/platforms/run.sh" "$@"
 }
 
 run_farm() {
@@ -159,13 +165,19 @@ run_faults() {
   as_root "$root/tests/faults/run.sh" "$release/ssdo" 24
 }
 
+run_blender() {
+  install_packages "${blender_packages[@]}"
+  "$root/tests/blender/run.sh" "$release/ssdo"
+}
+
 # Each of these waits for daemons, disks and signals for much of its time. What they print is shown
 # when all have ended.
 run_system() (
-  install_packages "${farm_packages[@]}" "${fault_packages[@]}"  # apt serves one at a time
+  # apt serves one at a time
+  install_packages "${farm_packages[@]}" "${fault_packages[@]}" "${blender_packages[@]}"
   logs=$(mktemp -d) failed=0
   trap 'rm -rf "$logs"' EXIT
-  for stage in farm package faults; do
+  for stage in farm package faults blender; do
     (SECONDS=0; "run_$stage"; echo "tests/run.sh: $stage took $SECONDS s") >"$logs/$stage" 2>&1 &
     pids[$!]=$stage
   done

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace ssdo::test {
+namespace ssdo::test::structure_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -251,4 +251,4 @@ TEST(Structure, FilesAndFoldersStaySmall) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::structure_test

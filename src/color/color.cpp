@@ -53,17 +53,18 @@ struct View {
 /// `source` is what named the file: an option or a variable.
 LabelledConfig load_config(const std::string& file, const std::string& source) {
   const std::string label = fmt::format("{} {}", source, file);
-  if (file.rfind("ocio://", 0) == 0 && OCIO::GetVersionHex() < kFirstVersionWithUris) {
+  const bool is_uri = file.starts_with("ocio://");
+  if (is_uri && OCIO::GetVersionHex() < kFirstVersionWithUris) {
     throw Error(ExitCode::input,
                 fmt::format("{}: OpenColorIO {} has no configs of its own (2.2 and later do); pass "
                             "--ocio FILE, or unset OCIO for the built-in config",
                             label, OCIO::GetVersion()));
   }
   std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) {
+  if (!is_uri && std::filesystem::is_directory(file, ignored)) {
     throw Error(ExitCode::input, label + ": is a folder; name the config.ocio in it");
   }
-  check_text_size(file, kMostConfigBytes, ExitCode::input);
+  if (!is_uri) check_text_size(file, kMostConfigBytes, ExitCode::input);
   try {
     return {OCIO::Config::CreateFromFile(file.c_str()), label};
   } catch (const OCIO::Exception& error) {

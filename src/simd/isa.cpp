@@ -14,7 +14,7 @@ std::string choose_isa(std::string_view wanted) {
     std::int64_t targets;
   };
   static constexpr Choice choices[] = {
-      {"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"scalar", HWY_SCALAR}};
+      {"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"neon", HWY_NEON}, {"scalar", HWY_SCALAR}};
   const std::int64_t supported = (hwy::SupportedTargets() | HWY_SCALAR) & HWY_TARGETS;
   for (const Choice& choice : choices) {
     if (!wanted.empty() && choice.name != wanted) continue;
@@ -30,7 +30,7 @@ std::string choose_isa(std::string_view wanted) {
     }
   }
   throw Error(ExitCode::usage,
-              fmt::format("$SSDO_ISA is '{}'; expected scalar, avx2 or avx512", wanted));
+              fmt::format("$SSDO_ISA is '{}'; expected scalar, neon, avx2 or avx512", wanted));
 }
 
 }  // namespace ssdo

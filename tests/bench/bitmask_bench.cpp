@@ -113,7 +113,7 @@ void add(const std::string& name, const auto& run) {
 void add_all() {
   const Job ao{{.ao = true}, 2, 16, 0, 0};
   const Job standard{{.ao = true, .direct = true, .bounce = true, .bent = true}, 2, 16, 1, 0};
-  for (const std::string isa : {"avx512", "avx2", "scalar"}) {
+  for (const std::string isa : {"avx512", "avx2", "neon", "scalar"}) {
     for (const Size& size : kSizes) {
       if (isa == "scalar" && size.width > 1920) continue;
       for (const int threads : {1, 2}) {

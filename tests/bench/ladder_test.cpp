@@ -12,7 +12,7 @@
 #include "bench/command.h"
 #include "estimators/registry.h"
 
-namespace ssdo::test {
+namespace ssdo::test::ladder_test {
 namespace {
 
 int samples_of(const Setting& setting) {
@@ -115,4 +115,4 @@ TEST(Command, HasWhatReachesTheSetting) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::ladder_test

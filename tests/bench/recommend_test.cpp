@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace ssdo::test {
+namespace ssdo::test::recommend_test {
 namespace {
 
 /// Rows of one megapixel: cost, and the errors of ao and bounce from rays; negative: not made.
@@ -58,4 +58,4 @@ TEST(Recommend, NamesTheNearestWhereNoneHolds) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::recommend_test

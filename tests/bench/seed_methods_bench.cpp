@@ -88,7 +88,7 @@ void add(const std::string& name, const std::function<void(benchmark::State&)>& 
 
 /// Registers before main does what it does.
 const bool kAdded = [] {
-  for (const std::string isa : {"avx512", "avx2", "scalar"}) {
+  for (const std::string isa : {"avx512", "avx2", "neon", "scalar"}) {
     for (const int threads : {1, 2}) {
       const std::string where = "/" + isa + "/threads:" + std::to_string(threads);
       for (const Row& row : kRows)

@@ -15,7 +15,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::ambient_test {
 namespace {
 
 using nlohmann::json;
@@ -352,4 +352,4 @@ TEST(Compose, BrokenPixelsKeepTheBeautyOrStayOut) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::ambient_test

@@ -10,7 +10,7 @@
 #include "support/run_tool.h"
 #include "support/words.h"
 
-namespace ssdo::test {
+namespace ssdo::test::autocrop_test {
 namespace {
 
 using testing::ElementsAre;
@@ -185,4 +185,4 @@ TEST_F(Autocrop, OfEyesInOnePartCoversBoth) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::autocrop_test

@@ -9,7 +9,7 @@
 #include "support/run_tool.h"
 #include "support/slab_and_ball.h"
 
-namespace ssdo::test {
+namespace ssdo::test::back_faces_test {
 namespace {
 
 using testing::ContainsRegex;
@@ -70,4 +70,4 @@ TEST(BackFacesOfTheTool, OpenWhatIsBelowASlab) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::back_faces_test

@@ -17,7 +17,7 @@
 #include "support/run_tool.h"
 #include "support/words.h"
 
-namespace ssdo::test {
+namespace ssdo::test::bands_test {
 namespace {
 
 using testing::AllOf;
@@ -252,4 +252,4 @@ TEST_F(Bands, NeedSomeMemory) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::bands_test

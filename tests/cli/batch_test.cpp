@@ -11,7 +11,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::batch_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -292,4 +292,4 @@ TEST_F(Shot, OptionsMayComeFromAFile) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::batch_test

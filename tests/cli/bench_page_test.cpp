@@ -9,7 +9,7 @@
 #include "support/browser.h"
 #include "support/parse_json.h"
 
-namespace ssdo::test {
+namespace ssdo::test::bench_page_test {
 namespace {
 
 using nlohmann::json;
@@ -120,4 +120,4 @@ TEST_F(BenchPage, TruthAndCommandsAreThere) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::bench_page_test

@@ -15,7 +15,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::bench_shot_test {
 namespace {
 
 using nlohmann::json;
@@ -220,4 +220,4 @@ TEST_F(BenchShot, ThePageDrawsFlickerAgainstTime) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::bench_shot_test

@@ -12,7 +12,7 @@
 #include "support/bench_frame.h"
 #include "support/parse_json.h"
 
-namespace ssdo::test {
+namespace ssdo::test::bench_test {
 namespace {
 
 using nlohmann::json;
@@ -252,4 +252,4 @@ TEST_F(Bench, KeepsReportsThatExist) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::bench_test

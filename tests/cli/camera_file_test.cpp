@@ -12,7 +12,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::camera_file_test {
 namespace {
 
 using nlohmann::json;
@@ -43,4 +43,4 @@ TEST(CameraOfInfo, ComesBack) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::camera_file_test

@@ -13,7 +13,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::compare_shot_test {
 namespace {
 
 using nlohmann::json;
@@ -252,4 +252,4 @@ TEST_F(CompareShot, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::compare_shot_test

@@ -15,7 +15,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::compare_test {
 namespace {
 
 using nlohmann::json;
@@ -211,4 +211,4 @@ TEST_F(Compare, AgreesWithIdiff) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::compare_test

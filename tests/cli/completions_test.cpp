@@ -12,7 +12,7 @@
 #include "support/help_flags.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::completions_test {
 namespace {
 
 using testing::Contains;
@@ -168,4 +168,4 @@ INSTANTIATE_TEST_SUITE_P(Shells, Completions, testing::Values("bash", "zsh"),
                          [](const auto& shell) { return shell.param; });
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::completions_test

@@ -10,7 +10,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::config_test {
 namespace {
 
 using nlohmann::json;
@@ -135,4 +135,4 @@ TEST_F(Config, ABenchRefusesTheSettingsOfAFileToo) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::config_test

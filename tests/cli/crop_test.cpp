@@ -11,7 +11,7 @@
 #include "support/run_tool.h"
 #include "support/typed_frame.h"
 
-namespace ssdo::test {
+namespace ssdo::test::crop_test {
 namespace {
 
 using testing::AllOf;
@@ -203,4 +203,4 @@ TEST_F(Crop, APartThatTheDisplayWindowDoesNotShowIsRefused) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::crop_test

@@ -15,7 +15,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::deep_test {
 namespace {
 
 using testing::HasSubstr;
@@ -220,4 +220,4 @@ TEST_F(Deep, HasNoEffectOnMethodsThatSeeOneLayer) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::deep_test

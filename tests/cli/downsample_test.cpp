@@ -15,7 +15,7 @@
 #include "support/run_tool.h"
 #include "support/typed_frame.h"
 
-namespace ssdo::test {
+namespace ssdo::test::downsample_test {
 namespace {
 
 using testing::AllOf;
@@ -237,4 +237,4 @@ TEST_F(DownsampleOption, FactorsThatDoNotFitAreRefused) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::downsample_test

@@ -9,7 +9,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::edges_test {
 namespace {
 
 using testing::HasSubstr;
@@ -109,4 +109,4 @@ TEST(Edges, HaveTheAlbedoThatIsStated) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::edges_test

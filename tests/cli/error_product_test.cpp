@@ -15,7 +15,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::error_product_test {
 namespace {
 
 using nlohmann::json;
@@ -187,4 +187,4 @@ TEST(ErrorThatCannotBeReached, EndsWithAWarning) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::error_product_test

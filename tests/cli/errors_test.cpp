@@ -10,7 +10,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::errors_test {
 namespace {
 
 using testing::HasSubstr;
@@ -278,4 +278,4 @@ TEST(Help, GoesToStandardOutput) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::errors_test

@@ -14,7 +14,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::examples_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,6 +28,7 @@ const std::map<std::string, std::string> kNotRun = {
     {"env = ", "a config file: ConfigFileOfTheManual"},
     {R"(  { "lights")", "a file of lamps"},
     {R"(  "sphere name=rim)", "the value of --light"},
+    {"import re, shlex", "a menu of Nuke"},
 };
 
 constexpr int kShrunk = 9;  ///< every ninth pixel in x and y: still lifes of 64 x 36
@@ -225,4 +226,4 @@ TEST_F(Examples, ConfigFileOfTheManual) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::examples_test

@@ -11,7 +11,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::farm_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,7 +110,7 @@ TEST_F(Farm, SeveralOutputsOfAFrameAreAllInItsStatistics) {
   const json frame = parse_json(read_file(path("stats.json"))).at(0);
   EXPECT_EQ(frame["output"], json({out(2), path("out.0002.png")}));
   EXPECT_EQ(frame["samples_per_pixel"], 2 * 3 * 4);
-  EXPECT_THAT(frame["isa"].get<std::string>(), testing::AnyOf("avx512", "avx2", "scalar"));
+  EXPECT_THAT(frame["isa"].get<std::string>(), testing::AnyOf("avx512", "avx2", "neon", "scalar"));
   EXPECT_EQ(frame["bounces"], 2);
   EXPECT_EQ(frame["plan"]["slices"], 3);
   EXPECT_EQ(frame["plan"]["radius"], "inf");
@@ -164,4 +164,4 @@ TEST_F(Farm, InfoOfASequenceIsAnArray) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::farm_test

@@ -9,7 +9,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,4 +107,4 @@ TEST_F(Files, ASignalLeavesNothingBehind) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::files_test

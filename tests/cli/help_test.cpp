@@ -9,7 +9,7 @@
 #include "support/help_flags.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::help_test {
 namespace {
 
 using testing::HasSubstr;
@@ -63,4 +63,4 @@ TEST(HelpOfACommand, HasItsOptions) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::help_test

@@ -8,7 +8,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::idle_options_test {
 namespace {
 
 using testing::HasSubstr;
@@ -152,4 +152,4 @@ TEST_F(IdleOptions, ThatContradictEachOtherAreRefused) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::idle_options_test

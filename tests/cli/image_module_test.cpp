@@ -7,7 +7,7 @@
 
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::image_module_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,4 +75,4 @@ TEST_F(ImageModule, ThatIsNoneIsNamed) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::image_module_test

@@ -12,7 +12,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::info_test {
 namespace {
 
 using nlohmann::json;
@@ -231,4 +231,4 @@ TEST_F(InfoListing, MentionsRebuiltNormals) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::info_test

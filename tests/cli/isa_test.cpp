@@ -10,7 +10,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::isa_test {
 namespace {
 
 const std::vector<std::string> kChannels = {"ao.Y",     "direct.R", "direct.G", "direct.B",
@@ -61,7 +61,7 @@ TEST_P(BitmaskIsa, GivesWhatTheScalarBuildGives) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Vectors, BitmaskIsa, testing::Values("avx2", "avx512"),
+INSTANTIATE_TEST_SUITE_P(Vectors, BitmaskIsa, testing::ValuesIn(kVectorIsas),
                          [](const auto& isa) { return isa.param; });
 
 TEST(BitmaskIsaNames, OthersAreRefused) {
@@ -73,4 +73,4 @@ TEST(BitmaskIsaNames, OthersAreRefused) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::isa_test

@@ -10,7 +10,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::jpeg_test {
 namespace {
 
 double srgb(double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055; }
@@ -56,4 +56,4 @@ TEST(Jpeg, IsTheCompositeOverBlack) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::jpeg_test

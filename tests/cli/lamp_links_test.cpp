@@ -12,7 +12,7 @@
 #include "support/run_tool.h"
 #include "support/words.h"
 
-namespace ssdo::test {
+namespace ssdo::test::lamp_links_test {
 namespace {
 
 using testing::HasSubstr;
@@ -266,4 +266,4 @@ TEST_F(LampLinks, RefusesInOneLine) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::lamp_links_test

@@ -18,7 +18,7 @@
 #include "support/run_tool.h"
 #include "support/words.h"
 
-namespace ssdo::test {
+namespace ssdo::test::lamps_test {
 namespace {
 
 using testing::AllOf;
@@ -282,4 +282,4 @@ TEST_F(LampsByTheTool, HaveTheColourOfTheirTemperatureInThePrimariesOfTheFrame) 
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::lamps_test

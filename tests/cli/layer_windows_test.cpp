@@ -9,7 +9,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::layer_windows_test {
 namespace {
 
 using testing::AllOf;
@@ -148,4 +148,4 @@ TEST_F(LayerWindows, PixelsOfAnotherAspectAreWarnedOfOnce) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::layer_windows_test

@@ -8,7 +8,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::layers_test {
 namespace {
 
 using nlohmann::json;
@@ -245,4 +245,4 @@ TEST(Layers, AFlatFrameAsksForTheFieldOfView) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::layers_test

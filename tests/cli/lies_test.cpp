@@ -18,7 +18,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::lies_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -387,4 +387,4 @@ TEST_F(Lies, OfTexts) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::lies_test

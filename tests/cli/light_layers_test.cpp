@@ -16,7 +16,7 @@
 #include "support/run_tool.h"
 #include "support/words.h"
 
-namespace ssdo::test {
+namespace ssdo::test::light_layers_test {
 namespace {
 
 using testing::AllOf;
@@ -256,4 +256,4 @@ TEST_F(LayersOfLights, ShadowTheBeautysLayersOfLamps) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::light_layers_test

@@ -10,7 +10,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::light_range_test {
 namespace {
 
 using testing::HasSubstr;
@@ -117,4 +117,4 @@ TEST_F(LightRangeOfTheTool, ALayerOfAMapCanBeNamed) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::light_range_test

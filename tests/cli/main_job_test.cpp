@@ -11,7 +11,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::main_job_test {
 namespace {
 
 using testing::ElementsAre;
@@ -328,4 +328,4 @@ TEST(MainJob, ValuesBeyondHalfAreClampedAndSaid) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::main_job_test

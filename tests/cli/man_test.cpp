@@ -12,7 +12,7 @@
 #include "support/help_flags.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::man_test {
 namespace {
 
 using Flags = std::set<std::string>;
@@ -139,4 +139,4 @@ TEST(ManPage, RendersWithoutWarnings) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::man_test

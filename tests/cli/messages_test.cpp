@@ -13,7 +13,7 @@
 #include "support/run_tool.h"
 #include "support/terminal.h"
 
-namespace ssdo::test {
+namespace ssdo::test::messages_test {
 namespace {
 
 using nlohmann::json;
@@ -229,4 +229,4 @@ TEST_F(Messages, InfoListsEveryChannelWithItsType) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::messages_test

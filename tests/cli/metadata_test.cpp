@@ -13,7 +13,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::metadata_test {
 namespace {
 
 using nlohmann::json;
@@ -244,4 +244,4 @@ TEST_F(HeaderCameraFiles, RenamedByOpenImageIOIsVRays) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::metadata_test

@@ -14,7 +14,7 @@
 #include "support/run_tool.h"
 #include "support/words.h"
 
-namespace ssdo::test {
+namespace ssdo::test::objects_test {
 namespace {
 
 using testing::HasSubstr;
@@ -568,4 +568,4 @@ TEST_F(Objects, MasksAreTheSameInBands) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::objects_test

@@ -12,7 +12,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::odd_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -141,4 +141,4 @@ TEST_F(OddFiles, NamesWithSpacesAndSignsAreNames) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::odd_files_test

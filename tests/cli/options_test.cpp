@@ -8,7 +8,7 @@
 #include <cmath>
 #include <regex>
 
-namespace ssdo::test {
+namespace ssdo::test::options_test {
 namespace {
 
 using testing::ElementsAre;
@@ -319,4 +319,4 @@ TEST(Options, AreNamedInTheUsageLine) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::options_test

@@ -10,7 +10,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::other_views_test {
 namespace {
 
 using testing::AllOf;
@@ -344,4 +344,4 @@ TEST_F(OtherViews, WithoutAlbedoHideAndSendNothing) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::other_views_test

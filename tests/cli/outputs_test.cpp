@@ -11,7 +11,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::outputs_test {
 namespace {
 
 using testing::ElementsAre;
@@ -223,4 +223,4 @@ TEST_F(Outputs, ARadianceLayerSendsInPlaceOfTheAlbedo) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::outputs_test

@@ -13,7 +13,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::overlap_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,4 +162,4 @@ TEST(OverlapMemory, DoesNotGrowWithTheSequence) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::overlap_test

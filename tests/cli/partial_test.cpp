@@ -13,7 +13,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::partial_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -310,4 +310,4 @@ TEST_F(Partial, BandsHaveTheBitsOfOnePiece) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::partial_test

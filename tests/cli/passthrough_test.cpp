@@ -12,7 +12,7 @@
 #include "support/run_tool.h"
 #include "support/typed_frame.h"
 
-namespace ssdo::test {
+namespace ssdo::test::passthrough_test {
 namespace {
 
 using testing::Contains;
@@ -178,4 +178,4 @@ TEST(Passthrough, AnOutputCanBeAnInputAgain) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::passthrough_test

@@ -13,7 +13,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::privacy_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -145,4 +145,4 @@ TEST_F(Privacy, NamesInHeadersAreNoPaths) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::privacy_test

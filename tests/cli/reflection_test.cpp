@@ -9,7 +9,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::reflection_test {
 namespace {
 
 using testing::Contains;
@@ -122,4 +122,4 @@ TEST(ReflectionProduct, BitmaskIsTrace) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::reflection_test

@@ -7,7 +7,7 @@
 #include "support/run_tool.h"
 #include "support/words.h"
 
-namespace ssdo::test {
+namespace ssdo::test::rerun_test {
 namespace {
 
 using testing::AllOf;
@@ -150,4 +150,4 @@ TEST_F(Rerun, TakesRequestsForTheLayersOfTheRender) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::rerun_test

@@ -10,7 +10,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::run_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -172,4 +172,4 @@ TEST_F(RunFiles, ADryRunIsRefusedLikeTheRealOne) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::run_files_test

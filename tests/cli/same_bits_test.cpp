@@ -12,7 +12,7 @@
 #include "support/run_tool.h"
 #include "support/words.h"
 
-namespace ssdo::test {
+namespace ssdo::test::same_bits_test {
 namespace {
 
 const Window kFrame{0, 0, 64, 48};
@@ -113,4 +113,4 @@ TEST_F(SameFiles, ForOutputsAndLayersInAnyOrder) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::same_bits_test

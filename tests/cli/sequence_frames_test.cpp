@@ -17,7 +17,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::sequence_frames_test {
 namespace {
 
 using nlohmann::json;
@@ -328,4 +328,4 @@ TEST_F(SequenceFrames, SayWhereAViewFitsSomeOfThemOnly) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::sequence_frames_test

@@ -11,7 +11,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::shaded_beauty_test {
 namespace {
 
 using Channels = std::array<Plane<float>, 3>;
@@ -73,4 +73,4 @@ TEST(ShadedBeauty, SharesByChannelAreNearerToThePathTracerThanAo) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::shaded_beauty_test

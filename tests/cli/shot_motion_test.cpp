@@ -14,7 +14,7 @@
 #include "support/run_tool.h"
 #include "support/words.h"
 
-namespace ssdo::test {
+namespace ssdo::test::shot_motion_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -183,4 +183,4 @@ TEST_F(AShotWithMotion, UnitsThatContradictTheCamerasAreNamed) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::shot_motion_test

@@ -13,7 +13,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::shot_report_test {
 namespace {
 
 using nlohmann::json;
@@ -183,4 +183,4 @@ TEST_F(ReportOfAShot, IsNotThatOfAFrameAlone) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::shot_report_test

@@ -20,7 +20,7 @@
 #include "support/run_tool.h"
 #include "support/terminal.h"
 
-namespace ssdo::test {
+namespace ssdo::test::shot_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -318,4 +318,4 @@ TEST_F(FarmShot, WhatAKilledRunHasLeftIsRemovedByTheNext) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::shot_test

@@ -11,7 +11,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::specular_test {
 namespace {
 
 using testing::Contains;
@@ -113,4 +113,4 @@ TEST_F(SpecularProduct, ThePlanSaysWhatMirrors) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::specular_test

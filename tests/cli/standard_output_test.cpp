@@ -9,7 +9,7 @@
 #include "support/run_tool.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::standard_output_test {
 namespace {
 
 /// Runs the tool with standard output on `out`.
@@ -52,4 +52,4 @@ TEST(StandardOutput, MayNotBeFull) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::standard_output_test

@@ -17,7 +17,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::stereo_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -460,4 +460,4 @@ TEST_F(Stereo, TheSameBitsForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::stereo_test

@@ -9,7 +9,7 @@
 #include "support/frame_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::suggestions_test {
 namespace {
 
 using testing::HasSubstr;
@@ -153,4 +153,4 @@ TEST_F(Suggestions, OfKeysOfAConfigFile) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::suggestions_test

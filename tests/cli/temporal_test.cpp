@@ -10,7 +10,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::temporal_test {
 namespace {
 
 using nlohmann::json;
@@ -221,4 +221,4 @@ TEST(Filters, OfTheSourceGoWithTemporal) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::temporal_test

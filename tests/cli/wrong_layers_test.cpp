@@ -14,7 +14,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::wrong_layers_test {
 namespace {
 
 using nlohmann::json;
@@ -198,4 +198,4 @@ TEST_F(WrongLayers, PixelsWithoutNeighboursKeepTheirNormals) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::wrong_layers_test

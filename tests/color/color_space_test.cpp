@@ -4,7 +4,7 @@
 
 #include "support/color_fixture.h"
 
-namespace ssdo::test {
+namespace ssdo::test::color_space_test {
 namespace {
 
 using ColorSpace = ColorFixture;
@@ -150,4 +150,4 @@ TEST_F(ColorSpace, NamesInThePathDoNotDecideUnderVersion1) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::color_space_test

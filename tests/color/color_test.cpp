@@ -14,7 +14,7 @@
 
 #include "support/color_fixture.h"
 
-namespace ssdo::test {
+namespace ssdo::test::color_test {
 namespace {
 
 using Color = ColorFixture;
@@ -184,6 +184,17 @@ TEST_F(Color, ConfigUrisNeedALaterOpenColorIO) {
   EXPECT_THAT(refusal({}), IsError(ExitCode::input, "$OCIO ocio://default: "));
   EXPECT_THAT(refusal({}), IsError(ExitCode::input, "pass --ocio FILE, or unset OCIO"));
 }
+#else
+TEST_F(Color, ConfigUrisAreThoseOfTheLibrary) {
+  // The values of ACES, as of the built-in config.
+  const ColorOptions aces{.ocio = "ocio://cg-config-v1.0.0_aces-v1.3_ocio-v2.1",
+                          .colorspace = "ACEScg"};
+  EXPECT_NEAR(shown_grey(aces, 0.18f), 0.3560f, 5e-4f);
+  EXPECT_NEAR(shown_grey(aces, 1.0f), 0.8120f, 5e-4f);
+  setenv("OCIO", "ocio://default", 1);
+  EXPECT_THAT(description({}), testing::HasSubstr("$OCIO ocio://default"));
+  EXPECT_THAT(refusal({.ocio = "ocio://none"}), IsError(ExitCode::input, "--ocio ocio://none"));
+}
 #endif
 
 // ---- Applying it.
@@ -250,4 +261,4 @@ TEST_F(Color, TransformsMayMove) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::color_test

@@ -11,7 +11,7 @@
 #include "color/downsample.h"
 #include "support/scene_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::compose_test {
 namespace {
 
 using testing::ElementsAre;
@@ -242,4 +242,4 @@ TEST_F(Composites, PicturesShowEachKindInItsWay) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::compose_test

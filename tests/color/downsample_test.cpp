@@ -14,7 +14,7 @@
 #include "io/exr/pixel_filter.h"
 #include "support/scene_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::downsample_test {
 namespace {
 
 /// Surfaces of random colours under random light, half of them with nothing behind, and overscan on
@@ -224,4 +224,4 @@ TEST_P(Downsample, PicturesHaveTheSizeOfTheOutputs) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::downsample_test

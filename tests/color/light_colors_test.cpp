@@ -13,7 +13,7 @@
 #include "support/point_source.h"
 #include "support/scene_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::light_colors_test {
 namespace {
 
 using testing::ElementsAre;
@@ -143,4 +143,4 @@ TEST_F(LightColors, EdgesArePremultiplied) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::light_colors_test

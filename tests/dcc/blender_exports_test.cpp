@@ -9,7 +9,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::blender_exports_test {
 namespace {
 
 using nlohmann::json;
@@ -78,4 +78,4 @@ TEST(BlenderExports, AFileOfOnePassSaysHowToNameIt) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::blender_exports_test

@@ -11,7 +11,7 @@
 
 #include "dcc/data_checks.h"
 
-namespace ssdo::test {
+namespace ssdo::test::data_checks_test {
 namespace {
 
 using nlohmann::json;
@@ -234,4 +234,4 @@ TEST_F(DataChecks, SpaceWorldOfADepthNeedsAPose) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::data_checks_test

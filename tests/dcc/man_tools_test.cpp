@@ -14,7 +14,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::man_tools_test {
 namespace {
 
 using nlohmann::json;
@@ -108,4 +108,4 @@ TEST(ManPageOfTools, IsWhatIsRecognised) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::man_tools_test

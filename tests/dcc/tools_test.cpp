@@ -13,7 +13,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::tools_test {
 namespace {
 
 using nlohmann::json;
@@ -133,4 +133,4 @@ std::string test_name(const testing::TestParamInfo<Tool>& tool) {
 INSTANTIATE_TEST_SUITE_P(Dcc, Tools, testing::ValuesIn(tools()), test_name);
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::tools_test

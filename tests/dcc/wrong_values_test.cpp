@@ -7,7 +7,7 @@
 
 #include "dcc/data_checks.h"
 
-namespace ssdo::test {
+namespace ssdo::test::wrong_values_test {
 namespace {
 
 using nlohmann::json;
@@ -150,4 +150,4 @@ TEST_F(DataChecks, APThatNoCameraHasSeenIsRefused) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::wrong_values_test

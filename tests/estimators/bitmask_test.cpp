@@ -8,7 +8,7 @@
 
 #include "estimators/bitmask/request.h"
 
-namespace ssdo::test {
+namespace ssdo::test::bitmask_test {
 namespace {
 
 struct View {
@@ -149,4 +149,4 @@ TEST(Bitmask, AMapOfOneColourIsConstantLight) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::bitmask_test

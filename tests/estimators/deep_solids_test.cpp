@@ -11,7 +11,7 @@
 #include "scene/light/painted_map.h"
 #include "support/boxes.h"
 
-namespace ssdo::test {
+namespace ssdo::test::deep_solids_test {
 namespace {
 
 const Window kWindow{0, 0, 240, 160};
@@ -162,4 +162,4 @@ TEST(DeepSolids, SendLightOnlyWhereAPixelShowsTheirSurface) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::deep_solids_test

@@ -9,7 +9,7 @@
 
 #include "estimators/obscurance_request.h"
 
-namespace ssdo::test {
+namespace ssdo::test::gtao_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 72};
@@ -341,4 +341,4 @@ TEST(Gtao, NothingThatComesInMakesANaN) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::gtao_test

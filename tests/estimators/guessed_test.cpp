@@ -11,7 +11,7 @@
 #include "scene/other_views/take_out.h"
 #include "support/boxes.h"
 
-namespace ssdo::test {
+namespace ssdo::test::guessed_test {
 namespace {
 
 const Window kWindow{0, 0, 160, 120};
@@ -160,4 +160,4 @@ TEST(Guessed, CountsByHowOpenItsAnswerIs) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::guessed_test

@@ -11,7 +11,7 @@
 
 #include "estimators/obscurance_request.h"
 
-namespace ssdo::test {
+namespace ssdo::test::hbao_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 72};
@@ -330,4 +330,4 @@ TEST(Hbao, NothingThatComesInMakesANaN) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::hbao_test

@@ -5,7 +5,7 @@
 
 #include "math/sobol.h"
 
-namespace ssdo::test {
+namespace ssdo::test::microfacets_test {
 namespace {
 
 /// The share of an even light that a rough mirror sends on, by the definition of the facets'
@@ -57,4 +57,4 @@ TEST(Microfacets, AMirrorMirrors) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::microfacets_test

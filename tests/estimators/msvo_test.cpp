@@ -9,7 +9,7 @@
 #include "estimators/obscurance_request.h"
 #include "estimators/slow_msvo.h"
 
-namespace ssdo::test {
+namespace ssdo::test::msvo_test {
 namespace {
 
 const Window kWindow{0, 0, 210, 140};
@@ -183,4 +183,4 @@ TEST(Msvo, NothingThatComesInMakesANaN) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::msvo_test

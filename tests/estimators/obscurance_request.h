@@ -60,7 +60,7 @@ inline void expect_usable(const Products& out) {
 /// differ, by a sample that rounding moves.
 inline void expect_the_same_from_every_isa(const std::function<Plane<float>()>& ao) {
   Plane<float> scalar;
-  for (const char* name : {"scalar", "avx2", "avx512"}) {
+  for (const char* name : kIsas) {
     if (!has_isa(name)) continue;
     const ChosenIsa isa(name);
     const Plane<float> found = ao();

@@ -14,7 +14,7 @@
 #include "support/point_source.h"
 #include "support/sun_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::occluders_test {
 namespace {
 
 const Window kWindow{0, 0, 160, 120};
@@ -113,4 +113,4 @@ TEST(Occluders, AreAskedUpToWhereTheRayEnds) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::occluders_test

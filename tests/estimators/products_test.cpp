@@ -9,7 +9,7 @@
 
 #include "support/error_matchers.h"
 
-namespace ssdo::test {
+namespace ssdo::test::products_test {
 namespace {
 
 int count(const ProductSet& set) {
@@ -86,4 +86,4 @@ TEST(ForEachPlane, VisitsTheSamePlaneOfEachArgument) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::products_test

@@ -10,7 +10,7 @@
 #include "estimators/obscurance_request.h"
 #include "support/error_matchers.h"
 
-namespace ssdo::test {
+namespace ssdo::test::registry_test {
 namespace {
 
 using testing::HasSubstr;
@@ -193,4 +193,4 @@ TEST(Parameters, OutOfRangeAreRefusedAsTheyWereWritten) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::registry_test

@@ -10,7 +10,7 @@
 #include "estimators/obscurance_request.h"
 #include "estimators/view_space/slow_depth_mips.h"
 
-namespace ssdo::test {
+namespace ssdo::test::sao_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 72};
@@ -242,4 +242,4 @@ TEST(Sao, NothingThatComesInMakesANaN) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::sao_test

@@ -8,7 +8,7 @@
 
 #include "estimators/slow_ssao_fade.h"
 
-namespace ssdo::test {
+namespace ssdo::test::ssao_fade_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 72};
@@ -139,4 +139,4 @@ TEST(SsaoFade, TheEffectFadesWithDistance) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::ssao_fade_test

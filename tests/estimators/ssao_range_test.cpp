@@ -6,7 +6,7 @@
 #include "estimators/view_space/point_method_request.h"
 #include "estimators/view_space/slow_point_kernel.h"
 
-namespace ssdo::test {
+namespace ssdo::test::ssao_range_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 72};
@@ -98,4 +98,4 @@ TEST(SsaoRange, StrengthScalesWhatIsTakenAway) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::ssao_range_test

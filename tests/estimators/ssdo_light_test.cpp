@@ -12,7 +12,7 @@
 #include "math/frame.h"
 #include "support/analytic_scene.h"
 
-namespace ssdo::test {
+namespace ssdo::test::ssdo_light_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 72};
@@ -138,7 +138,7 @@ class SlowDirect {
 int expect_the_slow_light(const SlowDirect::Parameters& parameters) {
   const Geometry g = floor_wall_and_ball();
   const Environment sky = two_coloured_lamps();
-  const Products out = run(g, {.radius = 0.8f, .environment = sky, .set = parameters.set()});
+  const Products out = run_ssdo(g, {.radius = 0.8f, .environment = sky, .set = parameters.set()});
   SlowDirect slow(g, sky, 0.8, parameters);
   int compared = 0, without_red = 0;
   for (int y = 1; y < kWindow.height(); y += 5) {
@@ -178,7 +178,7 @@ TEST(SsdoLight, ParametersChangeIt) {
   const auto mean = [&](const SlowDirect::Parameters& parameters) {
     double sum = 0;
     for (const glm::vec3& light :
-         run(g, {.radius = 0.8f, .environment = sky, .set = parameters.set()}).direct.pixels)
+         run_ssdo(g, {.radius = 0.8f, .environment = sky, .set = parameters.set()}).direct.pixels)
       sum += double(light.x + light.y + light.z);
     return sum;
   };
@@ -224,11 +224,12 @@ TEST(SsdoLight, BounceIsTheListingsSum) {
   Plane<glm::vec3> sent(kWindow.width(), kWindow.height());
   for (std::size_t i = 0; i < sent.size(); ++i) sent[i] = {0.8f, float(i % 7), 0};
   for (SlowBounce slow : {SlowBounce{}, SlowBounce{2.5, 0.2}, SlowBounce{0.5, 2}}) {
-    const Products out = run(g, {.radius = 0.8f,
-                                 .set = {"bounce-strength=" + std::to_string(slow.strength),
-                                         "bounce-singularity=" + std::to_string(slow.singularity)},
-                                 .bounces = 1,
-                                 .radiance = sent});
+    const Products out =
+        run_ssdo(g, {.radius = 0.8f,
+                     .set = {"bounce-strength=" + std::to_string(slow.strength),
+                             "bounce-singularity=" + std::to_string(slow.singularity)},
+                     .bounces = 1,
+                     .radiance = sent});
     double total = 0;
     for (int y = 1; y < kWindow.height(); y += 5) {
       for (int x = 2; x < kWindow.width(); x += 7) {
@@ -246,4 +247,4 @@ TEST(SsdoLight, BounceIsTheListingsSum) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::ssdo_light_test

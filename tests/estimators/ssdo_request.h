@@ -21,7 +21,7 @@ struct SsdoRequest {
   Plane<glm::vec3> radiance = {};
 };
 
-inline Products run(const Geometry& geometry, const SsdoRequest& request) {
+inline Products run_ssdo(const Geometry& geometry, const SsdoRequest& request) {
   const Method method = ssdo_method();
   Scene scene = scene_of(geometry, request.environment, request.albedo);
   scene.senders.radiance = request.radiance;

@@ -10,7 +10,7 @@
 #include "support/analytic_scene.h"
 #include "support/crop.h"
 
-namespace ssdo::test {
+namespace ssdo::test::ssdo_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 72};
@@ -35,7 +35,7 @@ TEST(Ssdo, AnOpenPlaneReadsOneAtEveryTilt) {
        {camera_from_fov(60, kWindow, 1), camera_from_ortho_width(6, kWindow, 1)}) {
     for (const double tilt : {0.0, 30.0, 60.0, 80.0, 85.0}) {
       const Products out =
-          run(geometry_of(plane({}, {0, 0, 1}), tilted(projection, tilt), kWindow), {});
+          run_ssdo(geometry_of(plane({}, {0, 0, 1}), tilted(projection, tilt), kWindow), {});
       for (const float ao : out.ao.pixels) EXPECT_NEAR(ao, 1, 1e-5) << tilt;
     }
   }
@@ -44,7 +44,7 @@ TEST(Ssdo, AnOpenPlaneReadsOneAtEveryTilt) {
 TEST(Ssdo, ConstantLightIsThatColourTimesAo) {
   const Surface scene = all_of({plane({}, {0, 0, 1}), sphere({0, 0, 0.6}, 0.6)});
   const glm::vec3 color(0.25f, 1, 8);
-  const Products out = run(geometry_of(scene, tilted(camera_from_fov(40, kWindow, 1), 50), kWindow),
+  const Products out = run_ssdo(geometry_of(scene, tilted(camera_from_fov(40, kWindow, 1), 50), kWindow),
                            {.environment = Environment::constant(color)});
   double occluded = 0;
   for (std::size_t i = 0; i < out.ao.size(); ++i) {
@@ -56,7 +56,7 @@ TEST(Ssdo, ConstantLightIsThatColourTimesAo) {
   // The same through a map of one colour, with lookups.
   const auto map = std::make_shared<Plane<glm::vec3>>(64, 32, color);
   const Products mapped =
-      run(geometry_of(scene, tilted(camera_from_fov(40, kWindow, 1), 50), kWindow),
+      run_ssdo(geometry_of(scene, tilted(camera_from_fov(40, kWindow, 1), 50), kWindow),
           {.environment = Environment(map, {})});
   for (std::size_t i = 0; i < out.ao.size(); ++i) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(mapped.direct[i][c], out.direct[i][c], 1e-4 * color[c]);
@@ -92,7 +92,7 @@ TEST(Ssdo, BesideAWallItConvergesToItsOwnExpectation) {
     const Camera camera =
         look_at(camera_from_ortho_width(4, kWindow, 1), at + glm::dvec3(0, -5, 5), at, {0, 0, 1});
     const Products out =
-        run(geometry_of(scene, camera, kWindow), {.set = {"samples=512", "singularity=100"}});
+        run_ssdo(geometry_of(scene, camera, kWindow), {.set = {"samples=512", "singularity=100"}});
     EXPECT_NEAR(middle(out.ao), expected_beside_wall(d), 0.01) << d;
   }
   // Rays give 1/2 at the foot; a half-ball whose points behind the wall are hidden does too.
@@ -105,9 +105,9 @@ TEST(Ssdo, ADistantForegroundDoesNotOcclude) {
   const Surface floor = plane({}, {0, 0, 1});
   const Camera camera = tilted(camera_from_fov(60, kWindow, 1), 0);
   const Products with =
-      run(geometry_of(all_of({floor, near_strip}), camera, kWindow), {.radius = 1});
+      run_ssdo(geometry_of(all_of({floor, near_strip}), camera, kWindow), {.radius = 1});
   for (const float ao : with.ao.pixels) EXPECT_NEAR(ao, 1, 1e-5);
-  const Products seen = run(geometry_of(all_of({floor, near_strip}), camera, kWindow),
+  const Products seen = run_ssdo(geometry_of(all_of({floor, near_strip}), camera, kWindow),
                             {.radius = 1, .set = {"singularity=100"}});
   EXPECT_LT(*std::min_element(seen.ao.pixels.begin(), seen.ao.pixels.end()), 0.9f)
       << "without the window it would";
@@ -115,7 +115,7 @@ TEST(Ssdo, ADistantForegroundDoesNotOcclude) {
 
 TEST(Ssdo, BackgroundIsOpenAndUntouched) {
   const Products out =
-      run(geometry_of(sphere({0, 0, 0}, 1), tilted(camera_from_fov(40, kWindow, 1), 30), kWindow),
+      run_ssdo(geometry_of(sphere({0, 0, 0}, 1), tilted(camera_from_fov(40, kWindow, 1), 30), kWindow),
           {.bounces = 1});
   EXPECT_EQ(out.ao(0, 0), 1);
   EXPECT_EQ(out.direct(0, 0), glm::vec3(0));
@@ -127,10 +127,10 @@ TEST(Ssdo, BounceIsProportionalToTheSendersAlbedoAndGrowsWithPasses) {
   const Surface scene = all_of({plane({}, {0, 0, 1}), plane({0, 1, 0}, {0, -1, 0})});
   const Geometry g = geometry_of(
       scene, look_at(camera_from_fov(40, kWindow, 1), {0, -4, 3}, {0, 0, 0.3}, {0, 0, 1}), kWindow);
-  const Products dark = run(g, {.albedo = 0.25f, .bounces = 1}),
-                 light = run(g, {.albedo = 0.5f, .bounces = 1});
-  const Products twice = run(g, {.albedo = 0.5f, .bounces = 2}),
-                 black = run(g, {.albedo = 0, .bounces = 1});
+  const Products dark = run_ssdo(g, {.albedo = 0.25f, .bounces = 1}),
+                 light = run_ssdo(g, {.albedo = 0.5f, .bounces = 1});
+  const Products twice = run_ssdo(g, {.albedo = 0.5f, .bounces = 2}),
+                 black = run_ssdo(g, {.albedo = 0, .bounces = 1});
   double first = 0, second = 0;
   for (std::size_t i = 0; i < dark.bounce.size(); ++i) {
     EXPECT_NEAR(light.bounce[i].x, 2 * dark.bounce[i].x, 1e-5);
@@ -148,7 +148,7 @@ TEST(Ssdo, ACropFarEnoughInsideIsThatPartOfTheWhole) {
       look_at(camera_from_fov(40, kWindow, 1), {0, -4, 3}, {0, 0, 0.3}, {0, 0, 1});
   const Geometry g = geometry_of(scene, camera, kWindow);
   const SsdoRequest request{.radius = 0.2f, .bounces = 1};
-  const Products all = run(g, request), of_part = run(crop(g, part), request);
+  const Products all = run_ssdo(g, request), of_part = run_ssdo(crop(g, part), request);
   // A radius is at most 8 pixels here, and a bounce comes from pixels that look as far themselves.
   const int margin = 16;
   double bounced = 0;
@@ -174,7 +174,7 @@ TEST(Ssdo, NothingThatComesInMakesANaN) {
     if (g.is_surface(i) && random() % 10 == 0) g.surfel[i].position = glm::vec3(0, 0, -1e-30f);
   }
   for (const float radius : {1e-6f, 1.0f, 1e6f}) {
-    const Products out = run(g, {.radius = radius, .bounces = 3});
+    const Products out = run_ssdo(g, {.radius = radius, .bounces = 3});
     for (std::size_t i = 0; i < out.ao.size(); ++i) {
       EXPECT_TRUE(out.ao[i] >= 0 && out.ao[i] <= 1);
       for (int c = 0; c < 3; ++c)
@@ -195,4 +195,4 @@ TEST(Registry, NamesWhatExists) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::ssdo_test

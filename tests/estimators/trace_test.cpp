@@ -9,7 +9,7 @@
 #include "estimators/trace_request.h"
 #include "parallel/tiles.h"
 
-namespace ssdo::test {
+namespace ssdo::test::trace_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 72};
@@ -380,4 +380,4 @@ TEST(Trace, FramesOfNothingAndOfOnePixel) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::trace_test

@@ -10,7 +10,7 @@
 
 #include "estimators/embree.h"
 
-namespace ssdo::test {
+namespace ssdo::test::triangle_hit_test {
 namespace {
 
 const glm::vec3 kA(0, 0, 0), kB(4, 0, 0), kC(0, 4, 0);
@@ -75,4 +75,4 @@ TEST(TriangleHit, HasADistanceWhateverTheTriangle) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::triangle_hit_test

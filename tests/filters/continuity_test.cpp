@@ -12,7 +12,7 @@
 #include "support/analytic_scene.h"
 #include "support/random_frame.h"
 
-namespace ssdo::test {
+namespace ssdo::test::continuity_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 72};
@@ -117,4 +117,4 @@ TEST(Continuity, WrongMotionIsNoCut) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::continuity_test

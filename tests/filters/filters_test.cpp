@@ -14,7 +14,7 @@
 #include "support/error_matchers.h"
 #include "support/random_frame.h"
 
-namespace ssdo::test {
+namespace ssdo::test::filters_test {
 namespace {
 
 Products filtered(std::string_view name, const Products& in, const Geometry& g) {
@@ -43,7 +43,7 @@ TEST_P(EveryFilter, AgreesAmongInstructionSets) {
     return filtered(GetParam(), in, g);
   };
   const Products scalar = run("scalar");
-  for (const char* isa : {"avx2", "avx512"}) {
+  for (const char* isa : kVectorIsas) {
     if (!has_isa(isa)) continue;
     SCOPED_TRACE(isa);
     const Products vector = run(isa);
@@ -131,4 +131,4 @@ TEST(Filters, AreFoundByNameAndNoneChangesNothing) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::filters_test

@@ -11,7 +11,7 @@
 #include "filters/registry.h"
 #include "support/random_frame.h"
 
-namespace ssdo::test {
+namespace ssdo::test::geometry_filter_lanes_test {
 namespace {
 
 const Surfel* surface_at(const Geometry& g, int x, int y) {
@@ -164,4 +164,4 @@ TEST(GeometryFilter, LeavesNoDirectionWithoutLength) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::geometry_filter_lanes_test

@@ -9,7 +9,7 @@
 #include "support/analytic_scene.h"
 #include "support/random_frame.h"
 
-namespace ssdo::test {
+namespace ssdo::test::geometry_filter_test {
 namespace {
 
 const Window kWindow{0, 0, 64, 48};
@@ -152,4 +152,4 @@ TEST(GeometryFilter, LeavesTheBackgroundAlone) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::geometry_filter_test

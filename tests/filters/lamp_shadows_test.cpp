@@ -14,7 +14,7 @@
 #include "scene/light/lamps/lamp.h"
 #include "support/boxes.h"
 
-namespace ssdo::test {
+namespace ssdo::test::lamp_shadows_test {
 namespace {
 
 const Window kWindow{0, 0, 480, 270};
@@ -175,4 +175,4 @@ TEST(LampShadows, LampsOfAnySizeAnywhereAreFinite) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::lamp_shadows_test

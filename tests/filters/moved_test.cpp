@@ -12,7 +12,7 @@
 #include "scene/light/light.h"
 #include "support/analytic_scene.h"
 
-namespace ssdo::test {
+namespace ssdo::test::moved_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 72};
@@ -191,4 +191,4 @@ TEST(Fusion, TurnsDirectionsWithTheCamera) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::moved_test

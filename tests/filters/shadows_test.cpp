@@ -15,7 +15,7 @@
 #include "scene/light/painted_map.h"
 #include "support/boxes.h"
 
-namespace ssdo::test {
+namespace ssdo::test::shadows_test {
 namespace {
 
 const Window kWindow{0, 0, 480, 270};
@@ -300,4 +300,4 @@ TEST(BitmaskShadows, AWidePenumbraHasLittleNoise) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::shadows_test

@@ -17,7 +17,7 @@
 #include "support/scene_of.h"
 #include "support/sun_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::shares_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 64};
@@ -294,7 +294,7 @@ TEST(Shares, AgreeAmongInstructionSets) {
         return from_shares(to_shares(in, scene), scene);
       };
       const Products scalar = run("scalar");
-      for (const char* isa : {"avx2", "avx512"}) {
+      for (const char* isa : kVectorIsas) {
         if (!has_isa(isa)) continue;
         const Products vector = run(isa);
         for (std::size_t i = 0; i < in.ao.size(); ++i) {
@@ -359,4 +359,4 @@ TEST(Shares, GuessesHaveNoPattern) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::shares_test

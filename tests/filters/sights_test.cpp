@@ -11,7 +11,7 @@
 #include "filters/reprojection.h"
 #include "support/analytic_scene.h"
 
-namespace ssdo::test {
+namespace ssdo::test::sights_test {
 namespace {
 
 Surface things(double x) {
@@ -161,4 +161,4 @@ TEST(Sights, ACameraThatLooksAwaySeesNothing) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::sights_test

@@ -9,7 +9,7 @@
 #include "estimators/specular/specular_scene.h"
 #include "filters/shares.h"
 
-namespace ssdo::test {
+namespace ssdo::test::specular_test {
 namespace {
 
 Plane<glm::vec3> filtered(const std::string& method, const Scene& scene, double roughness) {
@@ -202,4 +202,4 @@ TEST(Specular, PartsOfAFrameAreAsInTheWhole) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::specular_test

@@ -17,7 +17,7 @@
 #include "support/random_frame.h"
 #include "support/scene_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::temporal_test {
 namespace {
 
 const Window kWindow{0, 0, 64, 48};
@@ -448,4 +448,4 @@ TEST(Temporal, TakesTheFlickerOfNoiseAwayUnderAMovingCamera) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::temporal_test

@@ -15,7 +15,7 @@
 #include "support/fixed_frame.h"
 #include "support/point_source.h"
 
-namespace ssdo::test {
+namespace ssdo::test::unoccluded_light_test {
 namespace {
 
 const Window kWindow{0, 0, 48, 36};
@@ -66,4 +66,4 @@ TEST(UnoccludedLight, IsTheSameForAllThatUseIt) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::unoccluded_light_test

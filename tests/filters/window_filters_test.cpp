@@ -14,7 +14,7 @@
 #include "support/analytic_scene.h"
 #include "support/random_frame.h"
 
-namespace ssdo::test {
+namespace ssdo::test::window_filters_test {
 namespace {
 
 constexpr int kPattern = 4;
@@ -230,4 +230,4 @@ TEST(BoxFilter, RemovesThePatternAndMovesThePictureByHalfAPixel) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::window_filters_test

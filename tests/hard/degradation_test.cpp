@@ -16,7 +16,7 @@
 #include "support/average_picture.h"
 #include "support/report.h"
 
-namespace ssdo::test {
+namespace ssdo::test::degradation_test {
 namespace {
 
 const Window kFrame{0, 0, 96, 72};
@@ -182,4 +182,4 @@ TEST(Degradation, StaysWithinWhatWasMeasured) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::degradation_test

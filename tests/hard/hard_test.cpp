@@ -18,7 +18,7 @@
 #include "support/estimate_light.h"
 #include "support/random_frame.h"
 
-namespace ssdo::test {
+namespace ssdo::test::hard_test {
 namespace {
 
 bool is_sane(float v) { return std::isfinite(v); }
@@ -172,4 +172,4 @@ INSTANTIATE_TEST_SUITE_P(Files, HardCases, testing::ValuesIn(file_cases()), name
 INSTANTIATE_TEST_SUITE_P(Cases, HardFiles, testing::ValuesIn(faithful_file_cases()), name_of);
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::hard_test

@@ -17,7 +17,7 @@
 #include "support/estimate_light.h"
 #include "support/report.h"
 
-namespace ssdo::test {
+namespace ssdo::test::random_frames_test {
 namespace {
 
 constexpr int kShards = 4, kFrames = 1200;
@@ -126,4 +126,4 @@ TEST_P(RandomFrames, KeepWhatIsTrueOfEveryFrame) {
 INSTANTIATE_TEST_SUITE_P(Shards, RandomFrames, testing::Range(0, kShards));
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::random_frames_test

@@ -8,7 +8,7 @@
 
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::json_text_test {
 namespace {
 
 using nlohmann::json;
@@ -48,4 +48,4 @@ TEST(JsonText, IsTheOnlyWayFromJsonToText) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::json_text_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace ssdo::test {
+namespace ssdo::test::one_line_test {
 namespace {
 
 // Issue 12, number 20: control characters of names.
@@ -28,4 +28,4 @@ TEST(Printable, EscapesWhatIsNotUtf8) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::one_line_test

@@ -16,13 +16,10 @@
 #include "support/error_matchers.h"
 #include "support/temp_dir.h"
 
-namespace ssdo {
+namespace ssdo::test::sequence_test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::error_of;
-using test::IsError;
-using test::TempDir;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
@@ -410,4 +407,4 @@ TEST_F(Found, FolderThatCannotBeListedIsAnInputError) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::sequence_test

@@ -9,7 +9,7 @@
 #include "support/error_matchers.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::size_guard_test {
 namespace {
 
 TEST(SizeGuard, RefusesMorePixelsThanTheFileCanHold) {
@@ -55,4 +55,4 @@ TEST(SizeGuard, ReadsNoMoreOfATextThanItsKindHas) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::size_guard_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace ssdo::test {
+namespace ssdo::test::utf8_test {
 namespace {
 
 bool is_valid(const Character& c) { return c.valid; }
@@ -28,4 +28,4 @@ TEST(Utf8, TellsTheCodePointToTheCaller) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::utf8_test

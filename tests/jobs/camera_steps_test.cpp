@@ -10,7 +10,7 @@
 
 #include "support/analytic_scene.h"
 
-namespace ssdo::test {
+namespace ssdo::test::camera_steps_test {
 namespace {
 
 using testing::ElementsAre;
@@ -85,4 +85,4 @@ TEST(CameraSteps, AreInTheOrderOfTheirNumbers) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::camera_steps_test

@@ -7,7 +7,7 @@
 
 #include "support/fake_root.h"
 
-namespace ssdo::test {
+namespace ssdo::test::control_groups_test {
 namespace {
 
 using testing::ElementsAre;
@@ -58,4 +58,4 @@ TEST(ControlGroups, AreTheTopmostOnesWhereNoneIsNamed) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::control_groups_test

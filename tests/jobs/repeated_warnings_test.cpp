@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace ssdo::test {
+namespace ssdo::test::repeated_warnings_test {
 namespace {
 
 using testing::ElementsAre;
@@ -60,4 +60,4 @@ TEST(RepeatedWarnings, OfManyRangesAreShort) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::repeated_warnings_test

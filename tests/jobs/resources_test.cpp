@@ -25,7 +25,7 @@
 #include "support/error_matchers.h"
 #include "support/fake_root.h"
 
-namespace ssdo::test {
+namespace ssdo::test::resources_test {
 namespace {
 
 /// An environment without the variables that count, until the end of the test.
@@ -271,4 +271,4 @@ TEST_F(Resource, TakeTheInstructionSetOfTheUser) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::resources_test

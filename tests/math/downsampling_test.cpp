@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace ssdo::test {
+namespace ssdo::test::downsampling_test {
 namespace {
 
 TEST(Downsampling, KeepsTheCornerOfTheDisplayWindow) {
@@ -29,4 +29,4 @@ TEST(Downsampling, ByOneChangesNothing) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::downsampling_test

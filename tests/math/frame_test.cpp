@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-namespace ssdo::test {
+namespace ssdo::test::frame_test {
 namespace {
 
 TEST(Frame, IsOrthonormalAndRightHandedAtThePolesToo) {
@@ -24,4 +24,4 @@ TEST(Frame, IsOrthonormalAndRightHandedAtThePolesToo) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::frame_test

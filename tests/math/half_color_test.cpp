@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace ssdo::test {
+namespace ssdo::test::half_color_test {
 namespace {
 
 /// Every number that half can hold without being denormal, and those close to halfway between two.
@@ -40,4 +40,4 @@ TEST(HalfColor, KeepsWhatIsDark) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::half_color_test

@@ -13,7 +13,7 @@
 #include "math/plane.h"
 #include "math/sequence_numbers.h"
 
-namespace ssdo::test {
+namespace ssdo::test::numbers_test {
 namespace {
 
 TEST(ParseNumber, TakesFiniteNumbersAndNothingElse) {
@@ -60,4 +60,4 @@ TEST(SequenceNumbers, StartsOfNeighbouringSeedsFillTheUnitInterval) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::numbers_test

@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace ssdo::test {
+namespace ssdo::test::octahedral_map_test {
 namespace {
 
 glm::vec3 random_direction(std::mt19937& random) {
@@ -46,4 +46,4 @@ TEST(OctahedralMap, InterpolatesEverywhereWithoutASeam) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::octahedral_map_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace ssdo::test {
+namespace ssdo::test::pixel_grid_test {
 namespace {
 
 TEST(PixelGrid, TakesAllOfAPicture) {
@@ -36,4 +36,4 @@ TEST(PixelGrid, TakesTheMiddleOfEveryBlockThatIsInThePicture) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::pixel_grid_test

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-namespace ssdo::test {
+namespace ssdo::test::sobol_test {
 namespace {
 
 TEST(Sobol, EveryBoxOfEveryShapeHoldsOnePoint) {
@@ -37,4 +37,4 @@ TEST(Sobol, SeedsAreIndependent) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::sobol_test

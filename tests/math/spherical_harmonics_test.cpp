@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
-namespace ssdo::test {
+namespace ssdo::test::spherical_harmonics_test {
 namespace {
 
 constexpr double kPi = glm::pi<double>();
@@ -78,4 +78,4 @@ TEST(SphericalHarmonics, LobesHaveTheirFactors) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::spherical_harmonics_test

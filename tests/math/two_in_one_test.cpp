@@ -7,7 +7,7 @@
 
 #include "support/random_numbers.h"
 
-namespace ssdo::test {
+namespace ssdo::test::two_in_one_test {
 namespace {
 
 TEST(TwoInOne, NumbersAreWholeWithTheRest) {
@@ -23,4 +23,4 @@ TEST(TwoInOne, NumbersAreWholeWithTheRest) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::two_in_one_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace ssdo::test {
+namespace ssdo::test::difference_test {
 namespace {
 
 const auto kEverywhere = [](int, int) { return true; };
@@ -76,4 +76,4 @@ TEST(ChannelsDifference, AMaskLeavesPixelsOutWithoutCountingThem) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::difference_test

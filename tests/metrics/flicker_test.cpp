@@ -14,7 +14,7 @@
 #include "math/sequence_numbers.h"
 #include "support/analytic_scene.h"
 
-namespace ssdo::test {
+namespace ssdo::test::flicker_test {
 namespace {
 
 const Window kWindow{0, 0, 128, 96};
@@ -315,4 +315,4 @@ TEST(Changes, OfFramesAddUp) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::flicker_test

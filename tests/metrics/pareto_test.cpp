@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace ssdo::test {
+namespace ssdo::test::pareto_test {
 namespace {
 
 using testing::ElementsAre;
@@ -43,4 +43,4 @@ TEST(Pareto, TheCheapestWithinABound) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::pareto_test

@@ -10,7 +10,7 @@
 
 #include "parallel/tiles.h"
 
-namespace ssdo::test {
+namespace ssdo::test::background_test {
 namespace {
 
 TEST(BackgroundJob, AJobIsDoneWhenItWasWaitedFor) {
@@ -66,4 +66,4 @@ TEST(BackgroundJob, AddsNoThread) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::background_test

@@ -15,7 +15,7 @@
 #include "support/point_source.h"
 #include "support/scene_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::plan_test {
 namespace {
 
 using testing::Contains;
@@ -336,4 +336,4 @@ TEST(Plan, SaysWhyItDecidedSo) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::plan_test

@@ -10,7 +10,7 @@
 #include "relight/estimate.h"
 #include "support/estimate_light.h"
 
-namespace ssdo::test {
+namespace ssdo::test::source_filter_test {
 namespace {
 
 using testing::Contains;
@@ -100,4 +100,4 @@ TEST(SourceFilter, OfSsaoFadeIsThreeRoundsAtHalfResolutionThatThenGoUp) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::source_filter_test

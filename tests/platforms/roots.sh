@@ -13,13 +13,15 @@ debian_mirror() {
     sed -n "s/^$own //p" | sed -n 1p
 }
 
-# make_root RELEASE FOLDER: a bare Debian in a folder that does not exist.
+# make_root RELEASE FOLDER: a bare Debian in a folder that does not exist. A release that is newer than
+# this machine's debootstrap is made as unstable is.
 make_root() {
-  local mirror
+  local mirror script=()
   mirror=$(debian_mirror)
   [ -n "$mirror" ] || fail "apt knows no mirror; run apt-get update or set SSDO_DEBIAN_MIRROR"
   mkdir -p "$(dirname "$2")"
-  debootstrap --variant=minbase "$1" "$2.part" "$mirror" >"$2.log" ||
+  [ -e "/usr/share/debootstrap/scripts/$1" ] || script=(/usr/share/debootstrap/scripts/sid)
+  debootstrap --variant=minbase "$1" "$2.part" "$mirror" "${script[@]}" >"$2.log" ||
     { tail -5 "$2.log"; fail "debootstrap of $1 failed; its log is $2.log"; }
   mv "$2.part" "$2"
 }

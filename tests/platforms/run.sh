@@ -28,7 +28,7 @@ mkdir -p "$roots/$release.build"
 # Read-only: commands write in build/ alone.
 binds=("$checkout $checkout ro" "$roots/$release.build $checkout/build")
 variables=(HOME=/root)
-for name in CI SSDO_OPTIONS CMAKE_CXX_COMPILER_LAUNCHER CCACHE_BASEDIR; do
+for name in CI SSDO_OPTIONS CMAKE_BUILD_PARALLEL_LEVEL CMAKE_CXX_COMPILER_LAUNCHER CCACHE_BASEDIR; do
   [ -z "${!name:-}" ] || variables+=("$name=${!name}")
 done
 in_root "$folder" root "cd '$checkout' && $*" "${variables[@]}"

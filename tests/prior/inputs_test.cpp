@@ -10,7 +10,7 @@
 
 #include "prior/vectors.h"
 
-namespace ssdo::test {
+namespace ssdo::test::inputs_test {
 namespace {
 
 /// Depth and normals of the frame that the training has its vectors of, in the space of a camera
@@ -94,4 +94,4 @@ TEST(PriorInputs, AreThoseOfTheTraining) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::inputs_test

@@ -14,7 +14,7 @@
 #include "support/chosen_isa.h"
 #include "support/error_matchers.h"
 
-namespace ssdo::test {
+namespace ssdo::test::network_test {
 namespace {
 
 /// All outputs at `places` places that are told the same.
@@ -51,7 +51,7 @@ TEST(PriorNetwork, HasTheSameBitsOnEveryInstructionSet) {
       const ChosenIsa scalar("scalar");
       first = evaluated(vector, 16);
     }
-    for (const char* name : {"avx2", "avx512"}) {
+    for (const char* name : kVectorIsas) {
       if (!has_isa(name)) continue;
       const ChosenIsa isa(name);
       EXPECT_EQ(evaluated(vector, 16), first) << name;
@@ -81,4 +81,4 @@ TEST(PriorNetwork, RefusesWeightsThatAreCutShortOrTooLong) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::network_test

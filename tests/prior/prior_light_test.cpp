@@ -17,7 +17,7 @@
 #include "parallel/tiles.h"
 #include "prior/prior.h"
 
-namespace ssdo::test {
+namespace ssdo::test::prior_light_test {
 namespace {
 
 const Window kDisplay{0, 0, 240, 120};
@@ -220,4 +220,4 @@ TEST(Prior, LeansBentNormalsAndExpectsAnErrorWhereItGuesses) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::prior_light_test

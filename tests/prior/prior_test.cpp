@@ -20,7 +20,7 @@
 #include "prior/inputs.h"
 #include "scene/solids/solids.h"
 
-namespace ssdo::test {
+namespace ssdo::test::prior_test {
 namespace {
 
 /// A third of the width of what the prior looks at as it is: squares of 2 x 2 pixels.
@@ -218,4 +218,4 @@ TEST(PriorAxes, StandUprightAndTurnWithTheCameraWithoutAJump) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::prior_test

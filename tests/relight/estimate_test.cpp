@@ -9,7 +9,7 @@
 #include "plan/make_plan.h"
 #include "support/estimate_light.h"
 
-namespace ssdo::test {
+namespace ssdo::test::estimate_test {
 namespace {
 
 Scene boxes() {
@@ -45,4 +45,4 @@ TEST(Estimate, TakesTheSceneAndLeavesItWithoutSolids) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::estimate_test

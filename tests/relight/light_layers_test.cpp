@@ -17,7 +17,7 @@
 #include "support/error_matchers.h"
 #include "support/point_source.h"
 
-namespace ssdo::test {
+namespace ssdo::test::light_layers_test {
 namespace {
 
 using testing::ElementsAre;
@@ -300,4 +300,4 @@ TEST(LightLayers, ArePlannedForAComposite) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::light_layers_test

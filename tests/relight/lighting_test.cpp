@@ -12,7 +12,7 @@
 #include "support/frame_file.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::lighting_test {
 namespace {
 
 using testing::ElementsAre;
@@ -135,4 +135,4 @@ TEST_F(LightRange, AMapIsConvertedToTheFramesPrimaries) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::lighting_test

@@ -15,7 +15,7 @@
 #include "support/gbuffer_of.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::geometry_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -168,4 +168,4 @@ TEST(Geometry, KnowsTheMedianDepthAndTheHeightOfTheFrameThere) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::geometry_test

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-namespace ssdo::test {
+namespace ssdo::test::order_statistics_test {
 namespace {
 
 TEST(OrderStatistics, AreThoseOfTheSortedNumbers) {
@@ -36,4 +36,4 @@ TEST(OrderStatistics, OfNothingAreNone) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::order_statistics_test

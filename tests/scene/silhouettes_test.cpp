@@ -11,7 +11,7 @@
 #include "support/average_picture.h"
 #include "support/gbuffer_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::silhouettes_test {
 namespace {
 
 const Window kWindow{0, 0, 200, 150};
@@ -72,4 +72,4 @@ TEST(Silhouettes, ThatAreAveragedAreMendedHoweverFew) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::silhouettes_test

@@ -5,7 +5,7 @@
 
 #include <set>
 
-namespace ssdo::test {
+namespace ssdo::test::interleaved_test {
 namespace {
 
 constexpr int kPeriod = Interleaving::kPeriod, kPad = Interleaving::kPad;
@@ -49,4 +49,4 @@ TEST(Interleaving, OneOfSoManyPixelsHasAPlaceOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::interleaved_test

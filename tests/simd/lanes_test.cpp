@@ -157,7 +157,7 @@ glm::dvec3 unit(const glm::dvec3& v) { return v == glm::dvec3(0) ? v : glm::norm
 /// Runs `test` on every instruction set that this processor has.
 template <class Test>
 void on_every_isa(const Test& test) {
-  for (const char* name : {"scalar", "avx2", "avx512"}) {
+  for (const char* name : kIsas) {
     if (!has_isa(name)) continue;
     const ChosenIsa isa(name);
     SCOPED_TRACE(name);

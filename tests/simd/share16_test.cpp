@@ -61,7 +61,7 @@ TEST(Share16, IsTheSameInVectors) {
   Share16 stored[kShares];
   for (float& share : shares) share = noisy(random);
   shares[0] = 1e30f, shares[1] = -1e30f, shares[2] = 1;
-  for (const char* name : {"scalar", "avx2", "avx512"}) {
+  for (const char* name : kIsas) {
     if (!has_isa(name)) continue;
     const ChosenIsa isa(name);
     HWY_DYNAMIC_DISPATCH(there_and_back)(shares, stored, back);

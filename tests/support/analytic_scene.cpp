@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/analytic_scene.h"
 
+#include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <glm/trigonometric.hpp>
 
 namespace ssdo::test {
 
@@ -61,6 +63,13 @@ Camera look_at(Camera projection, const glm::dvec3& eye, const glm::dvec3& targe
   projection.rotation = glm::transpose(to_world);
   projection.origin = eye;
   return projection;
+}
+
+Camera tilted(const Camera& projection, double tilt_degrees, double distance,
+              const glm::dvec3& target) {
+  const double t = glm::radians(tilt_degrees);
+  return look_at(projection, target + distance * glm::dvec3(0, -std::sin(t), std::cos(t)), target,
+                 {0, std::cos(t), std::sin(t)});
 }
 
 Camera lat_long(const Window& display) {

@@ -49,6 +49,10 @@ Camera lat_long(const Window& display);
 Camera look_at(Camera projection, const glm::dvec3& eye, const glm::dvec3& target,
                const glm::dvec3& up);
 
+/// A camera in the plane x = 0 that looks at `target` from `tilt_degrees` beside the z axis.
+Camera tilted(const Camera& projection, double tilt_degrees, double distance = 6,
+              const glm::dvec3& target = {});
+
 /// The world-space ray through the centre of a pixel of the display window.
 Ray ray_through(const Camera& camera, double px, double py);
 

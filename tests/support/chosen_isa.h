@@ -3,6 +3,10 @@
 
 namespace ssdo::test {
 
+/// The instruction sets other than one lane; a processor has some of them.
+inline constexpr const char* kVectorIsas[] = {"neon", "avx2", "avx512"};
+inline constexpr const char* kIsas[] = {"scalar", "neon", "avx2", "avx512"};
+
 /// Has vector loops run on an instruction set while it lives, and on the best one afterwards, as
 /// they do in a test that chooses none.
 class ChosenIsa {

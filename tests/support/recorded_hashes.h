@@ -9,7 +9,7 @@
 namespace ssdo::test {
 
 /// The table tests/recorded_hashes.txt: a line for each output, with the hash of its bits by one
-/// lane and by vectors. AVX2 and AVX-512 have the same.
+/// lane and by vectors. NEON, AVX2 and AVX-512 have the same.
 class RecordedHashes {
  public:
   RecordedHashes();

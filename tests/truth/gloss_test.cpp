@@ -14,7 +14,7 @@
 #include "relight/frame.h"
 #include "relight/relight.h"
 
-namespace ssdo::test {
+namespace ssdo::test::gloss_test {
 namespace {
 
 const std::string kFolder = std::string(SSDO_SOURCE_DIR) + "/data/truth/corner/";
@@ -69,4 +69,4 @@ TEST(TruthOfMirrors, ErrorsAreThoseRecorded) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::gloss_test

@@ -15,7 +15,7 @@
 #include "hard/recorded_degradation.h"
 #include "truth/recorded_errors.h"
 
-namespace ssdo::test {
+namespace ssdo::test::readme_test {
 namespace {
 
 using Row = std::vector<std::string>;
@@ -160,4 +160,4 @@ TEST(Readme, StatesTheRecordedErrorsOfHardCases) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::readme_test

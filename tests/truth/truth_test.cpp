@@ -22,7 +22,7 @@
 #include "support/crop.h"
 #include "truth/recorded_errors.h"
 
-namespace ssdo::test {
+namespace ssdo::test::truth_test {
 namespace {
 
 const std::string kData = std::string(SSDO_SOURCE_DIR) + "/data/";
@@ -371,4 +371,4 @@ INSTANTIATE_TEST_SUITE_P(Frames, Truth, testing::ValuesIn(cases()), [](const aut
 });
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::truth_test

@@ -34,10 +34,10 @@ constexpr float kCosineError = 8e-4f;
 
 /// The bits from `first` (0..32 or more) on.
 HWY_INLINE VU bits_from(VU first) {
-#if HWY_TARGET == HWY_SCALAR
-  return hn::IfThenElseZero(first < set_bits(32), set_bits(~0u) << hn::Min(first, set_bits(31)));
-#else
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
   return set_bits(~0u) << first;  // nothing is left of a shift by 32 or more
+#else
+  return hn::IfThenElseZero(first < set_bits(32), set_bits(~0u) << hn::Min(first, set_bits(31)));
 #endif
 }
 

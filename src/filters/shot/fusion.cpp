@@ -213,11 +213,14 @@ void Fusion::add_speaker(const Speaker& s, const RowOfPixels& row, Room& room) {
   Sights& sights = room.sights[1];
   std::fill_n(sights.pixel, row.count, -1);
   float* counts = room.moved_of(1);  // 0 for sources
+  float beside[RowOfPoints::kMost];
+  std::fill_n(beside, row.count, 1.0f);
+  if (s.moved) s.moved->row_of_moving(row, beside);
   for (auto point = first; point != last; ++point) {
     const auto i = std::size_t(point->x - row.x);
     sights.pixel[i] = point->pixel;
     for (int corner = 0; corner < 4; ++corner) sights.weight[corner][i] = point->weight[corner];
-    counts[i] = point->follows * point->counts;
+    counts[i] = point->follows * point->counts * beside[i];
   }
   saying.sights = &sights, saying.moved = counts;
   room.sayings.push_back(saying);

@@ -39,6 +39,14 @@ bool contradicts_cameras(const Plane<glm::vec2>& layer, const KeptSurfaces& now,
 
 }  // namespace
 
+glm::vec3 velocity_of(const OwnMotion& motion, const KeptSurfaces& now, std::size_t pixel) {
+  const glm::dvec2 back = motion.at(pixel);
+  if (!std::isfinite(back.x) || !std::isfinite(back.y)) return glm::vec3(0);
+  const Camera& camera = now.camera;
+  const double scale = camera.orthographic ? 1.0 : double(-now.pixels[pixel].position.z);
+  return glm::vec3(-back.x * scale / camera.fx, back.y * scale / camera.fy, 0);
+}
+
 OwnMotion find_own_motion(const Plane<glm::vec2>& layer, const KeptSurfaces& now,
                           const KeptSurfaces& before) {
   OwnMotion motion;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "filters/shot/kept_surfaces.h"
@@ -29,6 +30,10 @@ struct OwnMotion {
     return {double(first_of_two(pixels[i])), double(second_of_two(pixels[i]))};
   }
 };
+
+/// How a pixel of `now` moves apart from the camera, across the view: camera space, scene units in
+/// a frame. 0 where that is not known.
+glm::vec3 velocity_of(const OwnMotion& motion, const KeptSurfaces& now, std::size_t pixel);
 
 /// `layer` leads from each pixel of `now` to where what it shows was in `before`, in pixels, x
 /// right and y down. Both must know the world. What P finds in its place in both frames stands

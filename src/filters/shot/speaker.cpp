@@ -72,7 +72,10 @@ Speaker speaker_of(const Findings& own, const std::vector<OtherFindings>& others
   Speaker speaker{findings, at, {findings.surfaces, own.surfaces}, {}, {}, {}, {}, {}};
   const std::vector<MovedPiece> pieces =
       moved_pieces(own.surfaces.camera, findings.surfaces.camera, *other.gone, *other.come);
-  if (!pieces.empty()) speaker.moved.emplace(own.surfaces, pieces, light);
+  if (!pieces.empty()) {
+    speaker.moved.emplace(own.surfaces, pieces, light);
+    speaker.moved->weigh_moving(own.surfaces, *other.gone, own.motion, other.away);
+  }
   const float glow = same_glow(own, findings, speaker.reprojection);
   for (const FoundPlane& plane : own.planes)
     speaker.weights.insert(speaker.weights.end(), std::size_t(plane.channels),

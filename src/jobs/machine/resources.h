@@ -24,7 +24,7 @@ class Resources {
   /// Says if there are fewer threads than chosen, because no more can be started; else empty.
   std::string warning() const;
   std::size_t memory() const { return memory_; }   ///< bytes that the run may use
-  const std::string& isa() const { return isa_; }  ///< avx512, avx2 or scalar
+  const std::string& isa() const { return isa_; }  ///< avx512, avx2, neon or scalar
 
  private:
   int wanted_threads_, threads_;

@@ -227,7 +227,7 @@ void Shot::look(std::size_t job, std::size_t view, WorkOnView& work) {
 const std::vector<MovedPiece>& Shot::pieces(const std::array<std::size_t, 3>& of,
                                             const Findings& stands, const Findings& looks) {
   const auto [place, is_new] = pieces_.try_emplace(of);
-  if (is_new) place->second = find_pieces(stands.surfaces, looks.surfaces);
+  if (is_new) place->second = find_pieces(stands.surfaces, looks.surfaces, stands.motion);
   return place->second;
 }
 

@@ -16,7 +16,7 @@
 #include "estimators/bitmask/request.h"
 #include "scene/light/lamps/lamp.h"
 
-namespace ssdo::test {
+namespace ssdo::test::beams_test {
 namespace {
 
 const Window kWindow{0, 0, 200, 120};
@@ -144,4 +144,4 @@ TEST(BorderExtents, AreFoundWhereSourcesAreBehindThem) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::beams_test

@@ -16,7 +16,7 @@
 #include "support/point_source.h"
 #include "support/sun_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::beyond_test {
 namespace {
 
 /// Black but for one texel, z up.
@@ -317,4 +317,4 @@ TEST(BitmaskBeyond, BrokenPixelsTellNothing) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::beyond_test

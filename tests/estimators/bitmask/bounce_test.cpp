@@ -11,7 +11,7 @@
 #include "estimators/bitmask/request.h"
 #include "support/boxes.h"
 
-namespace ssdo::test {
+namespace ssdo::test::bounce_test {
 namespace {
 
 const Window kWindow{0, 0, 192, 144};
@@ -269,4 +269,4 @@ TEST(BitmaskBounce, InAClosedBoxNothingOutshinesTheSky) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::bounce_test

@@ -6,7 +6,7 @@
 
 #include "estimators/bitmask/closed_form.h"
 
-namespace ssdo::test {
+namespace ssdo::test::closed_forms_test {
 namespace {
 
 const Window kWindow = kFineWindow;
@@ -158,4 +158,4 @@ TEST(BitmaskClosedForms, AtTheBottomOfAPit) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::closed_forms_test

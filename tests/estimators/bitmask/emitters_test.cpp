@@ -10,7 +10,7 @@
 
 #include "estimators/bitmask/request.h"
 
-namespace ssdo::test {
+namespace ssdo::test::emitters_test {
 namespace {
 
 const Window kWindow{0, 0, 160, 96};
@@ -214,4 +214,4 @@ TEST(Emitters, ASheetThatTheBorderCutsSendsNoMoreThanWhatIsSeen) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::emitters_test

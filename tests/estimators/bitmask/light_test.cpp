@@ -10,7 +10,7 @@
 #include "estimators/bitmask/closed_form.h"
 #include "math/spherical_harmonics.h"
 
-namespace ssdo::test {
+namespace ssdo::test::light_test {
 namespace {
 
 /// Bands 0 to 2, different in every channel and nowhere dark.
@@ -228,4 +228,4 @@ TEST(BitmaskLight, TheBentNormalLeansAwayFromAWall) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::light_test

@@ -8,7 +8,7 @@
 #include "scene/solids/solids.h"
 #include "support/analytic_scene.h"
 
-namespace ssdo::test {
+namespace ssdo::test::march_scene_test {
 namespace {
 
 /// The normals beside the frame are made from what marches read of the tangent planes.
@@ -34,4 +34,4 @@ TEST(MarchScene, TiltsAreTheNormalsOfSurfaces) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::march_scene_test

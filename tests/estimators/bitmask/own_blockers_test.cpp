@@ -13,7 +13,7 @@
 #include "estimators/bitmask/request.h"
 #include "scene/light/lamps/lamp.h"
 
-namespace ssdo::test {
+namespace ssdo::test::own_blockers_test {
 namespace {
 
 const Window kWindow{0, 0, 64, 48};
@@ -73,4 +73,4 @@ TEST(OwnBlockers, MeasureWhatRaysToSourcesMeetBeyondTheBorder) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::own_blockers_test

@@ -10,7 +10,7 @@
 #include "estimators/bitmask/request.h"
 #include "parallel/tiles.h"
 
-namespace ssdo::test {
+namespace ssdo::test::properties_test {
 namespace {
 
 const Window kWindow{0, 0, 131, 77};
@@ -296,4 +296,4 @@ TEST(BitmaskProperties, BelowAPixelTheRadiusReachesNothing) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::properties_test

@@ -8,7 +8,7 @@
 
 #include "estimators/bitmask/request.h"
 
-namespace ssdo::test {
+namespace ssdo::test::raster_test {
 namespace {
 
 /// Neither begins nor ends with a vector or a pattern.
@@ -117,4 +117,4 @@ TEST(BitmaskRaster, ALayerIsHiddenByTheLayersBeforeIt) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::raster_test

@@ -15,7 +15,7 @@
 #include "scene/light/light.h"
 #include "support/sun_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::ray_pattern_test {
 namespace {
 
 /// A disc of 10 degrees around the middle of the map, in the dark.
@@ -126,4 +126,4 @@ TEST(RayPattern, NoDirectionIsTakenTwice) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::ray_pattern_test

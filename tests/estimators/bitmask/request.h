@@ -54,14 +54,6 @@ inline Products run(const Geometry& geometry, const BitmaskRequest& request) {
                                    {});
 }
 
-/// A camera in the plane x = 0 that looks at `target` from `tilt_degrees` beside the z axis.
-inline Camera tilted(const Camera& projection, double tilt_degrees, double distance = 6,
-                     const glm::dvec3& target = {}) {
-  const double t = glm::radians(tilt_degrees);
-  return look_at(projection, target + distance * glm::dvec3(0, -std::sin(t), std::cos(t)), target,
-                 {0, std::cos(t), std::sin(t)});
-}
-
 /// The same frame cut from a wider one: its middle still looks from the same eye at the same
 /// target, along a ray that leaves the optical axis at these slopes. (1, 0) is 45 degrees.
 inline Camera off_axis(Camera camera, const Window& window, const glm::dvec2& slope) {

@@ -12,7 +12,7 @@
 #include "support/scene_of.h"
 #include "support/sun_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::shading_test {
 namespace {
 
 const Window kWindow{0, 0, 160, 120};
@@ -89,4 +89,4 @@ TEST(BitmaskShading, ItsSunIsSeenWhereverThePlaneSeesIt) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::shading_test

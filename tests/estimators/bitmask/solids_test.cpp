@@ -7,7 +7,7 @@
 
 #include "estimators/bitmask/closed_form.h"
 
-namespace ssdo::test {
+namespace ssdo::test::solids_test {
 namespace {
 
 const Window kWindow = kFineWindow;
@@ -132,4 +132,4 @@ TEST(BitmaskSolids, ACliffHidesTheSameAtEveryTilt) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::solids_test

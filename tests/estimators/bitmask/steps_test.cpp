@@ -11,7 +11,7 @@
 #include "estimators/bitmask/request.h"
 #include "estimators/bitmask/slice_pattern.h"
 
-namespace ssdo::test {
+namespace ssdo::test::steps_test {
 namespace {
 
 struct Subject {
@@ -87,4 +87,4 @@ TEST(BitmaskSteps, NeighbouringDirectionsHaveSamplesAtOtherDistances) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::steps_test

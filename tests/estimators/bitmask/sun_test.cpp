@@ -14,7 +14,7 @@
 #include "support/boxes.h"
 #include "support/sun_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::sun_test {
 namespace {
 
 /// Black but for one texel.
@@ -134,4 +134,4 @@ TEST(BitmaskSun, WhatGoesOnBeyondTheFrameIsNotDrawnAcrossIt) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::sun_test

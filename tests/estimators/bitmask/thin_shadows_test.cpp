@@ -12,7 +12,7 @@
 #include "estimators/bitmask/request.h"
 #include "scene/solids/solids.h"
 
-namespace ssdo::test {
+namespace ssdo::test::thin_shadows_test {
 namespace {
 
 /// Where small squares float above a floor, z = 0.
@@ -76,4 +76,4 @@ TEST(BitmaskSun, OneRayFindsShadowsOfTwoPixels) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::thin_shadows_test

@@ -17,7 +17,7 @@
 #include "math/sobol.h"
 #include "scene/light/lamps/lamp.h"
 
-namespace ssdo::test {
+namespace ssdo::test::unseen_side_test {
 namespace {
 
 TEST(UnseenSide, OfABallIsTheOtherHalfOfIt) {
@@ -114,4 +114,4 @@ TEST(UnseenSide, SendsWhatALampNearbyGivesIt) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::unseen_side_test

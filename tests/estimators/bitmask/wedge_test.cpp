@@ -7,7 +7,7 @@
 
 #include "estimators/bitmask/request.h"
 
-namespace ssdo::test {
+namespace ssdo::test::wedge_test {
 namespace {
 
 const Window kWindow{0, 0, 480, 352};
@@ -147,4 +147,4 @@ TEST(BitmaskWedge, ContinuedBeyondTheFrameItIsEndless) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::wedge_test

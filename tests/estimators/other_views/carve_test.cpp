@@ -10,7 +10,7 @@
 #include "support/frame_file.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::carve_test {
 namespace {
 
 /// Posts on a floor. The share of the pixels that show them whose guessed thickness a view from
@@ -51,4 +51,4 @@ TEST(Carve, AViewLooksPastWhatItsPixelsDoNotResolve) { EXPECT_EQ(share_cut({0, 0
 TEST(Carve, AViewThatResolvesThingsEndsThem) { EXPECT_GT(share_cut({0, 0, 640, 480}), 0.02); }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::carve_test

@@ -13,7 +13,7 @@
 #include "support/frame_file.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::merge_test {
 namespace {
 
 const Window kFrame{0, 0, 120, 90}, kFine{0, 0, 96, 72}, kCoarse{0, 0, 48, 36};
@@ -112,4 +112,4 @@ TEST_F(Merge, WhatOneViewAloneShowsStays) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::merge_test

@@ -12,7 +12,7 @@
 #include "support/boxes.h"
 #include "support/point_source.h"
 
-namespace ssdo::test {
+namespace ssdo::test::nearer_senders_test {
 namespace {
 
 const Window kWindow{0, 0, 160, 120};
@@ -63,4 +63,4 @@ TEST(OtherViewBounce, WhatIsNearerThanTheUnseenSideOfASolidSends) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::nearer_senders_test

@@ -11,7 +11,7 @@
 #include "math/sobol.h"
 #include "scene/light/lamps/lamp.h"
 
-namespace ssdo::test {
+namespace ssdo::test::mirrored_light_test {
 namespace {
 
 double smith(double cosine, double alpha) {
@@ -254,4 +254,4 @@ TEST(MirroredLight, HighlightsOfWideLampsAtGrazingViewsAreTheSumOverTheirPoints)
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::mirrored_light_test

@@ -10,7 +10,7 @@
 #include "estimators/trace_request.h"
 #include "scene/solids/solids.h"
 
-namespace ssdo::test {
+namespace ssdo::test::convex_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 72};
@@ -88,4 +88,4 @@ TEST(TraceConvex, APlaneHidesWhatShadingNormalsSeeBelowIt) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::convex_test

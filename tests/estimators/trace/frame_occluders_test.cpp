@@ -7,7 +7,7 @@
 
 #include "estimators/bitmask/request.h"
 
-namespace ssdo::test {
+namespace ssdo::test::frame_occluders_test {
 namespace {
 
 TEST(FrameOccluders, AreSharedByLampsThatNameTheSame) {
@@ -26,4 +26,4 @@ TEST(FrameOccluders, AreSharedByLampsThatNameTheSame) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::frame_occluders_test

@@ -12,7 +12,7 @@
 #include "support/analytic_scene.h"
 #include "support/crop.h"
 
-namespace ssdo::test {
+namespace ssdo::test::height_field_test {
 namespace {
 
 const Window kWindow{0, 0, 64, 48};
@@ -161,4 +161,4 @@ TEST(HeightField, RefusesMoreLayersThanItHasRoomFor) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::height_field_test

@@ -11,7 +11,7 @@
 #include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
 
-namespace ssdo::test {
+namespace ssdo::test::ray_origin_test {
 namespace {
 
 /// A floor, and a wall that leans over it by 30 degrees from y = 0 up.
@@ -75,4 +75,4 @@ TEST(RayOrigin, InTheEdgeOfTwoWallsSomeIsOpen) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::ray_origin_test

@@ -9,7 +9,7 @@
 #include "estimators/trace_request.h"
 #include "scene/light/painted_map.h"
 
-namespace ssdo::test {
+namespace ssdo::test::sources_test {
 namespace {
 
 /// A black map with one disc that gives a surface facing it an irradiance of about pi.
@@ -93,4 +93,4 @@ TEST(TraceSources, SetOnAnOpenPlane) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::sources_test

@@ -8,7 +8,7 @@
 
 #include "estimators/view_space/slow_depth_mips.h"
 
-namespace ssdo::test {
+namespace ssdo::test::depth_mips_test {
 namespace {
 
 /// Depths that are all different, some of them background.
@@ -83,4 +83,4 @@ TEST(DepthMips, ACropHasTheSameLevelsWhereItHasTheirPixels) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::depth_mips_test

@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace ssdo::test {
+namespace ssdo::test::half_ball_test {
 namespace {
 
 TEST(HalfBall, EverySetHasAMeanCosineOfExactlyOneHalf) {
@@ -47,4 +47,4 @@ TEST(HalfBall, SeedAndSetChangeThePoints) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::half_ball_test

@@ -7,7 +7,7 @@
 
 #include "estimators/view_space/point_method_request.h"
 
-namespace ssdo::test {
+namespace ssdo::test::half_resolution_test {
 namespace {
 
 /// Two planes that face the viewer, the right one nearer; edge in the picture's middle.
@@ -108,4 +108,4 @@ TEST(HalfResolution, WorksForFramesOfOnePixel) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::half_resolution_test

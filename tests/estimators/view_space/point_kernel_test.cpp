@@ -10,7 +10,7 @@
 
 #include "estimators/view_space/slow_point_kernel.h"
 
-namespace ssdo::test {
+namespace ssdo::test::point_kernel_test {
 namespace {
 
 TEST(PointKernel, IsTheSourcesLoop) {
@@ -99,4 +99,4 @@ TEST(PointKernel, StaysWhenTheNoiseOrTheCountChanges) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::point_kernel_test

@@ -32,13 +32,6 @@ inline Products run(const Method& method, const Geometry& geometry, const PointR
                          {});
 }
 
-/// A camera that looks at the origin from `distance`, turned by `tilt_degrees` from straight above.
-inline Camera tilted(const Camera& projection, double tilt_degrees, double distance = 6) {
-  const double t = tilt_degrees * 3.14159265358979 / 180;
-  return look_at(projection, distance * glm::dvec3(0, -std::sin(t), std::cos(t)), {0, 0, 0},
-                 {0, std::cos(t), std::sin(t)});
-}
-
 /// A floor, a wall, and a ball in front of the wall that hides part of both.
 inline Surface room_with_a_ball() {
   return all_of({plane({}, {0, 0, 1}), plane({0, 1.5, 0}, {0, -1, 0}), sphere({0.3, 0, 1.2}, 0.6)});

@@ -12,7 +12,7 @@
 #include "parallel/tiles.h"
 #include "support/crop.h"
 
-namespace ssdo::test {
+namespace ssdo::test::point_methods_test {
 namespace {
 
 struct Case {
@@ -44,7 +44,7 @@ TEST_P(PointMethods, VectorsGiveWhatOneLaneGives) {
   };
   const Plane<float> scalar = ao("scalar");
   int compared = 0;
-  for (const char* name : {"avx2", "avx512"}) {
+  for (const char* name : kVectorIsas) {
     if (!has_isa(name)) continue;
     const Plane<float> vector = ao(name);
     expect_close(
@@ -132,4 +132,4 @@ INSTANTIATE_TEST_SUITE_P(All, PointMethods,
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::point_methods_test

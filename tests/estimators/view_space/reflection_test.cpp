@@ -9,7 +9,7 @@
 #include "estimators/obscurance_request.h"
 #include "estimators/view_space/reflection_occlusion.h"
 
-namespace ssdo::test {
+namespace ssdo::test::reflection_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -230,4 +230,4 @@ TEST(Reflection, NothingThatComesInMakesANaN) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::reflection_test

@@ -9,7 +9,7 @@
 #include "support/analytic_scene.h"
 #include "support/scene_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::view_planes_test {
 namespace {
 
 const Window kWindow{0, 0, 37, 23};
@@ -107,4 +107,4 @@ TEST(AmbientLight, IsAoTimesTheIrradianceOnTheNormalOrTheBentNormal) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::view_planes_test

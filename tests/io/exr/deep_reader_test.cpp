@@ -13,7 +13,7 @@
 #include "support/run_tool.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::deep_reader_test {
 namespace {
 
 /// Zero to four samples in a pixel, of values that half stores exactly.
@@ -210,4 +210,4 @@ TEST(DeepReader, RefusesTilesThatTheFileCannotHold) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::deep_reader_test

@@ -12,10 +12,9 @@
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
-namespace ssdo {
+namespace ssdo::test::exr_damage_test {
 namespace {
 
-using namespace test;
 using Imath::Box2i;
 
 const std::vector<TestChannel> kChannels = {{"R", Imf::HALF}, {"Z", Imf::FLOAT}, {"id", Imf::UINT}};
@@ -211,4 +210,4 @@ TEST(DamagedExr, TilesMayBeLargerThanTheImage) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::exr_damage_test

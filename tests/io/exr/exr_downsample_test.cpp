@@ -8,7 +8,7 @@
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::exr_downsample_test {
 namespace {
 
 using Imath::Box2i;
@@ -52,4 +52,4 @@ TEST(ExrDownsample, SubsampledChannelsAreRefusedWhereTheyWouldBeKept) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::exr_downsample_test

@@ -10,7 +10,7 @@
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::exr_grid_test {
 namespace {
 
 using Imath::Box2i;
@@ -118,4 +118,4 @@ TEST_F(ExrGrid, CountsTheRowsThatAnOverviewIsReadFrom) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::exr_grid_test

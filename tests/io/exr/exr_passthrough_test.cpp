@@ -29,10 +29,9 @@
 
 namespace fs = std::filesystem;
 
-namespace ssdo {
+namespace ssdo::test::exr_passthrough_test {
 namespace {
 
-using namespace test;
 using Imath::Box2i;
 
 std::string bytes_of(const fs::path& path) {
@@ -443,4 +442,4 @@ TEST(PassThrough, AFullDiskIsFoundWhereverItStrikes) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::exr_passthrough_test

@@ -10,10 +10,9 @@
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
-namespace ssdo {
+namespace ssdo::test::exr_reader_test {
 namespace {
 
-using namespace test;
 using Imath::Box2i;
 
 const std::vector<TestChannel> kMixed = {
@@ -234,4 +233,4 @@ TEST(ExrReader, SaysWhatAPartLacks) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::exr_reader_test

@@ -19,10 +19,9 @@
 
 namespace fs = std::filesystem;
 
-namespace ssdo {
+namespace ssdo::test::exr_rows_test {
 namespace {
 
-using namespace test;
 using Imath::Box2i;
 
 constexpr Imf::Compression kCompressions[] = {
@@ -255,4 +254,4 @@ TEST_F(Rows, MeetAFullDiskWhereverItStrikes) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::exr_rows_test

@@ -17,10 +17,9 @@
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
-namespace ssdo {
+namespace ssdo::test::exr_writer_test {
 namespace {
 
-using namespace test;
 using Imath::Box2i;
 using testing::ElementsAre;
 
@@ -263,4 +262,4 @@ TEST_F(Writer, DamageInWhatIsKeptIsTheInputsFault) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::exr_writer_test

@@ -14,7 +14,7 @@
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::header_numbers_test {
 namespace {
 
 using testing::ElementsAre;
@@ -88,4 +88,4 @@ TEST(HeaderNumbers, OfOtherPartsAreThoseOfTheSameViewThatThePartLacks) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::header_numbers_test

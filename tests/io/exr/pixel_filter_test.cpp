@@ -11,7 +11,7 @@
 
 #include "parallel/tiles.h"
 
-namespace ssdo::test {
+namespace ssdo::test::pixel_filter_test {
 namespace {
 
 /// Overscan of odd widths around a display window.
@@ -160,4 +160,4 @@ TEST(PixelFilterByOne, KeepsEveryBit) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::pixel_filter_test

@@ -13,10 +13,9 @@
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
-namespace ssdo {
+namespace ssdo::test::salvage_test {
 namespace {
 
-using namespace test;
 using Imath::Box2i;
 using testing::ElementsAre;
 
@@ -227,4 +226,4 @@ TEST(SalvagedParts, OfManyDamagedChunksSoon) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::salvage_test

@@ -18,10 +18,9 @@
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
-namespace ssdo {
+namespace ssdo::test::zip_output_test {
 namespace {
 
-using namespace test;
 using Imath::Box2i;
 
 const std::vector<TestChannel> kChannels = {
@@ -130,4 +129,4 @@ TEST(ZipOutput, LeavesOtherFilesToOpenExr) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::zip_output_test

@@ -11,7 +11,7 @@
 #include "support/error_matchers.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::input_file_test {
 namespace {
 
 std::span<std::byte> bytes_of(std::string& text) { return std::as_writable_bytes(std::span(text)); }
@@ -96,4 +96,4 @@ TEST(InputStream, DoesWhatAStreamOfTheStandardDoes) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::input_file_test

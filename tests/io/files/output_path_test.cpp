@@ -8,7 +8,7 @@
 #include "support/error_matchers.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::output_path_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -51,4 +51,4 @@ TEST(OutputPath, TemporariesOfLongNamesAreCutBetweenCharacters) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::output_path_test

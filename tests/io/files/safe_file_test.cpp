@@ -22,10 +22,8 @@
 
 namespace fs = std::filesystem;
 
-namespace ssdo {
+namespace ssdo::test::safe_file_test {
 namespace {
-
-using namespace test;
 
 constexpr OutputPolicy kNew = {};
 constexpr OutputPolicy kOverwrite = {.overwrite = true};
@@ -355,4 +353,4 @@ TEST(CheckedFile, AFailureIsFinal) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::safe_file_test

@@ -14,7 +14,7 @@
 
 namespace fs = std::filesystem;
 
-namespace ssdo::test {
+namespace ssdo::test::stale_temporaries_test {
 namespace {
 
 /// Leaves what a process leaves that is killed while it writes `target`.
@@ -74,4 +74,4 @@ TEST(StaleTemporaries, AFolderThatIsMissingHasNone) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::stale_temporaries_test

@@ -16,10 +16,8 @@
 
 namespace fs = std::filesystem;
 
-namespace ssdo {
+namespace ssdo::test::image_file_test {
 namespace {
-
-using namespace test;
 
 void save(const fs::path& path, const ImageSpec& spec, const std::vector<float>& values) {
   SafeFile file(path, {.overwrite = true});
@@ -341,4 +339,4 @@ TEST(ReadImage, RefusesDamagedChunksOfPng) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::image_file_test

@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace ssdo::test {
+namespace ssdo::test::primaries_test {
 namespace {
 
 constexpr Chromaticities kAp1 = {.713f, .293f, .165f, .830f, .128f, .044f, .32168f, .33767f};
@@ -43,4 +43,4 @@ TEST(Primaries, SetsWithoutColoursHaveNoConversion) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::primaries_test

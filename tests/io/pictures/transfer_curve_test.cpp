@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace ssdo::test {
+namespace ssdo::test::transfer_curve_test {
 namespace {
 
 float decoded(const std::string& space, float value) {
@@ -51,4 +51,4 @@ TEST(TransferCurve, TheInteropIdOfAHeaderComesFirst) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::transfer_curve_test

@@ -14,7 +14,7 @@
 #include "support/parse_json.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::camera_file_test {
 namespace {
 
 using nlohmann::json;
@@ -86,4 +86,4 @@ TEST_F(CameraFile, AMirrorIsRefusedUnlessTheFileDeclaresIt) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::camera_file_test

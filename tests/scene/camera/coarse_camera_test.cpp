@@ -4,7 +4,7 @@
 #include "math/pixel_grid.h"
 #include "scene/camera/camera.h"
 
-namespace ssdo::test {
+namespace ssdo::test::coarse_camera_test {
 namespace {
 
 /// A point that the large camera projects to the middle of a pixel that is taken, the small one
@@ -28,4 +28,4 @@ TEST(CoarseCamera, ProjectsToPixelsOfItsGrid) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::coarse_camera_test

@@ -14,7 +14,7 @@
 #include "support/gbuffer_of.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::find_camera_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 72};
@@ -112,4 +112,4 @@ TEST(FindCamera, TakesACameraThatLooksTheOtherWayForNone) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::find_camera_test

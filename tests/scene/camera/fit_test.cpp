@@ -12,7 +12,7 @@
 #include "scene/camera/fit_pose.h"
 #include "support/analytic_scene.h"
 
-namespace ssdo::test {
+namespace ssdo::test::fit_test {
 namespace {
 
 const Window kWindow{0, 0, 160, 90};
@@ -299,4 +299,4 @@ TEST(FitCamera, TheResidualIsThatOfAllPixels) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::fit_test

@@ -16,7 +16,7 @@
 #include "support/gbuffer_of.h"
 #include "support/header_camera.h"
 
-namespace ssdo::test {
+namespace ssdo::test::metadata_test {
 namespace {
 
 using testing::ElementsAre;
@@ -596,4 +596,4 @@ TEST(HeaderCamera, GivesWayToOptions) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::metadata_test

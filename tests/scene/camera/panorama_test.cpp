@@ -7,7 +7,7 @@
 #include "support/analytic_scene.h"
 #include "support/gbuffer_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::panorama_test {
 namespace {
 
 const Window kWindow{0, 0, 96, 48};
@@ -74,4 +74,4 @@ TEST(Panorama, IsTakenByTheFrameOnlyWhereNoPinholeExplainsP) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::panorama_test

@@ -14,7 +14,7 @@
 #include "support/analytic_scene.h"
 #include "support/gbuffer_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::position_check_test {
 namespace {
 
 using testing::HasSubstr;
@@ -168,4 +168,4 @@ TEST(PositionCheck, AcceptsRoughPositions) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::position_check_test

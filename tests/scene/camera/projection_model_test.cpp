@@ -8,7 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
-namespace ssdo::test {
+namespace ssdo::test::projection_model_test {
 namespace {
 
 /// A camera beside the axes, before points of a unit cube.
@@ -117,4 +117,4 @@ TEST(Quantile, IsTheValueBelowWhichAShareLies) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::projection_model_test

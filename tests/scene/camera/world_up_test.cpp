@@ -10,7 +10,7 @@
 
 #include "support/analytic_scene.h"
 
-namespace ssdo::test {
+namespace ssdo::test::world_up_test {
 namespace {
 
 using testing::HasSubstr;
@@ -136,4 +136,4 @@ TEST(WorldUp, OfTheHeaderHolds) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::world_up_test

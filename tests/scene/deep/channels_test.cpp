@@ -7,7 +7,7 @@
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::channels_test {
 namespace {
 
 struct Part {
@@ -77,4 +77,4 @@ TEST_F(DeepChannelNames, AreRefusedWhereTheyDoNotTell) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::channels_test

@@ -9,7 +9,7 @@
 #include "support/boxes.h"
 #include "support/error_matchers.h"
 
-namespace ssdo::test {
+namespace ssdo::test::measured_solids_test {
 namespace {
 
 const Window kWindow{0, 0, 120, 90};
@@ -220,4 +220,4 @@ TEST(MeasuredSolids, LeaveOutWhatIsInFrontOfTheFrame) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::measured_solids_test

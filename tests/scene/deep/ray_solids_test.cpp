@@ -10,7 +10,7 @@
 #include <cmath>
 #include <random>
 
-namespace ssdo::test {
+namespace ssdo::test::ray_solids_test {
 namespace {
 
 using Samples = std::vector<DeepSample>;
@@ -83,4 +83,4 @@ TEST(RaySolids, DoNotDependOnTheOrderOfSamples) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::ray_solids_test

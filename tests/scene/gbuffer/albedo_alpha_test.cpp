@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ssdo::test {
+namespace ssdo::test::albedo_alpha_test {
 namespace {
 
 using testing::HasSubstr;
@@ -133,4 +133,4 @@ TEST(AlbedoAlpha, OfFewPixelsTurnsByDegrees) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::albedo_alpha_test

@@ -13,7 +13,7 @@
 #include "support/analytic_scene.h"
 #include "support/gbuffer_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::background_test {
 namespace {
 
 const Window kWindow{0, 0, 64, 48};
@@ -238,4 +238,4 @@ TEST(Background, FollowsAlphaAndTheDepthThatIsGiven) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::background_test

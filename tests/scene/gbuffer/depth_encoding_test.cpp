@@ -7,7 +7,7 @@
 
 #include "error.h"
 
-namespace ssdo::test {
+namespace ssdo::test::depth_encoding_test {
 namespace {
 
 using testing::HasSubstr;
@@ -78,4 +78,4 @@ TEST(DepthEncoding, OfOneOverDepthIsUndone) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::depth_encoding_test

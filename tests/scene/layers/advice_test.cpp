@@ -5,7 +5,7 @@
 
 #include "support/layer_file.h"
 
-namespace ssdo::test {
+namespace ssdo::test::advice_test {
 namespace {
 
 using testing::HasSubstr;
@@ -54,4 +54,4 @@ TEST(Advice, ListsWhatAPositionCouldBeIn) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::advice_test

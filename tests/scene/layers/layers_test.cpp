@@ -6,7 +6,7 @@
 #include "support/error_matchers.h"
 #include "support/layer_file.h"
 
-namespace ssdo::test {
+namespace ssdo::test::layers_test {
 namespace {
 
 using File = LayerFile;
@@ -255,4 +255,4 @@ TEST(Layers, ARequestMayStateHowAlphaIsInTheAlbedo) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::layers_test

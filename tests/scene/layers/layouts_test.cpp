@@ -6,7 +6,7 @@
 #include "support/error_matchers.h"
 #include "support/layer_file.h"
 
-namespace ssdo::test {
+namespace ssdo::test::layouts_test {
 namespace {
 
 using Parts = std::vector<LayerPart>;
@@ -253,4 +253,4 @@ TEST(Layouts, BareCoordinatesAreAPosition) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::layouts_test

@@ -9,7 +9,7 @@
 #include "support/layer_file.h"
 #include "support/run_tool.h"
 
-namespace ssdo::test {
+namespace ssdo::test::picture_layers_test {
 namespace {
 
 using testing::ElementsAre;
@@ -74,4 +74,4 @@ TEST(LayeredPicture, OfOtherFormatsIsOneLayerOfColours) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::picture_layers_test

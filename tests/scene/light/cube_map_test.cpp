@@ -13,7 +13,7 @@
 
 #include "scene/light/environment.h"
 
-namespace ssdo::test {
+namespace ssdo::test::cube_map_test {
 namespace {
 
 constexpr int kFace = 24;
@@ -85,4 +85,4 @@ TEST(CubeMap, AFaceMayHaveOneTexel) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::cube_map_test

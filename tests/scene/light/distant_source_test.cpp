@@ -16,7 +16,7 @@
 #include "scene/light/painted_map.h"
 #include "scene/light/take_suns.h"
 
-namespace ssdo::test {
+namespace ssdo::test::distant_source_test {
 namespace {
 
 /// The only source of a map that is black around it.
@@ -171,4 +171,4 @@ TEST(DistantSource, TurnsAsAWhole) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::distant_source_test

@@ -19,7 +19,7 @@
 #include "support/frame_file.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::environment_map_test {
 namespace {
 
 using testing::ElementsAre;
@@ -246,4 +246,4 @@ TEST_F(EnvironmentMapFile, TellsItsPrimaries) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::environment_map_test

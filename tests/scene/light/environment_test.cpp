@@ -7,7 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
-namespace ssdo::test {
+namespace ssdo::test::environment_test {
 namespace {
 
 glm::vec3 random_direction(std::mt19937& random) {
@@ -135,4 +135,4 @@ TEST(OctahedralMap, HasNoSeam) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::environment_test

@@ -61,7 +61,7 @@ TEST(LightLanes, AreTheSameAsOneByOne) {
   for (std::size_t i = 0; i < normals.size(); ++i) positions.push_back(random_direction(random));
   // One that is not endlessly far.
   light.sources.push_back(std::make_shared<PointSource>(glm::vec3(0.2f, 1.5f, -0.4f)));
-  for (const char* isa : {"scalar", "avx2", "avx512"}) {
+  for (const char* isa : kIsas) {
     if (!has_isa(isa)) continue;
     const ChosenIsa chosen(isa);
     std::vector<glm::vec3> out(normals.size());

@@ -15,7 +15,7 @@
 #include "scene/light/take_suns.h"
 #include "support/sun_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::light_test {
 namespace {
 
 constexpr float kPi = glm::pi<float>();
@@ -208,4 +208,4 @@ TEST(Light, StaysFiniteForAnyMap) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::light_test

@@ -14,7 +14,7 @@
 
 #include "scene/light/environment.h"
 
-namespace ssdo::test {
+namespace ssdo::test::map_reduction_test {
 namespace {
 
 constexpr int kWidth = 101, kHeight = 53, kColumns = 16;
@@ -76,4 +76,4 @@ TEST(MapReduction, LeavesSmallMapsAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::map_reduction_test

@@ -16,7 +16,7 @@
 #include "scene/light/painted_map.h"
 #include "support/sun_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::take_suns_test {
 namespace {
 
 constexpr float kPi = glm::pi<float>();
@@ -325,4 +325,4 @@ TEST(TakeSuns, LeavesWhatHarmonicsHold) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::take_suns_test

@@ -16,7 +16,7 @@
 #include "support/analytic_scene.h"
 #include "support/gbuffer_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::normal_space_test {
 namespace {
 
 const Window kWindow{0, 0, 64, 48};
@@ -241,4 +241,4 @@ TEST(NormalSpace, OfADepthAloneIsFittedBesideAFloor) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::normal_space_test

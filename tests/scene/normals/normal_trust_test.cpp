@@ -19,7 +19,7 @@
 #include "support/analytic_scene.h"
 #include "support/gbuffer_of.h"
 
-namespace ssdo::test {
+namespace ssdo::test::normal_trust_test {
 namespace {
 
 using testing::HasSubstr;
@@ -223,4 +223,4 @@ TEST(NormalTrust, RightNormalsAreUsedEverywhere) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::normal_trust_test

@@ -13,7 +13,7 @@
 #include "scene/normals/geometric_normal.h"
 #include "support/analytic_scene.h"
 
-namespace ssdo::test {
+namespace ssdo::test::normals_test {
 namespace {
 
 const Window kWindow{0, 0, 64, 48};
@@ -208,4 +208,4 @@ TEST(GeometricNormals, AreThoseOfThePixelWherePositionsTellNone) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::normals_test

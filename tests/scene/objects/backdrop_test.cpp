@@ -12,7 +12,7 @@
 
 #include "support/analytic_scene.h"
 
-namespace ssdo::test {
+namespace ssdo::test::backdrop_test {
 namespace {
 
 constexpr Window kWindow{0, 0, 160, 90};
@@ -194,4 +194,4 @@ TEST(Backdrop, OtherFarThingsAreNone) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::backdrop_test

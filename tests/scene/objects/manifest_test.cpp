@@ -8,7 +8,7 @@
 #include "support/error_matchers.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::manifest_test {
 namespace {
 
 std::map<std::string, std::uint32_t> read(const std::string& text) {
@@ -96,4 +96,4 @@ TEST(Manifest, RefusesOthersInOneLine) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::manifest_test

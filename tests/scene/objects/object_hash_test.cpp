@@ -5,7 +5,7 @@
 
 #include "scene/objects/cryptomatte.h"
 
-namespace ssdo::test {
+namespace ssdo::test::object_hash_test {
 namespace {
 
 /// Values of the reference implementation, of every length modulo 4.
@@ -46,4 +46,4 @@ TEST(ObjectHash, IsThatOfBlender) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::object_hash_test

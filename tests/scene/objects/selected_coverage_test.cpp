@@ -16,7 +16,7 @@
 #include "support/frame_file.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::selected_coverage_test {
 namespace {
 
 constexpr Window kWindow{0, 0, 4, 2};
@@ -260,4 +260,4 @@ TEST_F(SelectedCoverage, ListsNamesWithTheirShares) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::selected_coverage_test

@@ -8,7 +8,7 @@
 #include "support/error_matchers.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::selection_test {
 namespace {
 
 /// "+crypto:a -id:L=1,5-7 +matte:f.exr|L".
@@ -90,4 +90,4 @@ TEST(Selection, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::selection_test

@@ -11,7 +11,7 @@
 #include "support/slab_and_ball.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::back_faces_test {
 namespace {
 
 Geometry frame_of_scene(const Camera& camera) {
@@ -139,4 +139,4 @@ TEST_F(BackFaces, LeaveWhatADeepImageHasMeasured) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::back_faces_test

@@ -5,7 +5,7 @@
 
 #include "support/analytic_scene.h"
 
-namespace ssdo::test {
+namespace ssdo::test::covered_pixels_test {
 namespace {
 
 constexpr Window kWindow{0, 0, 24, 16};
@@ -74,4 +74,4 @@ TEST_F(CoveredPixels, AllButARoundingIsAll) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::covered_pixels_test

@@ -10,7 +10,7 @@
 #include "support/frame_file.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::other_pictures_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,4 +68,4 @@ TEST_F(OtherPicturesOf, DamagedFilesFailEveryTime) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::other_pictures_test

@@ -15,7 +15,7 @@
 #include "support/frame_file.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::registration_test {
 namespace {
 
 using testing::HasSubstr;
@@ -135,4 +135,4 @@ TEST_F(Registers, AViewThatSharesLittleAsItIs) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::registration_test

@@ -10,7 +10,7 @@
 
 #include "support/analytic_scene.h"
 
-namespace ssdo::test {
+namespace ssdo::test::take_out_test {
 namespace {
 
 constexpr Window kWindow{0, 0, 96, 72};
@@ -212,4 +212,4 @@ TEST(TakeOut, ARimGoesWithTheThing) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::take_out_test

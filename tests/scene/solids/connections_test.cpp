@@ -7,7 +7,7 @@
 #include "support/analytic_scene.h"
 #include "support/boxes.h"
 
-namespace ssdo::test {
+namespace ssdo::test::connections_test {
 namespace {
 
 /// No multiple of any vector's width.
@@ -67,4 +67,4 @@ TEST(Connections, ARidgeJoinsASideThatIsSeenEdgeOn) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::connections_test

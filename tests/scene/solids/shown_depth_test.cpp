@@ -17,7 +17,7 @@
 #include "support/analytic_scene.h"
 #include "support/boxes.h"
 
-namespace ssdo::test {
+namespace ssdo::test::shown_depth_test {
 namespace {
 
 const Window kWindow{0, 0, 160, 120};
@@ -157,4 +157,4 @@ TEST(ShownDepth, ClosesASurfaceBetweenPixels) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::shown_depth_test

@@ -23,7 +23,7 @@
 #include "support/analytic_scene.h"
 #include "support/boxes.h"
 
-namespace ssdo::test {
+namespace ssdo::test::solids_test {
 namespace {
 
 const Window kWindow{0, 0, 120, 90};
@@ -261,4 +261,4 @@ TEST(Solids, OfConstantThicknessHaveOneLayer) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::solids_test

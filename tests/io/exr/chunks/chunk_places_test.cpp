@@ -13,10 +13,9 @@
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
-namespace ssdo {
+namespace ssdo::test::chunk_places_test {
 namespace {
 
-using namespace test;
 using Imath::Box2i;
 using testing::ElementsAre;
 
@@ -193,4 +192,4 @@ TEST(ChunkPlacesOfParts, AfterOneOfAnUnknownType) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::chunk_places_test

@@ -15,10 +15,8 @@
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
-namespace ssdo {
+namespace ssdo::test::dwa_chunk_test {
 namespace {
-
-using namespace test;
 
 constexpr int kWidth = 64, kHeight = 32;
 
@@ -162,4 +160,4 @@ TEST_F(DwaChunks, OfFewerBlocksHoldFewerBytes) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::dwa_chunk_test

@@ -15,10 +15,9 @@
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
-namespace ssdo {
+namespace ssdo::test::short_chunks_test {
 namespace {
 
-using namespace test;
 using Imath::Box2i;
 
 constexpr int kSide = 64;
@@ -217,4 +216,4 @@ TEST(ShortDeepChunks, OfTilesThatAreLargerThanTheImage) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::short_chunks_test

@@ -18,10 +18,9 @@
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
-namespace ssdo {
+namespace ssdo::test::zip_lines_test {
 namespace {
 
-using namespace test;
 using Imath::Box2i;
 
 using Bytes = std::vector<std::byte>;
@@ -209,4 +208,4 @@ TEST(ZipLines, AreNotReadFromDamagedChunks) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::zip_lines_test

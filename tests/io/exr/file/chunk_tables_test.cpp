@@ -10,10 +10,9 @@
 #include "support/exr_fixture.h"
 #include "support/temp_dir.h"
 
-namespace ssdo {
+namespace ssdo::test::chunk_tables_test {
 namespace {
 
-using namespace test;
 using Imath::Box2i;
 
 constexpr int kRows = 8;
@@ -96,4 +95,4 @@ TEST(ChunkTables, AreNotSearchedWhereTheyAreComplete) {
 }
 
 }  // namespace
-}  // namespace ssdo
+}  // namespace ssdo::test::chunk_tables_test

@@ -94,7 +94,7 @@ TEST(LampLanes, AreTheSameAsOneByOne) {
     }
     lanes.resize(lanes.positions.size());
     const glm::vec3 point = source->point({0.3f, 0.8f});
-    for (const char* isa : {"scalar", "avx2", "avx512"}) {
+    for (const char* isa : kIsas) {
       if (!has_isa(isa)) continue;
       const ChosenIsa chosen(isa);
       HWY_DYNAMIC_DISPATCH(look_at_lamp)(*source, point, lanes);

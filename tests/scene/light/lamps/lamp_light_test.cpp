@@ -11,7 +11,7 @@
 
 #include "scene/light/lamps/lamp_sum.h"
 
-namespace ssdo::test {
+namespace ssdo::test::lamp_light_test {
 namespace {
 
 constexpr double kWanted = 1e-3;
@@ -328,4 +328,4 @@ TEST(BlenderLamps, OfAnAreaAreRectangles) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::lamp_light_test

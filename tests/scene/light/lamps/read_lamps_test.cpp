@@ -12,7 +12,7 @@
 #include "support/error_matchers.h"
 #include "support/temp_dir.h"
 
-namespace ssdo::test {
+namespace ssdo::test::read_lamps_test {
 namespace {
 
 using testing::HasSubstr;
@@ -206,4 +206,4 @@ TEST(Blackbody, IsWhiteAt6500AndAsInUsdLux) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::read_lamps_test
