@@ -136,18 +136,20 @@ std::size_t most_pixels_in(std::size_t memory, const OutputOptions& output, int 
   return std::size_t(std::max(0.0, double(memory) - kBytes) / most);
 }
 
+double bytes_in_one_piece(const Plan& plan, const Scene& scene, std::size_t pixels) {
+  return kBytes + bytes_per_pixel(plan, scene) * double(pixels);
+}
+
 BandPlan plan_bands(const std::string& file, const Window& frame, const Window& display,
                     const Scene& overview, const Plan& plan, const OutputOptions& output,
                     std::size_t memory) {
   const std::string size = fmt::format("{}: {} x {} pixels", file, frame.width(), frame.height());
   if (const std::string what = needs_whole_frame(overview, plan, output); !what.empty()) {
-    throw Error(
-        ExitCode::usage,
-        fmt::format("{} take {} of memory, and may take {}; {} needs all of the frame at "
-                    "once: leave that out, or raise --mem-limit",
-                    size,
-                    in_gigabytes(kBytes + bytes_per_pixel(plan, overview) * double(frame.area())),
-                    in_gigabytes(double(memory)), what));
+    throw Error(ExitCode::usage,
+                fmt::format("{} take {} of memory, and may take {}; {} needs all of the frame at "
+                            "once: leave that out, or raise --mem-limit",
+                            size, in_gigabytes(bytes_in_one_piece(plan, overview, frame.area())),
+                            in_gigabytes(double(memory)), what));
   }
   const Planner planner(frame, display, overview, plan, memory);
   const BandPlan bands = planner.choose();

@@ -261,10 +261,8 @@ Findings take_findings(Relit& relit) {
   return take_findings(relit.found.products, scene.geometry, scene.senders.radiance);
 }
 
-void relight_in_shot(const Findings& own, const std::vector<OtherFindings>& others, Relit& relit) {
+void relight_in_shot(Fusion& fusion, Relit& relit) {
   Stopwatch watch;
-  Fusion fusion(own, relit.found.scene.light);
-  fusion.add(others);
   fusion.finish(relit.found.scene.geometry, relit.found.products);
   relit.found.filter_ms += watch.lap();
   light_products(relit.found, relit.plan);

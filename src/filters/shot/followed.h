@@ -7,19 +7,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "filters/shot/followed_point.h"
 #include "filters/shot/fusion.h"
 
 namespace ssdo {
-
-/// Where another frame shows what a pixel shows that moves.
-struct FollowedPoint {
-  int x;               ///< of the pixel in its row
-  std::int32_t pixel;  ///< of the other frame, and its weights, as in Sights
-  float weight[4];
-  float follows;  ///< 0..1: 0 where it is found at rest as well
-  float counts;   ///< 0..1: how much of what the other frame says counts, of all light
-                  ///< that is not of a source
-};
 
 /// Points of a frame in frames beside; see followed.cpp.
 class Followed {

@@ -167,41 +167,36 @@ void load(const float* from, glm::vec3& value) { value = {from[0], from[1], from
 
 }  // namespace
 
-/// What a block of points needs.
+/// What a block of points needs for one speaker.
 struct Fusion::Room {
-  Room(std::size_t others, std::size_t speakers, std::size_t kind_count)
-      : kinds(kind_count),
-        sights(2 * speakers),
-        moved(2 * speakers * kinds * kMost),
-        followed(others) {
-    sayings.reserve(2 * speakers);
+  explicit Room(std::size_t kind_count) : kinds(kind_count), moved(2 * kinds * kMost) {
+    sayings.reserve(2);
   }
   float* moved_of(std::size_t saying) { return &moved[saying * kinds * kMost]; }
 
   static constexpr std::size_t kMost = RowOfPoints::kMost;
   std::size_t kinds;
-  RowOfPoints points = {};
-  std::vector<Sights> sights;
+  const RowOfPoints* points = nullptr;
+  Sights sights[2];
   std::vector<float> moved;
-  std::vector<std::vector<FollowedPoint>> followed;  ///< of a row, by the others
+  std::span<const FollowedPoint> followed;  ///< of the row
   std::vector<Saying> sayings;
 };
 
-/// What the `k`th speaker says of a block of points: where they are at rest, and where those are
+/// What a speaker says of a block of points: where they are at rest, and where those are
 /// that were followed.
-void Fusion::add_speaker(const Speaker& s, std::size_t k, const RowOfPixels& row, Room& room) {
+void Fusion::add_speaker(const Speaker& s, const RowOfPixels& row, Room& room) {
   const Findings& there = s.findings;
   Saying saying{
-      &room.sights[2 * k],      s.arranged.empty() ? there.values.data() : s.arranged.data(),
+      &room.sights[0],          s.arranged.empty() ? there.values.data() : s.arranged.data(),
       there.surfaces.stride(),  s.units.data(),
       s.weights.data(),         nullptr,
       s.weights_of_kinds.data()};
   const auto by_x = [](const FollowedPoint& point) { return point.x; };
-  const auto& points = room.followed[s.other];
-  const auto first = std::ranges::lower_bound(points, row.x, {}, by_x),
-             last = std::ranges::lower_bound(points, row.x + row.count, {}, by_x);
-  if (s.reprojection.find(room.points, room.sights[2 * k])) {
-    float* counts = room.moved_of(2 * k);
+  const auto first = std::ranges::lower_bound(room.followed, row.x, {}, by_x),
+             last = std::ranges::lower_bound(room.followed, row.x + row.count, {}, by_x);
+  if (s.reprojection.find(*room.points, room.sights[0])) {
+    float* counts = room.moved_of(0);
     if (s.moved) {
       for (std::size_t kind = 0; kind < room.kinds; ++kind)
         s.moved->row(int(kind) - 1, row, counts + kind * Room::kMost);
@@ -215,9 +210,9 @@ void Fusion::add_speaker(const Speaker& s, std::size_t k, const RowOfPixels& row
     room.sayings.push_back(saying);
   }
   if (first == last) return;
-  Sights& sights = room.sights[2 * k + 1];
+  Sights& sights = room.sights[1];
   std::fill_n(sights.pixel, row.count, -1);
-  float* counts = room.moved_of(2 * k + 1);  // 0 for sources
+  float* counts = room.moved_of(1);  // 0 for sources
   float beside[RowOfPoints::kMost];
   std::fill_n(beside, row.count, 1.0f);
   if (s.moved) s.moved->row_of_moving(row, beside);
@@ -249,25 +244,49 @@ Fusion::Fusion(const Findings& own, const Light& light)
   });
 }
 
+void Fusion::follow(const std::vector<OtherFindings>& others) {
+  followed_.emplace();
+  if (!own_.surfaces.world_known) return;
+  const Followed followed(own_, others);
+  const int height = own_.surfaces.window.height();
+  for (const OtherFindings& other : others) (*followed_)[other.away].resize(std::size_t(height));
+  for_each_row(height, [&](int y) {
+    std::vector<std::vector<FollowedPoint>> points(others.size());
+    followed.row(y, points);
+    for (std::size_t k = 0; k < others.size(); ++k)
+      if (!points[k].empty()) followed_->at(others[k].away)[std::size_t(y)] = std::move(points[k]);
+  });
+}
+
+// One speaker after the other says something of a whole row, so that memory is read in order.
 void Fusion::add(const std::vector<OtherFindings>& others) {
   if (!own_.surfaces.world_known || own_.stride == 0) return;
   const std::vector<Speaker> speakers = speakers_of(own_, others, light_, kinds_);
   if (speakers.empty()) return;
-  const Followed followed(own_, others);
+  if (!followed_) follow(others);
   const Window& window = own_.surfaces.window;
   for_each_row(window.height(), [&](int y) {
-    Room room(others.size(), speakers.size(), light_.sources.size() + 1);
-    followed.row(y, room.followed);
-    for (int x = 0; x < window.width(); x += RowOfPoints::kMost) {
-      const RowOfPixels row{x, y, 1, std::min(RowOfPoints::kMost, window.width() - x)};
-      load_points(own_.surfaces, row, room.points);
-      room.sayings.clear();
-      for (std::size_t k = 0; k < speakers.size(); ++k) add_speaker(speakers[k], k, row, room);
-      if (room.sayings.empty()) continue;
-      const std::size_t first = own_.surfaces.index(x, y) * std::size_t(own_.stride);
-      HWY_DYNAMIC_DISPATCH(add_sayings)
-      (&own_.values[first], own_.stride, row.count, room.sayings, groups_, &sums_[first],
-       &all_[first]);
+    std::vector<RowOfPixels> blocks;
+    for (int x = 0; x < window.width(); x += RowOfPoints::kMost)
+      blocks.push_back({x, y, 1, std::min(RowOfPoints::kMost, window.width() - x)});
+    std::vector<RowOfPoints> points(blocks.size());
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      load_points(own_.surfaces, blocks[b], points[b]);
+    Room room(light_.sources.size() + 1);
+    for (const Speaker& s : speakers) {
+      const auto followed = followed_->find(others[s.other].away);
+      room.followed = {};
+      if (followed != followed_->end()) room.followed = followed->second[std::size_t(y)];
+      for (std::size_t b = 0; b < blocks.size(); ++b) {
+        room.points = &points[b];
+        room.sayings.clear();
+        add_speaker(s, blocks[b], room);
+        if (room.sayings.empty()) continue;
+        const std::size_t first = own_.surfaces.index(blocks[b].x, y) * std::size_t(own_.stride);
+        HWY_DYNAMIC_DISPATCH(add_sayings)
+        (&own_.values[first], own_.stride, blocks[b].count, room.sayings, groups_, &sums_[first],
+         &all_[first]);
+      }
     }
   });
 }
