@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Installs what is needed, builds, and passes the tests. `all` passes them with sanitizers too,
-# fuzzes for half a minute each, and tries a shot on a farm, the package, faults, cppcheck and
-# clang-tidy.
+# fuzzes for half a minute each, and tries a shot on a farm, the package, faults, the add-on for
+# Blender, cppcheck and clang-tidy.
 # `edit` is for between two edits: it builds and runs the tests whose files or names hold NAME, with
 # what these need, for one instruction set.
 #   tests/run.sh [all | edit NAME... | STAGE...]
-# A STAGE is release, address, fuzz, thread, farm, package, faults, system (the last three at once),
-# lint, tidy, clang (the tests by another compiler), debian13 or testing (on another release) or aarch64
-# (tests of estimators under qemu); $SSDO_OPTIONS goes to cmake, for example -DSSDO_ONE_ISA=avx2.
+# A STAGE is release, address, fuzz, thread, farm, package, faults, blender, system (the last four at
+# once), lint, tidy, clang (the tests by another compiler), debian13 or testing (on another release) or
+# aarch64 (tests of estimators under qemu); $SSDO_OPTIONS goes to cmake, for example
+# -DSSDO_ONE_ISA=avx2.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 mkdir -p "$root/build"
@@ -164,13 +165,19 @@ run_faults() {
   as_root "$root/tests/faults/run.sh" "$release/ssdo" 24
 }
 
+run_blender() {
+  install_packages "${blender_packages[@]}"
+  "$root/tests/blender/run.sh" "$release/ssdo"
+}
+
 # Each of these waits for daemons, disks and signals for much of its time. What they print is shown
 # when all have ended.
 run_system() (
-  install_packages "${farm_packages[@]}" "${fault_packages[@]}"  # apt serves one at a time
+  # apt serves one at a time
+  install_packages "${farm_packages[@]}" "${fault_packages[@]}" "${blender_packages[@]}"
   logs=$(mktemp -d) failed=0
   trap 'rm -rf "$logs"' EXIT
-  for stage in farm package faults; do
+  for stage in farm package faults blender; do
     (SECONDS=0; "run_$stage"; echo "tests/run.sh: $stage took $SECONDS s") >"$logs/$stage" 2>&1 &
     pids[$!]=$stage
   done

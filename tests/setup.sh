@@ -24,6 +24,7 @@ build_packages=(g++ cmake ninja-build pkg-config libopenexr-dev libopenimageio-d
 test_packages=(libgtest-dev libgmock-dev groff chromium zsh)
 farm_packages=(slurm-wlm munge parallel make debootstrap dpkg-dev patchelf)  # of tests/farm and tests/package
 fault_packages=(strace)  # of tests/faults
+blender_packages=(blender)  # of tests/blender
 
 # build FOLDER TARGET [cmake options]: configures FOLDER and builds TARGET in it.
 build() {

@@ -17,8 +17,9 @@ import bpy
 from mathutils import Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from export import add_camera, add_world, set_up_cycles  # noqa: E402
+from export import add_camera, add_world  # noqa: E402
 from scenes import SCENES  # noqa: E402
+from ssdo_relight import set_up_cycles  # noqa: E402
 
 SAMPLES = 64  # per pixel
 LAMP = {"at": (4.5, -5.5, 5.0), "to": (0, 0, 0.5), "size": 0.6, "watts": 500}

@@ -17,7 +17,7 @@ with light passes instead: truth.py uses those.
 import argparse
 import json
 import sys
-from math import radians
+from math import radians, tan
 from pathlib import Path
 
 import bpy
@@ -25,10 +25,10 @@ from mathutils import Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 # Blender does not put a script's own folder on the path.
-from lamps import write_lamps  # noqa: E402
 from scenes import SCENES  # noqa: E402
-from views import (View, from_above, new_camera, panorama, set_windows, turned,  # noqa: E402
-                   view_json, widened)
+from ssdo_relight import (SURFACES, View, from_above, new_camera, panorama,  # noqa: E402
+                          set_up_cycles, turned, widened, write_lamps)
+from ssdo_relight import render as render_view  # noqa: E402
 
 ENVIRONMENTS = Path(__file__).resolve().parent.parent / "environments"
 
@@ -64,7 +64,6 @@ def add_world(scene, environment=None, strength=1.0):
     if environment:
         texture = nodes.new("ShaderNodeTexEnvironment")
         texture.image = bpy.data.images.load(str(ENVIRONMENTS / environment))
-        texture.image.colorspace_settings.name = "Linear"
         links.new(texture.outputs["Color"], background.inputs["Color"])
     world.cycles.sampling_method = "MANUAL"
     world.cycles.sample_map_resolution = 1024
@@ -75,7 +74,8 @@ def add_lamps(scene, picture, args):
     for lamp in picture.lamps:
         lamp.put()
     if args.lights:
-        write_lamps(args.lights)
+        for warning in write_lamps(args.lights, bpy.context.evaluated_depsgraph_get()):
+            print(warning, file=sys.stderr)
     names = [lamp.name for lamp in picture.lamps]
     for name in args.lamp:
         if name not in (*names, "all"):
@@ -83,35 +83,6 @@ def add_lamps(scene, picture, args):
     for name in names:
         if not {name, "all"} & set(args.lamp):
             bpy.data.objects.remove(scene.objects[name])
-
-
-def set_up_cycles(scene, samples, bounces, seed, antialiased=False):
-    """The plain estimator: everything that biases or blurs a pixel is off, but for its filter."""
-    scene.render.engine = "CYCLES"
-    cycles = scene.cycles
-    cycles.samples, cycles.seed = samples, seed
-    cycles.use_adaptive_sampling = cycles.use_denoising = False
-    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
-    cycles.light_sampling_threshold = 0.0
-    cycles.max_bounces = cycles.diffuse_bounces = bounces
-    # One ray through the pixel centre. Blender averages Normal and DiffCol over the pixel filter,
-    # but takes Position and Depth from the first sample: this way all four are of one point.
-    cycles.filter_width = 1.5 if antialiased else 0.01
-    scene.render.film_transparent = antialiased
-
-
-def set_up_output(scene, size, path, passes, margin=(0, 0)):
-    render = scene.render
-    render.resolution_x, render.resolution_y = size[0] + 2 * margin[0], size[1] + 2 * margin[1]
-    render.resolution_percentage = 100
-    render.filepath = str(path.resolve())
-    image = render.image_settings
-    image.file_format = "OPEN_EXR_MULTILAYER"
-    image.color_depth = "32"  # half would round P to millimetres, and far worse away from 0
-    image.exr_codec = "ZIP"
-    scene.view_layers[0].use_pass_combined = "combined" in passes
-    for name in passes:
-        setattr(scene.view_layers[0], f"use_pass_{name}", True)
 
 
 def set_up_stereo(scene, distance):
@@ -123,6 +94,28 @@ def set_up_stereo(scene, distance):
     scene.render.use_multiview = True
     scene.render.views_format = "STEREO_3D"
     scene.render.image_settings.views_format = "MULTIVIEW"
+
+
+def view_json(view):
+    """Where a view looks from, and, of a perspective one, its projection in pixels."""
+    camera, (width, height) = view.camera, view.size
+    rows = lambda matrix: [list(row) for row in matrix]
+    facts = {
+        "type": "equirect" if camera.data.type == "PANO" else "persp",
+        "width": width,
+        "height": height,
+        "camera_to_world": rows(camera.matrix_world),
+        "world_to_camera": rows(camera.matrix_world.inverted()),
+        "location": list(camera.matrix_world.translation),
+    }
+    if camera.data.type == "PANO":
+        return facts | {"depth": "distance from the camera"}
+    focal_px = (width + 2 * view.margin[0]) / 2 / tan(camera.data.angle / 2)
+    return facts | {
+        "data_window": {"x": -view.margin[0], "y": -view.margin[1],
+                        "width": width + 2 * view.margin[0], "height": height + 2 * view.margin[1]},
+        "fx": focal_px, "fy": focal_px, "cx": width / 2, "cy": height / 2,
+    }
 
 
 def camera_json(name, picture, views):
@@ -154,7 +147,6 @@ def read_also(text):
 
 def views_of(args, scene, picture):
     """The picture and all that is rendered beside it."""
-    bpy.context.view_layer.update()  # or the camera's matrix would not know its place yet
     main, target = scene.camera, Vector(picture.target)
     size = (args.scale * picture.width, args.scale * picture.height)
     further = []
@@ -168,13 +160,10 @@ def views_of(args, scene, picture):
 
 
 def render(scene, view, passes, stereo=None):
-    scene.camera = view.camera
-    set_up_output(scene, view.size, view.path, passes, view.margin)
     scene.render.use_multiview = False
     if stereo:
         set_up_stereo(scene, stereo)
-    bpy.ops.render.render(write_still=True)
-    set_windows(view)
+    render_view(scene, view, passes)
 
 
 def parse_arguments():
@@ -223,7 +212,7 @@ def main():
     if args.samples:
         passes = ["z", "diffuse_direct", "diffuse_indirect", "ambient_occlusion"]
     else:
-        passes = ["z", "position", "normal", "diffuse_color"]
+        passes = SURFACES
     views = views_of(args, scene, picture)
     render(scene, views[0], ["combined", *passes], args.stereo)
     for view in views[1:]:

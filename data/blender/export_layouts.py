@@ -13,8 +13,9 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 # Blender does not put a script's own folder on the path.
-from export import add_camera, add_world, set_up_cycles, set_up_output  # noqa: E402
+from export import add_camera, add_world  # noqa: E402
 from scenes import SCENES  # noqa: E402
+from ssdo_relight import set_up_cycles, set_up_output  # noqa: E402
 
 SIZE = (96, 54)
 PASSES = ["z", "position", "normal", "diffuse_color"]
@@ -61,6 +62,7 @@ def main():
     add_world(scene)
     set_up_cycles(scene, samples=1, bounces=0, seed=0)
     set_up_output(scene, SIZE, folder / "multilayer.exr", PASSES)
+    scene.render.use_compositing = True
     add_nodes(scene, folder)
     bpy.ops.render.render(write_still=True)
     drop_frame_number(folder, scene.frame_current)

@@ -19,8 +19,9 @@ from mathutils import Matrix, Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 # Blender does not put a script's own folder on the path.
-from export import add_camera, add_world, set_up_cycles, set_up_output  # noqa: E402
+from export import add_camera, add_world  # noqa: E402
 from scenes import SCENES  # noqa: E402
+from ssdo_relight import set_up_cycles, set_up_output  # noqa: E402
 
 
 def parse_arguments():

@@ -16,12 +16,11 @@ import bpy
 from mathutils import Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from export import add_camera, add_world, render, set_up_cycles  # noqa: E402
+from export import add_camera, add_world, render  # noqa: E402
 from scenes import SCENES  # noqa: E402
-from views import View, turned  # noqa: E402
+from ssdo_relight import CRYPTOMATTE, SURFACES, View, set_up_cycles, turned  # noqa: E402
 
-SURFACES = ["position", "normal", "z", "diffuse_color"]
-OBJECTS = ["cryptomatte_object", "cryptomatte_material", "cryptomatte_asset", "object_index"]
+OBJECTS = (*CRYPTOMATTE, "object_index")
 ALSO_DEGREES = (-40, 40)
 
 

@@ -15,8 +15,9 @@ import bpy
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
-from export import ENVIRONMENTS, add_camera, add_world, set_up_cycles, set_up_output  # noqa: E402
+from export import ENVIRONMENTS, add_camera, add_world  # noqa: E402
 from proof_scenes import PROOF_SCENES  # noqa: E402
+from ssdo_relight import SURFACES, set_up_cycles, set_up_output  # noqa: E402
 
 
 def render(scene, picture, path, samples, world, radius=1.0, seed=0):
@@ -25,11 +26,7 @@ def render(scene, picture, path, samples, world, radius=1.0, seed=0):
     scene.world.light_settings.distance = radius
     set_up_cycles(scene, samples, 0, seed)
     scene.render.threads_mode, scene.render.threads = "FIXED", 1
-    passes = ["z", "position", "normal", "diffuse_color"]
-    if samples > 1:
-        passes = ["z", "diffuse_direct", "ambient_occlusion"]
-    for name in ("position", "normal", "diffuse_color", "diffuse_direct", "ambient_occlusion"):
-        setattr(scene.view_layers[0], f"use_pass_{name}", name in passes)
+    passes = ["z", "diffuse_direct", "ambient_occlusion"] if samples > 1 else SURFACES
     set_up_output(scene, (picture.width, picture.height), path, passes)
     bpy.ops.render.render(write_still=True)
 

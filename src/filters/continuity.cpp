@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
-#include <iterator>
 #include <vector>
 
 #include "filters/reprojection.h"
@@ -78,32 +77,38 @@ Continuity compare_frames(const FrameSurfaces& before, const FrameSurfaces& now,
   return moving.kept * still.met > still.kept * moving.met ? moving : still;
 }
 
-bool contradicts_cameras(const Geometry& before, const Geometry& geometry,
-                         const Plane<glm::vec2>& motion) {
-  if (!before.world_known || !geometry.world_known) return false;
-  const Reprojection reprojection(before, geometry);
-  std::vector<double> factors[2];  // along each axis, of what the cameras say
-  std::size_t surfaces = 0;
-  for (int y = 0; y < geometry.surfel.height; y += kEvery) {
-    for (int x = 0; x < geometry.surfel.width; x += kEvery) {
-      const std::size_t i = geometry.surfel.index(x, y);
-      if (!geometry.is_surface(i)) continue;
-      surfaces += 1;
-      const glm::dvec2 by_cameras =
-          reprojection.place(geometry.surfel[i].position) - centre_of(geometry, x, y);
-      for (int axis = 0; axis < 2; ++axis) {
-        const double factor = double(motion[i][axis]) / by_cameras[axis];
-        if (std::abs(by_cameras[axis]) > kLeastMove && std::isfinite(factor))
-          factors[axis].push_back(factor);
-      }
-    }
+void MotionRatios::add(const glm::dvec2& by_layer, const glm::dvec2& by_cameras) {
+  surfaces_ += 1;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double factor = by_layer[axis] / by_cameras[axis];
+    if (std::abs(by_cameras[axis]) > kLeastMove && std::isfinite(factor))
+      factors_[axis].push_back(factor);
   }
-  return std::any_of(std::begin(factors), std::end(factors), [&](std::vector<double>& of_axis) {
-    if (of_axis.size() <= surfaces / 4) return false;
+}
+
+bool MotionRatios::contradict() const {
+  return std::ranges::any_of(factors_, [&](std::vector<double> of_axis) {
+    if (of_axis.size() <= surfaces_ / 4) return false;
     const auto middle = of_axis.begin() + std::ptrdiff_t(of_axis.size() / 2);
     std::nth_element(of_axis.begin(), middle, of_axis.end());
     return std::abs(*middle - 1) > kMostDifference;
   });
+}
+
+bool contradicts_cameras(const Geometry& before, const Geometry& geometry,
+                         const Plane<glm::vec2>& motion) {
+  if (!before.world_known || !geometry.world_known) return false;
+  const Reprojection reprojection(before, geometry);
+  MotionRatios ratios;
+  for (int y = 0; y < geometry.surfel.height; y += kEvery) {
+    for (int x = 0; x < geometry.surfel.width; x += kEvery) {
+      const std::size_t i = geometry.surfel.index(x, y);
+      if (!geometry.is_surface(i)) continue;
+      ratios.add(glm::dvec2(motion[i]),
+                 reprojection.place(geometry.surfel[i].position) - centre_of(geometry, x, y));
+    }
+  }
+  return ratios.contradict();
 }
 
 }  // namespace ssdo

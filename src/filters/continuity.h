@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <vector>
 
 #include "math/half_color.h"
 #include "math/plane.h"
@@ -31,9 +33,23 @@ struct Continuity {
 Continuity compare_frames(const FrameSurfaces& before, const FrameSurfaces& now,
                           const Plane<glm::vec2>& motion = {});
 
-/// Whether motion seems to have other units or signs than accumulate takes: along an axis, on most
-/// surfaces that the cameras move, it is not within 30 % of what P and the cameras say. Cameras
-/// that rest contradict nothing.
+/// Motion of surfaces that stand still, by a layer and by the cameras.
+class MotionRatios {
+ public:
+  /// In pixels to the frame before.
+  void add(const glm::dvec2& by_layer, const glm::dvec2& by_cameras);
+
+  /// Whether the layer is off by 30 % in the median, along an axis in which the cameras move more
+  /// than a quarter of the surfaces. Cameras that rest contradict nothing.
+  bool contradict() const;
+
+ private:
+  std::size_t surfaces_ = 0;
+  std::vector<double> factors_[2];  ///< along each axis, of what the cameras say
+};
+
+/// Whether motion seems to have other units or signs than accumulate takes, by MotionRatios of all
+/// surfaces.
 bool contradicts_cameras(const Geometry& before, const Geometry& geometry,
                          const Plane<glm::vec2>& motion);
 

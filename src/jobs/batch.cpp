@@ -54,15 +54,13 @@ class Batch {
         writes_behind_(overlaps_ && !options.model.temporal),
         pictures_(options.input.allow_partial, options.input.objects),
         frames_(options_, pictures_),
-        shot_(jobs_, options.model.shot, options.command == Command::info),
+        shot_(jobs_, options.model.shot, options.command == Command::info,
+              {resources.memory(), frames_at_one_time()}),
         progress_(options.batch.progress, options.verbosity.quiet),
         info_(options.verbosity.json, progress_),
         printer_(progress_) {
     const std::size_t views = std::max(std::size_t(1), options.input.views.size());
-    // What is left of a frame that waits for its shot is less than half, and what one has found, in
-    // half numbers and packed surfaces, less than a quarter.
-    const std::size_t of_shot = (2 * shot_.most_waiting() + shot_.most_kept() + 3) / 4;
-    options_.memory = resources.memory() / (((overlaps_ ? 2 : 1) + of_shot) * views);
+    options_.memory = resources.memory() / (std::size_t(frames_at_one_time()) * views);
     for (const Job& job : jobs_)
       for (const FrameFiles& files : job.views) pictures_.expect(files);
   }
@@ -91,6 +89,11 @@ class Batch {
   }
 
  private:
+  /// A frame that is made with those around it takes about as much as one that is estimated.
+  int frames_at_one_time() const {
+    return (overlaps_ ? 2 : 1) + int(options_.model.shot.count > 0);
+  }
+
   ExitCode run_jobs() {
     if (has_statistics())
       check_output(options_.verbosity.stats, policy_of_statistics(options_.output.policy));
@@ -101,9 +104,9 @@ class Batch {
       if (!light_) read_light();
       run_job(i);
     }
-    for (std::size_t i = 0; i < behind_.size() && !stopped_; ++i) {
-      write(behind_[i], progress_of(behind_[i].index));
-      conclude(behind_[i]);
+    if (behind_ && !stopped_) {
+      write(*behind_, progress_of(behind_->index));
+      conclude(*behind_);
     }
     return code_;
   }
@@ -128,27 +131,34 @@ class Batch {
     ahead_.reset();
     if (overlaps_) {
       beside_.start([this, i] {
-        for (Work& work : behind_) write(work, [](double) {});
+        if (behind_) write(*behind_, [](double) {});
         if (i + 1 < jobs_.size()) ahead_ = prepare(i + 1);
       });
     }
     compute(now);
-    std::vector<Work> made = shot_.complete(std::move(now));
-    for (Work& work : made) show_shot(work);
-    if (!writes_behind_)
-      for (Work& work : made) write(work, progress_of(work.index));
+    shot_.add(std::move(now));
+    std::optional<Work> made = next_made();
+    if (made && !writes_behind_) write(*made, progress_of(made->index));
     beside_.wait();
-    for (Work& work : behind_) conclude(work);
-    behind_.clear();
-    if (stopped_) return;
-    const bool is_empty =
-        std::ranges::all_of(made, [](const Work& work) { return work.views.empty(); });
-    if (!is_empty) {
-      behind_ = std::move(made);
-      return;
+    if (behind_) conclude(*behind_);
+    behind_.reset();
+    // After the last frame of a shot, those that waited for it are made and written one by one.
+    for (; made && !stopped_; made = next_made()) {
+      if (writes_behind_ && !made->views.empty() && !shot_.has_complete()) {
+        behind_ = std::move(made);
+        return;
+      }
+      write(*made, progress_of(made->index));
+      conclude(*made);
     }
-    for (Work& work : made)
-      if (!stopped_) conclude(work);
+  }
+
+  /// A frame that needs no others any more.
+  std::optional<Work> next_made() {
+    if (!shot_.has_complete()) return std::nullopt;
+    Work work = shot_.next_complete();
+    show_shot(work);
+    return work;
   }
 
   template <class Step>
@@ -266,7 +276,7 @@ class Batch {
       if (const auto display = make_display(job)) work.messages.add(display->description());
       return;
     }
-    if (behind_.empty() && !shot_.is_waiting()) print(work);
+    if (!behind_ && !shot_.is_waiting()) print(work);
     view.relit = relight(job, std::move(frame.scene), on_progress, temporal);
     if (options_.verbosity.verbose)
       for (const std::string& note : view.relit.notes) work.messages.add(note);
@@ -385,7 +395,7 @@ class Batch {
   ShotReport report_;
   std::vector<std::optional<History>> histories_;  ///< of the frame before's views, for --temporal
   std::optional<Work> ahead_;                      ///< the next job, prepared
-  std::vector<Work> behind_;                       ///< computed and not concluded
+  std::optional<Work> behind_;                     ///< computed and not concluded
   Background beside_;                              ///< is waited for before any of the above goes
 };
 

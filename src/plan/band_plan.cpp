@@ -21,6 +21,9 @@ namespace {
 constexpr double kBytes = 60e6, kBytesPerPixel = 120, kBytesOfSun = 11, kBytesOfMore = 18,
                  kBytesOfSpecular = 72;
 
+/// What casts, where something does not: surfaces, senders, and what receives on marches.
+constexpr double kBytesOfCasting = 60;
+
 /// What the learned prior adds: what it reads and changes of visibility, by pixel.
 constexpr double kBytesOfPrior = 32;
 
@@ -42,6 +45,7 @@ double bytes_per_pixel(const Plan& plan, const Scene& scene) {
   return bytes_of_light + kBytesPerPixel + kBytesOfSun * double(scene.light.sources.size()) +
          kBytesOfSenders * int(!scene.senders.radiance.empty()) +
          kBytesOfPrior * int(plan.prior.has_value()) +
+         kBytesOfCasting * int(scene.casting.has_value()) +
          kBytesOfMore * (int(products.bent) + int(products.reflection)) +
          kBytesOfSpecular * int(products.specular);
 }
@@ -132,18 +136,20 @@ std::size_t most_pixels_in(std::size_t memory, const OutputOptions& output, int 
   return std::size_t(std::max(0.0, double(memory) - kBytes) / most);
 }
 
+double bytes_in_one_piece(const Plan& plan, const Scene& scene, std::size_t pixels) {
+  return kBytes + bytes_per_pixel(plan, scene) * double(pixels);
+}
+
 BandPlan plan_bands(const std::string& file, const Window& frame, const Window& display,
                     const Scene& overview, const Plan& plan, const OutputOptions& output,
                     std::size_t memory) {
   const std::string size = fmt::format("{}: {} x {} pixels", file, frame.width(), frame.height());
   if (const std::string what = needs_whole_frame(overview, plan, output); !what.empty()) {
-    throw Error(
-        ExitCode::usage,
-        fmt::format("{} take {} of memory, and may take {}; {} needs all of the frame at "
-                    "once: leave that out, or raise --mem-limit",
-                    size,
-                    in_gigabytes(kBytes + bytes_per_pixel(plan, overview) * double(frame.area())),
-                    in_gigabytes(double(memory)), what));
+    throw Error(ExitCode::usage,
+                fmt::format("{} take {} of memory, and may take {}; {} needs all of the frame at "
+                            "once: leave that out, or raise --mem-limit",
+                            size, in_gigabytes(bytes_in_one_piece(plan, overview, frame.area())),
+                            in_gigabytes(double(memory)), what));
   }
   const Planner planner(frame, display, overview, plan, memory);
   const BandPlan bands = planner.choose();

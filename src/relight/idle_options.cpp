@@ -88,8 +88,8 @@ Condition occlude_without(const std::vector<std::string_view>& products) {
 const std::vector<IdleRule<Purpose>>& rules_of_options() {
   static const std::vector<IdleRule<Purpose>> all = {
       {{"--motion-scale"},
-       [](const FrameOptions& o, Purpose) { return !o.model.temporal; },
-       "motion is used with --temporal only"},
+       [](const FrameOptions& o, Purpose) { return !o.model.temporal && o.model.shot.count == 0; },
+       "motion is used with --shot and --temporal only"},
       {{"--prior"},
        [](const FrameOptions&, Purpose purpose) { return purpose == Purpose::bench; },
        "bench measures methods by their rules"},

@@ -18,7 +18,7 @@ namespace {
 std::vector<Role> unused_roles(const FrameOptions& options, const FrameFiles& files) {
   std::vector<Role> unused;
   if (!wants_reflection(options.output, files.aovs)) unused.push_back(Role::roughness);
-  if (!options.model.temporal) unused.push_back(Role::motion);
+  if (!options.model.temporal && options.model.shot.count == 0) unused.push_back(Role::motion);
   return unused;
 }
 

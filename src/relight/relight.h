@@ -29,9 +29,9 @@ Relit relight(const RelightJob& job, Scene scene, const std::function<void(doubl
 /// planes.
 Findings take_findings(Relit& relit);
 
-/// The rest of relight() for a frame in a shot, once what it and the frames around it have found is
-/// known: `others` in the order of the shot.
-void relight_in_shot(const Findings& own, const std::vector<OtherFindings>& others, Relit& relit);
+/// The rest of relight() for a frame in a shot, once `fusion` has what it and the frames around it
+/// have found, in the order of the shot.
+void relight_in_shot(Fusion& fusion, Relit& relit);
 
 /// The rest of it: compose, colour, write. `views` are those of one frame, usually one. All targets
 /// appear, or none. Adds to the times and clamped values of the first. Errors: those of the stages.

@@ -88,6 +88,7 @@ TEST_F(BenchShot, ItsFiguresAreThoseOfItsCommands) {
     const json error = compared(
         {path("truth.@.exr") + ":AO", "--frames", "2-3", "--mask", path("in.@.exr") + ":Normal"});
     EXPECT_NEAR(figures.at("error"), error.at("rmse"), 1e-9);
+    EXPECT_TRUE(figures.at("error_near_moving").is_null()) << "the ball is still";
     EXPECT_NEAR(figures.at("flicker_of_error"), error.at("flicker").at("a_minus_b").at("rms"),
                 1e-9);
     EXPECT_GT(row.at("cpu_s_per_frame"), 0);
@@ -96,6 +97,52 @@ TEST_F(BenchShot, ItsFiguresAreThoseOfItsCommands) {
   }
   EXPECT_GT(flickers[0], 0.005) << "frames alone";
   EXPECT_LT(flickers[1], 0.9 * flickers[0]) << "the causal filter";
+}
+
+/// A ball jumps, at the left of a wide picture. The truth is wrong by much at the right.
+TEST_F(BenchShot, TellsTheErrorNearWhatMoves) {
+  const Window window{0, 0, 192, 36};
+  const Camera camera = look_at(camera_from_fov(70, window, 1), {0, -4, 3}, {0, 0, 0.3}, {0, 0, 1});
+  std::map<int, Plane<unsigned char>> shows_ball;
+  for (int n = 1; n <= 3; ++n) {
+    const Picture picture = take_picture(
+        all_of({plane({}, {0, 0, 1}), sphere({-2.2 + 0.7 * n, 0, 0.3}, 0.25)}), camera, window);
+    write_frame(path("in." + std::to_string(n) + ".exr"), frame_of(picture));
+    shows_ball[n] = Plane<unsigned char>(window.width(), window.height(), 0);
+    for (std::size_t i = 0; i < picture.position.size(); ++i)
+      shows_ball[n][i] = picture.position[i].z > 1e-4f;
+    std::map<std::string, Plane<float>> truth = {{"AO.Y", Plane<float>(192, 36, 0.9f)}};
+    for (int y = 0; y < 36; ++y)
+      for (int x = 150; x < 192; ++x) truth["AO.Y"](x, y) = 0.2f;
+    if (n > 1)
+      write_frame(path("truth." + std::to_string(n) + ".exr"),
+                  FramePart{"", window, window, truth, Imf::FLOAT, {}});
+  }
+  const json all = report({"--truth", path("truth.@.exr") + ":AO"});
+  const json& row = all.at("rows").at(0);
+  const std::string command = row.at("command");
+  ASSERT_EQ(std::system(("cd '" + dir_.path().string() + "' && " + tool_path().string() +
+                         command.substr(4) + " --pixel-type float --overwrite -q")
+                            .c_str()),
+            0);
+  double squares = 0, count = 0;
+  for (int n = 2; n <= 3; ++n) {
+    const Plane<float> ao = channel(path("relit.000" + std::to_string(n) + ".exr"), "ao.Y");
+    for (int y = 0; y < 36; ++y) {
+      for (int x = 0; x < 192; ++x) {
+        bool is_near = false;
+        for (int v = std::max(y - 24, 0); v <= std::min(y + 24, 35); ++v)
+          for (int u = std::max(x - 24, 0); u <= std::min(x + 24, 191); ++u)
+            is_near = is_near || shows_ball[n](u, v) || shows_ball[n - 1](u, v);
+        if (!is_near) continue;
+        squares += std::pow(double(ao(x, y)) - (x < 150 ? 0.9 : 0.2), 2), ++count;
+      }
+    }
+  }
+  const json& figures = row.at("products").at("ao");
+  EXPECT_NEAR(figures.at("error_near_moving"), std::sqrt(squares / count),
+              0.02 * std::sqrt(squares / count));
+  EXPECT_GT(figures.at("error"), 2 * double(figures.at("error_near_moving")));
 }
 
 TEST_F(BenchShot, TableCsvAndJsonSayTheSame) {

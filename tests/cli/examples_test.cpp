@@ -28,6 +28,7 @@ const std::map<std::string, std::string> kNotRun = {
     {"env = ", "a config file: ConfigFileOfTheManual"},
     {R"(  { "lights")", "a file of lamps"},
     {R"(  "sphere name=rim)", "the value of --light"},
+    {"import re, shlex", "a menu of Nuke"},
 };
 
 constexpr int kShrunk = 9;  ///< every ninth pixel in x and y: still lifes of 64 x 36

@@ -101,6 +101,76 @@ TEST_F(AShot, GoesOnWhereItStopped) {
   EXPECT_FALSE(fs::exists(file(1, "out")));
 }
 
+/// What does not fit into memory waits in the folder for temporary files.
+TEST_F(AShot, HasTheSameBitsFromDisk) {
+  write_shot();
+  const Words all = {"--shot",     "2",
+                     "--env",      "0.5,0.6,0.8",
+                     "--light",    "distant direction=0.3,0.4,-1 angle=2",
+                     "--products", "ao,bent,direct,bounce,shadow,guessed,reflection"};
+  const std::string nowhere = folder / "nowhere";
+  const auto with = [&](const Words& more, const std::string& name, const std::string& temporary) {
+    return run_tool(Words{folder / "in.####.exr", "-o", folder / (name + ".####.exr"),
+                          "--overwrite", "--pixel-type", "float"} +
+                        all + more,
+                    {.variables = {{"TMPDIR", temporary}}});
+  };
+  EXPECT_EQ(with({}, "whole", nowhere).code, 0) << "all fits into memory";
+  for (const char* threads : {"1", "2"}) {
+    const Words little = {"--mem-limit", *threads == '1' ? "117.1M" : "175.7M", "--threads", threads};
+    ASSERT_EQ(with(little, "little", folder.path()).code, 0);
+    for (int frame = 1; frame <= kFrames; ++frame)
+      for (const std::string& layer : channel_names(file(frame, "whole")))
+        EXPECT_EQ(found(frame, layer, "little").pixels, found(frame, layer, "whole").pixels)
+            << layer << " " << frame;
+    const Finished full = with(little, "none", nowhere);
+    EXPECT_EQ(full.code, 1);
+    EXPECT_THAT(full.error_line(), AllOf(HasSubstr(nowhere + ": cannot keep"),
+                                         HasSubstr("set TMPDIR"), HasSubstr("--mem-limit")));
+  }
+  EXPECT_EQ(listing(folder.path()).size(), 3u * kFrames) << "nothing is left behind";
+  const Words info = {"info", folder / "in.####.exr", "--shot", "2", "--json"};
+  EXPECT_EQ(run_tool(info + Words{"--mem-limit", "175.7M"}).out, run_tool(info).out);
+}
+
+/// A frame that does not fit by itself is refused, as it is in bands.
+TEST_F(AShot, IsRefusedForFramesLargerThanMemory) {
+  write_shot();
+  const Finished done = run({"--shot", "2", "--mem-limit", "150M", "--threads", "2"});
+  EXPECT_EQ(done.code, 2);
+  EXPECT_THAT(done.error_line(), AllOf(HasSubstr("in.0001.exr: 96 x 72 pixels take"),
+                                       HasSubstr("--shot needs all of the frame at once"),
+                                       HasSubstr("raise --mem-limit")));
+}
+
+/// 17 frames of a camera at rest, one of which is made.
+TEST_F(AShot, TakesNoMoreMemoryThanItMay) {
+  const Window window{0, 0, 640, 360};
+  const Camera camera =
+      look_at(camera_from_fov(45, window, 1), {0.5, -4, 1.3}, {0, 0, 0.3}, {0, 0, 1});
+  write_frame(file(1), frame_of(take_picture(boxes(), camera, window)));
+  for (int frame = 2; frame <= 17; ++frame) fs::create_hard_link(file(1), file(frame));
+  const Words one = {"--shot",     "8",
+                     "--frames",   "9",
+                     "--quality",  "draft",
+                     "--products", "ao,bent,direct",
+                     "--light",    "distant direction=0.3,0.4,-1",
+                     "--light",    "distant direction=-0.3,0.1,-1",
+                     "--threads",  "2"};
+  const auto peak = [&](const Words& more, const std::string& name) {
+    const Finished done = run(one + more, name);
+    EXPECT_EQ(done.code, 0) << done.err;
+    return double(done.used.ru_maxrss) * 1024;
+  };
+  const double much = peak({"--mem-limit", "4G"}, "much"),
+               little = peak({"--mem-limit", "312M"}, "little");
+  fmt::print("at most {:.0f} MB, {:.0f} MB with --mem-limit 312M\n", much / 1e6, little / 1e6);
+  EXPECT_LT(little, 312 << 20);
+  EXPECT_GT(much, little + 0.5 * 17 * 48 * double(window.area())) << "kept surfaces and values";
+  EXPECT_EQ(found(9, "ao.Y", "little").pixels, found(9, "ao.Y", "much").pixels);
+  EXPECT_EQ(found(9, "direct.R", "little").pixels, found(9, "direct.R", "much").pixels);
+}
+
 /// The same point of the same surface has the same light from frame to frame.
 TEST_F(AShot, IsSteadierAndNearerToRays) {
   write_shot();

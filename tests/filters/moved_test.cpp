@@ -119,7 +119,9 @@ void fuse(const Findings& own, const std::vector<const Findings*>& others, const
           const Geometry& geometry, Products& products) {
   Fusion fusion(own, light);
   const std::vector<MovedPiece> nothing;
-  for (const Findings* other : others) fusion.add({{other, &nothing, &nothing}});
+  std::vector<OtherFindings> all;
+  for (const Findings* other : others) all.push_back({other, 1, &nothing, &nothing});
+  fusion.add(all);
   fusion.finish(geometry, products);
 }
 

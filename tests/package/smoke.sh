@@ -30,6 +30,7 @@ expect_status 2 still_life.exr --no-such-option
 expect_status 3 missing.exr -o none.exr
 expect_status 5 still_life.exr -o relit.exr
 expect_status 5 still_life.exr -o /usr/none.exr
+[ -s "$share/ssdo/blender/ssdo_relight.py" ] || fail "no add-on for Blender"
 for page in man1/ssdo.1 man7/ssdo-farm.7 man7/ssdo-methods.7; do
   gzip -dc "$share/man/$page.gz" | grep -q '^\.TH' || fail "$page is no page"
 done

@@ -63,7 +63,7 @@ function drawTable() {
   table.replaceChildren();
   const names = element("tr", undefined, element("thead", undefined, table));
   const figures = {flicker: "flicker", flicker_p99: "99 %", flicker_border: "border", error: "error",
-                   flicker_of_error: "flicker of error", points: "points"};
+                   error_near_moving: "error near what moves", flicker_of_error: "flicker of error", points: "points"};
   for (const text of ["setting", "CPU s / frame", "wall s / frame", ...Object.values(figures)]) element("th", text, names);
   const body = element("tbody", undefined, table);
   for (const row of bench.rows) {

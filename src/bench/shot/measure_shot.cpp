@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "error.h"
@@ -13,6 +15,7 @@
 #include "io/sequence.h"
 #include "jobs/batch.h"
 #include "jobs/jobs.h"
+#include "metrics/near_moving.h"
 #include "metrics/shot_points.h"
 
 namespace ssdo {
@@ -71,14 +74,19 @@ class ShotSum {
     const FrameFiles files = files_at(subject_.options, frame);
     const LayeredPicture picture(output);
     std::vector<std::string> notes;
+    const std::optional<Geometry> before =
+        has_before_ && has_truth(frame) ? std::optional(points_.latest()) : std::nullopt;
     const auto shared = points_.next(
         frame, read_points(files, subject_.options.input, subject_.options.camera),
         picture.display(picture.layers().front()), [](int, int) { return true; }, notes);
+    has_before_ = true;
+    const Plane<unsigned char> near =
+        before ? near_moving(*before, points_.latest()) : Plane<unsigned char>();
     for (const std::string& product : subject_.products) {
       const PictureLayer layer = picture.find(product);
       const Channels now{picture.window(layer), picture.read(layer)};
       Sum& sum = sums_[product];
-      std::optional<Channels> off = difference_from_truth(product, frame, now, sum);
+      std::optional<Channels> off = difference_from_truth(product, frame, now, near, sum);
       if (shared && !sum.before.planes.empty())
         sum.flicker.add(measure_flicker(*shared, sum.before, now));
       if (shared && off && sum.off_before)
@@ -91,27 +99,43 @@ class ShotSum {
   std::map<std::string, ShotFigures> figures() const {
     std::map<std::string, ShotFigures> all;
     for (const auto& [product, sum] : sums_)
-      all[product] = {sum.flicker.figures(), sum.error, sum.flicker_of_error.figures()};
+      all[product] = {sum.flicker.figures(), sum.error, sum.error_near_moving,
+                      sum.flicker_of_error.figures()};
     return all;
   }
 
  private:
   struct Sum {
     Flicker flicker, flicker_of_error;
-    Difference error;
+    Difference error, error_near_moving;
     Channels before;
     std::optional<Channels> off_before;
   };
 
-  /// Product minus truth, and its error added to the sum; nothing in a frame without truth.
-  std::optional<Channels> difference_from_truth(const std::string& product, int frame,
-                                                const Channels& now, Sum& sum) const {
+  /// The file with the truth of a product; empty: there is none.
+  std::string truth_of(const std::string& product, int frame) const {
     const auto request = subject_.truths.find(product);
-    if (request == subject_.truths.end()) return std::nullopt;
-    const PictureName name = parse_picture_name(request->second.picture);
-    const std::string file = expand_pattern(name.file, frame);
+    if (request == subject_.truths.end()) return "";
+    const std::string file =
+        expand_pattern(parse_picture_name(request->second.picture).file, frame);
     std::error_code ignored;
-    if (!fs::exists(file, ignored)) return std::nullopt;
+    return fs::exists(file, ignored) ? file : "";
+  }
+
+  bool has_truth(int frame) const {
+    return std::ranges::any_of(subject_.products, [&](const std::string& product) {
+      return !truth_of(product, frame).empty();
+    });
+  }
+
+  /// Product minus truth, and its error added to the sum; nothing in a frame without truth. `near`
+  /// is near_moving(), or empty where that is not known.
+  std::optional<Channels> difference_from_truth(const std::string& product, int frame,
+                                                const Channels& now,
+                                                const Plane<unsigned char>& near, Sum& sum) const {
+    const std::string file = truth_of(product, frame);
+    if (file.empty()) return std::nullopt;
+    const PictureName name = parse_picture_name(subject_.truths.at(product).picture);
     const Truth truth = read_truth({product, name.layer.empty() ? file : file + ":" + name.layer});
     const Geometry& geometry = points_.latest();
     if (!(truth.display == geometry.display)) {
@@ -127,11 +151,17 @@ class ShotSum {
                                                    x - geometry.window.x0, y - geometry.window.y0));
     };
     sum.error.add(compare_channels(now, truth.channels, is_surface).figures);
+    const auto is_near = [&](int x, int y) {
+      return is_surface(x, y) && near(x - geometry.window.x0, y - geometry.window.y0) != 0;
+    };
+    if (!near.empty())
+      sum.error_near_moving.add(compare_channels(now, truth.channels, is_near).figures);
     return subtract(now, truth.channels);
   }
 
   const ShotSubject& subject_;
   ShotPoints points_;
+  bool has_before_ = false;
   std::map<std::string, Sum> sums_;
 };
 

@@ -30,14 +30,19 @@ std::string quoted(const std::string& text) {
 
 /// The figures of a product as they are told: for light relative to its mean.
 struct Told {
-  double flicker, p99, border, error, flicker_of_error;
+  double flicker, p99, border, error, error_near_moving, flicker_of_error;
 };
 
 Told told(const std::string& product, const ShotFigures& f) {
   const double scale = has_absolute_error(product) ? 1 : std::abs(f.flicker.mean);
   const bool has_truth = f.error.count > 0;
-  return {f.flicker.rms / scale, f.flicker.p99 / scale, f.flicker.border_rms / scale,
+  return {f.flicker.rms / scale,
+          f.flicker.p99 / scale,
+          f.flicker.border_rms / scale,
           has_truth ? error_of(product, f.error) : NAN,
+          f.error_near_moving.count > 0
+              ? f.error_near_moving.rmse / (has_absolute_error(product) ? 1 : f.error.mean_b)
+              : NAN,
           f.flicker_of_error.points > 0 ? f.flicker_of_error.rms / scale : NAN};
 }
 
@@ -49,6 +54,7 @@ json product_json(const std::string& product, const ShotFigures& f) {
           {"flicker_border", number(t.border)},
           {"mean", number(f.flicker.mean)},
           {"error", number(t.error)},
+          {"error_near_moving", number(t.error_near_moving)},
           {"flicker_of_error", number(t.flicker_of_error)}};
 }
 
@@ -72,9 +78,9 @@ std::string to_table(const ShotBenchReport& report) {
   for (const std::string& product : report.products) {
     const bool truth = report.truths.contains(product);
     top += fmt::format("  {:<{}}", product + (has_absolute_error(product) ? "" : ", relative"),
-                       truth ? 31 : 23);
+                       truth ? 39 : 23);
     bottom += fmt::format("  {:>7} {:>7} {:>7}", "flicker", "99 %", "border");
-    if (truth) bottom += fmt::format(" {:>7}", "error");
+    if (truth) bottom += fmt::format(" {:>7} {:>7}", "error", "moving");
   }
   const auto add = [&](std::string line) {
     line.erase(line.find_last_not_of(' ') + 1);
@@ -88,29 +94,32 @@ std::string to_table(const ShotBenchReport& report) {
     for (const std::string& product : report.products) {
       const Told t = told(product, row.products.at(product));
       line += fmt::format("  {:>7} {:>7} {:>7}", shown(t.flicker), shown(t.p99), shown(t.border));
-      if (report.truths.contains(product)) line += fmt::format(" {:>7}", shown(t.error));
+      if (report.truths.contains(product))
+        line += fmt::format(" {:>7} {:>7}", shown(t.error), shown(t.error_near_moving));
     }
     add(line);
   }
   return text +
          "flicker: RMS change from frame to frame at the same point of the same surface; border: "
-         "of "
-         "points within\n16 pixels of it; error: from --truth. Times are those of whole runs.\n";
+         "of points within\n16 pixels of it; error: from --truth; moving: the same within 24 "
+         "pixels "
+         "of what moves. Times are those of\nwhole runs.\n";
 }
 
 std::string to_csv(const ShotBenchReport& report) {
   std::string text =
       "setting,cpu_s_per_frame,wall_s_per_frame,product,points,flicker,flicker_p99,flicker_border,"
-      "error,flicker_of_error,command\n";
+      "error,error_near_moving,flicker_of_error,command\n";
   for (const ShotRow& row : report.rows) {
     const Cost seconds = report.seconds_per_frame(row);
     for (const std::string& product : report.products) {
       const ShotFigures& f = row.products.at(product);
       const Told t = told(product, f);
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", row.setting.name(), seconds.cpu_ms,
-                          seconds.wall_ms, product, f.flicker.points, field(t.flicker),
-                          field(t.p99), field(t.border), field(t.error), field(t.flicker_of_error),
-                          quoted(row.command));
+      text +=
+          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", row.setting.name(), seconds.cpu_ms,
+                      seconds.wall_ms, product, f.flicker.points, field(t.flicker), field(t.p99),
+                      field(t.border), field(t.error), field(t.error_near_moving),
+                      field(t.flicker_of_error), quoted(row.command));
     }
   }
   return text;

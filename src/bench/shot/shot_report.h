@@ -18,6 +18,7 @@ namespace ssdo {
 struct ShotFigures {
   FlickerFigures flicker;
   Difference error;                 ///< over the frames with a truth; count is 0 without one
+  Difference error_near_moving;     ///< the same over near_moving(); count is 0 where nothing moves
   FlickerFigures flicker_of_error;  ///< of the product minus its truth; 0 points without one
 };
 

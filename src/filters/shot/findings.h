@@ -10,6 +10,7 @@
 
 #include "estimators/products.h"
 #include "filters/shot/kept_surfaces.h"
+#include "filters/shot/own_motion.h"
 #include "math/uninitialized.h"
 #include "scene/geometry.h"
 
@@ -40,6 +41,7 @@ struct Findings {
   std::vector<std::uint16_t, Uninitialized<std::uint16_t>> values;
   /// Luminance of the radiance, in the same order; empty: nothing glows.
   std::vector<float> glow;
+  OwnMotion motion;  ///< since the frame before in time
 };
 
 /// Moves what frames share out of `products`. `radiance` is that of surfaces that glow; it may be

@@ -17,8 +17,9 @@
 // What is known is not the same at all times: things move, and light with them. w is less where
 // what stands in one of both frames, but not in the other, hides light from p
 // (filters/shot/moved_weights.h): for a source if it may throw its shadow there, for all other
-// light by the form factor. Lamps in the picture are switched: of the light that surfaces send,
-// another frame counts by
+// light by the form factor. What moves itself is looked up where its motion layer leads, and its
+// light is that of the place to which it has gone (filters/shot/followed.cpp). Lamps in the picture
+// are switched: of the light that surfaces send, another frame counts by
 //
 //   sum of min(L, L') / sum of max(L, L')
 //
@@ -36,12 +37,12 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
-#include <optional>
 #include <span>
 #include <type_traits>
 
-#include "filters/shot/moved_weights.h"
+#include "filters/shot/followed.h"
 #include "filters/shot/sights.h"
+#include "filters/shot/speaker.h"
 #include "parallel/tiles.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -152,63 +153,6 @@ HWY_EXPORT(finish_means);
 
 namespace {
 
-/// Whether planes are of the same things, though a frame may lack some of them.
-bool same_things(const Findings& a, const Findings& b) {
-  return std::ranges::equal(a.planes, b.planes, {}, &FoundPlane::source, &FoundPlane::source);
-}
-
-/// The channel of another frame that holds what each channel of `own` does; -1: it lacks that.
-std::vector<int> channels_in(const Findings& other, const Findings& own) {
-  std::vector<int> channels;
-  int there = 0;
-  for (std::size_t k = 0; k < own.planes.size(); ++k) {
-    const int count = other.planes[k].channels;
-    for (int c = 0; c < own.planes[k].channels; ++c) channels.push_back(count > 0 ? there + c : -1);
-    there += count;
-  }
-  channels.resize(std::size_t(own.stride), -1);
-  return channels;
-}
-
-/// The values of another frame in the order of one's own channels.
-std::vector<std::uint16_t> arrange(const Findings& other, const std::vector<int>& channels) {
-  std::vector<std::uint16_t> values(other.surfaces.size() * channels.size());
-  for_each_row(other.surfaces.window.height() + 2, [&](int row) {
-    const auto stride = std::size_t(other.surfaces.stride());
-    for (std::size_t i = std::size_t(row) * stride; i < std::size_t(row + 1) * stride; ++i)
-      for (std::size_t c = 0; c < channels.size(); ++c)
-        values[i * channels.size() + c] =
-            channels[c] < 0
-                ? 0
-                : other.values[i * std::size_t(other.stride) + std::size_t(channels[c])];
-  });
-  return values;
-}
-
-/// How much of the radiance of the points that both show is the same.
-float same_glow(const Findings& own, const Findings& other, const ShotReprojection& reprojection) {
-  if (own.glow.empty() && other.glow.empty()) return 1;
-  const int step = grid_step(own.surfaces);
-  double same = 0, all = 0;
-  for_each_points_of_grid(own.surfaces, step, [&](const RowOfPixels& row) {
-    RowOfPoints points;
-    Sights sights;
-    load_points(own.surfaces, row, points);
-    if (!reprojection.find(points, sights)) return;
-    for (int i = 0; i < row.count; ++i) {
-      if (sights.pixel[i] < 0) continue;
-      const float here =
-          own.glow.empty() ? 0 : own.glow[own.surfaces.index(row.x + i * step, row.y)];
-      float there = 0;
-      for (int k = 0; k < 4 && !other.glow.empty(); ++k)
-        there += sights.weight[k][i] *
-                 other.glow[std::size_t(sights.pixel[i] + k % 2 + k / 2 * other.surfaces.stride())];
-      same += double(std::min(here, there)), all += double(std::max(here, there));
-    }
-  });
-  return all > 0 ? float(same / all) : 1;
-}
-
 /// The kind of light of each channel, as KindsOfGroup has it.
 std::vector<int> kinds_of(const Findings& findings) {
   std::vector<int> kinds;
@@ -218,59 +162,69 @@ std::vector<int> kinds_of(const Findings& findings) {
   return kinds;
 }
 
-/// Another frame that says something.
-struct Speaker {
-  const Findings& findings;
-  ShotReprojection reprojection;
-  std::vector<std::uint16_t> arranged;                  ///< where it has other layers
-  std::optional<MovedWeights> moved;                    ///< where something has moved
-  std::vector<float> weights, weights_of_kinds, units;  ///< of Saying
-};
-
-Speaker speaker_of(const Findings& own, const OtherFindings& other, const Light& light,
-                   const std::vector<int>& kinds) {
-  const Findings& findings = *other.findings;
-  Speaker speaker{findings, {findings.surfaces, own.surfaces}, {}, {}, {}, {}, {}};
-  const std::vector<MovedPiece> pieces =
-      moved_pieces(own.surfaces.camera, findings.surfaces.camera, *other.gone, *other.come);
-  if (!pieces.empty()) speaker.moved.emplace(own.surfaces, pieces, light);
-  const float glow = same_glow(own, findings, speaker.reprojection);
-  for (const FoundPlane& plane : own.planes)
-    speaker.weights.insert(speaker.weights.end(), std::size_t(plane.channels),
-                           plane.source == FoundPlane::kOfSenders ? glow : 1);
-  const auto stride = std::size_t(own.stride);
-  speaker.weights.resize(stride, 1);
-  const std::vector<int> channels = channels_in(findings, own);
-  if (!std::ranges::equal(findings.planes, own.planes, {}, &FoundPlane::channels,
-                          &FoundPlane::channels))
-    speaker.arranged = arrange(findings, channels);
-  speaker.weights_of_kinds.resize((light.sources.size() + 1) * stride, 0);
-  for (std::size_t c = 0; c < stride; ++c) {
-    if (channels[c] < 0) speaker.weights[c] = 0;
-    speaker.weights_of_kinds[std::size_t(kinds[c]) * stride + c] = speaker.weights[c];
-    speaker.units.push_back(
-        channels[c] < 0 ? 1 : findings.unit[std::size_t(channels[c])] / own.unit[c]);
-  }
-  return speaker;
-}
-
 void load(const float* from, float& value) { value = *from; }
 void load(const float* from, glm::vec3& value) { value = {from[0], from[1], from[2]}; }
 
 }  // namespace
 
-/// What a block of points needs.
+/// What a block of points needs for one speaker.
 struct Fusion::Room {
-  Room(std::size_t speakers, std::size_t kinds)
-      : sights(speakers), moved(speakers * kinds * RowOfPoints::kMost) {
-    sayings.reserve(speakers);
+  explicit Room(std::size_t kind_count) : kinds(kind_count), moved(2 * kinds * kMost) {
+    sayings.reserve(2);
   }
+  float* moved_of(std::size_t saying) { return &moved[saying * kinds * kMost]; }
 
-  RowOfPoints points = {};
-  std::vector<Sights> sights;
+  static constexpr std::size_t kMost = RowOfPoints::kMost;
+  std::size_t kinds;
+  const RowOfPoints* points = nullptr;
+  Sights sights[2];
   std::vector<float> moved;
+  std::span<const FollowedPoint> followed;  ///< of the row
   std::vector<Saying> sayings;
 };
+
+/// What a speaker says of a block of points: where they are at rest, and where those are
+/// that were followed.
+void Fusion::add_speaker(const Speaker& s, const RowOfPixels& row, Room& room) {
+  const Findings& there = s.findings;
+  Saying saying{
+      &room.sights[0],          s.arranged.empty() ? there.values.data() : s.arranged.data(),
+      there.surfaces.stride(),  s.units.data(),
+      s.weights.data(),         nullptr,
+      s.weights_of_kinds.data()};
+  const auto by_x = [](const FollowedPoint& point) { return point.x; };
+  const auto first = std::ranges::lower_bound(room.followed, row.x, {}, by_x),
+             last = std::ranges::lower_bound(room.followed, row.x + row.count, {}, by_x);
+  if (s.reprojection.find(*room.points, room.sights[0])) {
+    float* counts = room.moved_of(0);
+    if (s.moved) {
+      for (std::size_t kind = 0; kind < room.kinds; ++kind)
+        s.moved->row(int(kind) - 1, row, counts + kind * Room::kMost);
+    } else if (first != last) {
+      std::fill_n(counts, room.kinds * Room::kMost, 1.0f);
+    }
+    for (auto point = first; point != last; ++point)
+      for (std::size_t kind = 0; kind < room.kinds; ++kind)
+        counts[kind * Room::kMost + std::size_t(point->x - row.x)] *= 1 - point->follows;
+    if (s.moved || first != last) saying.moved = counts;
+    room.sayings.push_back(saying);
+  }
+  if (first == last) return;
+  Sights& sights = room.sights[1];
+  std::fill_n(sights.pixel, row.count, -1);
+  float* counts = room.moved_of(1);  // 0 for sources
+  float beside[RowOfPoints::kMost];
+  std::fill_n(beside, row.count, 1.0f);
+  if (s.moved) s.moved->row_of_moving(row, beside);
+  for (auto point = first; point != last; ++point) {
+    const auto i = std::size_t(point->x - row.x);
+    sights.pixel[i] = point->pixel;
+    for (int corner = 0; corner < 4; ++corner) sights.weight[corner][i] = point->weight[corner];
+    counts[i] = point->follows * point->counts * beside[i];
+  }
+  saying.sights = &sights, saying.moved = counts;
+  room.sayings.push_back(saying);
+}
 
 Fusion::Fusion(const Findings& own, const Light& light)
     : own_(own), light_(light), kinds_(kinds_of(own)) {
@@ -290,41 +244,49 @@ Fusion::Fusion(const Findings& own, const Light& light)
   });
 }
 
+void Fusion::follow(const std::vector<OtherFindings>& others) {
+  followed_.emplace();
+  if (!own_.surfaces.world_known) return;
+  const Followed followed(own_, others);
+  const int height = own_.surfaces.window.height();
+  for (const OtherFindings& other : others) (*followed_)[other.away].resize(std::size_t(height));
+  for_each_row(height, [&](int y) {
+    std::vector<std::vector<FollowedPoint>> points(others.size());
+    followed.row(y, points);
+    for (std::size_t k = 0; k < others.size(); ++k)
+      if (!points[k].empty()) followed_->at(others[k].away)[std::size_t(y)] = std::move(points[k]);
+  });
+}
+
+// One speaker after the other says something of a whole row, so that memory is read in order.
 void Fusion::add(const std::vector<OtherFindings>& others) {
   if (!own_.surfaces.world_known || own_.stride == 0) return;
-  std::vector<Speaker> speakers;
-  for (const OtherFindings& other : others)
-    if (other.findings->surfaces.world_known && same_things(own_, *other.findings))
-      speakers.push_back(speaker_of(own_, other, light_, kinds_));
+  const std::vector<Speaker> speakers = speakers_of(own_, others, light_, kinds_);
   if (speakers.empty()) return;
+  if (!followed_) follow(others);
   const Window& window = own_.surfaces.window;
-  const std::size_t kinds = light_.sources.size() + 1;
   for_each_row(window.height(), [&](int y) {
-    Room room(speakers.size(), kinds);
-    for (int x = 0; x < window.width(); x += RowOfPoints::kMost) {
-      const RowOfPixels row{x, y, 1, std::min(RowOfPoints::kMost, window.width() - x)};
-      load_points(own_.surfaces, row, room.points);
-      room.sayings.clear();
-      for (std::size_t k = 0; k < speakers.size(); ++k) {
-        const Speaker& s = speakers[k];
-        if (!s.reprojection.find(room.points, room.sights[k])) continue;
-        const float* moved = nullptr;
-        if (s.moved) {
-          float* to = &room.moved[k * kinds * RowOfPoints::kMost];
-          for (std::size_t kind = 0; kind < kinds; ++kind)
-            s.moved->row(int(kind) - 1, row, to + kind * RowOfPoints::kMost);
-          moved = to;
-        }
-        room.sayings.push_back({&room.sights[k],
-                                s.arranged.empty() ? s.findings.values.data() : s.arranged.data(),
-                                s.findings.surfaces.stride(), s.units.data(), s.weights.data(),
-                                moved, s.weights_of_kinds.data()});
+    std::vector<RowOfPixels> blocks;
+    for (int x = 0; x < window.width(); x += RowOfPoints::kMost)
+      blocks.push_back({x, y, 1, std::min(RowOfPoints::kMost, window.width() - x)});
+    std::vector<RowOfPoints> points(blocks.size());
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      load_points(own_.surfaces, blocks[b], points[b]);
+    Room room(light_.sources.size() + 1);
+    for (const Speaker& s : speakers) {
+      const auto followed = followed_->find(others[s.other].away);
+      room.followed = {};
+      if (followed != followed_->end()) room.followed = followed->second[std::size_t(y)];
+      for (std::size_t b = 0; b < blocks.size(); ++b) {
+        room.points = &points[b];
+        room.sayings.clear();
+        add_speaker(s, blocks[b], room);
+        if (room.sayings.empty()) continue;
+        const std::size_t first = own_.surfaces.index(blocks[b].x, y) * std::size_t(own_.stride);
+        HWY_DYNAMIC_DISPATCH(add_sayings)
+        (&own_.values[first], own_.stride, blocks[b].count, room.sayings, groups_, &sums_[first],
+         &all_[first]);
       }
-      if (room.sayings.empty()) continue;
-      const std::size_t first = own_.surfaces.index(x, y) * std::size_t(own_.stride);
-      HWY_DYNAMIC_DISPATCH(add_sayings)
-      (&own_.values[first], own_.stride, row.count, room.sayings, groups_, &sums_[first],
-       &all_[first]);
     }
   });
 }

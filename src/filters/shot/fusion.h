@@ -2,30 +2,42 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <optional>
 #include <vector>
 
 #include "filters/shot/findings.h"
+#include "filters/shot/followed_point.h"
 #include "filters/shot/moved.h"
 #include "math/uninitialized.h"
 #include "scene/light/light.h"
 
 namespace ssdo {
 
+struct RowOfPixels;
+struct Speaker;
+
 /// Another frame of the shot, and what moved between it and the frame that takes the mean.
 struct OtherFindings {
   const Findings* findings;
+  int away;                             ///< its number less that of the frame
   const std::vector<MovedPiece>* gone;  ///< find_pieces(frame, other)
   const std::vector<MovedPiece>* come;  ///< find_pieces(other, frame)
 };
 
 /// The mean of what a frame and others of its shot have found of the same points; see fusion.cpp.
-/// The same bits for the same frames in the same order, however many are added at one time.
+/// The same bits for the same frames in the same order.
 class Fusion {
  public:
   /// `light` is in the camera space of the frame. Both have to outlive this.
   Fusion(const Findings& own, const Light& light);
 
-  /// Others without a world, or with other sources, say nothing; those that lack layers say
+  /// Follows what moves from one frame to the next, by the surfaces and the motion of all others,
+  /// at which nothing else is looked.
+  void follow(const std::vector<OtherFindings>& others);
+
+  /// All of the others at one time, or, after follow(), some of them at a time, in the order of the
+  /// shot. Others without a world, or with other sources, say nothing; those that lack layers say
   /// nothing of what is made from them.
   void add(const std::vector<OtherFindings>& others);
 
@@ -36,8 +48,12 @@ class Fusion {
  private:
   struct Room;
 
+  static void add_speaker(const Speaker& speaker, const RowOfPixels& row, Room& room);
+
   const Findings& own_;
   const Light& light_;
+  /// What follow() has found, by the number of a frame less that of the own one, and by row.
+  std::optional<std::map<int, std::vector<std::vector<FollowedPoint>>>> followed_;
   std::vector<int> kinds_;                               ///< of light, by channel
   std::vector<std::vector<int>> groups_;                 ///< those of each group of channels
   std::vector<float, Uninitialized<float>> sums_, all_;  ///< of changes, and of weights

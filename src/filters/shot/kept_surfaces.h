@@ -4,9 +4,12 @@
 // and without borders to be tested for.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -45,7 +48,37 @@ struct KeptSurfaces {
   std::size_t index(int x, int y) const {
     return std::size_t(y + 1) * std::size_t(stride()) + std::size_t(x + 1);
   }
+  /// The centre of the pixel with that index, in pixels of the display window.
+  glm::dvec2 centre(std::size_t i) const {
+    const auto row = i / std::size_t(stride()), column = i % std::size_t(stride());
+    return {double(column) + window.x0 - 0.5, double(row) + window.y0 - 0.5};
+  }
   std::size_t size() const { return std::size_t(stride()) * std::size_t(window.height() + 2); }
+};
+
+/// What a pixel that shows a surface holds: its unit normal, and its rounding in scene units.
+glm::vec3 normal_of(const KeptSurface& surface);
+float rounding_of(const KeptSurface& surface, const KeptSurfaces& surfaces);
+
+/// From the camera space of one frame to that of another and into its picture. A rotation and the
+/// camera's own step stay exact however far away the world's origin is.
+class CameraChange {
+ public:
+  CameraChange(const KeptSurfaces& from, const KeptSurfaces& to);
+
+  glm::dvec3 position(const glm::vec3& p) const { return turn_ * glm::dvec3(p) + step_; }
+  glm::vec3 direction(const glm::vec3& v) const { return glm::vec3(turn_ * glm::dvec3(v)); }
+
+  /// Pixels of the display window of a place in the space of the other camera; not finite behind
+  /// it.
+  glm::dvec2 place(const glm::dvec3& there) const {
+    return to_->orthographic || there.z < 0 ? to_->project(there) : glm::dvec2(NAN);
+  }
+
+ private:
+  const Camera* to_;
+  glm::dmat3 turn_;
+  glm::dvec3 step_;
 };
 
 /// Normals are kept to 0.001 radians, and roundings to an eighth, upward.

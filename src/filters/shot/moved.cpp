@@ -31,8 +31,9 @@ constexpr float kReach = 1.5f;
 /// Points of a frame on a grid, and which of them have moved.
 class MovedPoints {
  public:
-  MovedPoints(const KeptSurfaces& stands, const KeptSurfaces& looks)
+  MovedPoints(const KeptSurfaces& stands, const KeptSurfaces& looks, const OwnMotion& motion)
       : stands_(stands),
+        motion_(motion),
         stride_(grid_step(stands)),
         columns_((stands.window.width() + stride_ - 1) / stride_),
         rows_((stands.window.height() + stride_ - 1) / stride_),
@@ -78,7 +79,7 @@ class MovedPoints {
   }
 
   void add_piece(int left, int top, std::vector<MovedPiece>& pieces) const {
-    glm::vec3 sum(0);
+    glm::vec3 sum(0), velocity(0);
     float squares = 0, area = 0, deep = 0;
     int count = 0;
     for (int row = top; row < std::min(top + kPiece, rows_); ++row) {
@@ -86,6 +87,7 @@ class MovedPoints {
         if (!moved_(column, row)) continue;
         const glm::vec3& p = position(column, row);
         const float spacing = spacing_at(p);
+        velocity += velocity_of(motion_, stands_, stands_.index(column * stride_, row * stride_));
         sum += p, squares += glm::dot(p, p);
         area += spacing * spacing;
         deep += spacing * float(std::min(run({column, row}, {1, 0}), run({column, row}, {0, 1})));
@@ -98,19 +100,22 @@ class MovedPoints {
                                                             : glm::normalize(middle);
     const float half = deep / float(2 * count),
                 spread = std::max(squares / float(count) - glm::dot(middle, middle), 0.0f);
-    pieces.push_back({middle + half * away, std::hypot(kReach * std::sqrt(spread), half), area});
+    pieces.push_back({middle + half * away, std::hypot(kReach * std::sqrt(spread), half), area,
+                      velocity / float(count)});
   }
 
   const KeptSurfaces& stands_;
+  const OwnMotion& motion_;
   const int stride_, columns_, rows_;
   Plane<unsigned char> moved_;
 };
 
 }  // namespace
 
-std::vector<MovedPiece> find_pieces(const KeptSurfaces& stands, const KeptSurfaces& looks) {
+std::vector<MovedPiece> find_pieces(const KeptSurfaces& stands, const KeptSurfaces& looks,
+                                    const OwnMotion& motion) {
   if (!stands.world_known || !looks.world_known) return {};
-  return MovedPoints(stands, looks).pieces();
+  return MovedPoints(stands, looks, motion).pieces();
 }
 
 std::vector<MovedPiece> moved_pieces(const Camera& now, const Camera& other,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "filters/shot/kept_surfaces.h"
+#include "filters/shot/own_motion.h"
 
 namespace ssdo {
 
@@ -15,11 +16,14 @@ struct MovedPiece {
   glm::vec3 centre;  ///< camera space
   float radius;      ///< scene units
   float area;        ///< across the view in which it stands
+  /// In the frame in which it stands, as far as motion tells: velocity_of().
+  glm::vec3 velocity{0};
 };
 
 /// Those that stand in one frame and that the other looks through, in the camera space of the
-/// first. None where one of them does not know the world.
-std::vector<MovedPiece> find_pieces(const KeptSurfaces& stands, const KeptSurfaces& looks);
+/// first, whose motion it is. None where one of them does not know the world.
+std::vector<MovedPiece> find_pieces(const KeptSurfaces& stands, const KeptSurfaces& looks,
+                                    const OwnMotion& motion = {});
 
 /// All that moved between two frames, in the camera space of `now`: `gone` are
 /// find_pieces(now, other), `come` are find_pieces(other, now).

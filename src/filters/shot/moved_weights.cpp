@@ -11,6 +11,11 @@
 // The shadow of a ball from a source is a cylinder that widens by the angle of the source. The
 // weight falls to 0 between twice its radius and once.
 //
+// A receiver that moves is followed (filters/shot/followed.cpp). What moves along with it hides the
+// same of its hemisphere at both times. A ball that has moved by w beside p, the difference of both
+// velocities times the number of frames between, counts by F min(w / 2r, 1), F the larger one of
+// its places at both times.
+//
 // Weights are found for squares of kSquare x kSquare pixels, by the surface in the middle. A pixel
 // takes the least of those around it and of what lies between their middles.
 //
@@ -38,6 +43,11 @@ namespace ssdo {
 struct ConesOfPoints {
   alignas(64) float to[3][RowOfPoints::kMost];
   alignas(64) float distance[RowOfPoints::kMost], tangent[RowOfPoints::kMost];
+};
+
+/// Camera space, scene units in a frame; 0 for points that stand still.
+struct VelocitiesOfPoints {
+  alignas(64) float of[3][RowOfPoints::kMost];
 };
 
 }  // namespace ssdo
@@ -73,6 +83,28 @@ void weigh_all(const RowOfPoints& points, const MovedPiece* pieces, std::size_t 
   }
 }
 
+/// The same for points that move, by their velocities; the other frame is `frames` later. 1 where
+/// nothing moves.
+void weigh_moving(const RowOfPoints& points, const VelocitiesOfPoints& velocities, float frames,
+                  const std::vector<MovedPiece>& pieces, float* weights) {
+  for (int i = 0; i < points.count; i += kLanes) {
+    const V3 position = load_apart(&points.position[0][i], kApart),
+             normal = load_apart(&points.normal[0][i], kApart),
+             own = load_apart(&velocities.of[0][i], kApart);
+    V hidden = set(0);
+    for (const MovedPiece& piece : pieces) {
+      const V3 way = (set(piece.velocity) - own) * set(frames);
+      const V changes = saturate(hn::Sqrt(dot_of(way, way)) / set(2 * piece.radius));
+      const V there =
+          hn::Max(form_factor(piece, position, normal), form_factor(piece, position - way, normal));
+      hidden = hidden + there * changes;
+    }
+    const V left = hn::Max(set(1) - hidden / set(kMostHidden), set(0));
+    const M moves = hn::And(dot_of(own, own) > set(0), position.z == position.z);
+    store(hn::IfThenElse(moves, left * left, set(1)), &weights[i]);
+  }
+}
+
 /// How much of a source counts at receivers that see it in these cones, beside one piece.
 HWY_INLINE V lit_beside(const MovedPiece& piece, const V3& position, const V3& cone_to, V distance,
                         V tangent) {
@@ -105,6 +137,7 @@ HWY_AFTER_NAMESPACE();
 namespace ssdo {
 
 HWY_EXPORT(weigh_all);
+HWY_EXPORT(weigh_moving);
 HWY_EXPORT(weigh_source);
 
 namespace {
@@ -137,6 +170,38 @@ void find_cones(const Source& source, const RowOfPoints& points, ConesOfPoints& 
   }
 }
 
+/// Calls visit(column, row, the points in the middles of squares from there on) for all squares.
+template <class Visit>
+void for_each_middles(const KeptSurfaces& now, const Plane<float>& squares, const Visit& visit) {
+  constexpr int kSquare = MovedWeights::kSquare;
+  const int width = now.window.width(), height = now.window.height();
+  for_each_row(squares.height, [&](int row) {
+    RowOfPoints points;
+    const int y = std::min(row * kSquare + kSquare / 2, height - 1);
+    for (int column = 0; column < squares.width; column += points.count) {
+      // The middle of the last square may lie outside.
+      const int x = column * kSquare + kSquare / 2, inside = (width - 1 - x) / kSquare + 1;
+      const RowOfPixels middles =
+          x < width ? RowOfPixels{x, y, kSquare, std::min(RowOfPoints::kMost, inside)}
+                    : RowOfPixels{width - 1, y, kSquare, 1};
+      load_points(now, middles, points);
+      visit(column, row, middles, points);
+    }
+  });
+}
+
+/// Velocities of what moves by more than may be noise.
+void find_velocities(const KeptSurfaces& now, const OwnMotion& motion, const RowOfPixels& row,
+                     VelocitiesOfPoints& velocities) {
+  for (int i = 0; i < RowOfPoints::kMost; ++i) {
+    glm::vec3 velocity(0);
+    const std::size_t pixel = now.index(row.x + i * row.step, row.y);
+    if (i < row.count && glm::length(motion.at(pixel)) > double(OwnMotion::kLeast))
+      velocity = velocity_of(motion, now, pixel);
+    for (int c = 0; c < 3; ++c) velocities.of[c][i] = velocity[c];
+  }
+}
+
 }  // namespace
 
 MovedWeights::MovedWeights(const KeptSurfaces& now, const std::vector<MovedPiece>& pieces,
@@ -144,35 +209,46 @@ MovedWeights::MovedWeights(const KeptSurfaces& now, const std::vector<MovedPiece
     : of_all_((now.window.width() + kSquare - 1) / kSquare,
               (now.window.height() + kSquare - 1) / kSquare, 1.0f),
       of_sources_(light.sources.size(), of_all_) {
-  const int width = now.window.width(), height = now.window.height();
-  for_each_row(of_all_.height, [&](int row) {
-    RowOfPoints points;
+  for_each_middles(now, of_all_, [&](int column, int row, const RowOfPixels&, RowOfPoints& points) {
     ConesOfPoints cones;
     alignas(64) float weights[RowOfPoints::kMost];
-    const int y = std::min(row * kSquare + kSquare / 2, height - 1);
-    for (int column = 0; column < of_all_.width;) {
-      // The middle of the last square may lie outside.
-      const int x = column * kSquare + kSquare / 2, inside = (width - 1 - x) / kSquare + 1;
-      const RowOfPixels middles =
-          x < width ? RowOfPixels{x, y, kSquare, std::min(RowOfPoints::kMost, inside)}
-                    : RowOfPixels{width - 1, y, kSquare, 1};
-      load_points(now, middles, points);
-      HWY_DYNAMIC_DISPATCH(weigh_all)(points, pieces.data(), pieces.size(), weights);
-      std::copy_n(weights, points.count, &of_all_(column, row));
-      for (std::size_t k = 0; k < light.sources.size(); ++k) {
-        find_cones(*light.sources[k], points, cones);
-        HWY_DYNAMIC_DISPATCH(weigh_source)(points, cones, pieces.data(), pieces.size(), weights);
-        std::copy_n(weights, points.count, &of_sources_[k](column, row));
-      }
-      column += points.count;
+    HWY_DYNAMIC_DISPATCH(weigh_all)(points, pieces.data(), pieces.size(), weights);
+    std::copy_n(weights, points.count, &of_all_(column, row));
+    for (std::size_t k = 0; k < light.sources.size(); ++k) {
+      find_cones(*light.sources[k], points, cones);
+      HWY_DYNAMIC_DISPATCH(weigh_source)(points, cones, pieces.data(), pieces.size(), weights);
+      std::copy_n(weights, points.count, &of_sources_[k](column, row));
     }
   });
   of_all_ = least_around(of_all_);
   for (Plane<float>& plane : of_sources_) plane = least_around(plane);
 }
 
+void MovedWeights::weigh_moving(const KeptSurfaces& now, const std::vector<MovedPiece>& pieces,
+                                const OwnMotion& motion, int frames) {
+  of_moving_ = Plane<float>(of_all_.width, of_all_.height, 1.0f);
+  if (motion.pixels.empty()) return;
+  for_each_middles(now, of_moving_,
+                   [&](int column, int row, const RowOfPixels& middles, RowOfPoints& points) {
+                     VelocitiesOfPoints velocities;
+                     alignas(64) float weights[RowOfPoints::kMost];
+                     find_velocities(now, motion, middles, velocities);
+                     HWY_DYNAMIC_DISPATCH(weigh_moving)
+                     (points, velocities, float(frames), pieces, weights);
+                     std::copy_n(weights, points.count, &of_moving_(column, row));
+                   });
+  of_moving_ = least_around(of_moving_);
+}
+
 void MovedWeights::row(int source, const RowOfPixels& row, float* weights) const {
-  const Plane<float>& plane = source < 0 ? of_all_ : of_sources_[std::size_t(source)];
+  row_of(source < 0 ? of_all_ : of_sources_[std::size_t(source)], row, weights);
+}
+
+void MovedWeights::row_of_moving(const RowOfPixels& row, float* weights) const {
+  row_of(of_moving_, row, weights);
+}
+
+void MovedWeights::row_of(const Plane<float>& plane, const RowOfPixels& row, float* weights) {
   const auto place = [](int pixel, int count) {
     return std::clamp((float(pixel) + 0.5f) / kSquare - 0.5f, 0.0f, float(count - 1));
   };

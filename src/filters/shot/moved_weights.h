@@ -22,8 +22,18 @@ class MovedWeights {
   /// 0..1 for the light of a source by its number, or for all other light, below 0.
   void row(int source, const RowOfPixels& row, float* weights) const;
 
+  /// Finds the weights of points of `now` that move. `pieces` are those that stand in it, and the
+  /// other frame is `frames` later, or before.
+  void weigh_moving(const KeptSurfaces& now, const std::vector<MovedPiece>& pieces,
+                    const OwnMotion& motion, int frames);
+
+  /// After weigh_moving(): 0..1 for all light that is not of a source, where points are followed.
+  void row_of_moving(const RowOfPixels& row, float* weights) const;
+
  private:
-  Plane<float> of_all_;
+  static void row_of(const Plane<float>& plane, const RowOfPixels& row, float* weights);
+
+  Plane<float> of_all_, of_moving_;
   std::vector<Plane<float>> of_sources_;
 };
 

@@ -2,42 +2,40 @@
 #include "filters/shot/seen_by_others.h"
 
 #include <cmath>
+#include <cstddef>
 
 #include "filters/shot/sights.h"
 
 namespace ssdo {
 
-SeenByOthers seen_by(const std::vector<const KeptSurfaces*>& others, const KeptSurfaces& own) {
-  SeenByOthers shown;
-  if (!own.world_known) return shown;
-  std::vector<ShotReprojection> reprojections;
-  for (const KeptSurfaces* other : others)
-    if (other->world_known) reprojections.emplace_back(*other, own);
-  shown.frames = int(reprojections.size());
-  long points = 0, some = 0, times = 0, through = 0;
+void ShownPoints::add(const KeptSurfaces& other) {
+  if (!own_.world_known || !other.world_known) return;
+  ++frames_;
+  const ShotReprojection reprojection(other, own_);
   RowOfPoints at;
   Sights sights;
-  for_each_points_of_grid(own, grid_step(own), [&](const RowOfPixels& row) {
-    load_points(own, row, at);
-    int shows[RowOfPoints::kMost] = {}, looks[RowOfPoints::kMost] = {};
-    for (const ShotReprojection& reprojection : reprojections) {
-      unsigned char is_through[RowOfPoints::kMost];
-      const bool found = reprojection.find(at, sights);
-      reprojection.find_through(at, is_through);
-      for (int i = 0; i < row.count; ++i) {
-        shows[i] += found && sights.pixel[i] >= 0;
-        looks[i] += is_through[i];
-      }
-    }
+  unsigned char through[RowOfPoints::kMost];
+  std::size_t number = 0;
+  for_each_points_of_grid(own_, grid_step(own_), [&](const RowOfPixels& row) {
+    load_points(own_, row, at);
+    const bool found = reprojection.find(at, sights, through);
     for (int i = 0; i < row.count; ++i) {
       if (std::isnan(at.position[0][i])) continue;
-      ++points, some += shows[i] > 0, times += shows[i], through += looks[i] > 0;
+      if (number == points_.size()) points_.emplace_back();
+      Point& point = points_[number++];
+      point.shows += found && sights.pixel[i] >= 0;
+      point.through = point.through || through[i] > 0;
     }
   });
-  if (points == 0) return shown;
-  shown.some = double(some) / double(points);
-  shown.times = double(times) / double(points);
-  shown.through = double(through) / double(points);
+}
+
+SeenByOthers ShownPoints::count() const {
+  SeenByOthers shown;
+  shown.frames = frames_;
+  for (const Point& point : points_)
+    shown.some += point.shows > 0, shown.times += point.shows, shown.through += point.through;
+  if (points_.empty()) return shown;
+  for (double* sum : {&shown.some, &shown.times, &shown.through}) *sum /= double(points_.size());
   return shown;
 }
 

@@ -15,8 +15,25 @@ struct SeenByOthers {
   double through = 0;  ///< the share whose place one of them looks through: it has moved
 };
 
-/// Points are about 480 across the frame. Nothing is shown of a frame without a world, or without a
-/// surface.
-SeenByOthers seen_by(const std::vector<const KeptSurfaces*>& others, const KeptSurfaces& own);
+/// Counts them, one frame after the other. Points are about 480 across the frame. Nothing is shown
+/// of a frame without a world, or without a surface.
+class ShownPoints {
+ public:
+  /// `own` has to outlive it.
+  explicit ShownPoints(const KeptSurfaces& own) : own_(own) {}
+
+  void add(const KeptSurfaces& other);
+  SeenByOthers count() const;
+
+ private:
+  struct Point {
+    int shows = 0;  ///< how many frames show it
+    bool through = false;
+  };
+
+  const KeptSurfaces& own_;
+  int frames_ = 0;
+  std::vector<Point> points_;  ///< those with a surface, in the order of the grid
+};
 
 }  // namespace ssdo

@@ -181,7 +181,17 @@ HWY_INLINE Tested test(const ShotReprojection::View& view, const RowOfPoints& po
   return tested;
 }
 
-bool find_points(const ShotReprojection::View& view, const RowOfPoints& points, Sights* sights) {
+/// Of a vector of points from `i` on, as far as there are points.
+HWY_INLINE void store_through(M looks_through, int i, int count, unsigned char* through) {
+  alignas(64) float looks[kLanes];
+  store(hn::IfThenElseZero(looks_through, set(1)), looks);
+  for (int lane = 0; lane < std::min(kLanes, count - i); ++lane)
+    through[i + lane] = looks[lane] > 0;
+}
+
+bool find_points(const ShotReprojection::View& view, const RowOfPoints& points, Sights* sights,
+                 unsigned char* through) {
+  if (through) std::fill_n(through, points.count, static_cast<unsigned char>(0));
   Places places;
   if (!find_places(view, points, places)) return false;
   Around around;
@@ -195,6 +205,7 @@ bool find_points(const ShotReprojection::View& view, const RowOfPoints& points, 
                &sights->pixel[i]);
     const V scale = set(1) / tested.sum;
     for (int k = 0; k < 4; ++k) store(tested.weights[k] * scale, &sights->weight[k][i]);
+    if (through) store_through(tested.through, i, points.count, through);
     some = some || any(tested.same);
   }
   return some;
@@ -232,11 +243,7 @@ void find_points_through(const ShotReprojection::View& view, const RowOfPoints& 
   Around around;
   copy_around(view, places, points.count, around);
   for (int i = 0; i < points.count; i += kLanes) {
-    const Tested tested = test(view, points, places, around, i);
-    alignas(64) float looks[kLanes];
-    store(hn::IfThenElseZero(tested.through, set(1)), looks);
-    for (int lane = 0; lane < std::min(kLanes, points.count - i); ++lane)
-      through[i + lane] = looks[lane] > 0;
+    store_through(test(view, points, places, around, i).through, i, points.count, through);
   }
 }
 
@@ -280,8 +287,9 @@ ShotReprojection::ShotReprojection(const KeptSurfaces& other, const KeptSurfaces
   view_.pixels = other.pixels.data();
 }
 
-bool ShotReprojection::find(const RowOfPoints& points, Sights& sights) const {
-  return HWY_DYNAMIC_DISPATCH(find_points)(view_, points, &sights);
+bool ShotReprojection::find(const RowOfPoints& points, Sights& sights,
+                            unsigned char* through) const {
+  return HWY_DYNAMIC_DISPATCH(find_points)(view_, points, &sights, through);
 }
 
 void ShotReprojection::find_through(const RowOfPoints& points, unsigned char* through) const {

@@ -56,8 +56,9 @@ class ShotReprojection {
   /// Both must know the world, and `other` has to outlive it.
   ShotReprojection(const KeptSurfaces& other, const KeptSurfaces& own);
 
-  /// False where it shows none of them; `sights` then hold nothing.
-  bool find(const RowOfPoints& points, Sights& sights) const;
+  /// False where it shows none of them; `sights` then hold nothing. Where `through` is given, it is
+  /// filled as by find_through().
+  bool find(const RowOfPoints& points, Sights& sights, unsigned char* through = nullptr) const;
 
   /// Sets through[i] to 1 where it looks through the place of a point at what lies behind, which
   /// find() does not find, else to 0: SeenBefore::through.

@@ -56,6 +56,7 @@ FrameLooks looks_of(const Frame& frame, const FrameFiles& files, int number) {
   looks.radius = frame.plan.request.radius;
   looks.radius_alone = frame.plan.radius_alone;
   looks.guessed = frame.guessed.share;
+  looks.in_shot = frame.plan.shot;
   looks.remedy = frame.guessed.remedy;
   return looks;
 }

@@ -28,6 +28,7 @@ struct FrameLooks {
   bool world_known = false;                    ///< where not, the camera has no place
   float radius = 0;                            ///< of the plan
   std::optional<float> radius_alone, guessed;  ///< see Plan and Frame
+  bool in_shot = false;                        ///< Plan::shot
   std::string remedy;                          ///< see GuessedShare
 
   /// Names and values, for people, of what is known of all that should stay the same.

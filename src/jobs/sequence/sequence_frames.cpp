@@ -70,18 +70,39 @@ std::optional<CameraBeside> SequenceFrames::camera_of(const FrameFiles& files) c
 }
 
 /// Calls `at` for those of `count` frames on disk, spread evenly over the shot from its first to
-/// its last, that show surfaces.
+/// its last, that show surfaces. Those of three are among them.
 void SequenceFrames::look(const std::string& name, std::size_t most_pixels,
-                          const std::function<void(const View&)>& at, std::size_t count) const {
+                          const std::function<void(const View&, bool of_three)>& at,
+                          std::size_t count) const {
   const std::vector<int> frames = frames_on_disk(options_.input_file);
   if (frames.size() < 2) return;
-  std::set<int> chosen;
-  for (std::size_t i = 0; i < count; ++i)
-    chosen.insert(frames[std::min(i * frames.size() / (count - 1), frames.size() - 1)]);
-  for (const int number : chosen) {
+  const auto spread = [&](std::size_t parts) {
+    std::set<int> chosen;
+    for (std::size_t i = 0; i < parts; ++i)
+      chosen.insert(frames[std::min(i * frames.size() / (parts - 1), frames.size() - 1)]);
+    return chosen;
+  };
+  const std::set<int> three = spread(kThree);
+  for (const int number : spread(count)) {
     const auto view = read(in_view(files_at(options_, number), name), most_pixels);
-    if (view && view->report.placement.median_depth > 0) at(*view);
+    if (view && view->report.placement.median_depth > 0) at(*view, three.contains(number));
   }
+}
+
+/// Each frame is read once for all that is asked.
+const std::vector<SequenceFrames::Told>& SequenceFrames::told(const std::string& name) {
+  const auto [at, is_new] = told_.try_emplace(name);
+  std::vector<Told>& all = at->second;
+  if (!is_new) return all;
+  const auto note = [&](const View& view, bool of_three) {
+    const Geometry& geometry = view.geometry;
+    Told& told = all.emplace_back(Told{of_three, {}, {}, radius_by_frame(geometry)});
+    if (!of_three) return;
+    if (geometry.world_known) told.up = up_evidence(geometry);
+    if (const auto found = find_backdrop(geometry)) told.clearance = found->clearance;
+  };
+  look(name, kEnoughForUp, note, finds_radius(options_.model) ? kFramesForRadius : kThree);
+  return all;
 }
 
 /// The mean over frames, whose cameras are no independent witnesses.
@@ -89,12 +110,11 @@ std::optional<UpEvidence> SequenceFrames::up(const std::string& name) {
   if (up_) return *up_;
   UpEvidence mean{};
   double count = 0;
-  look(name, kEnoughForUp, [&](const View& view) {
-    if (!view.geometry.world_known) return;
-    const UpEvidence found = up_evidence(view.geometry);
+  for (const Told& frame : told(name)) {
+    if (!frame.up) continue;
     count += 1;
-    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += (found[i] - mean[i]) / count;
-  });
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += ((*frame.up)[i] - mean[i]) / count;
+  }
   return up_.emplace(count > 0 ? std::optional(mean) : std::nullopt);
 }
 
@@ -102,10 +122,8 @@ std::optional<UpEvidence> SequenceFrames::up(const std::string& name) {
 std::optional<double> SequenceFrames::backdrop(const std::string& name) {
   if (backdrop_) return *backdrop_;
   double sum = 0, count = 0;
-  look(name, kEnoughForUp, [&](const View& view) {
-    const std::optional<Backdrop> found = find_backdrop(view.geometry);
-    if (found) sum += std::log(found->clearance), count += 1;
-  });
+  for (const Told& frame : told(name))
+    if (frame.clearance) sum += std::log(*frame.clearance), count += 1;
   return backdrop_.emplace(count > 0 ? std::optional(std::exp(sum / count)) : std::nullopt);
 }
 
@@ -114,7 +132,7 @@ std::string SequenceFrames::normal_space(const std::string& name) {
   if (normal_space_) return *normal_space_;
   double best = 0;
   normal_space_.emplace();
-  look(name, kAllPixels, [&](const View& view) {
+  look(name, kAllPixels, [&](const View& view, bool) {
     const GeometryReport& report = view.report;
     if (!report.normals_known || report.normal_agreement <= best) return;
     best = report.normal_agreement, normal_space_ = report.normal_space;
@@ -128,9 +146,7 @@ std::optional<float> SequenceFrames::radius(const std::string& name) {
   const auto [at, is_new] = radius_.try_emplace(name);
   if (!is_new) return at->second;
   std::vector<float> found;
-  look(
-      name, kEnoughForUp,
-      [&](const View& view) { found.push_back(radius_by_frame(view.geometry)); }, kFramesForRadius);
+  for (const Told& frame : told(name)) found.push_back(frame.radius);
   std::ranges::sort(found);
   const std::size_t half = found.size() / 2;
   if (!found.empty())

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "jobs/run_options.h"
 #include "relight/frame.h"
@@ -30,19 +31,32 @@ class SequenceFrames {
   Frame prepare(const Lighting& light, const FrameFiles& files, std::optional<int> number);
 
  private:
+  /// What a frame on disk tells of its shot.
+  struct Told {
+    bool of_three;  ///< it is the first, the middle or the last of the shot
+    std::optional<UpEvidence> up;
+    std::optional<double> clearance;  ///< Backdrop::clearance
+    float radius;
+  };
+
   Frame prepare(const FrameOptions& options, const Lighting& light, const FrameFiles& files,
                 int number);
   std::optional<View> read(const FrameFiles& files, std::size_t most_pixels) const;
   std::optional<CameraBeside> camera_of(const FrameFiles& files) const;
   void look(const std::string& view, std::size_t most_pixels,
-            const std::function<void(const View&)>& at, std::size_t count = 3) const;
+            const std::function<void(const View&, bool of_three)>& at,
+            std::size_t count = kThree) const;
+  const std::vector<Told>& told(const std::string& view);
   std::optional<UpEvidence> up(const std::string& view);
   std::string normal_space(const std::string& view);
   std::optional<float> radius(const std::string& view);
   std::optional<double> backdrop(const std::string& view);
 
+  static constexpr std::size_t kThree = 3;
+
   const RunOptions& options_;
   OtherPictures& pictures_;
+  std::map<std::string, std::vector<Told>> told_;       ///< by view, once something was asked for
   std::optional<std::optional<UpEvidence>> up_;         ///< of the shot, once it was asked for
   std::optional<std::string> normal_space_;             ///< the same; empty: no frame is sure
   std::map<std::string, std::optional<float>> radius_;  ///< the same, by view

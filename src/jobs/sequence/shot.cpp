@@ -1,16 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "jobs/sequence/shot.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "plan/band_plan.h"
 #include "relight/relight.h"
+#include "stopwatch.h"
 
 namespace ssdo {
+namespace {
 
-Shot::Shot(const std::vector<Job>& jobs, const ShotWindow& window, bool only_looks)
+/// Findings in memory: those that are kept, or `copy`, which is filled with those on disk.
+/// Of these, the first `arrays` suffice.
+const Findings& in_memory(const auto& kept, std::optional<Findings>& copy,
+                          std::size_t arrays = std::numeric_limits<std::size_t>::max()) {
+  copy.reset();
+  if (!kept.arrays) return kept.findings;
+  kept.arrays->read(copy.emplace(kept.findings), arrays);
+  return *copy;
+}
+
+}  // namespace
+
+Shot::Shot(const std::vector<Job>& jobs, const ShotWindow& window, bool only_looks,
+           const ShotMemory& memory)
     : jobs_(jobs),
+      memory_(memory),
       is_shot_(window.count > 0),
       only_looks_(only_looks && is_shot_),
+      follows_(is_shot_ && !only_looks && window.step == 1),
       around_(jobs.size()),
       wanting_(jobs.size()) {
   if (!is_shot_) return;
@@ -27,44 +50,85 @@ Shot::Shot(const std::vector<Job>& jobs, const ShotWindow& window, bool only_loo
   count();
 }
 
-/// Goes through the run as complete() will.
+/// Goes through the run as its frames will.
 void Shot::count() {
   std::vector<int> wanting = wanting_;
   std::size_t first = 0, kept = 0;  // the job that has waited longest
   for (std::size_t now = 0; now < jobs_.size(); ++now) {
     kept += wanting[now] > 0;
     most_kept_ = std::max(most_kept_, kept);
-    most_waiting_ = std::max(most_waiting_, now - first + 1);
     for (; first <= now && complete_after(first) <= now; ++first)
       for (const std::size_t other : around_[first]) kept -= --wanting[other] == 0;
   }
 }
 
-std::vector<Work> Shot::complete(Work work) {
-  const std::size_t now = work.index;
-  if (is_shot_ && is_wanted(now)) {
-    attempt(work, jobs_[now].input(), [&] {
-      for (std::size_t v = 0; v < work.views.size(); ++v)
-        findings_.insert_or_assign({now, v}, take_findings(work.views[v]));
-    });
+/// Bytes that are left for all that waits, beside frames as large as this one on their way.
+std::size_t Shot::room_beside(const Work& work) const {
+  double of_frame = 0;
+  for (const WorkOnView& view : work.views) {
+    const Scene& scene = only_looks_ ? view.frame.scene : view.relit.found.scene;
+    of_frame += bytes_in_one_piece(view.frame.plan, scene, scene.geometry.surfel.size());
   }
-  if (jobs_[now].is_lent) work.views.clear();
-  waiting_.push_back(std::move(work));
-  std::vector<Work> made;
-  while (!waiting_.empty() && complete_after(waiting_.front().index) <= now) {
-    Work& first = waiting_.front();
-    if (is_shot_) make(first);
-    made.push_back(std::move(first));
-    waiting_.pop_front();
-  }
-  return made;
+  return std::size_t(std::max(0.0, double(memory_.bytes) - memory_.frames * of_frame));
 }
 
 Findings Shot::take_findings(WorkOnView& work) const {
   if (!only_looks_) return ssdo::take_findings(work.relit);
   Findings findings;
   findings.surfaces = keep_surfaces(std::exchange(work.frame.scene, {}).geometry);
+  work.frame.gbuffer = {};
   return findings;
+}
+
+/// Where the frame before in time is not there, nothing that moves is followed through the gap.
+void Shot::find_motion(std::size_t job, std::size_t view, Work& work, Findings& own) const {
+  Frame& frame = work.views[view].frame;
+  const Plane<glm::vec2> layer = std::exchange(frame.gbuffer.motion, {});
+  if (layer.empty() || job == 0 || std::int64_t(*jobs_[job - 1].frame) + 1 != *jobs_[job].frame)
+    return;
+  const auto before = findings_.find({job - 1, view});
+  if (before == findings_.end()) return;
+  std::optional<Findings> copy;
+  const Findings& then = in_memory(before->second, copy, kArraysOfGeometry);
+  own.motion = find_own_motion(layer, own.surfaces, then.surfaces);
+  if (!own.motion.contradicts) return;
+  work.messages.warn(
+      {fmt::format("{} moves other ways than the cameras say, and is not used; are its units "
+                   "pixels to the frame before, y up? give --motion-scale",
+                   frame.layers[Role::motion]->name)},
+      frame.view);
+}
+
+void Shot::keep(Waiting& waiting) {
+  const std::size_t job = waiting.work.index, room = room_beside(waiting.work);
+  std::size_t found = 0, waits = 0;
+  for (std::size_t v = 0; v < waiting.work.views.size(); ++v) {
+    KeptFindings kept{take_findings(waiting.work.views[v]), {}, 0, false};
+    if (follows_) find_motion(job, v, waiting.work, kept.findings);
+    kept.moves = !kept.findings.motion.pixels.empty();
+    const std::size_t bytes = bytes_of(kept.findings);
+    if (kept_bytes_ + waiting_bytes_ + bytes > room)
+      kept.arrays.emplace(kept.findings);
+    else
+      kept.bytes = bytes;
+    kept_bytes_ += kept.bytes, found += bytes;
+    findings_.emplace(std::pair(job, v), std::move(kept));
+  }
+  if (jobs_[job].is_lent) return;
+  for (WorkOnView& view : waiting.work.views) waits += bytes_of(view);
+  if (waiting_bytes_ + waits + most_kept_ * found <= room)
+    waiting_bytes_ += waiting.bytes = waits;
+  else
+    for (WorkOnView& view : waiting.work.views) waiting.arrays.emplace_back(view);
+}
+
+void Shot::add(Work work) {
+  latest_ = work.index;
+  Waiting waiting{std::move(work), {}, 0};
+  if (is_shot_ && is_wanted(latest_))
+    attempt(waiting.work, jobs_[latest_].input(), [&] { keep(waiting); });
+  if (jobs_[latest_].is_lent) waiting.work.views.clear();
+  waiting_.push_back(std::move(waiting));
 }
 
 /// The job after which a job has all that it wants.
@@ -72,38 +136,98 @@ std::size_t Shot::complete_after(std::size_t job) const {
   return around_[job].empty() ? job : *std::ranges::max_element(around_[job]);
 }
 
-void Shot::make(Work& work) {
-  const std::size_t job = work.index;
-  attempt(work, jobs_[job].input(), [&] {
-    for (std::size_t v = 0; v < work.views.size(); ++v) make(job, v, work.views[v]);
-  });
-  release(job);
+bool Shot::has_complete() const {
+  return !waiting_.empty() && complete_after(waiting_.front().work.index) <= latest_;
 }
 
-void Shot::make(std::size_t job, std::size_t view, WorkOnView& work) {
-  std::vector<OtherFindings> others;
-  std::vector<const KeptSurfaces*> surfaces;
+Work Shot::next_complete() {
+  Waiting first = std::move(waiting_.front());
+  waiting_.pop_front();
+  waiting_bytes_ -= first.bytes;
+  if (is_shot_) make(first);
+  return std::move(first.work);
+}
+
+void Shot::make(Waiting& waiting) {
+  Work& work = waiting.work;
+  attempt(work, jobs_[work.index].input(), [&] {
+    for (std::size_t v = 0; v < work.views.size(); ++v) {
+      if (!waiting.arrays.empty()) waiting.arrays[v].read(work.views[v]);
+      only_looks_ ? look(work.index, v, work.views[v]) : make(work.index, v, work.views[v]);
+    }
+  });
+  release(work.index);
+}
+
+/// Calls visit(job, findings, whether they are in memory only until the next call) for the frames
+/// around one, in their order.
+template <class Visit>
+void Shot::for_each_other(std::size_t job, std::size_t view, const Visit& visit) const {
+  std::optional<Findings> copy;
   for (const std::size_t other : around_[job]) {
     const auto found = findings_.find({other, view});
     if (other == job || found == findings_.end()) continue;
-    surfaces.push_back(&found->second.surfaces);
-    if (only_looks_) continue;
-    others.push_back({&found->second, &pieces(job, other, view), &pieces(other, job, view)});
+    const Findings& findings = in_memory(found->second, copy);
+    visit(other, findings, copy.has_value());
   }
-  const Findings& own = findings_.at({job, view});
-  if (only_looks_)
-    work.shown = seen_by(surfaces, own.surfaces);
-  else
-    relight_in_shot(own, others, work.relit);
 }
 
-/// What `looks` looks through of what stands in another job: found once for both of them.
-const std::vector<MovedPiece>& Shot::pieces(std::size_t stands, std::size_t looks,
-                                            std::size_t view) {
-  const auto [place, is_new] = pieces_.try_emplace({stands, looks, view});
-  if (is_new)
-    place->second =
-        find_pieces(findings_.at({stands, view}).surfaces, findings_.at({looks, view}).surfaces);
+void Shot::make(std::size_t job, std::size_t view, WorkOnView& work) {
+  Stopwatch watch;
+  std::optional<Findings> copy;
+  const Findings& own = in_memory(findings_.at({job, view}), copy);
+  Fusion fusion(own, work.relit.found.scene.light);
+  follow_on_disk(job, view, fusion);
+  std::vector<OtherFindings> others;
+  for_each_other(job, view, [&](std::size_t other, const Findings& findings, bool is_copy) {
+    others.push_back({&findings, *jobs_[other].frame - *jobs_[job].frame,
+                      &pieces({job, other, view}, own, findings),
+                      &pieces({other, job, view}, findings, own)});
+    if (is_copy) fusion.add(std::exchange(others, {}));
+  });
+  fusion.add(others);
+  work.relit.found.filter_ms += watch.lap();
+  relight_in_shot(fusion, work.relit);
+}
+
+/// Where frames around one are on disk, what moves is followed through their surfaces before they
+/// are read one by one.
+void Shot::follow_on_disk(std::size_t job, std::size_t view, Fusion& fusion) const {
+  bool on_disk = false, moves = false;
+  for (const std::size_t other : around_[job]) {
+    const auto found = findings_.find({other, view});
+    if (found == findings_.end()) continue;
+    on_disk = on_disk || found->second.arrays;
+    moves = moves || found->second.moves;
+  }
+  if (!on_disk) return;
+  std::deque<std::optional<Findings>> copies;
+  std::vector<OtherFindings> others;
+  for (const std::size_t other : around_[job]) {
+    const auto found = findings_.find({other, view});
+    if (!moves || other == job || found == findings_.end()) continue;
+    others.push_back({&in_memory(found->second, copies.emplace_back(), kArraysOfGeometry),
+                      *jobs_[other].frame - *jobs_[job].frame, nullptr, nullptr});
+  }
+  fusion.follow(others);
+}
+
+/// For `info`.
+void Shot::look(std::size_t job, std::size_t view, WorkOnView& work) {
+  std::optional<Findings> copy;
+  ShownPoints shown(in_memory(findings_.at({job, view}), copy).surfaces);
+  for_each_other(job, view, [&](std::size_t, const Findings& findings, bool) {
+    shown.add(findings.surfaces);
+  });
+  work.shown = shown.count();
+}
+
+/// What the second job looks through of what stands in the first, in a view: found once for both of
+/// them.
+const std::vector<MovedPiece>& Shot::pieces(const std::array<std::size_t, 3>& of,
+                                            const Findings& stands, const Findings& looks) {
+  const auto [place, is_new] = pieces_.try_emplace(of);
+  if (is_new) place->second = find_pieces(stands.surfaces, looks.surfaces, stands.motion);
   return place->second;
 }
 
@@ -111,7 +235,9 @@ const std::vector<MovedPiece>& Shot::pieces(std::size_t stands, std::size_t look
 void Shot::release(std::size_t job) {
   for (const std::size_t other : around_[job]) {
     if (--wanting_[other] > 0) continue;
-    findings_.erase(findings_.lower_bound({other, 0}), findings_.lower_bound({other + 1, 0}));
+    for (auto at = findings_.lower_bound({other, 0});
+         at != findings_.end() && at->first.first == other; at = findings_.erase(at))
+      kept_bytes_ -= at->second.bytes;
     std::erase_if(pieces_, [&](const auto& of_two) {
       return of_two.first[0] == other || of_two.first[1] == other;
     });

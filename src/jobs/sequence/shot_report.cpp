@@ -110,9 +110,10 @@ std::string guessed_in(const Frames& frames) {
   const auto share = [](const auto& frame) { return frame.looks.guessed.value_or(0); };
   const auto [least, most] = std::ranges::minmax_element(frames, {}, share);
   if (most->looks.remedy.empty()) return "";
-  return fmt::format("{} of all directions are guessed; most in frame {}: {}",
-                     range_of(share(*least), share(*most), "{:.2f}"), most->looks.number,
-                     most->looks.remedy);
+  return fmt::format("{} of all directions are guessed{}; most in frame {}: {}",
+                     range_of(share(*least), share(*most), "{:.2f}"),
+                     most->looks.in_shot ? ", before the frames around say what they found" : "",
+                     most->looks.number, most->looks.remedy);
 }
 
 }  // namespace

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// How what a frame shows moves apart from the camera.
+#pragma once
+
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "filters/shot/kept_surfaces.h"
+#include "math/plane.h"
+#include "math/two_in_one.h"
+
+namespace ssdo {
+
+/// Motion since the frame before in time, in pixels, x right and y down, of which that of the
+/// cameras is subtracted.
+struct OwnMotion {
+  /// What moves less in all of a frame may be noise of P and of a layer of half numbers.
+  static constexpr float kLeast = 1.0f / 16;
+
+  bool is_known = false;      ///< a layer tells it
+  bool contradicts = false;   ///< the layer: it is not used
+  std::vector<float> pixels;  ///< two_in_one(), by KeptSurfaces::index(); empty: nothing moves
+
+  /// Not finite where the layer says nothing.
+  glm::dvec2 at(std::size_t i) const {
+    if (pixels.empty()) return glm::dvec2(0);
+    return {double(first_of_two(pixels[i])), double(second_of_two(pixels[i]))};
+  }
+};
+
+/// How a pixel of `now` moves apart from the camera, across the view: camera space, scene units in
+/// a frame. 0 where that is not known.
+glm::vec3 velocity_of(const OwnMotion& motion, const KeptSurfaces& now, std::size_t pixel);
+
+/// `layer` leads from each pixel of `now` to where what it shows was in `before`, in pixels, x
+/// right and y down. Both must know the world. What P finds in its place in both frames stands
+/// still: where the layer contradicts the cameras on that (MotionRatios), its units are others.
+OwnMotion find_own_motion(const Plane<glm::vec2>& layer, const KeptSurfaces& now,
+                          const KeptSurfaces& before);
+
+}  // namespace ssdo
