@@ -61,7 +61,9 @@ TEST_P(BitmaskIsa, GivesWhatTheScalarBuildGives) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Vectors, BitmaskIsa, testing::ValuesIn(kVectorIsas),
+INSTANTIATE_TEST_SUITE_P(Vectors, BitmaskIsa,
+                         testing::ValuesIn(std::vector<std::string>(std::begin(kVectorIsas),
+                                                                    std::end(kVectorIsas))),
                          [](const auto& isa) { return isa.param; });
 
 TEST(BitmaskIsaNames, OthersAreRefused) {
