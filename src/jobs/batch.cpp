@@ -18,6 +18,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "io/files/stale_temporaries.h"
 #include "io/standard_output.h"
 #include "jobs/describe.h"
 #include "jobs/info_report.h"
@@ -54,12 +55,12 @@ class Batch {
         pictures_(options.input.allow_partial, options.input.objects),
         frames_(options_, pictures_),
         shot_(jobs_, options.model.shot, options.command == Command::info,
-              {resources.memory(), frames_at_once()}),
+              {resources.memory(), frames_at_one_time()}),
         progress_(options.batch.progress, options.verbosity.quiet),
         info_(options.verbosity.json, progress_),
         printer_(progress_) {
     const std::size_t views = std::max(std::size_t(1), options.input.views.size());
-    options_.memory = resources.memory() / (std::size_t(frames_at_once()) * views);
+    options_.memory = resources.memory() / (std::size_t(frames_at_one_time()) * views);
     for (const Job& job : jobs_)
       for (const FrameFiles& files : job.views) pictures_.expect(files);
   }
@@ -89,17 +90,14 @@ class Batch {
 
  private:
   /// A frame that is made with those around it takes about as much as one that is estimated.
-  int frames_at_once() const { return (overlaps_ ? 2 : 1) + int(options_.model.shot.count > 0); }
+  int frames_at_one_time() const {
+    return (overlaps_ ? 2 : 1) + int(options_.model.shot.count > 0);
+  }
 
   ExitCode run_jobs() {
     if (has_statistics())
       check_output(options_.verbosity.stats, policy_of_statistics(options_.output.policy));
-    if (options_.command == Command::relight && !options_.verbosity.dry_run) {
-      for (const std::filesystem::path& file : remove_leftovers(jobs_)) {
-        if (options_.verbosity.verbose)
-          printer_.print(file.string() + ": removed; the run that wrote it was killed");
-      }
-    }
+    if (options_.command == Command::relight && !options_.verbosity.dry_run) clean_folders();
     for (std::size_t i = 0; i < jobs_.size() && !stopped_; ++i) {
       if (options_.command == Command::info && !jobs_[i].is_lent)
         info_.list(jobs_[i].views.front());
@@ -116,6 +114,16 @@ class Batch {
   void read_light() {
     light_.emplace(options_.light);
     if (options_.command == Command::relight) check_lamp_files(jobs_, light_->lamps());
+  }
+
+  /// Removes what killed runs have left in the folders of the outputs.
+  void clean_folders() {
+    for (const std::filesystem::path& folder : output_folders(jobs_)) {
+      for (const std::filesystem::path& file : remove_stale_temporaries(folder)) {
+        if (options_.verbosity.verbose)
+          printer_.print(file.string() + ": removed; the run that wrote it was killed");
+      }
+    }
   }
 
   void run_job(std::size_t i) {

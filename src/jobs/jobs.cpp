@@ -3,16 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <iterator>
 #include <map>
-#include <set>
 
 #include "error.h"
 #include "io/exr/exr_reader.h"
-#include "io/files/stale_temporaries.h"
 #include "io/images/image_file.h"
 #include "io/pictures/picture_layers.h"
 #include "io/sequence.h"
@@ -228,16 +224,13 @@ void check_lamp_files(const std::vector<Job>& jobs, const std::vector<Lamp>& lam
   check_run_files(files);
 }
 
-std::vector<std::filesystem::path> remove_leftovers(const std::vector<Job>& jobs) {
+std::set<std::filesystem::path> output_folders(const std::vector<Job>& jobs) {
   std::set<std::filesystem::path> folders;
   for (const Job& job : jobs) {
     for (const Target& target : job.targets)
       folders.insert(std::filesystem::path(target.path).parent_path());
   }
-  std::vector<std::filesystem::path> removed;
-  for (const std::filesystem::path& folder : folders)
-    std::ranges::move(remove_stale_temporaries(folder), std::back_inserter(removed));
-  return removed;
+  return folders;
 }
 
 void check_input(const Job& job) {

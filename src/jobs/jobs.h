@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,8 @@ std::vector<int> frames_around(const ShotWindow& shot, int frame);
 /// plan_jobs(). Errors: those of check_run_files.
 void check_lamp_files(const std::vector<Job>& jobs, const std::vector<Lamp>& lamps);
 
-/// Removes what killed runs have left in the folders of the outputs, and gives its names.
-std::vector<std::filesystem::path> remove_leftovers(const std::vector<Job>& jobs);
+/// The folders that the outputs of all jobs go to.
+std::set<std::filesystem::path> output_folders(const std::vector<Job>& jobs);
 
 /// Errors: ExitCode::input for a frame of a sequence that does not exist.
 void check_input(const Job& job);
