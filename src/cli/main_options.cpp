@@ -147,10 +147,11 @@ void add_objects(CLI::App& app, ObjectOptions& o) {
   selection("--holdout", o.holdout, "alpha 0 in the composite; it casts all the same");
   group.choice("--backdrop", o.backdrop,
                {{"auto", BackdropChoice::leave_out},
+                {"any", BackdropChoice::any},
                 {"cast", BackdropChoice::cast},
                 {"off", BackdropChoice::ignore}},
-               "a sky dome around everything casts nothing (auto), casts with a warning, or is not "
-               "looked for");
+               "a dome, card or sweep that stands for the sky casts nothing where it is far (auto) "
+               "or wherever it is (any), casts with a warning, or is not looked for");
 }
 
 void add_camera(CLI::App& app, CameraOptions& o) {

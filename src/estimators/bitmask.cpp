@@ -121,18 +121,18 @@ class Bitmask {
   const FarRaster* far_raster() const { return far_ ? &far_->raster : nullptr; }
 
   March march_with(const SlicePattern& pattern) const {
-    return {march_scene_,       pattern, request_.radius, request_.extend_offscreen, may_be_thin(),
-            other_views_.get(), far_};
+    return {march_scene_,
+            pattern,
+            request_.radius,
+            request_.extend_offscreen,
+            may_be_thin(scene_.solids),
+            other_views_.get(),
+            far_};
   }
 
   bool wants_light() const {
     const ProductSet& asked = request_.products;
     return asked.direct || asked.bounce || asked.specular || asked.error;
-  }
-
-  bool may_be_thin() const {
-    return std::ranges::any_of(scene_.solids.end.pixels,
-                               [](Provenance o) { return o != Provenance::guessed; });
   }
 
   /// The pixels whose own light is found: all of the raster where they send it to others.

@@ -21,6 +21,9 @@ namespace {
 constexpr double kBytes = 60e6, kBytesPerPixel = 120, kBytesOfSun = 11, kBytesOfMore = 18,
                  kBytesOfSpecular = 72;
 
+/// What casts, where something does not: surfaces, senders, and what receives on marches.
+constexpr double kBytesOfCasting = 60;
+
 /// What the learned prior adds: what it reads and changes of visibility, by pixel.
 constexpr double kBytesOfPrior = 32;
 
@@ -42,6 +45,7 @@ double bytes_per_pixel(const Plan& plan, const Scene& scene) {
   return bytes_of_light + kBytesPerPixel + kBytesOfSun * double(scene.light.sources.size()) +
          kBytesOfSenders * int(!scene.senders.radiance.empty()) +
          kBytesOfPrior * int(plan.prior.has_value()) +
+         kBytesOfCasting * int(scene.casting.has_value()) +
          kBytesOfMore * (int(products.bent) + int(products.reflection)) +
          kBytesOfSpecular * int(products.specular);
 }

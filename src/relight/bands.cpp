@@ -9,6 +9,8 @@
 #include "relight/targets.h"
 #include "scene/build_geometry.h"
 #include "scene/objects/read_object_masks.h"
+#include "scene/objects/selected_coverage.h"
+#include "scene/other_views/take_out.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -19,7 +21,22 @@ constexpr double kOverviewShare = 0.02, kOpennessShare = 0.3;
 
 Solids solids_of(const Geometry& geometry, const ModelOptions& model, const Scene& overview) {
   if (model.thickness) return constant_thickness(geometry, float(*model.thickness));
-  return guess_solids(geometry, SolidsOfOverview{overview.geometry, overview.solids.thickness});
+  return guess_solids(geometry, SolidsOfOverview{overview.casters(), overview.solids.thickness});
+}
+
+/// What casts of some rows, where the frame has something that does not.
+Casting cast_in_band(const Frame& frame, const Geometry& rows, const PixelGrid& grid,
+                     const Scene& overview) {
+  const Selection& out = frame.objects.no_cast;
+  const Plane<Surfel>& surfel = rows.surfel;
+  Plane<float> coverage(surfel.width, surfel.height, 0.0f), backdrop;
+  if (!out.empty()) coverage = selected_coverage(out, {frame.files, frame.view}, rows.window, grid);
+  if (frame.is_backdrop) {
+    backdrop = Plane<float>(surfel.width, surfel.height);
+    for (std::size_t i = 0; i < surfel.size(); ++i)
+      backdrop[i] = surfel[i].is_surface() && frame.is_backdrop(surfel[i]) ? 1.0f : 0.0f;
+  }
+  return take_out(rows, coverage, backdrop, {}, &overview.casting->geometry);
 }
 
 /// Some rows of a frame, read and placed as the whole frame is.
@@ -49,7 +66,10 @@ Band read_band(const RelightJob& job, const Scene& overview, const Window& rows,
   band.gbuffer.position = {};
   band.gbuffer.normal = {};
   band.gbuffer.depth = {};
-  band.scene.solids = solids_of(band.scene.geometry, job.options.model, overview);
+  if (overview.casting) {
+    band.scene.casting = cast_in_band(job.frame, band.scene.geometry, reading.grid, overview);
+  }
+  band.scene.solids = solids_of(band.scene.casters(), job.options.model, overview);
   band.scene.light = overview.light;
   times.prepare += watch.lap();
   return band;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -51,6 +52,10 @@ struct Frame {
   Scene scene;
   GBuffer gbuffer;  ///< what the scene has not taken: layers as rendered, alpha, motion
   GeometryReport report;
+  /// Whether a surface is of a backdrop that casts nothing; null: there is none.
+  std::function<bool(const Surfel&)> is_backdrop;
+  /// What has the shape of a backdrop, and casts; empty: nothing.
+  std::string near_backdrop;
   /// What other views add: those of --also, then back faces.
   std::vector<MergeCounts> views;
   std::string light;                         ///< one line

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 
 #include "error.h"
@@ -67,6 +68,17 @@ std::vector<MergeCounts> use_back_faces(std::vector<OtherView>& views, Scene& sc
   return counts;
 }
 
+/// Moves the views of back faces out of `views`.
+std::vector<OtherView> split_back_faces(std::vector<OtherView>& views, const Geometry& frame) {
+  const auto first = std::stable_partition(views.begin(), views.end(), [&](const OtherView& view) {
+    return !find_back_faces(view, frame);
+  });
+  std::vector<OtherView> backs(std::make_move_iterator(first),
+                               std::make_move_iterator(views.end()));
+  views.erase(first, views.end());
+  return backs;
+}
+
 /// Leaves out the files of --also that don't fit the frame, or changes them so that they do. Those
 /// of back faces show nothing that it shows, and stay.
 void register_views(KnownGeometry& known, const Geometry& frame, bool may_be_backs = false) {
@@ -104,13 +116,19 @@ void warn_of(const MergeCounts& view, std::vector<std::string>& warnings) {
                   view.file, 100.0 * double(view.contradictory) / double(view.in_common())));
 }
 
-/// Leaves out of a view what is marked.
-void take_out(OtherView& view, unsigned char marks) {
+/// Leaves out of a view what is marked, and what a lamp does not name.
+void take_out(OtherView& view, const TakenOut& out) {
   const Plane<unsigned char>& taken = view.picture->taken;
-  if (taken.empty()) return;
+  const bool is_of_lamp = !out.cast.empty();
+  if (taken.empty() && !is_of_lamp) return;
+  const auto cast = view.picture->casts.find(out.cast);
+  const bool names_any = cast != view.picture->casts.end();
+  const unsigned char marks = out.marks_of(view);
   OtherPicture picture = *view.picture;
-  for (std::size_t i = 0; i < taken.size(); ++i) {
-    if (!(taken[i] & marks)) continue;
+  for (std::size_t i = 0; i < picture.surfel.size(); ++i) {
+    const bool is_marked = !taken.empty() && (taken[i] & marks) != 0,
+               is_named = !is_of_lamp || (names_any && cast->second[i] != 0);
+    if (!is_marked && is_named) continue;
     // Its depth stays: up to there nothing is in the way, and what is behind it is not known.
     picture.surfel[i] = Surfel();
     picture.surfel[i].rounding = Surfel::kBroken;
@@ -125,8 +143,8 @@ class ViewReader {
              KnownGeometry& known)
       : frame_(frame), options_(options), pictures_(pictures), known_(known) {}
 
-  void add_also(const std::string& path) {
-    const OtherPictures::Picture picture = pictures_.also(path);
+  void add_also(const std::string& path, const std::vector<Selection>& casts) {
+    const OtherPictures::Picture picture = pictures_.also(path, casts);
     if (!picture) {
       const ExrReader file(path, options_.input.allow_partial ? Salvage::done : Salvage::offered);
       known_.deep.push_back(
@@ -200,7 +218,7 @@ KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
                                   const std::optional<DeepImage>& own) {
   KnownGeometry known;
   ViewReader reader(frame, options, pictures, known);
-  for (const std::string& path : files.also) reader.add_also(path);
+  for (const std::string& path : files.also) reader.add_also(path, files.casts);
   const bool uses_views = find_method(options.model.method).takes.thickness;
   if (uses_views && !files.view.empty()) reader.add_other_eye(files);
   if (own) known.deep.push_back(*own);
@@ -211,14 +229,19 @@ std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
                                             std::optional<float> thickness,
                                             const GBufferOptions& reading,
                                             const TakenOut* taken_out) {
+  std::vector<OtherView> backs;  // those of back faces, where something is taken out: they show
+                                 // nothing that could stand in its place
   if (taken_out) {
     register_views(known, scene.geometry, true);
-    for (OtherView& view : known.views) take_out(view, taken_out->marks_of(view));
+    backs = split_back_faces(known.views, scene.geometry);
+    for (std::vector<OtherView>* const views : {&known.views, &backs})
+      for (OtherView& view : *views) take_out(view, *taken_out);
     scene.casting = take_out(scene.geometry, taken_out->coverage, taken_out->backdrop, known.views);
   }
   const Geometry& casters = scene.casters();
   scene.solids = find_solids(casters, known.deep, thickness, reading, known.warnings);
-  std::vector<MergeCounts> of_backs = use_back_faces(known.views, scene), counts;
+  std::vector<MergeCounts> of_backs = use_back_faces(taken_out ? backs : known.views, scene),
+                           counts;
   if (!taken_out) register_views(known, scene.geometry);
   if (known.views.empty()) return of_backs;
   scene.other_surfaces = merge_views(known.views, casters, scene.senders.albedo, counts);

@@ -38,6 +38,10 @@ struct TakenOut {
   unsigned char marks_of_other_eye;  ///< the same of the other eye, which follows the frame's
                                      ///< answer about a backdrop
 
+  /// The text of a lamp's selection: in other views, all that it does not select is taken out too,
+  /// see OtherPicture::casts. Empty: no lamp's.
+  std::string cast = {};
+
   unsigned char marks_of(const OtherView& view) const {
     return view.is_other_eye ? marks_of_other_eye : marks;
   }

@@ -16,9 +16,10 @@
 namespace ssdo {
 namespace {
 
-/// The frame without what is not selected, and without `out`.
-std::shared_ptr<const Scene> selected_alone(Frame& frame, const Selection& selection,
-                                            const TakenOut& out, const SolidOptions& options) {
+/// The frame and the views without what is not selected, and without `out`.
+std::shared_ptr<const Scene> selected_alone(Frame& frame, const KnownGeometry& known,
+                                            const Selection& selection, const TakenOut& out,
+                                            const SolidOptions& options) {
   const Plane<Surfel>& surfel = frame.scene.geometry.surfel;
   const GBuffer& from = frame.gbuffer;
   std::vector<std::string> warnings;
@@ -27,14 +28,18 @@ std::shared_ptr<const Scene> selected_alone(Frame& frame, const Selection& selec
       selected_coverage(selection, frame.selections(warnings), from.window, from.grid));
   frame.warn(warnings);
   TakenOut rest = out;
+  rest.cast = selection.text;
   if (rest.coverage.empty()) rest.coverage = Plane<float>(surfel.width, surfel.height, 0.0f);
   for (std::size_t i = 0; i < surfel.size(); ++i)
     if (surfel[i].is_surface() && !selected[i]) rest.coverage[i] = 1;
   auto scene = std::make_shared<Scene>();
   scene->geometry = frame.scene.geometry;
-  KnownGeometry none;
-  use_known_geometry(none, *scene, options.thickness, options.reading, &rest);
+  KnownGeometry views;
+  views.views = known.views;
+  use_known_geometry(views, *scene, options.thickness, options.reading, &rest);
   scene->geometry = {};
+  scene->views.clear();
+  scene->other_surfaces.all = {};
   return scene;
 }
 
@@ -59,12 +64,20 @@ std::shared_ptr<const Plane<float>> find_receivers(Frame& frame, Lamp& lamp, int
   return std::make_shared<const Plane<float>>(std::move(coverage));
 }
 
-void find_blockers(Frame& frame, const TakenOut& out, const SolidOptions& options, Scene& scene) {
+std::vector<Selection> casts_of(const std::vector<Lamp>& lamps, int number) {
+  std::vector<Selection> casts;
+  for (const Lamp& lamp : lamps)
+    if (!lamp.cast.empty()) casts.push_back(at_frame(lamp.cast, number));
+  return casts;
+}
+
+void find_blockers(Frame& frame, const KnownGeometry& known, const TakenOut& out,
+                   const SolidOptions& options, Scene& scene) {
   std::map<std::string, std::shared_ptr<const Scene>> found;  // lamps share what they select alike
   for (const auto& [name, lamp] : frame.lamps) {
     if (lamp.cast.empty()) continue;
     std::shared_ptr<const Scene>& blockers = found[lamp.cast.text];
-    if (!blockers) blockers = selected_alone(frame, lamp.cast, out, options);
+    if (!blockers) blockers = selected_alone(frame, known, lamp.cast, out, options);
     scene.blockers[lamp.source] = blockers;
   }
 }

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "relight/frame.h"
 #include "relight/known_geometry.h"
@@ -25,10 +26,14 @@ struct SolidOptions {
   const GBufferOptions& reading;
 };
 
-/// Fills Scene::blockers of a scene of the frame: what the lamps of Frame::lamps select is left, of
-/// what the frame shows, but for `out`; of other views, nothing. An edge
-/// between selected things and background is left. What is behind the rest is guessed as of objects
-/// that cast nothing. Errors: those of selected_coverage().
-void find_blockers(Frame& frame, const TakenOut& out, const SolidOptions& options, Scene& scene);
+/// What every lamp with a `cast` names, with files of the frame of this number.
+std::vector<Selection> casts_of(const std::vector<Lamp>& lamps, int number);
+
+/// Fills Scene::blockers of a scene of the frame: what the lamps of Frame::lamps select is left of
+/// what the frame and the views of `known` show, but for `out`. An edge between selected things and
+/// background is left. What is behind the rest is found as behind objects that cast nothing.
+/// Errors: those of selected_coverage().
+void find_blockers(Frame& frame, const KnownGeometry& known, const TakenOut& out,
+                   const SolidOptions& options, Scene& scene);
 
 }  // namespace ssdo

@@ -67,6 +67,7 @@ void plan_frame(Frame& frame, const FrameOptions& options, int number, bool has_
   warn_of_plan(frame, options, has_deep_pixels);
   explain_earlier_products(frame);
   explain_views(frame.plan, frame.views);
+  if (!frame.near_backdrop.empty()) frame.plan.reasons.push_back(frame.near_backdrop);
   frame.guessed = explain_guessed(frame.plan, frame.scene);
 }
 

@@ -37,14 +37,13 @@ namespace {
 /// The share of a job's time that estimate and filter take, for progress.
 constexpr double kEstimateShare = 0.85;
 
-/// Objects that cast nothing take all of the frame at once, and a method that looks for what is
-/// behind things.
+/// Objects that cast nothing take a method that looks for what is behind things, and those that do
+/// so for some of the light, all of the frame at once.
 void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameOptions& options) {
-  const Selection* found = &frame.objects.no_cast;
-  if (found->empty()) found = &frame.objects.shadow_of;
+  const Selection* found = &frame.objects.shadow_of;
   for (const auto& [name, lamp] : frame.lamps)
     if (found->empty()) found = &lamp.cast;
-  const Selection& which = *found;
+  const Selection &of_some = *found, &which = of_some.empty() ? frame.objects.no_cast : of_some;
   const auto refuse = [&](const std::string& why, const Selection& selection) {
     throw Error(ExitCode::usage, fmt::format("{}: {}: {}", frame.input, selection.option, why));
   };
@@ -53,8 +52,8 @@ void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameO
     refuse(fmt::format("method {} casts with all that is seen; take bitmask or trace",
                        options.model.method),
            which);
-  if (frame.gbuffer.grid.is_coarse())
-    refuse("takes all of the frame at once, which --mem-limit does not allow: raise it", which);
+  if (frame.gbuffer.grid.is_coarse() && !of_some.empty())
+    refuse("takes all of the frame at once, which --mem-limit does not allow: raise it", of_some);
   if (!known.deep.empty())
     refuse("deep samples do not say what they are of; leave the deep image out", which);
   if (!frame.objects.shadow_of.empty() && options.model.temporal)
@@ -76,12 +75,23 @@ BackdropOut find_backdrop(Frame& frame, const FrameOptions& options, bool may_le
   // In a shot, all frames that show its shape have one answer.
   const auto clearance =
       options.backdrop_of_shot ? options.backdrop_of_shot() : std::optional<double>();
-  if (!(clearance.value_or(found->clearance) >= 1)) return {{}, 0};
-  const bool leaves_out = choice == BackdropChoice::leave_out && may_leave_out;
-  frame.warn({fmt::format("{:.2g} % of the frame show {}: it {}", 100 * found->share, found->what,
-                          leaves_out ? "casts nothing, unless --backdrop cast is given"
-                                     : "hides the light behind it; take it out of the G-buffer")});
+  const bool is_far = clearance.value_or(found->clearance) >= 1,
+             takes_any = choice == BackdropChoice::any;
+  const std::string what =
+      fmt::format("{:.2g} % of the frame show {}", 100 * found->share, found->what);
+  if (!is_far && !takes_any) {
+    frame.near_backdrop =
+        what + ": it casts; where it stands for the sky, --backdrop any takes it out";
+    return {{}, 0};
+  }
+  const bool leaves_out = choice != BackdropChoice::cast && may_leave_out;
+  const std::string_view becomes = !leaves_out
+                                       ? "hides the light behind it; take it out of the G-buffer"
+                                   : is_far ? "casts nothing, unless --backdrop cast is given"
+                                            : "casts nothing, as --backdrop any asks";
+  frame.warn({fmt::format("{}: it {}", what, becomes)});
   if (!leaves_out) return {};
+  frame.is_backdrop = std::move(found->has);
   return {std::move(found->coverage), kBackdrop | kNearBackdrop};
 }
 
@@ -98,9 +108,9 @@ bool shows_backdrop(const std::vector<OtherView>& views, const TakenOut& out) {
 void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& options) {
   refuse_objects(frame, known, options);
   const bool sees_behind = find_method(options.model.method).takes.thickness;
-  // Bands and deep samples have no hole.
-  const bool is_whole = !frame.gbuffer.grid.is_coarse() && known.deep.empty();
-  const auto [backdrop, of_other_eye] = find_backdrop(frame, options, sees_behind && is_whole);
+  // Deep samples do not say what they are of.
+  const bool may_leave_out = sees_behind && known.deep.empty();
+  const auto [backdrop, of_other_eye] = find_backdrop(frame, options, may_leave_out);
   if (sees_behind) {
     SolidOptions solids{{}, options.input.gbuffer};
     if (options.model.thickness) solids.thickness = float(*options.model.thickness);
@@ -117,7 +127,7 @@ void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& opti
     TakenOut out{
         {}, backdrop, kNoCast | kBackdrop, static_cast<unsigned char>(kNoCast | of_other_eye)};
     const bool has_hole = !objects.no_cast.empty() || !backdrop.empty() ||
-                          (is_whole && shows_backdrop(known.views, out));
+                          (may_leave_out && shows_backdrop(known.views, out));
     if (has_hole || !objects.shadow_of.empty()) out.coverage = coverage(objects.no_cast);
     if (!objects.shadow_of.empty()) {
       TakenOut both{coverage(objects.shadow_of), backdrop,
@@ -130,9 +140,9 @@ void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& opti
       frame.scene.without->geometry = frame.scene.geometry;
       frame.scene.without->senders.albedo = frame.scene.senders.albedo;
       use_known_geometry(again, *frame.scene.without, solids.thickness, solids.reading, &both);
-      find_blockers(frame, both, solids, *frame.scene.without);
+      find_blockers(frame, known, both, solids, *frame.scene.without);
     }
-    find_blockers(frame, out, solids, frame.scene);
+    find_blockers(frame, known, out, solids, frame.scene);
     frame.views = use_known_geometry(known, frame.scene, solids.thickness, solids.reading,
                                      has_hole ? &out : nullptr);
   }
@@ -164,7 +174,9 @@ Frame prepare_frame(const FrameOptions& options, const Lighting& lighting, Other
   Frame frame = read_frame(options, files, int(lighting.lamps().size()), own);
   warn_of_encoded_colors(frame);
   Stopwatch watch;
-  KnownGeometry known = read_known_geometry(frame, files, options, pictures, own);
+  FrameFiles with_casts = files;
+  with_casts.casts = casts_of(lighting.lamps(), number);
+  KnownGeometry known = read_known_geometry(frame, with_casts, options, pictures, own);
   frame.times.known = watch.lap();
   light_frame(frame, lighting, options, files, number);
   frame.times.prepare += watch.lap();

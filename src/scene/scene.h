@@ -43,7 +43,8 @@ struct Scene {
   Senders senders;
   Light light;
   /// What blocks the light of a lamp that names its casters, by its number in Light::sources: this
-  /// frame without the rest. Geometry, casting and solids alone are filled.
+  /// frame and the other views without the rest. Casting, solids and other_surfaces alone are
+  /// filled.
   std::map<std::size_t, std::shared_ptr<const Scene>> blockers;
   Plane<float> roughness;           ///< 0..1; empty: the same everywhere, a parameter of the method
   Plane<HalfColor> specular_color;  ///< F0, 0..1; empty: of an index of refraction, a parameter

@@ -20,7 +20,7 @@ namespace ssdo {
 /// Which files and layers are read, and how.
 struct InputOptions {
   std::vector<LayerRequest> aovs;
-  std::vector<std::string> also;  ///< other pictures of the same scene, or their patterns
+  std::vector<std::string> also;   ///< other pictures of the same scene, or their patterns
   std::string part;                ///< name or number; empty: all
   std::vector<std::string> views;  ///< those to relight of a stereo file; empty: its only one
   std::string view;                ///< of them, the one that is read
@@ -35,8 +35,9 @@ struct FrameFiles {
   std::string input;
   std::vector<LayerRequest> aovs;
   std::vector<std::string> also;  ///< other pictures of the same scene, in the order of --also
-  std::string view = {};                    ///< of a stereo file; empty: --part chooses
+  std::string view = {};          ///< of a stereo file; empty: --part chooses
   ObjectOptions objects = {};
+  std::vector<Selection> casts = {};  ///< of lamps: what blocks the light of each
 };
 
 /// The frame with a view of its files.

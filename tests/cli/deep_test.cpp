@@ -14,6 +14,7 @@
 #include "support/frame_file.h"
 #include "support/parse_json.h"
 #include "support/run_tool.h"
+#include "support/words.h"
 
 namespace ssdo::test::deep_test {
 namespace {
@@ -64,6 +65,19 @@ class Deep : public testing::Test {
   Camera camera_;
   TempDir dir_;
 };
+
+/// Its samples have no names: what would be left of an object cannot be told.
+TEST_F(Deep, RefusesObjectsThatCastNothing) {
+  const std::string says = "--no-cast: deep samples do not say what they are of; leave the deep";
+  for (const Words& words :
+       {Words{path("in.exr"), "--also", path("deep.exr")}, Words{path("deep.exr"), "--fov", "40"}})
+    refused(words + Words{"--no-cast", path("in.exr") + ":ViewLayer.Depth"}, 2, says);
+  refused({path("in.exr"), "--also", path("deep.exr"), "--shadow-of", "ViewLayer.Depth"}, 2,
+          "--shadow-of: deep samples");
+  refused({path("in.exr"), "--also", path("deep.exr"), "--light",
+           "sphere name=key position=0,0,3 cast=ViewLayer.Depth"},
+          2, "key: cast: deep samples");
+}
 
 TEST_F(Deep, CountsSamplesThatAreNoNumbers) {
   DeepPixels pixels = deep();

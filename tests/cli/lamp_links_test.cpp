@@ -247,6 +247,61 @@ TEST_F(LampLinks, ShadowOfKnowsThem) {
   EXPECT_EQ(dark("cast=id:IndexOB=1"), 0);
 }
 
+/// A board over the scene that only another view shows blocks the lamps that name it.
+TEST_F(LampLinks, CastReachesWhatOtherViewsShow) {
+  const Camera by = look_at(camera_from_fov(60, kWindow, 1), {0, -3, 4}, {0, 0.8, 1.6}, {0, 0, 1});
+  const Surface board = cut(plane({0, 0.2, 2.4}, {0, 0, 1}), [](const glm::dvec3& p) {
+    return std::abs(p.x) < 0.6 && std::abs(p.y - 0.2) < 0.6;
+  });
+  const Picture picture =
+      take_picture(all_of({plane({0, 0, 0}, {0, 0, 1}), plane({0, 2, 0}, {0, -1, 0}),
+                           sphere({0.1, 0.6, 0.5}, 0.5), board}),
+                   by, kWindow);
+  FramePart part = frame_of(picture);
+  part.data = part.display = kWindow;
+  write_frame(path("silent.exr"), part);
+  Plane<float> ids(96, 72, 1.0f);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const glm::dvec3 p(picture.position[i]);
+    if (std::abs(p.z - 2.4) < 1e-4) ids[i] = 3;
+    if (std::abs(glm::distance(p, {0.1, 0.6, 0.5}) - 0.5) < 1e-4) ids[i] = 2;
+  }
+  part.channels["IndexOB.X"] = ids;
+  write_frame(path("view.exr"), part);
+  for (const Words& by_method : kMethods) {
+    const auto direct = [&](const std::string& cast, const Words& more) {
+      return channel(lit_at("1.6,-0.8,4", cast, by_method + more, "direct", path("in.exr")),
+                     "direct.G");
+    };
+    const Words also = {"--also", path("view.exr")};
+    const Plane<float> open = direct("", {}), dark = direct("", also),
+                       rest = direct("cast=id:IndexOB=1-2", also),
+                       named = direct("cast=id:IndexOB=3", also), none(96, 72, 0.0f);
+    const double taken = rms(dark, open);
+    ASSERT_GT(taken, 0.1 * rms(open, none)) << by_method[1];
+    EXPECT_LT(rms(rest, open), 0.1 * taken) << by_method[1];
+    // The board's shadow is there, and that of the ball is not.
+    int in_shadow = 0, still_dark = 0;
+    int lit = 0;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const bool is_shaded = dark[i] < 0.1f * open[i];
+      in_shadow += is_shaded, still_dark += is_shaded && named[i] < 0.1f * open[i];
+      lit += open[i] == 0 && dark[i] == 0 && named[i] > 0.1f;
+    }
+    EXPECT_GT(in_shadow, 200) << by_method[1];
+    EXPECT_GT(still_dark, 0.95 * in_shadow) << by_method[1];
+    EXPECT_GT(lit, 50) << "where the ball stands before the lamp";
+  }
+  const Finished silent = run_tool(
+      {path("in.exr"), "-o", path("silent_out.exr"), "--also", path("silent.exr"), "--light",
+       "sphere name=key position=0,0,4 radius=0.1 normalize=true intensity=90 cast=ball", "--light",
+       "sphere name=rim position=1,0,4 radius=0.1 normalize=true cast=ball"});
+  EXPECT_EQ(silent.code, 0);
+  const std::string says = "blocks no light of this lamp: --light key: cast ball: no layer 'ball'";
+  EXPECT_THAT(silent.err, HasSubstr(path("silent.exr") + ": " + says));
+  EXPECT_EQ(silent.err.find(says), silent.err.rfind(says));
+}
+
 TEST_F(LampLinks, RefusesInOneLine) {
   const auto expect = [&](const std::string& key, int code, const std::string& says) {
     std::ofstream(path("lights.json"))

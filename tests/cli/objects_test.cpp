@@ -469,8 +469,8 @@ TEST_F(Objects, ACardHidesNoLight) {
   EXPECT_GT(rms(at("cast.exr", "ao.Y"), truth, shown, 1), 0.05);
 }
 
-/// One that stands on the ground is not told from a wall: it casts, without a word, until it is
-/// selected.
+/// One that stands on the ground nearby may be a wall: it casts until it is selected, or until
+/// --backdrop any.
 TEST_F(Objects, ACardOnTheGroundIsTakenOutByASelection) {
   const Camera by =
       look_at(camera_from_fov(50, kWindow, 1), {0.3, -4, 2.2}, {0, 0.5, 1.2}, {0, 0, 1});
@@ -490,7 +490,10 @@ TEST_F(Objects, ACardOnTheGroundIsTakenOutByASelection) {
   run(path("open.exr"), "truth.exr", {});
   run(path("card.exr"), "auto.exr", {});
   run(path("card.exr"), "out.exr", {"--no-cast", "card"});
-  EXPECT_THAT(run_tool({"info", path("card.exr")}).out, Not(HasSubstr("casts nothing")));
+  EXPECT_THAT(run_tool({"info", path("card.exr")}).out,
+              HasSubstr("show a card that stands on the ground, 20 times as far away as the camera "
+                        "is high: it casts; where it stands for the sky, --backdrop any"));
+  run(path("card.exr"), "any.exr", {"--backdrop", "any"});
   Plane<float> shown(96, 72);
   for (std::size_t i = 0; i < shown.size(); ++i) shown[i] = open.valid[i];
   const Plane<float> truth = at("truth.exr", "ao.Y");
@@ -499,6 +502,7 @@ TEST_F(Objects, ACardOnTheGroundIsTakenOutByASelection) {
   RecordProperty("rms", fmt::format("{:.4f} of {:.4f}", after, before));
   EXPECT_GT(before, 0.05);
   EXPECT_LT(after, 0.1 * before) << before;
+  EXPECT_LT(rms(at("any.exr", "ao.Y"), truth, shown, 1), 0.1 * before);
 }
 
 /// Nor one that only another view shows.
@@ -541,7 +545,7 @@ TEST_F(Objects, RefuseInOneLine) {
          "--temporal");
 }
 
-/// Masks are read band by band; no-cast takes all of the frame.
+/// Masks are read band by band; shadow_of takes all of the frame.
 TEST_F(Objects, MasksAreTheSameInBands) {
   constexpr Window kTall{0, 0, 320, 1600};
   FramePart part = frame_of(small_picture(kTall, kTall));
@@ -561,10 +565,63 @@ TEST_F(Objects, MasksAreTheSameInBands) {
   run(path("in.exr"), "bands.exr", flags + Words{"--mem-limit", "124M"});
   for (const std::string& name : channel_names(path("whole.exr")))
     EXPECT_EQ(at("whole.exr", name).pixels, at("bands.exr", name).pixels) << name;
-  const Finished no_cast =
-      run_tool({path("in.exr"), "-o", path("no.exr"), "--no-cast", "soft", "--mem-limit", "124M"});
-  EXPECT_EQ(no_cast.code, 2);
-  EXPECT_THAT(no_cast.error_line(), HasSubstr("takes all of the frame at once"));
+  const Finished shadow_of = run_tool(
+      {path("in.exr"), "-o", path("no.exr"), "--shadow-of", "soft", "--mem-limit", "124M"});
+  EXPECT_EQ(shadow_of.code, 2);
+  EXPECT_THAT(shadow_of.error_line(), HasSubstr("takes all of the frame at once"));
+}
+
+/// What casts nothing is taken out of each band, within what marches in bands are off.
+TEST_F(Objects, NoCastInBandsIsNearlyThatOfTheFrame) {
+  constexpr Window kTall{0, 0, 320, 1600};
+  const Camera by = look_at(camera_from_fov(40, kTall, 1), {0, -4, 3}, {0, 0, 0.3}, {0, 0, 1});
+  const Surface floor = plane({}, {0, 0, 1}), ball = sphere({0.2, 0, 1.2}, 1.2);
+  const Picture shown = take_picture(all_of({floor, ball}), by, kTall);
+  FramePart part = frame_of(shown);
+  part.data = part.display = kTall;
+  Plane<float>& matte = part.channels["ball.A"] = Plane<float>(320, 1600, 0.0f);
+  for (std::size_t i = 0; i < shown.position.size(); ++i)
+    if (shown.position[i].z > 1e-4f) matte[i] = 1;
+  write_frame(path("in.exr"), part);
+  const Words flags = {"--thickness", "0.3", "--radius", "1", "--products", "ao,bounce"},
+              out = flags + Words{"--no-cast", "ball"}, limit = {"--mem-limit", "124M"};
+  run(path("in.exr"), "cast.exr", flags);
+  run(path("in.exr"), "whole.exr", out);
+  run(path("in.exr"), "bands.exr", out + limit);
+  EXPECT_THAT(run_tool(Words{"info", path("in.exr")} + out + limit).out, HasSubstr(" bands of "));
+  for (const std::string name : {"ao.Y", "bounce.G"}) {
+    const Plane<float> whole = at("whole.exr", name), bands = at("bands.exr", name);
+    const double off = std::max(rms(whole, bands, matte, 0), rms(whole, bands, matte, 1)),
+                 effect = rms(whole, at("cast.exr", name), matte, 0);
+    RecordProperty(name, fmt::format("{:.5f} {:.5f}", off, effect));
+    EXPECT_LT(off, 0.05 * effect) << name;
+  }
+}
+
+TEST_F(Objects, ADomeHidesNoLightInBands) {
+  constexpr Window kTall{0, 0, 320, 1600};
+  const Camera by = look_at(camera_from_fov(20, kTall, 1), {0.3, -4, 2.2}, {0, 0.5, 2}, {0, 0, 1});
+  const Surface stage = cut(plane({0, 0, 0}, {0, 0, 1}),
+                            [](const glm::dvec3&p) { return glm::length(p) < 20; }),
+                ball = sphere({0.1, 0.6, 0.5}, 0.5);
+  const auto write = [&](const std::string& name, const std::vector<Surface>& shown) {
+    FramePart part = frame_of(take_picture(all_of(shown), by, kTall));
+    part.data = part.display = kTall;
+    write_frame(path(name), part);
+  };
+  write("open.exr", {stage, ball}), write("dome.exr", {stage, ball, dome({0, 0, 0}, 500)});
+  const Words flags = {"--thickness", "0.3", "--products", "ao", "--mem-limit", "124M"};
+  run(path("open.exr"), "truth.exr", flags);
+  run(path("dome.exr"), "auto.exr", flags);
+  run(path("dome.exr"), "cast.exr", flags + Words{"--backdrop", "cast"});
+  const Picture open = take_picture(all_of({stage, ball}), by, kTall);
+  Plane<float> shown(320, 1600);
+  for (std::size_t i = 0; i < shown.size(); ++i) shown[i] = open.valid[i];
+  const Plane<float> truth = at("truth.exr", "ao.Y");
+  const double effect = rms(at("cast.exr", "ao.Y"), truth, shown, 1);
+  EXPECT_GT(effect, 0.05);
+  // Other bands fit into the memory where something casts nothing.
+  EXPECT_LT(rms(at("auto.exr", "ao.Y"), truth, shown, 1), 0.05 * effect);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "support/analytic_scene.h"
 
-namespace ssdo::test {
+namespace ssdo::test::near_moving_test {
 namespace {
 
 const Window kWindow{0, 0, 160, 96};
@@ -67,4 +67,4 @@ TEST(NearMoving, NothingIsInAStillScene) {
 }
 
 }  // namespace
-}  // namespace ssdo::test
+}  // namespace ssdo::test::near_moving_test

@@ -69,7 +69,8 @@ void add_openness(const MarchScene& scene, const Window& display, const glm::vec
 }
 
 void add_openness(const Scene& band, const Request& request, Openness& sum) {
-  const MarchScene scene = make_march_scene(band.geometry, band.solids, request.receivers);
+  const MarchScene scene = make_march_scene(band.casters(), band.solids, request.receivers,
+                                            band.casting ? &band.geometry : nullptr);
   add_openness(scene, band.geometry.display, up_in_camera(band), request.radius, scene.receivers,
                sum);
 }

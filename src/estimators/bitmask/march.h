@@ -39,10 +39,9 @@ struct FarScene {
 struct March {
   const MarchScene& scene;
   const SlicePattern& pattern;
-  float radius;              ///< scene units, or infinity
-  bool extend;               ///< surfaces go on beyond the frame
-  bool may_be_thin = false;  ///< solids may be thinner than neighbours on a surface are apart;
-                             ///< guessed ones seldom are
+  float radius;                                ///< scene units, or infinity
+  bool extend;                                 ///< surfaces go on beyond the frame
+  bool may_be_thin = false;                    ///< as may_be_thin() has it of the solids
   const OtherViewRays* other_views = nullptr;  ///< what only other views show; null: nothing
   const FarScene* far = nullptr;  ///< where the raster is a part of a frame without its reach: what
                                   ///< marches meet beyond far->raster.from_px

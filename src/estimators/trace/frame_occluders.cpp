@@ -6,37 +6,38 @@
 
 namespace ssdo {
 
-FrameOccluders::FrameOccluders(const Scene& scene, float radius)
-    : scene_(scene),
-      radius_(radius),
-      solids_(build_height_field(scene.casters(), scene.solids)),
-      other_views_(OtherViewRays::of_added(scene.other_surfaces)) {
-  for (const auto& [source, seen] : scene.blockers)
-    if (!named_.contains(seen.get()))
-      named_.emplace(seen.get(), build_height_field(seen->casters(), seen->solids));
+RayBlockers::RayBlockers(const Scene& scene)
+    : solids(build_height_field(scene.casters(), scene.solids)),
+      other_views(OtherViewRays::of_added(scene.other_surfaces)) {}
+
+bool RayBlockers::is_blocked(const TraceRay& ray, float reach) const {
+  return solids.is_blocked(ray.origin, ray.to, reach) ||
+         (other_views && other_views->is_blocked(glm::vec3(ray.origin), ray.to, reach));
 }
 
-const RayScene* FrameOccluders::named_by(std::size_t source) const {
+FrameOccluders::FrameOccluders(const Scene& scene, float radius)
+    : scene_(scene), radius_(radius), all_(scene) {
+  for (const auto& [source, seen] : scene.blockers) named_.try_emplace(seen.get(), *seen);
+}
+
+const RayBlockers* FrameOccluders::named_by(std::size_t source) const {
   const auto blockers = scene_.blockers.find(source);
   return blockers == scene_.blockers.end() ? nullptr : &named_.at(blockers->second.get());
 }
 
 bool FrameOccluders::is_blocked(const TraceRay& ray, float distance) const {
-  const float reach = std::min(distance, radius_);
-  return solids_.is_blocked(ray.origin, ray.to, reach) ||
-         (other_views_ && other_views_->is_blocked(glm::vec3(ray.origin), ray.to, reach));
+  return all_.is_blocked(ray, std::min(distance, radius_));
 }
 
 bool FrameOccluders::is_blocked(const TraceRay& ray, float distance, std::size_t source) const {
-  const RayScene* const own = named_by(source);
-  if (!own) return is_blocked(ray, distance);
-  return own->is_blocked(ray.origin, ray.to, std::min(distance, radius_));
+  const RayBlockers* const own = named_by(source);
+  return (own ? *own : all_).is_blocked(ray, std::min(distance, radius_));
 }
 
 std::optional<Met> FrameOccluders::first_met(const TraceRay& ray) const {
-  const auto [hit, distance] = solids_.first_hit(ray.origin, ray.to, radius_);
-  if (other_views_) {
-    const auto other = other_views_->first_hit(glm::vec3(ray.origin), ray.to, radius_);
+  const auto [hit, distance] = all_.solids.first_hit(ray.origin, ray.to, radius_);
+  if (all_.other_views) {
+    const auto other = all_.other_views->first_hit(glm::vec3(ray.origin), ray.to, radius_);
     if (other.sender >= 0 && other.distance < distance)
       return Met{true, other.unseen, std::size_t(other.sender)};
   }

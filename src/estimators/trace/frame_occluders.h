@@ -20,6 +20,16 @@ struct TraceRay {
   const glm::vec3& to;
 };
 
+/// What a ray may meet: the solids of a frame, and what only other views show.
+struct RayBlockers {
+  RayScene solids;
+  std::unique_ptr<OtherViewRays> other_views;  ///< null: there are none
+
+  explicit RayBlockers(const Scene& scene);
+
+  bool is_blocked(const TraceRay& ray, float reach) const;
+};
+
 /// What rays of method trace meet: the solids of a frame, and what other views add. May be asked
 /// from many threads at once.
 class FrameOccluders {
@@ -27,13 +37,13 @@ class FrameOccluders {
   /// `radius`: the farthest at which things occlude. Errors: those of RayScene.
   FrameOccluders(const Scene& scene, float radius);
 
-  const RayScene& solids() const { return solids_; }
+  const RayScene& solids() const { return all_.solids; }
 
   /// What a lamp names as what blocks its light, by its number; null: all does. Lamps that name the
   /// same things share it.
-  const RayScene* named_by(std::size_t source) const;
+  const RayBlockers* named_by(std::size_t source) const;
 
-  bool has_other_views() const { return other_views_ != nullptr; }
+  bool has_other_views() const { return all_.other_views != nullptr; }
 
   /// Whether something stands in the way before `distance`.
   bool is_blocked(const TraceRay& ray, float distance) const;
@@ -47,9 +57,8 @@ class FrameOccluders {
  private:
   const Scene& scene_;
   float radius_;
-  RayScene solids_;
-  std::map<const Scene*, RayScene> named_;      ///< those of Scene::blockers
-  std::unique_ptr<OtherViewRays> other_views_;  ///< null: there are no other views
+  RayBlockers all_;
+  std::map<const Scene*, RayBlockers> named_;  ///< those of Scene::blockers
 };
 
 }  // namespace ssdo

@@ -12,7 +12,7 @@
 // Light at a point that travels changes. With d the way from its place in the world in the one
 // frame to that in the other, and c the cosine between both normals, another frame counts by
 //
-//   exp(-(d / D)^2) max(1 - (1 - c) / C, 0),   D = kReach widths of the picture at its depth
+//   exp(-(d / D)^2) max(1 - (1 - c) / C, 0),   D = kReach times its distance
 //
 // and not at all for light of sources, whose shadows have edges. Between a quarter of a pixel and
 // three quarters from where the point would be at rest, the lookup passes from the place of rest to
@@ -30,7 +30,7 @@ namespace {
 
 /// Fitted on four made shots (sliding, rolling and turning things, cars, a walker, a lift) by error
 /// and flicker of white ao on what moves.
-constexpr double kReach = 0.06, kTurn = 0.03;
+constexpr double kReach = 0.05, kTurn = 0.03;
 
 /// Pixels from rest.
 constexpr double kAtRest = 0.25, kFollowed = 0.75;
@@ -199,8 +199,9 @@ void Followed::add(int x, const Spot& start, const Spot& there, double speed, co
                follows = speed * ramp(from_rest, kAtRest, kFollowed);
   if (!(follows > 0)) return;
   const Camera& camera = own_.surfaces.camera;
-  const double depth = camera.orthographic ? 1.0 : double(-start.position.z),
-               reach = kReach * own_.surfaces.window.width() * depth / camera.fx,
+  const double distance = camera.orthographic ? own_.surfaces.window.width() / camera.fx
+                                              : glm::length(glm::dvec3(start.position)),
+               reach = kReach * distance,
                turn = 1 - double(glm::dot(there.normal, beside.from_own.direction(start.normal)));
   const double counts = std::exp(-(way / reach) * (way / reach)) * ramp(turn, kTurn, 0);
   FollowedPoint point{x, there.pixel, {}, float(follows), float(counts)};

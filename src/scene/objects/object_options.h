@@ -7,9 +7,10 @@
 
 namespace ssdo {
 
-/// What becomes of a sky dome (scene/objects/backdrop.h).
+/// What becomes of a backdrop (scene/objects/backdrop.h).
 enum class BackdropChoice {
   leave_out,  ///< it casts nothing
+  any,        ///< nor does what has the shape of one, however near it is
   cast,       ///< it casts, with a warning
   ignore,     ///< it is not looked for
 };

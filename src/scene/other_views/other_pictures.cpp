@@ -11,6 +11,7 @@
 #include "scene/deep/channels.h"
 #include "scene/objects/backdrop.h"
 #include "scene/objects/read_object_masks.h"
+#include "scene/other_views/covered_pixels.h"
 
 namespace ssdo {
 namespace {
@@ -71,24 +72,48 @@ void mark(OtherPicture& picture, const Selection& selection, unsigned char with,
   }
 }
 
-void mark_backdrop(OtherPicture& picture, const Geometry& geometry) {
+/// Finds what blocks the light of linked lamps, as far as the picture tells.
+void mark_casts(OtherPicture& picture, const std::vector<Selection>& casts,
+                const SelectionFiles& in) {
+  for (const Selection& cast : casts) {
+    if (picture.casts.contains(cast.text)) continue;
+    try {
+      picture.casts[cast.text] = covered_pixels(picture.surfel, picture.camera,
+                                                selected_coverage(cast, in, picture.window, {}));
+    } catch (const Error& error) {
+      picture.not_taken.push_back(
+          fmt::format("{}: blocks no light of this lamp: {}", picture.file, error.what()));
+    }
+  }
+}
+
+void mark_backdrop(OtherPicture& picture, const Geometry& geometry, BackdropChoice choice) {
+  const bool takes_any = choice == BackdropChoice::any;
+  if (!takes_any && choice != BackdropChoice::leave_out) return;
   const std::optional<Backdrop> found = find_backdrop(geometry);
   if (!found) return;
   picture.taken = Plane<unsigned char>(found->coverage.width, found->coverage.height, 0);
   for (std::size_t i = 0; i < found->coverage.size(); ++i)
-    if (found->coverage[i] > 0) picture.taken[i] = found->is_far() ? kBackdrop : kNearBackdrop;
+    if (found->coverage[i] > 0)
+      picture.taken[i] = takes_any || found->is_far() ? kBackdrop : kNearBackdrop;
 }
+
+/// What is to be found in a picture.
+struct Objects {
+  const ObjectOptions& options;
+  const std::vector<Selection>& casts;  ///< of lamps
+};
 
 /// Keeps of a view what other pictures need.
 OtherPictures::Picture picture_of(View view, const std::string& file, const std::string& eye,
-                                  const ObjectOptions& objects) {
+                                  const Objects& objects) {
   check(view, file);
   OtherPicture out;
   out.file = file;
   out.camera = view.geometry.camera;
   out.window = view.geometry.window;
   out.closed = out.camera.panorama && out.window.width() == view.geometry.display.width();
-  if (objects.backdrop == BackdropChoice::leave_out) mark_backdrop(out, view.geometry);
+  mark_backdrop(out, view.geometry, objects.options.backdrop);
   out.surfel = std::move(view.geometry.surfel);
   out.depth = Plane<float>(out.surfel.width, out.surfel.height, kNothing);
   for_each_row(out.surfel.height, [&](int y) {
@@ -98,8 +123,9 @@ OtherPictures::Picture picture_of(View view, const std::string& file, const std:
     }
   });
   out.albedo = in_half(view.gbuffer.albedo);
-  mark(out, objects.no_cast, kNoCast, {view.files, eye});
-  mark(out, objects.shadow_of, kShadowOf, {view.files, eye});
+  mark(out, objects.options.no_cast, kNoCast, {view.files, eye});
+  mark(out, objects.options.shadow_of, kShadowOf, {view.files, eye});
+  mark_casts(out, objects.casts, {view.files, eye});
   for (const auto* warnings : {&view.gbuffer.warnings, &view.report.warnings}) {
     for (const std::string& warning : *warnings)
       out.warnings.push_back(fmt::format("{}: {}", file, warning));
@@ -131,11 +157,13 @@ void OtherPictures::release(const FrameFiles& frame) {
   }
 }
 
-OtherPictures::Picture OtherPictures::also(const std::string& file) {
+OtherPictures::Picture OtherPictures::also(const std::string& file,
+                                           const std::vector<Selection>& casts) {
   return get({kByNames, file}, [&]() -> Picture {
     std::deque<ExrReader> opened = open_view(file, {}, allow_partial_);
     if (has_deep_part(opened.front())) return nullptr;
-    return picture_of(read_view(std::move(opened), {}, {}, {}, kUnused), file, "", objects_);
+    return picture_of(read_view(std::move(opened), {}, {}, {}, kUnused), file, "",
+                      {objects_, casts});
   });
 }
 
@@ -149,7 +177,8 @@ OtherPictures::Picture OtherPictures::alike(const FrameFiles& frame, const Input
     View view = read_view(open_view(frame.input, aovs, input.allow_partial), aovs,
                           for_view(input, frame), camera, kUnused);
     open_mattes(frame.objects, view.files, input.allow_partial);
-    return picture_of(std::move(view), name_of(frame), frame.view, frame.objects);
+    for (const Selection& cast : frame.casts) open_mattes(cast, view.files, input.allow_partial);
+    return picture_of(std::move(view), name_of(frame), frame.view, {frame.objects, frame.casts});
   });
 }
 

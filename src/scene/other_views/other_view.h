@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <glm/vec3.hpp>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,6 +32,9 @@ struct OtherPicture {
   Plane<HalfColor> albedo;  ///< empty where the file has none
   /// The bits above, by pixel; empty: none anywhere.
   Plane<unsigned char> taken;
+  /// What blocks the light of linked lamps, by the text of the selection: 1 in pixels that show
+  /// it. Without those that the picture does not know.
+  std::map<std::string, Plane<unsigned char>> casts;
   std::vector<std::string> warnings;   ///< of reading it
   std::vector<std::string> not_taken;  ///< warnings of selections that it does not know
   std::vector<std::string> losses;     ///< see ExrReader::losses()

@@ -19,6 +19,9 @@
 // counts less, by the square of the distance again: what rests on the object, or ends beside it,
 // is not continued below it.
 //
+// Some rows of a frame may end within the hole. A line that leaves them has no end there: what the
+// hole of an overview was filled with counts in its place, as far away as the last of the rows.
+//
 // Which pixels show the object, covered_pixels() says: a rim that is left behind would cast as a
 // sheet.
 #include "scene/other_views/take_out.h"
@@ -31,6 +34,8 @@
 #include <span>
 #include <utility>
 
+#include "math/pixel_grid.h"
+#include "math/whole_division.h"
 #include "parallel/tiles.h"
 #include "scene/normals/normals.h"
 #include "scene/other_views/covered_pixels.h"
@@ -68,14 +73,16 @@ struct Guess {
   float nearness = 0;  ///< 1/z, or z where the camera is orthographic; not for background
   bool is_background = false;
   float weight = 0;
-  int end = kNone;  ///< the pixel that suggests it, or the nearer of two
+  int end = kNone;  ///< the pixel that suggests it, or the nearer of two; kNone: the overview does
   glm::vec3 normal{0};
 };
 
 class Hole {
  public:
-  Hole(const Geometry& geometry, const Plane<float>& coverage, const Plane<float>& backdrop)
+  Hole(const Geometry& geometry, const Plane<float>& coverage, const Plane<float>& backdrop,
+       const Geometry* overview)
       : shown_(geometry),
+        overview_(geometry.part_of ? overview : nullptr),
         casting_{geometry, Plane<int>(geometry.surfel.width, geometry.surfel.height, kNone), {}},
         is_open_(covered_pixels(geometry.surfel, geometry.camera, coverage)) {
     for (std::size_t i = 0; i < backdrop.size(); ++i)
@@ -213,11 +220,41 @@ class Hole {
   Guess alone(int x, int y, int end, const Step& way) const {
     const Surfel& s = known(end);
     const float away = distance_px(x, y, end);
-    Guess guess{0, !s.is_surface(), 1 / (away * away), end, s.normal};
-    if (s.is_broken()) guess.weight = 0;
+    Guess guess = on_plane_of(s, x, y, away);
+    guess.end = end;
     if (guess.is_background || guess.weight == 0) return guess;
     const float on = std::min(1.0f, goes_on(end, way, away) / away);
     guess.weight *= on * on;
+    return guess;
+  }
+
+  /// What the overview has at a pixel, for lines that leave the rows so far away.
+  Guess in_overview(int x, int y, float away) const {
+    const Geometry& small = *overview_;
+    const auto block = [](int pixel, int first, int first_small, int size) {
+      return std::clamp(floor_divide(pixel - first, kOverviewStride) - first_small, 0, size - 1);
+    };
+    const int column = block(shown_.window.x0 + x, shown_.display.x0, small.window.x0,
+                             small.surfel.width),
+              row = block(shown_.window.y0 + y, shown_.display.y0, small.window.y0,
+                          small.surfel.height);
+    return on_plane_of(small.surfel(column, row), x, y, away);
+  }
+
+  /// How far away a line leaves the rows for others of the frame, in pixels; 0: it does not.
+  float leaves_rows(int y, const Step& way) const {
+    if (!overview_ || way.dy == 0) return 0;
+    const bool goes_on =
+        way.dy < 0 ? shown_.window.y0 > shown_.part_of->y0 : shown_.window.y1 < shown_.part_of->y1;
+    const int rows = way.dy < 0 ? y + 1 : is_open_.height - y;
+    return goes_on ? float(rows) * std::hypot(float(way.dx), 1.0f) : 0;
+  }
+
+  /// The tangent plane of what is so many pixels away, on the ray of a pixel.
+  Guess on_plane_of(const Surfel& s, int x, int y, float away) const {
+    Guess guess{0, !s.is_surface(), 1 / (away * away), kNone, s.normal};
+    if (s.is_broken()) guess.weight = 0;
+    if (guess.is_background || guess.weight == 0) return guess;
     const auto [origin, direction] =
         shown_.camera.ray({shown_.window.x0 + x + 0.5, shown_.window.y0 + y + 0.5});
     const double per = glm::dot(glm::dvec3(s.normal), direction),
@@ -263,8 +300,12 @@ class Hole {
         take(both);
         continue;
       }
-      if (a != kNone) take(alone(x, y, a, kWays[k]));
-      if (b != kNone) take(alone(x, y, b, kWays[k + 1]));
+      for (const std::size_t way : {k, k + 1}) {
+        if (ends[way] != kNone)
+          take(alone(x, y, ends[way], kWays[way]));
+        else if (const float away = leaves_rows(y, kWays[way]); away > 0)
+          take(in_overview(x, y, away));
+      }
     }
     put(x, y, {guesses.data(), count});
   }
@@ -284,9 +325,11 @@ class Hole {
   /// Where two surfaces meet in a corner, each before the other's plane, the nearer one is seen.
   const Guess* nearer_of_corner(const Guess& best, float most, std::span<const Guess> all) const {
     const Guess* nearest = &best;
+    if (best.end == kNone) return nearest;
     const Surfel& s = known(best.end);
     for (const Guess& other : all) {
-      if (other.is_background || weight_of(other, all) < kSecond * most) continue;
+      if (other.is_background || other.end == kNone || weight_of(other, all) < kSecond * most)
+        continue;
       const Surfel& t = known(other.end);
       const glm::vec3 way = t.position - s.position;
       const bool is_corner = glm::dot(way, s.normal) > 0 && glm::dot(way, t.normal) < 0;
@@ -323,11 +366,12 @@ class Hole {
     out.position = place(x, y, float(nearness / weights));
     out.normal = glm::normalize(normal);
     out.valid = 1;
-    out.rounding = known(nearest->end).rounding;
+    out.rounding = nearest->end == kNone ? 0 : known(nearest->end).rounding;
     casting_.sender(x, y) = nearest->end;
   }
 
   const Geometry& shown_;
+  const Geometry* const overview_;  ///< null: these are all rows
   Casting casting_;
   Plane<unsigned char> is_open_;  ///< kUnknown in the hole, kMeasured where another view shows it
 };
@@ -335,8 +379,9 @@ class Hole {
 }  // namespace
 
 Casting take_out(const Geometry& geometry, const Plane<float>& coverage,
-                 const Plane<float>& backdrop, const std::vector<OtherView>& views) {
-  return Hole(geometry, coverage, backdrop).fill(views);
+                 const Plane<float>& backdrop, const std::vector<OtherView>& views,
+                 const Geometry* overview) {
+  return Hole(geometry, coverage, backdrop, overview).fill(views);
 }
 
 }  // namespace ssdo

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/solids/solids.h"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -20,6 +21,11 @@ SolidLayer::SolidLayer(int width, int height, Provenance of_all)
       distance(width, height, kInfinity),
       thickness(width, height, kInfinity),
       sender(width, height, -1) {}
+
+bool may_be_thin(const Solids& solids) {
+  return std::ranges::any_of(solids.end.pixels,
+                             [](Provenance end) { return end != Provenance::guessed; });
+}
 
 void check_layers(const Solids& solids) {
   if (solids.layers() > kMostLayers)

@@ -111,6 +111,9 @@ struct Solids {
   void separate_thicknesses();
 };
 
+/// Whether solids may be thinner than neighbours on a surface are apart: guessed ones seldom are.
+bool may_be_thin(const Solids& solids);
+
 /// Throws std::logic_error where there are more than kMostLayers: whoever reads solids has room for
 /// so many.
 void check_layers(const Solids& solids);

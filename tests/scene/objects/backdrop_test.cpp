@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 #include <vector>
 
@@ -101,12 +102,112 @@ TEST(Backdrop, WallsNeedAWideGapAndNoSkyAboveThem) {
   ASSERT_TRUE(close);
   EXPECT_FALSE(close->is_far());
   EXPECT_FALSE(is_backdrop(frame({near_stage, kBall, card(140, 10)}))) << "sky above";
-  EXPECT_FALSE(is_backdrop(frame({kFloor, kBall, card(900, 1e4)}))) << "it stands on the ground";
   const Surface hill = sphere({30, 260, 0}, 60);
   EXPECT_FALSE(is_backdrop(frame({near_stage, kBall, card(300, 1e3), hill}))) << "hills";
   const Surface post =
       cut(plane({0, -4, 0}, {0, -1, 0}), [](const glm::dvec3& p) { return std::abs(p.x) < 0.05; });
   EXPECT_FALSE(is_backdrop(frame({post, card(140, 1e3)}))) << "a post before a facade";
+}
+
+/// What stands on the ground that leads up to it is one from 150 heights of the camera on, if it is
+/// seen 30 times as high.
+TEST(Backdrop, WhatStandsOnTheGroundIsFoundByItsScale) {
+  const auto found = [](const std::vector<Surface>& shown, const Camera& by = camera()) {
+    return find_backdrop(frame(shown, by));
+  };
+  const auto wall = [](double away, const glm::dvec3& normal = {0, -1, 0}) {
+    return plane({0, away, 0}, normal);
+  };
+  // The camera is 2.2 high, at y = -6.
+  const auto card = found({kFloor, kBall, wall(434)});
+  ASSERT_TRUE(card);
+  EXPECT_EQ(card->what,
+            "a card that stands on the ground, 200 times as far away as the camera is "
+            "high");
+  const Geometry shown = frame({kFloor, kBall, wall(434)});
+  for (std::size_t i = 0; i < shown.surfel.size(); ++i) {
+    const glm::vec3 n =
+        glm::vec3(glm::transpose(shown.camera.rotation) * glm::dvec3(shown.surfel[i].normal));
+    ASSERT_EQ(card->coverage[i] > 0, n.y < -0.9f && shown.surfel[i].position.z < -100) << i;
+  }
+  const Camera level = camera({0.3, 2, 3.2});
+  for (const double times : {75.0, 140.0, 160.0, 400.0}) {
+    const auto at = found({kFloor, kBall, wall(2.2 * times - 6)}, level);
+    ASSERT_TRUE(at) << times;
+    EXPECT_EQ(at->is_far(), times > 150) << at->clearance;
+    if (times < 200) {
+      EXPECT_NEAR(at->clearance, times / 150, 0.01) << times;
+    }
+  }
+  // Seen from above it is far away, and not high.
+  const auto low = found({kFloor, kBall, wall(434)}, camera({0.3, 2, 0.9}));
+  ASSERT_TRUE(low);
+  EXPECT_FALSE(low->is_far());
+  const auto corner =
+      found({kFloor, kBall, wall(900, {0.6, -0.8, 0}), wall(900, {-0.6, -0.8, 0})}, level);
+  ASSERT_TRUE(corner);
+  EXPECT_TRUE(corner->what.starts_with("2 cards that stand on the ground")) << corner->what;
+  const Camera wide =
+      look_at(camera_from_fov(110, kWindow, 1), {0.3, -6, 2.2}, {0, 2, 2.2}, {0, 0, 1});
+  const auto round = found({kFloor, kBall, cylinder(700)}, wide);
+  ASSERT_TRUE(round && round->is_far());
+  EXPECT_EQ(round->what.substr(0, 10), "a cylinder");
+}
+
+/// The ground of a sweep bends into its wall along an arc.
+TEST(Backdrop, ASweepRisesFromTheGround) {
+  const auto sweep = [](double away, double radius) -> std::vector<Surface> {
+    const Surface arc = [=](const Ray& ray) -> std::optional<Hit> {
+      const glm::dvec2 o(ray.origin.y - (away - radius), ray.origin.z - radius),
+          d(ray.direction.y, ray.direction.z);
+      const double a = glm::dot(d, d), b = glm::dot(o, d) / a,
+                   under = b * b - (glm::dot(o, o) - radius * radius) / a;
+      if (!(under > 0)) return std::nullopt;
+      const double t = -b + std::sqrt(under);
+      const glm::dvec2 q = o + t * d;
+      if (t < 0 || q.x < 0 || q.y > 0) return std::nullopt;
+      return Hit{t, {0, -q.x / radius, -q.y / radius}};
+    };
+    return {cut(kFloor, [=](const glm::dvec3& p) { return p.y < away - radius; }), arc,
+            cut(plane({0, away, 0}, {0, -1, 0}), [=](const glm::dvec3& p) { return p.z > radius; }),
+            kBall};
+  };
+  const Camera by = camera({0.3, 2, 1.7});
+  for (const auto& [away, is_far] : {std::pair(12.0, false), {900.0, true}}) {
+    const Geometry shown = frame(sweep(away, 0.4 * away), by);
+    const auto found = find_backdrop(shown);
+    ASSERT_TRUE(found) << away;
+    EXPECT_TRUE(found->what.starts_with("a sweep that rises from")) << found->what;
+    EXPECT_EQ(found->is_far(), is_far) << found->clearance;
+    // What stands upright of it; the ball does not.
+    const Geometry ball = frame({kBall}, by);
+    for (std::size_t i = 0; i < shown.surfel.size(); ++i) {
+      const double up =
+          (glm::transpose(shown.camera.rotation) * glm::dvec3(shown.surfel[i].normal)).z;
+      const bool is_ball =
+          ball.is_surface(i) && ball.surfel[i].position == shown.surfel[i].position;
+      if (std::abs(up - 0.7) < 0.05) continue;
+      ASSERT_EQ(found->coverage[i] > 0, !is_ball && up < 0.7) << i << " " << up;
+    }
+  }
+}
+
+/// Walls of places with a roof, with sky above or beside them, behind the edge of a table.
+TEST(Backdrop, WallsOfPlacesAreNone) {
+  const Camera by = look_at(camera_from_fov(60, kWindow, 1), {0, -6, 0.06}, {0, 2, 0.6}, {0, 0, 1});
+  const auto found = [&](const std::vector<Surface>& shown) {
+    const auto backdrop = find_backdrop(frame(shown, by));
+    return backdrop && backdrop->is_far();
+  };
+  const Surface wall = plane({0, 6, 0}, {0, -1, 0});
+  // The low camera sees the wall from 200 times its own height, and 60 times as high.
+  EXPECT_TRUE(found({kFloor, wall}));
+  EXPECT_FALSE(found({kFloor, wall, plane({0, 0, 2.4}, {0, 0, -1})})) << "a roof";
+  EXPECT_FALSE(found({kFloor, cut(wall, [](const glm::dvec3& p) { return p.z < 2; })})) << "sky";
+  EXPECT_FALSE(found({kFloor, cut(wall, [](const glm::dvec3& p) { return p.x < 2; })})) << "beside";
+  const Surface table = cut(kFloor, [](const glm::dvec3& p) { return p.y < -4; });
+  EXPECT_FALSE(found({table, wall})) << "it stands lower";
+  EXPECT_FALSE(found({kFloor, wall, plane({-5, 0, 0}, {1, 0, 0})})) << "a side wall nearby";
 }
 
 /// Each limit of a dome: what lies on it, how much larger it is, and from where it is seen.

@@ -161,6 +161,39 @@ TEST(TakeOut, BackgroundStaysBackground) {
   }
 }
 
+/// Some rows of a frame that end within the hole take from an overview what is below it.
+TEST(TakeOut, RowsThatEndInTheHoleAskTheOverview) {
+  constexpr Window kAll{0, 0, 192, 384}, kRows{0, 60, 192, 140}, kSmall{0, 0, 24, 48};
+  const std::vector<Surface> around = {kFloor, kWall};
+  const Camera by = camera(kAll);
+  const Surface ball = sphere({0.3, 0.2, 2.2}, 2.2);  // as wide as these rows
+  Frame rows = frame_of(around, by, kRows, ball);
+  rows.geometry.part_of = kAll;
+  const Frame whole = frame_of(around, by, kAll, ball);
+  Camera small = by;
+  small.fx /= 8, small.fy /= 8, small.cx /= 8, small.cy /= 8;
+  Frame coarse = frame_of(around, small, kSmall, ball);
+  rows.geometry.display = kAll, coarse.geometry.display = kSmall;
+  const Casting in_small = take_out(coarse.geometry, coarse.coverage, {}, {}),
+                in_whole = take_out(whole.geometry, whole.coverage, {}, {}),
+                alone = take_out(rows.geometry, rows.coverage, {}, {}),
+                in_rows = take_out(rows.geometry, rows.coverage, {}, {}, &in_small.geometry);
+  int pixels = 0, off = 0, off_alone = 0;
+  for (std::size_t i = 0; i < rows.coverage.size(); ++i) {
+    if (rows.coverage[i] == 0) continue;
+    const auto differs = [&](const Casting& casting) {
+      const Surfel &a = casting.geometry.surfel[i],
+                   &b = in_whole.geometry.surfel[i + std::size_t(kRows.y0 * kRows.width())];
+      return a.is_surface() != b.is_surface() ||
+             (a.is_surface() && glm::distance(a.position, b.position) > 0.03f * -b.position.z);
+    };
+    ++pixels, off += differs(in_rows), off_alone += differs(alone);
+  }
+  EXPECT_EQ(pixels, int(rows.coverage.size()));
+  EXPECT_LT(off, 0.1 * pixels);
+  EXPECT_GT(off_alone, 5 * off);
+}
+
 TEST(TakeOut, AnOrthographicFrameToo) {
   const Camera by =
       look_at(camera_from_ortho_width(4, kWindow, 1), {0.3, -4, 2.2}, {0, 0.5, 0.4}, {0, 0, 1});

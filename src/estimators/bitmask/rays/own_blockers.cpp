@@ -12,7 +12,13 @@ OwnBlockers::OwnBlockers(const Scene& blockers, const Scene& scene, const Reques
     : scene_(make_march_scene(blockers.casters(), blockers.solids, request.receivers,
                               &scene.geometry)),
       bounds_(depth_bounds(scene_)),
-      march_{scene_, pattern, request.radius, request.extend_offscreen},
+      other_views_(OtherViewRays::of_added(blockers.other_surfaces)),
+      march_{scene_,
+             pattern,
+             request.radius,
+             request.extend_offscreen,
+             may_be_thin(blockers.solids),
+             other_views_.get()},
       past_(sun_past_beyond(scene_, scene, request)) {
   if (!march_.extend) return;
   cut_ = find_cut_surfaces(scene_, up_in_camera(scene), request.radius,

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "estimators/bitmask/jobs.h"
@@ -25,6 +26,7 @@ class OwnBlockers {
   const MarchScene scene_;
   const std::vector<DepthBounds> bounds_;
   CutSurfaces cut_;
+  const std::unique_ptr<OtherViewRays> other_views_;  ///< null: there are no other views
   March march_;
   float past_;  ///< as sun_past_beyond() has it
 };
