@@ -59,8 +59,8 @@ class Batch {
         progress_(options.batch.progress, options.verbosity.quiet),
         info_(options.verbosity.json, progress_),
         printer_(progress_) {
-    const std::size_t views = std::max(std::size_t(1), options.input.views.size());
-    options_.memory = resources.memory() / (std::size_t(frames_at_one_time()) * views);
+    options_.memory = resources.memory() / std::size_t(frames_at_one_time()) /
+                      std::max(std::size_t(1), options.input.views.size());
     for (const Job& job : jobs_)
       for (const FrameFiles& files : job.views) pictures_.expect(files);
   }
@@ -90,9 +90,7 @@ class Batch {
 
  private:
   /// A frame that is made with those around it takes about as much as one that is estimated.
-  int frames_at_one_time() const {
-    return (overlaps_ ? 2 : 1) + int(options_.model.shot.count > 0);
-  }
+  int frames_at_one_time() const { return 1 + overlaps_ + (options_.model.shot.count > 0); }
 
   ExitCode run_jobs() {
     if (has_statistics())
@@ -127,8 +125,7 @@ class Batch {
   }
 
   void run_job(std::size_t i) {
-    Work now = ahead_ ? std::move(*ahead_) : prepare(i);
-    ahead_.reset();
+    Work now = ahead_ ? *std::exchange(ahead_, {}) : prepare(i);
     if (overlaps_) {
       beside_.start([this, i] {
         if (behind_) write(*behind_, [](double) {});
@@ -153,11 +150,14 @@ class Batch {
     }
   }
 
-  /// A frame that needs no others any more.
+  /// A frame that needs no others any more. Of a frame of `info`, what these show is said.
   std::optional<Work> next_made() {
     if (!shot_.has_complete()) return std::nullopt;
-    Work work = shot_.next_complete();
-    show_shot(work);
+    std::optional<Work> work = shot_.next_complete();
+    if (!shot_.only_looks()) return work;
+    for (const WorkOnView& view : work->views)
+      if (view.shown) info_.show(view.frame, *view.shown);
+    work->views.clear();
     return work;
   }
 
@@ -239,14 +239,6 @@ class Batch {
       if (shot_.only_looks()) return;
       if (options_.command == Command::info || options_.verbosity.dry_run) work.views.clear();
     });
-  }
-
-  /// Says what the other frames of its shot show of a frame of `info`.
-  void show_shot(Work& work) {
-    if (!shot_.only_looks()) return;
-    for (const WorkOnView& view : work.views)
-      if (view.shown) info_.show(view.frame, *view.shown);
-    work.views.clear();
   }
 
   void compute(Work& work, WorkOnView& view, std::optional<History>& before,

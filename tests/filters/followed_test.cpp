@@ -2,6 +2,7 @@
 //
 // A box that travels over a floor before a camera that travels too, with exact motion.
 #include "filters/shot/followed.h"
+#include "filters/shot/fusion.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "filters/shot/followed_point.h"
-#include "filters/shot/fusion.h"
+#include "filters/shot/other_findings.h"
 
 namespace ssdo {
 

@@ -8,7 +8,7 @@
 
 #include "filters/shot/findings.h"
 #include "filters/shot/followed_point.h"
-#include "filters/shot/moved.h"
+#include "filters/shot/other_findings.h"
 #include "math/uninitialized.h"
 #include "scene/light/light.h"
 
@@ -16,14 +16,6 @@ namespace ssdo {
 
 struct RowOfPixels;
 struct Speaker;
-
-/// Another frame of the shot, and what moved between it and the frame that takes the mean.
-struct OtherFindings {
-  const Findings* findings;
-  int away;                             ///< its number less that of the frame
-  const std::vector<MovedPiece>* gone;  ///< find_pieces(frame, other)
-  const std::vector<MovedPiece>* come;  ///< find_pieces(other, frame)
-};
 
 /// The mean of what a frame and others of its shot have found of the same points; see fusion.cpp.
 /// The same bits for the same frames in the same order.

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "filters/shot/fusion.h"
 #include "filters/shot/moved_weights.h"
+#include "filters/shot/other_findings.h"
 #include "filters/shot/sights.h"
 #include "scene/light/light.h"
 
