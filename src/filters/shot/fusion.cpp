@@ -177,7 +177,7 @@ struct Fusion::Room {
   static constexpr std::size_t kMost = RowOfPoints::kMost;
   std::size_t kinds;
   const RowOfPoints* points = nullptr;
-  Sights sights[2];
+  Sights sights[2] = {};
   std::vector<float> moved;
   std::span<const FollowedPoint> followed;  ///< of the row
   std::vector<Saying> sayings;
