@@ -125,7 +125,10 @@ struct Arc {
   }
 };
 
+/// Not a number where none is finite.
 float median(std::vector<float> all) {
+  std::erase_if(all, [](float value) { return !std::isfinite(value); });
+  if (all.empty()) return NAN;
   const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
   std::ranges::nth_element(all, middle);
   return *middle;
@@ -188,7 +191,8 @@ std::optional<Standing> find_standing(const SurfelSamples& far, const Ground& gr
   SurfelSamples left = far;
   const std::vector<Flat> flats =
       take_flats(left, kMostOnIt, [&](const Flat& flat) { return ground.is_below(flat); });
-  if (double(left.size()) > (1 - kMostOnIt) * double(far.size())) return find_sweep(far, ground);
+  if (flats.empty() || double(left.size()) > (1 - kMostOnIt) * double(far.size()))
+    return find_sweep(far, ground);
   double distance = flats.front().distance;
   for (const Flat& flat : flats) distance = std::min(distance, flat.distance);
   return Standing{[flats](const Surfel& s) {
@@ -208,6 +212,7 @@ std::optional<BackdropShape> find_standing_backdrop(const SurfelSamples& samples
   SurfelSamples far;
   std::ranges::copy_if(samples, std::back_inserter(far),
                        [&](const Surfel* s) { return distance_of(s) > 0.5 * farthest; });
+  if (far.size() < kFewestOfShape) return std::nullopt;
   const std::optional<Flat> plane = flat_of(far);
   if (!plane) return std::nullopt;
   const std::optional<Ground> ground = find_ground(samples, 0.5 * farthest, *plane);
@@ -219,6 +224,7 @@ std::optional<BackdropShape> find_standing_backdrop(const SurfelSamples& samples
   std::vector<double> heights;
   for (const Surfel* s : far)
     if (found->has(*s)) heights.push_back(ground->height(*s));
+  std::erase_if(heights, [](double height) { return !std::isfinite(height); });
   if (heights.size() < kFewestOfShape) return std::nullopt;
   std::ranges::sort(heights);
   const auto height_at = [&](double share) {
