@@ -63,12 +63,9 @@ constexpr double kAround = 0.5;
 
 /// A dome, by the far surfaces of all.
 std::optional<BackdropShape> find_dome(const SurfelSamples& samples) {
-  double farthest = 0;
-  for (const Surfel* s : samples) farthest = std::max(farthest, distance_of(s));
-  SurfelSamples far_half;
-  std::ranges::copy_if(samples, std::back_inserter(far_half),
-                       [&](const Surfel* s) { return distance_of(s) > 0.5 * farthest; });
-  const std::optional<RoundShape> sphere = round_of(far_half, glm::dvec3(0), farthest);
+  const double farthest = farthest_of(samples);
+  const std::optional<RoundShape> sphere =
+      round_of(farther_than(samples, 0.5 * farthest), glm::dvec3(0), farthest);
   if (!sphere || glm::length(sphere->middle) >= sphere->radius) return std::nullopt;
   std::vector<double> others;
   double far = 0, on = 0, inward = 0, distances = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 namespace ssdo {
 namespace {
@@ -43,12 +44,12 @@ std::optional<RoundShape> fit(const SurfelSamples& samples, const glm::dvec3& ax
   return round;
 }
 
+}  // namespace
+
 double median(std::vector<double> all) {
   std::ranges::nth_element(all, all.begin() + std::ptrdiff_t(all.size() / 2));
   return all[all.size() / 2];
 }
-
-}  // namespace
 
 SurfelSamples samples_of(const Geometry& g) {
   const int dx = std::max(1, g.surfel.width / kSamples),
@@ -58,6 +59,19 @@ SurfelSamples samples_of(const Geometry& g) {
     for (int x = dx / 2; x < g.surfel.width; x += dx)
       if (g.surfel(x, y).is_surface()) samples.push_back(&g.surfel(x, y));
   return samples;
+}
+
+double farthest_of(const SurfelSamples& samples) {
+  double farthest = 0;
+  for (const Surfel* s : samples) farthest = std::max(farthest, distance_of(s));
+  return farthest;
+}
+
+SurfelSamples farther_than(const SurfelSamples& samples, double distance) {
+  SurfelSamples far;
+  std::ranges::copy_if(samples, std::back_inserter(far),
+                       [&](const Surfel* s) { return distance_of(s) > distance; });
+  return far;
 }
 
 std::optional<RoundShape> round_of(const SurfelSamples& far, const glm::dvec3& axis, double unit) {
@@ -117,7 +131,11 @@ std::vector<Flat> take_flats(SurfelSamples& left, double share,
   while (double(left.size()) > most_left && flats.size() < kMostPlanes) {
     const std::optional<Flat> flat = flat_of(left);
     if (!flat || !may_be(*flat)) break;
-    if (std::erase_if(left, [&](const Surfel* s) { return flat->has(*s); }) < kFewestOfShape) break;
+    SurfelSamples off;
+    std::ranges::copy_if(left, std::back_inserter(off),
+                         [&](const Surfel* s) { return !flat->has(*s); });
+    if (left.size() - off.size() < kFewestOfShape) break;
+    left = std::move(off);
     flats.push_back(*flat);
   }
   return flats;

@@ -71,6 +71,13 @@ SurfelSamples samples_of(const Geometry& geometry);
 /// From the camera.
 inline double distance_of(const Surfel* s) { return glm::length(glm::dvec3(s->position)); }
 
+/// 0 where there are none.
+double farthest_of(const SurfelSamples& samples);
+SurfelSamples farther_than(const SurfelSamples& samples, double distance);
+
+/// Of one value or more.
+double median(std::vector<double> all);
+
 /// The sphere, or the cylinder along `axis`, of far surfaces: fitted to all, then to those that lie
 /// near it. Distances are computed in units of `unit`, so that sums keep their digits.
 std::optional<RoundShape> round_of(const SurfelSamples& far, const glm::dvec3& axis, double unit);

@@ -125,15 +125,6 @@ struct Arc {
   }
 };
 
-/// Not a number where none is finite.
-float median(std::vector<float> all) {
-  std::erase_if(all, [](float value) { return !std::isfinite(value); });
-  if (all.empty()) return NAN;
-  const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
-  std::ranges::nth_element(all, middle);
-  return *middle;
-}
-
 /// The arc that bent surfaces lie on, and its wall, which need not be seen. A place whose normal is
 /// (up, out) is R (1 - up) above the ground and R (1 - out) before the wall.
 std::optional<Arc> find_arc(const SurfelSamples& samples, const Ground& ground) {
@@ -149,14 +140,14 @@ std::optional<Arc> find_arc(const SurfelSamples& samples, const Ground& ground) 
   Arc arc{ground, {glm::normalize(out)}};
   std::erase_if(bent, [&](const Surfel* s) { return !arc.turns_as(*s); });
   if (bent.size() < kFewestOfShape) return std::nullopt;
-  std::vector<float> radii, distances;
+  std::vector<double> radii, distances;
   for (const Surfel* s : bent)
-    radii.push_back(float(arc.above(*s) / (1 - glm::dot(normal_of(*s), ground.plane.normal))));
-  arc.radius = double(median(radii));
+    radii.push_back(arc.above(*s) / (1 - glm::dot(normal_of(*s), ground.plane.normal)));
+  arc.radius = median(radii);
   for (const Surfel* s : bent)
-    distances.push_back(
-        float(arc.radius * (1 - glm::dot(normal_of(*s), arc.wall.normal)) - arc.before(*s)));
-  arc.wall.distance = double(median(distances));
+    distances.push_back(arc.radius * (1 - glm::dot(normal_of(*s), arc.wall.normal)) -
+                        arc.before(*s));
+  arc.wall.distance = median(distances);
   if (!(arc.radius > 0 && arc.wall.distance > 0)) return std::nullopt;
   return arc;
 }
@@ -191,8 +182,7 @@ std::optional<Standing> find_standing(const SurfelSamples& far, const Ground& gr
   SurfelSamples left = far;
   const std::vector<Flat> flats =
       take_flats(left, kMostOnIt, [&](const Flat& flat) { return ground.is_below(flat); });
-  if (flats.empty() || double(left.size()) > (1 - kMostOnIt) * double(far.size()))
-    return find_sweep(far, ground);
+  if (double(left.size()) > (1 - kMostOnIt) * double(far.size())) return find_sweep(far, ground);
   double distance = flats.front().distance;
   for (const Flat& flat : flats) distance = std::min(distance, flat.distance);
   return Standing{[flats](const Surfel& s) {
@@ -207,12 +197,8 @@ std::optional<Standing> find_standing(const SurfelSamples& far, const Ground& gr
 }  // namespace
 
 std::optional<BackdropShape> find_standing_backdrop(const SurfelSamples& samples) {
-  double farthest = 0;
-  for (const Surfel* s : samples) farthest = std::max(farthest, distance_of(s));
-  SurfelSamples far;
-  std::ranges::copy_if(samples, std::back_inserter(far),
-                       [&](const Surfel* s) { return distance_of(s) > 0.5 * farthest; });
-  if (far.size() < kFewestOfShape) return std::nullopt;
+  const double farthest = farthest_of(samples);
+  SurfelSamples far = farther_than(samples, 0.5 * farthest);
   const std::optional<Flat> plane = flat_of(far);
   if (!plane) return std::nullopt;
   const std::optional<Ground> ground = find_ground(samples, 0.5 * farthest, *plane);
@@ -224,7 +210,6 @@ std::optional<BackdropShape> find_standing_backdrop(const SurfelSamples& samples
   std::vector<double> heights;
   for (const Surfel* s : far)
     if (found->has(*s)) heights.push_back(ground->height(*s));
-  std::erase_if(heights, [](double height) { return !std::isfinite(height); });
   if (heights.size() < kFewestOfShape) return std::nullopt;
   std::ranges::sort(heights);
   const auto height_at = [&](double share) {

@@ -11,6 +11,7 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
+#include "scene/objects/backdrop_shapes.h"
 #include "support/analytic_scene.h"
 
 namespace ssdo::test::backdrop_test {
@@ -269,6 +270,22 @@ TEST(Backdrop, TheCameraIsInADome) {
   // The same dome, around the camera.
   const Surface half = cut(dome({0, 0, 2.2}, 4000), [](const glm::dvec3& p) { return p.y > 3000; });
   EXPECT_TRUE(is_backdrop(frame({kStage, kBall, half}, at)));
+}
+
+/// A plane with too few samples is none, and takes none from what is left to other shapes.
+TEST(Backdrop, PlanesWithFewSamplesTakeNothing) {
+  for (const std::size_t on_plane : {kFewestOfShape - 1, kFewestOfShape}) {
+    std::vector<Surfel> surfels(on_plane + 1);
+    for (std::size_t i = 0; i < surfels.size(); ++i) {
+      surfels[i].position = {0.1f * float(i), 0, i < on_plane ? -10 : -20};
+      surfels[i].normal = {0, 0, 1};
+    }
+    SurfelSamples left;
+    for (const Surfel& s : surfels) left.push_back(&s);
+    const std::size_t flats = take_flats(left, 0.8, [](const Flat&) { return true; }).size();
+    EXPECT_EQ(flats, std::size_t(on_plane == kFewestOfShape));
+    EXPECT_EQ(left.size(), flats == 0 ? surfels.size() : 1);
+  }
 }
 
 TEST(Backdrop, OtherFarThingsAreNone) {
