@@ -127,13 +127,18 @@ std::string needs_whole_frame(const Scene& overview, const Plan& plan,
   return "";
 }
 
+/// Before anything but the header was read.
+double expected_bytes_per_pixel(const OutputOptions& output, int lamps) {
+  const double of_light = output.per_light ? kBytesOfBounce + kBytesOfDirect : 0;
+  return kBytesPerPixel + (kUsualSuns + lamps) * kBytesOfSun + 2 * kBytesOfMore +
+         (1 + lamps) * of_light;
+}
+
 }  // namespace
 
 std::size_t most_pixels_in(std::size_t memory, const OutputOptions& output, int lamps) {
-  const double of_light = output.per_light ? kBytesOfBounce + kBytesOfDirect : 0;
-  const double most = kBytesPerPixel + (kUsualSuns + lamps) * kBytesOfSun + 2 * kBytesOfMore +
-                      (1 + lamps) * of_light;
-  return std::size_t(std::max(0.0, double(memory) - kBytes) / most);
+  const double left = std::max(0.0, double(memory) - kBytes);
+  return std::size_t(left / expected_bytes_per_pixel(output, lamps));
 }
 
 double bytes_in_one_piece(const Plan& plan, const Scene& scene, std::size_t pixels) {
@@ -145,11 +150,15 @@ BandPlan plan_bands(const std::string& file, const Window& frame, const Window& 
                     std::size_t memory) {
   const std::string size = fmt::format("{}: {} x {} pixels", file, frame.width(), frame.height());
   if (const std::string what = needs_whole_frame(overview, plan, output); !what.empty()) {
+    // The frame was read in small because of what was expected of it, which may be more.
+    const double expected =
+        kBytes +
+        expected_bytes_per_pixel(output, int(overview.light.sources.size())) * double(frame.area());
+    const double bytes = std::max(bytes_in_one_piece(plan, overview, frame.area()), expected);
     throw Error(ExitCode::usage,
                 fmt::format("{} take {} of memory, and may take {}; {} needs all of the frame at "
                             "once: leave that out, or raise --mem-limit",
-                            size, in_gigabytes(bytes_in_one_piece(plan, overview, frame.area())),
-                            in_gigabytes(double(memory)), what));
+                            size, in_gigabytes(bytes), in_gigabytes(double(memory)), what));
   }
   const Planner planner(frame, display, overview, plan, memory);
   const BandPlan bands = planner.choose();

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -170,6 +171,12 @@ TEST_F(AShot, TakesNoMoreMemoryThanItMay) {
   EXPECT_GT(much, little + 0.5 * 17 * 48 * double(window.area())) << "kept surfaces and values";
   EXPECT_EQ(found(9, "ao.Y", "little").pixels, found(9, "ao.Y", "much").pixels);
   EXPECT_EQ(found(9, "direct.R", "little").pixels, found(9, "direct.R", "much").pixels);
+  const std::string refusal = run(one + Words{"--mem-limit", "215M"}, "less").error_line();
+  double takes = 0, may_take = 0;
+  ASSERT_NE(refusal.find(" take "), std::string::npos) << refusal;
+  std::sscanf(refusal.c_str() + refusal.find(" take "), " take %lf GB of memory, and may take %lf",
+              &takes, &may_take);
+  EXPECT_GT(takes, may_take) << refusal;
 }
 
 /// The same point of the same surface has the same light from frame to frame.

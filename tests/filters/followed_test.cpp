@@ -148,6 +148,10 @@ TEST_F(AMovingBox, IsFoundWhereItWasAndWhereItWillBe) {
                          found = there.centre(std::size_t(point.pixel)) +
                                  glm::dvec2(double(w[1] + w[3]), double(w[2] + w[3]));
         EXPECT_LT(glm::distance(found, wanted), 0.15) << point.x << " " << y << " " << k;
+        const double way = std::abs(all[k].away) * glm::length(kStep),
+                     from_camera = glm::length(now().geometry.surfel(point.x, y).position),
+                     share = way / (0.05 * from_camera);
+        EXPECT_NEAR(point.counts, std::exp(-share * share), 0.05);
       }
     }
   }

@@ -90,6 +90,35 @@ TEST(Moved, WeightsAreThoseOfTheFormFactor) {
   }
 }
 
+/// Receivers that move by 3 pixels in a frame below a ball that moves along, or stands still.
+TEST(Moved, WhatMovesAlongHidesTheSame) {
+  const Camera above = look_at(camera_from_fov(45, kWindow, 1), {0, 0, 4}, {}, {0, 1, 0});
+  const KeptSurfaces floor = keep_surfaces(geometry_of(plane({}, {0, 0, 1}), above, kWindow));
+  OwnMotion motion;
+  motion.is_known = true;
+  motion.pixels.assign(floor.size(), two_in_one(3.0f, 0.0f));
+  const float radius = 0.3f, height = 2, hidden = 0.05f;
+  const float area = hidden * 3.14159265f * (height * height + radius * radius);
+  const auto weight_of = [&](const glm::vec3& velocity, int frames) {
+    const std::vector<MovedPiece> pieces = {{{0, 0, -2}, radius, area, velocity}};
+    MovedWeights weights(floor, pieces,
+                         model_light(Environment::constant(glm::vec3(1)), glm::mat3(1)));
+    weights.weigh_moving(floor, pieces, motion, frames);
+    float weight;
+    weights.row_of_moving({kWindow.width() / 2, kWindow.height() / 2, 1, 1}, &weight);
+    return weight;
+  };
+  const glm::vec3 along =
+      velocity_of(motion, floor, floor.index(kWindow.width() / 2, kWindow.height() / 2));
+  EXPECT_NEAR(glm::length(along), 3 * 4 / above.fx, 1e-3);
+  for (const int frames : {1, 2, 8, -8}) {
+    EXPECT_NEAR(weight_of(along, frames), 1, 1e-3) << frames;
+    const float way = glm::length(along) * float(std::abs(frames)),
+                left = 1 - hidden / 0.1f * std::min(way / (2 * radius), 1.0f);
+    EXPECT_NEAR(weight_of(glm::vec3(0), frames), left * left, 0.02f) << frames;
+  }
+}
+
 /// The shadow of a ball is as wide as the ball and the penumbra of the lamp.
 TEST(Moved, TheShadowOfAWideLampIsWider) {
   const Camera above = look_at(camera_from_fov(45, kWindow, 1), {0, 0, 4}, {}, {0, 1, 0});

@@ -25,6 +25,14 @@ Geometry frame_with(const glm::dvec3& ball, double degrees) {
                      camera_at(degrees), kWindow);
 }
 
+/// A post of half a pixel, which falls between pixels.
+Geometry frame_with_a_post(double degrees) {
+  const Surface post = cut(plane({0, 0.2, 0}, {0, -1, 0}), [](const glm::dvec3& p) {
+    return std::abs(p.x - 0.3) < 0.006 && p.z < 1.5;
+  });
+  return geometry_of(all_of({plane({}, {0, 0, 1}), post}), camera_at(degrees), kWindow);
+}
+
 /// Those within kNearMoving + more pixels of where one of both places of a ball is seen.
 Plane<unsigned char> around(const Camera& camera, const std::vector<glm::dvec3>& balls, int more) {
   Plane<unsigned char> near(kWindow.width(), kWindow.height(), 0);
@@ -63,6 +71,9 @@ TEST(NearMoving, NothingIsInAStillScene) {
   for (const double degrees : {0.0, 0.3, 1.0, 3.0, 8.0}) {
     const Plane<unsigned char> near = near_moving(frame_with(ball, 0), frame_with(ball, degrees));
     EXPECT_EQ(std::ranges::count(near.pixels, 1), 0) << degrees;
+    const Plane<unsigned char> near_post =
+        near_moving(frame_with_a_post(0), frame_with_a_post(degrees));
+    EXPECT_EQ(std::ranges::count(near_post.pixels, 1), 0) << degrees;
   }
 }
 
