@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Makes the Debian package, installs it on a bare Debian of this machine's release, tries it there as a
 # plain user and purges it; then the same trial of `cmake --install`, in a folder that was moved, and of
-# the bundle, on bare systems of two releases, or of one where CI is set. Those are kept in $SSDO_ROOTS.
+# the bundle, on bare systems of that release and the next, or of one where CI is set. Those are kept in
+# $SSDO_ROOTS.
 # Usage: run.sh [BUILD]; by default build/release, which holds a finished build. As root.
 set -euo pipefail
 
@@ -10,9 +11,11 @@ folder=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$folder/../platforms/roots.sh"
 roots=${SSDO_ROOTS:-/var/tmp/ssdo_roots}
 data=$folder/../../data
-# Another release is one more debootstrap, which CI has no time for.
-releases=(bookworm)
-[ -n "${CI:-}" ] || releases+=(trixie)
+own=$(. /etc/os-release && echo "$VERSION_CODENAME")
+# The bundle takes the C library of its build or a later one. Another release is one more debootstrap,
+# which CI has no time for.
+releases=("$own")
+[ -n "${CI:-}" ] || [ "$own" = trixie ] || releases+=(trixie)
 build=$(realpath -m "${1:-$folder/../../build/release}")
 
 say() { echo "[${SECONDS}s] $*"; }
@@ -62,7 +65,7 @@ trial_folder() {
 
 test_package() {
   local bare
-  bare=$(bare_root "$(. /etc/os-release && echo "$VERSION_CODENAME")")
+  bare=$(bare_root "$own")
   cp -a "$bare" "$work/root"
   trial_folder "$work/root/trial"
   cp "$package" "$work/root/ssdo.deb"
