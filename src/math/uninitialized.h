@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <new>
+#include <type_traits>
 #include <utility>
 
 namespace ssdo {
@@ -16,9 +17,10 @@ struct Uninitialized : std::allocator<T> {
     using other = Uninitialized<U>;
   };
 
+  /// Vectors of GLM that are given no value would be set to 0.
   template <class U>
   void construct(U* at) {
-    ::new (static_cast<void*>(at)) U;
+    if constexpr (!std::is_trivially_copyable_v<U>) ::new (static_cast<void*>(at)) U;
   }
   template <class U, class... Arguments>
   void construct(U* at, Arguments&&... arguments) {

@@ -105,7 +105,10 @@ class LayerReader {
     const Plane<float>&x = plane(window_, *layer, 0, NAN, laid[0]),
           &y = plane(window_, *layer, 1, NAN, laid[1]);
     auto out = Plane<glm::vec2>::like(x);
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {x[i], y[i]};
+    for_each_row(out.height, [&](int row) {
+      for (std::size_t i = out.index(0, row), end = out.index(0, row + 1); i < end; ++i)
+        out[i] = {x[i], y[i]};
+    });
     return out;
   }
 
