@@ -141,8 +141,8 @@ std::optional<BackdropShape> find_flats(const Behind& behind) {
 std::optional<BackdropShape> find_cylinder(const Behind& behind, const glm::dvec3& axis) {
   const std::optional<RoundShape> found = round_of(behind.samples, axis, behind.nearest);
   if (!found || !is_cylinder_around(*found, behind.samples, kMostOnWalls)) return std::nullopt;
-  const auto has = [found, nearest = behind.nearest](const Surfel& s) {
-    return distance_of(&s) >= nearest && found->has(glm::dvec3(s.position));
+  const auto has = [shape = *found, nearest = behind.nearest](const Surfel& s) {
+    return distance_of(&s) >= nearest && shape.has(glm::dvec3(s.position));
   };
   return BackdropShape{has,
                        fmt::format("a cylinder of radius {:.3g} around everything", found->radius),
