@@ -309,8 +309,10 @@ TEST_F(LampLinks, ReceiveReachesWhatOtherViewsShow) {
                level =
                    look_at(camera_from_fov(70, kWindow, 1), {0, -3, 1.5}, {0, 2, 0.8}, {0, 0, 1});
   const auto write = [&](const std::string& name, const Camera& by) {
-    const Picture picture = take_picture(
-        all_of({plane({0, 0, 0}, {0, 0, 1}), plane({0, 1.9, 0}, {0, -1, 0})}), by, kWindow);
+    const Picture picture =
+        take_picture(all_of({plane({0, 0, 0}, {0, 0, 1}), plane({0, 1.9, 0}, {0, -1, 0}),
+                             sphere({0.4, -0.2, 0.2}, 0.2)}),
+                     by, kWindow);
     FramePart part = frame_of(picture);
     part.data = part.display = kWindow;
     write_frame(path("silent_" + name), part);
@@ -363,7 +365,7 @@ TEST_F(LampLinks, InBandsAreNearlyThoseOfTheFrame) {
     };
     const std::string links = "cast=id:IndexOB=2 receive=id:IndexOB=1-2";
     const Plane<float> plain = light("", {}), whole = light(links, {}),
-                       bands = light(links, {"--mem-limit", "135M"});
+                       bands = light(links, {"--mem-limit", "150M"});
     const double off = rms(whole, bands), effect = rms(whole, plain);
     RecordProperty("radius " + radius, fmt::format("{:.5f} {:.5f}", off, effect));
     EXPECT_GT(effect, 0.05 * rms(plain, Plane<float>(320, 1600, 0.0f))) << radius;
