@@ -66,12 +66,13 @@ template Plane<glm::vec3> at_output_size(Plane<glm::vec3>, const GBuffer&);
 
 Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer) {
   const Geometry& geometry = scene.geometry;
-  Plane<float> alpha(geometry.surfel.width, geometry.surfel.height, 0.0f);
-  for (std::size_t i = 0; i < alpha.size(); ++i) {
-    if (!geometry.is_surface(i)) continue;
-    const float a = gbuffer.alpha.empty() ? 1.0f : gbuffer.alpha[i];
-    alpha[i] = std::isfinite(a) ? std::clamp(a, 0.0f, 1.0f) : 1.0f;
-  }
+  auto alpha = Plane<float>::like(geometry.surfel);
+  for_each_row(alpha.height, [&](int y) {
+    for (std::size_t i = alpha.index(0, y); i < alpha.index(0, y + 1); ++i) {
+      const float a = gbuffer.alpha.empty() ? 1.0f : gbuffer.alpha[i];
+      alpha[i] = !geometry.is_surface(i) ? 0 : std::isfinite(a) ? std::clamp(a, 0.0f, 1.0f) : 1.0f;
+    }
+  });
   return alpha;
 }
 

@@ -2,6 +2,8 @@
 #include "estimators/guessed.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -15,6 +17,7 @@
 #include "math/frame.h"
 #include "math/sampling.h"
 #include "math/sobol.h"
+#include "parallel/tiles.h"
 #include "scene/normals/normals.h"
 #include "scene/other_views/sight.h"
 #include "scene/pixel_footprint.h"
@@ -352,21 +355,24 @@ GuessedMean mean_guessed(const Scene& scene, float radius) {
   const Window &window = scene.geometry.window,
                shown = intersection(window, scene.geometry.display);
   const int apart = std::max(1, int(std::sqrt(double(shown.area()) / kPixelsOfMean)));
-  GuessedMean mean;
-  int surfaces = 0;
-  for (int y = shown.y0 - window.y0 + apart / 2; y < shown.y1 - window.y0; y += apart) {
+  const int first = shown.y0 - window.y0 + apart / 2, end = shown.y1 - window.y0;
+  std::array<std::atomic<int>, kUnseenPlaces.size()> rays = {};
+  std::atomic<int> surfaces = 0;
+  for_each_row(std::max(0, (end - first + apart - 1) / apart), [&](int row) {
+    const int y = first + row * apart;
     for (int x = shown.x0 - window.x0 + apart / 2; x < shown.x1 - window.x0; x += apart) {
       if (!surfel(x, y).is_usable()) continue;
       ++surfaces;
       const Guesses::Samples samples{0, kRaysOfMean,
                                      hash_of(std::uint32_t(x), std::uint32_t(y), kSeed)};
-      guesses.gather(x, y, samples, [&](Unseen at) { mean.at[std::size_t(at)] += 1; });
+      guesses.gather(x, y, samples, [&](Unseen at) { ++rays[std::size_t(at)]; });
     }
-  }
+  });
   if (surfaces == 0) return {};
-  for (float& share : mean.at) {
-    share /= float(kRaysOfMean * surfaces);
-    mean.all += share;
+  GuessedMean mean;
+  for (std::size_t place = 0; place < rays.size(); ++place) {
+    mean.at[place] = float(rays[place]) / float(kRaysOfMean * surfaces);
+    mean.all += mean.at[place];
   }
   return mean;
 }

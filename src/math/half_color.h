@@ -39,10 +39,4 @@ struct HalfColor {
 
 inline glm::vec3 operator*(const HalfColor& a, const glm::vec3& b) { return glm::vec3(a) * b; }
 
-inline Plane<HalfColor> in_half(const Plane<glm::vec3>& colors) {
-  auto out = Plane<HalfColor>::like(colors);
-  std::copy(colors.pixels.begin(), colors.pixels.end(), out.pixels.begin());
-  return out;
-}
-
 }  // namespace ssdo

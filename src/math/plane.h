@@ -39,13 +39,16 @@ struct Plane {
   Plane(int w, int h, T value = T{})
       : width(w), height(h), pixels(std::size_t(w) * std::size_t(h), value) {}
 
-  /// A plane of the same size, whose values are whatever was in memory.
-  static Plane like(const auto& other) {
+  /// A plane whose values are whatever was in memory.
+  static Plane unset(int width, int height) {
     Plane plane;
-    plane.width = other.width, plane.height = other.height;
-    plane.pixels.resize(other.size());
+    plane.width = width, plane.height = height;
+    plane.pixels.resize(std::size_t(width) * std::size_t(height));
     return plane;
   }
+
+  /// The same, of the size of another plane.
+  static Plane like(const auto& other) { return unset(other.width, other.height); }
 
   bool empty() const { return pixels.empty(); }
   std::size_t size() const { return pixels.size(); }

@@ -82,6 +82,12 @@ void for_each_band(int height, const std::function<void(int y0, int y1)>& work,
 
 void for_each_row(int height, const std::function<void(int y)>& work) { run(height, work); }
 
+std::size_t count_over_rows(int height, const std::function<std::size_t(int y)>& count_in) {
+  std::atomic<std::size_t> count = 0;
+  for_each_row(height, [&](int y) { count += count_in(y); });
+  return count;
+}
+
 struct ThreadLimit::Control {
   tbb::global_control control;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <functional>
 
 namespace ssdo {
@@ -30,6 +31,9 @@ void for_each_task(std::size_t count, const std::function<void(std::size_t)>& wo
 
 /// Calls `work` once for each row.
 void for_each_row(int height, const std::function<void(int y)>& work);
+
+/// The sum of what `count_in` says of each row.
+std::size_t count_over_rows(int height, const std::function<std::size_t(int y)>& count_in);
 
 /// Holds for_each_tile() and its like to `count` threads while it lives, in the whole process.
 class ThreadLimit {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "relight/frame.h"
+#include "parallel/planes.h"
 
 #include <utility>
 

@@ -14,6 +14,7 @@
 #include <glm/common.hpp>
 #include <utility>
 
+#include "parallel/planes.h"
 #include "parallel/tiles.h"
 #include "relight/estimate.h"
 
@@ -63,7 +64,7 @@ void find_shadow(Scene& without, Relit& relit) {
   relit.times.filter += found.filter_ms;
   const Products& with = relit.products;
   const Plane<Surfel>& surfel = scene.geometry.surfel;
-  auto lit = Plane<glm::vec3>::like(surfel), lit_without = lit;
+  Plane<glm::vec3> lit = filled(surfel.width, surfel.height, glm::vec3(0)), lit_without = lit;
   for_each_row(surfel.height, [&](int y) {
     for (std::size_t i = surfel.index(0, y); i < surfel.index(0, y + 1); ++i) {
       // Where the objects stand, the pixel beside them that the hole is filled from.

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "error.h"
+#include "parallel/planes.h"
 #include "parallel/tiles.h"
 #include "scene/camera/find_camera.h"
 #include "scene/normals/lens_of_normals.h"
@@ -143,7 +144,7 @@ bool is_depth_planar(const GBuffer& g, const Geometry& planar, const NormalSpace
                      GeometryReport& report) {
   if (planar.camera.orthographic) return true;
   Geometry by_rays;
-  by_rays.surfel = Plane<Surfel>::like(planar.surfel);
+  by_rays.surfel = filled(planar.surfel.width, planar.surfel.height, Surfel{});
   place_positions(g, to_grid(report.placement.of_positions, g.grid), DepthKind::ray, by_rays);
   const NormalSpace of_rays =
       find_normal_space(g.normal, by_rays.surfel, spaces_of_normals(g, report), false);
@@ -331,7 +332,7 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
   out.window = g.window;
   out.display = g.display;
   out.part_of = g.part_of;
-  out.surfel = Plane<Surfel>(g.window.width(), g.window.height());
+  out.surfel = filled(g.window.width(), g.window.height(), Surfel{});
   // Nor is the camera known where the overview of a frame shows none.
   if (known && known->median_depth <= 0) return out;
   if (!known && g.background_pixels + g.bad_pixels >= g.valid.size() &&

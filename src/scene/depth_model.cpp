@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/camera/projection_model.h"
+#include "scene/marked_pixels.h"
 
 namespace ssdo {
 namespace {
@@ -36,13 +37,9 @@ struct Pixel {
 /// At most kMostSamples of the pixels that count, spread over the frame.
 std::vector<Pixel> collect(const Plane<glm::vec3>& positions, const Plane<float>& depth,
                            const Plane<unsigned char>& counts) {
-  const auto count = std::size_t(std::count(counts.pixels.begin(), counts.pixels.end(), 1));
-  const std::size_t stride = count / kMostSamples + 1;
   std::vector<Pixel> pixels;
-  std::size_t seen = 0;
-  for (std::size_t i = 0; i < depth.size(); ++i) {
-    if (counts[i] && seen++ % stride == 0) pixels.push_back({glm::dvec3(positions[i]), depth[i]});
-  }
+  for (const std::size_t i : every_marked(counts, count_marked(counts) / kMostSamples + 1))
+    pixels.push_back({glm::dvec3(positions[i]), depth[i]});
   return pixels;
 }
 

@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "parallel/tiles.h"
+
 namespace ssdo {
 
 /// What stands at given places of many numbers in ascending order, without sorting them. Numbers
@@ -18,7 +20,13 @@ class OrderStatistics {
  public:
   /// Numbers with a sign are left out. `values` have to outlive this.
   explicit OrderStatistics(std::span<const float> values) : values_(values), counts_(kUppers) {
-    for (const float value : values) ++counts_[upper_of(value)];
+    std::vector<std::vector<std::uint32_t>> of_parts(parts());
+    for_each_task(parts(), [&](std::size_t p) {
+      of_parts[p].resize(kUppers);
+      for (const float value : part(p)) ++of_parts[p][upper_of(value)];
+    });
+    for (const auto& counts : of_parts)
+      for (std::size_t upper = 0; upper < kUppers; ++upper) counts_[upper] += counts[upper];
     for (std::size_t upper = 0; upper < kUppers / 2; ++upper) count_ += counts_[upper];
   }
 
@@ -28,10 +36,14 @@ class OrderStatistics {
   float at(std::size_t place) const {
     std::size_t upper = 0;
     for (; counts_[upper] <= place; ++upper) place -= counts_[upper];
+    std::vector<std::vector<float>> of_parts(parts());
+    for_each_task(parts(), [&](std::size_t p) {
+      std::ranges::copy_if(part(p), std::back_inserter(of_parts[p]),
+                           [&](float value) { return upper_of(value) == upper; });
+    });
     std::vector<float> alike;
     alike.reserve(counts_[upper]);
-    std::copy_if(values_.begin(), values_.end(), std::back_inserter(alike),
-                 [&](float value) { return upper_of(value) == upper; });
+    for (const auto& some : of_parts) alike.insert(alike.end(), some.begin(), some.end());
     const auto wanted = alike.begin() + std::ptrdiff_t(place);
     std::nth_element(alike.begin(), wanted, alike.end());
     return *wanted;
@@ -39,6 +51,12 @@ class OrderStatistics {
 
  private:
   static constexpr std::size_t kUppers = 1 << 16;
+  static constexpr std::size_t kPart = 1 << 18;  ///< numbers that one task counts
+
+  std::size_t parts() const { return (values_.size() + kPart - 1) / kPart; }
+  std::span<const float> part(std::size_t p) const {
+    return values_.subspan(p * kPart, std::min(kPart, values_.size() - p * kPart));
+  }
 
   static std::size_t upper_of(float value) { return std::bit_cast<std::uint32_t>(value) >> 16; }
 

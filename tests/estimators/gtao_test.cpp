@@ -8,6 +8,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "estimators/obscurance_request.h"
+#include "parallel/planes.h"
 
 namespace ssdo::test::gtao_test {
 namespace {

@@ -140,7 +140,7 @@ std::vector<Plane<float>> read_rows(const ExrReader& reader, const ExrPart& part
   std::vector<Plane<float>> planes;
   std::vector<ChannelRows> rows;
   for (const std::string& name : names) {
-    planes.emplace_back(window.width(), window.height());
+    planes.push_back(Plane<float>::unset(window.width(), window.height()));
     rows.push_back({find_channel(reader, part, name),
                     reinterpret_cast<std::byte*>(planes.back().pixels.data()), true});
   }

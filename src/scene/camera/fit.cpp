@@ -53,8 +53,7 @@ struct PictureScale {
 
 /// Direct linear transform: M (3 x 4) with pixel ~ M (p, 1) and the points in front.
 Eigen::Matrix<double, 3, 4> projective_matrix(const Samples& samples, const PictureScale& picture) {
-  Eigen::MatrixXd ata = Eigen::MatrixXd::Zero(12, 12);
-  for (const Sample& s : samples.items) {
+  const auto add = [&](Eigen::MatrixXd& ata, const Sample& s) {
     const Eigen::Vector4d h(s.p.x, s.p.y, s.p.z, 1);
     const Vector2d uv = picture.of(s.pixel);
     Eigen::Matrix<double, 2, 12> rows = Eigen::Matrix<double, 2, 12>::Zero();
@@ -63,8 +62,9 @@ Eigen::Matrix<double, 3, 4> projective_matrix(const Samples& samples, const Pict
     rows.block<1, 4>(1, 4) = h.transpose();
     rows.block<1, 4>(1, 8) = -uv.y() * h.transpose();
     ata += rows.transpose() * rows;
-  }
-  const Eigen::VectorXd m = null_vector(ata);
+  };
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(12, 12);
+  const Eigen::VectorXd m = null_vector(sum_over(samples.items, zero, add));
   Eigen::Matrix<double, 3, 4> matrix;
   for (int i = 0; i < 3; ++i) matrix.row(i) = m.segment<4>(4 * i).transpose();
   // w of the centroid is the last entry: the points are in front where it is positive.

@@ -17,9 +17,11 @@
 #include <string_view>
 #include <vector>
 
+#include "parallel/tiles.h"
 #include "scene/camera/find_camera.h"
 #include "scene/camera/fit.h"
 #include "scene/camera/position_rounding.h"
+#include "scene/marked_pixels.h"
 #include "scene/straight.h"
 
 namespace ssdo {
@@ -77,11 +79,10 @@ constexpr std::array<Encoding, 9> kEncodings = {{
 }};
 
 Plane<unsigned char> thinned(const Plane<unsigned char>& mask) {
-  const auto count = std::size_t(std::count(mask.pixels.begin(), mask.pixels.end(), 1));
   // An odd stride, so that what is left does not line up in columns.
-  const std::size_t stride = (count / kMostPixels) | 1;
+  const std::size_t stride = (count_marked(mask) / kMostPixels) | 1;
   Plane<unsigned char> thin(mask.width, mask.height);
-  for (std::size_t i = 0, n = 0; i < mask.size(); ++i) thin[i] = mask[i] && n++ % stride == 0;
+  for (const std::size_t i : every_marked(mask, stride)) thin[i] = 1;
   return thin;
 }
 
@@ -89,8 +90,7 @@ Plane<unsigned char> thinned(const Plane<unsigned char>& mask) {
 /// too few or determine none.
 double least_miss_px(const Plane<glm::vec3>& positions, const Plane<unsigned char>& mask,
                      const Window& window) {
-  if (std::size_t(std::count(mask.pixels.begin(), mask.pixels.end(), 1)) < kFewestPixels)
-    return INFINITY;
+  if (count_marked(mask) < kFewestPixels) return INFINITY;
   const auto camera = fit_camera(positions, mask, window);
   return camera ? median_miss_px(*camera, positions, mask, window) : INFINITY;
 }
@@ -100,13 +100,20 @@ struct Bounds {
 };
 
 Bounds bounds_of(const GBuffer& g) {
-  Bounds bounds;
-  for (std::size_t i = 0; i < g.position.size(); ++i) {
-    if (!g.valid[i]) continue;
-    bounds.low = glm::min(bounds.low, g.position[i]);
-    bounds.high = glm::max(bounds.high, g.position[i]);
-  }
-  return bounds;
+  std::vector<Bounds> of_rows(std::size_t(g.position.height));
+  for_each_row(g.position.height, [&](int y) {
+    Bounds bounds;
+    for (std::size_t i = g.position.index(0, y); i < g.position.index(0, y + 1); ++i) {
+      if (!g.valid[i]) continue;
+      bounds.low = glm::min(bounds.low, g.position[i]);
+      bounds.high = glm::max(bounds.high, g.position[i]);
+    }
+    of_rows[std::size_t(y)] = bounds;
+  });
+  Bounds all;
+  for (const Bounds& row : of_rows)
+    all = {glm::min(all.low, row.low), glm::max(all.high, row.high)};
+  return all;
 }
 
 /// One end of the coordinates along an axis, which some of them have and none passes.

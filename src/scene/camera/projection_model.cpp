@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "scene/marked_pixels.h"
+
 namespace ssdo {
 namespace {
 
@@ -33,15 +35,18 @@ std::vector<double> distances(const ProjectionModel& model, const Samples& sampl
 struct NormalEquations {
   Eigen::Matrix<double, kParameters, kParameters> jtj;
   Eigen::Matrix<double, kParameters, 1> jtr;
+
+  NormalEquations() { jtj.setZero(), jtr.setZero(); }
+  NormalEquations& operator+=(const NormalEquations& other) {
+    jtj += other.jtj, jtr += other.jtr;
+    return *this;
+  }
 };
 
 NormalEquations linearise(const ProjectionModel& model, const Samples& samples) {
-  NormalEquations eq;
-  eq.jtj.setZero();
-  eq.jtr.setZero();
   const Matrix3d rotation = eigen(model.rotation);
   const Vector3d translation = eigen(model.translation);
-  for (const Sample& s : samples.items) {
+  const auto add = [&](NormalEquations& eq, const Sample& s) {
     const Vector3d turned = rotation * eigen(s.p), q = turned + translation;
     const double iz = model.orthographic ? 1 : 1 / q.z(), x = q.x() * iz, y = q.y() * iz;
     const double by_z = model.orthographic ? 0 : -iz;
@@ -59,8 +64,8 @@ NormalEquations linearise(const ProjectionModel& model, const Samples& samples) 
     eq.jtj += j.transpose().lazyProduct(j);
     const glm::dvec2 miss = s.pixel - model.project(s.p);
     eq.jtr += j.transpose() * Eigen::Vector2d(miss.x, miss.y);
-  }
-  return eq;
+  };
+  return sum_over(samples.items, NormalEquations(), add);
 }
 
 /// The rotation vector and the translation that lead from a prior to a model, in the axes of the
@@ -83,24 +88,13 @@ glm::dvec2 ProjectionModel::project(const glm::dvec3& p) const {
 
 Samples collect_samples(const Plane<glm::vec3>& positions, const Plane<unsigned char>& valid,
                         const Window& window) {
-  std::size_t count = 0;
-  for (unsigned char v : valid.pixels) count += v != 0;
   // An odd stride, so that samples do not line up in columns.
-  const std::size_t stride = (count / kMaxSamples) | 1;
-
+  const std::size_t stride = (count_marked(valid) / kMaxSamples) | 1;
   Samples samples;
-  std::size_t to_skip = 0;
-  for (int y = 0; y < positions.height; ++y) {
-    for (int x = 0; x < positions.width; ++x) {
-      if (!valid(x, y)) continue;
-      if (to_skip > 0) {
-        --to_skip;
-        continue;
-      }
-      to_skip = stride - 1;
-      const glm::vec3 p = positions(x, y);
-      samples.items.push_back({{p.x, p.y, p.z}, {window.x0 + x + 0.5, window.y0 + y + 0.5}});
-    }
+  for (const std::size_t i : every_marked(valid, stride)) {
+    const int x = int(i % std::size_t(valid.width)), y = int(i / std::size_t(valid.width));
+    const glm::dvec2 centre(window.x0 + x + 0.5, window.y0 + y + 0.5);
+    samples.items.push_back({glm::dvec3(positions[i]), centre});
   }
   if (samples.items.empty()) return samples;
 
@@ -184,11 +178,10 @@ Samples inliers(const ProjectionModel& model, const Samples& samples) {
 }
 
 double reprojection_rms(const ProjectionModel& model, const Samples& samples) {
-  double sum = 0;
-  for (const Sample& s : samples.items) {
+  const double sum = sum_over(samples.items, 0.0, [&](double& squares, const Sample& s) {
     const glm::dvec2 miss = model.project(s.p) - s.pixel;
-    sum += glm::dot(miss, miss);
-  }
+    squares += glm::dot(miss, miss);
+  });
   return std::sqrt(sum / double(std::max<std::size_t>(1, samples.items.size())));
 }
 

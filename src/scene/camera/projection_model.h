@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
 #include "math/plane.h"
+#include "parallel/tiles.h"
 #include "scene/camera/camera.h"
 
 namespace ssdo {
@@ -49,6 +52,21 @@ Camera camera_of(const ProjectionModel& model, const Samples& samples, const Win
 
 /// A camera as a model of normalised samples; no panorama.
 ProjectionModel model_of(const Camera& camera, const Samples& samples);
+
+/// The sum over samples, to which `add(sum, sample)` adds one, from `zero` on. It is made of those
+/// of equal parts, in their order: the same for any threads.
+template <class Sum, class Add>
+Sum sum_over(const std::vector<Sample>& samples, const Sum& zero, const Add& add) {
+  constexpr std::size_t kPart = 1024;
+  std::vector<Sum> sums((samples.size() + kPart - 1) / kPart, zero);
+  for_each_task(sums.size(), [&](std::size_t part) {
+    const std::size_t end = std::min(samples.size(), (part + 1) * kPart);
+    for (std::size_t i = part * kPart; i < end; ++i) add(sums[part], samples[i]);
+  });
+  Sum all = zero;
+  for (const Sum& sum : sums) all += sum;
+  return all;
+}
 
 /// Root mean square of the reprojection error, in pixels.
 double reprojection_rms(const ProjectionModel& model, const Samples& samples);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "math/half_color.h"
+#include "parallel/planes.h"
 #include "parallel/tiles.h"
 #include "scene/depth_model.h"
 
@@ -127,8 +128,8 @@ void find_background(GBuffer& g, std::optional<float> background_depth,
   const std::optional<DepthModel>& depth_of_position = found.depth_of_position;
   const float empty = empty_from(g), empty_depth = g.position.empty() ? empty : kEmptyDepth,
               far = background_depth ? *background_depth * (1 - 1e-6f) : empty_depth;
-  g.valid = Plane<unsigned char>(g.window.width(), g.window.height());
-  Plane<unsigned char> broken_pixels(g.valid.width, g.valid.height, 0);
+  g.valid = filled<unsigned char>(g.window.width(), g.window.height(), 0);
+  Plane<unsigned char> broken_pixels = g.valid;
   std::atomic<std::size_t> background_pixels = 0, bad_pixels = 0;
   for_each_row(g.valid.height, [&](int y) {
     std::size_t background_in_row = 0, bad_in_row = 0;

@@ -16,6 +16,7 @@
 
 #include "scene/camera/projection_model.h"
 #include "scene/gbuffer/background.h"
+#include "scene/marked_pixels.h"
 
 namespace ssdo {
 namespace {
@@ -40,11 +41,8 @@ struct Pixel {
 };
 
 std::vector<Pixel> collect(const GBuffer& g) {
-  const auto count = std::size_t(std::count(g.valid.pixels.begin(), g.valid.pixels.end(), 1));
-  const std::size_t stride = count / kMostPixels + 1;
   std::vector<Pixel> pixels;
-  for (std::size_t i = 0, n = 0; i < g.valid.size(); ++i) {
-    if (!g.valid[i] || n++ % stride != 0) continue;
+  for (const std::size_t i : every_marked(g.valid, count_marked(g.valid) / kMostPixels + 1)) {
     const glm::dvec3 p(g.position[i]), size = glm::abs(p);
     pixels.push_back({p, g.depth[i], 2 * g.position_step * std::max({size.x, size.y, size.z})});
   }

@@ -105,7 +105,10 @@ class LayerReader {
     const Plane<float>&x = plane(window_, *layer, 0, NAN, laid[0]),
           &y = plane(window_, *layer, 1, NAN, laid[1]);
     auto out = Plane<glm::vec2>::like(x);
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {x[i], y[i]};
+    for_each_row(out.height, [&](int row) {
+      for (std::size_t i = out.index(0, row), end = out.index(0, row + 1); i < end; ++i)
+        out[i] = {x[i], y[i]};
+    });
     return out;
   }
 
@@ -156,18 +159,21 @@ void clear_broken(GBuffer& g, Plane<T>& values, std::string_view name, std::stri
 /// Warns of surfaces that send more light than they get.
 void note_bright_albedo(GBuffer& g) {
   constexpr float kRounding = 1.01f;
-  std::size_t bright = 0;
-  float most = 0;
-  for (std::size_t i = 0; i < g.albedo.size(); ++i) {
-    const float albedo = std::max({g.albedo[i].x, g.albedo[i].y, g.albedo[i].z});
-    if (!g.valid[i] || albedo <= kRounding) continue;
-    ++bright, most = std::max(most, albedo);
-  }
+  std::vector<float> most_in(std::size_t(g.albedo.height), 0.0f);  // each row
+  const std::size_t bright = count_over_rows(g.albedo.height, [&](int y) {
+    std::size_t in_row = 0;
+    for (std::size_t i = g.albedo.index(0, y); i < g.albedo.index(0, y + 1); ++i) {
+      const float albedo = std::max({g.albedo[i].x, g.albedo[i].y, g.albedo[i].z});
+      if (!g.valid[i] || albedo <= kRounding) continue;
+      ++in_row, most_in[std::size_t(y)] = std::max(most_in[std::size_t(y)], albedo);
+    }
+    return in_row;
+  });
   if (const auto many = many_pixels(g, bright)) {
     g.warnings.push_back(fmt::format(
         "albedo is above 1 in {}, {:.3g} at most: surfaces that send more light than they get; is "
         "this a layer of light?",
-        *many, most));
+        *many, std::ranges::max(most_in)));
   }
 }
 

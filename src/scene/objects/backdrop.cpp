@@ -27,6 +27,7 @@
 #include <utility>
 #include <vector>
 
+#include "parallel/tiles.h"
 #include "scene/objects/backdrop_shapes.h"
 #include "scene/objects/standing_backdrop.h"
 
@@ -176,15 +177,18 @@ std::optional<BackdropShape> find_walls(const SurfelSamples& samples, const Geom
 
 /// Whether sky is seen above what is covered, in more than a few columns.
 bool has_sky_above(const Geometry& g, const Plane<float>& coverage) {
+  enum class Above : unsigned char { no_sky, sky, covered };
+  std::vector<Above> above(std::size_t(coverage.width), Above::no_sky);
   double columns = 0, with_sky = 0;
-  for (int x = 0; x < coverage.width; ++x) {
-    bool sky = false;
-    for (int y = 0; y < coverage.height; ++y) {
+  for (int y = 0; y < coverage.height; ++y) {
+    for (int x = 0; x < coverage.width; ++x) {
+      Above& so_far = above[std::size_t(x)];
+      if (so_far == Above::covered) continue;
       const Surfel& s = g.surfel(x, y);
-      sky |= !s.is_surface() && !s.is_broken();
+      if (!s.is_surface() && !s.is_broken()) so_far = Above::sky;
       if (!(coverage(x, y) > 0)) continue;
-      columns += 1, with_sky += sky;
-      break;
+      columns += 1, with_sky += so_far == Above::sky;
+      so_far = Above::covered;
     }
   }
   return with_sky > kSkyAbove * columns;
@@ -192,20 +196,28 @@ bool has_sky_above(const Geometry& g, const Plane<float>& coverage) {
 
 /// Whether the frame shows much sky beside what is covered.
 bool has_sky_beside(const Geometry& g, double share) {
-  const std::ptrdiff_t sky = std::ranges::count_if(
-      g.surfel.pixels, [](const Surfel& s) { return !s.is_surface() && !s.is_broken(); });
+  const std::size_t sky = count_over_rows(g.surfel.height, [&](int y) {
+    const auto row = g.surfel.pixels.begin() + std::ptrdiff_t(g.surfel.index(0, y));
+    return std::size_t(std::count_if(row, row + g.surfel.width, [](const Surfel& s) {
+      return !s.is_surface() && !s.is_broken();
+    }));
+  });
   return double(sky) > kSkyAbove * share * double(g.surfel.size());
 }
 
 /// What the frame shows of a shape; nothing where sky is seen above it, or beside one that stands.
 std::optional<Backdrop> shown(const Geometry& g, const BackdropShape& shape) {
-  Backdrop found{Plane<float>(g.surfel.width, g.surfel.height, 0.0f), 0, shape.what,
-                 shape.clearance, shape.has};
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
-    if (!g.surfel[i].is_surface() || !shape.has(g.surfel[i])) continue;
-    found.coverage[i] = 1;
-    found.share += 1 / double(g.surfel.size());
-  }
+  Backdrop found{Plane<float>::like(g.surfel), 0, shape.what, shape.clearance, shape.has};
+  const std::size_t covered = count_over_rows(g.surfel.height, [&](int y) {
+    std::size_t in_row = 0;
+    for (std::size_t i = g.surfel.index(0, y); i < g.surfel.index(0, y + 1); ++i) {
+      const bool has = g.surfel[i].is_surface() && shape.has(g.surfel[i]);
+      found.coverage[i] = has;
+      in_row += has;
+    }
+    return in_row;
+  });
+  found.share = double(covered) / double(g.surfel.size());
   if (!shape.is_dome && has_sky_above(g, found.coverage)) return std::nullopt;
   if (shape.stands && has_sky_beside(g, found.share)) return std::nullopt;
   return found;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "error.h"
+#include "parallel/planes.h"
 #include "parallel/tiles.h"
 #include "scene/deep/channels.h"
 #include "scene/objects/backdrop.h"

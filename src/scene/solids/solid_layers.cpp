@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "parallel/planes.h"
 #include "parallel/tiles.h"
 #include "scene/normals/normals.h"
 
@@ -17,10 +18,10 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 }  // namespace
 
 SolidLayer::SolidLayer(int width, int height, Provenance of_all)
-    : provenance(width, height, of_all),
-      distance(width, height, kInfinity),
-      thickness(width, height, kInfinity),
-      sender(width, height, -1) {}
+    : provenance(filled(width, height, of_all)),
+      distance(filled(width, height, kInfinity)),
+      thickness(filled(width, height, kInfinity)),
+      sender(filled(width, height, -1)) {}
 
 bool may_be_thin(const Solids& solids) {
   return std::ranges::any_of(solids.end.pixels,

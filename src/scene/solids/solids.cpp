@@ -37,6 +37,7 @@
 
 #include "math/pixel_grid.h"
 #include "math/whole_division.h"
+#include "parallel/planes.h"
 #include "parallel/tiles.h"
 #include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
@@ -375,7 +376,7 @@ class GuessAlongLines {
 
 Solids guess_solids(const Geometry& geometry, const std::optional<SolidsOfOverview>& overview) {
   const int w = geometry.surfel.width, h = geometry.surfel.height;
-  Guess guess{Plane<float>(w, h, kInfinity), Plane<float>(w, h, kInfinity),
+  Guess guess{filled(w, h, kInfinity), filled(w, h, kInfinity),
               SolidLayer(w, h, Provenance::guessed)};
   guess.second.thickness = {};  // a surface is as thick behind something as where it is seen
   const Plane<unsigned char> connections = find_connections(geometry);

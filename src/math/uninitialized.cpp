@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "math/uninitialized.h"
+
+#include <sys/mman.h>
+
+#include <cstdint>
+
+namespace ssdo {
+
+void prefer_large_pages(void* first, std::size_t bytes) {
+#ifdef MADV_HUGEPAGE
+  constexpr std::uintptr_t kLargePage = std::uintptr_t(2) << 20;
+  if (bytes < 2 * kLargePage) return;
+  // Outwards: planes beside each other share the page between them. Where there are no such pages,
+  // or a part of the range is not mapped, all goes on as before.
+  const std::uintptr_t begin = std::uintptr_t(first) & -kLargePage,
+                       end = (std::uintptr_t(first) + bytes + kLargePage - 1) & -kLargePage;
+  static_cast<void>(madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE));
+#else
+  static_cast<void>(first), static_cast<void>(bytes);
+#endif
+}
+
+}  // namespace ssdo
