@@ -113,8 +113,9 @@ class Bitmask {
     std::vector<DepthBounds> bounds = depth_bounds(s);
     CutSurfaces cut = find_cut_surfaces(s, up_in_camera(scene_), request_.radius);
     const Openness open = openness_of(s, scene_, request_.radius);
-    return {std::move(march_scene_), raster, std::move(planes), std::move(bounds), scene_.solids,
-            std::move(cut),          open,   std::move(kept)};
+    auto blockers = far_blockers(scene_, request_, raster);
+    return {std::move(march_scene_), raster, std::move(planes), std::move(bounds),  scene_.solids,
+            std::move(cut),          open,   std::move(kept),   std::move(blockers)};
   }
 
  private:

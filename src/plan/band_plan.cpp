@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "error.h"
 #include "io/images/image_file.h"
@@ -24,6 +25,10 @@ constexpr double kBytes = 60e6, kBytesPerPixel = 120, kBytesOfSun = 11, kBytesOf
 /// What casts, where something does not: surfaces, senders, and what receives on marches.
 constexpr double kBytesOfCasting = 60;
 
+/// What each scene adds that blocks the light of some lamps alone, and what the light without some
+/// objects does, to what it is compared with.
+constexpr double kBytesOfBlockers = 100, kBytesOfShadow = 150;
+
 /// What the learned prior adds: what it reads and changes of visibility, by pixel.
 constexpr double kBytesOfPrior = 32;
 
@@ -36,6 +41,13 @@ constexpr int kUsualSuns = 3;
 /// What each light adds whose bounce, or direct light, is kept apart.
 constexpr double kBytesOfBounce = 50, kBytesOfDirect = 14;
 
+/// Lamps may share what blocks their light.
+std::size_t blockers_of(const Scene& scene) {
+  std::set<const Scene*> found;
+  for (const auto& [source, blockers] : scene.blockers) found.insert(blockers.get());
+  return found.size();
+}
+
 double bytes_per_pixel(const Plan& plan, const Scene& scene) {
   const Request& request = plan.request;
   const ProductSet &products = request.products, &by_light = request.by_light;
@@ -46,6 +58,7 @@ double bytes_per_pixel(const Plan& plan, const Scene& scene) {
          kBytesOfSenders * int(!scene.senders.radiance.empty()) +
          kBytesOfPrior * int(plan.prior.has_value()) +
          kBytesOfCasting * int(scene.casting.has_value()) +
+         kBytesOfBlockers * double(blockers_of(scene)) + kBytesOfShadow * int(bool(scene.without)) +
          kBytesOfMore * (int(products.bent) + int(products.reflection)) +
          kBytesOfSpecular * int(products.specular);
 }

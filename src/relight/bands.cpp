@@ -6,11 +6,9 @@
 
 #include "color/kept_pixels.h"
 #include "prior/prior.h"
+#include "relight/read_band.h"
+#include "relight/shadow_of.h"
 #include "relight/targets.h"
-#include "scene/build_geometry.h"
-#include "scene/objects/read_object_masks.h"
-#include "scene/objects/selected_coverage.h"
-#include "scene/other_views/take_out.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -18,62 +16,6 @@ namespace {
 
 /// Shares of the whole time, for progress: reading the overview, and finding the frame's openness.
 constexpr double kOverviewShare = 0.02, kOpennessShare = 0.3;
-
-Solids solids_of(const Geometry& geometry, const ModelOptions& model, const Scene& overview) {
-  if (model.thickness) return constant_thickness(geometry, float(*model.thickness));
-  return guess_solids(geometry, SolidsOfOverview{overview.casters(), overview.solids.thickness});
-}
-
-/// What casts of some rows, where the frame has something that does not.
-Casting cast_in_band(const Frame& frame, const Geometry& rows, const PixelGrid& grid,
-                     const Scene& overview) {
-  const Selection& out = frame.objects.no_cast;
-  const Plane<Surfel>& surfel = rows.surfel;
-  Plane<float> coverage(surfel.width, surfel.height, 0.0f), backdrop;
-  if (!out.empty()) coverage = selected_coverage(out, {frame.files, frame.view}, rows.window, grid);
-  if (frame.is_backdrop) {
-    backdrop = Plane<float>(surfel.width, surfel.height);
-    for (std::size_t i = 0; i < surfel.size(); ++i)
-      backdrop[i] = surfel[i].is_surface() && frame.is_backdrop(surfel[i]) ? 1.0f : 0.0f;
-  }
-  return take_out(rows, coverage, backdrop, {}, &overview.casting->geometry);
-}
-
-/// Some rows of a frame, read and placed as the whole frame is.
-struct Band {
-  GBuffer gbuffer;
-  Scene scene;
-};
-
-/// `overview` is the scene of the frame.
-Band read_band(const RelightJob& job, const Scene& overview, const Window& rows,
-               StageTimes& times) {
-  const Frame& frame = job.frame;
-  Stopwatch watch;
-  GBufferOptions reading = job.options.input.gbuffer;
-  reading.beauty = frame.plan.composition.shows_rendered();
-  reading.grid = {.y0 = rows.y0, .y1 = rows.y1};
-  reading.known = frame.gbuffer.encodings;
-  Band band;
-  band.gbuffer = read_gbuffer(frame.readers(), frame.layers, reading);
-  band.gbuffer.masks = read_object_masks(frame.objects, {frame.files, frame.view},
-                                         band.gbuffer.window, reading.grid);
-  times.read += watch.lap();
-  GeometryReport report;
-  band.scene =
-      take_scene(band.gbuffer, build_geometry(band.gbuffer, job.options.camera, frame.input, report,
-                                              &frame.report.placement));
-  band.gbuffer.position = {};
-  band.gbuffer.normal = {};
-  band.gbuffer.depth = {};
-  if (overview.casting) {
-    band.scene.casting = cast_in_band(job.frame, band.scene.geometry, reading.grid, overview);
-  }
-  band.scene.solids = solids_of(band.scene.casters(), job.options.model, overview);
-  band.scene.light = overview.light;
-  times.prepare += watch.lap();
-  return band;
-}
 
 /// `rows` of a channel over `window`.
 ChannelView rows_of(ChannelView pixels, const Window& window, const Window& rows) {
@@ -116,52 +58,85 @@ class BandJob {
   }
 
  private:
-  /// Finds what lies beyond the reach of bands.
+  /// What lies beyond the reach of the bands of a scene, and what a prior is told of it.
+  struct Around {
+    AroundBand band;
+    LearnedPrior prior;  ///< where it is used
+
+    Plan of_band(Plan plan) const {
+      plan.request.around_band = band;
+      if (plan.prior) plan.prior = prior;
+      return plan;
+    }
+  };
+
+  /// Of the frame, and of the frame without the objects of --shadow-of where that is made.
   void look_around() {
     Stopwatch watch;
-    const Plan& plan = frame_.plan;
-    Request request = plan.request;
-    std::optional<PriorField> field;
-    if (plan.prior) request.ask_prior = asking(field);
-    around_ = {plan.method->bands.overview(relit_.scene, request, float(bands_.march_px),
-                                           [&](std::size_t, std::size_t) {}),
-               bands_.marches_on, bands_.reach_rows};
+    around_.push_back(around(relit_.scene, frame_.plan));
+    if (contains(frame_.plan.make, "shadow_of")) {
+      Scene& without = *relit_.scene.without;
+      light_alike(without, relit_.scene);
+      around_.push_back(around(without, plan_of_shadow(frame_.plan)));
+    }
     relit_.times.estimate += watch.lap();
     on_progress_(begun_);
   }
 
+  Around around(const Scene& overview, const Plan& plan) const {
+    Around found;
+    Request request = plan.request;
+    std::optional<PriorField> field;
+    if (plan.prior) request.ask_prior = asking(overview, plan, found.prior, field);
+    found.band = {plan.method->bands.overview(overview, request, float(bands_.march_px),
+                                              [&](std::size_t, std::size_t) {}),
+                  bands_.marches_on, bands_.reach_rows};
+    return found;
+  }
+
   /// Finds what a prior is told of the frame, and has it answer for the overview.
-  AskPrior asking(std::optional<PriorField>& field) {
-    const Plan& plan = frame_.plan;
+  AskPrior asking(const Scene& overview, const Plan& plan, LearnedPrior& told,
+                  std::optional<PriorField>& field) const {
     Request request = plan.request;
     request.products = {.ao = true};
     const PriorAsked asked{plan.prior->up, request.radius, request.seed};
     request.ask_prior = ask_prior(asked, field);
-    plan.method->estimate(relit_.scene, request, {});
-    prior_.of_frame = std::make_shared<PriorContext>(std::move(field->context));
-    prior_.up = plan.prior->up;
-    return ask_prior({asked.up, asked.radius, asked.seed, prior_.of_frame.get()}, field);
+    plan.method->estimate(overview, request, {});
+    told.of_frame = std::make_shared<PriorContext>(std::move(field->context));
+    told.up = plan.prior->up;
+    return ask_prior({asked.up, asked.radius, asked.seed, told.of_frame.get()}, field);
   }
 
+  /// The scene that an element of `around_` is of.
+  static Scene& scene_of(Scene& scene, std::size_t number) {
+    return number == 0 ? scene : *scene.without;
+  }
+
+  bool needs_openness(std::size_t number) const {
+    const Plan plan = around_[number].of_band(frame_.plan);
+    return !bands_.marches_on &&
+           plan.method->bands.needs_openness(scene_of(relit_.scene, number), plan.request);
+  }
   bool needs_openness() const {
-    Request request = frame_.plan.request;
-    request.around_band = around_;
-    return !bands_.marches_on && frame_.plan.method->bands.needs_openness(relit_.scene, request);
+    for (std::size_t k = 0; k < around_.size(); ++k)
+      if (needs_openness(k)) return true;
+    return false;
   }
 
   /// The overview does not show it to the bit: bands are read once more for it.
   void find_openness() {
-    Openness sum;
+    std::vector<Openness> sums(around_.size());
     for_each_band([&](const Window& rows) {
-      const Band band = read(rows);
+      Band band = read(rows);
       Stopwatch watch;
       Request request = frame_.plan.request;
       request.receivers = rows;
-      frame_.plan.method->bands.add_openness(band.scene, request, sum);
+      for (std::size_t k = 0; k < sums.size(); ++k)
+        frame_.plan.method->bands.add_openness(scene_of(band.scene, k), request, sums[k]);
       relit_.times.estimate += watch.lap();
       on_progress_(kOverviewShare + kOpennessShare * double(rows.y1 - all_.y0) / all_.height());
     });
-    around_.openness = sum;
+    for (std::size_t k = 0; k < sums.size(); ++k) around_[k].band.openness = sums[k];
     begun_ += kOpennessShare;
   }
 
@@ -177,16 +152,17 @@ class BandJob {
   Band read(const Window& rows) {
     Band band =
         read_band(job_, relit_.scene, with_rows_around(rows, bands_.halo_rows), relit_.times);
-    around_.reach_rows = bands_.reach_rows;
+    int reach = bands_.reach_rows;
     while (!bands_.marches_on) {
       const int needed = frame_.plan.method->bands.reach_rows(
           band.scene.geometry, 1, all_, frame_.part().display_window, frame_.plan.request);
-      if (needed <= around_.reach_rows) break;
-      around_.reach_rows = needed;
+      if (needed <= reach) break;
+      reach = needed;
       band = {};
       band = read_band(job_, relit_.scene, with_rows_around(rows, halo_rows(frame_.plan, needed)),
                        relit_.times);
     }
+    for (Around& each : around_) each.band.reach_rows = reach;
     return band;
   }
 
@@ -196,22 +172,28 @@ class BandJob {
 
   /// `scene` is left with what outputs need.
   Products estimate_band(Scene& scene, const Window& rows) {
-    Plan plan = frame_.plan;
-    if (plan.prior) plan.prior = prior_;
-    plan.request.receivers =
-        with_rows_around(rows, plan.filter->reach + (plan.prior ? kPriorReach : 0));
-    plan.request.around_band = around_;
+    Relit band;
+    band.plan = around_[0].of_band(frame_.plan);
+    band.plan.request.receivers =
+        with_rows_around(rows, frame_.plan.filter->reach + (frame_.plan.prior ? kPriorReach : 0));
     const double before = double(rows.y0 - all_.y0) / all_.height(),
-                 share = double(rows.height()) / all_.height();
+                 share = double(rows.height()) / all_.height() / double(around_.size());
     const auto tell = [&](double done) {
       on_progress_(begun_ + (1 - begun_) * (before + share * done));
     };
-    Estimate found = estimate(std::move(scene), plan, tell);
-    light_products(found, plan);
-    scene = std::move(found.scene);
-    relit_.times.estimate += found.estimate_ms;
-    relit_.times.filter += found.filter_ms;
-    return std::move(found.products);
+    const std::shared_ptr<Scene> without = std::move(scene.without);
+    Estimate found = estimate(std::move(scene), band.plan, tell);
+    light_products(found, band.plan);
+    band.times.estimate = found.estimate_ms, band.times.filter = found.filter_ms;
+    band.scene = std::move(found.scene), band.products = std::move(found.products);
+    if (around_.size() > 1) {
+      band.plan = around_[1].of_band(std::move(band.plan));
+      find_shadow(*without, band);
+    }
+    scene = std::move(band.scene);
+    relit_.times.estimate += band.times.estimate;
+    relit_.times.filter += band.times.filter;
+    return std::move(band.products);
   }
 
   void write(const SafeFile& file, const Target& target, const Results& results, const Window& rows,
@@ -230,8 +212,7 @@ class BandJob {
   const Window all_;
   const std::function<void(double)>& on_progress_;
   Relit& relit_;
-  AroundBand around_;
-  LearnedPrior prior_;             ///< where it is used
+  std::vector<Around> around_;     ///< see scene_of()
   double begun_ = kOverviewShare;  ///< share of the time before bands are written
 };
 

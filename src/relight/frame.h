@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,10 +37,12 @@ struct StageTimes {
 
 /// What is known of a lamp beside its light.
 struct LampOfFrame {
-  std::string origin;  ///< Lamp::origin
-  bool is_near;        ///< it has a position
-  std::size_t source;  ///< its number in Light::sources
-  Selection cast;      ///< with files of this very frame
+  std::string origin;       ///< Lamp::origin
+  bool is_near;             ///< it has a position
+  std::size_t source;       ///< its number in Light::sources
+  Selection cast, receive;  ///< with files of this very frame
+  /// Its light, once more: of rows of the frame it takes what they show of `receive`.
+  std::function<std::shared_ptr<Source>()> make;
 };
 
 /// A frame that has been read and understood: all that stands before the first estimate.

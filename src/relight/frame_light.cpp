@@ -42,12 +42,15 @@ void add_lamps(Frame& frame, std::vector<Lamp> lamps, int number, bool allow_par
     const double depth = -geometry.camera.to_camera(lamp.position).z;
     const double pixel =
         depth > 0 ? geometry.frame_height_at(float(depth)) / geometry.display.height() : 0;
-    const auto source =
-        make_source(lamp, {geometry.camera.rotation, geometry.camera.origin}, pixel / 2);
+    const WorldToCamera placed{geometry.camera.rotation, geometry.camera.origin};
+    const auto make = [lamp, placed, pixel] { return make_source(lamp, placed, pixel / 2); };
+    const auto source = make();
     source->receivers = find_receivers(frame, lamp, number, allow_partial);
+    source->receive = lamp.receive.text;
     frame.warn(warnings_of(lamp, *source, geometry));
-    frame.lamps.emplace(lamp.name, LampOfFrame{lamp.origin, lamp.type != LampType::distant,
-                                               scene.light.sources.size(), lamp.cast});
+    frame.lamps.emplace(lamp.name,
+                        LampOfFrame{lamp.origin, lamp.type != LampType::distant,
+                                    scene.light.sources.size(), lamp.cast, lamp.receive, make});
     scene.light.sources.push_back(source);
     names += (names.empty() ? "" : ", ") + lamp.name;
   }

@@ -143,8 +143,8 @@ class ViewReader {
              KnownGeometry& known)
       : frame_(frame), options_(options), pictures_(pictures), known_(known) {}
 
-  void add_also(const std::string& path, const std::vector<Selection>& casts) {
-    const OtherPictures::Picture picture = pictures_.also(path, casts);
+  void add_also(const std::string& path, const LampLinks& links) {
+    const OtherPictures::Picture picture = pictures_.also(path, links);
     if (!picture) {
       const ExrReader file(path, options_.input.allow_partial ? Salvage::done : Salvage::offered);
       known_.deep.push_back(
@@ -218,7 +218,7 @@ KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
                                   const std::optional<DeepImage>& own) {
   KnownGeometry known;
   ViewReader reader(frame, options, pictures, known);
-  for (const std::string& path : files.also) reader.add_also(path, files.casts);
+  for (const std::string& path : files.also) reader.add_also(path, files.links);
   const bool uses_views = find_method(options.model.method).takes.thickness;
   if (uses_views && !files.view.empty()) reader.add_other_eye(files);
   if (own) known.deep.push_back(*own);

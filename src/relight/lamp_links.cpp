@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "relight/lamp_links.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
 
-#include "error.h"
 #include "scene/objects/read_object_masks.h"
 #include "scene/objects/selected_coverage.h"
 #include "scene/other_views/covered_pixels.h"
@@ -20,18 +16,14 @@ namespace {
 std::shared_ptr<const Scene> selected_alone(Frame& frame, const KnownGeometry& known,
                                             const Selection& selection, const TakenOut& out,
                                             const SolidOptions& options) {
-  const Plane<Surfel>& surfel = frame.scene.geometry.surfel;
   const GBuffer& from = frame.gbuffer;
   std::vector<std::string> warnings;
-  const Plane<unsigned char> selected = covered_pixels(
-      surfel, frame.scene.geometry.camera,
-      selected_coverage(selection, frame.selections(warnings), from.window, from.grid));
-  frame.warn(warnings);
   TakenOut rest = out;
   rest.cast = selection.text;
-  if (rest.coverage.empty()) rest.coverage = Plane<float>(surfel.width, surfel.height, 0.0f);
-  for (std::size_t i = 0; i < surfel.size(); ++i)
-    if (surfel[i].is_surface() && !selected[i]) rest.coverage[i] = 1;
+  rest.coverage =
+      all_but(selected_coverage(selection, frame.selections(warnings), from.window, from.grid),
+              out.coverage, frame.scene.geometry);
+  frame.warn(warnings);
   auto scene = std::make_shared<Scene>();
   scene->geometry = frame.scene.geometry;
   KnownGeometry views;
@@ -49,11 +41,6 @@ std::shared_ptr<const Plane<float>> find_receivers(Frame& frame, Lamp& lamp, int
                                                    bool allow_partial) {
   for (Selection* selection : {&lamp.receive, &lamp.cast}) {
     *selection = at_frame(*selection, number);
-    if (!selection->empty() && frame.gbuffer.grid.is_coarse())
-      throw Error(ExitCode::usage,
-                  fmt::format("{}: {}: takes all of the frame at once, which --mem-limit does not "
-                              "allow: raise it",
-                              frame.input, selection->option));
     open_mattes(*selection, frame.files, allow_partial);
   }
   if (lamp.receive.empty()) return nullptr;
@@ -64,11 +51,22 @@ std::shared_ptr<const Plane<float>> find_receivers(Frame& frame, Lamp& lamp, int
   return std::make_shared<const Plane<float>>(std::move(coverage));
 }
 
-std::vector<Selection> casts_of(const std::vector<Lamp>& lamps, int number) {
-  std::vector<Selection> casts;
-  for (const Lamp& lamp : lamps)
-    if (!lamp.cast.empty()) casts.push_back(at_frame(lamp.cast, number));
-  return casts;
+LampLinks links_of(const std::vector<Lamp>& lamps, int number) {
+  LampLinks links;
+  for (const Lamp& lamp : lamps) {
+    if (!lamp.cast.empty()) links.cast.push_back(at_frame(lamp.cast, number));
+    if (!lamp.receive.empty()) links.receive.push_back(at_frame(lamp.receive, number));
+  }
+  return links;
+}
+
+Plane<float> all_but(const Plane<float>& selected, const Plane<float>& out, const Geometry& frame) {
+  const Plane<Surfel>& surfel = frame.surfel;
+  const Plane<unsigned char> shown = covered_pixels(surfel, frame.camera, selected);
+  Plane<float> rest = out.empty() ? Plane<float>(surfel.width, surfel.height, 0.0f) : out;
+  for (std::size_t i = 0; i < surfel.size(); ++i)
+    if (surfel[i].is_surface() && !shown[i]) rest[i] = 1;
+  return rest;
 }
 
 void find_blockers(Frame& frame, const KnownGeometry& known, const TakenOut& out,

@@ -16,7 +16,7 @@ namespace ssdo {
 
 /// What a lamp lights, by pixel of the geometry; null: everything. Its selections become those of
 /// this frame, and their files are opened. `number` is the frame's in its sequence. Errors: those
-/// of selected_coverage(); ExitCode::usage for a frame that is larger than memory.
+/// of selected_coverage().
 std::shared_ptr<const Plane<float>> find_receivers(Frame& frame, Lamp& lamp, int number,
                                                    bool allow_partial);
 
@@ -26,8 +26,12 @@ struct SolidOptions {
   const GBufferOptions& reading;
 };
 
-/// What every lamp with a `cast` names, with files of the frame of this number.
-std::vector<Selection> casts_of(const std::vector<Lamp>& lamps, int number);
+/// What lamps are linked to, with files of the frame of this number.
+LampLinks links_of(const std::vector<Lamp>& lamps, int number);
+
+/// What does not block the light of a lamp, as TakenOut::coverage: the surfaces of a frame that its
+/// selection does not cover, and those of `out`, which may be empty.
+Plane<float> all_but(const Plane<float>& selected, const Plane<float>& out, const Geometry& frame);
 
 /// Fills Scene::blockers of a scene of the frame: what the lamps of Frame::lamps select is left of
 /// what the frame and the views of `known` show, but for `out`. An edge between selected things and

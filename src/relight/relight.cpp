@@ -37,13 +37,12 @@ namespace {
 /// The share of a job's time that estimate and filter take, for progress.
 constexpr double kEstimateShare = 0.85;
 
-/// Objects that cast nothing take a method that looks for what is behind things, and those that do
-/// so for some of the light, all of the frame at once.
+/// Objects that cast nothing take a method that looks for what is behind things.
 void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameOptions& options) {
   const Selection* found = &frame.objects.shadow_of;
   for (const auto& [name, lamp] : frame.lamps)
     if (found->empty()) found = &lamp.cast;
-  const Selection &of_some = *found, &which = of_some.empty() ? frame.objects.no_cast : of_some;
+  const Selection& which = found->empty() ? frame.objects.no_cast : *found;
   const auto refuse = [&](const std::string& why, const Selection& selection) {
     throw Error(ExitCode::usage, fmt::format("{}: {}: {}", frame.input, selection.option, why));
   };
@@ -52,8 +51,6 @@ void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameO
     refuse(fmt::format("method {} casts with all that is seen; take bitmask or trace",
                        options.model.method),
            which);
-  if (frame.gbuffer.grid.is_coarse() && !of_some.empty())
-    refuse("takes all of the frame at once, which --mem-limit does not allow: raise it", of_some);
   if (!known.deep.empty())
     refuse("deep samples do not say what they are of; leave the deep image out", which);
   if (!frame.objects.shadow_of.empty() && options.model.temporal)
@@ -171,12 +168,12 @@ void warn_of_unlit(const Frame& frame, const std::string& lamp, double arrives,
 Frame prepare_frame(const FrameOptions& options, const Lighting& lighting, OtherPictures& pictures,
                     const FrameFiles& files, int number) {
   std::optional<DeepImage> own;
-  Frame frame = read_frame(options, files, int(lighting.lamps().size()), own);
+  FrameFiles with_links = files;
+  with_links.links = links_of(lighting.lamps(), number);
+  Frame frame = read_frame(options, with_links, int(lighting.lamps().size()), own);
   warn_of_encoded_colors(frame);
   Stopwatch watch;
-  FrameFiles with_casts = files;
-  with_casts.casts = casts_of(lighting.lamps(), number);
-  KnownGeometry known = read_known_geometry(frame, with_casts, options, pictures, own);
+  KnownGeometry known = read_known_geometry(frame, with_links, options, pictures, own);
   frame.times.known = watch.lap();
   light_frame(frame, lighting, options, files, number);
   frame.times.prepare += watch.lap();

@@ -39,17 +39,25 @@ glm::vec3 facing_light(const Light& light, const Surfel& s, std::size_t pixel) {
 
 }  // namespace
 
-void find_shadow(Scene& without, Relit& relit) {
-  const Scene& scene = relit.scene;
+Plan plan_of_shadow(Plan plan) {
+  plan.error.reset();
+  plan.request.products = {.direct = true, .bounce = plan.request.products.bounce};
+  plan.request.by_light = {};
+  return plan;
+}
+
+void light_alike(Scene& without, const Scene& scene) {
   without.light = scene.light;
   without.senders = scene.senders;
   without.roughness = scene.roughness;
   without.specular_color = scene.specular_color;
+}
+
+void find_shadow(Scene& without, Relit& relit) {
+  const Scene& scene = relit.scene;
+  light_alike(without, scene);
   const Plane<int> sender = without.casting->sender;
-  Plan plan = relit.plan;
-  plan.error.reset();
-  plan.request.products = {.direct = true, .bounce = plan.request.products.bounce};
-  plan.request.by_light = {};
+  const Plan plan = plan_of_shadow(relit.plan);
   Estimate found = estimate(std::move(without), plan, [](double) {});
   light_products(found, plan);
   relit.times.estimate += found.estimate_ms;

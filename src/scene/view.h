@@ -37,7 +37,7 @@ struct FrameFiles {
   std::vector<std::string> also;  ///< other pictures of the same scene, in the order of --also
   std::string view = {};          ///< of a stereo file; empty: --part chooses
   ObjectOptions objects = {};
-  std::vector<Selection> casts = {};  ///< of lamps: what blocks the light of each
+  LampLinks links = {};  ///< of lamps
 };
 
 /// The frame with a view of its files.

@@ -302,6 +302,82 @@ TEST_F(LampLinks, CastReachesWhatOtherViewsShow) {
   EXPECT_EQ(silent.err.find(says), silent.err.rfind(says));
 }
 
+/// A wall that only another view shows is lit by a lamp that names it, and by no other: what it
+/// sends adds up to what it sends of a lamp without a link.
+TEST_F(LampLinks, ReceiveReachesWhatOtherViewsShow) {
+  const Camera down = look_at(camera_from_fov(40, kWindow, 1), {0, -2, 3}, {0, 0, 0}, {0, 0, 1}),
+               level =
+                   look_at(camera_from_fov(70, kWindow, 1), {0, -3, 1.5}, {0, 2, 0.8}, {0, 0, 1});
+  const auto write = [&](const std::string& name, const Camera& by) {
+    const Picture picture =
+        take_picture(all_of({plane({0, 0, 0}, {0, 0, 1}), plane({0, 1.9, 0}, {0, -1, 0}),
+                             sphere({0.4, -0.2, 0.2}, 0.2)}),
+                     by, kWindow);
+    FramePart part = frame_of(picture);
+    part.data = part.display = kWindow;
+    write_frame(path("silent_" + name), part);
+    Plane<float>& ids = part.channels["IndexOB.X"] = Plane<float>(96, 72, 1.0f);
+    int walls = 0;
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      if (picture.position[i].y > 1.89f) ids[i] = 2, ++walls;
+    write_frame(path(name), part);
+    return walls;
+  };
+  ASSERT_EQ(write("in.exr", down), 0);
+  ASSERT_GT(write("view.exr", level), 500);
+  for (const Words& by_method : kMethods) {
+    const Words also = by_method + Words{"--also", path("view.exr"), "--bounces", "2"};
+    const auto bounce = [&](const std::string& links, const Words& flags) {
+      return channel(lit_at("0,1,1.2", links, flags, kLit, path("in.exr")), "bounce.G");
+    };
+    const Plane<float> all = bounce("", also), wall = bounce("receive=id:IndexOB=2", also),
+                       floor = bounce("receive=id:IndexOB=1", also), none(96, 72, 0.0f);
+    EXPECT_GT(rms(wall, none), 0.3 * rms(all, none)) << by_method[1];
+    EXPECT_GT(rms(floor, none), 0.05 * rms(all, none)) << by_method[1];
+    EXPECT_LT(rms(sum_of(wall, floor), all), 0.02 * rms(all, none)) << by_method[1];
+  }
+  const Finished silent =
+      run_tool({path("in.exr"), "-o", path("silent_out.exr"), "--also", path("silent_view.exr"),
+                "--light", "sphere name=key position=0,1,1.2 receive=id:IndexOB=1"});
+  EXPECT_EQ(silent.code, 0);
+  EXPECT_THAT(silent.err, HasSubstr("silent_view.exr: takes no light of this lamp: --light key: "
+                                    "receive id:IndexOB=1: no layer 'IndexOB'"));
+}
+
+/// Links are those of the frame when it comes in bands.
+TEST_F(LampLinks, InBandsAreNearlyThoseOfTheFrame) {
+  constexpr Window kTall{0, 0, 320, 1600};
+  const Camera by = look_at(camera_from_fov(40, kTall, 1), {0, -4, 3}, {0, 0, 0.3}, {0, 0, 1});
+  const Picture shown = take_picture(
+      all_of({plane({}, {0, 0, 1}), sphere({0.2, 0, 0.6}, 0.6), sphere({-0.7, 0.2, 0.3}, 0.3)}), by,
+      kTall);
+  FramePart part = frame_of(shown);
+  part.data = part.display = kTall;
+  Plane<float>& ids = part.channels["IndexOB.X"] = Plane<float>(320, 1600, 1.0f);
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    if (shown.position[i].z > 1e-4f) ids[i] = shown.position[i].x > -0.4f ? 2 : 3;
+  write_frame(path("tall.exr"), part);
+  // Without a bounce bands reach less far, and rays go on in the overview.
+  const Words flags = {"--thickness", "0.3", "--slices", "1", "--steps", "8"},
+              limit = {"--mem-limit", "135M"};
+  const auto light = [&](const std::string& links, const Words& more) {
+    return channel(lit_at("-1.5,-1,3", links, flags + more, "direct", path("tall.exr")),
+                   "direct.G");
+  };
+  const std::string links = "cast=id:IndexOB=2 receive=id:IndexOB=1-2";
+  EXPECT_THAT(run_tool(Words{"info", path("tall.exr"), "--products", "direct", "--light",
+                             "sphere position=-1.5,-1,3 " + links} +
+                       flags + limit)
+                  .out,
+              HasSubstr(" bands of "));
+  const Plane<float> plain = light("", {}), whole = light(links, {}), bands = light(links, limit);
+  const double off = rms(whole, bands), effect = rms(whole, plain);
+  RecordProperty("rms", fmt::format("{:.5f} {:.5f}", off, effect));
+  EXPECT_GT(effect, 0.05 * rms(plain, Plane<float>(320, 1600, 0.0f)));
+  EXPECT_LT(off, 0.05 * effect);
+  EXPECT_GT(rms(bands, plain), 0.9 * effect);
+}
+
 TEST_F(LampLinks, RefusesInOneLine) {
   const auto expect = [&](const std::string& key, int code, const std::string& says) {
     std::ofstream(path("lights.json"))

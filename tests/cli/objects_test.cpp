@@ -545,7 +545,7 @@ TEST_F(Objects, RefuseInOneLine) {
          "--temporal");
 }
 
-/// Masks are read band by band; shadow_of takes all of the frame.
+/// Masks are read band by band.
 TEST_F(Objects, MasksAreTheSameInBands) {
   constexpr Window kTall{0, 0, 320, 1600};
   FramePart part = frame_of(small_picture(kTall, kTall));
@@ -565,10 +565,6 @@ TEST_F(Objects, MasksAreTheSameInBands) {
   run(path("in.exr"), "bands.exr", flags + Words{"--mem-limit", "124M"});
   for (const std::string& name : channel_names(path("whole.exr")))
     EXPECT_EQ(at("whole.exr", name).pixels, at("bands.exr", name).pixels) << name;
-  const Finished shadow_of = run_tool(
-      {path("in.exr"), "-o", path("no.exr"), "--shadow-of", "soft", "--mem-limit", "124M"});
-  EXPECT_EQ(shadow_of.code, 2);
-  EXPECT_THAT(shadow_of.error_line(), HasSubstr("takes all of the frame at once"));
 }
 
 /// What casts nothing is taken out of each band, within what marches in bands are off.
@@ -595,6 +591,38 @@ TEST_F(Objects, NoCastInBandsIsNearlyThatOfTheFrame) {
                  effect = rms(whole, at("cast.exr", name), matte, 0);
     RecordProperty(name, fmt::format("{:.5f} {:.5f}", off, effect));
     EXPECT_LT(off, 0.05 * effect) << name;
+  }
+}
+
+/// So is what throws the shadow of --shadow-of; and what the lamps name that does not block them.
+TEST_F(Objects, ShadowOfInBandsIsNearlyThatOfTheFrame) {
+  constexpr Window kTall{0, 0, 320, 1600};
+  const Camera by = look_at(camera_from_fov(40, kTall, 1), {0, -4, 3}, {0, 0, 0.3}, {0, 0, 1});
+  const Surface floor = plane({}, {0, 0, 1}), ball = sphere({0.2, 0, 0.6}, 0.6);
+  const Picture shown = take_picture(all_of({floor, ball}), by, kTall);
+  FramePart part = frame_of(shown);
+  part.data = part.display = kTall;
+  Plane<float>& matte = part.channels["ball.A"] = Plane<float>(320, 1600, 0.0f);
+  for (std::size_t i = 0; i < shown.position.size(); ++i)
+    if (shown.position[i].z > 1e-4f) matte[i] = 1;
+  write_frame(path("in.exr"), part);
+  const std::string lamp = "sphere position=-1.5,-1,3 radius=0.1 normalize=true intensity=60 ";
+  const Words limit = {"--mem-limit", "180M"};
+  for (const std::string radius : {"0.8", "inf"}) {
+    const Words flags = {
+        "--shadow-of", "ball", "--thickness", "0.3",       "--radius", radius,
+        "--slices",    "1",    "--steps",     "8",         "--env",    "0.3",
+        "--bounces",   "0",    "--products",  "shadow_of", "--light",  lamp + "cast=ball"};
+    run(path("in.exr"), "whole.exr", flags);
+    run(path("in.exr"), "bands.exr", flags + limit);
+    EXPECT_THAT(run_tool(Words{"info", path("in.exr")} + flags + limit).out,
+                HasSubstr(" bands of "));
+    const Plane<float> whole = at("whole.exr", "shadow_of.G"),
+                       bands = at("bands.exr", "shadow_of.G"), none(320, 1600, 1.0f);
+    const double off = rms(whole, bands, matte, 0), effect = rms(whole, none, matte, 0);
+    RecordProperty("radius " + radius, fmt::format("{:.5f} {:.5f}", off, effect));
+    EXPECT_GT(effect, 0.02) << radius;
+    EXPECT_LT(off, 0.05 * effect) << radius;
   }
 }
 

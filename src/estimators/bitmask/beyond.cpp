@@ -117,6 +117,10 @@ Openness openness_of(const MarchScene& scene, const Scene& frame, float radius) 
   return sum;
 }
 
+float sun_past_beyond_of(const Openness& frame, const Scene& scene, const Request& request) {
+  return needs_openness(scene, request) ? sun_past_beyond(frame) : 1;
+}
+
 float sun_past_beyond(const MarchScene& scene, const Scene& frame, const Request& request) {
   if (!needs_openness(frame, request)) return 1;
   if (const auto& band = request.around_band)

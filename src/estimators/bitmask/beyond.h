@@ -86,7 +86,10 @@ Openness openness_of(const MarchScene& scene, const Scene& frame, float radius);
 /// that goes on hides it.
 float sun_past_beyond(const Openness& frame);
 
-/// The same of a frame, or of the one that it is a band of; 1 where it does not count.
+/// The same where it counts for what is asked of a scene; else 1.
+float sun_past_beyond_of(const Openness& frame, const Scene& scene, const Request& request);
+
+/// The same of a frame, or of the one that it is a band of.
 float sun_past_beyond(const MarchScene& scene, const Scene& frame, const Request& request);
 
 /// The shares for one source. One that harmonics would keep 0.25 or more of (a disc of 11 degrees)

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <map>
+#include <memory>
 #include <vector>
 
 #include "estimators/bitmask/march_scene.h"
@@ -33,6 +36,9 @@ struct FarScene {
   CutSurfaces cut;                   ///< by the border of the overview
   Openness openness;                 ///< of the frame: see bitmask/beyond.h
   std::vector<FarLight> light = {};  ///< by pass
+  /// What blocks the light of lamps that name it, by their number in Light::sources. Rays alone
+  /// read it: without `planes` and `light`.
+  std::map<std::size_t, std::shared_ptr<const FarScene>> blockers = {};
 };
 
 /// What all marches share.

@@ -68,6 +68,7 @@ class OtherViewSenders {
  private:
   /// One side of a surface, and where its rays begin.
   struct Side {
+    std::uint32_t vertex;
     glm::vec3 start, normal;
     std::uint32_t seed;
   };
@@ -100,7 +101,7 @@ class OtherViewSenders {
         const Vertex& v = surfaces_.vertices[i];
         for (const bool seen : {true, false}) {
           const glm::vec3 normal = seen ? v.normal : -v.normal;
-          work(i, Side{v.position + kAbove * v.footprint * normal, normal, 2 * i + seen}, seen);
+          work(i, Side{i, v.position + kAbove * v.footprint * normal, normal, 2 * i + seen}, seen);
         }
       }
     });
@@ -134,10 +135,19 @@ class OtherViewSenders {
     return direct;
   }
 
+  /// The share of the light of a source that a vertex takes with nothing in the way. What only a
+  /// view shows that does not know the selection takes nothing.
+  float taken_by(const Source& source, std::uint32_t vertex) const {
+    if (!source.receivers) return 1;
+    const std::uint32_t pixel = surfaces_.vertices[vertex].frame_pixel;
+    if (pixel != Vertex::kOfOtherView) return source.taken_at(pixel);
+    const auto found = surfaces_.receives.find(source.receive);
+    return found == surfaces_.receives.end() ? 0.0f : found->second[vertex];
+  }
+
   glm::vec3 light_of(const Source& source, std::uint32_t number, const Side& side) const {
-    // A selection says nothing about what the frame does not show.
-    if (source.receivers) return glm::vec3(0);
-    const glm::vec3 unoccluded = source.unoccluded(side.start, side.normal);
+    const glm::vec3 unoccluded =
+        taken_by(source, side.vertex) * source.unoccluded(side.start, side.normal);
     if (unoccluded == glm::vec3(0)) return unoccluded;
     float seen = 0, above = 0;
     for (int s = 0; s < kSourceRays; ++s) {

@@ -49,6 +49,7 @@ struct Source {
 
   /// What it lights, 0..1 by pixel of the scene's geometry: the lamp's `receive`. Null: everything.
   std::shared_ptr<const Plane<float>> receivers;
+  std::string receive;  ///< the text of that selection, by which other views know it
 
   /// The share of its light that the surface of a pixel takes, with nothing in its way.
   float taken_at(std::size_t pixel) const { return receivers ? (*receivers)[pixel] : 1.0f; }

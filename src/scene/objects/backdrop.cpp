@@ -13,8 +13,9 @@
 // have the shape of walls: on the frames of a street a facade may be all that is seen beside a
 // lamppost. What walls do not have is a gap: the ground leads up to them. So planes and upright
 // cylinders are backdrops only where nothing is seen between them and all else, over a wide range
-// of distances, and where no sky is seen above them. Those that stand on a ground are told by their
-// scale alone: scene/objects/standing_backdrop.cpp.
+// of distances, and where no sky is seen above them. A ground that is seen far below, behind the
+// edge of a roof or a table, has such a gap too, but faces up. Those that stand on a ground are
+// told by their scale alone: scene/objects/standing_backdrop.cpp.
 #include "scene/objects/backdrop.h"
 
 #include <fmt/format.h>
@@ -52,6 +53,10 @@ constexpr double kLeastBefore = 0.2;
 
 /// One of so many samples may be in the gap.
 constexpr std::size_t kInGap = 200;
+
+/// Cosine between the way up and the normal of a plane from which on it is a ground. A roof slopes
+/// less; a card that leans back does not lean so far.
+constexpr double kGround = 0.7;
 
 /// Share of the columns of a backdrop that may show sky above it, and of its pixels that may be sky
 /// beside one that stands.
@@ -122,10 +127,20 @@ Behind behind_gap(SurfelSamples samples) {
   return found;
 }
 
-/// Planes that nearly all of these lie on.
-std::optional<BackdropShape> find_flats(const Behind& behind) {
+/// The way up in camera space: that axis of the world, y or z, which is nearer to the way up in the
+/// picture. A camera that looks down steeply along the other one takes that for up, and sees no
+/// plane that faces that way.
+glm::dvec3 up_of(const Geometry& g) {
+  if (!g.world_known) return {0, 1, 0};
+  const glm::dvec3 y(g.world_to_camera[1]), z(g.world_to_camera[2]);
+  return y.y > z.y ? y : z;
+}
+
+/// Planes that nearly all of these lie on, and none of which is a ground.
+std::optional<BackdropShape> find_flats(const Behind& behind, const glm::dvec3& up) {
   SurfelSamples left = behind.samples;
-  const std::vector<Flat> flats = take_flats(left, kMostOnWalls, [](const Flat&) { return true; });
+  const std::vector<Flat> flats = take_flats(
+      left, kMostOnWalls, [&](const Flat& flat) { return glm::dot(flat.normal, up) < kGround; });
   if (double(left.size()) > (1 - kMostOnWalls) * double(behind.samples.size())) return std::nullopt;
   const auto has = [flats, nearest = behind.nearest](const Surfel& s) {
     return distance_of(&s) >= nearest &&
@@ -157,7 +172,7 @@ std::optional<BackdropShape> find_walls(const SurfelSamples& samples, const Geom
     if (!g.world_known) break;
     if (auto found = find_cylinder(behind, glm::dvec3(g.world_to_camera[up]))) return found;
   }
-  return find_flats(behind);
+  return find_flats(behind, up_of(g));
 }
 
 /// Whether sky is seen above what is covered, in more than a few columns.

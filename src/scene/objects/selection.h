@@ -36,6 +36,12 @@ struct Selection {
   bool empty() const { return terms.empty(); }
 };
 
+/// What the lamps of a frame are linked to.
+struct LampLinks {
+  std::vector<Selection> cast;     ///< what alone blocks the light of a lamp
+  std::vector<Selection> receive;  ///< what alone a lamp lights
+};
+
 /// Parses `crypto:NAME`, `id:LAYER=1,5-7`, `LAYER` or `FILE:LAYER`, joined by + and -. A - joins
 /// where a blank is before it or `crypto:` or `id:` behind it, since names hold it too; quotes keep
 /// both signs in a name. A file is told from a name by its existence, as --aov does it.

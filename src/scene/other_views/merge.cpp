@@ -156,6 +156,7 @@ struct Grid {
   Window window;
   bool closed;  ///< the last column lies beside the first
   int step;
+  const std::map<std::string, Plane<float>>* receives;  ///< of the view; null: it is the frame
 };
 
 /// Makes vertices and triangles of a grid.
@@ -194,6 +195,15 @@ class Mesher {
     out_.vertices.push_back({s.position, s.normal,
                              grid_.albedo.empty() ? glm::vec3(0) : glm::vec3(grid_.albedo[from]),
                              float(width), own});
+    if (!grid_.receives) {
+      out_.vertices.back().frame_pixel = std::uint32_t(from);
+    } else {
+      for (const auto& [text, coverage] : *grid_.receives) {
+        std::vector<float>& taken = out_.receives[text];
+        taken.resize(out_.vertices.size(), 0);
+        taken.back() = coverage[from];
+      }
+    }
     // One pixel of 2 x 2 is lit for all that are on its surface: a bounce averages over many.
     const int lit_x = x & ~1, lit_y = y & ~1;
     const std::uint32_t lit = index_(lit_x, lit_y);
@@ -332,7 +342,9 @@ OtherSurfaces merge_views(const std::vector<OtherView>& views, const Geometry& f
     const Plane<Surfel> surfel = view->surfels_in_frame();
     leave_out_repeated(rivals, k, surfel, fates);
     const OtherPicture& picture = *view->picture;
-    Mesher({surfel, picture.albedo, view->camera, picture.window, picture.closed, 1}, fates, out)
+    Mesher({surfel, picture.albedo, view->camera, picture.window, picture.closed, 1,
+            &picture.receives},
+           fates, out)
         .run();
   }
   Camera own = frame.camera;  // what it shows is in its own camera space
@@ -342,7 +354,8 @@ OtherSurfaces merge_views(const std::vector<OtherView>& views, const Geometry& f
     if (frame.surfel[i].is_usable()) fates[i] = Fate::seen;
   const int step = (frame.surfel.width + kFrameColumns - 1) / kFrameColumns;
 
-  Mesher({frame.surfel, albedo, own, frame.window, false, step}, fates, out).run();
+  Mesher({frame.surfel, albedo, own, frame.window, false, step, nullptr}, fates, out).run();
+  for (auto& [text, taken] : out.receives) taken.resize(out.vertices.size(), 0);
   return out;
 }
 

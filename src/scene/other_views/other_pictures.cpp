@@ -73,19 +73,31 @@ void mark(OtherPicture& picture, const Selection& selection, unsigned char with,
   }
 }
 
-/// Finds what blocks the light of linked lamps, as far as the picture tells.
-void mark_casts(OtherPicture& picture, const std::vector<Selection>& casts,
-                const SelectionFiles& in) {
-  for (const Selection& cast : casts) {
-    if (picture.casts.contains(cast.text)) continue;
+/// Finds what `selections` of lamps cover of a picture, as far as it tells: `find(coverage)` by
+/// their texts. A warning says what the picture does not do for the others.
+template <class T, class Find>
+void mark_links(OtherPicture& picture, const std::vector<Selection>& selections,
+                std::map<std::string, Plane<T>>& found, std::string_view otherwise,
+                const SelectionFiles& in, const Find& find) {
+  for (const Selection& selection : selections) {
+    if (found.contains(selection.text)) continue;
     try {
-      picture.casts[cast.text] = covered_pixels(picture.surfel, picture.camera,
-                                                selected_coverage(cast, in, picture.window, {}));
+      found[selection.text] = find(selected_coverage(selection, in, picture.window, {}));
     } catch (const Error& error) {
       picture.not_taken.push_back(
-          fmt::format("{}: blocks no light of this lamp: {}", picture.file, error.what()));
+          fmt::format("{}: {} of this lamp: {}", picture.file, otherwise, error.what()));
     }
   }
+}
+
+/// Finds what blocks the light of linked lamps, and what they light.
+void mark_links(OtherPicture& picture, const LampLinks& links, const SelectionFiles& in) {
+  mark_links(picture, links.cast, picture.casts, "blocks no light", in,
+             [&](const Plane<float>& coverage) {
+               return covered_pixels(picture.surfel, picture.camera, coverage);
+             });
+  mark_links(picture, links.receive, picture.receives, "takes no light", in,
+             [](Plane<float> coverage) { return coverage; });
 }
 
 void mark_backdrop(OtherPicture& picture, const Geometry& geometry, BackdropChoice choice) {
@@ -102,7 +114,7 @@ void mark_backdrop(OtherPicture& picture, const Geometry& geometry, BackdropChoi
 /// What is to be found in a picture.
 struct Objects {
   const ObjectOptions& options;
-  const std::vector<Selection>& casts;  ///< of lamps
+  const LampLinks& links;
 };
 
 /// Keeps of a view what other pictures need.
@@ -126,7 +138,7 @@ OtherPictures::Picture picture_of(View view, const std::string& file, const std:
   out.albedo = in_half(view.gbuffer.albedo);
   mark(out, objects.options.no_cast, kNoCast, {view.files, eye});
   mark(out, objects.options.shadow_of, kShadowOf, {view.files, eye});
-  mark_casts(out, objects.casts, {view.files, eye});
+  mark_links(out, objects.links, {view.files, eye});
   for (const auto* warnings : {&view.gbuffer.warnings, &view.report.warnings}) {
     for (const std::string& warning : *warnings)
       out.warnings.push_back(fmt::format("{}: {}", file, warning));
@@ -158,13 +170,12 @@ void OtherPictures::release(const FrameFiles& frame) {
   }
 }
 
-OtherPictures::Picture OtherPictures::also(const std::string& file,
-                                           const std::vector<Selection>& casts) {
+OtherPictures::Picture OtherPictures::also(const std::string& file, const LampLinks& links) {
   return get({kByNames, file}, [&]() -> Picture {
     std::deque<ExrReader> opened = open_view(file, {}, allow_partial_);
     if (has_deep_part(opened.front())) return nullptr;
     return picture_of(read_view(std::move(opened), {}, {}, {}, kUnused), file, "",
-                      {objects_, casts});
+                      {objects_, links});
   });
 }
 
@@ -178,8 +189,9 @@ OtherPictures::Picture OtherPictures::alike(const FrameFiles& frame, const Input
     View view = read_view(open_view(frame.input, aovs, input.allow_partial), aovs,
                           for_view(input, frame), camera, kUnused);
     open_mattes(frame.objects, view.files, input.allow_partial);
-    for (const Selection& cast : frame.casts) open_mattes(cast, view.files, input.allow_partial);
-    return picture_of(std::move(view), name_of(frame), frame.view, {frame.objects, frame.casts});
+    for (const auto* linked : {&frame.links.cast, &frame.links.receive})
+      for (const Selection& each : *linked) open_mattes(each, view.files, input.allow_partial);
+    return picture_of(std::move(view), name_of(frame), frame.view, {frame.objects, frame.links});
   });
 }
 

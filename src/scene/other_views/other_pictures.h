@@ -36,11 +36,11 @@ class OtherPictures {
   void release(const FrameFiles& frame);
 
   /// A file of --also: a G-buffer whose layers are found by their names, and whose camera is fitted
-  /// from its P. Nothing where the file is a deep image. `casts` are those of the lamps, for
-  /// OtherPicture::casts. An error comes again in every call.
+  /// from its P. Nothing where the file is a deep image. `links` are those of the lamps, for
+  /// OtherPicture::casts and receives. An error comes again in every call.
   /// Errors: those of the stages of a view; ExitCode::layer where P is missing or in camera space,
   /// and where no camera explains it.
-  Picture also(const std::string& file, const std::vector<Selection>& casts = {});
+  Picture also(const std::string& file, const LampLinks& links = {});
 
   /// Another frame of INPUT's sequence, or another view of INPUT, read as INPUT is.
   /// Errors: as also().

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <map>
+#include <string>
 #include <vector>
 
 namespace ssdo {
@@ -14,6 +16,10 @@ struct Vertex {
   glm::vec3 albedo{0};
   float footprint = 0;       ///< width of what its pixel shows, in scene units
   std::uint32_t sender = 0;  ///< the vertex whose light it sends: the middle of its pixel
+  /// The pixel of the frame that it is of; kOfOtherView: it is of another view.
+  std::uint32_t frame_pixel = kOfOtherView;
+
+  static constexpr std::uint32_t kOfOtherView = ~0u;
 };
 
 /// What other views show of a scene: surfaces as triangles.
@@ -23,6 +29,10 @@ struct OtherSurfaces {
   std::vector<Vertex> vertices;
   std::vector<Triangle> added;  ///< of what the frame does not show
   std::vector<Triangle> all;  ///< those, what the frame shows as well, and what it shows, coarsely
+
+  /// What linked lamps light of the vertices of other views, 0..1, by the text of the selection
+  /// (OtherPicture::receives).
+  std::map<std::string, std::vector<float>> receives;
 
   bool empty() const { return added.empty(); }
 };

@@ -35,6 +35,8 @@ struct OtherPicture {
   /// What blocks the light of linked lamps, by the text of the selection: 1 in pixels that show
   /// it. Without those that the picture does not know.
   std::map<std::string, Plane<unsigned char>> casts;
+  /// What linked lamps light, 0..1, likewise.
+  std::map<std::string, Plane<float>> receives;
   std::vector<std::string> warnings;   ///< of reading it
   std::vector<std::string> not_taken;  ///< warnings of selections that it does not know
   std::vector<std::string> losses;     ///< see ExrReader::losses()

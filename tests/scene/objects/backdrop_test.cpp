@@ -110,6 +110,25 @@ TEST(Backdrop, WallsNeedAWideGapAndNoSkyAboveThem) {
   EXPECT_FALSE(is_backdrop(frame({post, card(140, 1e3)}))) << "a post before a facade";
 }
 
+/// The ground of a street behind the edge of a roof is a plane far away behind a gap.
+TEST(Backdrop, AGroundFarBelowIsNone) {
+  const Surface roof =
+      cut(plane({0, 0, 100}, {0, 0, 1}), [](const glm::dvec3& p) { return p.y < -3; });
+  for (const bool world_known : {true, false}) {
+    const auto seen = [&](const Surface& far) {
+      Geometry shown = frame({roof, far}, look_at(camera_from_fov(55, kWindow, 1), {0, -6, 101.5},
+                                                  {0, 0, 98}, {0, 0, 1}));
+      shown.world_known = world_known;
+      const auto found = find_backdrop(shown);
+      return found && found->is_far();
+    };
+    EXPECT_FALSE(seen(kFloor)) << world_known;
+    // A card there is one, also where it leans back.
+    EXPECT_TRUE(seen(plane({0, 400, 0}, {0, -1, 0}))) << world_known;
+    EXPECT_TRUE(seen(plane({0, 400, 0}, {0, -0.8, 0.6}))) << world_known;
+  }
+}
+
 /// What stands on the ground that leads up to it is one from 150 heights of the camera on, if it is
 /// seen 30 times as high.
 TEST(Backdrop, WhatStandsOnTheGroundIsFoundByItsScale) {
@@ -274,7 +293,7 @@ TEST(Backdrop, TheCameraIsInADome) {
 
 /// A plane with too few samples is none, and takes none from what is left to other shapes.
 TEST(Backdrop, PlanesWithFewSamplesTakeNothing) {
-  for (const std::size_t on_plane : {kFewestOfShape - 1, kFewestOfShape}) {
+  for (const std::size_t on_plane : {23, 24}) {
     std::vector<Surfel> surfels(on_plane + 1);
     for (std::size_t i = 0; i < surfels.size(); ++i) {
       surfels[i].position = {0.1f * float(i), 0, i < on_plane ? -10 : -20};
@@ -283,7 +302,7 @@ TEST(Backdrop, PlanesWithFewSamplesTakeNothing) {
     SurfelSamples left;
     for (const Surfel& s : surfels) left.push_back(&s);
     const std::size_t flats = take_flats(left, 0.8, [](const Flat&) { return true; }).size();
-    EXPECT_EQ(flats, std::size_t(on_plane == kFewestOfShape));
+    EXPECT_EQ(flats, std::size_t(on_plane == 24));
     EXPECT_EQ(left.size(), flats == 0 ? surfels.size() : 1);
   }
 }

@@ -14,8 +14,9 @@ namespace ssdo {
 /// What blocks the light of lamps that name it (Scene::blockers), as rays read it.
 class OwnBlockers {
  public:
+  /// `far`: what goes on in an overview beyond the raster; null: nothing.
   OwnBlockers(const Scene& blockers, const Scene& scene, const Request& request,
-              const SlicePattern& pattern);
+              const SlicePattern& pattern, const FarScene* far);
   OwnBlockers(const OwnBlockers&) = delete;  // a march refers to the others
   OwnBlockers& operator=(const OwnBlockers&) = delete;
 
@@ -30,6 +31,12 @@ class OwnBlockers {
   March march_;
   float past_;  ///< as sun_past_beyond() has it
 };
+
+/// What blocks the light of lamps in the overview of a frame, whose scene is `scene`: for
+/// FarScene::blockers.
+std::map<std::size_t, std::shared_ptr<const FarScene>> far_blockers(const Scene& scene,
+                                                                    const Request& request,
+                                                                    const FarRaster& raster);
 
 /// Those of all sources of a scene. Lamps that name the same things share them.
 class BlockersOfSources {
