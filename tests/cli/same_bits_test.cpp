@@ -70,7 +70,7 @@ TEST_F(SameFiles, FromRunToRunAndForAnyThreads) {
     const std::string once = files(by + Words{"--threads", "1"});
     for (const char* threads : is_default ? std::vector{"2", "7", "16"} : std::vector{"7"})
       EXPECT_TRUE(files(by + Words{"--threads", threads}) == once) << threads << " threads";
-    for (int run = 0; run < (is_default ? 10 : 1); ++run)
+    for (int run = 0; run < (is_default ? 3 : 1); ++run)
       EXPECT_TRUE(files(by) == once) << "run " << run;
   }
 }

@@ -73,9 +73,7 @@ class Raster {
   template <class T, class Value>
   Plane<T> of_receivers(const T& background, const Value& value) const {
     const Window& to = scene_.receivers;
-    Plane<T> out;
-    out.width = to.width(), out.height = to.height();
-    out.pixels.resize(to.area());
+    auto out = Plane<T>::unset(to.width(), to.height());
     for_each_row(to.height(), [&](int y) {
       for (int first = 0; first < std::min(kPeriod, to.width()); ++first) {
         std::ptrdiff_t i = layout_.index(to.x0 + first, to.y0 + y);

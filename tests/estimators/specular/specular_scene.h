@@ -43,7 +43,8 @@ inline Plane<glm::vec3> unoccluded(const Scene& scene, double roughness, double 
   Products all;
   all.shares.mirror = std::make_shared<const MirrorModel>(
       scene, request_of(find_method("bitmask"), roughness, ior));
-  all.specular = Plane<glm::vec3>::like(scene.geometry.surfel);
+  const Plane<Surfel>& surfel = scene.geometry.surfel;
+  all.specular = Plane<glm::vec3>(surfel.width, surfel.height);
   all.shares.mirrored_sky = all.specular;
   std::fill(all.shares.mirrored_sky.pixels.begin(), all.shares.mirrored_sky.pixels.end(),
             glm::vec3(1));
