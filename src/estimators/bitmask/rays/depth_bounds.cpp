@@ -93,8 +93,11 @@ DepthBounds::DepthBounds(const MarchScene& scene, const MarchLayer& layer) {
   columns_ = ((first_x_ + scene.layout.width() - 1) >> kSmallest) + 1;
   rows_ = (((first_y_ + scene.layout.height() - 1) >> kLargest) + 1) << kHalvings;
   columns_ += columns_ & 1;
-  const std::size_t count = 2 * std::size_t(rows_) * std::size_t(columns_);
-  cells_.assign(count, {-kInfinity, 0, kInfinity});
+  cells_.resize(2 * std::size_t(rows_) * std::size_t(columns_));
+  for_each_row(2 * rows_, [&](int row) {
+    std::fill_n(&cells_[std::size_t(row) * std::size_t(columns_)], columns_,
+                Stored{-kInfinity, 0, kInfinity});
+  });
   const int used_rows = ((first_y_ + scene.layout.height() - 1) >> kSmallest) + 1;
   pixels_.resize(std::size_t(used_rows) * std::size_t(columns_) << (2 * kSmallest));
   for_each_row(used_rows, [&](int row) { gather_pixels(scene, layer, row); });

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimators/bitmask/march_scene.h"
+#include "math/uninitialized.h"
 
 namespace ssdo {
 
@@ -58,8 +59,8 @@ class DepthBounds {
   void gather_cells(int size, int row);
 
   int first_x_, first_y_, columns_, rows_;
-  std::vector<Stored> cells_;
-  std::vector<glm::vec2> pixels_;
+  std::vector<Stored, Uninitialized<Stored>> cells_;
+  std::vector<glm::vec2, Uninitialized<glm::vec2>> pixels_;
 };
 
 /// Those of every layer of a scene.

@@ -104,9 +104,9 @@ HWY_INLINE Ray ray_of(const MarchScene& scene, const MarchReceiver& p, const Sou
   return make_ray<kOrthographic>(scene, p, rays.to(i), rays.length(i), rays.light(i) > set(0));
 }
 
-/// The points whose light is found.
-HWY_INLINE MarchReceiver lit_point(const SourceJob& job, const Place& place) {
-  MarchReceiver p = load_receiver(job.march.scene, place);
+/// The points whose light is found, of the pixels that show `shown`.
+HWY_INLINE MarchReceiver lit_point(const SourceJob& job, const MarchReceiver& shown) {
+  MarchReceiver p = shown;
   if (!job.unseen_of) return p;
   const UnseenSide side = unseen_side(*job.unseen_of, p);
   p.position = side.position, p.normal = side.normal;
@@ -115,9 +115,10 @@ HWY_INLINE MarchReceiver lit_point(const SourceJob& job, const Place& place) {
 }
 
 /// Where their rays in the direction `to` begin: of unseen sides, past their own solids.
-HWY_INLINE MarchReceiver start_of_ray(const SourceJob& job, const Place& place, const V3& to) {
+HWY_INLINE MarchReceiver start_of_ray(const SourceJob& job, const MarchReceiver& shown,
+                                      const V3& to) {
   const MarchScene& scene = job.march.scene;
-  MarchReceiver p = load_receiver(scene, place);
+  MarchReceiver p = shown;
   if (job.unseen_of) {
     const UnseenSide side = unseen_side(*job.unseen_of, p);
     p = moved_to(scene, p, mul_add(to, side.clear, side.position), to);
@@ -126,9 +127,8 @@ HWY_INLINE MarchReceiver start_of_ray(const SourceJob& job, const Place& place, 
   return p;
 }
 
-HWY_INLINE V way_in_solid(const SourceJob& job, const Place& place) {
-  if (!job.unseen_of) return set(0);
-  return unseen_side(*job.unseen_of, load_receiver(job.march.scene, place)).clear;
+HWY_INLINE V way_in_solid(const SourceJob& job, const MarchReceiver& shown) {
+  return job.unseen_of ? unseen_side(*job.unseen_of, shown).clear : set(0);
 }
 
 template <bool kOrthographic>
@@ -143,20 +143,23 @@ void source(const SourceJob& job, const Window& part) {
     for (const PointsOfSource& points : job.points) {
       occluders.clear();
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
-        const MarchReceiver lit = lit_point(job, place);
+        const MarchReceiver shown = load_receiver(scene, place), lit = lit_point(job, shown);
         const int i = block.first_of(place);
         const SourcePoints to = points_above(job, points, lit);
         const V light = to.weight * dot(lit.normal, to.to);
+        const M is_lit = hn::And(lit.valid, light > set(0));
+        rays.light.set_at(i, hn::IfThenElseZero(is_lit, light));
+        if (!any(is_lit)) return;
         rays.to.set_at(i, to.to);
-        rays.length.set_at(i, hn::Max(to.distance - way_in_solid(job, place), set(0)));
-        rays.light.set_at(i, hn::IfThenElseZero(hn::And(lit.valid, light > set(0)), light));
-        const MarchReceiver p = start_of_ray(job, place, to.to);
+        rays.length.set_at(i, hn::Max(to.distance - way_in_solid(job, shown), set(0)));
+        const MarchReceiver p = start_of_ray(job, shown, to.to);
         occluders.ask(i, p, ray_of<kOrthographic>(scene, p, rays, i));
       });
       occluders.run(job.together);
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
         const int i = block.first_of(place);
-        const MarchReceiver p = start_of_ray(job, place, rays.to(i));
+        if (!any(rays.light(i) > set(0))) return;
+        const MarchReceiver p = start_of_ray(job, load_receiver(scene, place), rays.to(i));
         const Ray ray = ray_of<kOrthographic>(scene, p, rays, i);
         const Arrival a = occluders.arrival(i, p, ray, pass_of(job, place));
         sums.add(i, rays.light(i), a.share,
