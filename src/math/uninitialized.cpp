@@ -11,10 +11,10 @@ void prefer_large_pages(void* first, std::size_t bytes) {
 #ifdef MADV_HUGEPAGE
   constexpr std::uintptr_t kLargePage = std::uintptr_t(2) << 20;
   if (bytes < 2 * kLargePage) return;
-  // Outwards: planes beside each other share the page between them. Where there are no such pages,
-  // or a part of the range is not mapped, all goes on as before.
-  const std::uintptr_t begin = std::uintptr_t(first) & -kLargePage,
-                       end = (std::uintptr_t(first) + bytes + kLargePage - 1) & -kLargePage;
+  // Those that the plane fills: what lies beside it may never be touched. Where there are no such
+  // pages, all goes on as before.
+  const std::uintptr_t begin = (std::uintptr_t(first) + kLargePage - 1) & -kLargePage,
+                       end = (std::uintptr_t(first) + bytes) & -kLargePage;
   static_cast<void>(madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE));
 #else
   static_cast<void>(first), static_cast<void>(bytes);
