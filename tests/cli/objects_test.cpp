@@ -567,18 +567,25 @@ TEST_F(Objects, MasksAreTheSameInBands) {
     EXPECT_EQ(at("whole.exr", name).pixels, at("bands.exr", name).pixels) << name;
 }
 
-/// What casts nothing is taken out of each band, within what marches in bands are off.
-TEST_F(Objects, NoCastInBandsIsNearlyThatOfTheFrame) {
+/// Writes a frame of 320 x 1600 pixels: a ball on a floor. Gives its matte, the layer "ball".
+Plane<float> write_tall_frame(const std::string& file, double radius) {
   constexpr Window kTall{0, 0, 320, 1600};
   const Camera by = look_at(camera_from_fov(40, kTall, 1), {0, -4, 3}, {0, 0, 0.3}, {0, 0, 1});
-  const Surface floor = plane({}, {0, 0, 1}), ball = sphere({0.2, 0, 1.2}, 1.2);
+  const Surface floor = plane({}, {0, 0, 1}), ball = sphere({0.2, 0, radius}, radius);
   const Picture shown = take_picture(all_of({floor, ball}), by, kTall);
   FramePart part = frame_of(shown);
   part.data = part.display = kTall;
-  Plane<float>& matte = part.channels["ball.A"] = Plane<float>(320, 1600, 0.0f);
+  Plane<float> matte(320, 1600, 0.0f);
   for (std::size_t i = 0; i < shown.position.size(); ++i)
     if (shown.position[i].z > 1e-4f) matte[i] = 1;
-  write_frame(path("in.exr"), part);
+  part.channels["ball.A"] = matte;
+  write_frame(file, part);
+  return matte;
+}
+
+/// What casts nothing is taken out of each band, within what marches in bands are off.
+TEST_F(Objects, NoCastInBandsIsNearlyThatOfTheFrame) {
+  const Plane<float> matte = write_tall_frame(path("in.exr"), 1.2);
   const Words flags = {"--thickness", "0.3", "--radius", "1", "--products", "ao,bounce"},
               out = flags + Words{"--no-cast", "ball"}, limit = {"--mem-limit", "124M"};
   run(path("in.exr"), "cast.exr", flags);
@@ -596,16 +603,7 @@ TEST_F(Objects, NoCastInBandsIsNearlyThatOfTheFrame) {
 
 /// So is what throws the shadow of --shadow-of; and what the lamps name that does not block them.
 TEST_F(Objects, ShadowOfInBandsIsNearlyThatOfTheFrame) {
-  constexpr Window kTall{0, 0, 320, 1600};
-  const Camera by = look_at(camera_from_fov(40, kTall, 1), {0, -4, 3}, {0, 0, 0.3}, {0, 0, 1});
-  const Surface floor = plane({}, {0, 0, 1}), ball = sphere({0.2, 0, 0.6}, 0.6);
-  const Picture shown = take_picture(all_of({floor, ball}), by, kTall);
-  FramePart part = frame_of(shown);
-  part.data = part.display = kTall;
-  Plane<float>& matte = part.channels["ball.A"] = Plane<float>(320, 1600, 0.0f);
-  for (std::size_t i = 0; i < shown.position.size(); ++i)
-    if (shown.position[i].z > 1e-4f) matte[i] = 1;
-  write_frame(path("in.exr"), part);
+  const Plane<float> matte = write_tall_frame(path("in.exr"), 0.6);
   const std::string lamp = "sphere position=-1.5,-1,3 radius=0.1 normalize=true intensity=60 ";
   const Words limit = {"--mem-limit", "180M"};
   for (const std::string radius : {"0.8", "inf"}) {
