@@ -8,7 +8,6 @@
 namespace ssdo {
 
 void prefer_large_pages(void* first, std::size_t bytes) {
-#ifdef MADV_HUGEPAGE
   constexpr std::uintptr_t kLargePage = std::uintptr_t(2) << 20;
   if (bytes < 2 * kLargePage) return;
   // Those that the plane fills: what lies beside it may never be touched. Where there are no such
@@ -16,9 +15,6 @@ void prefer_large_pages(void* first, std::size_t bytes) {
   const std::uintptr_t begin = (std::uintptr_t(first) + kLargePage - 1) & -kLargePage,
                        end = (std::uintptr_t(first) + bytes) & -kLargePage;
   static_cast<void>(madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE));
-#else
-  static_cast<void>(first), static_cast<void>(bytes);
-#endif
 }
 
 }  // namespace ssdo
