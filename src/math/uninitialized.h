@@ -9,9 +9,9 @@
 
 namespace ssdo {
 
-/// Asks the system to back the memory of a plane with large pages, where it has them: of pages of
-/// 4 KiB a frame of 1920 x 1080 touches 66,000, and each is a fault. Does nothing for planes of
-/// less than two large pages, whose rests would be more than they are.
+/// Asks the system to back what a plane fills of large pages with such, where it has them: of pages
+/// of 4 KiB a frame of 1920 x 1080 touches 66,000, and each is a fault. A plane of less than two
+/// large pages (4 MiB) need not fill one.
 void prefer_large_pages(void* first, std::size_t bytes);
 
 /// An allocator for elements that are left as they are in memory where they are given no value, so
