@@ -567,18 +567,23 @@ TEST_F(Objects, MasksAreTheSameInBands) {
     EXPECT_EQ(at("whole.exr", name).pixels, at("bands.exr", name).pixels) << name;
 }
 
-/// Writes a frame of 320 x 1600 pixels: a ball on a floor. Gives its matte, the layer "ball".
+/// Writes a frame of 320 x 1600 pixels: a ball on a floor, and a stone beside it. Gives the matte
+/// of the ball, the layer "ball"; that of the other is "stone".
 Plane<float> write_tall_frame(const std::string& file, double radius) {
   constexpr Window kTall{0, 0, 320, 1600};
   const Camera by = look_at(camera_from_fov(40, kTall, 1), {0, -4, 3}, {0, 0, 0.3}, {0, 0, 1});
-  const Surface floor = plane({}, {0, 0, 1}), ball = sphere({0.2, 0, radius}, radius);
-  const Picture shown = take_picture(all_of({floor, ball}), by, kTall);
+  const Surface floor = plane({}, {0, 0, 1}), ball = sphere({0.2, 0, radius}, radius),
+                stone = sphere({0 - radius, 0, 0.2}, 0.2);
+  const Picture shown = take_picture(all_of({floor, ball, stone}), by, kTall);
   FramePart part = frame_of(shown);
   part.data = part.display = kTall;
-  Plane<float> matte(320, 1600, 0.0f);
-  for (std::size_t i = 0; i < shown.position.size(); ++i)
-    if (shown.position[i].z > 1e-4f) matte[i] = 1;
-  part.channels["ball.A"] = matte;
+  Plane<float> matte(320, 1600, 0.0f), of_stone = matte;
+  for (std::size_t i = 0; i < shown.position.size(); ++i) {
+    const glm::vec3& p = shown.position[i];
+    const bool in_ball = glm::distance(p, glm::vec3(0.2, 0, radius)) < float(radius) + 1e-3f;
+    if (p.z > 1e-4f) (in_ball ? matte : of_stone)[i] = 1;
+  }
+  part.channels["ball.A"] = matte, part.channels["stone.A"] = of_stone;
   write_frame(file, part);
   return matte;
 }
@@ -610,7 +615,8 @@ TEST_F(Objects, ShadowOfInBandsIsNearlyThatOfTheFrame) {
     const Words flags = {
         "--shadow-of", "ball", "--thickness", "0.3",       "--radius", radius,
         "--slices",    "1",    "--steps",     "8",         "--env",    "0.3",
-        "--bounces",   "0",    "--products",  "shadow_of", "--light",  lamp + "cast=ball"};
+        "--bounces",   "0",    "--products",  "shadow_of", "--light",  lamp + "cast=ball",
+        "--no-cast",   "stone"};
     run(path("in.exr"), "whole.exr", flags);
     run(path("in.exr"), "bands.exr", flags + limit);
     EXPECT_THAT(run_tool(Words{"info", path("in.exr")} + flags + limit).out,
