@@ -171,21 +171,24 @@ run_blender() {
 }
 
 # Each of these waits for daemons, disks and signals for much of its time. What they print is shown
-# when all have ended.
+# when all have ended, of those that failed last.
 run_system() (
   # apt serves one at a time
   install_packages "${farm_packages[@]}" "${fault_packages[@]}" "${blender_packages[@]}"
-  logs=$(mktemp -d) failed=0
+  logs=$(mktemp -d) failed=()
   trap 'rm -rf "$logs"' EXIT
   for stage in farm package faults blender; do
     (SECONDS=0; "run_$stage"; echo "tests/run.sh: $stage took $SECONDS s") >"$logs/$stage" 2>&1 &
     pids[$!]=$stage
   done
   for pid in "${!pids[@]}"; do
-    wait "$pid" || { failed=1; echo "tests/run.sh: ${pids[$pid]} failed"; }
-    cat "$logs/${pids[$pid]}"
+    if wait "$pid"; then cat "$logs/${pids[$pid]}"; else failed+=("${pids[$pid]}"); fi
   done
-  exit $failed
+  for stage in "${failed[@]}"; do
+    cat "$logs/$stage"
+    echo "tests/run.sh: $stage failed"
+  done
+  exit ${#failed[@]}
 )
 
 case "${1:-}" in

@@ -4,8 +4,9 @@
 
 say() { echo "[${SECONDS}s] $*"; }
 
+# Daemons' logs follow, and then this once more.
 fail() {
-  echo "tests/farm: $*" >&2
+  echo "tests/farm: $*" | tee ${work:+"$work/failure"} >&2
   exit 1
 }
 
@@ -66,8 +67,21 @@ frames_done() { find relit -name 'relit.*.exr' | wc -l; }
 
 is_shot_complete() { diff -r local relit >/dev/null; }
 
-# To the end of the list: at head -1, sort may write on and end with SIGPIPE.
-oldest_frame() { find relit -name 'relit.*' -printf '%T@ %i %p\n' | sort | sed -n 1p; }
+# The files of frames that have both, with inode and time. A task that is killed between the names of
+# its two leaves one, and that frame is made again.
+complete_frames() {
+  local exr
+  for exr in relit/relit.*.exr; do
+    [ ! -e "${exr%.exr}.png" ] || stat -c '%n %i %.Y' "$exr" "${exr%.exr}.png"
+  done
+}
+
+# check_kept LIST: the files of complete_frames are as they were.
+check_kept() {
+  local changed
+  changed=$(comm -23 <(sort <<<"$1") <(complete_frames | sort))
+  [ -z "$changed" ] || fail "made again, though done: $changed"
+}
 
 # check_shot NAME: every file has the bits of the local run, and there are no others.
 check_shot() {

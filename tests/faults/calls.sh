@@ -107,12 +107,31 @@ test_failing_disk() {
   say "calls: pread64 of a frame fails with --allow-partial: $count of $most runs refused, the others needed no more reads"
 }
 
+# Who is ended while a disk is waited for leaves both outputs or neither: a frame is not done in part.
+test_end_at_disk() {
+  local i count all=0
+  new_case
+  count=$(calls_of fsync "${job[@]}" -o a.exr -o a.png)
+  for ((i = 1; i <= count; i++)); do
+    new_case
+    around=(strace --follow-forks --quiet=all --output=/dev/null --trace=fsync --inject="fsync:signal=TERM:when=$i")
+    run "${job[@]}" -o a.exr -o a.png
+    around=()
+    ended "0 143"
+    [ "$(state_of a.exr)" = none ] || all=$((all + 1))
+    are "$(state_of a.exr)" a.exr a.png
+  done
+  [ "$all" -gt 0 ] && [ "$all" -lt "$count" ] || complain "$all of $count left both outputs"
+  say "calls: ended at one of $count calls of fsync: both outputs are there after $all, none after the others"
+}
+
 test_calls() {
   local most=$((runs / 8))
   test_each_of write "$most" ENOSPC EIO
   test_each_of fsync "$most" ENOSPC EDQUOT EIO
   test_each_of close "$most" ENOSPC EIO
   test_renaming
+  test_end_at_disk
   test_each_of lseek "$most" EIO
   test_each_of read,pread64 "$most" EIO
   test_failing_disk

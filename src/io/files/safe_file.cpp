@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <set>
 #include <system_error>
 
 #include "error.h"
@@ -155,8 +156,7 @@ void SafeFile::flush() {
   flushed_ = true;
 }
 
-void SafeFile::commit() {
-  flush();
+void SafeFile::rename_into_place() {
   const int error = policy_.overwrite ? rename_over(temporary_, destination_)
                                       : rename_new(temporary_, destination_);
   if (error == EEXIST) {
@@ -164,12 +164,22 @@ void SafeFile::commit() {
   }
   if (error) fail(target_, fmt::format("cannot be written: {}; write elsewhere", reason(error)));
   committed_ = true;
+}
+
+void SafeFile::commit() {
+  flush();
+  rename_into_place();
   flush_folder(folder_of(destination_));
 }
 
 void commit_all(const std::vector<std::unique_ptr<SafeFile>>& files) {
   for (const auto& file : files) file->flush();
-  for (const auto& file : files) file->commit();
+  std::set<fs::path> folders;
+  for (const auto& file : files) {
+    file->rename_into_place();
+    folders.insert(folder_of(file->destination_));
+  }
+  for (const fs::path& folder : folders) flush_folder(folder);
 }
 
 }  // namespace ssdo

@@ -40,6 +40,9 @@ class SafeFile {
   void commit();
 
  private:
+  friend void commit_all(const std::vector<std::unique_ptr<SafeFile>>& files);
+  void rename_into_place();
+
   std::filesystem::path target_;
   std::filesystem::path destination_;  ///< the file that a link at `target_` led to at the start
   std::filesystem::path temporary_;
@@ -48,7 +51,8 @@ class SafeFile {
   bool flushed_ = false, committed_ = false;
 };
 
-/// Commits files that belong together. None gets its name before all are on the disk.
+/// Commits files that belong together. None gets its name before all are on the disk, and no disk is
+/// waited for between their names: who is killed then leaves all of them or none, but for an instant.
 void commit_all(const std::vector<std::unique_ptr<SafeFile>>& files);
 
 }  // namespace ssdo
