@@ -6,7 +6,6 @@ source "$(dirname "${BASH_SOURCE[0]}")/../tests/setup.sh"
 install_packages "${build_packages[@]}"
 mkdir -p "$root/build"
 # A fresh machine has no GoogleTest; a folder with the tests keeps them.
-read -ra options <<<"${SSDO_OPTIONS:-}"  # as tests/run.sh has it
 [ -e "$root/build/release/CMakeCache.txt" ] || options+=(-DSSDO_TESTS=OFF)
 build "$root/build/release" ssdo "${options[@]}"
 

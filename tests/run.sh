@@ -8,16 +8,12 @@
 #   tests/run.sh [all | edit NAME... | STAGE...]
 # A STAGE is release, address, fuzz, thread, farm, package, faults, blender, system (the last four at
 # once), lint, tidy, clang (the tests by another compiler), debian13 or testing (on another release) or
-# aarch64 (tests of estimators under qemu); $SSDO_OPTIONS goes to cmake, for example
-# -DSSDO_ONE_ISA=avx2.
+# aarch64 (tests of estimators under qemu). $SSDO_OPTIONS goes to cmake.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 mkdir -p "$root/build"
 release=$root/build/release
-options=(-DSSDO_TESTS=ON)
-[ -z "${CI:-}" ] || options+=(-DSSDO_WERROR=ON)
-read -ra more_options <<<"${SSDO_OPTIONS:-}"
-options+=("${more_options[@]}")
+options+=(-DSSDO_TESTS=ON)
 
 build_release() {
   echo "tests/run.sh: building build/release"

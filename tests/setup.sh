@@ -26,6 +26,10 @@ farm_packages=(slurm-wlm munge parallel make debootstrap dpkg-dev patchelf)  # o
 fault_packages=(strace)  # of tests/faults
 blender_packages=(blender)  # of tests/blender
 
+# For cmake: what $SSDO_OPTIONS says, for example -DSSDO_ONE_ISA=avx2. In CI warnings are errors.
+read -ra options <<<"${SSDO_OPTIONS:-}"
+[ -z "${CI:-}" ] || options+=(-DSSDO_WERROR=ON)
+
 # build FOLDER TARGET [cmake options]: configures FOLDER and builds TARGET in it.
 build() {
   local folder=$1 target=$2

@@ -21,7 +21,6 @@ dpkg --add-architecture arm64
 install_packages "${packages[@]}"
 
 export PKG_CONFIG_LIBDIR=/usr/lib/aarch64-linux-gnu/pkgconfig:/usr/share/pkgconfig
-read -ra options <<<"${SSDO_OPTIONS:-}"
 folder=$root/build/aarch64
 build "$folder" ssdo_images -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 \
   -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++ -DCMAKE_CROSSCOMPILING_EMULATOR=qemu-aarch64-static \
