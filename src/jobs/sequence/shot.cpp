@@ -17,12 +17,12 @@ namespace {
 
 /// Findings in memory: those that are kept, or `copy`, which is filled with those on disk.
 /// Of these, the first `arrays` suffice.
-const Findings& in_memory(const auto& kept, std::optional<Findings>& copy,
+const Findings& in_memory(const auto& kept, Findings& copy,
                           std::size_t arrays = std::numeric_limits<std::size_t>::max()) {
-  copy.reset();
   if (!kept.arrays) return kept.findings;
-  kept.arrays->read(copy.emplace(kept.findings), arrays);
-  return *copy;
+  copy = kept.findings;
+  kept.arrays->read(copy, arrays);
+  return copy;
 }
 
 }  // namespace
@@ -88,7 +88,7 @@ void Shot::find_motion(std::size_t job, std::size_t view, Work& work, Findings& 
     return;
   const auto before = findings_.find({job - 1, view});
   if (before == findings_.end()) return;
-  std::optional<Findings> copy;
+  Findings copy;
   const Findings& then = in_memory(before->second, copy, kArraysOfGeometry);
   own.motion = find_own_motion(layer, own.surfaces, then.surfaces);
   if (!own.motion.contradicts) return;
@@ -163,18 +163,18 @@ void Shot::make(Waiting& waiting) {
 /// around one, in their order.
 template <class Visit>
 void Shot::for_each_other(std::size_t job, std::size_t view, const Visit& visit) const {
-  std::optional<Findings> copy;
   for (const std::size_t other : around_[job]) {
     const auto found = findings_.find({other, view});
     if (other == job || found == findings_.end()) continue;
+    Findings copy;
     const Findings& findings = in_memory(found->second, copy);
-    visit(other, findings, copy.has_value());
+    visit(other, findings, &findings == &copy);
   }
 }
 
 void Shot::make(std::size_t job, std::size_t view, WorkOnView& work) {
   Stopwatch watch;
-  std::optional<Findings> copy;
+  Findings copy;
   const Findings& own = in_memory(findings_.at({job, view}), copy);
   Fusion fusion(own, work.relit.found.scene.light);
   follow_on_disk(job, view, fusion);
@@ -201,7 +201,7 @@ void Shot::follow_on_disk(std::size_t job, std::size_t view, Fusion& fusion) con
     moves = moves || found->second.moves;
   }
   if (!on_disk) return;
-  std::deque<std::optional<Findings>> copies;
+  std::deque<Findings> copies;
   std::vector<OtherFindings> others;
   for (const std::size_t other : around_[job]) {
     const auto found = findings_.find({other, view});
@@ -214,7 +214,7 @@ void Shot::follow_on_disk(std::size_t job, std::size_t view, Fusion& fusion) con
 
 /// For `info`.
 void Shot::look(std::size_t job, std::size_t view, WorkOnView& work) {
-  std::optional<Findings> copy;
+  Findings copy;
   ShownPoints shown(in_memory(findings_.at({job, view}), copy).surfaces);
   for_each_other(job, view, [&](std::size_t, const Findings& findings, bool) {
     shown.add(findings.surfaces);
