@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Installs what is needed, builds, and passes the tests. `all` passes them with sanitizers too,
-# fuzzes for half a minute each, and tries a shot on a farm, the package, faults, the add-on for
+# fuzzes for ten seconds each, and tries a shot on a farm, the package, faults, the add-on for
 # Blender, cppcheck and clang-tidy.
 # `edit` is for between two edits: it builds and runs the tests whose files or names hold NAME, with
 # what these need, for one instruction set.
@@ -96,7 +96,7 @@ test_sanitized() (
   rm -rf "$findings"
   mkdir -m 1777 "$findings"  # tests run the tool as another user too
   common=log_path=$findings/report:exitcode=86
-  export SSDO_RANDOM_FRAMES=20  # of 1200
+  export SSDO_RANDOM_FRAMES=20  # of 600
   export UBSAN_OPTIONS=$common:print_stacktrace=1 GTEST_FILTER=$2
   export ASAN_OPTIONS=$common:allocator_may_return_null=1:handle_abort=1
   export LSAN_OPTIONS=suppressions=$root/tests/leaks.txt:print_suppressions=0

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <iterator>
 #include <regex>
 #include <set>
@@ -11,6 +12,7 @@
 
 #include "support/help_flags.h"
 #include "support/run_tool.h"
+#include "support/temp_dir.h"
 
 namespace ssdo::test::man_test {
 namespace {
@@ -118,12 +120,14 @@ std::vector<std::vector<std::string>> commands_of_sources() {
 TEST(ManPage, ItsCommandsForTheSystemsOfTheSourcesRun) {
   const auto commands = commands_of_sources();
   EXPECT_EQ(commands.size(), 9u) << "one for each system, and two of ssao";
+  const TempDir folder;
+  std::filesystem::create_directory_symlink(data(""), folder / "data");
   for (const std::vector<std::string>& command : commands) {
     SCOPED_TRACE(testing::PrintToString(command));
     EXPECT_THAT(command, testing::IsSupersetOf({"--method", "--filter", "source"}));
     std::vector<std::string> arguments(command.begin() + 1, command.end());
     arguments.push_back("--dry-run");
-    const Finished done = run_tool(arguments, {.folder = SSDO_SOURCE_DIR});
+    const Finished done = run_tool(arguments, {.folder = folder.path()});
     EXPECT_EQ(done.code, 0) << done.err;
     EXPECT_THAT(done.err, testing::HasSubstr(": that of the method's source"));
     EXPECT_THAT(done.err, testing::Not(testing::HasSubstr("warning")));

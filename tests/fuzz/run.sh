@@ -6,7 +6,7 @@
 # Every target of tests/fuzz runs for SECONDS, as many at a time as there are processors.
 # FOLDER/fuzz/corpus keeps what reaches new code, and the next run goes on from there: run.sh FOLDER
 # 3600 runs for long, names of targets choose some of them. Without SECONDS it makes the same changes
-# in the same order each time, and as many on a fast machine as on a slow one (half a minute for
+# in the same order each time, and as many on a fast machine as on a slow one (ten seconds for
 # each target), so that what it finds comes of a change of the code.
 # An input that ends a target is a finding: it stays in FOLDER/fuzz/findings, the command that
 # repeats it is printed, and the exit code is 1. Where CI is set, the input is printed too.
@@ -25,7 +25,7 @@ limits=(-max_len=65536 -timeout=30 -report_slow_units=30 -rss_limit_mb=2048)
 launch=()
 declare -A runs=()  # none: until the seconds are over
 if [ $# -lt 2 ]; then
-  runs=([camera]=30000 [deep]=25000 [environment]=3000 [exr]=6000 [frame]=9000 [options]=800)
+  runs=([camera]=10000 [deep]=8000 [environment]=1000 [exr]=2000 [frame]=3000 [options]=270)
   limits+=(-seed=1)
   # At the same addresses: libFuzzer tries values that the code compares.
   ! setarch -R true 2>/dev/null || launch=(setarch -R)

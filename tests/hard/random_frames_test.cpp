@@ -20,7 +20,7 @@
 namespace ssdo::test::random_frames_test {
 namespace {
 
-constexpr int kShards = 4, kFrames = 1200;
+constexpr int kShards = 4, kFrames = 600;
 
 /// Most frames that may be refused: those whose camera nothing tells.
 constexpr double kMostRefused = 0.15;

@@ -30,8 +30,8 @@ make_root() {
   mv "$2.part" "$2"
 }
 
-# in_root FOLDER USER COMMAND [VARIABLE=VALUE...]: with /proc and shared memory, which go away with
-# the command. Folders of the machine that are to be seen in there: binds, "FROM TO [OPTION]" each.
+# in_root FOLDER USER COMMAND [VARIABLE=VALUE...]: with /proc, shared memory and terminals, which go
+# away with the command. Folders of the machine that are to be seen in there: binds, "FROM TO [OPTION]" each.
 binds=()
 in_root() {
   local folder=$1 user=$2 command=$3
@@ -39,6 +39,7 @@ in_root() {
   SSDO_BINDS=$(printf '%s\n' "${binds[@]}") unshare --mount bash -euc '
     mount -t proc proc "$0/proc"
     mkdir -p "$0/dev/shm" && mount -t tmpfs -o mode=1777 tmpfs "$0/dev/shm"
+    mkdir -p "$0/dev/pts" && mount -t devpts -o newinstance,ptmxmode=0666 devpts "$0/dev/pts"
     while read -r from to option; do
       [ -n "$from" ] || continue
       mkdir -p "$0$to"
