@@ -31,7 +31,8 @@ make_root() {
 }
 
 # in_root FOLDER USER COMMAND [VARIABLE=VALUE...]: with /proc, shared memory and terminals, which go
-# away with the command. Folders of the machine that are to be seen in there: binds, "FROM TO [OPTION]" each.
+# away with the command. Folders of the machine that are to be seen in there: binds, "FROM TO
+# [OPTION]" each.
 binds=()
 in_root() {
   local folder=$1 user=$2 command=$3
