@@ -111,9 +111,6 @@ test_sanitized() (
   exit $failed
 )
 
-# A list of tests as a filter of GoogleTest.
-names() { grep -v '^#' "$root/tests/$1" | paste -sd:; }
-
 run_address() {
   build_address all_tests
   test_sanitized address "-$(names address_left_out.txt)"

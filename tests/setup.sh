@@ -26,6 +26,9 @@ farm_packages=(slurm-wlm munge parallel make debootstrap dpkg-dev patchelf)  # o
 fault_packages=(strace)  # of tests/faults
 blender_packages=(blender)  # of tests/blender
 
+# A list of tests as a filter of GoogleTest.
+names() { grep -v '^#' "$root/tests/$1" | paste -sd:; }
+
 # For cmake: what $SSDO_OPTIONS says, for example -DSSDO_ONE_ISA=avx2. In CI warnings are errors.
 read -ra options <<<"${SSDO_OPTIONS:-}"
 [ -z "${CI:-}" ] || options+=(-DSSDO_WERROR=ON)
