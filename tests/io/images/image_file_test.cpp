@@ -212,15 +212,20 @@ TEST(ReadImage, SaysWhatIsWrong) {
               IsError(ExitCode::input, "text.png: cannot be read as an image (it is no EXR, PNG,"));
 }
 
-/// Rows beyond the largest int are none for OpenImageIO, which then reports success.
-TEST(ReadImage, RefusesAPlaceBeyondInt) {
+/// Rows beyond the largest int are none for OpenImageIO 2, which then reports success. Version 3.1
+/// reads the picture, or reports that it cannot.
+TEST(ReadImage, LosesNothingAtAPlaceBeyondInt) {
   const TempDir dir;
   for (const bool down : {false, true}) {
-    OIIO::ImageSpec spec(200, 200, 1, OIIO::TypeDesc::UINT8);
+    OIIO::ImageSpec spec(200, 200, 1, OIIO::TypeDesc::FLOAT);
     (down ? spec.y : spec.x) = std::numeric_limits<int>::max() - 127;
     write_floats(dir / "a.tif", spec, std::vector<float>(200 * 200, 0.5f));
-    EXPECT_THAT(error_of([&] { read_image(dir / "a.tif"); }),
-                IsError(ExitCode::input, "a.tif: is damaged: its header places it at "));
+    try {
+      EXPECT_THAT(read_image(dir / "a.tif").color.pixels,
+                  testing::AllOf(testing::SizeIs(200 * 200), testing::Each(glm::vec3(0.5f))));
+    } catch (const Error& error) {
+      EXPECT_THAT(error, IsError(ExitCode::input, "a.tif: is damaged"));
+    }
   }
 }
 
@@ -264,7 +269,8 @@ TEST(ReadImage, TurnsATiffAsItsTagSays) {
 TEST(ReadImage, TellsTheColourSpace) {
   const TempDir dir;
   save(dir / "a.png", {1, 1, 3, 8, 1}, {1, 0.2f, 0.4f});
-  EXPECT_EQ(read_image(dir / "a.png").color_space, "sRGB");
+  // Which OpenImageIO 3.1 calls "srgb_rec709_scene".
+  EXPECT_THAT(read_image(dir / "a.png").color_space, testing::MatchesRegex("s(RGB|rgb_.*)"));
   write_floats(dir / "a.hdr", OIIO::ImageSpec(1, 1, 3, OIIO::TypeDesc::FLOAT), {1, 1, 1});
   // "linear", which OpenImageIO 2.5 calls "lin_srgb".
   EXPECT_THAT(read_image(dir / "a.hdr").color_space, testing::StartsWith("lin"));
