@@ -13,7 +13,7 @@ Picture average_picture(const Surface& scene, const Camera& camera, const Window
   averaged = Plane<unsigned char>(window.width(), window.height());
   for (int y = window.y0; y < window.y1; ++y) {
     for (int x = window.x0; x < window.x1; ++x) {
-      glm::dvec3 position(0), normal(0), first(0);
+      glm::dvec3 position(0), normal(0);
       double nearest = HUGE_VAL, farthest = 0;
       for (int s = 0; s < n * n; ++s) {
         const Ray ray = ray_through(camera, x + (s % n + 0.5) / n, y + (s / n + 0.5) / n);

@@ -133,7 +133,6 @@ Imf::Header header_for(const ExrOutput& output, const std::vector<KeptChannel>& 
   check_crop(output, part_of(output), stored_channels);
   Imf::Header header = scanline_header(output, part_of(output));
   header.compression() = compression_for(output);
-  if (const auto level = level_for(output, header.compression())) set_level(header, *level);
   header.channels() = Imf::ChannelList();
   for (const auto& [name, stored] : kept) {
     header.channels().insert(name, part_of(output).header.channels()[stored.channel.name]);
@@ -152,6 +151,8 @@ Imf::Header header_for(const ExrOutput& output, const std::vector<KeptChannel>& 
     if (!header.findTypedAttribute<Imf::StringAttribute>(name)) take_out(header, name);
     header.insert(name, Imf::StringAttribute(text));
   }
+  // Kept beside the attributes by OpenEXR, for this header and no copy of its attributes.
+  if (const auto level = level_for(output, header.compression())) set_level(header, *level);
   return header;
 }
 

@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <stdexcept>
 
 #include "io/size_guard.h"
@@ -142,8 +141,11 @@ double claimed_bytes(const ExrPart& part, double value_bytes) {
 
 void take_out(Imf::Header& header, const std::string& name) {
   if (header.find(name) == header.end()) return;
-  const std::unique_ptr<Imf::Attribute> attribute(&header[name]);
-  header.erase(name);
+  Imf::Header rest;
+  for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
+    if (attribute.name() != name) rest.insert(attribute.name(), attribute.attribute());
+  }
+  header = rest;
 }
 
 std::string text_of(const Window& w) {
