@@ -98,7 +98,7 @@ const std::vector<ExrLie> kExrLies = {
     {"table_in_the_header", places(8, 9), kDamaged},
     {"chunk_of_2_gb", chunk_size(2147483647), "claims more bytes than its pixels take"},
     {"chunk_of_less_than_nothing", chunk_size(-1), kDamaged},
-    {"ends_in_the_table", [](ExrBytes& file) { file.cut(file.table(3) + 9); }, "in its header"},
+    {"ends_in_the_table", [](ExrBytes& file) { file.cut(file.table(3) + 9); }, "or copy it again"},
     {"ends_in_the_header", [](ExrBytes& file) { file.cut(file.table(3) - 50); }, "in its header"},
 };
 

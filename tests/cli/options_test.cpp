@@ -315,7 +315,7 @@ TEST(Options, OfTheBenchAreKeptForItsCommands) {
 }
 
 TEST(Options, AreNamedInTheUsageLine) {
-  EXPECT_THAT(help(), HasSubstr("Usage: ssdo [OPTIONS] [INPUT] [SUBCOMMAND]\n"));
+  EXPECT_THAT(help(), HasSubstr("ssdo [OPTIONS] [INPUT] [SUBCOMMAND]\n"));
 }
 
 }  // namespace

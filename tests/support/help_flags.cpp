@@ -13,7 +13,7 @@ namespace ssdo::test {
 std::set<std::string> flags_of_help(const std::vector<std::string>& arguments) {
   const Finished done = run_tool(arguments);
   EXPECT_EQ(done.code, 0) << done.err;
-  static const std::regex declared(R"(^  (?:-\w,)?(--[a-z][a-z-]*))");
+  static const std::regex declared(R"(^ +(?:-\w, *)?(--[a-z][a-z-]*))");
   std::set<std::string> flags;
   std::istringstream lines(done.out);
   for (std::string line; std::getline(lines, line);) {

@@ -2,6 +2,9 @@
 #include "io/exr/file/exr_file.h"
 
 #include <ImfMultiPartInputFile.h>
+#if __has_include(<ImfContextInit.h>)
+#include <ImfContextInit.h>
+#endif
 #include <ImfTestFile.h>
 #include <fmt/format.h>
 
@@ -55,6 +58,18 @@ std::unique_ptr<InputFile> open_exr(const fs::path& file) {
   return opened;
 }
 
+/// What is wrong with a file is in the exceptions of its readers. OpenEXR 3.3 and later print it too,
+/// unless they are told where else to.
+std::unique_ptr<Imf::MultiPartInputFile> open_parts(ExrInputStream& stream) {
+#if __has_include(<ImfContextInit.h>)
+  Imf::ContextInitializer context;
+  context.setInputStream(&stream).setErrorHandler([](auto, exr_result_t, const char*) {});
+  return std::make_unique<Imf::MultiPartInputFile>(stream.fileName(), context);
+#else
+  return std::make_unique<Imf::MultiPartInputFile>(stream);
+#endif
+}
+
 }  // namespace
 
 ExrFile::ExrFile(const std::filesystem::path& path, Salvage salvage)
@@ -63,7 +78,7 @@ ExrFile::ExrFile(const std::filesystem::path& path, Salvage salvage)
       salvage_(salvage),
       stream_(std::make_unique<ExrInputStream>(*input_)) {
   try {
-    file_ = std::make_unique<Imf::MultiPartInputFile>(*stream_);
+    file_ = open_parts(*stream_);
     for (int i = 0; i < file_->parts(); ++i) parts_.push_back(describe_part(*file_, i));
   } catch (const std::exception& error) {
     throw_unless_of_file(error);
