@@ -12,6 +12,7 @@
 #include <fstream>
 #include <functional>
 #include <map>
+#include <sstream>
 
 #include "support/deep_file.h"
 #include "support/exr_bytes.h"
@@ -70,8 +71,11 @@ std::function<void(ExrBytes&)> rename(const std::string& name, const std::string
 
 const std::string kIntMin = "-2147483648", kIntMax = "2147483647", kDamaged = "is damaged";
 
+/// OpenEXR 3.4 opens what says no more than where too much is: it shows when its pixels are read.
+const std::string kDamagedOrLater = "is damaged|is incomplete|GiB of memory for its pixels";
+
 const std::vector<ExrLie> kExrLies = {
-    {"window_of_100k", window("dataWindow", {"0", "0", "99999", "99999"}), kDamaged},
+    {"window_of_100k", window("dataWindow", {"0", "0", "99999", "99999"}), kDamagedOrLater},
     {"window_wide", window("dataWindow", {"0", "0", "1073741820", "0"}), kDamaged},
     {"window_tall", window("dataWindow", {"0", "0", "0", "1073741820"}), kDamaged},
     {"window_reversed", window("dataWindow", {"9", "9", "5", "5"}), "Invalid data window"},
@@ -94,13 +98,22 @@ const std::vector<ExrLie> kExrLies = {
     {"channel_twice", rename("ViewLayer.DiffCol.G", "ViewLayer.DiffCol.B"), kDamaged},
     {"window_twice", rename("dataWindox", "dataWindow"), kDamaged},
     {"table_beyond_the_file", places(1ull << 40, 1ull << 40), kDamaged},
-    {"table_beyond_int64", places(1ull << 63, ~0ull), kDamaged},
+    {"table_beyond_int64", places(1ull << 63, ~0ull), kDamagedOrLater},
     {"table_in_the_header", places(8, 9), kDamaged},
     {"chunk_of_2_gb", chunk_size(2147483647), "claims more bytes than its pixels take"},
     {"chunk_of_less_than_nothing", chunk_size(-1), kDamaged},
-    {"ends_in_the_table", [](ExrBytes& file) { file.cut(file.table(3) + 9); }, "or copy it again"},
+    {"ends_in_the_table", [](ExrBytes& file) { file.cut(file.table(3) + 9); },
+     "in its header|is incomplete"},
     {"ends_in_the_header", [](ExrBytes& file) { file.cut(file.table(3) - 50); }, "in its header"},
 };
+
+/// `words` are texts with | between them.
+bool says_one_of(const std::string& line, const std::string& words) {
+  std::istringstream texts(words);
+  for (std::string text; std::getline(texts, text, '|');)
+    if (line.find(text) != std::string::npos) return true;
+  return false;
+}
 
 /// Where a file is read, with what says what became of it: an error, a warning, or that it is made
 /// anew.
@@ -175,7 +188,8 @@ class Lies : public testing::Test {
     const Finished done = run_tool(words, around);
     EXPECT_EQ(done.code, 3) << done.err;
     const std::string last = done.err.substr(done.err.rfind("ssdo: ", done.err.size()));
-    EXPECT_THAT(last, AllOf(HasSubstr(path(file)), HasSubstr(message)));
+    EXPECT_THAT(last, HasSubstr(path(file)));
+    EXPECT_TRUE(says_one_of(last, message)) << last << "instead of " << message;
     EXPECT_EQ(std::count(last.begin(), last.end(), '\n'), 1);
     expect_cheap(done);
     EXPECT_FALSE(fs::exists(path("out.exr")));

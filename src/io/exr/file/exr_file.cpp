@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 #include <new>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -58,17 +59,30 @@ std::unique_ptr<InputFile> open_exr(const fs::path& file) {
   return opened;
 }
 
-/// What is wrong with a file is in the exceptions of its readers. OpenEXR 3.3 and later print it too,
-/// unless they are told where else to.
-std::unique_ptr<Imf::MultiPartInputFile> open_parts(ExrInputStream& stream) {
 #if __has_include(<ImfContextInit.h>)
+/// What OpenEXR 3.3 and later print of a file, unless they are told where else to: why it cannot be
+/// opened, which their exception does not say.
+thread_local std::string reported;
+
+void report(exr_const_context_t, exr_result_t, const char* message) { reported = message; }
+
+std::unique_ptr<Imf::MultiPartInputFile> open_parts(ExrInputStream& stream) {
+  reported.clear();
   Imf::ContextInitializer context;
-  context.setInputStream(&stream).setErrorHandler([](auto, exr_result_t, const char*) {});
+  context.setInputStream(&stream).setErrorHandler(report);
   return std::make_unique<Imf::MultiPartInputFile>(stream.fileName(), context);
-#else
-  return std::make_unique<Imf::MultiPartInputFile>(stream);
-#endif
 }
+
+std::string reason(const std::exception& error) {
+  return one_line(reported.empty() ? error.what() : reported);
+}
+#else
+std::unique_ptr<Imf::MultiPartInputFile> open_parts(ExrInputStream& stream) {
+  return std::make_unique<Imf::MultiPartInputFile>(stream);
+}
+
+std::string reason(const std::exception& error) { return one_line(error.what()); }
+#endif
 
 }  // namespace
 
@@ -83,7 +97,7 @@ ExrFile::ExrFile(const std::filesystem::path& path, Salvage salvage)
   } catch (const std::exception& error) {
     throw_unless_of_file(error);
     fail(path, fmt::format("is damaged or cut short in its header ({}); render or copy it again",
-                           one_line(error.what())));
+                           reason(error)));
   }
 }
 
