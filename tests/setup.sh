@@ -29,9 +29,8 @@ blender_packages=(blender)  # of tests/blender
 # A list of tests as a filter of GoogleTest.
 names() { grep -v '^#' "$root/tests/$1" | paste -sd:; }
 
-# For cmake: what $SSDO_OPTIONS says, for example -DSSDO_ONE_ISA=avx2. In CI warnings are errors.
-read -ra options <<<"${SSDO_OPTIONS:-}"
-[ -z "${CI:-}" ] || options+=(-DSSDO_WERROR=ON)
+# For cmake: in CI warnings are errors, unless $SSDO_OPTIONS says otherwise.
+read -ra options <<<"${CI:+-DSSDO_WERROR=ON} ${SSDO_OPTIONS:-}"
 
 # build FOLDER TARGET [cmake options]: configures FOLDER and builds TARGET in it.
 build() {

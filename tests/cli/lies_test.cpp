@@ -71,7 +71,7 @@ std::function<void(ExrBytes&)> rename(const std::string& name, const std::string
 
 const std::string kIntMin = "-2147483648", kIntMax = "2147483647", kDamaged = "is damaged";
 
-/// OpenEXR 3.4 opens what says no more than where too much is: it shows when its pixels are read.
+/// OpenEXR 3.4 opens these files; that chunks are missing shows when their pixels are asked for.
 const std::string kDamagedOrLater = "is damaged|is incomplete|GiB of memory for its pixels";
 
 const std::vector<ExrLie> kExrLies = {

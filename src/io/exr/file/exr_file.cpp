@@ -59,30 +59,22 @@ std::unique_ptr<InputFile> open_exr(const fs::path& file) {
   return opened;
 }
 
-#if __has_include(<ImfContextInit.h>)
-/// What OpenEXR 3.3 and later print of a file, unless they are told where else to: why it cannot be
-/// opened, which their exception does not say.
+/// What OpenEXR 3.4 says of a file beside its exceptions, which do not tell why one cannot be opened.
+/// Empty with earlier versions.
 thread_local std::string reported;
 
-void report(exr_const_context_t, exr_result_t, const char* message) { reported = message; }
-
+/// Takes what OpenEXR 3.4 would print.
 std::unique_ptr<Imf::MultiPartInputFile> open_parts(ExrInputStream& stream) {
+#if __has_include(<ImfContextInit.h>)
   reported.clear();
   Imf::ContextInitializer context;
-  context.setInputStream(&stream).setErrorHandler(report);
+  context.setInputStream(&stream).setErrorHandler(
+      [](exr_const_context_t, exr_result_t, const char* message) { reported = message; });
   return std::make_unique<Imf::MultiPartInputFile>(stream.fileName(), context);
-}
-
-std::string reason(const std::exception& error) {
-  return one_line(reported.empty() ? error.what() : reported);
-}
 #else
-std::unique_ptr<Imf::MultiPartInputFile> open_parts(ExrInputStream& stream) {
   return std::make_unique<Imf::MultiPartInputFile>(stream);
-}
-
-std::string reason(const std::exception& error) { return one_line(error.what()); }
 #endif
+}
 
 }  // namespace
 
@@ -97,7 +89,7 @@ ExrFile::ExrFile(const std::filesystem::path& path, Salvage salvage)
   } catch (const std::exception& error) {
     throw_unless_of_file(error);
     fail(path, fmt::format("is damaged or cut short in its header ({}); render or copy it again",
-                           reason(error)));
+                           one_line(reported.empty() ? error.what() : reported)));
   }
 }
 

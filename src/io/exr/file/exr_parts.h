@@ -88,8 +88,8 @@ double float_bytes(const ExrChannel& channel);
 /// where these are large.
 double claimed_bytes(const ExrPart& part, double value_bytes);
 
-/// Takes an attribute out of a header, if it is there. OpenEXR's Header::erase() frees it from
-/// version 3.4 on and not before, so the others are copied.
+/// Takes an attribute out of a header, if it is there. Header::erase() of OpenEXR 3.4 frees it, and
+/// that of 3.1 does not: the others are copied instead.
 void take_out(Imf::Header& header, const std::string& name);
 
 /// A window by its first and last pixel, as headers have it: "0,0 to 575,323".
