@@ -142,8 +142,10 @@ TEST(DamagedExr, SubsamplingByNothingIsRefusedInPartsOfAnyType) {
   const std::string name_and_end = "a0";
   bytes.put_int(bytes.value_of("channels") + name_and_end.size() + 8, 0);
   bytes.write(dir / "a.exr");
+  // OpenEXR 3.4 takes such a list for none.
   EXPECT_THAT(error_of([&] { const ExrReader reader(dir / "a.exr"); }),
-              IsError(ExitCode::input, "channel 'a' is subsampled 0x1"));
+              testing::AnyOf(IsError(ExitCode::input, "channel 'a' is subsampled 0x1"),
+                             IsError(ExitCode::input, "'channels' attribute not found")));
 }
 
 TEST(DamagedExr, PartsOfUnknownTypeHaveNoPixels) {

@@ -79,8 +79,17 @@ ChunkTables::ChunkTables(const InputFile& input, const Imf::MultiPartInputFile& 
     parts_.push_back(describe(part, begin));
     begin += 8 * parts_.back().count;
   }
-  const auto is_complete = [&](const ExrPart& part) { return file.partComplete(part.index); };
-  if (!std::ranges::all_of(all, is_complete)) search(begin);
+  if (!std::ranges::all_of(all, [&](const ExrPart& part) { return is_complete(part); }))
+    search(begin);
+}
+
+bool ChunkTables::is_complete(const ExrPart& part) const {
+  const std::uint64_t count = of(part).count;
+  Numbers numbers(input_, of(part).begin,
+                  sizeof(std::uint64_t) * std::min(count, input_.bytes() / sizeof(std::uint64_t)));
+  for (std::uint64_t i = 0; i < count; ++i)
+    if (std::int64_t(numbers.next<std::uint64_t>()) <= 0) return false;
+  return true;
 }
 
 std::vector<std::uint64_t> ChunkTables::places(const ExrPart& part) const {

@@ -36,6 +36,10 @@ class ChunkTables {
   ChunkTables(const InputFile& input, const Imf::MultiPartInputFile& file,
               std::span<const ExrPart> all, std::uint64_t begin);
 
+  /// Whether the table of a part has a place for each chunk, as partComplete() of OpenEXR 3.1 says:
+  /// that of 3.4 goes by what it has found.
+  bool is_complete(const ExrPart& part) const;
+
   /// What the table of a part says: full resolution first, 0 for a chunk that is missing.
   std::vector<std::uint64_t> places(const ExrPart& part) const;
 

@@ -118,7 +118,7 @@ void throw_unless_of_file(const std::exception& error) {
 
 void throw_damaged(const ExrFile& file, const ExrPart& part, const std::exception& error) {
   throw_unless_of_file(error);
-  const char* state = file.file().partComplete(part.index)
+  const char* state = file.chunk_tables().is_complete(part)
                           ? "is damaged or cut short"
                           : "is incomplete: its writing was interrupted";
   const bool offers = file.salvage() == Salvage::offered;

@@ -27,6 +27,16 @@ double tile_row_bytes(const ExrPart& part) {
          double(tiles.ySize);
 }
 
+/// The lines of a chunk by what OpenEXR says of a compression: earlier releases do not tell, and
+/// have none that this is asked for, but those of one line.
+template <class Compression>
+int lines_as_told(Compression compression) {
+  if constexpr (requires { getCompressionNumScanlines(compression); })
+    return getCompressionNumScanlines(compression);
+  else
+    return 1;
+}
+
 }  // namespace
 
 Window window_of(const Imath::Box2i& box) {
@@ -46,7 +56,7 @@ int lines_per_chunk(Imf::Compression compression) {
     case Imf::DWAB_COMPRESSION:
       return 256;
     default:
-      return 1;
+      return lines_as_told(compression);
   }
 }
 

@@ -131,7 +131,9 @@ TEST(ChunkPlacesOfUnfinishedFiles, OfTwoForOneChunk) {
   bytes.write(dir / "a.exr");
   const ExrReader file(dir / "a.exr", Salvage::done);
   file.read(0, kNames);
-  EXPECT_THAT(file.missing(0).windows, ElementsAre(Window{0, 5, kSide, 6}));
+  const Window gone{0, 5, kSide, 6}, last{0, 7, kSide, 8};  // which OpenEXR 3.4 does not find
+  EXPECT_THAT(file.missing(0).windows,
+              testing::AnyOf(ElementsAre(gone), ElementsAre(gone, last)));
 }
 
 // OpenEXR searches no further than to a chunk whose row the part does not have.
