@@ -51,7 +51,7 @@ run_edit() {
   grep -qw avx2 /proc/cpuinfo && isa=avx2
   install_packages "${build_packages[@]}" "${test_packages[@]}"
   build "$edit" test_programs "${options[@]}" \
-    -DSSDO_ONE_ISA=$isa -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG" \
+    -DSSDO_UNITY=OFF -DSSDO_ONE_ISA=$isa -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG" \
     -DSSDO_ONLY_TESTS="$(cut -d' ' -f1 <<<"$found" | sort -u | paste -sd';')"
   GTEST_FILTER=$(sed 's/.* \(.*\)/\1:*\/\1\/*/' <<<"$found" | paste -sd:) run_tests "$edit"
 }

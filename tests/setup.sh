@@ -36,6 +36,6 @@ read -ra options <<<"${CI:+-DSSDO_WERROR=ON} ${SSDO_OPTIONS:-}"
 build() {
   local folder=$1 target=$2
   shift 2
-  cmake -S "$root" -B "$folder" -G Ninja "$@" >"$folder.log" 2>&1 || { cat "$folder.log"; return 1; }
+  cmake -S "$root" -B "$folder" -G Ninja -DSSDO_UNITY=ON "$@" >"$folder.log" 2>&1 || { cat "$folder.log"; return 1; }
   cmake --build "$folder" --target "$target"
 }

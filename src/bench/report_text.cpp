@@ -11,7 +11,7 @@
 namespace ssdo {
 namespace {
 
-std::string number(double value) {
+std::string number_or_dash(double value) {
   return std::isfinite(value) ? fmt::format("{:.4f}", value) : "-";
 }
 
@@ -24,8 +24,9 @@ std::string error_columns(const BenchReport& report, const Errors& errors,
     const ErrorSplit split = found == errors.end() ? ErrorSplit() : found->second;
     const bool truth = report.truths.contains(product);
     const bool star = std::find(starred.begin(), starred.end(), product) != starred.end();
-    text += fmt::format("  {:>7} {:>7}", number(split.noise), number(split.approximation));
-    if (truth) text += fmt::format(" {:>7}", number(split.model));
+    text += fmt::format("  {:>7} {:>7}", number_or_dash(split.noise),
+                        number_or_dash(split.approximation));
+    if (truth) text += fmt::format(" {:>7}", number_or_dash(split.model));
     text += star ? '*' : ' ';
   }
   return text;

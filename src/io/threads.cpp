@@ -9,12 +9,12 @@
 namespace ssdo {
 namespace {
 
-std::atomic<int> limit = 0;
+std::atomic<int> most_threads = 0;
 
 }  // namespace
 
 void limit_io_threads(int count) {
-  limit = count;
+  most_threads = count;
   // OpenEXR counts helpers beside the calling thread: 0 makes it work alone.
   OPENEXR_IMF_NAMESPACE::setGlobalThreadCount(count == 1 ? 0 : count);
   // OpenImageIO starts $CUE_THREADS threads, be they 99999, before another number can be set, and
@@ -22,6 +22,6 @@ void limit_io_threads(int count) {
   setenv("OPENIMAGEIO_THREADS", "1", 1);
 }
 
-int io_threads() { return limit; }
+int io_threads() { return most_threads; }
 
 }  // namespace ssdo

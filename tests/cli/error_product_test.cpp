@@ -134,7 +134,8 @@ TEST_P(ErrorProduct, HasTheNoiseThatOtherSeedsHave) {
   const std::vector<std::pair<std::string, std::string>> settings = {
       {"geometry", "2"}, {"geometry", "12"}, {"none", "6"}};
   for (const auto& [filter, slices] : settings) {
-    const auto with_seed = [&](const char* seed, bool with_error) {
+    const auto with_seed = [&, filter = filter, slices = slices](const char* seed,
+                                                                 bool with_error) {
       return run({"--slices", slices, "--filter", filter, "--seed", seed}, with_error);
     };
     const Lit one = with_seed("1", true), other = with_seed("70", false);

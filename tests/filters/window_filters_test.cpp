@@ -193,8 +193,8 @@ TEST(WindowFilters, CrossAnEdgeOfDepthAsTheirSourcesDo) {
 TEST(DepthFilter, CrossesEdgesOfLessThanItsReachInDepth) {
   for (const auto& [height, crosses] : {std::pair{0.16, false}, std::pair{0.14, true}}) {
     const Geometry g = raised_half(height, 8);
-    const Products in =
-        step(g, [&](const Surfel& s) { return s.position.z > float(height / 2 - 8); });
+    const float middle = float(height / 2 - 8);
+    const Products in = step(g, [&](const Surfel& s) { return s.position.z > middle; });
     EXPECT_EQ(pixels_that_changed("depth", in, g) > 0, crosses) << height;
   }
 }

@@ -88,7 +88,7 @@ TEST(Manifest, RefusesOthersInOneLine) {
   };
   EXPECT_GE(std::size(cases), 40u);
   for (const auto& [text, says] : cases) {
-    const Error error = error_of([&] { read(text); });
+    const Error error = error_of([&, text = text] { read(text); });
     EXPECT_THAT(error, IsError(ExitCode::input, says)) << text.substr(0, 40);
     EXPECT_THAT(error, IsError(ExitCode::input, "a.exr: Cryptomatte 'Crypto'"));
     EXPECT_LT(std::string(error.what()).size(), 400u);

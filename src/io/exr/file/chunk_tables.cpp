@@ -14,10 +14,10 @@
 namespace ssdo {
 namespace {
 
-/// Numbers that stand one after another, little endian; 0 where the file ends.
-class Numbers {
+/// Reads numbers that stand one after another, little endian; 0 where the file ends.
+class NumberReader {
  public:
-  Numbers(const InputFile& file, std::uint64_t place, std::size_t bytes) : bytes_(bytes) {
+  NumberReader(const InputFile& file, std::uint64_t place, std::size_t bytes) : bytes_(bytes) {
     end_ = file.read(place, bytes_);
   }
 
@@ -85,7 +85,7 @@ ChunkTables::ChunkTables(const InputFile& input, const Imf::MultiPartInputFile& 
 
 bool ChunkTables::is_complete(const ExrPart& part) const {
   const std::uint64_t count = of(part).count;
-  Numbers numbers(input_, of(part).begin,
+  NumberReader numbers(input_, of(part).begin,
                   sizeof(std::uint64_t) * std::min(count, input_.bytes() / sizeof(std::uint64_t)));
   for (std::uint64_t i = 0; i < count; ++i)
     if (std::int64_t(numbers.next<std::uint64_t>()) <= 0) return false;
@@ -94,14 +94,14 @@ bool ChunkTables::is_complete(const ExrPart& part) const {
 
 std::vector<std::uint64_t> ChunkTables::places(const ExrPart& part) const {
   std::vector<std::uint64_t> places(of(part).count);
-  Numbers numbers(input_, of(part).begin,
+  NumberReader numbers(input_, of(part).begin,
                   std::min(sizeof(std::uint64_t) * places.size(), input_.bytes()));
   for (std::uint64_t& place : places) place = numbers.next<std::uint64_t>();
   return places;
 }
 
 ChunkHead ChunkTables::head_at(std::uint64_t place) const {
-  Numbers numbers(input_, place, kHeadBytes);
+  NumberReader numbers(input_, place, kHeadBytes);
   const std::size_t part = is_multi_part_ ? numbers.next<std::uint32_t>() : 0;
   if (part >= all_.size()) return {};
   ChunkHead head{&all_[part]};

@@ -129,7 +129,7 @@ TEST_F(LampFile, WithWhatMeansNoLampIsRefused) {
        "up and matrix both place it"},
   };
   for (const auto& [keys, says] : cases) {
-    const Error error = error_of([&] { lamp(keys); });
+    const Error error = error_of([&, keys = keys] { lamp(keys); });
     EXPECT_THAT(error, IsError(ExitCode::input, says)) << keys;
     EXPECT_THAT(std::string(error.what()), HasSubstr("lamps.json: light ")) << keys;
   }
@@ -167,8 +167,10 @@ TEST(LampText, IsATypeThenKeysAndValues) {
       {"sphere position=1,2,", "position is [1.0,2.0"},
       {"sphere name=key radius=-1", "--light key: radius is -1"},
   };
-  for (const auto& [text, says] : cases)
-    EXPECT_THAT(error_of([&] { parse_lamp(text); }), IsError(ExitCode::usage, says)) << text;
+  for (const auto& [text, says] : cases) {
+    const Error error = error_of([text = text] { parse_lamp(text); });
+    EXPECT_THAT(error, IsError(ExitCode::usage, says)) << text;
+  }
 }
 
 TEST(LampNames, DifferAndAreGivenToThoseWithout) {
