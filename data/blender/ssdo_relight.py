@@ -611,9 +611,18 @@ def compositor(scene):
         if not scene.compositing_node_group:
             scene.compositing_node_group = bpy.data.node_groups.new("Compositor",
                                                                     "CompositorNodeTree")
+            show_render(scene.compositing_node_group)
         return scene.compositing_node_group
     scene.use_nodes = True
     return scene.node_tree
+
+
+def show_render(tree):
+    """Has the tree of a scene, which is empty, show the render, as Blender before 5 makes it."""
+    tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+    render, end = tree.nodes.new("CompositorNodeRLayers"), tree.nodes.new("NodeGroupOutput")
+    render.location = end.location - Vector((400, 0))
+    tree.links.new(render.outputs[0], end.inputs[0])
 
 
 def show(scene, output, frames):
