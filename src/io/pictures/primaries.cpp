@@ -31,6 +31,13 @@ Imath::M44f adaptation(const Imath::V3f& from, const Imath::V3f& to) {
   return kBradford * scaling * kBradford.inverse();
 }
 
+/// Least area of the triangle of a set's colours: those of Rec. 709 span 0.11.
+constexpr float kLeastArea = 1e-4f;
+
+float area(const Imf::Chromaticities& c) {
+  return 0.5f * std::abs((c.green - c.red) % (c.blue - c.red));
+}
+
 Imf::Chromaticities unpack(const Chromaticities& c) {
   return {{c[0], c[1]}, {c[2], c[3]}, {c[4], c[5]}, {c[6], c[7]}};
 }
@@ -53,6 +60,7 @@ bool same_chromaticities(const Chromaticities& a, const Chromaticities& b) {
 std::optional<glm::mat3> conversion_of_primaries(const Chromaticities& from,
                                                  const Chromaticities& to) try {
   const Imf::Chromaticities a = unpack(from), b = unpack(to);
+  if (area(a) < kLeastArea || area(b) < kLeastArea) return std::nullopt;
   const Imath::M44f m =
       Imf::RGBtoXYZ(a, 1) * adaptation(white_of(a), white_of(b)) * Imf::XYZtoRGB(b, 1);
   glm::mat3 matrix;  // a row of Imath, as a column of glm, is what one channel becomes
@@ -60,13 +68,13 @@ std::optional<glm::mat3> conversion_of_primaries(const Chromaticities& from,
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) {
       matrix[i][k] = m[i][k];
-      // Sets in use differ by factors below 10; a triangle without an area gives anything.
+      // Sets in use differ by factors below 10.
       finite = finite && std::abs(m[i][k]) < 100;
     }
   }
   return finite ? std::optional(matrix) : std::nullopt;
 } catch (const std::invalid_argument&) {
-  return std::nullopt;  // the corners of a set lie on a line, or its white has no luminance
+  return std::nullopt;  // the white of a set has no luminance
 }
 
 }  // namespace ssdo

@@ -19,7 +19,7 @@ namespace ssdo::test {
 
 inline glm::dvec3 random_unit(std::mt19937& random) {
   std::normal_distribution<double> normal;
-  return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+  return glm::normalize(glm::dvec3{normal(random), normal(random), normal(random)});
 }
 
 inline double between(std::mt19937& random, double low, double high) {
