@@ -34,10 +34,11 @@ def read(path):
     return pixels[..., [names.index(c) for c in CHANNELS]]
 
 
-def fit_rays(position):
+def fit_rays(position, normal):
     """The camera's place, and the matrix from (x / w, y / w, 1) about the middle to a ray."""
     h, w = position.shape[:2]
-    chosen = np.random.default_rng(0).choice(h * w, min(h * w, 4000), False)
+    surfaces = np.flatnonzero(normal.any(-1))  # P of the background is of no ray
+    chosen = np.random.default_rng(0).choice(surfaces, min(surfaces.size, 4000), False)
     points = position.reshape(-1, 3)[chosen].astype(np.float64)
     u = (chosen % w + 0.5 - w / 2) / w
     v = (chosen // w + 0.5 - h / 2) / w
@@ -76,7 +77,7 @@ def enlarge(pixels, place, to_ray, first, count, x0, columns, n, w, h):
 def make_frame(source, width, height, path):
     pixels = read(source)
     h, w = pixels.shape[:2]
-    place, to_ray = fit_rays(pixels[..., 0:3])
+    place, to_ray = fit_rays(pixels[..., 0:3], pixels[..., 3:6])
     n = max(-(-width // w), -(-height // h))
     columns, rows = -(-width // n), -(-height // n)
     x0, y0 = (w - columns) // 2, (h - rows) // 2
@@ -120,6 +121,7 @@ def show(size, limit, found):
 def main():
     ssdo, source, *options = sys.argv[1:]
     folder = os.environ.get("LARGE_FRAMES") or tempfile.mkdtemp()
+    os.makedirs(folder, exist_ok=True)
     print(f"{'frame':>13} {'limit':>7} {'CPU s':>8} {'wall s':>8} {'us/px':>7} {'GB':>7} {'B/px':>6}")
     for size in os.environ.get("SIZES", SIZES).split(","):
         width, height = map(int, size.split("x"))

@@ -119,7 +119,8 @@ Measured lost_by_more_light_of_one_color(const Subject& s) {
   const Environment& before = s.frame.scene.light.environment;
   if (!before.is_constant()) return std::nullopt;
   RandomNumbers random(s.shot.seed + 1);
-  const glm::vec3 more(random.by_ratio(1e-3, 1), 0, random.by_ratio(1e-3, 10));
+  const double blue = random.by_ratio(1e-3, 10), red = random.by_ratio(1e-3, 1);
+  const glm::vec3 more(red, 0, blue);
   return lost_by(s, changed(before, [&](const glm::vec3& color) { return color + more; }));
 }
 

@@ -10,7 +10,8 @@
 
 namespace ssdo::test {
 
-/// Numbers that follow from a seed, the same with every library.
+/// Numbers that follow from a seed, the same with every library. With every compiler too where each
+/// is drawn in a statement or initialiser of its own: arguments are evaluated in any order.
 class RandomNumbers {
  public:
   explicit RandomNumbers(std::uint64_t seed) : bits_(seed) {}

@@ -40,7 +40,8 @@ void draw_pose(RandomNumbers& random, RandomShot& shot) {
   if (random.chance(0.5)) pose.unit = random.by_ratio(1e-4, 1e5);
   if (random.chance(0.7)) {
     const bool far = random.chance(0.2);
-    pose.origin = random.direction() * (far ? random.by_ratio(1, 1e6) : 10 * pose.unit);
+    const double away = far ? random.by_ratio(1, 1e6) : 10 * pose.unit;
+    pose.origin = random.direction() * away;
   }
 }
 
@@ -133,11 +134,13 @@ bool has_shape_of_faces(const Plane<glm::vec3>& map) {
 void draw_light(RandomNumbers& random, RandomShot& shot) {
   LightOptions& light = shot.options.light;
   if (random.chance(0.4)) {
-    light.env = fmt::format("{:.6g},{:.6g},{:.6g}", random.by_ratio(1e-3, 10), random.between(0, 2),
-                            random.one_of({0.0, 1.0, 1e4}));
+    const double blue = random.one_of({0.0, 1.0, 1e4}), green = random.between(0, 2),
+                 red = random.by_ratio(1e-3, 10);
+    light.env = fmt::format("{:.6g},{:.6g},{:.6g}", red, green, blue);
     return;
   }
-  shot.map = Plane<glm::vec3>(random.whole(1, 16), random.whole(1, 8));
+  const int height = random.whole(1, 8), width = random.whole(1, 16);
+  shot.map = Plane<glm::vec3>(width, height);
   if (has_shape_of_faces(shot.map)) shot.map = Plane<glm::vec3>(16, 8);
   const double low = random.chance(0.05) ? -1 : random.between(0, 1);
   for (glm::vec3& texel : shot.map.pixels)
@@ -215,7 +218,8 @@ void draw_further(RandomNumbers& random, const Surface& world, RandomShot& shot)
   if (!random.chance(0.15)) return;
   FurtherLook further{random_lens(random), {}};
   const double depth = median_depth(shot.seen);
-  const glm::dvec3 eye = random.direction() * (depth * random.between(0, 1));
+  const double away = depth * random.between(0, 1);
+  const glm::dvec3 eye = random.direction() * away;
   const glm::dmat3 turn = random.chance(0.5) ? glm::dmat3(1) : random_rotation(random);
   further.seen = look(world, further.lens, turn, eye);
   shot.further = std::move(further);

@@ -19,8 +19,8 @@ struct Place {
 Place random_place(RandomNumbers& random, const RandomLens& lens, double near, double far) {
   const double depth = random.by_ratio(near, far);
   const Window& w = lens.display;
-  const glm::dvec2 pixel(w.x0 + random.between(-0.2, 1.2) * w.width(),
-                         w.y0 + random.between(-0.2, 1.2) * w.height());
+  const double y = random.between(-0.2, 1.2), x = random.between(-0.2, 1.2);
+  const glm::dvec2 pixel(w.x0 + x * w.width(), w.y0 + y * w.height());
   const double width = w.width() / lens.camera.fx * (lens.camera.orthographic ? 1 : depth);
   const Camera::Ray ray = lens.camera.ray(pixel);
   return {lens.camera.unproject(pixel, depth), -glm::normalize(ray.direction),
@@ -28,8 +28,9 @@ Place random_place(RandomNumbers& random, const RandomLens& lens, double near, d
 }
 
 Box random_box(RandomNumbers& random, const Place& at) {
-  const glm::dvec3 half = at.size * glm::dvec3(random.between(0.05, 1), random.between(0.05, 1),
-                                               random.between(0.05, 1));
+  const double z = random.between(0.05, 1), y = random.between(0.05, 1),
+               x = random.between(0.05, 1);
+  const glm::dvec3 half = at.size * glm::dvec3(x, y, z);
   return {at.middle - half, at.middle + half};
 }
 
@@ -60,7 +61,8 @@ Surface strip(const glm::dvec3& middle, const glm::dvec3& normal, double length,
 
 Surface stairs(RandomNumbers& random, const Place& at) {
   std::vector<Surface> steps;
-  const glm::dvec3 rise = random.direction() * (at.size * random.by_ratio(0.01, 0.3));
+  const double high = at.size * random.by_ratio(0.01, 0.3);
+  const glm::dvec3 rise = random.direction() * high;
   for (int i = 0; i < 4; ++i) {
     const glm::dvec3 middle = at.middle + rise * double(i);
     steps.push_back(strip(middle, at.to_viewer, 2 * at.size, at.size * (1 - 0.2 * i)));
@@ -77,9 +79,10 @@ Surface random_thing(RandomNumbers& random, const Place& at) {
       return plane(at.middle, random.direction());
     case 2:
       return plane(at.middle, glm::normalize(side + random.by_ratio(1e-4, 0.1) * at.to_viewer));
-    case 3:
-      return strip(at.middle, random.direction(), 4 * at.size,
-                   at.size * random.by_ratio(1e-3, 0.1));
+    case 3: {
+      const double wide = at.size * random.by_ratio(1e-3, 0.1);
+      return strip(at.middle, random.direction(), 4 * at.size, wide);
+    }
     case 4:
       return stairs(random, at);
     case 5: {
