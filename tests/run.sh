@@ -71,11 +71,12 @@ run_lint() {
 # All files take ten minutes; lint takes those that were changed last.
 run_tidy() { tidy "$root"/src/{,*/,*/*/,*/*/*/}*.cpp; }
 
-# tidy FILE...: clang-tidy as .clang-tidy says, with the headers and options of the address build.
+# tidy FILE...: clang-tidy as .clang-tidy says. Configuring writes the files that sources embed.
 tidy() {
-  build_address ssdo_cli
-  install_packages clang-tidy
-  printf '%s\n' "$@" | xargs -n 1 -P "$(nproc)" clang-tidy -p "$root/build/address" --quiet
+  install_packages "${build_packages[@]}" clang clang-tidy
+  CXX=clang++ configure "$root/build/tidy" -DSSDO_TESTS=OFF -DSSDO_ONE_ISA=avx2 \
+    -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
+  printf '%s\n' "$@" | xargs -n 1 -P "$(nproc)" clang-tidy -p "$root/build/tidy" --quiet
 }
 
 # build_sanitized NAME TARGET [cmake options]: the tool with a sanitizer, and the tests as they are.
@@ -86,7 +87,7 @@ build_sanitized() {
 }
 build_address() {
   build_sanitized address "$1" -DSSDO_SANITIZE=address,undefined,float-cast-overflow \
-    -DSSDO_ONE_ISA=avx2 -DSSDO_FUZZ=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
+    -DSSDO_ONE_ISA=avx2 -DSSDO_FUZZ=ON
 }
 
 # test_sanitized NAME FILTER: runs the tests of FILTER. What sanitizers find, in the tool as a

@@ -32,10 +32,12 @@ names() { grep -v '^#' "$root/tests/$1" | paste -sd:; }
 # For cmake: in CI warnings are errors, unless $SSDO_OPTIONS says otherwise.
 read -ra options <<<"${CI:+-DSSDO_WERROR=ON} ${SSDO_OPTIONS:-}"
 
+configure() {  # FOLDER [cmake options]
+  cmake -S "$root" -B "$1" -G Ninja "${@:2}" >"$1.log" 2>&1 || { cat "$1.log"; return 1; }
+}
+
 # build FOLDER TARGET [cmake options]: configures FOLDER and builds TARGET in it.
 build() {
-  local folder=$1 target=$2
-  shift 2
-  cmake -S "$root" -B "$folder" -G Ninja -DSSDO_UNITY=ON "$@" >"$folder.log" 2>&1 || { cat "$folder.log"; return 1; }
-  cmake --build "$folder" --target "$target"
+  configure "$1" -DSSDO_UNITY=ON "${@:3}"
+  cmake --build "$1" --target "$2"
 }

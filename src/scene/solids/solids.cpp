@@ -122,6 +122,7 @@ class GuessAlongLines {
         direction_(kDirections[k]),
         step_px_(direction_.dx != 0 && direction_.dy != 0 ? 1.41421356f : 1.0f),
         footprint_(geometry.camera),
+        rows_per_pixel_(1.0 / connections.width),
         starts_(runs.starts),
         widths_(runs.widths),
         out_(out) {}
@@ -186,15 +187,17 @@ class GuessAlongLines {
     const std::size_t pixel = connections_.index(x, y);
     const unsigned char here = connections_[pixel];
     if (!(here & kShowsSurface)) return;
-    const bool is_last = !(here >> k_ & 1);
-    if (is_last) {
-      enter(run, pixel, x + direction_.dx, y + direction_.dy, true);
-      run.depth = depth_beside(pixel);
-    }
+    if (!(here >> k_ & 1)) enter_from_after(run, pixel, x, y);
     const float depth = run.depth == kUnknown ? depth_in_overview(x, y) : run.depth;
     float& least = out_.thickness[pixel];
     if (depth < kInfinity) least = std::min(least, depth);
     continue_behind(run, pixel);
+  }
+
+  /// Apart, as most pixels are not the last ones of their runs.
+  [[gnu::noinline]] void enter_from_after(Run& run, std::size_t pixel, int x, int y) const {
+    enter(run, pixel, x + direction_.dx, y + direction_.dy, true);
+    run.depth = depth_beside(pixel);
   }
 
   std::ptrdiff_t stride() const {
@@ -247,8 +250,9 @@ class GuessAlongLines {
   }
 
   Pixel middle_of_run(int start) const {
-    const int w = connections_.width, steps = widths_[std::size_t(start)].pixels / 2;
-    return {start % w + steps * direction_.dx, start / w + steps * direction_.dy};
+    const int row = int((start + 0.5) * rows_per_pixel_), column = start - row * connections_.width,
+              steps = widths_[std::size_t(start)].pixels / 2;
+    return {column + steps * direction_.dx, row + steps * direction_.dy};
   }
 
   /// Moves to the next pixel in a direction, or against it; false if the surface ends before.
@@ -367,6 +371,7 @@ class GuessAlongLines {
   Direction direction_;
   float step_px_;
   PixelFootprint footprint_;
+  double rows_per_pixel_;
   Plane<int>& starts_;
   Plane<WidthOfRun>& widths_;
   Guess& out_;
