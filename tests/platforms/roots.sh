@@ -32,12 +32,13 @@ make_root() {
 
 # in_root FOLDER USER COMMAND [VARIABLE=VALUE...]: with /proc, shared memory and terminals, which go
 # away with the command. Folders of the machine that are to be seen in there: binds, "FROM TO
-# [OPTION]" each.
+# [OPTION]" each. The root is a mount of its own, or the command could not make another one in it.
 binds=()
 in_root() {
   local folder=$1 user=$2 command=$3
   shift 3
   SSDO_BINDS=$(printf '%s\n' "${binds[@]}") unshare --mount bash -euc '
+    mount --bind "$0" "$0"
     mount -t proc proc "$0/proc"
     mkdir -p "$0/dev/shm" && mount -t tmpfs -o mode=1777 tmpfs "$0/dev/shm"
     mkdir -p "$0/dev/pts" && mount -t devpts -o newinstance,ptmxmode=0666 devpts "$0/dev/pts"
