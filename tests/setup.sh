@@ -22,7 +22,7 @@ build_packages=(g++ cmake ninja-build pkg-config libopenexr-dev libopenimageio-d
   libopencolorio-dev libeigen3-dev libglm-dev libtbb-dev libembree-dev libhwy-dev libdeflate-dev libcli11-dev libfmt-dev nlohmann-json3-dev
   libtomlplusplus-dev)
 test_packages=(libgtest-dev libgmock-dev groff chromium zsh)
-farm_packages=(slurm-wlm munge parallel make debootstrap dpkg-dev patchelf)  # of tests/farm and tests/package
+farm_packages=(slurm-wlm munge parallel make debootstrap dpkg-dev file patchelf)  # of tests/farm and tests/package
 fault_packages=(strace)  # of tests/faults
 blender_packages=(blender)  # of tests/blender
 

@@ -28,8 +28,8 @@ fail() {
 check_machine() {
   local program
   [ "$(id -u)" -eq 0 ] || fail "a bare Debian is made by root; run this as root"
-  for program in debootstrap dpkg-shlibdeps cpack setpriv patchelf; do
-    command -v "$program" >/dev/null || fail "$program is missing; install debootstrap, dpkg-dev and patchelf"
+  for program in debootstrap dpkg-shlibdeps cpack file setpriv patchelf; do
+    command -v "$program" >/dev/null || fail "$program is missing; install debootstrap, dpkg-dev, file and patchelf"
   done
   [ -x "$build/ssdo" ] || fail "$build holds no binary; build it or name another folder"
   unshare --mount true || fail "this container may not mount /proc for the bare Debian; allow SYS_ADMIN"
