@@ -32,6 +32,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <limits>
 #include <utility>
 
@@ -89,10 +90,6 @@ struct Run {
   int sender = -1;  ///< pixel that shows it; -1: none does
   int away = 0;     ///< pixels from there
   glm::vec3 point{0}, normal{0};
-};
-
-struct Pixel {
-  int x, y;
 };
 
 /// The runs of one direction.
@@ -211,7 +208,7 @@ class GuessAlongLines {
     WholeRun run{start, stride(), own.pixels, step_px_};
     const auto add_edges = [&](int side) {
       int farthest = int(start);
-      Pixel at = middle_of_run(farthest);
+      glm::ivec2 at = middle_of_run(farthest);
       for (int i = 1; i <= kWidthReach && steps_along(at, k_ ^ 1, side); ++i) {
         const int next = starts_(at.x, at.y);
         if (likeness(own, widths_[std::size_t(next)]) <= 0) break;
@@ -234,7 +231,7 @@ class GuessAlongLines {
     const int reach = own.is_whole ? kWidthReach : kReachOfPart;
     float weights = own.is_whole ? 1 : kWeightOfPart, sum = weights / own.depth;
     for (const int side : {-1, 1}) {
-      Pixel at = middle_of_run(starts_[pixel]);
+      glm::ivec2 at = middle_of_run(starts_[pixel]);
       for (int i = 1; i <= reach && steps_along(at, k_ ^ 1, side); ++i) {
         const int start = starts_(at.x, at.y);
         const WidthOfRun& beside = widths_[std::size_t(start)];
@@ -249,19 +246,19 @@ class GuessAlongLines {
     return weights / sum;
   }
 
-  Pixel middle_of_run(int start) const {
+  glm::ivec2 middle_of_run(int start) const {
     const int row = int((start + 0.5) * rows_per_pixel_), column = start - row * connections_.width,
               steps = widths_[std::size_t(start)].pixels / 2;
     return {column + steps * direction_.dx, row + steps * direction_.dy};
   }
 
   /// Moves to the next pixel in a direction, or against it; false if the surface ends before.
-  bool steps_along(Pixel& at, std::size_t k, int side) const {
-    const Pixel from = at;
+  bool steps_along(glm::ivec2& at, std::size_t k, int side) const {
+    const glm::ivec2 from = at;
     at = {at.x + side * kDirections[k].dx, at.y + side * kDirections[k].dy};
     if (at.x < 0 || at.x >= connections_.width || at.y < 0 || at.y >= connections_.height)
       return false;
-    const Pixel& first = side > 0 ? from : at;
+    const glm::ivec2& first = side > 0 ? from : at;
     return connections_(first.x, first.y) >> k & 1;
   }
 
@@ -307,7 +304,7 @@ class GuessAlongLines {
     for (const std::size_t axis : {0, 1}) {
       bool joined = false, leans = false;
       for (const int side : {-1, 1}) {
-        Pixel at{x, y};
+        glm::ivec2 at{x, y};
         joined = joined || steps_along(at, axis, side);
         const Surfel* beside = surface_at(geometry_.surfel, at.x, at.y);
         leans =
