@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Builds for aarch64 with a cross compiler, and runs under qemu the unit tests up to one frame's light
-# and the recorded hashes, which are those of x86-64. qemu takes as many times as long as a sanitizer,
+# and the recorded hashes, which are those of x86-64. qemu takes longer than a sanitizer,
 # and leaves out the same tests. It has a Debian of its own, in which libraries are arm64's:
 # tests/platforms/run.sh bookworm tests/platforms/aarch64.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"

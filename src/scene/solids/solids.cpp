@@ -32,7 +32,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
 #include <limits>
 #include <utility>
 
@@ -92,6 +91,10 @@ struct Run {
   glm::vec3 point{0}, normal{0};
 };
 
+struct Pixel {
+  int x, y;
+};
+
 /// The runs of one direction.
 struct Runs {
   Plane<int> starts;         ///< the first pixel of each pixel's run
@@ -119,7 +122,6 @@ class GuessAlongLines {
         direction_(kDirections[k]),
         step_px_(direction_.dx != 0 && direction_.dy != 0 ? 1.41421356f : 1.0f),
         footprint_(geometry.camera),
-        rows_per_pixel_(1.0 / connections.width),
         starts_(runs.starts),
         widths_(runs.widths),
         out_(out) {}
@@ -184,17 +186,15 @@ class GuessAlongLines {
     const std::size_t pixel = connections_.index(x, y);
     const unsigned char here = connections_[pixel];
     if (!(here & kShowsSurface)) return;
-    if (!(here >> k_ & 1)) enter_from_after(run, pixel, x, y);
+    const bool is_last = !(here >> k_ & 1);
+    if (is_last) {
+      enter(run, pixel, x + direction_.dx, y + direction_.dy, true);
+      run.depth = depth_beside(pixel);
+    }
     const float depth = run.depth == kUnknown ? depth_in_overview(x, y) : run.depth;
     float& least = out_.thickness[pixel];
     if (depth < kInfinity) least = std::min(least, depth);
     continue_behind(run, pixel);
-  }
-
-  /// Apart, as most pixels are not the last ones of their runs.
-  [[gnu::noinline]] void enter_from_after(Run& run, std::size_t pixel, int x, int y) const {
-    enter(run, pixel, x + direction_.dx, y + direction_.dy, true);
-    run.depth = depth_beside(pixel);
   }
 
   std::ptrdiff_t stride() const {
@@ -208,7 +208,7 @@ class GuessAlongLines {
     WholeRun run{start, stride(), own.pixels, step_px_};
     const auto add_edges = [&](int side) {
       int farthest = int(start);
-      glm::ivec2 at = middle_of_run(farthest);
+      Pixel at = middle_of_run(farthest);
       for (int i = 1; i <= kWidthReach && steps_along(at, k_ ^ 1, side); ++i) {
         const int next = starts_(at.x, at.y);
         if (likeness(own, widths_[std::size_t(next)]) <= 0) break;
@@ -231,7 +231,7 @@ class GuessAlongLines {
     const int reach = own.is_whole ? kWidthReach : kReachOfPart;
     float weights = own.is_whole ? 1 : kWeightOfPart, sum = weights / own.depth;
     for (const int side : {-1, 1}) {
-      glm::ivec2 at = middle_of_run(starts_[pixel]);
+      Pixel at = middle_of_run(starts_[pixel]);
       for (int i = 1; i <= reach && steps_along(at, k_ ^ 1, side); ++i) {
         const int start = starts_(at.x, at.y);
         const WidthOfRun& beside = widths_[std::size_t(start)];
@@ -246,19 +246,18 @@ class GuessAlongLines {
     return weights / sum;
   }
 
-  glm::ivec2 middle_of_run(int start) const {
-    const int row = int((start + 0.5) * rows_per_pixel_), column = start - row * connections_.width,
-              steps = widths_[std::size_t(start)].pixels / 2;
-    return {column + steps * direction_.dx, row + steps * direction_.dy};
+  Pixel middle_of_run(int start) const {
+    const int w = connections_.width, steps = widths_[std::size_t(start)].pixels / 2;
+    return {start % w + steps * direction_.dx, start / w + steps * direction_.dy};
   }
 
   /// Moves to the next pixel in a direction, or against it; false if the surface ends before.
-  bool steps_along(glm::ivec2& at, std::size_t k, int side) const {
-    const glm::ivec2 from = at;
+  bool steps_along(Pixel& at, std::size_t k, int side) const {
+    const Pixel from = at;
     at = {at.x + side * kDirections[k].dx, at.y + side * kDirections[k].dy};
     if (at.x < 0 || at.x >= connections_.width || at.y < 0 || at.y >= connections_.height)
       return false;
-    const glm::ivec2& first = side > 0 ? from : at;
+    const Pixel& first = side > 0 ? from : at;
     return connections_(first.x, first.y) >> k & 1;
   }
 
@@ -304,7 +303,7 @@ class GuessAlongLines {
     for (const std::size_t axis : {0, 1}) {
       bool joined = false, leans = false;
       for (const int side : {-1, 1}) {
-        glm::ivec2 at{x, y};
+        Pixel at{x, y};
         joined = joined || steps_along(at, axis, side);
         const Surfel* beside = surface_at(geometry_.surfel, at.x, at.y);
         leans =
@@ -368,7 +367,6 @@ class GuessAlongLines {
   Direction direction_;
   float step_px_;
   PixelFootprint footprint_;
-  double rows_per_pixel_;
   Plane<int>& starts_;
   Plane<WidthOfRun>& widths_;
   Guess& out_;

@@ -36,6 +36,7 @@ TEST(Primaries, ThereAndBackIsNothing) {
 TEST(Primaries, SetsWithoutColoursHaveNoConversion) {
   for (const Chromaticities& none :
        {Chromaticities{}, Chromaticities{.3f, .3f, .4f, .4f, .5f, .5f, .3f, .3f},
+        Chromaticities{.64f, .33f, .30f, .60f, .47f, .465f, .3127f, .329f},  // rounding off a line
         Chromaticities{.64f, .33f, .30f, .60f, .15f, .06f, .3127f, 0}}) {
     EXPECT_FALSE(conversion_of_primaries(none, kRec709));
     EXPECT_FALSE(conversion_of_primaries(kRec709, none));

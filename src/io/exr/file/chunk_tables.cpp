@@ -85,8 +85,10 @@ ChunkTables::ChunkTables(const InputFile& input, const Imf::MultiPartInputFile& 
 
 bool ChunkTables::is_complete(const ExrPart& part) const {
   const std::uint64_t count = of(part).count;
-  NumberReader numbers(input_, of(part).begin,
-                  sizeof(std::uint64_t) * std::min(count, input_.bytes() / sizeof(std::uint64_t)));
+  // Not by places(): a header may claim more of them than memory holds.
+  NumberReader numbers(
+      input_, of(part).begin,
+      sizeof(std::uint64_t) * std::min(count, input_.bytes() / sizeof(std::uint64_t)));
   for (std::uint64_t i = 0; i < count; ++i)
     if (std::int64_t(numbers.next<std::uint64_t>()) <= 0) return false;
   return true;
@@ -95,7 +97,7 @@ bool ChunkTables::is_complete(const ExrPart& part) const {
 std::vector<std::uint64_t> ChunkTables::places(const ExrPart& part) const {
   std::vector<std::uint64_t> places(of(part).count);
   NumberReader numbers(input_, of(part).begin,
-                  std::min(sizeof(std::uint64_t) * places.size(), input_.bytes()));
+                       std::min(sizeof(std::uint64_t) * places.size(), input_.bytes()));
   for (std::uint64_t& place : places) place = numbers.next<std::uint64_t>();
   return places;
 }
