@@ -56,11 +56,12 @@ struct MetPixels {
   const SliceStep& step;
 };
 
-/// From the receivers to what those pixels show.
+/// From the receivers to the solids of layer `layer` that those pixels hold.
 template <bool kOrthographic>
-HWY_INLINE V3 way_to(const MarchScene& scene, const MarchReceiver& p, const MetPixels& met) {
+HWY_INLINE V3 way_to(const MarchScene& scene, const MarchReceiver& p, const MetPixels& met,
+                     int layer = 0) {
   const float dx = met.step.dx, dy = met.step.dy;
-  const V depth = load(met.planes.depth(), met.q);
+  const V depth = load(met.planes.layers[std::size_t(layer)].depth, met.q);
   V3 there{p.slope_x + set(dx / scene.fx), p.slope_y - set(dy / scene.fy), set(-1)};
   if constexpr (kOrthographic)
     there.z = hn::Neg(depth);
@@ -110,38 +111,55 @@ struct Sent {
   M shown;
 };
 
-/// What the solids of layer `layer` send that the pixels at `step` from the receivers hold, in the
-/// lanes of `bits`: what the pixels that show them do, if any.
-HWY_INLINE Sent sent_behind(const BounceJob& job, bool far, int layer, const Place& place,
-                            const SliceStep& step, VU bits) {
+/// Whether tangent planes of what the pixels `at` show, at those indices of the tilts, turn the side
+/// that the camera sees to who comes along `way`.
+HWY_INLINE M sees_front(const MarchScene& scene, const InterleavedPlane& tilts, VI index,
+                        const OverviewPixels& at, const V3& way) {
+  const V tilt = gather(tilts.data(), index);
+  const V axis_x = set(scene.axis_x - float(scene.first_x)),
+          axis_y = set(scene.axis_y - float(scene.first_y));
+  const V2 slope{(hn::ConvertTo(D(), at.x) - axis_x) * set(1 / scene.fx),
+                 (axis_y - hn::ConvertTo(D(), at.y)) * set(1 / scene.fy)};
+  const V3 normal = normal_of_tilt(scene, {first_of_two(tilt), second_of_two(tilt)}, slope);
+  return dot(normal, way) < set(0);
+}
+
+/// What the solids of layer `layer` send that those pixels hold, in the lanes of `bits`: what the
+/// pixels that show them do, if any.
+template <bool kOrthographic>
+HWY_INLINE Sent sent_behind(const BounceJob& job, bool far, int layer, const MarchReceiver& p,
+                            const MetPixels& met, VU bits) {
   const DI di;
   const VI zero = set_int(0);
-  const Interleaving& layout = job.march.scene.layout;
+  const March& march = job.march;
+  const MarchScene& scene = far ? march.far->scene : march.scene;
+  const Interleaving& layout = march.scene.layout;
   const Plane<int>& senders =
       (far ? job.overview->solids : job.solids).behind[std::size_t(layer - 1)].sender;
-  const Sampled at = far ? in_overview(job.march, place) : in_raster(job.march, place);
+  const Sampled at = far ? in_overview(march, p.place) : in_raster(march, p.place);
   const VI column =
-      far ? hn::Iota(di, at.column + step.column_shift)
-          : hn::ConvertTo(di, lane_columns(layout, place.column_phase, place.column)) +
-                set_int(int(step.dx));
-  const auto met = hn::BitCast(di, bits) != zero;
+      far ? hn::Iota(di, at.column + met.step.column_shift)
+          : hn::ConvertTo(di, lane_columns(layout, p.place.column_phase, p.place.column)) +
+                set_int(int(met.step.dx));
+  const auto is_met = hn::BitCast(di, bits) != zero;
   const VI sender =
-      hn::GatherIndex(di, &senders(0, at.row + step.row), hn::IfThenElseZero(met, column));
-  const auto shown = hn::AndNot(sender < zero, met);
+      hn::GatherIndex(di, &senders(0, at.row + met.step.row), hn::IfThenElseZero(is_met, column));
+  const auto shown = hn::AndNot(sender < zero, is_met);
   const OverviewPixels from = pixels_of(hn::IfThenElseZero(shown, sender), senders.width);
-  V3 sent;
-  if (far) {
-    sent = gather(job.far->sent, index_of(job.overview->raster, from));
-  } else {
-    sent = gather(*job.light, index_of(layout, from));
-    if (job.overview) {
-      const auto lit = hn::And(from.y > set_int(job.lit.y0 - 1), from.y < set_int(job.lit.y1));
-      const VI beyond = index_of(job.overview->raster, in_overview(job, from));
-      sent = if_then_else(hn::RebindMask(D(), lit), sent, gather(job.far->sent, beyond));
-    }
+  const VI index = far ? index_of(job.overview->raster, from) : index_of(layout, from);
+  V3 sent = gather(far ? job.far->sent : *job.light, index);
+  if (!far && job.overview) {
+    const auto lit = hn::And(from.y > set_int(job.lit.y0 - 1), from.y < set_int(job.lit.y1));
+    const VI beyond = index_of(job.overview->raster, in_overview(job, from));
+    sent = if_then_else(hn::RebindMask(D(), lit), sent, gather(job.far->sent, beyond));
   }
   const M known = hn::RebindMask(D(), shown);
-  return {if_then_else_zero(known, job.two_sided ? front_of(sent) : sent), known};
+  if (job.two_sided) {
+    const V3 way = way_to<kOrthographic>(scene, p, met, layer);
+    const M front = sees_front(scene, met.planes.tilt, index, from, way);
+    sent = if_then_else(front, front_of(sent), back_of(sent));
+  }
+  return {if_then_else_zero(known, sent), known};
 }
 
 /// M of a set of sectors: the integral of the cosine to the shading normal.
@@ -235,7 +253,7 @@ void gather_light(const BounceJob& job, const Window& part) {
                       if (none(bits)) return;
                       const MetPixels met{far ? march.far->planes : march.scene, q, step};
                       const Sent sent = layer > 0
-                                            ? sent_behind(job, far, layer, p.place, step, bits)
+                                            ? sent_behind<kOrthographic>(job, far, layer, p, met, bits)
                                             : sent_by_front<kOrthographic>(job, far, p, met);
                       if (march.other_views && !unseen.is_full()) {
                         const VU shown = hn::VecFromMask(DU(), hn::RebindMask(DU(), sent.shown)),

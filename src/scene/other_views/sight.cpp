@@ -77,7 +77,7 @@ Sight SightLine::at(float t, float width) const {
     if (depth < near) return Sight::unknown;
     beyond += depth > far;
   }
-  return beyond == 4 ? Sight::empty : Sight::surface;
+  return beyond == 4 ? Sight::empty : beyond == 0 ? Sight::surface : Sight::rim;
 }
 
 }  // namespace ssdo

@@ -16,6 +16,7 @@ inline constexpr float kSurfaceTolerance = 3;
 enum class Sight {
   unknown,  ///< outside of its picture, or behind what it shows
   surface,  ///< it shows a surface there
+  rim,      ///< it shows one there in some of the pixels around the point, and looks past in others
   empty,    ///< it sees past the point: nothing solid is there
 };
 
@@ -26,10 +27,16 @@ class SightLine {
   /// this.
   SightLine(const OtherView& view, const glm::vec3& start, const glm::vec3& direction);
 
-  /// What the four pixels around the picture of the point at distance `t` agree on. A view does not
+  /// What the four pixels around the picture of the point at distance `t` say. A view does not
   /// show what is narrower than a few of its pixels but looks past it: `width` is that of what the
   /// point would be in, in scene units.
   Sight at(float t, float width = std::numeric_limits<float>::infinity()) const;
+
+  /// Whether any of these pixels shows a surface there.
+  bool shows_surface(float t) const {
+    const Sight sight = at(t);
+    return sight == Sight::surface || sight == Sight::rim;
+  }
 
  private:
   const OtherView* view_;
