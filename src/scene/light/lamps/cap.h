@@ -26,6 +26,12 @@ struct Cap {
     return {sine, inside ? -cosine : cosine};
   }
 
+  /// That of a disk, facing it in front of its middle.
+  static Cap of_disk(double radius, double distance) {
+    const double to_edge = std::hypot(radius, distance);
+    return {radius / to_edge, distance / to_edge};
+  }
+
   /// 1 - cosine, without rounding.
   double height() const { return cosine > 0 ? sine * sine / (1 + cosine) : 1 - cosine; }
 };

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace ssdo {
 
 /// The angles off its axis into which a lamp sends: all of its light up to `inner`, none from
-/// `outer` on, and between them a smooth step of the angle. UsdLux's shaping: `outer` is the cone
-/// angle, and `inner` that times 1 - softness.
+/// `outer` on, and between them a smooth step of the angle or of its cosine. UsdLux's shaping has
+/// the angle, spots of Blender the cosine: `outer` is the cone angle, and `inner` that times
+/// 1 - softness.
 struct Cone {
   double inner = std::numbers::pi, outer = std::numbers::pi;  ///< radians
+
+  bool by_cosine = false;
 
   bool is_open() const { return inner >= std::numbers::pi; }
 
@@ -18,7 +21,9 @@ struct Cone {
   double at(double off_axis) const {
     if (off_axis <= inner) return 1;
     if (off_axis >= outer) return 0;
-    const double t = (outer - off_axis) / (outer - inner);
+    const double t = by_cosine ? (std::cos(off_axis) - std::cos(outer)) /
+                                     (std::cos(inner) - std::cos(outer))
+                               : (outer - off_axis) / (outer - inner);
     return t * t * (3 - 2 * t);
   }
 };

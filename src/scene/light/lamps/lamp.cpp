@@ -65,6 +65,7 @@ std::shared_ptr<NearLamp> shape_of(const Lamp& lamp) {
   else
     round = std::make_shared<SphereLamp>();
   round->size = std::max(lamp.radius, kPointRadius);
+  round->turns = lamp.soft_falloff;
   return round;
 }
 
@@ -101,6 +102,7 @@ std::shared_ptr<Source> make_source(const Lamp& lamp, const WorldToCamera& camer
     if (lamp.has_cone) {
       near->lit.outer = glm::radians(lamp.cone_angle);
       near->lit.inner = near->lit.outer * (1 - lamp.cone_softness);
+      near->lit.by_cosine = lamp.cone_by_cosine;
     }
     source = near;
   }

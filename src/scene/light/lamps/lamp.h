@@ -33,8 +33,9 @@ struct Lamp {
   glm::dvec3 temperature{1};     ///< colour of a black body, in linear Rec. 709 as read
   double intensity = 1, exposure = 0;
   bool normalize = false;
+  bool soft_falloff = false;  ///< a sphere is the disk across it that faces each receiver
   double cone_angle = 90, cone_softness = 0;  ///< degrees off the axis; see Cone
-  bool has_cone = false;
+  bool has_cone = false, cone_by_cosine = false;
   Selection receive;  ///< what it lights; empty: everything
   Selection cast;     ///< what blocks its light; empty: everything
 

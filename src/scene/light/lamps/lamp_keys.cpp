@@ -48,8 +48,9 @@ std::vector<std::string> keys_of(LampType type) {
   };
   if (type == LampType::distant) add({"angle"});
   if (type == LampType::sphere || type == LampType::disk) add({"radius"});
+  if (type == LampType::sphere) add({"soft_falloff"});
   if (type == LampType::rect) add({"width", "height"});
-  if (type != LampType::distant) add({"cone_angle", "cone_softness"});
+  if (type != LampType::distant) add({"cone_angle", "cone_softness", "cone_by_cosine"});
   return keys;
 }
 
@@ -75,9 +76,12 @@ class LampReader {
     lamp_.width = size("width", lamp_.width);
     lamp_.height = size("height", lamp_.height);
     lamp_.angle = number("angle", lamp_.angle, 0, 360);
-    lamp_.has_cone = object_.contains("cone_angle") || object_.contains("cone_softness");
+    lamp_.has_cone = object_.contains("cone_angle") || object_.contains("cone_softness") ||
+                     object_.contains("cone_by_cosine");
     lamp_.cone_angle = number("cone_angle", lamp_.cone_angle, 0, 180);
     lamp_.cone_softness = number("cone_softness", lamp_.cone_softness, 0, 1);
+    lamp_.cone_by_cosine = is_set("cone_by_cosine");
+    lamp_.soft_falloff = is_set("soft_falloff");
     if (lamp_.type == LampType::disk) lamp_.radius = size("radius", lamp_.radius);
     read_light();
     lamp_.receive = selection("receive");
@@ -106,6 +110,13 @@ class LampReader {
     if (lamp_.name == kEnvironmentName)
       refuse(
           fmt::format("name: '{}' is that of the environment map; give another", kEnvironmentName));
+  }
+
+  bool is_set(const char* key) const {
+    if (!object_.contains(key)) return false;
+    if (!object_[key].is_boolean())
+      refuse(fmt::format("{} is {}; it is true or false", key, shown(object_[key])));
+    return object_[key].get<bool>();
   }
 
   void read_type() {
@@ -269,11 +280,7 @@ class LampReader {
       lamp_.temperature = blackbody_color(
           number("color_temperature", kWhiteKelvin, kCoolestKelvin, kHottestKelvin));
     }
-    if (object_.contains("normalize")) {
-      if (!object_["normalize"].is_boolean())
-        refuse(fmt::format("normalize is {}; it is true or false", shown(object_["normalize"])));
-      lamp_.normalize = object_["normalize"].get<bool>();
-    }
+    lamp_.normalize = is_set("normalize");
     const glm::dvec3 value = lamp_.value();
     const double brightest = std::max({value.x, value.y, value.z});
     if (brightest > kMostLight) {

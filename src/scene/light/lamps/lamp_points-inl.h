@@ -20,17 +20,19 @@ struct LampSamples {
 };
 
 // SphereLamp::sample()
-HWY_INLINE LampSamples sample_sphere(const V3& p, const V2& disk) {
+HWY_INLINE LampSamples sample_sphere(const NearLamp& lamp, const V3& p, const V2& disk) {
   constexpr float kTouching = 1e-4f;
   const V squared = hn::Max(dot(p, p), set(1e-30f)), distance = hn::Sqrt(squared),
           inverse = set(1) / distance;
-  const M inside = distance < set(1);
-  const V sine2 = hn::Min(squared, set(1) / squared), cosine = root(set(1) - sine2);
+  const M inside = lamp.turns ? distance < set(0) : distance < set(1);
+  const V sine2 = lamp.turns ? set(1) / (squared + set(1)) : hn::Min(squared, set(1) / squared),
+          cosine = lamp.turns ? distance * hn::Sqrt(sine2) : root(set(1) - sine2);
   const V all = hn::IfThenElse(inside, set(1) + cosine, sine2 / (set(1) + cosine));
   const V down = dot(disk, disk) * all, stretch = root(all * (set(2) - down));
   const V3 in_cap{disk.x * stretch, disk.y * stretch, set(1) - down};
   const V aside = distance * stretch, chord = root(set(1) - aside * aside * dot(disk, disk));
-  const V first = distance * in_cap.z - chord;
+  const V first = lamp.turns ? distance / hn::Max(in_cap.z, set(kTouching))
+                             : distance * in_cap.z - chord;
   return {in_frame_about(p * hn::Neg(inverse), in_cap),
           hn::IfThenElse(inside, set(kTouching), hn::Max(first, set(kTouching))),
           set(6.28318531f) * all};
@@ -106,16 +108,11 @@ HWY_INLINE LampSamples sample_rect(const NearLamp& lamp, const V3& p, const V2& 
 HWY_INLINE SourcePoints seen(const NearLamp& lamp, const V3& position, const V3& point) {
   const V3 p = place_at_lamp(lamp, position);
   const V2 place{point.x, point.y};
-  const LampSamples found = lamp.shape == LampShape::sphere ? sample_sphere(p, place)
+  const LampSamples found = lamp.shape == LampShape::sphere ? sample_sphere(lamp, p, place)
                             : lamp.shape == LampShape::disk ? sample_disk(p, place)
                                                             : sample_rect(lamp, p, place);
   V weight = found.solid_angle * per_solid_angle(lamp, hn::Sqrt(dot(p, p)));
-  if (!lamp.lit.is_open()) {
-    const float inner = float(lamp.lit.inner), outer = float(lamp.lit.outer);
-    const V off_axis = arc_cosine(hn::Neg(found.to.z));
-    weight = weight * (inner < outer ? set(1) - smoothstep(set(inner), set(outer), off_axis)
-                                     : hn::IfThenElseZero(off_axis < set(outer), set(1)));
-  }
+  if (!lamp.lit.is_open()) weight = weight * share_in_cone(lamp.lit, hn::Neg(found.to.z));
   return {from_lamp(lamp, found.to), found.distance * set(float(lamp.size)), weight};
 }
 

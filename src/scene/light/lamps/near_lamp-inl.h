@@ -74,11 +74,13 @@ struct Integral {
   M open;
 };
 
-HWY_INLINE Integral integral_of_sphere(const V3& p, const V3& n) {
+HWY_INLINE Integral integral_of_sphere(const NearLamp& lamp, const V3& p, const V3& n) {
   const V squared = dot(p, p), middle = hn::Neg(dot(n, p)), distance = hn::Sqrt(squared);
-  const V value = set(float(3.14159265358979)) * hn::Max(middle, set(0)) / (squared * distance);
-  // Within the sphere, or with the horizon in it: |cos| < 1 / distance.
-  return {value, hn::Or(squared < set(1), hn::Abs(middle) < set(1))};
+  // 1 over the squared sine of its angle.
+  const V per_sine2 = lamp.turns ? squared + set(1) : squared;
+  const V value = set(float(3.14159265358979)) * hn::Max(middle, set(0)) / (per_sine2 * distance);
+  // Within the sphere, or with the horizon in it: |cos| < sine.
+  return {value, hn::Or(squared < set(1), middle * middle * per_sine2 < squared)};
 }
 
 // NearLamp's DiskLamp::integral(), without the turn and without a difference of large numbers.
@@ -131,6 +133,15 @@ HWY_INLINE Integral integral_of_rect(const NearLamp& lamp, const V3& p, const V3
           hn::And(front, hn::And(least<set(0), most> set(0)))};
 }
 
+/// Cone::at() in directions at these cosines to the axis.
+HWY_INLINE V share_in_cone(const Cone& cone, V cosine) {
+  if (cone.by_cosine && cone.inner < cone.outer)
+    return smoothstep(set(float(std::cos(cone.outer))), set(float(std::cos(cone.inner))), cosine);
+  const V off_axis = arc_cosine(cosine), outer = set(float(cone.outer));
+  return cone.inner < cone.outer ? set(1) - smoothstep(set(float(cone.inner)), outer, off_axis)
+                                 : hn::IfThenElseZero(off_axis < outer, set(1));
+}
+
 /// What a cone leaves of the light of a lamp so small that its share is smooth over it: the mean of
 /// the shares of a few places, by what each gives to the receiver. A cubature of degree 5, for a
 /// disk that of Radon (Stroud 1971, Approximate Calculation of Multiple Integrals, S2 5-1), for a
@@ -142,7 +153,6 @@ HWY_INLINE V mean_share(const NearLamp& lamp, const V3& p, const V3& n) {
                                    {-0.81649658f, 0},          {-0.40824829f, -0.70710678f},
                                    {0.40824829f, -0.70710678f}};
   const bool is_rect = lamp.shape == LampShape::rect, is_ball = lamp.shape == LampShape::sphere;
-  const float inner = float(lamp.lit.inner), outer = float(lamp.lit.outer);
   V3 along{set(1), set(0), set(0)}, across{set(0), set(1), set(0)};
   if (is_ball) {  // it is seen as a disk that faces the receiver
     const V3 out = normalise(p);
@@ -162,8 +172,7 @@ HWY_INLINE V mean_share(const NearLamp& lamp, const V3& p, const V3& n) {
             slope = hn::Neg(way.z) / distance;
     const V facing = is_ball ? set(1) : hn::Max(slope, set(0));
     const V gives = set(weight) * hn::Max(dot(n, way), set(0)) * facing / (squared * distance);
-    share =
-        hn::MulAdd(gives, set(1) - smoothstep(set(inner), set(outer), arc_cosine(slope)), share);
+    share = hn::MulAdd(gives, share_in_cone(lamp.lit, slope), share);
     light = light + gives;
   }
   return share / light;
@@ -192,7 +201,7 @@ HWY_INLINE InCone in_cone(const NearLamp& lamp, const V3& p) {
 
 HWY_INLINE V received(const NearLamp& lamp, const V3& position, const V3& normal) {
   const V3 p = place_at_lamp(lamp, position), n = to_lamp(lamp, normal);
-  Integral found = lamp.shape == LampShape::sphere ? integral_of_sphere(p, n)
+  Integral found = lamp.shape == LampShape::sphere ? integral_of_sphere(lamp, p, n)
                    : lamp.shape == LampShape::disk ? integral_of_disk(p, n)
                                                    : integral_of_rect(lamp, p, n);
   const M lit = hn::Or(found.open, found.value > set(0));

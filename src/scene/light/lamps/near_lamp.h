@@ -70,6 +70,7 @@ struct NearLamp : Source {
   double size = 1;     ///< the unit: a radius, or half of the longer side
   double nearest = 0;  ///< receivers nearer than this get no more light than there
   glm::dvec2 half_sides{1};  ///< sides of a rect over 2, the longer one 1
+  bool turns = false;        ///< a sphere is the disk across it that faces each receiver
   Cone lit;                  ///< where it sends
 
   float received(const glm::vec3& position, const glm::vec3& normal) const override;

@@ -58,13 +58,15 @@ HWY_EXPORT(look_at_lamp);
 namespace test {
 namespace {
 
-/// Lamps of all types, with and without a cone; one of one metre and one that is a point.
+/// Lamps of all types, with and without a cone of either kind; one of one metre and one that is a
+/// point.
 std::vector<Lamp> lamps() {
   std::vector<Lamp> all;
   std::mt19937 random(3);
   for (const LampType type :
        {LampType::sphere, LampType::disk, LampType::rect, LampType::distant}) {
-    for (const bool cone : {false, true}) {
+    for (const int kind : {0, 1, 2}) {
+      const bool cone = kind > 0;
       Lamp lamp;
       lamp.type = type;
       lamp.width = 0.7, lamp.height = 1.5, lamp.angle = cone ? 250 : 40;
@@ -72,6 +74,7 @@ std::vector<Lamp> lamps() {
       lamp.position = random_unit(random);
       lamp.has_cone = cone && type != LampType::distant;
       lamp.cone_angle = 60, lamp.cone_softness = 0.4;
+      lamp.cone_by_cosine = lamp.soft_falloff = kind == 2;
       all.push_back(lamp);
     }
   }

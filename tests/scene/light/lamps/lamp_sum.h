@@ -33,14 +33,17 @@ inline glm::dmat3 about(const glm::dvec3& n) {
   return {x, glm::cross(n, x), n};
 }
 
-/// The share of the light of a cone that a lamp sends into a direction: UsdLux's shaping.
+/// The share of the light of a cone that a lamp sends into a direction: UsdLux's shaping, or
+/// Blender's fade.
 inline double share_of_cone(const Lamp& lamp, const glm::dvec3& sent) {
   if (!lamp.has_cone) return 1;
   const double off = std::acos(std::clamp(glm::dot(sent, -lamp.axes[2]), -1.0, 1.0));
   const double cutoff = glm::radians(lamp.cone_angle), start = cutoff * (1 - lamp.cone_softness);
   if (off > cutoff) return 0;
   if (off <= start) return 1;
-  const double t = (off - start) / (cutoff - start);
+  const double t = lamp.cone_by_cosine
+                       ? (std::cos(start) - std::cos(off)) / (std::cos(start) - std::cos(cutoff))
+                       : (off - start) / (cutoff - start);
   return 1 - t * t * (3 - 2 * t);
 }
 
@@ -50,6 +53,10 @@ inline double radiance_along(const Lamp& lamp, const glm::dvec3& from, const glm
   if (lamp.type == LampType::distant)
     return glm::dot(to, lamp.axes[2]) > std::cos(glm::radians(lamp.angle / 2)) ? 1 : 0;
   if (lamp.type == LampType::sphere) {
+    if (lamp.soft_falloff) {
+      const double slope = glm::dot(to, -glm::normalize(p));
+      return slope > 1 / std::hypot(1, lamp.radius / glm::length(p)) ? share_of_cone(lamp, -to) : 0;
+    }
     const double along = glm::dot(p, to), across = glm::dot(p, p) - along * along;
     return along < 0 && across < lamp.radius * lamp.radius ? share_of_cone(lamp, -to) : 0;
   }

@@ -31,9 +31,10 @@ class LampFile : public testing::Test {
 TEST_F(LampFile, GivesWhatItSays) {
   const std::vector<Lamp> lamps = read(R"({"lights": [
     {"name": "key_1", "type": "sphere", "position": [1, 2, 3], "radius": 0.1, "intensity": 50,
-     "exposure": 1, "color": [1, 0.9, 0.8]},
+     "exposure": 1, "color": [1, 0.9, 0.8], "soft_falloff": true},
     {"type": "rect", "matrix": [[1, 0, 0, 4], [0, 0, -1, 5], [0, 1, 0, 6], [0, 0, 0, 1]],
-     "width": 2, "height": 3, "normalize": true, "cone_angle": 40, "cone_softness": 0.25},
+     "width": 2, "height": 3, "normalize": true, "cone_angle": 40, "cone_softness": 0.25,
+     "cone_by_cosine": true},
     {"type": "disk", "radius": 7, "position": [0, 0, 1], "direction": [0, 0, -5], "up": [0, 2, 1]},
     {"type": "distant", "angle": 2}]})");
   ASSERT_EQ(lamps.size(), 4u);
@@ -42,11 +43,12 @@ TEST_F(LampFile, GivesWhatItSays) {
   EXPECT_EQ(lamps[0].radius, 0.1);
   EXPECT_LT(glm::distance(lamps[0].value(), glm::dvec3(100, 90, 80)), 1e-9);
   EXPECT_FALSE(lamps[0].has_cone);
+  EXPECT_TRUE(lamps[0].soft_falloff);
   EXPECT_EQ(lamps[1].type, LampType::rect);
   EXPECT_EQ(lamps[1].position, glm::dvec3(4, 5, 6));
   EXPECT_EQ(-lamps[1].axes[2], glm::dvec3(0, 1, 0));  // emits along y
   EXPECT_EQ(lamps[1].area(), 6);
-  EXPECT_TRUE(lamps[1].normalize && lamps[1].has_cone);
+  EXPECT_TRUE(lamps[1].normalize && lamps[1].has_cone && lamps[1].cone_by_cosine);
   EXPECT_EQ(lamps[2].axes[2], glm::dvec3(0, 0, 1));
   EXPECT_LT(glm::distance(lamps[2].axes[1], glm::dvec3(0, 1, 0)), 1e-12);
   EXPECT_EQ(lamps[3].intensity, 50000);  // as in UsdLux
