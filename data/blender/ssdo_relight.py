@@ -393,18 +393,21 @@ def color_and_gain(lamp, warnings):
 
 def spot_cone(lamp):
     """Blender fades a spot by the cosine to its axis, from where it is all there to its border; a
-    file of lamps has that border and the share of the angle that fades."""
+    file of lamps has that border, the share of the angle that fades, and by what it fades."""
     border = lamp.spot_size / 2
     inner = acos(cos(border) + (1 - cos(border)) * lamp.spot_blend)
-    return {"cone_angle": degrees(border), "cone_softness": 1 - inner / border}
+    return {"cone_angle": degrees(border), "cone_softness": 1 - inner / border,
+            "cone_by_cosine": True}
 
 
 def shape(lamp, scale, warnings):
-    """Keys of the type of a lamp. Blender turns a point or spot towards each surface, so that it
-    looks like a ball; a spot's light also falls with the cosine to its axis, as a disk's does."""
+    """Keys of the type of a lamp. A point or spot is a disk which faces each surface, a point of
+    Blender 4 and later a ball where its soft falloff is off; a spot's light also falls with the
+    cosine to its axis, as a disk's does."""
     watts = lamp.energy
     if lamp.type == "POINT":
-        return {"type": "sphere", "radius": lamp.shadow_soft_size, "intensity": watts / pi}
+        return {"type": "sphere", "radius": lamp.shadow_soft_size, "intensity": watts / pi,
+                "soft_falloff": getattr(lamp, "use_soft_falloff", True)}
     if lamp.type == "SPOT":
         return {"type": "disk", "radius": max(lamp.shadow_soft_size, SMALLEST_RADIUS),
                 "intensity": watts / (4 * pi), **spot_cone(lamp)}

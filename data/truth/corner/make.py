@@ -69,9 +69,11 @@ def lamp(name, blender):
         border = radians(blender["spot_angle_deg"]) / 2
         inner = acos(cos(border) + (1 - cos(border)) * blender["blend"])
         keys = {"type": "disk", "radius": blender["radius"], "intensity": power / (4 * pi),
-                "cone_angle": degrees(border), "cone_softness": 1 - inner / border}
+                "cone_angle": degrees(border), "cone_softness": 1 - inner / border,
+                "cone_by_cosine": True}
     else:
-        keys = {"type": "sphere", "radius": blender["radius"], "intensity": power / pi}
+        keys = {"type": "sphere", "radius": blender["radius"], "intensity": power / pi,
+                "soft_falloff": True}
     return {"name": name, **keys, "normalize": True, "color": blender["colour"],
             "position": blender["location"], "direction": list(-turn[:, 2]), "up": list(turn[:, 1])}
 

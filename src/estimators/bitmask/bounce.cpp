@@ -111,8 +111,8 @@ struct Sent {
   M shown;
 };
 
-/// Whether tangent planes of what the pixels `at` show, at those indices of the tilts, turn the side
-/// that the camera sees to who comes along `way`.
+/// Whether tangent planes of what the pixels `at` show, at those indices of the tilts, turn the
+/// side that the camera sees to who comes along `way`.
 HWY_INLINE M sees_front(const MarchScene& scene, const InterleavedPlane& tilts, VI index,
                         const OverviewPixels& at, const V3& way) {
   const V tilt = gather(tilts.data(), index);
@@ -252,9 +252,9 @@ void gather_light(const BounceJob& job, const Window& part) {
                     HWY_ATTR {
                       if (none(bits)) return;
                       const MetPixels met{far ? march.far->planes : march.scene, q, step};
-                      const Sent sent = layer > 0
-                                            ? sent_behind<kOrthographic>(job, far, layer, p, met, bits)
-                                            : sent_by_front<kOrthographic>(job, far, p, met);
+                      const Sent sent =
+                          layer > 0 ? sent_behind<kOrthographic>(job, far, layer, p, met, bits)
+                                    : sent_by_front<kOrthographic>(job, far, p, met);
                       if (march.other_views && !unseen.is_full()) {
                         const VU shown = hn::VecFromMask(DU(), hn::RebindMask(DU(), sent.shown)),
                                  hidden = hn::AndNot(shown, bits);

@@ -113,5 +113,70 @@ TEST(UnseenSide, SendsWhatALampNearbyGivesIt) {
   }
 }
 
+/// A wall on a floor, seen obliquely from above, and a screen that hides its lower part, which is
+/// known as a solid that sends what the upper part does.
+struct WallBehindScreen {
+  Surface wall = all_of({plane({}, {0, 0, 1}), upright(0, 1.5)});
+  Surface all = all_of({wall, upright(-0.2, 1)});
+  Camera camera = tilted(camera_from_ortho_width(4, kWindow, 1), 45);
+  Geometry geometry = geometry_of(all, camera, kWindow);
+  Solids solids = constant_thickness(geometry, 0.01f);
+
+  WallBehindScreen() {
+    const Geometry hidden = geometry_of(wall, camera, kWindow);
+    SolidLayer layer(kWindow.width(), kWindow.height(), Provenance::guessed);
+    layer.thickness = Plane<float>(kWindow.width(), kWindow.height(), 0.01f);
+    for (int x = 0; x < kWindow.width(); ++x) {
+      int shown = -1;
+      for (int y = 0; y < kWindow.height(); ++y) {
+        const std::size_t i = geometry.surfel.index(x, y);
+        const Point p = point_at(wall, camera, kWindow, x, y);
+        if (p.position.z < 0.01 || std::abs(p.position.y) > 0.01) continue;
+        const float behind = glm::distance(geometry.surfel[i].position, hidden.surfel[i].position);
+        if (behind < 0.01f)
+          shown = int(i);
+        else
+          layer.distance[i] = behind, layer.sender[i] = shown;
+      }
+    }
+    solids.behind.push_back(std::move(layer));
+  }
+
+  static Surface upright(double y, double half_width) {
+    return cut(plane({0, y, 0}, {0, -1, 0}), [=](const glm::dvec3& p) {
+      return p.z > 0 && p.z < 0.5 && std::abs(p.x) < half_width;
+    });
+  }
+
+  /// Of a lamp in front, on the floor before the screen and behind the wall.
+  glm::dvec2 bounces() const {
+    Lamp lamp;
+    lamp.position = {0, -1.2, 1.2}, lamp.radius = 0.05, lamp.intensity = 400;
+    Scene scene = scene_of(geometry, Environment::constant(glm::vec3(0)), kAlbedo);
+    scene.solids = solids;
+    scene.light.sources = {make_source(lamp, {camera.rotation, camera.origin}, 0.005)};
+    const Products out = bitmask_method().estimate(scene,
+                                                   {.products = {.ao = true, .bounce = true},
+                                                    .radius = kNoLimit,
+                                                    .bounces = 1,
+                                                    .slices = 12,
+                                                    .steps = 512,
+                                                    .extend_offscreen = false},
+                                                   {});
+    glm::dvec2 mean(0);
+    for (int x = 86; x < 106; ++x)
+      mean += glm::dvec2(out.bounce(x, 100).x, out.bounce(x, 46).x) / 20.0;
+    return mean;
+  }
+};
+
+TEST(UnseenSide, OfWhatIsHiddenDoesNotSendTheLightOfItsFront) {
+  const glm::dvec2 bounces = WallBehindScreen().bounces();
+  const double before = bounces.x, behind = bounces.y;
+  fmt::print("bounce before a screen {:.5f}, behind a wall behind it {:.5f}\n", before, behind);
+  EXPECT_GT(before, 0.001);
+  EXPECT_LT(behind, 0.01 * before);
+}
+
 }  // namespace
 }  // namespace ssdo::test::unseen_side_test

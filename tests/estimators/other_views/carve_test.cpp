@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "estimators/bitmask/request.h"
 #include "scene/other_views/other_pictures.h"
 #include "support/boxes.h"
@@ -49,6 +51,51 @@ double share_cut(const Window& view_window) {
 TEST(Carve, AViewLooksPastWhatItsPixelsDoNotResolve) { EXPECT_EQ(share_cut({0, 0, 24, 18}), 0); }
 
 TEST(Carve, AViewThatResolvesThingsEndsThem) { EXPECT_GT(share_cut({0, 0, 640, 480}), 0.02); }
+
+/// What is left of the floor that is guessed just behind the posts of a fence, of its pixels, after
+/// a view from above of the fence and `below`.
+double share_of_floor_kept(const Surface& below) {
+  std::vector<Surface> posts;
+  for (int i = -4; i <= 4; ++i)
+    posts.push_back(Box{{0.3 * i - 0.05, -0.05, 0}, {0.3 * i + 0.05, 0.05, 1}}.surface());
+  const Surface fence = all_of(posts);
+  const Window window{0, 0, 160, 120};
+  const auto look_from = [&](double fov, const glm::dvec3& eye) {
+    return look_at(camera_from_fov(fov, window, 1), eye, {0, 0, 0.4}, {0, 0, 1});
+  };
+  Geometry frame =
+      geometry_of(all_of({plane({}, {0, 0, 1}), fence}), look_from(30, {0, -4, 1.2}), window);
+  frame.world_known = true;
+  const TempDir folder;
+  write_frame(folder / "above.exr",
+              frame_of(take_picture(all_of({below, fence}), look_from(60, {0, 0.5, 4}), window)));
+  Solids solids = guess_solids(frame);
+  const auto count = [&] {
+    int guessed = 0;
+    for (const SolidLayer& layer : solids.behind) {
+      for (std::size_t i = 0; i < layer.distance.size(); ++i) {
+        if (!(layer.distance[i] < std::numeric_limits<float>::infinity())) continue;
+        const glm::dvec3 at = glm::transpose(frame.camera.rotation) *
+                                  glm::dvec3(point_behind(frame, i, layer.distance[i])) +
+                              frame.camera.origin;
+        guessed += std::abs(at.z) < 0.1 && at.y > 0.2 && at.y < 1;
+      }
+    }
+    return guessed;
+  };
+  const int before = count();
+  EXPECT_GT(before, 300);
+  carve(solids, frame, {place(OtherPictures().also(folder / "above.exr"), frame)});
+  return double(count()) / before;
+}
+
+TEST(Carve, AGuessedSurfaceStaysWhereAViewShowsOne) {
+  EXPECT_GT(share_of_floor_kept(plane({}, {0, 0, 1})), 0.9);
+}
+
+TEST(Carve, AGuessedSurfaceEndsWhereAViewShowsNone) {
+  EXPECT_LT(share_of_floor_kept(plane({0, 0, -1}, {0, 0, 1})), 0.1);
+}
 
 }  // namespace
 }  // namespace ssdo::test::carve_test

@@ -21,9 +21,9 @@ struct Cone {
   double at(double off_axis) const {
     if (off_axis <= inner) return 1;
     if (off_axis >= outer) return 0;
-    const double t = by_cosine ? (std::cos(off_axis) - std::cos(outer)) /
-                                     (std::cos(inner) - std::cos(outer))
-                               : (outer - off_axis) / (outer - inner);
+    const double t =
+        by_cosine ? (std::cos(off_axis) - std::cos(outer)) / (std::cos(inner) - std::cos(outer))
+                  : (outer - off_axis) / (outer - inner);
     return t * t * (3 - 2 * t);
   }
 };

@@ -31,8 +31,8 @@ HWY_INLINE LampSamples sample_sphere(const NearLamp& lamp, const V3& p, const V2
   const V down = dot(disk, disk) * all, stretch = root(all * (set(2) - down));
   const V3 in_cap{disk.x * stretch, disk.y * stretch, set(1) - down};
   const V aside = distance * stretch, chord = root(set(1) - aside * aside * dot(disk, disk));
-  const V first = lamp.turns ? distance / hn::Max(in_cap.z, set(kTouching))
-                             : distance * in_cap.z - chord;
+  const V first =
+      lamp.turns ? distance / hn::Max(in_cap.z, set(kTouching)) : distance * in_cap.z - chord;
   return {in_frame_about(p * hn::Neg(inverse), in_cap),
           hn::IfThenElse(inside, set(kTouching), hn::Max(first, set(kTouching))),
           set(6.28318531f) * all};

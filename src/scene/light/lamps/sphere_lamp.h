@@ -6,8 +6,8 @@
 namespace ssdo {
 
 /// A ball that sends the same radiance from all of its surface; `size` is its radius. Inside of it,
-/// it is seen in all directions but those in which its surface is far: see Cap::of_ball(). Or a disk
-/// of that radius which faces every receiver (NearLamp::turns).
+/// it is seen in all directions but those in which its surface is far: see Cap::of_ball(). Or a
+/// disk of that radius which faces every receiver (NearLamp::turns).
 struct SphereLamp final : NearLamp {
   SphereLamp() : NearLamp(LampShape::sphere) {}
 
