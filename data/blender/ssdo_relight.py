@@ -401,14 +401,16 @@ def spot_cone(lamp):
 
 
 def shape(lamp, scale, warnings):
-    """Keys of the type of a lamp. A point or spot is a disk which faces each surface, a point of
-    Blender 4 and later a ball where its soft falloff is off; a spot's light also falls with the
-    cosine to its axis, as a disk's does."""
+    """Keys of the type of a lamp. A point or spot is a disk which faces each surface, or a ball
+    where its soft falloff is off. Before Blender 4, a spot's light also falls with the cosine to
+    its axis, as a disk's does."""
     watts = lamp.energy
-    if lamp.type == "POINT":
+    has_cone = lamp.type == "SPOT"
+    if lamp.type == "POINT" or (has_cone and bpy.app.version >= (4, 0)):
         return {"type": "sphere", "radius": lamp.shadow_soft_size, "intensity": watts / pi,
-                "soft_falloff": getattr(lamp, "use_soft_falloff", True)}
-    if lamp.type == "SPOT":
+                "soft_falloff": getattr(lamp, "use_soft_falloff", True),
+                **(spot_cone(lamp) if has_cone else {})}
+    if has_cone:
         return {"type": "disk", "radius": max(lamp.shadow_soft_size, SMALLEST_RADIUS),
                 "intensity": watts / (4 * pi), **spot_cone(lamp)}
     if lamp.type == "SUN":

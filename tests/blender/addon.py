@@ -257,6 +257,34 @@ class Composite(unittest.TestCase):
                           "{TOP.AVGCOLOR}") for frame in (1, 2)]
         self.assertAlmostEqual(float(means[1]) / float(means[0]), 2, places=2)
 
+    def test_lamps_give_a_floor_the_light_that_they_give_in_blender(self):
+        for name, kind, height, tilt in (("point", "POINT", 0.3, 0), ("spot", "SPOT", 1, 0.8)):
+            scene = build()
+            for thing in [t for t in scene.objects if t.type != "CAMERA"]:
+                bpy.data.objects.remove(thing)
+            bpy.ops.mesh.primitive_plane_add(size=20)
+            bpy.ops.mesh.primitive_cube_add(size=0.3, location=(0.8, 0.4, 0))  # shows the camera
+            Lamp(name, kind, (0, 0, height), (0, 0, 0), 60, (1, 1, 1), {"shadow_soft_size": 0.1}).put()
+            lamp = scene.objects[name]
+            lamp.rotation_euler = (tilt, 0, 0)
+            if kind == "SPOT":
+                lamp.data.spot_size, lamp.data.spot_blend = 2.4, 0.7
+            scene.camera.location, scene.camera.rotation_euler = (0, 0, 3), (0, 0, 0)
+            scene.ssdo.use_world, scene.ssdo.also = False, set()
+            self.assertIsNone(relight())
+            scene.world = None
+            scene.render.engine = "CYCLES"
+            scene.cycles.samples, scene.cycles.use_denoising = 64, False
+            for layer in scene.view_layers:
+                layer.use_pass_diffuse_direct = True
+            scene.render.use_compositing = False
+            scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
+            scene.render.filepath = str(WORK / f"{name}.exr")
+            bpy.ops.render.render(write_still=True)
+            means = [float(oiiotool(file, "--ch", channel, "--echo", "{TOP.AVGCOLOR}"))
+                     for file, channel in ((WORK / "ssdo/Shot_1.0003.exr", "direct.G"),
+                                           (WORK / f"{name}.exr", "current.layer.DiffDir.G"))]
+            self.assertAlmostEqual(means[0] / means[1], 1, delta=0.01, msg=name)
 
     def test_an_object_that_cryptomatte_names_is_cut_out(self):
         scene = build()
