@@ -10,8 +10,8 @@
 namespace ssdo {
 
 /// Takes from guessed solids, but not from measured ones, what other views know better: they end
-/// where a view looks through them, and surfaces that were guessed behind others or beyond the
-/// frame end where a view shows what is there.
+/// where a view looks through them, and surfaces that were guessed beyond the frame end where a
+/// panorama shows what is there.
 void carve(Solids& solids, const Geometry& frame, const std::vector<OtherView>& views);
 
 }  // namespace ssdo
