@@ -264,7 +264,8 @@ class Composite(unittest.TestCase):
                 bpy.data.objects.remove(thing)
             bpy.ops.mesh.primitive_plane_add(size=20)
             bpy.ops.mesh.primitive_cube_add(size=0.3, location=(0.8, 0.4, 0))  # shows the camera
-            Lamp(name, kind, (0, 0, height), (0, 0, 0), 60, (1, 1, 1), {"shadow_soft_size": 0.1}).put()
+            Lamp(name, kind, (0, 0, height), (0, 0, 0), 60, (1, 1, 1),
+                 {"shadow_soft_size": 0.1}).put()
             lamp = scene.objects[name]
             lamp.rotation_euler = (tilt, 0, 0)
             if kind == "SPOT":

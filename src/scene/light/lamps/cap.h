@@ -26,7 +26,7 @@ struct Cap {
     return {sine, inside ? -cosine : cosine};
   }
 
-  /// That of a disk, facing it in front of its middle.
+  /// The part that a disk covers, seen from a point in front of its middle.
   static Cap of_disk(double radius, double distance) {
     const double to_edge = std::hypot(radius, distance);
     return {radius / to_edge, distance / to_edge};

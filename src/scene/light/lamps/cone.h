@@ -12,8 +12,7 @@ namespace ssdo {
 /// 1 - softness.
 struct Cone {
   double inner = std::numbers::pi, outer = std::numbers::pi;  ///< radians
-
-  bool by_cosine = false;
+  bool by_cosine = false;  ///< whether the step is that of the cosine
 
   bool is_open() const { return inner >= std::numbers::pi; }
 

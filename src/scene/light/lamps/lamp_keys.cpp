@@ -76,11 +76,11 @@ class LampReader {
     lamp_.width = size("width", lamp_.width);
     lamp_.height = size("height", lamp_.height);
     lamp_.angle = number("angle", lamp_.angle, 0, 360);
-    lamp_.has_cone = object_.contains("cone_angle") || object_.contains("cone_softness") ||
-                     object_.contains("cone_by_cosine");
+    lamp_.cone_by_cosine = is_set("cone_by_cosine");
+    lamp_.has_cone =
+        object_.contains("cone_angle") || object_.contains("cone_softness") || lamp_.cone_by_cosine;
     lamp_.cone_angle = number("cone_angle", lamp_.cone_angle, 0, 180);
     lamp_.cone_softness = number("cone_softness", lamp_.cone_softness, 0, 1);
-    lamp_.cone_by_cosine = is_set("cone_by_cosine");
     lamp_.soft_falloff = is_set("soft_falloff");
     if (lamp_.type == LampType::disk) lamp_.radius = size("radius", lamp_.radius);
     read_light();

@@ -54,6 +54,11 @@ TEST_F(LampFile, GivesWhatItSays) {
   EXPECT_EQ(lamps[3].intensity, 50000);  // as in UsdLux
 }
 
+TEST_F(LampFile, HasAConeWhereOneIsAskedFor) {
+  EXPECT_TRUE(lamp(R"("type": "sphere", "cone_by_cosine": true)").has_cone);
+  EXPECT_FALSE(lamp(R"("type": "sphere", "cone_by_cosine": false)").has_cone);
+}
+
 TEST_F(LampFile, AndTheCommandLineAreAlike) {
   const Lamp in_file = lamp(
       R"("type": "rect", "name": "a", "position": [1,-2,3], "direction": [0,0.5,-1],
