@@ -72,6 +72,7 @@ ModelOptions Setting::applied_to(const ModelOptions& model) const {
 
 std::vector<std::string> Setting::arguments() const {
   std::vector<std::string> words = {"--method", std::string(method->name)};
+  if (method->takes.prior) words.insert(words.end(), {"--prior", "rules"});
   for (const auto& [name, value] : rung.values) {
     if (method->takes.march)
       words.insert(words.end(), {fmt::format("--{}", name), std::to_string(value)});

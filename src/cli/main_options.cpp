@@ -232,8 +232,9 @@ void add_model(CLI::App& app, ModelOptions& o) {
   group.choice("--offscreen", o.extend_offscreen, {{"extend", true}, {"open", false}},
                "beyond the frame surfaces go on (extend) or end (open)");
   group.choice("--prior", o.prior, {{"rules", Prior::rules}, {"learned", Prior::learned}},
-               "what fills directions that no picture shows: rules, or in ao what was learned from "
-               "made scenes");
+               "what fills directions that no picture shows: what was learned from made scenes, or "
+               "rules; not given: learned, but by method bitmask only, and not if --offscreen open "
+               "or --thickness says what is there");
   add_quality(group, o);
   group.value("--bounces", "N", o.bounces, "bounces of light between surfaces")
       ->check(CLI::Range(0, 8));

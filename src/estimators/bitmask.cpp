@@ -197,7 +197,8 @@ class Bitmask {
     const bool sends = times_sent(scene_, request_) > 0 && scene_.senders.radiance.empty(),
                has_suns = needs_openness(scene_, request_);
     const LearnedVisibility learned =
-        request_.ask_prior({scene_, lit_part(), found, sends || has_suns});
+        request_.ask_prior({scene_, lit_part(), found, sends || has_suns,
+                            has_suns ? sun_past_beyond(march_scene_, scene_, request_) : 1});
     if (sends) change_ = raster_.interleaved(learned.change);
     if (has_suns) past_ = raster_.interleaved(learned.past);
   }

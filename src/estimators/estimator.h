@@ -85,6 +85,7 @@ struct PriorQuestion {
   Window part;  ///< pixels that are asked about, counted from the first of the geometry
   std::function<FoundVisibility(std::size_t pixel)> found;  ///< by number in the geometry
   bool for_light;                                           ///< whether the answer is looked at
+  float sun_past;  ///< by rules: share of a sun that comes past the border where nothing hides it
 };
 using AskPrior = std::function<LearnedVisibility(const PriorQuestion&)>;
 

@@ -293,6 +293,12 @@ void explain_downsampling(Plan& plan, const GBuffer& gbuffer) {
 
 }  // namespace
 
+Prior prior_of(const ModelOptions& model) {
+  if (model.prior) return *model.prior;
+  const bool is_told = !model.extend_offscreen || model.thickness;
+  return find_method(model.method).takes.prior && !is_told ? Prior::learned : Prior::rules;
+}
+
 bool finds_radius(const ModelOptions& model) {
   const Takes& takes = find_method(model.method).takes;
   return takes.radius && !takes.endless_radius && !model.radius;
@@ -329,7 +335,7 @@ Plan make_plan(const ModelOptions& model, const OutputOptions& output, const Sce
   explain_measured(plan, scene);
   choose_march(plan, model);
   choose_receivers(plan, output, scene.geometry, gbuffer, file,
-                   model.prior == Prior::learned ? kPriorReach : 0);
+                   prior_of(model) == Prior::learned ? kPriorReach : 0);
   explain_downsampling(plan, gbuffer);
   return plan;
 }

@@ -52,7 +52,7 @@ struct ModelOptions {
   std::optional<float> radius_of_shot = {};
   std::optional<double> thickness;  ///< scene units or infinity; found in the frame if not given
   bool extend_offscreen = true;     ///< surfaces go on beyond the frame
-  Prior prior = Prior::rules;
+  std::optional<Prior> prior;       ///< found by prior_of() if not given
   Quality quality = Quality::standard;
   std::optional<int> slices, steps;  ///< in place of those of the quality
   std::optional<double> error;       ///< largest standard error of direct + bounce
@@ -69,6 +69,10 @@ struct LearnedPrior {
   std::optional<glm::vec3> up;                        ///< unit, camera space; not known: nothing
   std::shared_ptr<const PriorContext> of_frame = {};  ///< where a band of it is computed
 };
+
+/// The prior that is used. Where nothing is said: `learned`, if the method takes one and neither
+/// --offscreen open nor --thickness says what is there.
+Prior prior_of(const ModelOptions& model);
 
 /// What will be computed for a frame, and why.
 struct Plan {

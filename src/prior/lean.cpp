@@ -160,8 +160,9 @@ HWY_INLINE void between_squares(const Squares& s, const Geometry& geometry,
 }
 
 /// `ao` after the prior, where there is a surface.
-HWY_INLINE V amended(const Surfels& surfels, V ao, V guesses, V lean) {
-  return hn::IfThenElse(surfels.surface, leaned(ao, guesses, lean), ao);
+HWY_INLINE V amended(const Surfels& surfels, V ao, V guesses, V lean, float part) {
+  const V after = hn::MulAdd(leaned(ao, guesses, lean) - ao, set(part), ao);
+  return hn::IfThenElse(surfels.surface, after, ao);
 }
 
 /// The bounce of a vector of pixels, of a light that surfaces send `sent` of.
@@ -175,19 +176,21 @@ HWY_INLINE void amend_bounce(std::size_t i, int count, V ao, V after, const glm:
 }
 
 /// The answer by pixel.
-void write_rows(const PriorField& field, const Geometry& geometry, int y0, int y1,
+void write_rows(const PriorField& field, const Geometry& geometry, float sun_past, int y0, int y1,
                 LearnedVisibility& learned) {
   between_squares<2>(
       field.squares, geometry, {&field.change, &field.past}, y0, y1,
       [&](std::size_t i, int count, const Surfels& surfels, const V* of) HWY_ATTR {
         store_first(count, hn::IfThenElseZero(surfels.surface, of[0]), &learned.change[i]);
-        store_first(count, hn::IfThenElseZero(surfels.surface, of[1]), &learned.past[i]);
+        const V rules = set(sun_past), past = hn::MulAdd(of[1] - rules, set(kPartOfLight), rules);
+        store_first(count, hn::IfThenElseZero(surfels.surface, past), &learned.past[i]);
       });
 }
 
 void amend_rows(const PriorField& field, const Scene& scene, int y0, int y1, Products& products) {
   const auto lean = [&](std::size_t i, int count, const Surfels& surfels, const V* of) HWY_ATTR {
-    const V ao = load_first(count, &products.ao[i]), after = amended(surfels, ao, of[0], of[1]);
+    const V ao = load_first(count, &products.ao[i]),
+            after = amended(surfels, ao, of[0], of[1], field.part);
     store_first(count, after, &products.ao[i]);
     amend_bounce(i, count, ao, after, products.shares.sent, products.bounce);
     for (LightProducts& light : products.lights)
@@ -207,7 +210,9 @@ void amend_rows(const PriorField& field, const Scene& scene, int y0, int y1, Pro
                   slope_z = light.coefficients[2] * kShConstants[2],
                   slope_x = light.coefficients[3] * kShConstants[3];
   // Light that has directions comes halfway between open borders and surfaces that go on.
-  const V halfway = set(light.order > 0 ? 0.5f : 0.0f);
+  const bool has_directions = light.order > 0;
+  const V halfway = set(has_directions ? 0.5f : 0.0f),
+          part = set(has_directions ? kPartOfLight : 1.0f);
   between_squares<6>(
       s, scene.geometry,
       {&s.guesses, &field.lean, &field.opens, &field.moment[0], &field.moment[1], &field.moment[2]},
@@ -218,7 +223,8 @@ void amend_rows(const PriorField& field, const Scene& scene, int y0, int y1, Pro
           const V more =
               hn::MulAdd(set(mean[c]), change,
                          dot(V3{set(slope_x[c]), set(slope_y[c]), set(slope_z[c])}, moment));
-          return hn::IfThenElse(whole > set(0), saturate(saturate(share) + more / whole), share);
+          return hn::IfThenElse(whole > set(0), saturate(saturate(share) + part * more / whole),
+                                share);
         };
         const V3 share = load_first(count, &sky[i]);
         const V3 after{amend(share.x, all.x, 0), amend(share.y, all.y, 1),
@@ -267,12 +273,12 @@ HWY_EXPORT(amend_rows);
 HWY_EXPORT(write_rows);
 HWY_EXPORT(finish_rows);
 
-LearnedVisibility by_pixel(const PriorField& field, const Geometry& geometry) {
+LearnedVisibility by_pixel(const PriorField& field, const Geometry& geometry, float sun_past) {
   const Plane<Surfel>& surfel = geometry.surfel;
   LearnedVisibility learned{Plane<float>(surfel.width, surfel.height, 0.0f),
                             Plane<float>(surfel.width, surfel.height, 1.0f)};
   for_each_band(surfel.height, [&](int y0, int y1) {
-    HWY_DYNAMIC_DISPATCH(write_rows)(field, geometry, y0, y1, learned);
+    HWY_DYNAMIC_DISPATCH(write_rows)(field, geometry, sun_past, y0, y1, learned);
   });
   return learned;
 }

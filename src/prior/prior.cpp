@@ -70,11 +70,20 @@ std::size_t rounded_up(std::size_t count) {
 
 }  // namespace
 
+float part_of_ao(const Geometry& geometry, float radius) {
+  if (std::isinf(radius) || geometry.median_depth <= 0) return 1;
+  constexpr float kMany = 8;  // frames of the training have at most 1.5
+  const float times = radius / (kMany * geometry.frame_height_at(geometry.median_depth));
+  return 1 - (1 - kPartWithinRadius) / (1 + times * times);
+}
+
 PriorField find_prior(const PriorQuestion& question, const PriorAsked& asked) {
   const Geometry& geometry = question.scene.geometry;
   const std::optional<glm::vec3>& up = asked.up;
   PriorField field;
-  Squares& squares = field.squares = make_squares(geometry, question.part);
+  field.part = part_of_ao(geometry, asked.radius);
+  Squares& squares = field.squares = make_squares(
+      geometry, question.part, question.scene.casting ? &*question.scene.casting : nullptr);
   average_over_squares(question, asked, squares);
   const PriorInputs inputs(squares, geometry, up, asked.radius, asked.of_frame);
   field.context = inputs.context();
@@ -99,14 +108,14 @@ PriorField find_prior(const PriorQuestion& question, const PriorAsked& asked) {
                     room = std::min(ao + guessed, 1.0f) - std::max(ao - guessed, 0.0f);
         const float shift = std::clamp(kShiftUnit * output(0), -kMostShift, kMostShift);
         field.lean[i] = sigmoid(shift) - 0.5f;
-        const float after = leaned(ao, guessed, sigmoid(shift));
+        const float after = std::lerp(ao, leaned(ao, guessed, sigmoid(shift)), field.part);
         field.change[i] = after - ao;
         const float open = (after + kLeastOpen) / (squares.open_ao[i] + kLeastOpen),
                     closed = std::max(1 - open, 0.0f);
         field.past[i] = 1 - closed * closed;
         field.opens[i] = squares.open_ao[i] - squares.ao[i];
         const glm::vec3 change(output(1), output(2), output(3));
-        const glm::vec3 moment = room * (from_axes * change);
+        const glm::vec3 moment = field.part * room * (from_axes * change);
         for (int c = 0; c < 3; ++c) field.moment[std::size_t(c)][i] = moment[c];
         field.spread[i] = room * sigmoid(output(4) - 1);
       }
@@ -118,7 +127,8 @@ PriorField find_prior(const PriorQuestion& question, const PriorAsked& asked) {
 AskPrior ask_prior(const PriorAsked& asked, std::optional<PriorField>& field) {
   return [asked, &field](const PriorQuestion& question) {
     field = find_prior(question, asked);
-    return question.for_light ? by_pixel(*field, question.scene.geometry) : LearnedVisibility();
+    return question.for_light ? by_pixel(*field, question.scene.geometry, question.sun_past)
+                              : LearnedVisibility();
   };
 }
 

@@ -31,7 +31,11 @@ int square_size(int display_width) {
   return wanted >= kLargest ? kLargest : wanted >= 2 ? 2 : 1;
 }
 
-Squares make_squares(const Geometry& geometry, const Window& part) {
+Squares make_squares(const Geometry& geometry, const Window& part, const Casting* casting) {
+  const auto shows_surface = [&](std::size_t pixel) {
+    return geometry.surfel[pixel].is_usable() &&
+           !(casting && casting->hole[pixel] && !casting->geometry.surfel[pixel].is_usable());
+  };
   Squares s;
   const int step = s.step = square_size(geometry.display.width());
   // Of the first pixel of the geometry in the display window.
@@ -49,7 +53,7 @@ Squares make_squares(const Geometry& geometry, const Window& part) {
     for (int x = 0; x < width; ++x) {
       const int x0 = (s.first.x + x) * step - left, y0 = (s.first.y + y) * step - top;
       const auto take = [&](int px, int py) {
-        if (!part.contains(px, py) || !geometry.surfel(px, py).is_usable()) return false;
+        if (!part.contains(px, py) || !shows_surface(geometry.surfel.index(px, py))) return false;
         s.pixel(x, y) = std::int32_t(geometry.surfel.index(px, py));
         s.surfel(x, y) = geometry.surfel(px, py);
         return true;

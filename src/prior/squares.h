@@ -11,7 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "math/plane.h"
-#include "scene/geometry.h"
+#include "scene/scene.h"
 
 namespace ssdo {
 
@@ -37,7 +37,10 @@ struct Squares {
 /// Pixels on each side of a square, for frames that are so many pixels wide.
 int square_size(int display_width);
 
-/// Divides `part` of a geometry's window, which is in pixels of the window, into squares.
-Squares make_squares(const Geometry& geometry, const Window& part);
+/// Divides `part` of a geometry's window, which is in pixels of the window, into squares. What
+/// casts nothing and has nothing behind it, as a dome around the scene, is sky here. `casting`: of
+/// the geometry's scene, or null.
+Squares make_squares(const Geometry& geometry, const Window& part,
+                     const Casting* casting = nullptr);
 
 }  // namespace ssdo

@@ -69,7 +69,7 @@ void light_frame(Frame& frame, const Lighting& lighting, const FrameOptions& opt
   Scene& scene = frame.scene;
   const bool world = scene.geometry.world_known;
   WorldUp up;
-  const bool asks_prior = options.model.prior == Prior::learned && !options.light.up;
+  const bool asks_prior = prior_of(options.model) == Prior::learned && !options.light.up;
   // Mirrors show ground that goes on beyond the frame.
   const bool mirrors = !options.light.up && wants_reflection(options.output, files.aovs);
   if (world && (lighting.needs_up() || asks_prior || mirrors)) up = find_up(frame, options);

@@ -222,7 +222,7 @@ const std::vector<IdleRule<Facts>>& rules_of_frames() {
        "the light is the same from everywhere"},
       {{"--env-up"},
        [](const Asked& o, const Facts& f) {
-         return o.light.up && f.constant_light && !f.lamps && o.model.prior == Prior::rules;
+         return o.light.up && f.constant_light && !f.lamps && prior_of(o.model) == Prior::rules;
        },
        "the light is the same from everywhere"},
       {{"--crop"},

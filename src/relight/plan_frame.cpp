@@ -55,7 +55,7 @@ void plan_frame(Frame& frame, const FrameOptions& options, int number, bool has_
                             "in world space, or give --camera FILE.json with its pose",
                             frame.input));
   }
-  if (model.prior == Prior::learned) use_prior(frame.plan, {frame.up});
+  if (prior_of(model) == Prior::learned) use_prior(frame.plan, {frame.up});
   if (options.output.per_light) check_names_of_lights(frame);
   if (frame.gbuffer.grid.is_coarse()) {
     check_bands(frame);

@@ -34,7 +34,7 @@ TEST_F(IdleOptions, AreWarnedOf) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> idle = {
       {{"--motion-scale", "-1,-1"}, "--motion-scale has no effect"},
       {{"--env-rotate", "30"}, "--env-rotate has no effect"},
-      {{"--env-up", "z", "--env", "0.5"}, "--env-up has no effect"},
+      {{"--env-up", "z", "--env", "0.5", "--prior", "rules"}, "--env-up has no effect"},
       {{"--quality", "final"}, "--slices and --steps stand in its place"},
       {{"--bits", "16"}, "--bits has no effect"},
       {{"--view", "Raw"}, "--view has no effect"},

@@ -296,7 +296,7 @@ TEST(MainJob, FramesWithoutASurfaceAndOfOnePixelAreDone) {
     pixel.channels.erase(std::string("ViewLayer.Position.") + c);
   write_frame(dir / "pixel.exr", pixel);
   relight({dir / "pixel.exr", "-o", dir / "pixel_out.exr", "--fov", "40"});
-  EXPECT_EQ(channel(dir / "pixel_out.exr", "ao.Y")(0, 0), 1);
+  EXPECT_NEAR(channel(dir / "pixel_out.exr", "ao.Y")(0, 0), 1, 0.01);
 }
 
 TEST(MainJob, BrokenPixelsAreCountedAndMakeNoNaN) {

@@ -97,7 +97,8 @@ TEST(Options, OfNamesTakeEachNameAndNoOther) {
                      [](const Options& o) { return o.light.up; });
   expect_choices<bool>("--offscreen", {{"extend", true}, {"open", false}},
                        [](const Options& o) { return o.model.extend_offscreen; });
-  expect_choices<Prior>("--prior", {{"rules", Prior::rules}, {"learned", Prior::learned}},
+  using Given = std::optional<Prior>;
+  expect_choices<Given>("--prior", {{"rules", Prior::rules}, {"learned", Prior::learned}},
                         [](const Options& o) { return o.model.prior; });
   expect_choices<Quality>(
       "--quality",

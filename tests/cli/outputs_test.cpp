@@ -136,7 +136,7 @@ TEST_F(Outputs, EveryFlagOfTheModelMatters) {
   const auto plain = run({}).pixels;
   EXPECT_EQ(run({"--method",    "bitmask",  "--seed",  "0",           "--filter",
                  "geometry",    "--radius", "auto",    "--thickness", "auto",
-                 "--offscreen", "extend",   "--prior", "rules",       "--quality",
+                 "--offscreen", "extend",   "--prior", "learned",     "--quality",
                  "standard",    "--slices", "2",       "--steps",     "16"})
                 .pixels,
             plain)
@@ -147,7 +147,7 @@ TEST_F(Outputs, EveryFlagOfTheModelMatters) {
                                                 {"--thickness", "0.05"},
                                                 {"--thickness", "inf"},
                                                 {"--offscreen", "open"},
-                                                {"--prior", "learned"},
+                                                {"--prior", "rules"},
                                                 {"--quality", "draft"},
                                                 {"--quality", "final"},
                                                 {"--slices", "5"},

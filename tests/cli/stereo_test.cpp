@@ -435,7 +435,7 @@ TEST_F(Stereo, TwoViewsAreNotMadeInBands) {
   write_frame(folder / "in.exr", parts);
   const auto with = [](const std::string& view) {
     return std::vector<std::string>{"in.exr", "--stereo",    view,  "-o",
-                                    "a.exr",  "--mem-limit", "200M"};
+                                    "a.exr",  "--mem-limit", "236M"};
   };
   EXPECT_THAT(run(with("all"), 2).error_line(), HasSubstr("give --stereo left, then right"));
   EXPECT_THAT(listing(folder.path()), ElementsAre("in.exr"));

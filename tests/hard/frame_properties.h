@@ -43,6 +43,9 @@ struct FrameProperty {
   double bound;       ///< the most that `measure` may give
   double mean_bound;  ///< of many frames: rounding that takes one sample across an edge is rare
   Measured (*measure)(const Subject&) = nullptr;
+  /// Also of a learned prior, which knows which way is up, computes logarithms of lengths, and
+  /// keeps no balance of light.
+  bool holds_with_prior = true;
 };
 
 /// Every property; what each of them is promised for stands where it is measured.

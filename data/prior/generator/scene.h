@@ -32,6 +32,8 @@ int family_of(int id);
 /// What frame `id` has around an outdoor scene. Later frames have nothing behind the camera, and
 /// many show all that there is: much of what is rendered was built for one camera.
 void surround(Random& r, Scene& scene, int id);
+/// Whether frame `id` has something close to the camera, by chance.
+bool has_foreground(Random& r, int id);
 
 // The families of each file.
 std::vector<Family> room_families();
@@ -54,5 +56,7 @@ Camera orbit(Random& r, Vec at, Range distance, Range elevation, Range fov);
 Camera inside(Random& r, Vec size, Range fov);
 /// Walks along +x: the eye at `eye`, the view turned by at most `turn` radians.
 Camera walk(Random& r, Vec eye, float turn, Range fov);
+/// Puts one or two things between the camera and what it looks at (foregrounds.cpp).
+void foreground(Random& r, Scene& scene);
 /// With some probability, builds what stands behind the camera: houses, walls, trees, a crew.
 void behind_camera(Random& r, Scene& scene);

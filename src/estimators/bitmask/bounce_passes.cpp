@@ -15,7 +15,23 @@ struct Followed {
   NamedLight light;
   std::vector<OtherViewLight> sent_by_others;  ///< by pass
   BouncedLight found = {};                     ///< in the pass before
+  glm::vec3 from_afar{1};  ///< share of what surfaces send in the first pass; see only_from_afar()
 };
+
+/// Without the lamps that stand in the scene. These light what is near them, and nothing says that
+/// surfaces which are not shown are: of a street with one spot, a learned prior would make one that
+/// is lit everywhere.
+NamedLight only_from_afar(const NamedLight& light) {
+  NamedLight afar = light;
+  afar.light.sources.clear(), afar.numbers.clear();
+  for (std::size_t k = 0; k < light.numbers.size(); ++k) {
+    const auto& source = light.light.sources[k];
+    if (!source->distant() && !source->distant_lamp()) continue;
+    afar.light.sources.push_back(source);
+    afar.numbers.push_back(light.numbers[k]);
+  }
+  return afar;
+}
 
 /// What all lights of a pass share.
 struct Pass {
@@ -123,15 +139,30 @@ class BouncePasses {
     return ssdo::sent_light(in_, light.light, part, pass > 1 ? &light.found : nullptr);
   }
 
+  /// The mean radiance of what surfaces send of the light that comes from afar.
+  glm::vec3 sent_by_unshown(Followed& light, const InterleavedVectors& sent,
+                            const Pass& pass) const {
+    const auto mean = [&](const InterleavedVectors& of) {
+      return mean_sent(march_scene_, scene_.geometry,
+                       {of, pass.of_all, two_sided_, pass.emitters.bright});
+    };
+    const glm::vec3 all = mean(sent);
+    if (pass.number == 1 && is_lit_) {
+      const NamedLight afar = only_from_afar(light.light);
+      if (afar.numbers.size() < light.light.numbers.size()) {
+        const glm::vec3 part = mean(ssdo::sent_light(in_, afar, pass.lit, nullptr));
+        for (int c = 0; c < 3; ++c) light.from_afar[c] = all[c] > 0 ? part[c] / all[c] : 0;
+      }
+    }
+    return light.from_afar * all;
+  }
+
   /// Replaces what a light sends by what of it arrives. Returns what bands need of the former,
   /// where they do. `points`: what rays go to, with this light. `error` may be null.
   FarLight gather(Followed& light, InterleavedVectors& sent, const Pass& pass,
                   const FarLight* far_light, const Emitters& points, InterleavedPlane* error) {
     if (request_.ask_prior)
-      light.found.sent = far_light
-                             ? far_light->mean
-                             : mean_sent(march_scene_, scene_.geometry,
-                                         {sent, pass.of_all, two_sided_, pass.emitters.bright});
+      light.found.sent = far_light ? far_light->mean : sent_by_unshown(light, sent, pass);
     const std::array<BorderValues, 3> border =
         light_beyond(march_scene_, sent, pass.of_all, two_sided_, pass.emitters.bright);
     FarLight kept{{}, {}, pass.emitters.bright, pass.emitters.level, light.found.sent};
