@@ -111,6 +111,7 @@ TEST(Command, HasWhatReachesTheSetting) {
             "--products ao,direct -o 'a b_relit.exr'");
   EXPECT_EQ(command_of(job, standard_setting(find_method("bitmask")), plan),
             "ssdo 'shots/a b.exr' --env sky.exr --thickness 2 --radius inf --method bitmask "
+            "--prior rules "
             "--slices 2 --steps 16 --products ao,direct -o 'a b_relit.exr'");
 }
 
