@@ -202,10 +202,11 @@ TEST_F(DataChecks, SpaceByOptionDecidesWhetherThereIsAWorld) {
   for (StoredLayer& layer : shot.layers)
     if (layer.role == Role::normal) layer.content = camera_normal();
   // A learned prior looks for a way up in worlds only.
-  const std::vector<std::string> lit = {"--env", dir_ / "map.exr", "--prior", "rules"};
+  std::vector<std::string> lit = {"--env", dir_ / "map.exr", "--prior", "rules"};
   const Plane<float> in_camera = result(shot, "direct.R", lit);
   EXPECT_THAT(said_, HasSubstr("the frame knows no world space"));
-  const Plane<float> of_world = result(shot, "direct.R", joined(lit, {"--space", "world"}));
+  lit.insert(lit.end(), {"--space", "world"});
+  const Plane<float> of_world = result(shot, "direct.R", lit);
   EXPECT_EQ(said_, "");
   EXPECT_LT(rmse(in_camera, of_world), 1e-6) << "the camera stands at the origin of its world";
   EXPECT_EQ(info(shot)["position"]["space"], "camera");
