@@ -47,7 +47,7 @@ TEST(BackFacesOfTheTool, OpenWhatIsBelowASlab) {
     return std::sqrt(sum / count);
   };
   for (const std::string method : {"bitmask", "trace"}) {
-    // By rules: a learned prior halves the error of the frame alone.
+    // By rules: with a learned prior, there is less to gain.
     const double alone = rmse(ao({"--method", method, "--prior", "rules"})),
                  known = rmse(ao({"--method", method, "--prior", "rules", "--also", back})),
                  given = rmse(ao({"--method", method, "--also", back, "--thickness", "3"}));
