@@ -16,6 +16,7 @@
 #include "parallel/task_order.h"
 #include "parallel/tiles.h"
 #include "prior/prior.h"
+#include "support/point_source.h"
 
 namespace ssdo::test::prior_light_test {
 namespace {
@@ -165,6 +166,32 @@ TEST(PriorLight, OfASunIsWhatThePriorLetsPass) {
   const double none = mean_share(0), half = mean_share(0.5f), all = mean_share(1);
   EXPECT_GT(all, none + 0.3);
   EXPECT_NEAR(half, (none + all) / 2, 1e-3);
+}
+
+/// What is not shown sends what the frame does of light from afar, and nothing of a lamp in it.
+TEST(PriorLight, OfALampIsNotSentByWhatIsNotShown) {
+  const ProductSet asked{.ao = true, .bounce = true};
+  Scene scene = room_in(Environment::constant(glm::vec3(0)));
+  const glm::dvec3 at = scene.geometry.camera.to_camera({0.5, 0, 2});
+  scene.light.sources.push_back(std::make_shared<PointSource>(glm::vec3(at)));
+  const Products found = find(scene, asked).products, rules = find(scene, asked, false).products;
+  float most = 0;
+  for_each_surface(scene, [&](std::size_t i, const glm::vec3&) {
+    most = std::max(most, rules.bounce[i].x);
+    ASSERT_LE(found.bounce[i].x, 1.02f * rules.bounce[i].x + 1e-5f) << i;
+  });
+  EXPECT_GT(most, 0.01f);
+  EXPECT_NE(found.ao.pixels, rules.ao.pixels);
+}
+
+/// Within a radius ao takes half of the change, and more with a radius far larger than the frame.
+TEST(PriorLight, OfALargeRadiusIsNearlyThatWithoutOne) {
+  const Geometry geometry = room_in(sunny()).geometry;
+  const float height = geometry.frame_height_at(geometry.median_depth);
+  EXPECT_EQ(part_of_ao(geometry, kNoLimit), 1);
+  EXPECT_NEAR(part_of_ao(geometry, 0.1f * height), 0.5, 1e-3);
+  EXPECT_NEAR(part_of_ao(geometry, 8 * height), 0.75, 1e-6);
+  EXPECT_GT(part_of_ao(geometry, 1000 * height), 0.999f);
 }
 
 /// In a white world with white surfaces, ao + bounce is 1 where nothing is lost.
