@@ -34,7 +34,7 @@ int square_size(int display_width) {
 Squares make_squares(const Geometry& geometry, const Window& part, const Casting* casting) {
   const auto shows_surface = [&](std::size_t pixel) {
     return geometry.surfel[pixel].is_usable() &&
-           !(casting && casting->hole[pixel] && !casting->geometry.surfel[pixel].is_usable());
+           (!casting || casting->geometry.surfel[pixel].is_usable());
   };
   Squares s;
   const int step = s.step = square_size(geometry.display.width());
