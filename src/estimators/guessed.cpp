@@ -14,6 +14,7 @@
 #include "estimators/bitmask/slice_pattern.h"
 #include "estimators/other_views/other_view_rays.h"
 #include "estimators/ray_start.h"
+#include "math/endless.h"
 #include "math/frame.h"
 #include "math/sampling.h"
 #include "math/sobol.h"
@@ -25,8 +26,6 @@
 
 namespace ssdo {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Rays of a pixel that a filter averages with its neighbours, and of one that stands for many.
 constexpr int kRays = 2, kRaysOfMean = 8;

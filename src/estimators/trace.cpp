@@ -52,6 +52,7 @@
 #include "estimators/trace/mirrored_sums.h"
 #include "estimators/trace/ray_origin.h"
 #include "estimators/trace/senders.h"
+#include "math/endless.h"
 #include "math/frame.h"
 #include "math/luminance.h"
 #include "math/sampling.h"
@@ -68,8 +69,6 @@ namespace {
 
 /// Seeds of the uses of a pixel's sequence.
 constexpr std::uint32_t kSurfaceSeed = 0x51ab, kSourceSeed = 0x9c3d, kFacetSeed = 0x2f17;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// A pixel that gathers light: where its rays start, and the normals that bound and weigh them.
 struct Receiver {
@@ -353,7 +352,7 @@ class Trace {
   Products out_;
 };
 
-Products estimate(const Scene& scene, const Request& request, const Progress& progress) {
+Products trace(const Scene& scene, const Request& request, const Progress& progress) {
   return Trace(scene, request, progress).run();
 }
 
@@ -377,7 +376,7 @@ Method trace_method() {
                          kRoughness,
                          kIndexOfRefraction},
           .samples_per_pixel = [](const Request& r) { return int(r.parameters.at("samples")); },
-          .estimate = estimate,
+          .estimate = trace,
           .ladder = {.rungs = rungs_of("samples", {4, 16, 64}),
                      .limit = {{{"samples", 512}}},
                      .seeds = 2},

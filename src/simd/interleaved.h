@@ -21,7 +21,8 @@ namespace ssdo {
 class Interleaving {
  public:
   static constexpr int kPeriod = 8;
-  static constexpr int kShift = 3;  ///< x / kPeriod is x >> kShift
+  static constexpr int kShift = 3;                    ///< x / kPeriod is x >> kShift
+  static constexpr int kMembers = kPeriod * kPeriod;  ///< pixels of a square of that side
   static constexpr int kPad = kMostLanes;
 
   /// `phase` is the column of the display window that the first pixel has, modulo kPeriod.

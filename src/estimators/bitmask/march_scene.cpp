@@ -15,7 +15,6 @@
 namespace ssdo {
 namespace {
 
-constexpr int kPeriod = Interleaving::kPeriod;
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
 /// What a pixel shows, in the planes of MarchScene.
@@ -148,10 +147,10 @@ void for_each_cell(const Geometry& g, const MarchScene& scene, const Cells& cell
     cells_of_row.reserve(normals.size());
     for (int x = 0; x < g.surfel.width; ++x)
       cells_of_row.push_back(cells.at(x, y, normals[std::size_t(x)]));
-    for (int column_phase = 0; column_phase < kPeriod; ++column_phase) {
+    for (int column_phase = 0; column_phase < Interleaving::kPeriod; ++column_phase) {
       const std::ptrdiff_t row = layout.index(y, column_phase, 0);
       for (int column = -kPad; column < int(layout.stride()) - kPad; ++column) {
-        const int x = column * kPeriod + column_phase - layout.phase();
+        const int x = column * Interleaving::kPeriod + column_phase - layout.phase();
         visit(row + column, x, y,
               x >= 0 && x < g.surfel.width ? cells_of_row[std::size_t(x)] : Cell());
       }
@@ -165,7 +164,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                             const Geometry* receiving) {
   check_layers(solids);
   const Interleaving layout(g.surfel.width, g.surfel.height,
-                            (g.window.x0 - g.display.x0) & (kPeriod - 1));
+                            (g.window.x0 - g.display.x0) & (Interleaving::kPeriod - 1));
   const auto plane = [&] {
     InterleavedPlane values(layout);
     std::fill_n(values.data() + layout.size() - Interleaving::kPad, Interleaving::kPad, kNothing);

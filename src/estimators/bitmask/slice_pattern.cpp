@@ -13,8 +13,6 @@
 namespace ssdo {
 namespace {
 
-constexpr int kPeriod = Interleaving::kPeriod;
-
 /// An ordering of the pattern in which neighbours are far apart (Bayer's matrix, 1973): each of its
 /// quarters holds every fourth rank, and so do theirs.
 int order_of(int column, int row, int size) {
@@ -90,7 +88,7 @@ SliceSide make_side(const Interleaving& layout, const FarRaster* far, int column
   for (int i = 0; i < steps; ++i) {
     const double distance = std::exchange(next, march_distance((i + 1 + start) / steps, diagonal));
     const bool is_long = next - distance > kLongStep, is_far = far && distance > far->from_px;
-    const int block = is_far ? kPeriod : is_long ? kBlock : 1;
+    const int block = is_far ? Interleaving::kPeriod : is_long ? kBlock : 1;
     const int x = to_block(distance * dx, column_phase, block),
               y = to_block(distance * dy, line, block);
     const bool repeated =
@@ -104,8 +102,9 @@ SliceSide make_side(const Interleaving& layout, const FarRaster* far, int column
       step.row = (line + y) >> Interleaving::kShift;
       step.offset = far->layout.stride() * step.row + step.column_shift;
     } else {
-      step.offset = layout.index(y, (column_phase + x) & (kPeriod - 1), step.column_shift) -
-                    layout.index(0, column_phase, 0);
+      step.offset =
+          layout.index(y, (column_phase + x) & (Interleaving::kPeriod - 1), step.column_shift) -
+          layout.index(0, column_phase, 0);
       side.near_steps = side.steps.size() + 1;
     }
     side.steps.push_back(step);
@@ -133,20 +132,25 @@ int SlicePattern::rows_within(float reach_px) const {
   return int(std::ceil(rows));
 }
 
-int SlicePattern::rank(int member) { return order_of(member % kPeriod, member / kPeriod, kPeriod); }
+int SlicePattern::rank(int member) {
+  return order_of(member % Interleaving::kPeriod, member / Interleaving::kPeriod,
+                  Interleaving::kPeriod);
+}
 
 SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, int slices, int steps,
                            unsigned seed, int spacing, const FarRaster* far)
-    : members_(kPeriod * kPeriod), half_signs_(kPeriod * kPeriod, 1.0f), spacing_(spacing) {
+    : members_(Interleaving::kPeriod * Interleaving::kPeriod),
+      half_signs_(Interleaving::kPeriod * Interleaving::kPeriod, 1.0f),
+      spacing_(spacing) {
   const double diagonal = std::max(2.0, std::hypot(display.width(), display.height()));
   const double turn = start_of(3 * std::uint64_t(seed)),
                start1 = start_of(3 * std::uint64_t(seed) + 1),
                start2 = start_of(3 * std::uint64_t(seed) + 2);
-  const int size = kPeriod / spacing;
-  for (int row = 0; row < kPeriod; row += spacing) {
-    for (int column = 0; column < kPeriod; column += spacing) {
+  const int size = Interleaving::kPeriod / spacing;
+  for (int row = 0; row < Interleaving::kPeriod; row += spacing) {
+    for (int column = 0; column < Interleaving::kPeriod; column += spacing) {
       const int rank = order_of(column / spacing, row / spacing, size) ^ turn_of(seed, size);
-      half_signs_[std::size_t(row * kPeriod + column)] = half_sign_of(rank);
+      half_signs_[std::size_t(row * Interleaving::kPeriod + column)] = half_sign_of(rank);
       const double place = (rank + fraction(turn)) / (size * size);
       for (int k = 0; k < slices; ++k) {
         const double angle = glm::pi<double>() * (k + place) / slices;
@@ -159,7 +163,7 @@ SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, in
               make_side(layout, far, column, row, sign * slice.dx, sign * slice.dy, steps, diagonal,
                         start, phase_in(fraction(start2 + n * kR2Second)));
         }
-        members_[std::size_t(row * kPeriod + column)].push_back(std::move(slice));
+        members_[std::size_t(row * Interleaving::kPeriod + column)].push_back(std::move(slice));
       }
     }
   }

@@ -26,7 +26,7 @@ constexpr int kPiece = 8;
 constexpr int kFewestPoints = 3;
 
 /// A ball reaches so much farther than the root mean square of its points.
-constexpr float kReach = 1.5f;
+constexpr float kBallReach = 1.5f;
 
 /// Points of a frame on a grid, and which of them have moved.
 class MovedPoints {
@@ -100,7 +100,7 @@ class MovedPoints {
                                                             : glm::normalize(middle);
     const float half = deep / float(2 * count),
                 spread = std::max(squares / float(count) - glm::dot(middle, middle), 0.0f);
-    pieces.push_back({middle + half * away, std::hypot(kReach * std::sqrt(spread), half), area,
+    pieces.push_back({middle + half * away, std::hypot(kBallReach * std::sqrt(spread), half), area,
                       velocity / float(count)});
   }
 

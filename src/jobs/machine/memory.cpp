@@ -26,7 +26,7 @@ constexpr double kLeast = 64 * kMiB, kMost = 1024 * 1024 * kMiB * 1024;
 /// processes and what libraries allocate.
 constexpr double kDefaultShare = 0.75;
 
-std::optional<std::size_t> from_user() {
+std::optional<std::size_t> memory_from_user() {
   const std::string_view text = variable("SSDO_MEM_LIMIT");
   if (text.empty()) return std::nullopt;
   if (const auto size = parse_size(text)) return size;
@@ -83,7 +83,7 @@ std::optional<std::size_t> parse_size(std::string_view text) {
 
 std::size_t choose_memory(std::optional<std::size_t> requested, const std::filesystem::path& root) {
   if (requested) return *requested;
-  if (const auto size = from_user()) return *size;
+  if (const auto size = memory_from_user()) return *size;
   double least = physical_memory();
   for (const auto& limit : {from_address_space(), from_control_groups(root), from_slurm()})
     least = std::min(least, limit.value_or(least));

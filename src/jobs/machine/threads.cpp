@@ -24,7 +24,7 @@ std::optional<int> parse_count(std::string_view text) {
   return fits ? std::optional(int(*count)) : std::nullopt;
 }
 
-std::optional<int> from_user() {
+std::optional<int> threads_from_user() {
   const std::string_view text = variable("SSDO_THREADS");
   if (text.empty()) return std::nullopt;
   if (const auto count = parse_count(text)) return count;
@@ -53,7 +53,7 @@ constexpr int kPools = 3, kOthers = 6;
 
 int choose_thread_count(std::optional<int> requested, const std::filesystem::path& root) {
   if (requested) return *requested;
-  if (const auto count = from_user()) return *count;
+  if (const auto count = threads_from_user()) return *count;
   for (const char* name : {"CUE_THREADS", "SLURM_CPUS_PER_TASK"}) {
     if (const auto count = parse_count(variable(name))) return *count;
   }

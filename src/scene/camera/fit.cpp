@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "parallel/tiles.h"
+#include "scene/camera/eigen.h"
 #include "scene/camera/null_vector.h"
 #include "scene/camera/projection_model.h"
 #include "scene/order_statistics.h"
@@ -29,10 +30,7 @@ constexpr double kMostUncertainAxes = 0.02;
 /// nearest is for messages.
 constexpr double kNoCameraPx = 0.5;
 
-Vector3d eigen(const glm::dvec3& v) { return Vector3d(glm::value_ptr(v)); }
-Matrix3d eigen(const glm::dmat3& m) { return Matrix3d(glm::value_ptr(m)); }
-
-Eigen::VectorXd null_vector(const Eigen::MatrixXd& normal_matrix) {
+Eigen::VectorXd null_vector_of(const Eigen::MatrixXd& normal_matrix) {
   const std::vector<double> x = ssdo::null_vector(normal_matrix.data(), int(normal_matrix.rows()));
   return Eigen::Map<const Eigen::VectorXd>(x.data(), Eigen::Index(x.size()));
 }
@@ -64,7 +62,7 @@ Eigen::Matrix<double, 3, 4> projective_matrix(const Samples& samples, const Pict
     ata += rows.transpose() * rows;
   };
   const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(12, 12);
-  const Eigen::VectorXd m = null_vector(sum_over(samples.items, zero, add));
+  const Eigen::VectorXd m = null_vector_of(sum_over(samples.items, zero, add));
   Eigen::Matrix<double, 3, 4> matrix;
   for (int i = 0; i < 3; ++i) matrix.row(i) = m.segment<4>(4 * i).transpose();
   // w of the centroid is the last entry: the points are in front where it is positive.

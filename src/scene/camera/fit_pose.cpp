@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "scene/camera/eigen.h"
 #include "scene/camera/fit.h"
 #include "scene/camera/null_vector.h"
 #include "scene/camera/projection_model.h"
@@ -26,9 +27,7 @@ constexpr double kUsualMove = 0.03;
 /// P is not held to be nearer to its pixels than this. In a shot of Cycles, P of 32 bits lands
 /// 0.0044 px from the middles of its pixels (median), 0.01 px (99 %). Pixels that lie beside each
 /// other tell the pose only as well as they are apart, over their own precision.
-constexpr double kPrecisionPx = 0.005;
-
-Vector3d eigen(const glm::dvec3& v) { return Vector3d(glm::value_ptr(v)); }
+constexpr double kPrecisionInShotPx = 0.005;
 
 /// A plane seen by a known projection: the homography from the plane to directions holds two
 /// columns of the rotation and the translation (Zhang 2000, section 3.1).
@@ -104,8 +103,8 @@ std::optional<Camera> fit_pose_beside(const Camera& beside, const Plane<glm::vec
   const double unit = unit_of(beside, samples, window);
   if (!(unit > 0)) return std::nullopt;
   samples = rescaled(std::move(samples), unit);
-  const double precision =
-                   std::max(kPrecisionPx, step * beside.fx / (beside.orthographic ? 1 : unit)),
+  const double precision = std::max(kPrecisionInShotPx,
+                                    step * beside.fx / (beside.orthographic ? 1 : unit)),
                weight = precision * precision / (kUsualMove * kUsualMove);
   const PosePrior prior{model_of(beside, samples), weight};
   // If P shows a plane and the camera has moved far, only a fit to P alone starts near enough.

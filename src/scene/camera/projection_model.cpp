@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "scene/camera/eigen.h"
 #include "scene/marked_pixels.h"
 
 namespace ssdo {
@@ -14,9 +15,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-Vector3d eigen(const glm::dvec3& v) { return Vector3d(glm::value_ptr(v)); }
-Matrix3d eigen(const glm::dmat3& m) { return Matrix3d(glm::value_ptr(m)); }
 
 constexpr std::size_t kMaxSamples = 20000;
 constexpr int kParameters = 10;  // rotation 3, translation 3, fx, fy, cx, cy

@@ -21,15 +21,13 @@
 #include <limits>
 #include <utility>
 
+#include "math/endless.h"
 #include "parallel/tiles.h"
 #include "scene/normals/normals.h"
 #include "scene/same_surface.h"
 
 namespace ssdo {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::size_t kMostBehind = kMostLayers - 1;
 
 class Join {
  public:

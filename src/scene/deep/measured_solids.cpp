@@ -11,6 +11,7 @@
 
 #include "error.h"
 #include "io/exr/file/exr_parts.h"
+#include "math/endless.h"
 #include "parallel/tiles.h"
 #include "scene/deep/ray_solids.h"
 #include "scene/gbuffer/background.h"
@@ -19,9 +20,6 @@
 
 namespace ssdo {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::size_t kMostBehind = kMostLayers - 1;
 
 /// Solids that are looked for on one ray: what is seen, some in front that contradict, those
 /// behind.

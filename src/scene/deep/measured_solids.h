@@ -11,6 +11,8 @@
 
 namespace ssdo {
 
+constexpr std::size_t kMostBehind = kMostLayers - 1;
+
 /// What deep images show behind the surfaces of a frame. Lengths are in scene units along the ray
 /// of the pixel, as those of a Solid.
 struct MeasuredSolids {
@@ -21,7 +23,7 @@ struct MeasuredSolids {
   };
 
   Plane<float> seen_thickness;  ///< of what the pixels show; infinite: not known
-  std::vector<Layer> behind;    ///< near to far, kMostLayers - 1 at most
+  std::vector<Layer> behind;    ///< near to far, kMostBehind at most
 };
 
 /// Least cosine between a normal and the view ray with which a gap along the ray is turned into one

@@ -8,13 +8,12 @@
 #include <limits>
 
 #include "error.h"
+#include "math/endless.h"
 #include "scene/gbuffer/background.h"
 #include "scene/layers/depth_names.h"
 
 namespace ssdo {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Rounding of the farther end, relative to it.
 constexpr float kRounding = 1e-6f;

@@ -11,12 +11,12 @@
 #include <numeric>
 #include <vector>
 
+#include "math/pi.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {
 namespace {
 
-constexpr float kPi = glm::pi<float>();
 /// Odd, so that nodes lie where the map is folded: between others, x = 0 and y = 0 were 1 degree
 /// off. Nodes are 3 degrees apart, the lobes 10 or wider.
 constexpr int kBlurredSize = 65;
@@ -58,7 +58,7 @@ glm::vec3 Environment::direction_at(float polar, float azimuth) const {
 
 float Environment::azimuth_at(float column) const {
   // The map turned by +rotate shows at azimuth a what the unturned map shows at a - rotate.
-  return 2 * kPi * (0.5f - column / float(map_->width)) + glm::radians(frame_.rotate_degrees);
+  return 2 * kPif * (0.5f - column / float(map_->width)) + glm::radians(frame_.rotate_degrees);
 }
 
 glm::mat3 Environment::axes() const {
@@ -67,7 +67,7 @@ glm::mat3 Environment::axes() const {
 }
 
 glm::vec3 Environment::texel_direction(int x, int y) const {
-  return direction_at(kPi * (float(y) + 0.5f) / float(map_->height), azimuth_at(float(x) + 0.5f));
+  return direction_at(kPif * (float(y) + 0.5f) / float(map_->height), azimuth_at(float(x) + 0.5f));
 }
 
 glm::vec2 Environment::texel_at(const glm::vec3& d) const {
@@ -78,14 +78,14 @@ glm::vec2 Environment::texel_at(const glm::vec3& d) const {
   const float azimuth = float(z_up ? std::atan2(to.y, to.x) : std::atan2(to.x, to.z)) -
                         glm::radians(frame_.rotate_degrees);
   const float polar = float(std::acos(glm::clamp(z_up ? to.z : to.y, -1.0, 1.0)));
-  const float u = 0.5f - azimuth / (2 * kPi), v = polar / kPi;
+  const float u = 0.5f - azimuth / (2 * kPif), v = polar / kPif;
   return {(u - std::floor(u)) * float(map_->width), v * float(map_->height)};
 }
 
 float Environment::texel_solid_angle(int y) const {
-  const float top = std::cos(kPi * float(y) / float(map_->height));
-  const float bottom = std::cos(kPi * float(y + 1) / float(map_->height));
-  return (top - bottom) * 2 * kPi / float(map_->width);
+  const float top = std::cos(kPif * float(y) / float(map_->height));
+  const float bottom = std::cos(kPif * float(y + 1) / float(map_->height));
+  return (top - bottom) * 2 * kPif / float(map_->width);
 }
 
 glm::vec3 Environment::radiance(const glm::vec3& d) const {
@@ -124,7 +124,7 @@ std::vector<Environment::Patch> Environment::patches(const glm::mat3& world_to_c
   // Unit vectors around the horizon, so that the loop over texels has no trigonometry.
   std::vector<glm::vec3> horizon(std::size_t(map.width));
   for (int x = 0; x < map.width; ++x)
-    horizon[x] = direction_at(kPi / 2, azimuth_at(float(x) + 0.5f));
+    horizon[x] = direction_at(kPif / 2, azimuth_at(float(x) + 0.5f));
   const auto first_texel = [](int patch, int patches, int texels) {
     return int(std::int64_t(patch) * texels / patches);
   };
@@ -132,7 +132,7 @@ std::vector<Environment::Patch> Environment::patches(const glm::mat3& world_to_c
     Patch* const in_row = &sky[std::size_t(row) * std::size_t(columns)];
     const int end_y = first_texel(row + 1, rows, map.height);
     for (int y = first_texel(row, rows, map.height); y < end_y; ++y) {
-      const float polar = kPi * (float(y) + 0.5f) / float(map.height);
+      const float polar = kPif * (float(y) + 0.5f) / float(map.height);
       const glm::vec3 pole = direction_at(0, 0) * std::cos(polar);
       const float across = std::sin(polar), omega = texel_solid_angle(y);
       for (int column = 0; column < columns; ++column) {
@@ -164,7 +164,7 @@ OctahedralMap Environment::blurred(float solid_angle, const glm::mat3& world_to_
   const std::vector<Patch> sky = patches(world_to_camera, kBlurSourceWidth);
   OctahedralMap out(kBlurredSize);
   // The lobe max(0, cos - c) / (1 - c) integrates to pi (1 - c).
-  const float edge = std::max(-1.0f, 1 - solid_angle / kPi);
+  const float edge = std::max(-1.0f, 1 - solid_angle / kPif);
   for_each_row(out.size(), [&](int y) {
     for (int x = 0; x < out.size(); ++x) {
       const glm::vec3 d = out.direction_of(x, y);

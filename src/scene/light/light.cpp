@@ -8,6 +8,7 @@
 #include <glm/gtc/constants.hpp>
 #include <memory>
 
+#include "math/pi.h"
 #include "parallel/tiles.h"
 #include "scene/light/distant_source.h"
 #include "scene/light/sky_grid.h"
@@ -115,9 +116,8 @@ void project(const std::vector<Patch>& patches, Light& model) {
 
 /// Fills the residuals and chooses the order.
 void measure_residuals(const std::vector<Patch>& patches, const Sky& sky, Light& model) {
-  constexpr float kPi = glm::pi<float>();
   double mean = 0;
-  for (const Patch& patch : patches) mean += std::abs(brightness(patch.power)) / (4 * kPi);
+  for (const Patch& patch : patches) mean += std::abs(brightness(patch.power)) / (4 * kPif);
   if (mean == 0) return;
   // The lobe max(0, cos - edge) is as wide as the cone if their weights agree: pi (1 - edge) is
   // 2 pi (1 - cos 30).
@@ -127,7 +127,7 @@ void measure_residuals(const std::vector<Patch>& patches, const Sky& sky, Light&
   for_each_row(kResidualNodes, [&](int i) {
     // A golden spiral: directions of equal area.
     const float z = 1 - (2 * float(i) + 1) / kResidualNodes, across = std::sqrt(1 - z * z);
-    const float azimuth = float(i) * kPi * (3 - std::sqrt(5.0f));
+    const float azimuth = float(i) * kPif * (3 - std::sqrt(5.0f));
     const glm::vec3 d(across * std::cos(azimuth), across * std::sin(azimuth), z);
     glm::vec3 missing = sky.average(d, [&](float c) { return std::max(0.0f, c - edge); });
     for (int l = 0; l <= kShOrder; ++l) {

@@ -52,4 +52,8 @@ SkyGrid SkyGrid::merged(int most_columns) const {
   return out;
 }
 
+float SkyGrid::radiance(std::size_t patch) const {
+  return brightness(patches[patch].power) / patches[patch].solid_angle;
+}
+
 }  // namespace ssdo

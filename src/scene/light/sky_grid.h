@@ -23,6 +23,9 @@ struct SkyGrid {
     return std::size_t(y) * std::size_t(columns) + std::size_t(x);
   }
 
+  /// The brightness of a patch.
+  float radiance(std::size_t patch) const;
+
   /// Calls `visit(index)` for the eight patches around one, across the date line and the poles.
   template <class Visit>
   void for_each_neighbour(std::size_t patch, const Visit& visit) const {

@@ -30,10 +30,6 @@ constexpr int kBesidePiece = 4;
 /// 0.67, 0.51 and 0.44; direct light on low boxes under one of 22 is as good with harmonics alone.
 constexpr float kLeastMissing = 0.45f, kMostlyMissing = 0.65f;
 
-float radiance(const Environment::Patch& patch) {
-  return brightness(patch.power) / patch.solid_angle;
-}
-
 /// The first threshold that a radiance reaches; kSteps for none of them.
 int step_of(float radiance, float peak) {
   if (!(radiance > 0)) return kSteps;
@@ -69,7 +65,7 @@ bool SunGrowth::flood(int step, const glm::vec3& start, Sums& sums) {
       if (reached_[next]) return;
       if (is_piece_ && glm::dot(grid_.patches[next].direction, start) < farthest) return;
       reached_[next] = true;
-      const int taken_by = step_of(radiance(grid_.patches[next]), peak_);
+      const int taken_by = step_of(grid_.radiance(next), peak_);
       border_[std::size_t(std::max(step, taken_by))].push_back(next);
     });
   }
@@ -95,7 +91,7 @@ bool SunGrowth::is_wide(const glm::vec3& middle) const {
 }
 
 std::optional<SunRegion> SunGrowth::grow(std::size_t seed, const LeastMissing& least) {
-  peak_ = radiance(grid_.patches[seed]);
+  peak_ = grid_.radiance(seed);
   if (!(peak_ > 0)) return std::nullopt;
   is_piece_ = false;
   std::optional<SunRegion> region = grow_from(seed, least);

@@ -10,12 +10,12 @@
 #include <glm/vec2.hpp>
 
 #include "math/frame.h"
+#include "math/pi.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {
 namespace {
 
-constexpr float kPi = glm::pi<float>();
 constexpr glm::ivec2 kMostCells{256, 128};  ///< of the shape of a source
 
 /// A texel of a source: its direction, what it adds to the irradiance, and whether it is as bright
@@ -61,7 +61,7 @@ SunTexels::SunTexels(const Environment& whole) : whole_(whole), rest_(whole.map(
     horizon_.push_back(whole.axes() * glm::vec3(std::cos(azimuth), std::sin(azimuth), 0));
   }
   for (int y = 0; y < height(); ++y) {
-    const float polar = kPi * (float(y) + 0.5f) / float(height());
+    const float polar = kPif * (float(y) + 0.5f) / float(height());
     polar_.emplace_back(std::sin(polar), std::cos(polar));
   }
 }
@@ -128,8 +128,8 @@ std::optional<DistantSource> SunTexels::measure(const std::vector<Window>& windo
   DistantSource sun;
   const double length = glm::length(sum);
   sun.direction = glm::vec3(sum / length);
-  sun.irradiance = whole_.gain() / kPi * glm::vec3(power * (length / light));
-  const float row = kPi / float(height()), column = 2 * kPi / float(width());
+  sun.irradiance = whole_.gain() / kPif * glm::vec3(power * (length / light));
+  const float row = kPif / float(height()), column = 2 * kPif / float(width());
   sun.shape = SunShape({.axes = whole_.axes(),
                         .polar = row * float(all.y0),
                         .row_angle = row * float(down),

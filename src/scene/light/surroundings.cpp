@@ -25,10 +25,6 @@ constexpr double kOtherSources = 0.25;
 /// Radians squared that are added to the spread of a ring: one that spreads less has no slope.
 constexpr double kLeastSpread = 1e-6;
 
-float radiance(const Environment::Patch& patch) {
-  return brightness(patch.power) / patch.solid_angle;
-}
-
 }  // namespace
 
 RegionAndRing widen(const SkyGrid& grid, const SunRegion& region) {
@@ -50,22 +46,20 @@ RegionAndRing widen(const SkyGrid& grid, const SunRegion& region) {
   };
   // A patch that is brighter than the one before belongs to something else.
   for (int i = 0; i < kFringe; ++i) {
-    step([&](std::size_t from, std::size_t to) {
-      return radiance(grid.patches[to]) <= radiance(grid.patches[from]);
-    });
+    step(
+        [&](std::size_t from, std::size_t to) { return grid.radiance(to) <= grid.radiance(from); });
     out.patches.insert(out.patches.end(), edge.begin(), edge.end());
   }
   edge = out.patches;
   const int steps = std::max(2, int(std::ceil(kRing * float(grid.rows) / glm::pi<float>())));
   for (int i = 0; i < steps; ++i) {
-    step(
-        [&](std::size_t, std::size_t to) { return radiance(grid.patches[to]) < region.threshold; });
+    step([&](std::size_t, std::size_t to) { return grid.radiance(to) < region.threshold; });
     out.ring.insert(out.ring.end(), edge.begin(), edge.end());
   }
   const auto kept =
       out.ring.begin() + std::ptrdiff_t(double(out.ring.size()) * (1 - kOtherSources));
   std::nth_element(out.ring.begin(), kept, out.ring.end(), [&](std::size_t a, std::size_t b) {
-    return radiance(grid.patches[a]) < radiance(grid.patches[b]);
+    return grid.radiance(a) < grid.radiance(b);
   });
   out.ring.erase(kept, out.ring.end());
   return out;

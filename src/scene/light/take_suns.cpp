@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "math/pi.h"
 #include "math/spherical_harmonics.h"
 #include "scene/light/sky_grid.h"
 #include "scene/light/sun_region.h"
@@ -19,7 +20,6 @@
 namespace ssdo {
 namespace {
 
-constexpr float kPi = glm::pi<float>();
 constexpr std::size_t kMostSuns = 8;
 constexpr int kMostTries = 24;       ///< bright places examined, whether sources or not
 constexpr int kFineColumns = 1024;   ///< patches of 0.35 degrees, of which regions consist
@@ -94,7 +94,7 @@ float SunSearch::irradiance_towards(const glm::vec3& d) const {
   float sum = 0;
   for (const Patch& patch : all_)
     sum += brightness(patch.power) * std::max(0.0f, glm::dot(patch.direction, d));
-  return sum / kPi;
+  return sum / kPif;
 }
 
 /// The patch whose light harmonics miss most.
@@ -116,7 +116,7 @@ bool SunSearch::may_be_source(const glm::vec3& d) const {
   for (std::size_t i = 0; i < held_.size(); ++i) {
     const Patch& patch = coarse_.patches[i];
     if (glm::dot(patch.direction, d) < std::cos(2 * kMostSunRadius)) continue;
-    missing += std::max(0.0f, brightness(patch.power) - held_[i] * patch.solid_angle) / kPi;
+    missing += std::max(0.0f, brightness(patch.power) - held_[i] * patch.solid_angle) / kPif;
   }
   return missing > kLeastShare * irradiance_towards(d);
 }

@@ -33,7 +33,7 @@ constexpr double kMostRatio = 8, kStep = 0.05, kSmallestStep = 0.001;
 
 /// Another lens is suggested where it differs by this much and misses the normals by less than half
 /// of the angle, which rounding and bumps do not explain.
-constexpr double kLeastChange = 0.04, kClearlyNearer = 0.5, kLeastMiss = 1;
+constexpr double kLeastChange = 0.04, kMuchNearer = 0.5, kLeastMiss = 1;
 
 constexpr int kRounds = 3;         ///< of the rotation, without the pixels that agree worst
 constexpr double kAgreeing = 0.7;  ///< share of the pixels that a rotation is found from
@@ -132,7 +132,7 @@ std::optional<LensOfNormals> find_lens_of_normals(const Plane<glm::vec3>& stored
     consider(middle * (1 + step)), consider(middle / (1 + step));
   }
   const bool clearly = std::abs(std::log(found.focal_ratio)) > kLeastChange &&
-                       found.miss < kClearlyNearer * found.miss_before;
+                       found.miss < kMuchNearer * found.miss_before;
   return clearly ? std::optional(found) : std::nullopt;
 }
 

@@ -17,7 +17,7 @@ constexpr int kSamples = 96;
 constexpr std::size_t kCandidates = 64;
 
 /// Least mean distance of what is on a cylinder from the camera, over the radius.
-constexpr double kAround = 0.5;
+constexpr double kAroundCylinder = 0.5;
 
 constexpr int kRounds = 6;
 
@@ -99,7 +99,7 @@ bool is_cylinder_around(const RoundShape& cylinder, const SurfelSamples& far, do
     inward += glm::dot(glm::dvec3(s->normal), cylinder.to_middle(p));
   }
   return on >= share * double(far.size()) && inward >= kInward * on &&
-         distances >= kAround * cylinder.radius * on;
+         distances >= kAroundCylinder * cylinder.radius * on;
 }
 
 std::optional<Flat> flat_of(const SurfelSamples& all) {

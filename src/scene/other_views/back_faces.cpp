@@ -44,7 +44,7 @@ constexpr float kRoundings = 4, kFootprints = 0.1f;
 constexpr double kLeastBehind = 0.1, kMostBefore = 0.1;
 
 /// Least cosine at which a tangent plane says where the ray of a neighbouring place meets it.
-constexpr float kLeastFacing = 0.1f;
+constexpr float kLeastFacingBack = 0.1f;
 
 /// Whether the rays of a view are among those of the frame.
 bool is_same_camera(const OtherView& view, const Geometry& frame) {
@@ -115,7 +115,7 @@ class BackFaces {
                     way = back.position - front.position;
     const float distance = glm::dot(way, along), facing = glm::dot(back.normal, along);
     const glm::vec3 aside = way - distance * along;
-    if (!(std::abs(facing) > kLeastFacing)) return distance;
+    if (!(std::abs(facing) > kLeastFacingBack)) return distance;
     const float most = kSurfaceGap * view_.footprint(-front.position.z);
     return distance + std::clamp(glm::dot(back.normal, aside) / facing, -most, most);
   }

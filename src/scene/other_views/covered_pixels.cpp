@@ -14,9 +14,6 @@ namespace {
 /// rounded.
 constexpr float kAll = 0.99f;
 
-/// Cosine of the angle between normals from which on neighbours may be of one surface: 18 degrees.
-constexpr float kOneNormal = 0.95f;
-
 class CoveredPixels {
  public:
   CoveredPixels(const Plane<Surfel>& surfels, const Camera& camera, const Plane<float>& coverage)

@@ -7,6 +7,9 @@
 
 namespace ssdo {
 
+/// Cosine of the angle between normals from which on neighbours may be of one surface: 18 degrees.
+constexpr float kOneNormal = 0.95f;
+
 /// Which pixels show what is covered, 1 or 0: a pixel shows one surface, while coverage, 0..1, is
 /// antialiased. All from 0.99 on do. What is covered in part does, however little, unless it lies
 /// on the surface of a pixel beside it that is not covered at all: so the rim of a thing before the

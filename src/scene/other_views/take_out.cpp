@@ -44,8 +44,8 @@ namespace ssdo {
 namespace {
 
 /// Two ends of a line show one plane if each lies off the other's by less than this share of their
-/// distance, and their normals differ by less than 18 degrees.
-constexpr float kOnePlane = 0.05f, kOneNormal = 0.95f;
+/// distance, and they have one normal.
+constexpr float kOnePlane = 0.05f;
 
 /// Guesses agree if their depths differ by less than this share, and they have one normal.
 constexpr float kSameDepth = 0.03f;
@@ -58,7 +58,7 @@ constexpr float kSecond = 0.1f;
 constexpr float kGoesOn = 2, kFollowed = 256;
 
 /// A plane that a line meets so many times farther away than the pixel that suggests it has ended.
-constexpr float kFarthest = 50;
+constexpr float kFarthestMet = 50;
 
 struct Step {
   int dx, dy;
@@ -262,7 +262,7 @@ class Hole {
                  own = -double(s.position.z);
     if (!(per < 0) || !(depth > 0)) {
       guess.weight = 0;  // it does not go there
-    } else if (depth > double(kFarthest) * own) {
+    } else if (depth > double(kFarthestMet) * own) {
       guess.is_background = true;
     } else {
       guess.nearness = shown_.camera.orthographic ? float(depth) : float(1 / depth);

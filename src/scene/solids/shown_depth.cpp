@@ -33,6 +33,7 @@
 #include <limits>
 #include <numbers>
 
+#include "math/endless.h"
 #include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
 #include "scene/same_surface.h"
@@ -40,8 +41,6 @@
 
 namespace ssdo {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// A round thing, whose mean depth is pi / 4 of its width, stays as deep as it is guessed to be.
 constexpr float kRoundThing = kDepthOfWidth / (std::numbers::pi_v<float> / 4);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "math/endless.h"
 #include "scene/solids/solids.h"
 
 #include <algorithm>
@@ -11,11 +12,7 @@
 #include "scene/normals/normals.h"
 
 namespace ssdo {
-namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-}  // namespace
+namespace {}  // namespace
 
 SolidLayer::SolidLayer(int width, int height, Provenance of_all)
     : provenance(filled(width, height, of_all)),

@@ -35,6 +35,7 @@
 #include <limits>
 #include <utility>
 
+#include "math/endless.h"
 #include "math/pixel_grid.h"
 #include "math/whole_division.h"
 #include "parallel/planes.h"
@@ -47,8 +48,6 @@
 
 namespace ssdo {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Depths of a pixel and of the overview's that stands for it differ by less than this share where
 /// they show the same thing.

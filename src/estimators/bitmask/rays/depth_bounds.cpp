@@ -10,12 +10,11 @@
 #include <limits>
 #include <span>
 
+#include "math/endless.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// More than rounding moves a nearness, relative to it.
 constexpr float kRounding = 1e-6f;

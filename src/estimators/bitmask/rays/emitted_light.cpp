@@ -53,10 +53,11 @@ struct Choice {
 /// The choices of the members are evenly spread, and so are those of a pixel's rays. Rays of the
 /// second set go to points of another member.
 HWY_INLINE Choice choice(const EmittedJob& job, int member, int ray, int set_of_rays) {
-  constexpr int kMembers = Interleaving::kPeriod * Interleaving::kPeriod, kApart = 37;
+  constexpr int kApart = 37;
   const glm::vec2 u = sobol_point(std::uint32_t(SlicePattern::rank(member)),
                                   hash_of(job.seed, std::uint32_t(set_of_rays), 7));
-  return {(member + kApart * set_of_rays) % kMembers, (float(ray) + u.y) / float(job.rays)};
+  return {(member + kApart * set_of_rays) % Interleaving::kMembers,
+          (float(ray) + u.y) / float(job.rays)};
 }
 
 HWY_INLINE Chosen choose(const EmittedJob& job, const MarchReceiver& p, const Choice& choice) {

@@ -19,7 +19,6 @@
 namespace ssdo {
 namespace {
 
-constexpr int kMembers = Interleaving::kPeriod * Interleaving::kPeriod;
 constexpr int kTile = 16;  ///< pixels
 
 /// Depth that a body may gain from a pixel to the next, in pixels of its width.
@@ -232,18 +231,18 @@ std::vector<Part> parts_of(const SentLight& sent, float level) {
 class Order {
  public:
   explicit Order(unsigned seed) {
-    for (int m = 0; m < kMembers; ++m) {
+    for (int m = 0; m < Interleaving::kMembers; ++m) {
       const glm::vec2 u = sobol_point(std::uint32_t(SlicePattern::rank(m)), hash_of(seed, 0, 7));
-      members_[std::size_t(int(u.x * kMembers))] = m;
+      members_[std::size_t(int(u.x * Interleaving::kMembers))] = m;
     }
   }
   std::size_t place(std::size_t k) const {
-    const auto member = std::size_t(members_[k % kMembers]);
-    return member * Emitters::kPoints + k / kMembers;
+    const auto member = std::size_t(members_[k % Interleaving::kMembers]);
+    return member * Emitters::kPoints + k / Interleaving::kMembers;
   }
 
  private:
-  std::array<int, kMembers> members_{};
+  std::array<int, Interleaving::kMembers> members_{};
 };
 
 /// Spreads points over the power of everything that sends, which comes tile by tile.
@@ -263,7 +262,7 @@ class Points {
       Emitter& point = out_.points[order_.place(next++)];
       point = s.point;
       // As much power as every other point has, in the colour of this one.
-      const double times = each_ * kMembers / s.power();
+      const double times = each_ * Interleaving::kMembers / s.power();
       point.power *= float(times), point.area *= float(times);
       point.per_radiance *= float(times);
     };
@@ -304,7 +303,7 @@ Emitters find_emitters(const SentLight& sent, unsigned seed) {
     power.push_back(std::move(of_part));
   }
   if (!(all > 0)) return out;
-  out.points.resize(std::size_t(kMembers * Emitters::kPoints));
+  out.points.resize(std::size_t(Interleaving::kMembers * Emitters::kPoints));
   out.power = float(all / Emitters::kPoints);
   const Order order(seed);
   const Points points(all, order, out);

@@ -262,9 +262,8 @@ class Occluders {
     if (march_.other_views && any(open)) open = past_other_views(p, ray, open);
     V share = set(1);
     if (march_.cut && any(open)) {
-      constexpr int kMembers = Interleaving::kPeriod * Interleaving::kPeriod;
       const int rank = SlicePattern::rank(member_at(march_.scene, p.place));
-      const float turn = (float(rank) + 0.5f) / kMembers;
+      const float turn = (float(rank) + 0.5f) / Interleaving::kMembers;
       share = far_ ? open_beyond<kOrthographic>(*far_march_, in_far_pixels(march_, p),
                                                 in_far_pixels(ray), turn, pass, on_met)
                    : open_beyond<kOrthographic>(march_, p, ray, turn, pass, on_met);

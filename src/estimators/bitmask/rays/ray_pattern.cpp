@@ -12,12 +12,11 @@ namespace ssdo {
 
 namespace {
 
-constexpr int kMembers = Interleaving::kPeriod * Interleaving::kPeriod;
-
 /// A rank with its bits in reverse order.
 int reversed(int rank) {
   int bits = 0;
-  for (int most = kMembers; most > 1; most /= 2, rank /= 2) bits = 2 * bits + rank % 2;
+  for (int most = Interleaving::kMembers; most > 1; most /= 2, rank /= 2)
+    bits = 2 * bits + rank % 2;
   return bits;
 }
 
@@ -30,8 +29,8 @@ int rays_to_source(int slices) { return int(std::bit_floor(unsigned(std::max(1, 
 std::vector<PointsOfSource> points_of(const Source& source, int rays, unsigned seed, RaySet set) {
   std::vector<PointsOfSource> points(static_cast<std::size_t>(rays));
   for (std::size_t block = 0; block < points[0].size(); ++block) {
-    for (int m = 0; m < kMembers; ++m) {
-      const int number = int(block) * kMembers + reversed(SlicePattern::rank(m));
+    for (int m = 0; m < Interleaving::kMembers; ++m) {
+      const int number = int(block) * Interleaving::kMembers + reversed(SlicePattern::rank(m));
       const std::uint32_t place = std::uint32_t(number) ^ seed;
       for (std::uint32_t k = 0; k < std::uint32_t(rays); ++k)
         points[k][block][std::size_t(m)] =

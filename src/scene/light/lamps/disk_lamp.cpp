@@ -14,12 +14,11 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "math/pi.h"
 #include "scene/light/lamps/cap.h"
 
 namespace ssdo {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// The integrals of 1, cos and sin over a - b cos along an arc of the unit circle; `s` is
 /// sqrt(a^2 - b^2).

@@ -8,6 +8,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "math/light_range.h"
+#include "math/pi.h"
 #include "scene/light/lamps/disk_lamp.h"
 #include "scene/light/lamps/distant_lamp.h"
 #include "scene/light/lamps/rect_lamp.h"
@@ -16,7 +17,6 @@
 namespace ssdo {
 
 double Lamp::area() const {
-  constexpr double kPi = glm::pi<double>();
   double size = 0;
   switch (type) {
     case LampType::sphere:

@@ -15,12 +15,11 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "math/pi.h"
 #include "scene/light/lamps/cap.h"
 
 namespace ssdo {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// Gauss and Legendre's nodes and weights on -1..1.
 constexpr int kNodes = 8;

@@ -12,10 +12,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "math/pi.h"
+
 namespace ssdo {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 double along_edge(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& normal) {
   const glm::dvec3 across = glm::cross(from, to);

@@ -6,12 +6,11 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "math/pi.h"
 #include "scene/light/lamps/cap.h"
 
 namespace ssdo {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// A receiver within this share of the radius sees the lamp right before it.
 constexpr double kTouching = 1e-4;
