@@ -189,10 +189,12 @@ bool is_readable(const std::string& path) {
 
 std::vector<int> frames_around(const ShotWindow& shot, int frame) {
   std::vector<int> frames;
-  for (int k = -shot.count; k <= shot.count; ++k) {
+  const auto add = [&](int k) {
     const std::int64_t number = frame + std::int64_t(k) * shot.step;
     if (std::int64_t(int(number)) == number) frames.push_back(int(number));
-  }
+  };
+  for (int k = 1; k <= shot.count; ++k) add(-k);
+  for (int k = 0; k <= shot.count; ++k) add(k);
   return frames;
 }
 

@@ -30,7 +30,8 @@ struct Job {
 /// without frames; those of check_run_files, over all frames.
 std::vector<Job> plan_jobs(const RunOptions& options);
 
-/// The frames that tell a frame of a shot what they have found, in their order, itself among them.
+/// The frames that tell a frame of a shot what they have found: those before it from the nearest on,
+/// itself, and those after it from the nearest on.
 std::vector<int> frames_around(const ShotWindow& shot, int frame);
 
 /// Refuses outputs that would replace a matte that a lamp is linked by: lamps are read after

@@ -89,19 +89,22 @@ class AMovingBox : public testing::Test {
 
   std::vector<OtherFindings> others() {
     std::vector<OtherFindings> all;
-    for (int frame = 1; frame <= kFrames; ++frame)
-      if (frame != kNow) all.push_back({&at(frame).findings, frame - kNow, &nothing, &nothing});
+    for (int frame = kNow - 1; frame >= 1; --frame)
+      all.push_back({&at(frame).findings, frame - kNow, &nothing, &nothing});
+    for (int frame = kNow + 1; frame <= kFrames; ++frame)
+      all.push_back({&at(frame).findings, frame - kNow, &nothing, &nothing});
     return all;
   }
 
   /// How often each frame shows a point of the box.
   std::vector<int> counts() {
     const std::vector<OtherFindings> all = others();
-    const Followed followed(now().findings, all);
+    Followed followed(now().findings);
+    followed.reach(all);
     std::vector<std::vector<FollowedPoint>> row(all.size());
     std::vector<int> count(all.size());
     for (int y = 0; y < kWindow.height(); ++y) {
-      followed.row(y, row);
+      followed.row(y, true, row);
       for (std::size_t k = 0; k < all.size(); ++k) count[k] += int(row[k].size());
     }
     return count;
@@ -109,7 +112,11 @@ class AMovingBox : public testing::Test {
 
   Products fused() {
     Fusion fusion(now().findings, light);
-    fusion.add(others());
+    fusion.add(others(), true);
+    return finished(fusion);
+  }
+
+  Products finished(Fusion& fusion) {
     Products products;
     products.shares.suns.resize(1);
     fusion.finish(now().geometry, products);
@@ -123,11 +130,12 @@ class AMovingBox : public testing::Test {
 
 TEST_F(AMovingBox, IsFoundWhereItWasAndWhereItWillBe) {
   const std::vector<OtherFindings> all = others();
-  const Followed followed(now().findings, all);
+  Followed followed(now().findings);
+  followed.reach(all);
   std::vector<std::vector<FollowedPoint>> row(all.size());
   int box = 0, whole = 0;
   for (int y = 0; y < kWindow.height(); ++y) {
-    followed.row(y, row);
+    followed.row(y, true, row);
     for (int x = 0; x < kWindow.width(); ++x) box += now().is_box(x, y);
     for (std::size_t k = 0; k < all.size(); ++k) {
       const KeptSurfaces& there = all[k].findings->surfaces;
@@ -196,7 +204,22 @@ TEST_F(AMovingBox, IsLostWhereAFrameHasNoMotion) {
   at(3).findings.motion = {};  // leads from 3 to 2
   at(6).findings.motion = {};  // leads from 6 to 5
   const std::vector<int> left = counts();
-  for (std::size_t k = 0; k < left.size(); ++k) EXPECT_EQ(left[k] > 0, k == 2 || k == 3) << k;
+  for (std::size_t k = 0; k < left.size(); ++k) EXPECT_EQ(left[k] > 0, k == 0 || k == 3) << k;
+}
+
+/// As where frames wait on disk: they come one after the other, and only the last one stays.
+TEST_F(AMovingBox, IsFollowedThroughFramesThatComeOneByOne) {
+  const Products wanted = fused();
+  Fusion fusion(now().findings, light);
+  Findings slots[2];
+  int slot = 0;
+  for (const OtherFindings& other : others()) {
+    slots[slot] = *other.findings;
+    fusion.add({{&slots[slot], other.away, &nothing, &nothing}}, other.away == kFrames - kNow);
+    slot = 1 - slot;
+    slots[slot] = {};
+  }
+  EXPECT_EQ(finished(fusion).ao.pixels, wanted.ao.pixels);
 }
 
 /// Vectors to the next frame, which other renderers write.

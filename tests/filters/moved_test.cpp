@@ -150,7 +150,7 @@ void fuse(const Findings& own, const std::vector<const Findings*>& others, const
   const std::vector<MovedPiece> nothing;
   std::vector<OtherFindings> all;
   for (const Findings* other : others) all.push_back({other, 1, &nothing, &nothing});
-  fusion.add(all);
+  fusion.add(all, true);
   fusion.finish(geometry, products);
 }
 

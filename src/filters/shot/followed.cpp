@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "filters/reprojection.h"
 
@@ -56,46 +57,39 @@ double speed_of(const OwnMotion& motion, std::size_t pixel) {
 
 }  // namespace
 
-/// A point in a frame, and the pixels around it that show its surface.
-struct Followed::Spot {
-  glm::dvec2 at;               ///< pixels of the display window
-  glm::vec3 position, normal;  ///< camera space
-  float rounding;
-  std::int32_t pixel;  ///< as in Sights
-  float weight[4];
-};
+Followed::Followed(const Findings& own) : own_(own), last_(&own) {}
 
-Followed::Followed(const Findings& own, const std::vector<OtherFindings>& others) : own_(own) {
-  link(others, -1, before_);
-  link(others, 1, after_);
-  mark_origins();
-}
-
-/// The frames that are reached through others, one after the other.
-void Followed::link(const std::vector<OtherFindings>& others, int direction,
-                    std::vector<Beside>& reached) {
-  const Findings* last = &own_;
-  for (int away = direction;; away += direction) {
-    const auto next = std::ranges::find(others, away, &OtherFindings::away);
-    if (next == others.end() || !next->findings->surfaces.world_known) return;
-    const Findings &before = direction < 0 ? *next->findings : *last,
-                   &after = direction < 0 ? *last : *next->findings;
-    if (!after.motion.is_known) return;
-    reached.push_back({std::size_t(next - others.begin()),
-                       {&before.surfaces,
-                        &after.surfaces,
-                        &after.motion,
-                        {after.surfaces, before.surfaces},
-                        {before.surfaces, after.surfaces}},
-                       {own_.surfaces, next->findings->surfaces}});
-    last = next->findings;
+// A frame that is missing, or lacks its motion, ends the way to those beyond it.
+void Followed::reach(const std::vector<OtherFindings>& others) {
+  besides_.clear(), came_to_ = {};
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    const Findings& next = *others[k].findings;
+    const int away = others[k].away, direction = away < 0 ? -1 : 1;
+    if (direction * last_away_ < 0) last_ = &own_, last_away_ = 0;
+    const Findings* last = std::exchange(last_, nullptr);
+    const bool is_next = std::exchange(last_away_, away) == away - direction;
+    if (!last || !is_next || !next.surfaces.world_known) continue;
+    const Findings &before = away < 0 ? next : *last, &after = away < 0 ? *last : next;
+    if (!after.motion.is_known) continue;
+    last_ = &next;
+    besides_.push_back({k,
+                        away < 0,
+                        away == direction,
+                        {&before.surfaces,
+                         &after.surfaces,
+                         &after.motion,
+                         {after.surfaces, before.surfaces},
+                         {before.surfaces, after.surfaces}},
+                        {own_.surfaces, next.surfaces}});
+    if (away == 1) mark_origins(besides_.back().link);
   }
+  if (walks_.empty() && !besides_.empty())
+    walks_.resize(std::size_t(own_.surfaces.window.height()));
 }
 
 /// Pixels of the frame after, at the four around where they were: the one that was nearest.
-void Followed::mark_origins() {
-  if (after_.empty() || after_.front().link.motion->pixels.empty()) return;
-  const Link& link = after_.front().link;
+void Followed::mark_origins(const Link& link) {
+  if (link.motion->pixels.empty()) return;
   const KeptSurfaces &own = own_.surfaces, &after = *link.after;
   const glm::dvec2 first = own.centre(own.index(0, 0));
   came_to_.assign(own.size(), -1);
@@ -121,17 +115,41 @@ Followed::Spot Followed::spot_of(std::size_t pixel) const {
           rounding_of(surface, own_.surfaces), std::int32_t(pixel), {1, 0, 0, 0}};
 }
 
-void Followed::row(int y, std::vector<std::vector<FollowedPoint>>& points) const {
-  for (std::vector<FollowedPoint>& of_other : points) of_other.clear();
-  const bool moves = !before_.empty() && !own_.motion.pixels.empty();
-  if (!moves && came_to_.empty()) return;
+/// The points of a row that move, on their way to the frame that is `next` to it.
+std::vector<Followed::Walk> Followed::walks_of(int y, const Beside& next) const {
+  std::vector<Walk> walks;
+  if (next.is_before ? own_.motion.pixels.empty() : came_to_.empty()) return walks;
   for (int x = 0; x < own_.surfaces.window.width(); ++x) {
     const std::size_t i = own_.surfaces.index(x, y);
     if (!std::isfinite(own_.surfaces.pixels[i].position.z)) continue;
-    if (moves && speed_of(own_.motion, i) > 0) follow_back(x, spot_of(i), points);
-    if (!came_to_.empty() && came_to_[i] >= 0)
-      follow_forth(x, spot_of(i), std::size_t(came_to_[i]), points);
+    Walk walk{x, 0, spot_of(i), glm::dvec2(0)};
+    if (next.is_before) {
+      walk.speed = speed_of(own_.motion, i);
+    } else if (came_to_[i] >= 0) {
+      Spot there{};
+      there.pixel = came_to_[i], there.weight[0] = 1;
+      const Link& link = next.link;
+      walk.speed = speed_of(*link.motion, std::size_t(there.pixel));
+      walk.step = walk.last.at - motion_at(link, there) -
+                  link.forth.place(link.forth.position(walk.last.position));
+    }
+    if (walk.speed > 0) walks.push_back(walk);
   }
+  return walks;
+}
+
+void Followed::row(int y, bool are_last, std::vector<std::vector<FollowedPoint>>& points) {
+  for (std::vector<FollowedPoint>& of_other : points) of_other.clear();
+  if (besides_.empty()) return;
+  std::vector<Walk> walks = std::exchange(walks_[std::size_t(y)], {});
+  for (const Beside& beside : besides_) {
+    if (beside.is_next) walks = walks_of(y, beside);
+    std::erase_if(walks, [&](Walk& walk) {
+      return !(beside.is_before ? go_back(beside.link, walk) : go_forth(beside.link, walk));
+    });
+    for (const Walk& walk : walks) add(y, walk, beside, points[beside.other]);
+  }
+  if (!are_last) walks_[std::size_t(y)] = std::move(walks);
 }
 
 /// The motion to the frame before of what `spot`, in the later frame of the link, shows.
@@ -190,13 +208,35 @@ bool Followed::find(const CameraChange& change, const KeptSurfaces& to, const Sp
   return true;
 }
 
-/// Adds to `points` where `beside` shows the point in column `x`, unless it is at rest there.
-void Followed::add(int x, const Spot& start, const Spot& there, double speed, const Beside& beside,
+/// False: the frame does not show it.
+bool Followed::go_back(const Link& link, Walk& walk) const {
+  const Spot from = walk.last;
+  return find(link.back, *link.before, from, from.at + motion_at(link, from), walk.last);
+}
+
+bool Followed::go_forth(const Link& link, Walk& walk) const {
+  const Spot from = walk.last;
+  const glm::dvec2 rest = link.forth.place(link.forth.position(from.position));
+  glm::dvec2 guess = rest + walk.step;
+  for (int k = 0; k < kTries; ++k) {
+    if (!find(link.forth, *link.after, from, guess, walk.last)) return false;
+    const glm::dvec2 off = walk.last.at + motion_at(link, walk.last) - from.at;
+    if (!is_finite(off)) return false;
+    walk.step = walk.last.at - rest;
+    if (glm::length(off) < kMiss) return true;
+    guess -= off;
+  }
+  return false;
+}
+
+/// Adds to `points` where `beside` shows the point, unless it is at rest there.
+void Followed::add(int y, const Walk& walk, const Beside& beside,
                    std::vector<FollowedPoint>& points) const {
+  const Spot start = spot_of(own_.surfaces.index(walk.x, y)), &there = walk.last;
   const glm::dvec3 rest = beside.from_own.position(start.position);
   const double from_rest = glm::distance(there.at, beside.from_own.place(rest)),
                way = glm::distance(glm::dvec3(there.position), rest),
-               follows = speed * ramp(from_rest, kAtRest, kFollowed);
+               follows = walk.speed * ramp(from_rest, kAtRest, kFollowed);
   if (!(follows > 0)) return;
   const Camera& camera = own_.surfaces.camera;
   const double distance = camera.orthographic ? own_.surfaces.window.width() / camera.fx
@@ -204,51 +244,9 @@ void Followed::add(int x, const Spot& start, const Spot& there, double speed, co
                reach = kReach * distance,
                turn = 1 - double(glm::dot(there.normal, beside.from_own.direction(start.normal)));
   const double counts = std::exp(-(way / reach) * (way / reach)) * ramp(turn, kTurn, 0);
-  FollowedPoint point{x, there.pixel, {}, float(follows), float(counts)};
+  FollowedPoint point{walk.x, there.pixel, {}, float(follows), float(counts)};
   std::copy_n(there.weight, 4, point.weight);
   points.push_back(point);
-}
-
-void Followed::follow_back(int x, const Spot& start,
-                           std::vector<std::vector<FollowedPoint>>& points) const {
-  const double speed = speed_of(own_.motion, std::size_t(start.pixel));
-  Spot last = start, next;
-  for (const Beside& beside : before_) {
-    const Link& link = beside.link;
-    if (!find(link.back, *link.before, last, last.at + motion_at(link, last), next)) return;
-    add(x, start, next, speed, beside, points[beside.other]);
-    last = next;
-  }
-}
-
-/// `from` is a pixel of the frame after.
-void Followed::follow_forth(int x, const Spot& start, std::size_t from,
-                            std::vector<std::vector<FollowedPoint>>& points) const {
-  const Link& first = after_.front().link;
-  const double speed = speed_of(*first.motion, from);
-  Spot last = start, next;
-  next.pixel = std::int32_t(from);
-  next.weight[0] = 1, next.weight[1] = next.weight[2] = next.weight[3] = 0;
-  glm::dvec2 guess = start.at - motion_at(first, next);
-  for (const Beside& beside : after_) {
-    const Link& link = beside.link;
-    const glm::dvec2 rest = link.forth.place(link.forth.position(last.position));
-    bool found = false;
-    for (int k = 0; k < kTries && !found; ++k) {
-      if (!find(link.forth, *link.after, last, guess, next)) return;
-      const glm::dvec2 off = next.at + motion_at(link, next) - last.at;
-      if (!is_finite(off)) return;
-      found = glm::length(off) < kMiss;
-      if (!found) guess -= off;
-    }
-    if (!found) return;
-    add(x, start, next, speed, beside, points[beside.other]);
-    const glm::dvec2 own = next.at - rest;
-    last = next;
-    if (&beside == &after_.back()) return;
-    const Link& following = (&beside + 1)->link;
-    guess = following.forth.place(following.forth.position(last.position)) + own;
-  }
 }
 
 }  // namespace ssdo

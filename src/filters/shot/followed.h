@@ -5,6 +5,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "filters/shot/followed_point.h"
@@ -12,14 +14,21 @@
 
 namespace ssdo {
 
-/// Points of a frame in frames beside; see followed.cpp.
+/// Points of a frame that move, in the frames before and after it; see followed.cpp. What is kept
+/// from one call of reach() to the next are the points, not the frames, but for the last of them.
 class Followed {
  public:
-  /// `own` and `others` have to outlive it.
-  Followed(const Findings& own, const std::vector<OtherFindings>& others);
+  /// `own` has to outlive it.
+  explicit Followed(const Findings& own);
 
-  /// Sets the points of a row, by the others and in the order of x.
-  void row(int y, std::vector<std::vector<FollowedPoint>>& points) const;
+  /// The frames that row() goes through from now on: those before the frame, from the nearest on,
+  /// then those after it, likewise. These may come in several calls; then they, and the last of the
+  /// call before, have to live until the next.
+  void reach(const std::vector<OtherFindings>& others);
+
+  /// Sets the points of row `y` in each of the others, in the order of x; once for each row. Rows
+  /// may be asked for at the same time. `are_last`: reach() is not called again.
+  void row(int y, bool are_last, std::vector<std::vector<FollowedPoint>>& points);
 
  private:
   /// Two frames of which one follows the other in time.
@@ -31,25 +40,41 @@ class Followed {
   /// A frame and the link through which it is reached.
   struct Beside {
     std::size_t other;
+    bool is_before, is_next;  ///< the frame; to it in time
     Link link;
     CameraChange from_own;
   };
-  struct Spot;
+  /// A point in a frame, and the pixels around it that show its surface.
+  struct Spot {
+    glm::dvec2 at;               ///< pixels of the display window
+    glm::vec3 position, normal;  ///< camera space
+    float rounding;
+    std::int32_t pixel;  ///< as in Sights
+    float weight[4];
+  };
+  /// A point on its way.
+  struct Walk {
+    int x;  ///< where it starts
+    double speed;
+    Spot last;
+    glm::dvec2 step;  ///< last motion apart from the cameras, of a walk to frames after
+  };
 
   Spot spot_of(std::size_t pixel) const;
-  void link(const std::vector<OtherFindings>& others, int direction, std::vector<Beside>& reached);
-  void mark_origins();
-  void follow_back(int x, const Spot& start, std::vector<std::vector<FollowedPoint>>& points) const;
-  void follow_forth(int x, const Spot& start, std::size_t from,
-                    std::vector<std::vector<FollowedPoint>>& points) const;
-  void add(int x, const Spot& start, const Spot& there, double speed, const Beside& beside,
-           std::vector<FollowedPoint>& points) const;
+  void mark_origins(const Link& link);
+  std::vector<Walk> walks_of(int y, const Beside& next) const;
+  bool go_back(const Link& link, Walk& walk) const;
+  bool go_forth(const Link& link, Walk& walk) const;
+  void add(int y, const Walk& walk, const Beside& beside, std::vector<FollowedPoint>& points) const;
   static bool find(const CameraChange& change, const KeptSurfaces& to, const Spot& from,
                    const glm::dvec2& at, Spot& found);
   static glm::dvec2 motion_at(const Link& link, const Spot& spot);
 
   const Findings& own_;
-  std::vector<Beside> before_, after_;  ///< from the nearest on
+  const Findings* last_;  ///< that was reached; null: what moves is lost
+  int last_away_ = 0;
+  std::vector<Beside> besides_;           ///< of the last call of reach()
+  std::vector<std::vector<Walk>> walks_;  ///< by row; empty: none have begun
   /// By pixel, one of the frame after that moves and was there; -1: there is none. Empty: nothing
   /// moves.
   std::vector<std::int32_t> came_to_;

@@ -40,7 +40,6 @@
 #include <span>
 #include <type_traits>
 
-#include "filters/shot/followed.h"
 #include "filters/shot/sights.h"
 #include "filters/shot/speaker.h"
 #include "parallel/tiles.h"
@@ -227,7 +226,7 @@ void Fusion::add_speaker(const Speaker& s, const RowOfPixels& row, Room& room) {
 }
 
 Fusion::Fusion(const Findings& own, const Light& light)
-    : own_(own), light_(light), kinds_(kinds_of(own)) {
+    : own_(own), light_(light), followed_(own), kinds_(kinds_of(own)) {
   for (std::size_t c = 0; c < kinds_.size(); c += Findings::kGroup) {
     const auto first = kinds_.begin() + std::ptrdiff_t(c);
     std::vector<int> group(first, first + Findings::kGroup);
@@ -244,28 +243,16 @@ Fusion::Fusion(const Findings& own, const Light& light)
   });
 }
 
-void Fusion::follow(const std::vector<OtherFindings>& others) {
-  followed_.emplace();
-  if (!own_.surfaces.world_known) return;
-  const Followed followed(own_, others);
-  const int height = own_.surfaces.window.height();
-  for (const OtherFindings& other : others) (*followed_)[other.away].resize(std::size_t(height));
-  for_each_row(height, [&](int y) {
-    std::vector<std::vector<FollowedPoint>> points(others.size());
-    followed.row(y, points);
-    for (std::size_t k = 0; k < others.size(); ++k)
-      if (!points[k].empty()) followed_->at(others[k].away)[std::size_t(y)] = std::move(points[k]);
-  });
-}
-
 // One speaker after the other says something of a whole row, so that memory is read in order.
-void Fusion::add(const std::vector<OtherFindings>& others) {
+void Fusion::add(const std::vector<OtherFindings>& others, bool are_last) {
   if (!own_.surfaces.world_known || own_.stride == 0) return;
   const std::vector<Speaker> speakers = speakers_of(own_, others, light_, kinds_);
-  if (speakers.empty()) return;
-  if (!followed_) follow(others);
+  followed_.reach(others);
   const Window& window = own_.surfaces.window;
   for_each_row(window.height(), [&](int y) {
+    std::vector<std::vector<FollowedPoint>> followed(others.size());
+    followed_.row(y, are_last, followed);
+    if (speakers.empty()) return;
     std::vector<RowOfPixels> blocks;
     for (int x = 0; x < window.width(); x += RowOfPoints::kMost)
       blocks.push_back({x, y, 1, std::min(RowOfPoints::kMost, window.width() - x)});
@@ -274,9 +261,7 @@ void Fusion::add(const std::vector<OtherFindings>& others) {
       load_points(own_.surfaces, blocks[b], points[b]);
     Room room(light_.sources.size() + 1);
     for (const Speaker& s : speakers) {
-      const auto followed = followed_->find(others[s.other].away);
-      room.followed = {};
-      if (followed != followed_->end()) room.followed = followed->second[std::size_t(y)];
+      room.followed = followed[s.other];
       for (std::size_t b = 0; b < blocks.size(); ++b) {
         room.points = &points[b];
         room.sayings.clear();

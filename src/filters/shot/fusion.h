@@ -2,12 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
-#include <optional>
 #include <vector>
 
 #include "filters/shot/findings.h"
-#include "filters/shot/followed_point.h"
+#include "filters/shot/followed.h"
 #include "filters/shot/other_findings.h"
 #include "math/uninitialized.h"
 #include "scene/light/light.h"
@@ -24,14 +22,11 @@ class Fusion {
   /// `light` is in the camera space of the frame. Both have to outlive this.
   Fusion(const Findings& own, const Light& light);
 
-  /// Follows what moves from one frame to the next, by the surfaces and the motion of all others,
-  /// at which nothing else is looked.
-  void follow(const std::vector<OtherFindings>& others);
-
-  /// All of the others at one time, or, after follow(), some of them at a time, in the order of the
-  /// shot. Others without a world, or with other sources, say nothing; those that lack layers say
-  /// nothing of what is made from them.
-  void add(const std::vector<OtherFindings>& others);
+  /// All of the others at one time, or some of them at a time, in the order of Followed::reach(),
+  /// and until the next call they have to live as it says. `are_last`: no others follow. Others
+  /// without a world, or with other sources, say nothing; those that lack layers say nothing of
+  /// what is made from them.
+  void add(const std::vector<OtherFindings>& others, bool are_last);
 
   /// Fills the planes of `products` that take_findings() has left empty. `geometry` is that of the
   /// frame. Nothing can be added after that.
@@ -44,8 +39,7 @@ class Fusion {
 
   const Findings& own_;
   const Light& light_;
-  /// What follow() has found, by the number of a frame less that of the own one, and by row.
-  std::optional<std::map<int, std::vector<std::vector<FollowedPoint>>>> followed_;
+  Followed followed_;
   std::vector<int> kinds_;                               ///< of light, by channel
   std::vector<std::vector<int>> groups_;                 ///< those of each group of channels
   std::vector<float, Uninitialized<float>> sums_, all_;  ///< of changes, and of weights

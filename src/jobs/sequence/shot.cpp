@@ -103,9 +103,8 @@ void Shot::keep(Waiting& waiting) {
   const std::size_t job = waiting.work.index, room = room_beside(waiting.work);
   std::size_t found = 0, waits = 0;
   for (std::size_t v = 0; v < waiting.work.views.size(); ++v) {
-    KeptFindings kept{take_findings(waiting.work.views[v]), {}, 0, false};
+    KeptFindings kept{take_findings(waiting.work.views[v]), {}, 0};
     if (follows_) find_motion(job, v, waiting.work, kept.findings);
-    kept.moves = !kept.findings.motion.pixels.empty();
     const std::size_t bytes = bytes_of(kept.findings);
     if (kept_bytes_ + waiting_bytes_ + bytes > room)
       kept.arrays.emplace(kept.findings);
@@ -159,16 +158,21 @@ void Shot::make(Waiting& waiting) {
   release(work.index);
 }
 
-/// Calls visit(job, findings, whether they are in memory only until the next call) for the frames
-/// around one, in their order.
+/// Calls visit(job, findings, whether they are read from disk) for the frames around one, in their
+/// order. Of findings from disk, surfaces and motion live until the call after the next.
 template <class Visit>
 void Shot::for_each_other(std::size_t job, std::size_t view, const Visit& visit) const {
+  Findings copies[2];
+  int next = 0;
   for (const std::size_t other : around_[job]) {
     const auto found = findings_.find({other, view});
     if (other == job || found == findings_.end()) continue;
-    Findings copy;
-    const Findings& findings = in_memory(found->second, copy);
-    visit(other, findings, &findings == &copy);
+    const bool is_copy = found->second.arrays.has_value();
+    visit(other, in_memory(found->second, copies[next]), is_copy);
+    if (!is_copy) continue;
+    copies[next].values = {}, copies[next].glow = {};
+    next = 1 - next;
+    copies[next] = {};
   }
 }
 
@@ -177,39 +181,16 @@ void Shot::make(std::size_t job, std::size_t view, WorkOnView& work) {
   Findings copy;
   const Findings& own = in_memory(findings_.at({job, view}), copy);
   Fusion fusion(own, work.relit.found.scene.light);
-  follow_on_disk(job, view, fusion);
   std::vector<OtherFindings> others;
   for_each_other(job, view, [&](std::size_t other, const Findings& findings, bool is_copy) {
     others.push_back({&findings, *jobs_[other].frame - *jobs_[job].frame,
                       &pieces({job, other, view}, own, findings),
                       &pieces({other, job, view}, findings, own)});
-    if (is_copy) fusion.add(std::exchange(others, {}));
+    if (is_copy) fusion.add(std::exchange(others, {}), false);
   });
-  fusion.add(others);
+  fusion.add(others, true);
   work.relit.found.filter_ms += watch.lap();
   relight_in_shot(fusion, work.relit);
-}
-
-/// Where frames around one are on disk, what moves is followed through their surfaces before they
-/// are read one by one.
-void Shot::follow_on_disk(std::size_t job, std::size_t view, Fusion& fusion) const {
-  bool on_disk = false, moves = false;
-  for (const std::size_t other : around_[job]) {
-    const auto found = findings_.find({other, view});
-    if (found == findings_.end()) continue;
-    on_disk = on_disk || found->second.arrays;
-    moves = moves || found->second.moves;
-  }
-  if (!on_disk) return;
-  std::deque<Findings> copies;
-  std::vector<OtherFindings> others;
-  for (const std::size_t other : around_[job]) {
-    const auto found = findings_.find({other, view});
-    if (!moves || other == job || found == findings_.end()) continue;
-    others.push_back({&in_memory(found->second, copies.emplace_back(), kArraysOfGeometry),
-                      *jobs_[other].frame - *jobs_[job].frame, nullptr, nullptr});
-  }
-  fusion.follow(others);
 }
 
 /// For `info`.

@@ -56,7 +56,6 @@ class Shot {
     Findings findings;
     std::optional<OnDisk> arrays;  ///< where they are not in `findings`
     std::size_t bytes;             ///< in memory
-    bool moves;                    ///< a motion layer tells that something does
   };
   struct Waiting {
     Work work;
@@ -72,7 +71,6 @@ class Shot {
   void keep(Waiting& waiting);
   void make(Waiting& waiting);
   void make(std::size_t job, std::size_t view, WorkOnView& work);
-  void follow_on_disk(std::size_t job, std::size_t view, Fusion& fusion) const;
   void look(std::size_t job, std::size_t view, WorkOnView& work);
   template <class Visit>
   void for_each_other(std::size_t job, std::size_t view, const Visit& visit) const;
