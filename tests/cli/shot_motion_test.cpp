@@ -80,11 +80,13 @@ class AShotWithMotion : public testing::Test {
       write_frame(file(name, frame), part);
     }
   }
-  Finished run(const std::string& name, const std::string& out, const Words& more) const {
+  Finished run(const std::string& name, const std::string& out, const Words& more,
+               const Surroundings& around = {}) const {
     return run_tool(Words{folder / (name + ".####.exr"), "-o", folder / (out + ".####.exr"),
                           "--pixel-type", "float", "--products", "ao,shadow", "--light",
                           "distant direction=0.3,0.5,-1 angle=2"} +
-                    more);
+                        more,
+                    around);
   }
   Plane<float> found(const std::string& out, int frame, const std::string& layer) const {
     return channel(file(out, frame), layer);
@@ -167,6 +169,20 @@ TEST_F(AShotWithMotion, HasTheSameBitsHoweverItIsCut) {
       EXPECT_EQ(found("cut", 4, layer).pixels, found("whole", 4, layer).pixels) << layer;
     for (const int frame : {3, 4}) fs::remove(file("cut", frame));
   }
+}
+
+/// What moves is followed through frames that wait on disk.
+TEST_F(AShotWithMotion, HasTheSameBitsFromDisk) {
+  const Words shot = {"--shot", "3", "--frames", "5", "--threads", "2"};
+  ASSERT_EQ(run("moves", "whole", shot).code, 0);
+  const Words little = shot + Words{"--mem-limit", "176.2M"};
+  const std::string nowhere = folder / "nowhere";
+  EXPECT_THAT(run("moves", "no_room", little, {.variables = {{"TMPDIR", nowhere}}}).err,
+              HasSubstr(nowhere + ": cannot keep"))
+      << "not all fits into memory";
+  ASSERT_EQ(run("moves", "little", little, {.variables = {{"TMPDIR", folder.path()}}}).code, 0);
+  for (const char* layer : {"ao.Y", "shadow.R"})
+    EXPECT_EQ(found("little", 5, layer).pixels, found("whole", 5, layer).pixels) << layer;
 }
 
 TEST_F(AShotWithMotion, UnitsThatContradictTheCamerasAreNamed) {
