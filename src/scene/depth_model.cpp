@@ -12,6 +12,12 @@
 #include "scene/marked_pixels.h"
 
 namespace ssdo {
+
+struct DepthSample {
+  glm::dvec3 p;  ///< from the centre
+  double depth;
+};
+
 namespace {
 
 constexpr std::size_t kMostSamples = 20000;
@@ -29,15 +35,10 @@ constexpr double kLeastShare = 0.5;
 constexpr double kUnitLength = 0.05;
 constexpr double kFlat = 1e-3;  ///< thickness of such a plane over its extent
 
-struct Pixel {
-  glm::dvec3 p;  ///< from the centre
-  double depth;
-};
-
 /// At most kMostSamples of the pixels that count, spread over the frame.
-std::vector<Pixel> collect(const Plane<glm::vec3>& positions, const Plane<float>& depth,
-                           const Plane<unsigned char>& counts) {
-  std::vector<Pixel> pixels;
+std::vector<DepthSample> collect(const Plane<glm::vec3>& positions, const Plane<float>& depth,
+                                 const Plane<unsigned char>& counts) {
+  std::vector<DepthSample> pixels;
   for (const std::size_t i : every_marked(counts, count_marked(counts) / kMostSamples + 1))
     pixels.push_back({glm::dvec3(positions[i]), depth[i]});
   return pixels;
@@ -45,7 +46,7 @@ std::vector<Pixel> collect(const Plane<glm::vec3>& positions, const Plane<float>
 
 /// Least squares for value = affine . (p, 1), relative to the value's size so that no far pixel
 /// outweighs the others; the shortest solution where P leaves it open.
-glm::dvec4 fit_affine(const std::vector<Pixel>& pixels, const std::vector<double>& values,
+glm::dvec4 fit_affine(const std::vector<DepthSample>& pixels, const std::vector<double>& values,
                       const std::vector<double>& sizes, const std::vector<bool>& used) {
   Eigen::Matrix4d ata = Eigen::Matrix4d::Zero();
   Eigen::Vector4d atb = Eigen::Vector4d::Zero();
@@ -62,9 +63,9 @@ glm::dvec4 fit_affine(const std::vector<Pixel>& pixels, const std::vector<double
 }
 
 /// Whether the positions lie in one plane, so that the gradient along its normal is unknown.
-bool is_flat(const std::vector<Pixel>& pixels) {
+bool is_flat(const std::vector<DepthSample>& pixels) {
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  for (const Pixel& pixel : pixels) {
+  for (const DepthSample& pixel : pixels) {
     const Eigen::Vector3d p(pixel.p.x, pixel.p.y, pixel.p.z);
     moments += p * p.transpose();
   }
@@ -101,8 +102,8 @@ class DepthModel::Fit {
   Fit(const Plane<glm::vec3>& positions, const Plane<float>& depth,
       const Plane<unsigned char>& counts, float position_step)
       : pixels_(collect(positions, depth, counts)), position_step_(position_step) {
-    for (const Pixel& pixel : pixels_) centre_ += pixel.p / double(pixels_.size());
-    for (Pixel& pixel : pixels_) pixel.p -= centre_;
+    for (const DepthSample& pixel : pixels_) centre_ += pixel.p / double(pixels_.size());
+    for (DepthSample& pixel : pixels_) pixel.p -= centre_;
   }
 
   /// The model of a kind, if most pixels agree with it.
@@ -114,7 +115,7 @@ class DepthModel::Fit {
     model.position_step_ = position_step_;
     fit_affine_part(model);
     std::size_t agreeing = 0;
-    for (const Pixel& pixel : pixels_)
+    for (const DepthSample& pixel : pixels_)
       agreeing += model.agrees(glm::vec3(pixel.p + centre_), float(pixel.depth));
     const bool right = double(agreeing) >= kLeastShare * double(pixels_.size());
     return right ? std::optional(model) : std::nullopt;
@@ -132,14 +133,14 @@ class DepthModel::Fit {
  private:
   std::vector<double> misses_of(const DepthModel& model) const {
     std::vector<double> misses;
-    for (const Pixel& pixel : pixels_)
+    for (const DepthSample& pixel : pixels_)
       misses.push_back(std::abs(model.depth_of(pixel.p) - pixel.depth) / pixel.depth);
     return misses;
   }
 
   void fit_affine_part(DepthModel& model) const {
     std::vector<double> values, sizes;
-    for (const Pixel& pixel : pixels_) {
+    for (const DepthSample& pixel : pixels_) {
       const bool planar = model.kind_ == DepthKind::planar;
       sizes.push_back(planar ? pixel.depth : pixel.depth * pixel.depth);
       values.push_back(planar ? pixel.depth : sizes.back() - glm::dot(pixel.p, pixel.p));
@@ -154,7 +155,7 @@ class DepthModel::Fit {
     }
   }
 
-  std::vector<Pixel> pixels_;
+  std::vector<DepthSample> pixels_;
   glm::dvec3 centre_{0};
   double position_step_;
 };

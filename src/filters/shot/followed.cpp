@@ -111,8 +111,13 @@ void Followed::mark_origins(const Link& link) {
 
 Followed::Spot Followed::spot_of(std::size_t pixel) const {
   const KeptSurface& surface = own_.surfaces.pixels[pixel];
-  return {own_.surfaces.centre(pixel),         surface.position,    normal_of(surface),
-          rounding_of(surface, own_.surfaces), std::int32_t(pixel), {1, 0, 0, 0}};
+  return {own_.surfaces.centre(pixel),
+          glm::dvec2(0),
+          surface.position,
+          normal_of(surface),
+          rounding_of(surface, own_.surfaces),
+          std::int32_t(pixel),
+          {1, 0, 0, 0}};
 }
 
 /// The points of a row that move, on their way to the frame that is `next` to it.
@@ -126,12 +131,9 @@ std::vector<Followed::Walk> Followed::walks_of(int y, const Beside& next) const 
     if (next.is_before) {
       walk.speed = speed_of(own_.motion, i);
     } else if (came_to_[i] >= 0) {
-      Spot there{};
-      there.pixel = came_to_[i], there.weight[0] = 1;
-      const Link& link = next.link;
-      walk.speed = speed_of(*link.motion, std::size_t(there.pixel));
-      walk.step = walk.last.at - motion_at(link, there) -
-                  link.forth.place(link.forth.position(walk.last.position));
+      const std::size_t there(came_to_[i]);
+      walk.speed = speed_of(*next.link.motion, there);
+      walk.step = -next.link.motion->at(there);
     }
     if (walk.speed > 0) walks.push_back(walk);
   }
@@ -152,31 +154,29 @@ void Followed::row(int y, bool are_last, std::vector<std::vector<FollowedPoint>>
   if (!are_last) walks_[std::size_t(y)] = std::move(walks);
 }
 
-/// The motion to the frame before of what `spot`, in the later frame of the link, shows.
+/// The motion to the frame before, apart from the cameras, of what `spot` of the later frame shows.
 glm::dvec2 Followed::motion_at(const Link& link, const Spot& spot) {
-  glm::dvec2 sum(0);
+  glm::dvec2 sum = spot.aside;
   for (int corner = 0; corner < 4; ++corner) {
     if (!(spot.weight[corner] > 0)) continue;
-    const std::size_t i = std::size_t(spot.pixel + corner % 2 + corner / 2 * link.after->stride());
-    const glm::dvec2 by_cameras =
-        link.back.place(link.back.position(link.after->pixels[i].position)) - link.after->centre(i);
-    sum += double(spot.weight[corner]) * (by_cameras + link.motion->at(i));
+    const int i = spot.pixel + corner % 2 + corner / 2 * link.after->stride();
+    sum += double(spot.weight[corner]) * link.motion->at(std::size_t(i));
   }
   return sum;
 }
 
-/// The pixels around `at` in `to` that show the surface of `from`. False: none do.
+/// The pixels of `to` that show the surface of `from`, around the place to which it has moved by
+/// `step` pixels apart from the cameras. False: none do.
 bool Followed::find(const CameraChange& change, const KeptSurfaces& to, const Spot& from,
-                    const glm::dvec2& at, Spot& found) {
+                    const glm::dvec2& step, Spot& found) {
   const glm::dvec3 p = change.position(from.position);
   const glm::vec3 normal = change.direction(from.normal);
   const Camera& camera = to.camera;
-  const double scale = camera.orthographic ? 1.0 : -p.z;
-  const glm::dvec2 off = (at - change.place(p)) / glm::dvec2(camera.fx, camera.fy),
-                   place = at - to.centre(to.index(0, 0));
+  const double scale = camera.orthographic ? 1.0 : -p.z,
+               moved = glm::length(step / glm::dvec2(camera.fx, camera.fy));
+  const glm::dvec2 at = change.place(p) + step, place = at - to.centre(to.index(0, 0));
   const double left = std::floor(place.x), top = std::floor(place.y),
-               limit =
-                   scale * (0.5 / camera.fx + kSlant * glm::length(off)) + double(from.rounding);
+               limit = scale * (0.5 / camera.fx + kSlant * moved) + double(from.rounding);
   if (!(left >= -1 && top >= -1 && left < to.window.width() && top < to.window.height()) ||
       !std::isfinite(limit))
     return false;
@@ -202,7 +202,9 @@ bool Followed::find(const CameraChange& change, const KeptSurfaces& to, const Sp
   }
   if (sum < Reprojection::kLeastShare) return false;
   for (float& weight : found.weight) weight /= float(sum);
+  const float* w = found.weight;
   found.at = at, found.pixel = std::int32_t(first);
+  found.aside = glm::dvec2(across, down) - glm::dvec2(double(w[1] + w[3]), double(w[2] + w[3]));
   found.position = glm::vec3(position / sum), found.normal = glm::vec3(glm::normalize(normals));
   found.rounding = from.rounding;
   return true;
@@ -211,20 +213,18 @@ bool Followed::find(const CameraChange& change, const KeptSurfaces& to, const Sp
 /// False: the frame does not show it.
 bool Followed::go_back(const Link& link, Walk& walk) const {
   const Spot from = walk.last;
-  return find(link.back, *link.before, from, from.at + motion_at(link, from), walk.last);
+  return find(link.back, *link.before, from, motion_at(link, from), walk.last);
 }
 
 bool Followed::go_forth(const Link& link, Walk& walk) const {
   const Spot from = walk.last;
-  const glm::dvec2 rest = link.forth.place(link.forth.position(from.position));
-  glm::dvec2 guess = rest + walk.step;
   for (int k = 0; k < kTries; ++k) {
-    if (!find(link.forth, *link.after, from, guess, walk.last)) return false;
-    const glm::dvec2 off = walk.last.at + motion_at(link, walk.last) - from.at;
+    if (!find(link.forth, *link.after, from, walk.step, walk.last)) return false;
+    const glm::dvec2 off = link.back.place(link.back.position(walk.last.position)) +
+                           motion_at(link, walk.last) - from.at;
     if (!is_finite(off)) return false;
-    walk.step = walk.last.at - rest;
     if (glm::length(off) < kMiss) return true;
-    guess -= off;
+    walk.step -= off;
   }
   return false;
 }

@@ -47,6 +47,7 @@ class Followed {
   /// A point in a frame, and the pixels around it that show its surface.
   struct Spot {
     glm::dvec2 at;               ///< pixels of the display window
+    glm::dvec2 aside;            ///< of `position`, in pixels: that is the mean of these pixels
     glm::vec3 position, normal;  ///< camera space
     float rounding;
     std::int32_t pixel;  ///< as in Sights
@@ -57,7 +58,7 @@ class Followed {
     int x;  ///< where it starts
     double speed;
     Spot last;
-    glm::dvec2 step;  ///< last motion apart from the cameras, of a walk to frames after
+    glm::dvec2 step;  ///< last motion apart from the cameras, on the way to frames after
   };
 
   Spot spot_of(std::size_t pixel) const;
@@ -67,7 +68,7 @@ class Followed {
   bool go_forth(const Link& link, Walk& walk) const;
   void add(int y, const Walk& walk, const Beside& beside, std::vector<FollowedPoint>& points) const;
   static bool find(const CameraChange& change, const KeptSurfaces& to, const Spot& from,
-                   const glm::dvec2& at, Spot& found);
+                   const glm::dvec2& step, Spot& found);
   static glm::dvec2 motion_at(const Link& link, const Spot& spot);
 
   const Findings& own_;

@@ -40,25 +40,6 @@ std::uint32_t steps_of(float rounding) {
 
 }  // namespace
 
-glm::vec3 normal_of(const KeptSurface& surface) {
-  constexpr std::uint32_t kMask = (1u << KeptSurface::kNormalBits) - 1;
-  const auto coordinate = [](std::uint32_t steps) {
-    return float(steps & kMask) / KeptSurface::kNormalSteps - 1;
-  };
-  glm::vec3 n(coordinate(surface.packed), coordinate(surface.packed >> KeptSurface::kNormalBits),
-              0);
-  n.z = 1 - std::abs(n.x) - std::abs(n.y);
-  const float below = std::max(-n.z, 0.0f);  // the folded half
-  n.x -= std::copysign(below, n.x), n.y -= std::copysign(below, n.y);
-  return glm::normalize(n);
-}
-
-float rounding_of(const KeptSurface& surface, const KeptSurfaces& surfaces) {
-  return std::bit_cast<float>(
-      (surface.packed >> KeptSurface::kRoundingShift << KeptSurface::kFloatShift) +
-      surfaces.least_rounding);
-}
-
 CameraChange::CameraChange(const KeptSurfaces& from, const KeptSurfaces& to)
     : to_(&to.camera),
       turn_(to.camera.rotation * glm::transpose(from.camera.rotation)),

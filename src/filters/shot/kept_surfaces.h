@@ -4,10 +4,13 @@
 // and without borders to be tested for.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -56,9 +59,26 @@ struct KeptSurfaces {
   std::size_t size() const { return std::size_t(stride()) * std::size_t(window.height() + 2); }
 };
 
-/// What a pixel that shows a surface holds: its unit normal, and its rounding in scene units.
-glm::vec3 normal_of(const KeptSurface& surface);
-float rounding_of(const KeptSurface& surface, const KeptSurfaces& surfaces);
+/// The unit normal of a pixel that shows a surface.
+inline glm::vec3 normal_of(const KeptSurface& surface) {
+  constexpr std::uint32_t kMask = (1u << KeptSurface::kNormalBits) - 1;
+  const auto coordinate = [](std::uint32_t steps) {
+    return float(steps & kMask) / KeptSurface::kNormalSteps - 1;
+  };
+  glm::vec3 n(coordinate(surface.packed), coordinate(surface.packed >> KeptSurface::kNormalBits),
+              0);
+  n.z = 1 - std::abs(n.x) - std::abs(n.y);
+  const float below = std::max(-n.z, 0.0f);  // the folded half
+  n.x -= std::copysign(below, n.x), n.y -= std::copysign(below, n.y);
+  return glm::normalize(n);
+}
+
+/// Its rounding, in scene units.
+inline float rounding_of(const KeptSurface& surface, const KeptSurfaces& surfaces) {
+  return std::bit_cast<float>(
+      (surface.packed >> KeptSurface::kRoundingShift << KeptSurface::kFloatShift) +
+      surfaces.least_rounding);
+}
 
 /// From the camera space of one frame to that of another and into its picture. A rotation and the
 /// camera's own step stay exact however far away the world's origin is.

@@ -16,7 +16,7 @@ namespace ssdo {
 namespace {
 
 /// Rounding of the farther end, relative to it.
-constexpr float kRounding = 1e-6f;
+constexpr float kDepthRounding = 1e-6f;
 
 /// Whether the depth is the z of a camera that looks along -z: negative wherever there is a
 /// surface.
@@ -66,7 +66,7 @@ float decoded_depth(float stored, const GBufferOptions& options) {
       return 1 / stored;
     case DepthKind::normalized: {
       const float depth = near + stored * (far - near);
-      return depth >= std::max(near, far) * (1 - kRounding) ? kInfinity : depth;
+      return depth >= std::max(near, far) * (1 - kDepthRounding) ? kInfinity : depth;
     }
     default:
       return stored;
