@@ -40,14 +40,15 @@ class Followed {
   /// A frame and the link through which it is reached.
   struct Beside {
     std::size_t other;
-    bool is_before, is_next;  ///< the frame; to it in time
+    bool is_before;  ///< the frame, in time
+    bool is_next;    ///< to the frame
     Link link;
     CameraChange from_own;
   };
   /// A point in a frame, and the pixels around it that show its surface.
   struct Spot {
     glm::dvec2 at;               ///< pixels of the display window
-    glm::dvec2 aside;            ///< of `position`, in pixels: that is the mean of these pixels
+    glm::dvec2 aside;            ///< `at` less where `position` is seen, the mean of these pixels
     glm::vec3 position, normal;  ///< camera space
     float rounding;
     std::int32_t pixel;  ///< as in Sights
