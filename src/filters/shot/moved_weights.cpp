@@ -91,6 +91,9 @@ void weigh_moving(const RowOfPoints& points, const VelocitiesOfPoints& velocitie
     const V3 position = load_apart(&points.position[0][i], kApart),
              normal = load_apart(&points.normal[0][i], kApart),
              own = load_apart(&velocities.of[0][i], kApart);
+    const M moves = hn::And(dot_of(own, own) > set(0), position.z == position.z);
+    store(set(1), &weights[i]);
+    if (!any(moves)) continue;
     V hidden = set(0);
     for (const MovedPiece& piece : pieces) {
       const V3 way = (set(piece.velocity) - own) * set(frames);
@@ -100,7 +103,6 @@ void weigh_moving(const RowOfPoints& points, const VelocitiesOfPoints& velocitie
       hidden = hidden + there * changes;
     }
     const V left = hn::Max(set(1) - hidden / set(kMostHidden), set(0));
-    const M moves = hn::And(dot_of(own, own) > set(0), position.z == position.z);
     store(hn::IfThenElse(moves, left * left, set(1)), &weights[i]);
   }
 }
