@@ -101,7 +101,8 @@ void Followed::mark_origins(const Link& link) {
     if (!(at.x > -1 && at.y > -1 && at.x < own.window.width() && at.y < own.window.height()))
       continue;
     for (int corner = 0; corner < 4; ++corner) {
-      const double x = std::floor(at.x) + corner % 2, y = std::floor(at.y) + double(corner / 2);
+      const int right = corner % 2, down = corner / 2;
+      const double x = std::floor(at.x) + right, y = std::floor(at.y) + down;
       const std::size_t i = own.index(int(x), int(y));
       const auto distance = float(glm::distance(at, glm::dvec2(x, y)));
       if (distance < distances[i]) distances[i] = distance, came_to_[i] = std::int32_t(q);
