@@ -139,8 +139,8 @@ int SlicePattern::rank(int member) {
 
 SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, int slices, int steps,
                            unsigned seed, int spacing, const FarRaster* far)
-    : members_(Interleaving::kPeriod * Interleaving::kPeriod),
-      half_signs_(Interleaving::kPeriod * Interleaving::kPeriod, 1.0f),
+    : members_(Interleaving::kMembers),
+      half_signs_(Interleaving::kMembers, 1.0f),
       spacing_(spacing) {
   const double diagonal = std::max(2.0, std::hypot(display.width(), display.height()));
   const double turn = start_of(3 * std::uint64_t(seed)),
