@@ -41,8 +41,8 @@
 //   after it (bitmask/piece-inl.h). Treated as points, few samples miss too much: 16 steps that
 //   represent their stretches are nearer to the limit than 24 points.
 // - GTAO does not guess backs, layers of solids behind what is seen (scene/solids/solids.cpp) and
-//   surfaces beyond the frame (bitmask/extension-inl.h). How much light comes through the latter:
-//   bitmask/beyond.h, bitmask/rays/border_extents.h.
+//   surfaces beyond the frame (bitmask/border/extension-inl.h). How much light comes through the
+//   latter: bitmask/border/beyond.h, bitmask/border/border_extents.h.
 // - What only other views show may be anywhere, behind the camera too: rays ask it for the
 //   sectors that the march leaves open (bitmask/other_views-inl.h).
 #include "estimators/bitmask.h"
@@ -52,7 +52,7 @@
 #include <utility>
 
 #include "estimators/bitmask/basis_weights.h"
-#include "estimators/bitmask/beyond.h"
+#include "estimators/bitmask/border/beyond.h"
 #include "estimators/bitmask/bounce_passes.h"
 #include "estimators/bitmask/jobs.h"
 #include "estimators/bitmask/parts.h"

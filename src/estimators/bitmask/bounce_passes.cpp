@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "estimators/bitmask/border_light.h"
+#include "estimators/bitmask/border/border_light.h"
 #include "estimators/bitmask/parts.h"
 
 namespace ssdo {

@@ -5,8 +5,9 @@
 // Light is linear: where layers of each light are wanted, each is sent on and gathered alone, by
 // the same slices, masks and rays, and its next pass is lit by its own. Two things depend on how
 // bright a sender is, and are decided by all lights together: what rays gather in place of the
-// march (rays/emitters.h), and what goes on beyond the border (border_light.h). So the sum over the
-// lights is the light of all, up to the rounding of two_in_one(), which make_add_up() takes out.
+// march (rays/emitters.h), and what goes on beyond the border (border/border_light.h). So the sum
+// over the lights is the light of all, up to the rounding of two_in_one(), which make_add_up()
+// takes out.
 #pragma once
 
 #include <vector>

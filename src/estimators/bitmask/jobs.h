@@ -4,9 +4,9 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "estimators/bitmask/border/pass_beyond.h"
 #include "estimators/bitmask/march.h"
 #include "estimators/bitmask/rays/emitters.h"
-#include "estimators/bitmask/rays/pass_beyond.h"
 #include "estimators/bitmask/rays/ray_pattern.h"
 #include "estimators/other_views/other_view_light.h"
 #include "math/half_color.h"

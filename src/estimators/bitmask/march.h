@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
+#include "estimators/bitmask/border/border_extents.h"
 #include "estimators/bitmask/march_scene.h"
-#include "estimators/bitmask/rays/border_extents.h"
 #include "estimators/bitmask/rays/depth_bounds.h"
 #include "estimators/bitmask/slice_pattern.h"
 #include "estimators/estimator.h"
@@ -34,7 +34,7 @@ struct FarScene {
   std::vector<DepthBounds> bounds;   ///< by layer
   const Solids& solids;              ///< of the overview
   CutSurfaces cut;                   ///< by the border of the overview
-  Openness openness;                 ///< of the frame: see bitmask/beyond.h
+  Openness openness;                 ///< of the frame: see border/beyond.h
   std::vector<FarLight> light = {};  ///< by pass
   /// What blocks the light of lamps that name it, by their number in Light::sources. Rays alone
   /// read it: without `planes` and `light`.

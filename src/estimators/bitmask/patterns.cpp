@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "estimators/bitmask/beyond.h"
+#include "estimators/bitmask/border/beyond.h"
 #include "estimators/bitmask/march_scene.h"
 #include "math/pixel_grid.h"
 

@@ -13,7 +13,7 @@
 
 #include <span>
 
-#include "estimators/bitmask/extension-inl.h"
+#include "estimators/bitmask/border/extension-inl.h"
 #include "estimators/bitmask/other_views-inl.h"
 #include "estimators/bitmask/overview-inl.h"
 #include "estimators/bitmask/piece-inl.h"

@@ -11,7 +11,7 @@
 #include <random>
 #include <utility>
 
-#include "estimators/bitmask/beyond.h"
+#include "estimators/bitmask/border/beyond.h"
 #include "estimators/bitmask/rays/find_source.h"
 #include "estimators/bitmask/request.h"
 #include "scene/light/lamps/lamp.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What is likely to hide a source beyond the frame, and what is not.
-#include "estimators/bitmask/beyond.h"
+#include "estimators/bitmask/border/beyond.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <cmath>
 #include <memory>
 
-#include "estimators/bitmask/rays/border_extents.h"
+#include "estimators/bitmask/border/border_extents.h"
 #include "estimators/bitmask/request.h"
 #include "scene/light/distant_source.h"
 #include "support/point_source.h"
@@ -284,6 +284,23 @@ TEST(BitmaskBeyond, AnEndIsNotLostToALongerRun) {
     }
     before = most;
   }
+}
+
+/// The row of a street goes on past a gap, and does not past a wide one. As the gap grows by a
+/// pixel it is neither lost at once nor kept: walks take steps of several pixels.
+TEST(BitmaskBeyond, AGapEndsARowLittleByLittle) {
+  const double pixel = 8.0 / 96;
+  std::vector<float> seen;
+  for (int gap = 0; gap <= 24; ++gap) {
+    const double from = (-8.25) * pixel, to = from + gap * pixel;
+    const Surface scene = front(8, [=](double x, double) { return x < from || x > to; });
+    seen.push_back(extents_at_left(geometry_of(scene, level_ortho(8), kWide))[31].seen[0]);
+  }
+  const float whole = seen.front(), first = seen.back();
+  EXPECT_NEAR(whole, 95 * pixel, 2 * pixel);
+  EXPECT_NEAR(first, 39 * pixel, 2 * pixel);
+  for (std::size_t gap = 1; gap < seen.size(); ++gap)
+    EXPECT_LT(std::abs(seen[gap] - seen[gap - 1]), 0.6f * (whole - first)) << gap;
 }
 
 /// A radius that the whole scene is within changes nothing. The top of this wall is nine pixels

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "estimators/bitmask/beyond.h"
+#include "estimators/bitmask/border/beyond.h"
 #include "estimators/bitmask/request.h"
 #include "scene/light/lamps/lamp.h"
 

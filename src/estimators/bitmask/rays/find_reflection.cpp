@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "estimators/bitmask/border_light.h"
+#include "estimators/bitmask/border/border_light.h"
 #include "estimators/bitmask/parts.h"
 #include "estimators/bitmask/rays/bright_level.h"
 #include "estimators/bitmask/rays/depth_bounds.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "estimators/bitmask/beyond.h"
+#include "estimators/bitmask/border/beyond.h"
 
 namespace ssdo {
 

@@ -9,7 +9,7 @@
 #define SSDO_BITMASK_RAY_INL_H_
 #endif
 
-#include "estimators/bitmask/extension-inl.h"
+#include "estimators/bitmask/border/extension-inl.h"
 #include "estimators/bitmask/other_views-inl.h"
 #include "estimators/bitmask/rays/walk-inl.h"
 
@@ -128,8 +128,8 @@ struct PassLanes {
   V past;
   float through;
   /// Whether surfaces that look up go on without end, whatever their extent in the frame
-  /// (rays/border_extents.h), and others the less the steeper they are: what is mirrored from below
-  /// the horizon is ground.
+  /// (border/border_extents.h), and others the less the steeper they are: what is mirrored from
+  /// below the horizon is ground.
   bool ground = false;
 };
 

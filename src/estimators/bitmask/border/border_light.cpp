@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "estimators/bitmask/border_light.h"
+#include "estimators/bitmask/border/border_light.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "estimators/bitmask/beyond.h"
+#include "estimators/bitmask/border/beyond.h"
 
 #include <algorithm>
 #include <cmath>

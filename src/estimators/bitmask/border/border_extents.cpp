@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "estimators/bitmask/rays/border_extents.h"
+#include "estimators/bitmask/border/border_extents.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,12 @@ constexpr float kSameWay = 0.7f;
 /// over which it was seen: windows and gaps between houses are no ends. Behind what stands before
 /// it, it goes on if it is seen again before it would be twice as long, or this share of the
 /// diagonal of the frame at its depth.
-constexpr float kGapPx = 3, kGapShare = 0.15f, kHiddenShare = 0.15f;
+constexpr float kGapPx = 2, kGapShare = 0.1f, kHiddenShare = 0.15f;
+
+/// None of these limits is sharp, for cameras move: what exceeds one counts the less, up to not at
+/// all at so many times the limit. With sharp ones a row of houses, seen past a gap or not, halved
+/// the light of a street between two frames.
+constexpr float kNotAtAll = 2;
 
 /// The steps of a walk grow with the way, by one pixel in so many, up to this share of the frame.
 /// So many other walks start from each, at right angles, to both sides.
@@ -42,10 +47,15 @@ constexpr int kPixelsPerStep = 8, kMostSteps = 128, kWalksAcross = 3;
 
 constexpr glm::ivec2 kWays[4] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
 
+/// 1 up to a limit, 0 from kNotAtAll times it on.
+float within(float value, float limit) {
+  return 1 - std::clamp((value / limit - 1) / (kNotAtAll - 1), 0.0f, 1.0f);
+}
+
 /// What a walk over the frame has met of the surface.
 struct Run {
   glm::vec3 from{0}, to{0};  ///< where it begins and last met it, from the pixel at the border
-  int px = 0;                ///< walked
+  float px = 0;              ///< walked until there
   float cut = 1;  ///< 0..1: 1 where the border or something before it hides where it ends
 };
 
@@ -105,8 +115,9 @@ class CutSurface {
     for (const glm::ivec2& way : kWays) {
       const Run run = walk(at_, way);
       add(run);
-      for (int k = 1; k <= kWalksAcross && run.px > 0; ++k) {
-        const glm::ivec2 from = at_ + way * (run.px * k / kWalksAcross), across(way.y, way.x);
+      const int px = int(run.px);
+      for (int k = 1; k <= kWalksAcross && px > 0; ++k) {
+        const glm::ivec2 from = at_ + way * (px * k / kWalksAcross), across(way.y, way.x);
         add(walk(from, across));
         add(walk(from, -across));
       }
@@ -146,33 +157,50 @@ class CutSurface {
     const int largest_step =
         std::max(1, (way.x != 0 ? scene_.frame_width : scene_.frame_height) / kMostSteps);
     Run run{position(from) - start_};
-    float reaches = 2 * glm::length(run.from) + kHiddenShare * diagonal_px_ * footprint(-start_.z);
-    int gap = 0;
+    const float at_least =
+        2 * glm::length(run.from) + kHiddenShare * diagonal_px_ * footprint(-start_.z);
+    // How sure it is that what the walk meets is still the same surface, how well the end is seen
+    // of one that is not, and up to where what it has met counts.
+    float sure = 1, cut = 0, gap = 0, last_px = 0;
+    glm::vec3 last(0);
+    const auto most_gap = [&] { return kGapPx + kGapShare * run.px; };
+    const auto cut_here = [&] {
+      const float margin_px = kEndMargin * diagonal_px_;
+      return 1 - std::min(1.0f, (float(to_border(from, way)) - run.px) / margin_px);
+    };
     for (int px = 1, step = 1; float(px) <= reach_px_; px += step) {
       step = std::clamp(px / kPixelsPerStep, 1, largest_step);
       const glm::ivec2 at = from + way * px;
-      if (!scene_.raster().contains(at.x, at.y)) return run;
-      if (!scene_.shows_surface(scene_.layout.index(at.x, at.y)) &&
-          !scene_.shows_background(at.x, at.y))
-        continue;
-      const glm::vec3 there = position(at), to = there - start_;
-      const float above = glm::dot(to, normal_), length = glm::length(to),
-                  tolerance = kPlaneShare * length + kPlanePx * footprint(-there.z);
-      if (length > radius_) return run;
-      if (above > tolerance) continue;
-      if (above >= -tolerance && length <= reaches) {
-        if (glm::dot(tangent_normal(scene_, at.x, at.y), normal_) < kSameWay) continue;
-        run.to = to, run.px = px;
-        reaches = std::max(reaches, 2 * length);
-        gap = 0;
-        continue;
+      if (!scene_.raster().contains(at.x, at.y)) break;
+      const bool is_surface = scene_.shows_surface(scene_.layout.index(at.x, at.y));
+      if (!is_surface && !scene_.shows_background(at.x, at.y)) continue;
+      float same = 0;
+      if (is_surface) {
+        const glm::vec3 there = position(at), to = there - start_;
+        const float above = glm::dot(to, normal_), length = glm::length(to),
+                    tolerance = kPlaneShare * length + kPlanePx * footprint(-there.z);
+        if (length > radius_) break;
+        if (above > tolerance) continue;
+        same =
+            within(-above, tolerance) * within(length, std::max(at_least, 2 * glm::length(run.to)));
+        if (same > 0 && glm::dot(tangent_normal(scene_, at.x, at.y), normal_) < kSameWay) {
+          if (above >= -tolerance) continue;
+          same = 0;
+        }
+        if (same > 0) {
+          const float lost = same * (1 - within(gap, most_gap()));
+          cut += sure * lost * cut_here();
+          sure *= 1 - lost;
+          run.to += sure * same * (to - last), last += same * (to - last);
+          const float walked = same * (float(px) - last_px);
+          run.px += sure * walked, last_px += walked;
+        }
       }
-      gap += step;
-      if (float(gap) < kGapPx + kGapShare * float(run.px)) continue;
-      const float margin_px = kEndMargin * diagonal_px_;
-      run.cut = 1 - std::min(1.0f, float(to_border(from, way) - run.px) / margin_px);
-      return run;
+      gap = (1 - same) * (gap + float(step));
+      if (gap >= kNotAtAll * most_gap()) break;
     }
+    const float hidden = within(gap, most_gap());
+    run.cut = cut + sure * (hidden + (1 - hidden) * cut_here());
     return run;
   }
 

@@ -10,7 +10,7 @@
 namespace ssdo {
 
 /// What surfaces send that are assumed to continue beyond the border of the frame
-/// (bitmask/extension-inl.h), by channel: what the pixel at the border sends, but no more than
+/// (border/extension-inl.h), by channel: what the pixel at the border sends, but no more than
 /// `level` in luminance, Emitters::bright. A pixel tells where a surface goes on, but not that its
 /// light does: paper in the sun that touches the border would be continued by many times its size.
 /// `radiance` is what pixels send, of one light or of all, which `of_all` has; `two_sided` as

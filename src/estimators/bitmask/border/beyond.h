@@ -2,14 +2,14 @@
 //
 // How much light comes through what may go on beyond the frame.
 //
-// A surface at the frame's border may go on (bitmask/extension-inl.h) or end there. For ao and for
+// A surface at the frame's border may go on (border/extension-inl.h) or end there. For ao and for
 // light that bounces it goes on: in the mean of five scenes that has less error than an end there,
 // though walls that end just outside of the picture make a room too dark. For light from outside,
 // of a map that is not the same from everywhere, neither holds: a corner, a lawn and a room that is
 // open in front have less error with open borders, a street and a court with surfaces that go on.
 // The mean ao of the frame did not tell them apart. So half of the light comes through.
 //
-// Surfaces that go on hide a sun as far as they are likely to (bitmask/rays/border_extents.h). Past
+// Surfaces that go on hide a sun as far as they are likely to (border/border_extents.h). Past
 // them a sun is seen, unless the place is closed: a room shows in a frame as walls above the
 // horizon without sky over them. There a ray that leaves the frame meets about as much beyond it as
 // rays meet in it:
@@ -38,9 +38,9 @@
 
 #include <glm/vec3.hpp>
 
+#include "estimators/bitmask/border/border_extents.h"
+#include "estimators/bitmask/border/pass_beyond.h"
 #include "estimators/bitmask/march_scene.h"
-#include "estimators/bitmask/rays/border_extents.h"
-#include "estimators/bitmask/rays/pass_beyond.h"
 #include "estimators/bitmask/slice_pattern.h"
 #include "estimators/estimator.h"
 #include "scene/light/light.h"
