@@ -49,6 +49,49 @@ HWY_INLINE void store(V values, float* to) { hn::StoreU(values, D(), to); }
 /// from[index], an index for each lane.
 HWY_INLINE V gather(const float* from, VI index) { return hn::GatherIndex(D(), from, index); }
 
+/// Four values per lane.
+struct V4 {
+  V x, y, z, w;
+};
+
+#if HWY_TARGET != HWY_SCALAR
+/// Four values from each of the places at[0], at[4], at[8], ... on, a block of the vector for each.
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> blocks_from(Tag d, const float* from, const int* at) {
+  if constexpr (hn::MaxLanes(Tag()) <= 4) {
+    return hn::LoadU(d, from + *at);
+  } else {
+    const hn::Half<Tag> half;
+    return hn::Combine(d, blocks_from(half, from, at + hn::MaxLanes(half)),
+                       blocks_from(half, from, at));
+  }
+}
+#endif
+
+/// from[index] to from[index + 3], side by side: a load for each lane and a transposition, where
+/// gather() looks up each value by itself.
+HWY_INLINE V4 gather4(const float* from, VI index) {
+#if HWY_TARGET == HWY_SCALAR
+  const float* at = from + hn::GetLane(index);
+  return {set(at[0]), set(at[1]), set(at[2]), set(at[3])};
+#else
+  const D d;
+  alignas(64) int at[kLanes];
+  hn::Store(index, DI(), at);
+  const V r0 = blocks_from(d, from, at), r1 = blocks_from(d, from, at + 1),
+          r2 = blocks_from(d, from, at + 2), r3 = blocks_from(d, from, at + 3);
+  const hn::Repartition<double, D> pairs;
+  const auto xy01 = hn::BitCast(pairs, hn::InterleaveLower(d, r0, r1)),
+             xy23 = hn::BitCast(pairs, hn::InterleaveLower(d, r2, r3)),
+             zw01 = hn::BitCast(pairs, hn::InterleaveUpper(d, r0, r1)),
+             zw23 = hn::BitCast(pairs, hn::InterleaveUpper(d, r2, r3));
+  return {hn::BitCast(d, hn::InterleaveLower(pairs, xy01, xy23)),
+          hn::BitCast(d, hn::InterleaveUpper(pairs, xy01, xy23)),
+          hn::BitCast(d, hn::InterleaveLower(pairs, zw01, zw23)),
+          hn::BitCast(d, hn::InterleaveUpper(pairs, zw01, zw23))};
+#endif
+}
+
 HWY_INLINE bool any(M m) { return !hn::AllFalse(D(), m); }
 HWY_INLINE bool all(M m) { return hn::AllTrue(D(), m); }
 

@@ -2,10 +2,12 @@
 #include "estimators/bitmask/border/border_extents.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <optional>
 
 #include "parallel/tiles.h"
 
@@ -45,7 +47,15 @@ constexpr float kNotAtAll = 2;
 /// So many other walks start from each, at right angles, to both sides.
 constexpr int kPixelsPerStep = 8, kMostSteps = 128, kWalksAcross = 3;
 
+/// One pixel of the border stands for those beside it that show its surface too, so many times as
+/// many as the diagonal of the frame has this many pixels.
+constexpr float kDetailPx = 512;
+
 constexpr glm::ivec2 kWays[4] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+
+float diagonal_px(const MarchScene& scene) {
+  return std::hypot(float(scene.frame_width), float(scene.frame_height));
+}
 
 /// 1 up to a limit, 0 from kNotAtAll times it on.
 float within(float value, float limit) {
@@ -90,25 +100,25 @@ class SeenAlong {
 /// The surface of one pixel at the border.
 class CutSurface {
  public:
-  CutSurface(const MarchScene& scene, const glm::ivec2& at, std::ptrdiff_t border_index,
-             float radius)
+  CutSurface(const MarchScene& scene, const glm::ivec2& at, float radius)
       : scene_(scene),
         at_(at),
         start_(position(at)),
+        normal_(tangent_normal(scene, at.x, at.y)),
         radius_(radius),
         reach_px_(reach_px(std::max(scene.fx, scene.fy), scene.orthographic, start_, radius)),
-        diagonal_px_(std::hypot(float(scene.frame_width), float(scene.frame_height))) {
-    for (int c = 0; c < 3; ++c) normal_[c] = scene.border_normal[c][std::size_t(border_index)];
-  }
+        diagonal_px_(diagonal_px(scene)) {}
+
+  /// Without the extent.
+  BorderExtent shown() const { return {-start_.z, normal_}; }
 
   bool asked(const MayMeetPlane& may_meet) const { return !may_meet || may_meet(start_, normal_); }
 
   BorderExtent extent(const glm::vec3& up) const {
-    const glm::vec3 axis = glm::cross(up, normal_) + kAxisOfLevelPlanes,
-                    right = glm::normalize(axis - glm::dot(axis, normal_) * normal_),
-                    uphill = glm::cross(normal_, right);
-    SeenAlong along[4] = {SeenAlong(right), SeenAlong(-right), SeenAlong(uphill),
-                          SeenAlong(-uphill)};
+    const Axes axes = axes_of(up);
+    const glm::vec3& uphill = axes[2];
+    SeenAlong along[4] = {SeenAlong(axes[0]), SeenAlong(axes[1]), SeenAlong(axes[2]),
+                          SeenAlong(axes[3])};
     const auto add = [&](const Run& run) {
       for (SeenAlong& direction : along) direction.add(run);
     };
@@ -122,7 +132,7 @@ class CutSurface {
         add(walk(from, -across));
       }
     }
-    BorderExtent extent;
+    BorderExtent extent = shown();
     for (int k = 0; k < 4; ++k) extent.seen[k] = along[k].seen();
     const float level = 1 - std::abs(glm::dot(uphill, up)), wide = extent.seen[0] + extent.seen[1],
                 high = extent.seen[2] + extent.seen[3],
@@ -135,7 +145,44 @@ class CutSurface {
     return extent;
   }
 
+  /// The same surface from another pixel, whose extent is known.
+  BorderExtent extent_beside(const CutSurface& other, const BorderExtent& known,
+                             const glm::vec3& up) const {
+    BorderExtent extent = shown();
+    const Axes axes = other.axes_of(up);
+    for (std::size_t k = 0; k < 4; ++k) {
+      extent.seen[k] = std::max(known.seen[k] - glm::dot(axes[k], start_ - other.start_), 0.0f);
+      extent.most[k] = known.most[k];
+    }
+    return extent;
+  }
+
+  /// Whether another pixel shows this surface.
+  bool is_shown_at(const glm::ivec2& at) const {
+    const glm::vec3 there = position(at), to = there - start_;
+    return std::abs(glm::dot(to, normal_)) <= tolerance(there, to) && looks_alike(at);
+  }
+
  private:
+  /// Those of BorderExtent, unit.
+  using Axes = std::array<glm::vec3, 4>;
+
+  Axes axes_of(const glm::vec3& up) const {
+    const glm::vec3 axis = glm::cross(up, normal_) + kAxisOfLevelPlanes,
+                    right = glm::normalize(axis - glm::dot(axis, normal_) * normal_),
+                    uphill = glm::cross(normal_, right);
+    return {right, -right, uphill, -uphill};
+  }
+
+  /// How far off its plane a point may seem to be.
+  float tolerance(const glm::vec3& there, const glm::vec3& to) const {
+    return kPlaneShare * glm::length(to) + kPlanePx * footprint(-there.z);
+  }
+
+  bool looks_alike(const glm::ivec2& at) const {
+    return glm::dot(tangent_normal(scene_, at.x, at.y), normal_) >= kSameWay;
+  }
+
   float footprint(float depth) const {
     return (scene_.orthographic ? 1 : depth) / std::min(scene_.fx, scene_.fy);
   }
@@ -178,13 +225,12 @@ class CutSurface {
       if (is_surface) {
         const glm::vec3 there = position(at), to = there - start_;
         const float above = glm::dot(to, normal_), length = glm::length(to),
-                    tolerance = kPlaneShare * length + kPlanePx * footprint(-there.z);
+                    off = tolerance(there, to);
         if (length > radius_) break;
-        if (above > tolerance) continue;
-        same =
-            within(-above, tolerance) * within(length, std::max(at_least, 2 * glm::length(run.to)));
-        if (same > 0 && glm::dot(tangent_normal(scene_, at.x, at.y), normal_) < kSameWay) {
-          if (above >= -tolerance) continue;
+        if (above > off) continue;
+        same = within(-above, off) * within(length, std::max(at_least, 2 * glm::length(run.to)));
+        if (same > 0 && !looks_alike(at)) {
+          if (above >= -off) continue;
           same = 0;
         }
         if (same > 0) {
@@ -206,29 +252,48 @@ class CutSurface {
 
   const MarchScene& scene_;
   const glm::ivec2 at_;
-  const glm::vec3 start_;
+  const glm::vec3 start_, normal_;
   const float radius_, reach_px_, diagonal_px_;
-  glm::vec3 normal_{0};
 };
 
 }  // namespace
 
 CutSurfaces find_cut_surfaces(const MarchScene& scene, const glm::vec3& up, float radius,
                               const MayMeetPlane& may_meet) {
-  const int w = scene.layout.width(), h = scene.layout.height();
+  const int w = scene.layout.width(), h = scene.layout.height(),
+            together = std::max(1, int(diagonal_px(scene) / kDetailPx));
   CutSurfaces cut{up, std::vector<BorderExtent>(scene.border.size())};
-  const auto find = [&](int x, int y, std::ptrdiff_t index) {
-    if (!scene.shows_surface(scene.layout.index(x, y))) return;
-    const CutSurface surface(scene, {x, y}, index, radius);
-    if (surface.asked(may_meet)) cut.extents[std::size_t(index)] = surface.extent(up);
+  // Groups lie alike in the display window, whatever part of it the raster is.
+  const auto find_along = [&](int count, int first_in_display, const auto& at, const auto& index) {
+    const int phase = (first_in_display % together + together) % together;
+    for_each_row((phase + count + together - 1) / together, [&](int group) {
+      const int first = group * together - phase;
+      std::optional<CutSurface> lead;
+      BorderExtent extent_of_lead;
+      for (int k = std::max(first, 0); k < std::min(first + together, count); ++k) {
+        const glm::ivec2 here = at(k);
+        if (!scene.shows_surface(scene.layout.index(here.x, here.y))) continue;
+        const CutSurface surface(scene, here, radius);
+        BorderExtent& extent = cut.extents[std::size_t(index(k))];
+        if (!surface.asked(may_meet)) {
+          extent = surface.shown();
+        } else if (lead && lead->is_shown_at(here)) {
+          extent = surface.extent_beside(*lead, extent_of_lead, up);
+        } else {
+          extent = surface.extent(up);
+          if (k == first) lead.emplace(surface), extent_of_lead = extent;
+        }
+      }
+    });
   };
-  for_each_row(w, [&](int x) {
-    for (const bool last : {false, true}) find(x, last ? h - 1 : 0, scene.border.in_row(last, x));
-  });
-  for_each_row(h, [&](int y) {
-    for (const bool last : {false, true})
-      find(last ? w - 1 : 0, y, scene.border.in_column(last, y));
-  });
+  for (const bool last : {false, true}) {
+    find_along(
+        w, scene.first_x, [&](int x) { return glm::ivec2(x, last ? h - 1 : 0); },
+        [&](int x) { return scene.border.in_row(last, x); });
+    find_along(
+        h, scene.first_y, [&](int y) { return glm::ivec2(last ? w - 1 : 0, y); },
+        [&](int y) { return scene.border.in_column(last, y); });
+  }
   return cut;
 }
 

@@ -20,10 +20,12 @@
 
 namespace ssdo {
 
-/// How far the surface of a pixel at the border is seen from there, and how much farther it may go
-/// on at most. Scene units along the axes of its tangent plane: to the right, to the left, uphill,
+/// What a pixel at the border shows, how far it is seen from there, and how much farther it may go
+/// on at most: scene units along the axes of its tangent plane, to the right, to the left, uphill,
 /// downhill.
 struct BorderExtent {
+  float depth = 0;      ///< as MarchLayer has it
+  glm::vec3 normal{0};  ///< of the tangent plane
   float seen[4] = {}, most[4] = {1, 1, 1, 1};
 };
 

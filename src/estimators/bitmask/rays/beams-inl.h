@@ -196,17 +196,18 @@ class Beams {
         M undecided = clear;
         for (const DepthBounds& layer : bounds) {
           const float* cells = &layer.cells()->nearest;
-          const VI slopes = hn::BitCast(di, gather(cells + 1, cell));
+          const V4 stored = gather4(cells, cell);  // DepthBounds::Stored
+          const VI slopes = hn::BitCast(di, stored.y);
           const V slope_x = hn::BitCast(d, hn::And(slopes, set_int(int(0xffff0000u)))),
                   slope_y = hn::BitCast(d, hn::ShiftLeft<16>(slopes));
           const V steep =
               hn::MulAdd(half_x, hn::Abs(slope_x - slope_x_), half_y * hn::Abs(slope_y - slope_y_));
-          const V front = gather(cells, cell) - plane +
+          const V front = stored.x - plane +
                           hn::MulAdd(slope_x, middle_x - left - half * last,
                                      slope_y * (middle_y - top - half * last));
           undecided = hn::And(undecided, front + steep >= least);
           if (!any(undecided)) break;  // what lies behind is lower still
-          const M behind = gather(cells + 2, cell) - highest > most;
+          const M behind = stored.z - highest > most;
           clear = hn::AndNot(hn::AndNot(behind, undecided), clear);
           undecided = hn::And(undecided, behind);
         }

@@ -36,11 +36,11 @@ constexpr float kCornerTrust = 0.5f;
 constexpr float kFarAway = 1e30f;
 
 /// How likely it is, 0..1, that a surface is there so far along an axis of its plane, of which
-/// BorderExtent tells at k and k + 1.
-HWY_INLINE V is_there(V way, const V* seen, const V* most) {
+/// BorderExtent tells ahead and back.
+HWY_INLINE V is_there(V way, V seen_ahead, V seen_back, V most_ahead, V most_back) {
   const M ahead = way >= set(0);
-  const V beyond = hn::Abs(way) - hn::IfThenElse(ahead, seen[0], seen[1]);
-  const V share = saturate(set(1) - beyond / hn::IfThenElse(ahead, most[0], most[1]));
+  const V beyond = hn::Abs(way) - hn::IfThenElse(ahead, seen_ahead, seen_back);
+  const V share = saturate(set(1) - beyond / hn::IfThenElse(ahead, most_ahead, most_back));
   return share * share;
 }
 
@@ -68,13 +68,16 @@ template <bool kOrthographic>
 HWY_INLINE V meets_beyond(const March& march, const MarchReceiver& p, const Ray& ray, V leaves,
                           const Border& border, bool ground) {
   const MarchScene& scene = march.scene;
-  const V zero = set(0), depth = border(scene.border_depth);
+  const float* extents = &march.cut->extents.front().depth;
+  static_assert(sizeof(BorderExtent) == 12 * sizeof(float));
+  const VI at = border.index * set_int(12);
+  const V4 shown = gather4(extents, at);
+  const V zero = set(0), depth = shown.x;
   V3 pixel{hn::MulAdd(border.dx, set(1 / scene.fx), p.slope_x),
            hn::NegMulAdd(border.dy, set(1 / scene.fy), p.slope_y), set(-1)};
   if constexpr (kOrthographic) pixel.z = hn::Neg(depth);
   const V3 at_border = kOrthographic ? pixel : pixel * depth;
-  const V3 normal{border(scene.border_normal[0]), border(scene.border_normal[1]),
-                  border(scene.border_normal[2])};
+  const V3 normal{shown.y, shown.z, shown.w};
   const V3 to_border = at_border - p.position;
   const V way = dot(to_border, normal) / dot(ray.to, normal);
   const M meets = hn::And(way > leaves, way < hn::Min(ray.length, set(march.radius)));
@@ -84,13 +87,9 @@ HWY_INLINE V meets_beyond(const March& march, const MarchReceiver& p, const Ray&
 
   const V3 right = unit_across(cross(set(march.cut->up), normal) + set(kAxisOfLevelPlanes), normal),
            beyond = mul_add(ray.to, way, -to_border);
-  const float* extents = march.cut->extents.front().seen;
-  const VI at = hn::ShiftLeft<3>(border.index);
-  V seen[4], most[4];
-  for (int k = 0; k < 4; ++k)
-    seen[k] = gather(extents + k, at), most[k] = gather(extents + 4 + k, at);
-  V likely = is_there(dot(beyond, right), seen, most) *
-             is_there(dot(beyond, cross(normal, right)), seen + 2, most + 2);
+  const V4 seen = gather4(extents + 4, at), most = gather4(extents + 8, at);
+  V likely = is_there(dot(beyond, right), seen.x, seen.y, most.x, most.y) *
+             is_there(dot(beyond, cross(normal, right)), seen.z, seen.w, most.z, most.w);
   if (ground) likely = hn::Max(likely, saturate(dot(normal, set(march.cut->up))));
   if (!scene.border_beyond.empty()) {
     const V end = border(scene.border_beyond);

@@ -237,17 +237,17 @@ class Walk {
     M meets = hn::AndNot(looks, looks);
     for (const DepthBounds& layer : bounds_) {
       const float* cells = &layer.cells()->nearest;
-      const V nearest = gather(cells, cell);
-      const VI slopes = hn::BitCast(di, gather(cells + 1, cell));
+      const V4 stored = gather4(cells, cell);  // DepthBounds::Stored
+      const VI slopes = hn::BitCast(di, stored.y);
       const V slope_x = hn::BitCast(d, hn::And(slopes, set_int(int(0xffff0000u)))),
               slope_y = hn::BitCast(d, hn::ShiftLeft<16>(slopes));
       const V steep_x = hn::MulAdd(w.a, slope_x, w.rise_x),
               steep_y = hn::MulAdd(w.a, slope_y, w.rise_y);
-      const V middle = hn::MulAdd(w.a, nearest, way);
+      const V middle = hn::MulAdd(w.a, stored.x, way);
       const V front = hn::MulAdd(half, hn::Abs(steep_x) + hn::Abs(steep_y), middle);
       looks = hn::And(looks, hn::And(front > set(0), front >= w.growth * w.t));
       if (!any(looks)) return meets;  // what lies behind is lower still
-      const V back = hn::MulAdd(w.a, gather(cells + 2, cell), lowest);
+      const V back = hn::MulAdd(w.a, stored.z, lowest);
       const M met = hn::And(looks, back <= w.growth * to);
       meets = hn::Or(meets, met);
       looks = hn::AndNot(met, looks);
@@ -269,7 +269,10 @@ class Walk {
         hn::ShiftRight<kSmallest>(y) * set_int(bounds_[0].columns()) + hn::ShiftRight<kSmallest>(x);
     const VI pixel = hn::ShiftLeft<2 * kSmallest>(cell) +
                      hn::ShiftLeft<kSmallest>(hn::And(y, in_cell)) + hn::And(x, in_cell);
-    const VI index = hn::IfThenElseZero(hn::RebindMask(DI(), looks), hn::ShiftLeft<1>(pixel));
+    // Two pixels have four numbers.
+    const VI one = set_int(1), index = hn::IfThenElseZero(hn::RebindMask(DI(), looks),
+                                                          hn::ShiftLeft<1>(hn::AndNot(one, pixel)));
+    const M is_second = hn::RebindMask(D(), hn::And(pixel, one) == one);
     // A pixel stands for its row or column of the ray if that passes nearest to its middle; those
     // that it only touches would widen everything by a part of a pixel.
     const V aside = hn::Abs(dx * w.step_y - dy * w.step_x);
@@ -280,11 +283,12 @@ class Walk {
     for (const DepthBounds& layer : bounds_) {
       if (!any(looks)) return blocked;
       const float* pixels = &layer.pixels()->x;
-      const V near = gather(pixels, index), front = hn::MulAdd(w.a, near, way);
+      const V4 both = gather4(pixels, index);
+      const V near = hn::IfThenElse(is_second, both.z, both.x), front = hn::MulAdd(w.a, near, way);
       const M meets = hn::And(looks, hn::And(front > set(0), front >= height));
       looks = hn::AndNot(front < height, looks);
       if (!any(meets)) continue;
-      const V back = hn::MulAdd(w.a, gather(pixels + 1, index), way);
+      const V back = hn::MulAdd(w.a, hn::IfThenElse(is_second, both.w, both.y), way);
       const M hides =
           hn::And(hn::And(meets, back <= height), within_radius(w, dx, dy, near, front));
       blocked = hn::Or(blocked, hides);
