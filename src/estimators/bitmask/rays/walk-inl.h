@@ -146,6 +146,11 @@ class Walk {
   /// With so few lanes busy it pays to fill the others.
   static constexpr int kFewBusy = kLanes * 3 / 4;
 
+  /// A surface is known in the middles of pixels, and its tangent plane from those of neighbours. A
+  /// front so few pixels away may be the same surface, which bends between them: it is in the way
+  /// only if it rises over the ray by as much, as a slope from the receiver that falls to 0 there.
+  static constexpr float kBend = 0.1f, kBendPx = 8;
+
   /// The way along an axis of the picture.
   struct Axis {
     V per_step, ahead, beside;
@@ -278,14 +283,16 @@ class Walk {
     const V aside = hn::Abs(dx * w.step_y - dy * w.step_x);
     looks = hn::And(looks, aside <= set(0.5f) * hn::Max(hn::Abs(w.step_x), hn::Abs(w.step_y)));
     const V t = hn::MulAdd(dx, w.step_x, dy * w.step_y);
-    const V way = linear(w, dx, dy), height = w.growth * t;
+    const V way = linear(w, dx, dy), height = w.growth * t,
+            clears = hn::MulAdd(t * saturate(hn::NegMulAdd(t, set(1 / kBendPx), set(1))),
+                                set(kBend / march_.scene.fx), height);
     M blocked = hn::AndNot(looks, looks);
     for (const DepthBounds& layer : bounds_) {
       if (!any(looks)) return blocked;
       const float* pixels = &layer.pixels()->x;
       const V4 both = gather4(pixels, index);
       const V near = hn::IfThenElse(is_second, both.z, both.x), front = hn::MulAdd(w.a, near, way);
-      const M meets = hn::And(looks, hn::And(front > set(0), front >= height));
+      const M meets = hn::And(looks, hn::And(front > set(0), front >= clears));
       looks = hn::AndNot(front < height, looks);
       if (!any(meets)) continue;
       const V back = hn::MulAdd(w.a, hn::IfThenElse(is_second, both.w, both.y), way);
