@@ -34,13 +34,13 @@ constexpr float kSameWay = 0.7f;
 
 /// A surface ends where others are seen behind its plane for so many pixels and a share of those
 /// over which it was seen: windows and gaps between houses are no ends. Behind what stands before
-/// it, it goes on if it is seen again before it would be twice as long, or this share of the
-/// diagonal of the frame at its depth.
-constexpr float kGapPx = 2, kGapShare = 0.1f, kHiddenShare = 0.15f;
+/// it, it goes on if it is seen again before it would be so many times as long, or have this share
+/// of the diagonal of the frame at its depth.
+constexpr float kGapPx = 2, kGapShare = 0.1f, kHiddenTimes = 4 / 3.0f, kHiddenShare = 0.1f;
 
 /// None of these limits is sharp, for cameras move: what exceeds one counts the less, up to not at
-/// all at so many times the limit. With sharp ones a row of houses, seen past a gap or not, halved
-/// the light of a street between two frames.
+/// all at so many times the limit. With sharp ones in between a row of houses, seen past a gap or
+/// not, halved the light of a street between two frames.
 constexpr float kNotAtAll = 2;
 
 /// The steps of a walk grow with the way, by one pixel in so many, up to this share of the frame.
@@ -205,7 +205,7 @@ class CutSurface {
         std::max(1, (way.x != 0 ? scene_.frame_width : scene_.frame_height) / kMostSteps);
     Run run{position(from) - start_};
     const float at_least =
-        2 * glm::length(run.from) + kHiddenShare * diagonal_px_ * footprint(-start_.z);
+        kHiddenTimes * glm::length(run.from) + kHiddenShare * diagonal_px_ * footprint(-start_.z);
     // How sure it is that what the walk meets is still the same surface, how well the end is seen
     // of one that is not, and up to where what it has met counts.
     float sure = 1, cut = 0, gap = 0, last_px = 0;
@@ -228,7 +228,8 @@ class CutSurface {
                     off = tolerance(there, to);
         if (length > radius_) break;
         if (above > off) continue;
-        same = within(-above, off) * within(length, std::max(at_least, 2 * glm::length(run.to)));
+        same = within(-above, off) *
+               within(length, std::max(at_least, kHiddenTimes * glm::length(run.to)));
         if (same > 0 && !looks_alike(at)) {
           if (above >= -off) continue;
           same = 0;
