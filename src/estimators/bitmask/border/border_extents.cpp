@@ -47,8 +47,8 @@ constexpr float kNotAtAll = 2;
 /// So many other walks start from each, at right angles, to both sides.
 constexpr int kPixelsPerStep = 8, kMostSteps = 128, kWalksAcross = 3;
 
-/// One pixel of the border stands for those beside it that show its surface too, so many times as
-/// many as the diagonal of the frame has this many pixels.
+/// Pixels along the border share the walks of the first of their group where they show its surface:
+/// groups are as long as a pixel of a frame with this diagonal.
 constexpr float kDetailPx = 512;
 
 constexpr glm::ivec2 kWays[4] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
@@ -128,6 +128,7 @@ class CutSurface {
       const int px = int(run.px);
       for (int k = 1; k <= kWalksAcross && px > 0; ++k) {
         const glm::ivec2 from = at_ + way * (px * k / kWalksAcross), across(way.y, way.x);
+        if (!scene_.shows_surface(scene_.layout.index(from.x, from.y))) continue;
         add(walk(from, across));
         add(walk(from, -across));
       }

@@ -147,8 +147,8 @@ class Walk {
   static constexpr int kFewBusy = kLanes * 3 / 4;
 
   /// A surface is known in the middles of pixels, and its tangent plane from those of neighbours. A
-  /// front so few pixels away may be the same surface, which bends between them: it is in the way
-  /// only if it rises over the ray by as much, as a slope from the receiver that falls to 0 there.
+  /// front less than kBendPx away may be the same surface, bent in between: it is in the way only
+  /// if it rises over the ray by more than a slope, kBend at the receiver and 0 at kBendPx.
   static constexpr float kBend = 0.1f, kBendPx = 8;
 
   /// The way along an axis of the picture.
