@@ -23,8 +23,8 @@ struct BandPlan {
 /// an environment and so many lamps.
 std::size_t most_pixels_in(std::size_t memory, const OutputOptions& output, int lamps);
 
-/// Bytes that a process takes for a frame of so many pixels in one piece, with a margin. Of
-/// `scene`, the light and the senders are looked at.
+/// Bytes that a process takes for a frame of so many pixels in one piece, with a margin. `scene`:
+/// light, senders, what casts and blocks.
 double bytes_in_one_piece(const Plan& plan, const Scene& scene, std::size_t pixels);
 
 /// The bands of a frame with these data and display windows. `overview` is what was read of it, and

@@ -32,7 +32,7 @@ void check_rendered_layers(Compose compose, const GBuffer& gbuffer, const std::s
 /// Throws ExitCode::usage where --aov light:NAME names no lamp.
 void check_lights(const Light& light, const GBuffer& gbuffer, const std::string& file);
 
-/// Whether the composite takes how much of each light arrives, not of all together.
+/// Whether the composite needs the arriving share of each light, not just of all light.
 bool needs_lights(const Composition& composition, const Scene& scene, const GBuffer& gbuffer);
 
 /// Adds what the composite is, and why, to the reasons of a plan that makes it.

@@ -77,7 +77,7 @@ class ProductChoice {
            (output_.compose || plan_.composition.compose != Compose::relight);
   }
 
-  /// What of the planes the wanted products are made of the method makes, and the layers allow.
+  /// The planes that the wanted products need, if the method makes them and the layers allow it.
   ProductSet asked_of_method(const Names& wanted) const {
     ProductSet asked, possible;
     for (const Product& product : table_) {

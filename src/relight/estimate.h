@@ -37,7 +37,7 @@ struct Estimate {
   std::vector<std::pair<std::string, double>> unlit;
 };
 
-/// What a temporal plan takes from the frame before, both of them where there is one.
+/// For a temporal plan: the frame before, if any, and the motion of the present one.
 struct TemporalInput {
   std::optional<History> history;
   Plane<glm::vec2> motion;  ///< pixels to where it was there; may be empty

@@ -26,8 +26,8 @@ struct FrameOptions {
   /// Which axis is up by other frames of the sequence too, asked where nothing but P tells it; for
   /// a frame alone it is empty.
   std::function<std::optional<UpEvidence>()> up_of_shot = {};
-  /// Backdrop::clearance of other frames of the sequence too, asked where this frame shows the
-  /// shape of one. Empty: of a frame alone.
+  /// Backdrop::clearance by other frames of the sequence too, asked if this frame shows a
+  /// backdrop's shape. Empty: by this frame alone.
   std::function<std::optional<double>()> backdrop_of_shot = {};
   std::size_t memory = std::numeric_limits<std::size_t>::max();  ///< bytes that a frame may take
 };

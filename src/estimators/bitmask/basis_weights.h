@@ -7,8 +7,8 @@
 
 namespace ssdo {
 
-/// The light's coefficients, channel by channel, times the constants that make spherical harmonics
-/// orthonormal, which the polynomials of the march lack. Light of order 0 has band 0 alone.
+/// The light's coefficients, channel by channel, times the constants of orthonormal spherical
+/// harmonics, which the polynomials of the march lack. For light of order 0: 1 for band 0, else 0.
 std::vector<float> basis_weights(const Light& light, int order);
 
 }  // namespace ssdo

@@ -78,8 +78,8 @@ HWY_INLINE V3 back_of(const V3& sides) {
 /// holds_solid() of march_scene.h for a vector of depths: false where the depth is NaN.
 HWY_INLINE M holds_solid(V depth) { return depth == depth; }
 
-/// The place of a vector of pixels in the raster. Of row `y` it holds every eighth pixel from
-/// `column_phase` on, skipping the first `column` of those.
+/// The place of a vector of pixels in the raster. The vector holds every eighth pixel of row `y`
+/// from `column_phase` on, less the first `column` ones.
 struct Place {
   std::ptrdiff_t index;
   int y, column_phase, column;

@@ -70,7 +70,7 @@ struct MarchLayer {
 };
 
 /// What a march meets, pixel by pixel. Tangent planes belong to layer 0; the fronts of the layers
-/// behind it face the viewer. Planes are not-a-number where there is nothing.
+/// behind it face the viewer. All of these are not-a-number where there is nothing.
 struct MarchPlanes {
   std::vector<MarchLayer> layers;  ///< near to far; layer 0 is what pixels show
   /// The tangent plane of layer 0: how much nearer it comes from a pixel to the next, to the right

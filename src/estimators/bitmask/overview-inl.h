@@ -70,7 +70,7 @@ inline March march_in_overview(const March& march) {
   return far;
 }
 
-/// The receiver and the frame of a slice as they are in that raster.
+/// A receiver, and a side of a slice, in the pixels of the overview.
 HWY_INLINE MarchReceiver in_far_pixels(const March& march, MarchReceiver p) {
   const MarchScene &scene = march.scene, &far = march.far->scene;
   constexpr float kSide = Interleaving::kPeriod;

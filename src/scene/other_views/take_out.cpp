@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Objects that cast nothing are taken out of a frame. What is behind them no pixel shows, so each
+// Objects that cast nothing are taken out of a frame. No pixel shows what is behind them, so each
 // pixel of the hole gets, in this order,
 //
 // - what another view shows on its view ray, behind the object,
-// - what the surfaces around the hole suggest. Of the lines through the pixel in four directions,
-//   each ends in two pixels beside the hole. Where both show one plane, that plane is there; depths
+// - what the surfaces around the hole suggest. Four lines run through the pixel, and each ends in
+//   two pixels beside the hole. Where both show one plane, that plane is there; depths
 //   of a plane change linearly in 1/z along a line of the picture. Else each of the two goes on as
 //   its tangent plane, or as background. What goes on from nearby counts more, by the square of the
 //   distance in pixels, and guesses that agree count together. So a floor goes on below a thing
@@ -169,7 +169,7 @@ class Hole {
     }
   }
 
-  /// `known`: what counts as known beside the pixels around the hole.
+  /// Pixels of the hole with the mark `known` count as known too.
   Ends find_ends(unsigned char known) const {
     Ends ends;
     for_each_task(kWays.size(), [&](std::size_t k) {

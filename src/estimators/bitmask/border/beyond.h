@@ -51,8 +51,8 @@ namespace ssdo {
 /// Share of the light of a map that comes through surfaces that may go on beyond the frame.
 inline constexpr float kLightThroughBeyond = 0.5f;
 
-/// The slices in which one pixel of each pattern looks for the mean ao of a frame: the same for
-/// every quality and seed.
+/// The slices for the mean ao of a frame, in one pixel of each pattern: the same for every quality
+/// and seed.
 SlicePattern mean_ao_pattern(const Interleaving& layout, const Window& display);
 
 /// Adds what some rows of a raster tell, of one pixel of each pattern: ao where surfaces go on

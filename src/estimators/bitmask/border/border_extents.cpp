@@ -24,8 +24,8 @@ constexpr float kMostAside = 2, kMostUp = 0.3f;
 /// border, over what it is for others.
 constexpr float kEndShare = 0.05f, kEndMargin = 0.1f;
 
-/// A point is on a tangent plane that it is no farther from than this share of the way to it, or
-/// this many pixels of its depth.
+/// A point is on a tangent plane if it is off by no more than this share of the way to it plus this
+/// many pixels at its depth.
 constexpr float kPlaneShare = 0.02f, kPlanePx = 0.75f;
 
 /// What looks elsewhere by more than this cosine is not of the same surface, as the floor at the
@@ -146,7 +146,7 @@ class CutSurface {
     return extent;
   }
 
-  /// The same surface from another pixel, whose extent is known.
+  /// The extent here, from that of another pixel of the same surface.
   BorderExtent extent_beside(const CutSurface& other, const BorderExtent& known,
                              const glm::vec3& up) const {
     BorderExtent extent = shown();
@@ -165,7 +165,7 @@ class CutSurface {
   }
 
  private:
-  /// Those of BorderExtent, unit.
+  /// The axes of BorderExtent, unit vectors.
   using Axes = std::array<glm::vec3, 4>;
 
   Axes axes_of(const glm::vec3& up) const {
@@ -193,7 +193,7 @@ class CutSurface {
     return {ray_slope(scene_, at.x, at.y) * (scene_.orthographic ? 1 : depth), -depth};
   }
 
-  /// Pixels from one to the border of the frame, of which the raster may be some rows.
+  /// Pixels from `from` to the border of the frame along `way`, even past the raster.
   int to_border(const glm::ivec2& from, const glm::ivec2& way) const {
     const int x = from.x, y = scene_.frame_y + from.y;
     return way.x != 0 ? (way.x > 0 ? scene_.frame_width - 1 - x : x)

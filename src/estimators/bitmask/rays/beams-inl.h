@@ -132,7 +132,7 @@ class Beams {
   /// border of a cell.
   static constexpr float kBesideRay = 0.52f;
 
-  /// More than rounding moves a nearness, relative to it.
+  /// Rounding moves no nearness by more than this share of it.
   static constexpr float kRounding = 2e-6f;
 
   static HWY_INLINE M goes_on(const RaysOfBlock& rays, int i) {

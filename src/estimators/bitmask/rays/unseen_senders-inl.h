@@ -55,7 +55,7 @@ struct UnseenSenders {
     return sum;
   }
 
-  /// How far away a ray in a sector of a lane meets them; infinite where that is not known.
+  /// How far away a ray in a sector of a lane meets a solid; infinite where it is not known.
   HWY_INLINE float reach(int lane, int sector, float cosine, float sine) const {
     alignas(64) std::uint32_t of_lanes[kLanes];
     for (int k = 0; k < count; ++k) {

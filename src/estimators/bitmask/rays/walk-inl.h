@@ -266,7 +266,7 @@ class Walk {
   }
 
   /// Which lanes of `looks` have a solid of their pixel in the way. The pixel is (dx, dy) away, and
-  /// (x, y) in the grid of cells.
+  /// (x, y) from the first one of the grid of cells.
   HWY_INLINE M is_blocked(const Way& w, V dx, V dy, VI x, VI y, M looks) const {
     constexpr int kSmallest = DepthBounds::kSmallest;
     const VI in_cell = set_int((1 << kSmallest) - 1);

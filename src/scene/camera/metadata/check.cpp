@@ -83,8 +83,8 @@ void warn_of_contradiction(const HeaderCamera& camera, const std::string& what,
       fmt::format("{} is not used: {}; the camera is that of P", describe(camera), what));
 }
 
-/// A lens of the header is like a camera's: its principal point in the picture, and its pixels of
-/// the shape that the file gives them.
+/// Whether a lens of the header may be a camera's: its principal point is in the picture, and its
+/// pixels have the aspect ratio that the file gives.
 bool is_plausible(const Camera& camera, const GBuffer& g) {
   const Window& display = g.display_of_file();
   const bool centred = camera.cx >= display.x0 && camera.cx <= display.x1 &&

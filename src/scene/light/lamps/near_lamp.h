@@ -25,7 +25,7 @@ struct LampSample {
   double solid_angle = 0;  ///< of the lamp, had it all the density of its points that there is here
 };
 
-/// Receivers nearer to the plane of a flat lamp than this see points of it as from there.
+/// Receivers nearer to the plane of a flat lamp see its points as from this far away.
 constexpr double kNearestToPlane = 1e-9;
 
 /// Farther than this, points of a rect are even over its area: floats lose the angles of its
@@ -46,8 +46,8 @@ struct LampBends {
   void add(double angle) { angles[std::size_t(count++)] = angle; }
 };
 
-/// The parts of a lamp that a receiver sees at one angle off the axis, seen as a circle about the
-/// direction opposite to it.
+/// The parts of a lamp that a receiver sees at one angle off its axis: arcs of a circle about the
+/// opposite direction.
 struct LampArcs {
   std::array<LampArc, 4> arcs;
   int count = 0;
