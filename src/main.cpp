@@ -57,8 +57,8 @@ ssdo::ExitCode run(int argc, char** argv) {
   return ssdo::run_batch(parsed.options, resources);
 }
 
-/// Opens the standard streams that the caller has closed: the first file to be written would take
-/// the place of standard output, and progress would go into it.
+/// Opens the standard streams that the caller has closed: else the first file to be written would
+/// get the descriptor of standard output, and progress would go into the file.
 void open_standard_streams() {
   int descriptor;
   while ((descriptor = open("/dev/null", O_RDWR)) >= 0 && descriptor <= STDERR_FILENO) {
@@ -66,8 +66,8 @@ void open_standard_streams() {
   close(descriptor);
 }
 
-/// Keeps the memory of planes that are freed for those of the next stage and frame. What goes back
-/// to the system comes again page by page, at 0.4 ms of CPU time per MB: a fifth of a 4K frame.
+/// Keeps the memory of freed planes for the next stage and frame. Memory that is returned to the
+/// system comes back page by page, at 0.4 ms of CPU time per MB: a fifth of a 4K frame.
 void keep_freed_memory() {
   mallopt(M_MMAP_MAX, 0);  // no mapping of its own for a plane, which would end with the plane
   mallopt(M_TRIM_THRESHOLD, INT_MAX);

@@ -14,7 +14,7 @@
 namespace ssdo {
 namespace {
 
-constexpr std::size_t kShortestEnd = 3;  ///< letters of a name that tell which one it is
+constexpr std::size_t kShortestEnd = 3;  ///< fewest letters that may stand for part of a name
 
 std::string in_lower_case(std::string_view text) {
   std::string lower(text);
@@ -41,9 +41,9 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return rows[a.size()][b.size()];
 }
 
-/// How far `name` is from `wrong`; nothing where it is not near. A name that is begun or ended, or
-/// misspelt without what stands before its last dot, is farther than any that is misspelt, and the
-/// shortest of them is the nearest.
+/// The distance of `name` from `wrong`; nothing where it is not near. A name that begins or ends
+/// with `wrong`, or of which `wrong` misspells the part after the last dot, has its length as
+/// distance: it is farther than any that is misspelt, and the shortest such name is the nearest.
 std::optional<std::size_t> cost(const std::string& wrong, const std::string& name) {
   const std::size_t most = (wrong.size() + 1) / 3, faults = distance(wrong, name);
   if (faults <= most) return faults;

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Error of a share (ao) that a map shows as black or white. For light it is the mean light.
+/// The error that a map of a ratio (AO) shows as black or white; for light, the mean light.
 constexpr double kShareScale = 0.25;
 
 /// Measures one frame.

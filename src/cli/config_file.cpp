@@ -99,7 +99,7 @@ class ConfigFile {
     }
   }
 
-  /// Those that a file may have.
+  /// The keys that a file may have.
   std::vector<std::string> keys() const {
     std::vector<std::string> names;
     for (const CLI::Option* option : app_.get_options()) {

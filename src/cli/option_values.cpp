@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::array<std::pair<std::string_view, DepthKind>, 3> kDepthKinds = {
     {{"planar", DepthKind::planar}, {"ray", DepthKind::ray}, {"inverse", DepthKind::inverse}}};
-constexpr std::string_view kNormalized = "normalized:";  ///< and NEAR,FAR
+constexpr std::string_view kNormalized = "normalized:";  ///< followed by NEAR,FAR
 
 struct CompressionRow {
   std::string_view name;
@@ -45,7 +45,7 @@ std::optional<std::pair<double, double>> read_pair(const std::string& text) {
   return a && b ? std::optional(std::pair(*a, *b)) : std::nullopt;
 }
 
-/// All of them are in memory at once.
+/// The most frames around one: all of them are in memory at once.
 constexpr int kMostAround = 100;
 constexpr int kLargestStep = 10000;
 

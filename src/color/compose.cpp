@@ -7,20 +7,20 @@
 //   occlude   beauty - ambient (1 - S) - sum light_k (1 - S_k) - specular (1 - reflection)
 //   add       beauty + F[alpha (albedo (direct + bounce) + specular)]
 //
-// In occlude, `specular` is a layer of the render. In the others it is the product, if the user
-// names that.
+// In occlude, `specular` is a layer of the render. In relight and add it is the product, if the
+// user names it.
 //
 // F is the mean of the pixels of the G-buffer that a pixel of the output shows: one of them, or
 // those under the pixel filter with --downsample. The rendered layers have the output's size.
 //
-// S is the share of the environment's light that arrives. Light from everywhere alike is hidden by
-// 1 - ao. Of other light, each channel has a share of its own, direct over the direct light without
-// occluders: what hides a red light and not a green one throws a green shadow, where ao would make
-// it brown (Ritschel, Grosch, Seidel, "Approximating Dynamic Global Illumination in Image Space",
-// 2009). Under the filter it is F[alpha albedo direct] / F[alpha albedo unoccluded], as an ambient
-// layer that the renderer has filtered is F[alpha albedo unoccluded]. S_k is the same of a lamp,
-// and light_k the layer of what it gave without shadows (--aov light:NAME). What other lamps give
-// stays as rendered.
+// S is the share of the environment's light that arrives. For light that is the same from
+// everywhere it is ao. For other light, each channel has its own share, direct over the direct
+// light without occluders: an object that hides red light and not green throws a green shadow,
+// which ao would make brown (Ritschel, Grosch, Seidel, "Approximating Dynamic Global Illumination
+// in Image Space", 2009). Under the filter it is F[alpha albedo direct] / F[alpha albedo
+// unoccluded], as an ambient layer that the renderer has filtered is F[alpha albedo unoccluded].
+// S_k is the same share for a lamp, and light_k the layer of its light without shadows (--aov
+// light:NAME). The light of other lamps stays as rendered.
 //
 // occlude and add keep the beauty and its alpha where there is no geometry.
 //
@@ -29,7 +29,8 @@
 //   relight   F[(1 - k) alpha (albedo (direct + bounce) + specular)] + F[k] beauty
 //   add       beauty + F[(1 - k) alpha (albedo (direct + bounce) + specular)]
 //
-// Without a beauty, relight shows them open. What is held out has the composite times 1 - F[h].
+// Without a beauty, relight shows kept pixels unoccluded. Where objects are held out by the share
+// h, the composite is multiplied by 1 - F[h].
 #include "color/compose.h"
 
 #include <algorithm>
@@ -50,7 +51,7 @@ namespace {
 
 /// Directions from camera space into the space of the input's normals.
 Plane<glm::vec3> in_input_space(Plane<glm::vec3> directions, const glm::mat3& normals_to_camera) {
-  // The one is turned against the other, so that the transpose is the inverse.
+  // The matrix is orthogonal, so that its transpose is its inverse.
   for (glm::vec3& d : directions.pixels) {
     const glm::vec3 seen = d;
     for (int c = 0; c < 3; ++c) d[c] = glm::dot(normals_to_camera[c], seen);
@@ -96,7 +97,7 @@ glm::vec3 light_of(const Results& r, const Products& products, std::size_t i) {
   return within_range(light);
 }
 
-/// What surfaces send of the light that was found, premultiplied.
+/// The light that surfaces send, by the products, premultiplied by alpha.
 Plane<glm::vec3> sent_light(const Results& r, const Products& products, const Plane<float>& alpha) {
   auto sent = Plane<glm::vec3>::like(alpha);
   for_each_row(sent.height, [&](int y) {
@@ -111,7 +112,7 @@ struct Arriving {
   Plane<glm::vec3> part, whole;
 };
 
-/// `by` null: the same light from everywhere, of which ao is the visible part.
+/// `by` null: light that is the same from everywhere; its visible share is ao.
 Arriving arriving_light(const Results& r, const LitBy* by) {
   Arriving light;
   light.whole = weights_by_albedo(r);
@@ -149,14 +150,14 @@ const Plane<glm::vec3>& rendered(const GBuffer& gbuffer) {
   return gbuffer.beauty.empty() ? gbuffer.ambient : gbuffer.beauty;
 }
 
-/// What of rendered layers does not arrive.
+/// The part of rendered layers that occlusion takes away.
 class Hidden {
  public:
   explicit Hidden(const Results& r) : r_(r), sum_(Plane<glm::vec3>::like(rendered(r.gbuffer))) {
     std::fill(sum_.pixels.begin(), sum_.pixels.end(), glm::vec3(0));
   }
 
-  /// `layer` is what a light gave; `by` as of arriving_light().
+  /// `layer` is the rendered layer of a light; `by` as for arriving_light().
   void add(const Plane<glm::vec3>& layer, const LitBy* by) {
     const Arriving light = arriving_light(r_, by);
     for_each_row(sum_.height, [&](int y) {
@@ -201,7 +202,7 @@ Plane<glm::vec3> occluded(const Results& r) {
   for_each_row(hidden.height, [&](int y) {
     for (std::size_t i = hidden.index(0, y); i < hidden.index(0, y + 1); ++i) {
       if (!specular.empty()) hidden[i] += specular[i] * (1 - reflection[i]);
-      // No light is negative, unless the render has it so, even where its layers do not add up.
+      // Where layers do not add up, the result is not negative, unless the beauty is.
       hidden[i] = glm::max(within_range(beauty[i] - hidden[i]), glm::min(beauty[i], glm::vec3(0)));
     }
   });

@@ -35,7 +35,7 @@ struct NamedChannels {
 
   std::vector<NamedChannel> channels;
   float background;  ///< value where there is no surface
-  /// Those of them that were made for the output; the others are views of the products.
+  /// The planes that were made for the output; all other channels are views of the products.
   std::variant<std::monostate, Plane<float>, Plane<glm::vec3>, Composite> made;
 };
 

@@ -31,7 +31,7 @@ struct Composition {
   /// For occlude: the visible part of the ambient light is ao in every channel. Otherwise it is
   /// `direct` over the direct light without occluders.
   bool share_is_ao = false;
-  /// Beside the products of all light stand those of each light.
+  /// Whether outputs hold the products of each light beside those of all light.
   bool per_light = false;
   bool adds_specular = false;  ///< to relight and add: the light that surfaces mirror
   bool keeps_beauty = false;   ///< where GBuffer::masks say so

@@ -18,9 +18,9 @@ Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer);
 template <class T>
 Plane<T> at_output_size(Plane<T> values, const GBuffer& gbuffer);
 
-/// What the surface of each pixel of the G-buffer counts in means over surfaces: its coverage, 0
-/// where there is nothing to light; by albedo, times its albedo. All count 1 where a pixel of an
-/// output is one of the G-buffer.
+/// The weight of each pixel of the G-buffer in means over surfaces: its coverage, 0 where there is
+/// nothing to light; for weights_by_albedo(), times its albedo. Weights other than 0 are 1
+/// where a pixel of an output is one of the G-buffer.
 Plane<float> weights_by_coverage(const Results& results);
 Plane<glm::vec3> weights_by_albedo(const Results& results);
 

@@ -9,13 +9,13 @@
 
 namespace ssdo {
 
-/// The products with the pixels open that GBuffer::masks keeps, as far as it does: ao and the like
+/// The products with pixels shown unoccluded, as far as GBuffer::masks keeps them: ao and the like
 /// 1, direct light unoccluded, bent normals those of the surface, all else 0. Nothing where no
 /// pixel is kept.
 std::optional<Products> open_kept_pixels(const Products& found, const Scene& scene,
                                          const GBuffer& gbuffer);
 
-/// What of a pixel changes: 1 where no pixel is kept.
+/// The share of a pixel that is not kept: 1 where no pixel is.
 inline float changed_share(const GBuffer& gbuffer, std::size_t pixel) {
   return gbuffer.masks.kept.empty() ? 1.0f : 1 - gbuffer.masks.kept[pixel];
 }

@@ -5,10 +5,10 @@
 //   unshadowed = F[a rho E] / F[a rho]     E: what a surface receives if nothing is in front of it
 //   shadow     = direct / unshadowed       by channel; 1 where there is no light
 //
-// with coverage a, albedo rho and the mean F as in downsample.cpp. Their product is direct in every
-// channel, for one multiplication in a compositor, so that shadow is not clamped: methods that look
-// light up in another direction than the normal may find more than E. Where the normal receives
-// nothing, their product is 0.
+// with coverage a, albedo rho and the mean F as in downsample.cpp. unshadowed times shadow is
+// direct in every channel, by one multiplication in a compositor. For this, shadow is not clamped:
+// methods that look light up in another direction than the normal may find more than E. Where E is
+// 0, the product is 0.
 #pragma once
 
 #include <glm/vec3.hpp>

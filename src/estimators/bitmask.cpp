@@ -10,10 +10,10 @@
 //
 //   M(S) = int_S (n_v cos t + n_t sin t) d cos t
 //
-// 32 sectors divide a side equally in cos t, which is in solid angle. A solid of a pixel hides
-// those between its front and its back, which lies behind it on its own view ray; a mask gathers
-// them near to far. Then M(hidden) of the sectors that are hidden gives ao and direct light, by the
-// equations at the head of bitmask/visibility.cpp, where visibility() sums M and Moments::ao()
+// 32 sectors divide a side into equal steps of cos t, and so of solid angle. The solid of a pixel
+// hides the sectors between its front and its back, which lies behind the front on the pixel's view
+// ray; a mask collects the hidden sectors near to far. M(hidden) then gives ao and direct light, by
+// the equations at the head of bitmask/visibility.cpp, where visibility() sums M and Moments::ao()
 // divides (bitmask/moments-inl.h); bounce light is in bitmask/bounce.cpp.
 //
 // A march covers one side of a slice in a few steps and finds sectors (bitmask/side-inl.h). A walk
@@ -24,15 +24,23 @@
 // - w = 1 / |T~|^2, T~ the part of the slice's picture direction that is perpendicular to V. Slices
 //   that are uniform in the picture are not uniform around V off the optical axis: without w a true
 //   0.5 reads from 0.41 to 0.60 at 45 degrees.
-// - Sums are divided by what they are for an open surface, so that this reads exactly 1.
-// - Sectors of equal angle that count alike read a pit of 0.75 as 0.38 when seen from the side.
+// - Sums are divided by their values for an open surface, so that an open surface has exactly 1.
+// - Sectors of equal angle with equal weights gave the ao of a pit, seen from the side, as 0.38
+//   instead of 0.75. Here the weight of a sector is the integral of the cosine over it. Equal steps
+//   of cos t are cheap to find (no arc function) and the same for all pixels, so that moments of
+//   masks come from tables (bitmask/slice_sectors.cpp). The point that stands for a sector differs
+//   from slice to slice, or a gentle curve would show the sectors as bands.
 //   Here they count by the integral of the cosine over them. Equal steps of cos t are cheap to find
 //   (no arc function) and the same for all pixels, so that moments of masks come from tables
 //   (bitmask/slice_sectors.cpp). The point that stands for a sector differs from slice to slice, or
 //   a gentle curve would show the sectors as bands.
 // - direct is a ratio to the exact unoccluded irradiance E(N), the ratio estimator of Heitz, Hill
 //   and McGuire (2018, Combining Analytic Direct Illumination and Stochastic Shadows): the noise
-//   of a few directions cancels. L is taken in spherical harmonics, of the environment without its
+// - direct is a ratio to the exact unoccluded irradiance E(N), the ratio estimator of Heitz, Hill
+//   and McGuire (2018, Combining Analytic Direct Illumination and Stochastic Shadows): the noise of
+//   a few directions cancels. L is the environment without its sources, in spherical harmonics.
+//   Rays go to points of each source (bitmask/rays/source.cpp), and along the directions that
+//   facets mirror (bitmask/rays/reflection.cpp).
 //   sources; each source has rays to its points (bitmask/rays/source.cpp). So is what facets mirror
 //   (bitmask/rays/reflection.cpp).
 // - bounce takes the radiance of the first surface in each sector; no 1/d^2, so no singularity
@@ -40,10 +48,14 @@
 // - A sampled pixel represents the stretch of the march up to halfway to the samples before and
 //   after it (bitmask/piece-inl.h). Treated as points, few samples miss too much: 16 steps that
 //   represent their stretches are nearer to the limit than 24 points.
-// - GTAO does not guess backs, layers of solids behind what is seen (scene/solids/solids.cpp) and
+// - The backs of solids, layers of solids behind what is seen (scene/solids/solids.cpp) and
+//   surfaces beyond the frame (bitmask/border/extension-inl.h) are guessed; GTAO has none of these.
+//   How much light passes surfaces beyond the frame: bitmask/border/beyond.h,
+//   bitmask/border/border_extents.h.
 //   surfaces beyond the frame (bitmask/border/extension-inl.h). How much light comes through the
 //   latter: bitmask/border/beyond.h, bitmask/border/border_extents.h.
-// - What only other views show may be anywhere, behind the camera too: rays ask it for the
+// - Surfaces that only other views show may be anywhere, even behind the camera: rays test them for
+//   the sectors that the march leaves open (bitmask/other_views-inl.h).
 //   sectors that the march leaves open (bitmask/other_views-inl.h).
 #include "estimators/bitmask.h"
 
@@ -98,7 +110,7 @@ class Bitmask {
     return std::move(out_);
   }
 
-  /// What bands of the frame need of this scene, which is an overview of it.
+  /// The data of this scene, an overview of a frame, that bands of the frame need.
   FarScene overview(float from_px) {
     const MarchScene& s = march_scene_;
     FarRaster raster(layout_.width(), layout_.height(), s.first_x, s.first_y, from_px);
@@ -136,15 +148,16 @@ class Bitmask {
     return asked.direct || asked.bounce || asked.specular || asked.error;
   }
 
-  /// The pixels whose own light is found: all of the raster where they send it to others.
+  /// The pixels whose direct light is computed: the receivers and, where light is sent on, the
+  /// pixels that may send light to them.
   Window lit_part() const {
     const int sent = scene_.senders.radiance.empty() ? times_sent(scene_, request_) : 0;
     const Window& receivers = march_scene_.receivers;
     return sent > 0 ? with_senders(march_scene_, request_, receivers, sent) : receivers;
   }
 
-  /// Sources first: what bounds their rays needs more memory than any other light. But a prior is
-  /// asked about them when visibility is known.
+  /// Sources come first: the depth bounds of their rays need more memory than any other light. With
+  /// a prior, visibility comes first: from it the prior finds how much of a sun passes the border.
   void gather_light_from_outside() {
     const bool has_sources = wants_light() && !scene_.light.sources.empty(),
                asks = bool(request_.ask_prior);
@@ -174,7 +187,7 @@ class Bitmask {
         job.order = std::max(light.order, 1);
         weights = basis_weights(light, job.order);
         job.light = weights.data();
-        // Light from everywhere alike is ao: it takes what goes on beyond the frame as ao does.
+        // Constant light is multiplied by ao, for which surfaces beyond the frame are opaque.
         if (light.order > 0) job.through_beyond = kLightThroughBeyond;
       }
     }
@@ -203,7 +216,8 @@ class Bitmask {
     if (has_suns) past_ = raster_.interleaved(learned.past);
   }
 
-  /// A march of rays. In a band that marches on, the overview tells where they leave the frame.
+  /// The march of rays. In a band that marches on in an overview, the overview has the surfaces
+  /// that the border of the frame cuts.
   March march_of_rays() {
     March march = march_;
     if (march.extend) march.cut = &cut_;
@@ -212,7 +226,8 @@ class Bitmask {
     return march;
   }
 
-  /// The planes that rays to sources meet; those of mirrors may meet any.
+  /// Selects the planes that rays to sources may meet; empty where mirrored directions have rays as
+  /// well, which may meet all planes.
   MayMeetPlane asked_planes() const {
     if (request_.products.reflection || request_.products.specular) return {};
     return met_by_rays_to_sources(scene_.light);
@@ -333,7 +348,7 @@ class Bitmask {
   InterleavedPlane change_, past_;    ///< as LearnedVisibility has them; empty: of no prior
   InterleavedColorShares sky_share_;  ///< empty where that is ao
   std::vector<SourceShares> sources_, sources_again_;  ///< by source
-  const FarRaster* kept_light_in_ = nullptr;  ///< where bands of the frame need what is sent
+  const FarRaster* kept_light_in_ = nullptr;           ///< order in which bands read what is sent
   Products out_;
 };
 

@@ -57,17 +57,17 @@ struct Openness {
                                  ///< part, and all pixels that tell
 };
 
-/// Beside a band, what is known of the frame that it is some rows of.
+/// What is known of a frame around a band of its rows.
 struct AroundBand {
   std::shared_ptr<const FarScene> far;  ///< of the whole frame
   bool marches_on = false;  ///< marches go on in `far` beyond `reach_rows`; false: nothing there
                             ///< is within reach
-  int reach_rows = 0;       ///< above and below a pixel: those that block what it gathers
+  int reach_rows = 0;       ///< rows above and below a pixel that may block its light
   std::optional<Openness> openness = {};  ///< of the frame; not known: that of `far`
 };
 
-/// What a method has found of a pixel: ao, the same if surfaces end at the border of the frame, and
-/// the bent normal, unit, in camera space.
+/// What a method has found at a pixel: ao; `open_ao`, the ao if surfaces end at the border of the
+/// frame; the bent normal, unit, in camera space.
 struct FoundVisibility {
   float ao, open_ao;
   glm::vec3 bent;
@@ -92,9 +92,8 @@ using AskPrior = std::function<LearnedVisibility(const PriorQuestion&)>;
 /// What is asked of a method.
 struct Request {
   ProductSet products;
-  ProductSet by_light =
-      {};            ///< of direct and bounce, those that each light has planes of its own of
-  float radius = 0;  ///< scene units; infinity: without limit
+  ProductSet by_light = {};  ///< those of direct and bounce that are also made by light
+  float radius = 0;          ///< scene units; infinity: without limit
   int bounces = 0;
   unsigned seed = 0;             ///< of the sampling pattern
   ParameterValues parameters{};  ///< every one that the method has
@@ -139,15 +138,15 @@ struct BandSupport {
   /// the frame on. Null: the method works on whole frames only.
   std::shared_ptr<const FarScene> (*overview)(const Scene&, const Request&, float from_px,
                                               const Progress&) = nullptr;
-  /// How many rows above and below the pixels of a frame hold what blocks their light within the
-  /// radius, those of its height at most. `some` of its pixels tell how near it comes: rows, or one
-  /// of every `stride` x `stride`.
+  /// How many rows above and below a pixel may hold what blocks its light within the radius, at
+  /// most as many as the frame has. `some` pixels of the frame, rows or one of every `stride` x
+  /// `stride`, tell how near its surfaces come.
   int (*reach_rows)(const Geometry& some, int stride, const Window& frame, const Window& display,
                     const Request&) = nullptr;
   /// Whether light depends on the openness of the frame, more than Request::around_band tells.
   bool (*needs_openness)(const Scene& overview, const Request&) = nullptr;
-  /// Adds that of the receivers in a band, to the bits of the frame in one piece if bands come
-  /// from top to bottom.
+  /// Adds the openness of the receivers in a band. If bands come from top to bottom, the sums have
+  /// the same bits as those of the frame in one piece.
   void (*add_openness)(const Scene& band, const Request&, Openness&) = nullptr;
 };
 
@@ -163,7 +162,7 @@ struct Method {
   Products (*estimate)(const Scene&, const Request&, const Progress&) = nullptr;
   BandSupport bands = {};
   Ladder ladder;
-  double sample_cost = 1;     ///< time of a sample, about, in those of other methods
+  double sample_cost = 1;     ///< time of a sample relative to other methods, about
   bool is_reference = false;  ///< the one that bench holds all others to
 };
 

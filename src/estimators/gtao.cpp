@@ -2,8 +2,8 @@
 //
 // Ground-truth ambient occlusion: Jimenez, Wu, Pesce, Jarabo, "Practical Realtime Strategies for
 // Accurate Indirect Occlusion", 2016, in the form that engines run. A slice is the plane of the
-// view direction v (to the viewer) and a direction s on the screen; t is what of s lies across v.
-// On both sides the steps of a slice, at max(k (j + u), 1 + j) pixels, look for the cosine c of
+// view direction v (to the viewer) and a direction s on the screen; t is the unit part of s across
+// v. On both sides the steps of a slice, at max(k (j + u), 1 + j) pixels, look for the cosine c of
 // the horizon's angle to v, from -1 on. For a surface at a distance d with the cosine C:
 //
 //   C > c:  c = lerp(C, c, min(2 d^2 / R^2, 1))       else  c = lerp(C, c, thickness)
@@ -21,20 +21,20 @@
 //
 //   |n_p| / 3 ((cos n (2 - C3) + sin n S3) v - (sin n (4 - 3 C + C3) + cos n S3) t)
 //
-// and 2/3 N the mean over all slices where nothing is hidden. A few slices miss that by what they
-// have with C = C3 = S3 = 0; this much, times ao over the ao of the same slices with all open, is
-// added. It makes an open surface exact and leaves a closed one without a bent normal.
+// and 2/3 N the mean over all slices where nothing is hidden. A few slices with C = C3 = S3 = 0
+// have another mean; the difference, times ao over the ao of the same slices with all open, is
+// added. This makes an open surface exact and leaves a closed one without a bent normal.
 //
 // What differs, and why:
 // - Slices turn and steps shift (u) by the 4 x 4 patterns of Jimenez et al., which the filter of
-//   the pipeline removes. To these, engines add what their frame's number chooses of 6 turns and 4
-//   shifts, and the seed does it here: 0 adds nothing, and after 24 seeds each of the 24 is
-//   moved within its own stratum, by the sequence R2 of Roberts (2018).
+//   the pipeline removes. Engines add one of 6 turns and one of 4 shifts, chosen by the number of
+//   the frame; here the seed chooses them. Seed 0 adds nothing, and after 24 seeds each of the 24
+//   is moved within its own stratum, by the sequence R2 of Roberts (2018).
 // - A step sees the surface in the centre of its pixel, where engines take the depth of that pixel
 //   for another place. Surfaces that are not above the tangent plane by more than the precision of
 //   P and N do not raise the horizon: they hide nothing, and a tilted plane does not hide itself.
 // - What is outside the frame or background has C = -1.
-// - Pixels that are not square are seen as they are.
+// - Pixels that are not square are taken into account.
 // - Left out are the engines' exponent of 2.5 and intensity on ao, its fade with distance, and
 //   that the bent normal is turned away from the viewer: they have no meaning in light.
 // - Engines add unit vectors at the angles (h1 + h2) / 2 for the bent normal. That has another
@@ -46,7 +46,8 @@
 // where a surface is seen at a grazing angle.
 //
 // The direct light is the irradiance of the bent normal times ao, or with `multi-bounce` times what
-// multi_bounce.h makes of ao and the albedo. That stands for bounces, so that none is made besides.
+// multi_bounce.h makes of ao and the albedo. This stands for bounces, so the method makes no bounce
+// light of its own.
 #include "estimators/gtao.h"
 
 #include <algorithm>
@@ -92,7 +93,7 @@ struct GtaoJob {
   float reach_px;          ///< of the last step at depth 1, or at any where orthographic
   float falloff;           ///< 2 / R^2
   float thinness;          ///< 1 - thickness
-  Plane<glm::vec3>& bent;  ///< N times ao where open evenly; empty where nobody asks
+  Plane<glm::vec3>& bent;  ///< N times ao where open evenly; empty: not wanted
 };
 
 }  // namespace ssdo
@@ -101,8 +102,8 @@ struct GtaoJob {
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// The cosine of the horizon after the surface `right` and `down` away, in whole pixels; `horizon`
-/// is its cosine before.
+/// The cosine of the horizon after the surface that lies `right` and `down` whole pixels away has
+/// been looked at; `horizon` is the cosine before.
 HWY_INLINE V next_horizon(const GtaoJob& job, const ViewReceiver& p, const V3& to_viewer, V right,
                           V down, V horizon) {
   const ViewPlanes& planes = job.planes;

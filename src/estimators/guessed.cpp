@@ -27,27 +27,29 @@
 namespace ssdo {
 namespace {
 
-/// Rays of a pixel that a filter averages with its neighbours, and of one that stands for many.
+/// Rays per pixel where a filter averages neighbours, and per pixel where mean_guessed() skips
+/// most.
 constexpr int kRays = 2, kRaysOfMean = 8;
 
-/// A mean takes about so many pixels, evenly spread: it is then within 0.01.
+/// About how many pixels, evenly spread, mean_guessed() takes: the mean is then within 0.01.
 constexpr int kPixelsOfMean = 1024;
 
-/// Places along a ray where the frame is asked, from one pixel away to its diagonal; they lie
-/// farther apart the farther they are.
+/// Number of places along a ray that are compared with the frame, from one pixel away to the
+/// frame's diagonal; their spacing grows with the distance.
 constexpr int kSteps = 24;
 
-/// Beyond the frame, places lie so much farther each, up to so many times the distance of the
-/// farthest surface.
+/// Beyond the frame: the ratio of the distances of successive places, and their largest distance
+/// over that of the farthest surface.
 constexpr float kGrowth = 1.3f, kFarthest = 4;
 
-/// Rays this close to the way to the viewer leave the frame towards what is behind the camera.
+/// Rays with a larger cosine to the direction to the viewer leave the frame behind the camera.
 constexpr float kTowardsCamera = 0.5f;
 
 constexpr std::uint32_t kSeed = 0x6e55;
 
-/// A ray and its picture: a straight line, which starts at `from` and leads along `way`, a unit
-/// vector, y down. A place `r` pixels along it shows the point at r w / (speed - r away).
+/// A ray and its projection: a straight line, which starts at `from` and leads along `way`, a unit
+/// vector, y down. The place `r` pixels along it shows the point of the ray at the length r w /
+/// (speed - r away).
 struct PicturedRay {
   glm::vec3 origin, to;
   glm::vec2 from, way;
@@ -106,7 +108,7 @@ class Guesses {
     return {SlicePattern::rank(row * kPeriod + column) * kRays, kRays, hash_of(seed, 0, kSeed)};
   }
 
-  /// Where each guessed ray of a pixel first passed what no picture shows.
+  /// Calls on_guessed(place) with the first unseen place that each guessed ray of a pixel passed.
   template <class OnGuessed>
   void gather(int x, int y, const Samples& samples, const OnGuessed& on_guessed) const {
     const Surfel& s = surfel_(x, y);
@@ -130,18 +132,18 @@ class Guesses {
   static constexpr float kCloser = 0.7f;
   static constexpr int kSets = 16, kSpread = 5;
 
-  /// Whether a pixel shows what casts nothing: up to there nothing is in the way, and what is
-  /// behind it no pixel shows.
+  /// Whether a pixel shows a surface that casts nothing: the view ray is free up to that surface,
+  /// and no pixel shows what is behind it.
   bool is_hole(std::size_t pixel) const {
     return scene_.casting && scene_.casting->hole[pixel] != 0;
   }
 
-  /// Where the view into a pixel ends.
+  /// The surface at which the view ray of a pixel ends.
   const Surfel& shown(std::size_t pixel) const {
     return is_hole(pixel) ? surfel_[pixel] : casting_[pixel];
   }
 
-  /// Along the axis; infinite where nothing is shown.
+  /// Depth along the view axis; infinite where no surface is shown.
   float depth_at(std::size_t pixel) const {
     if (!depth_.empty()) return depth_[pixel];
     const Surfel& s = shown(pixel);
@@ -168,7 +170,7 @@ class Guesses {
     return line;
   }
 
-  /// The place where a ray leaves the frame, in pixels along its picture, and on which side.
+  /// Where a ray leaves the frame: the pixels along its projection up to there, and the side.
   std::pair<float, Unseen> leaves(const PicturedRay& line) const {
     const auto crosses = [](float from, float way, float size) {
       return way > 0 ? (size - from) / way : way < 0 ? from / -way : kInfinity;
@@ -188,8 +190,8 @@ class Guesses {
     return surfel_.index(whole(at.x, surfel_.width), whole(at.y, surfel_.height));
   }
 
-  /// How far behind the front of what a pixel shows a ray passes, along the axis; not above 0: in
-  /// front of it. What lies below the receiver's tangent plane cannot be passed behind.
+  /// How far, along the view axis, a ray at `r` lies behind the surface that its pixel shows; 0 if
+  /// it is in front, or if that surface lies below the receiver's tangent plane.
   float behind_front(const PicturedRay& line, float r, const glm::vec3& normal) const {
     const std::size_t pixel = pixel_at(line, r);
     const float behind = -line.origin.z - line.length_at(r) * line.to.z - depth_at(pixel);
@@ -218,8 +220,8 @@ class Guesses {
     return glm::distance(from + share * (to - from), glm::vec3(0)) <= gap;
   }
 
-  /// Whether a place on the view ray of a pixel, so far behind what that shows along the axis, is
-  /// within a solid whose front and back other pictures have measured.
+  /// Whether the place on the view ray of a pixel that lies `behind` its surface, along the view
+  /// axis, is within a solid whose front and back other pictures have measured.
   bool is_in_measured_solid(std::size_t pixel, float behind) const {
     if (is_hole(pixel)) return false;  // solids are of what stands there in its place
     const Solids& solids = scene_.solids;
@@ -248,7 +250,7 @@ class Guesses {
                        [&](const SightLine& view) { return view.at(length) != Sight::unknown; });
   }
 
-  /// The first place on a ray's way that no picture shows, if the ray meets nothing that one shows.
+  /// The first place on a ray that no picture shows; none if the ray meets a surface that is shown.
   std::optional<Unseen> follow(const PicturedRay& line, const glm::vec3& normal, int set,
                                bool to_camera) const {
     if (other_views_ && other_views_->is_blocked(line.origin, line.to, radius_))

@@ -2,9 +2,9 @@
 //
 // How much of what a receiver sees rests on guesses. A method guesses what stands where no picture
 // looks: behind what the frame shows, and beyond its border. Rays with the density of the cosine
-// are followed until they meet a surface that a picture shows, or the radius ends. A ray is
-// guessed if it meets none and has passed a place that no picture shows; whether the method took
-// it for open or for hidden is then its guess.
+// are followed until they meet a surface that a picture shows, or the radius ends. A ray is guessed
+// if it meets none and has passed a place that no picture shows: the method could then only guess
+// whether the ray is open or hidden.
 //
 // A guess costs little where its answer is plain. So the product weighs the share of guesses by how
 // far the hemisphere is from being all open or all hidden:

@@ -38,7 +38,7 @@
 //   texture that it reads them from, and its directions are not evenly spread. Seeds shift it by
 //   the sequence R2 of Roberts (2018).
 // - The distance beyond which there is no effect is endless by default; the source names no value.
-// - Pixels that are not square are seen as they are. Normals from depth are made before.
+// - Pixels that are not square are taken into account. Normals from depth are made before.
 //
 // Known faults, kept: horizons know no cosine to the normal, and what enters the radius hides at
 // once; the mean of taps is not a horizon, and a low wall hides like a high one that its taps do

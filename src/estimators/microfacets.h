@@ -13,8 +13,8 @@
 
 namespace ssdo {
 
-/// The normal of a facet that a viewer in this unit direction sees, each as often as it is seen:
-/// Heitz 2018, Sampling the GGX Distribution of Visible Normals. `u` in the unit square.
+/// The normal of a facet that a viewer in this unit direction sees, with the density of visible
+/// normals: Heitz 2018, Sampling the GGX Distribution of Visible Normals. `u` in the unit square.
 inline glm::vec3 visible_facet(const glm::vec3& viewer, float alpha, const glm::vec2& u) {
   // Stretched by alpha, the facets are those of a half-ball.
   const glm::vec3 v = glm::normalize(glm::vec3(alpha * viewer.x, alpha * viewer.y, viewer.z));
@@ -49,10 +49,10 @@ inline float alpha_of(float roughness) {
   return std::max(roughness * roughness, kSharpest);
 }
 
-/// Where light comes from that one facet sends to the viewer.
+/// The light that one facet mirrors to the viewer: its direction, and the part that is not hidden.
 struct FacetSample {
   glm::vec3 to{0};     ///< unit
-  float share = 0;     ///< of it that other facets leave; 0: from below the surface
+  float share = 0;     ///< of that light that other facets do not hide; 0: from below the surface
   glm::vec3 facet{0};  ///< the normal of the facet
 };
 

@@ -5,7 +5,7 @@
 //
 // The idea is the paper's, Loos and Sloan, "Volumetric Obscurance", I3D 2010: how much of a sphere
 // about p is free, summed over chords along the view axis. A chord at distance r R from the centre
-// has the half length t R, t = sqrt(1 - r^2); the surface that is seen there at depth Z leaves free
+// has the half length t R, t = sqrt(1 - r^2); the surface visible there at depth Z leaves free
 //
 //   D = 1/2 + (Z - Z_p) / (2 t R),   clamped to 0..1,   ao(p) = 2 sum t D / sum t.
 //
@@ -13,7 +13,7 @@
 // - Samples come in pairs, p + o and p - o, that share what is free: saturate(D + D'). A plane
 //   leaves half of each chord free where it faces the viewer; where it is tilted, one side gains
 //   what the other loses. Either way the pair is open.
-// - What is in front of the sphere, D < 0, is forgiven by q = saturate(-D / T), T the thickness
+// - A surface in front of the sphere, D < 0, is discounted by q = saturate(-D / T), T the thickness
 //   modifier: its pair is saturate(clamp(D, q', 1) + clamp(D', q, 1) - q q'), open where q is 1.
 // - 36 samples on the points of a checkerboard with distances below 5 steps. The sphere's radius
 //   is 5 steps of 4 pixels at a half, a quarter, an eighth and a sixteenth of the resolution: 40,
@@ -22,7 +22,8 @@
 //
 // What differs, and why:
 // - Spheres have their true size under an orthographic camera, where the source scales by depth.
-// - Beyond the frame its outermost pixels go on. The source reads the last of every fourth pixel.
+// - Beyond the frame, the outermost pixels are repeated. The source reads the last of every fourth
+//   pixel.
 // - Background is infinitely far, not 10^5 far planes.
 //
 // Known faults, kept: halos of what stands before a far background where T is large, since what

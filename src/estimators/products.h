@@ -18,7 +18,7 @@ namespace ssdo {
 
 struct MirrorModel;
 
-/// Those that a method may be asked for.
+/// The products that a method may be asked for.
 struct ProductSet {
   bool ao = false;
   bool direct = false;
@@ -32,10 +32,10 @@ struct ProductSet {
   bool operator==(const ProductSet&) const = default;
 };
 
-/// What is known of a share of a sun that few rays have found, beside the share.
+/// Data about a sun's share that few rays have found, beside the share itself.
 struct ShadowDraw {
   Plane<float> weight;    ///< in a mean: the mean cosine of the rays to the normal
-  Plane<float> width_px;  ///< of the penumbra that what is in its way throws here; 0: nothing is
+  Plane<float> width_px;  ///< of the penumbra that the occluder throws here; 0: none
 };
 
 /// How much of the light arrives: what filters average in place of `direct` (filters/shares.h).
@@ -44,16 +44,17 @@ struct LightShares {
   Plane<glm::vec3> sky;            ///< of what the sky gives, channel by channel
   std::vector<Plane<float>> suns;  ///< of what each sun gives, as if its light met any normal
   std::vector<ShadowDraw> draws;   ///< of each sun; empty where the shares are means of many rays
-  std::vector<Plane<float>> suns_again;  ///< `suns` by rays to other points of them, for the error
-  std::vector<ShadowDraw> draws_again;   ///< theirs; both are empty where no error is wanted
+  std::vector<Plane<float>> suns_again;  ///< `suns` by rays to other points, for the error
+  std::vector<ShadowDraw> draws_again;   ///< of suns_again; both empty: no error is wanted
   /// The part of `bounce` that small bright senders give, which ao does not bound: filters average
   /// it apart. Empty: there is none.
   Plane<glm::vec3> emitted;
-  /// With a learned prior: mean radiance that surfaces of the frame send. What is hidden but not
-  /// shown sends it.
+  /// With a learned prior: the mean radiance that surfaces of the frame send, taken for that of
+  /// occluders which the frame does not show.
   glm::vec3 sent{0};
   bool are_ao = false;  ///< light comes from everywhere alike, and ao is its share; no planes then
-  /// Of what surfaces mirror of the sky, channel by channel; empty: `specular` is not made.
+  /// The share that arrives of the sky's light that surfaces mirror, channel by channel; empty:
+  /// `specular` is not made.
   Plane<glm::vec3> mirrored_sky;
   std::shared_ptr<const MirrorModel> mirror = {};  ///< what `specular` is computed with
 };
@@ -75,7 +76,7 @@ struct Products {
   Plane<glm::vec3> bent;    ///< unit, camera space
   Plane<float> reflection;  ///< share of a reflection that is not occluded
   /// Light that surfaces mirror. Until add_specular() (estimators/specular/specular.h): the mean
-  /// radiance of the surfaces that they mirror, 0 where those are none.
+  /// radiance of the mirrored surfaces, 0 where none is mirrored.
   Plane<glm::vec3> specular;
   Plane<float> error;  ///< of the luminance of direct + bounce, with the sign of one draw of noise
   Plane<float> guessed;  ///< G of estimators/guessed.h; the product once it is filtered
@@ -118,7 +119,7 @@ struct Product {
   std::variant<std::monostate, Plane<float> Products::*, Plane<glm::vec3> Products::*> plane = {};
   ProductSet made_of = {};  ///< what a method has to make for it
   ProductSet with = {};  ///< optional parts: used if the method makes them and their layers exist
-  std::string_view needs = "";      ///< role of a layer that it is not made without
+  std::string_view needs = "";      ///< role of a layer that it requires
   std::string_view all_needs = "";  ///< role of a layer without which --products all leaves it out
   float background = 0;             ///< its value where there is no surface
   bool usual = false;               ///< made where --products is not given
@@ -171,7 +172,7 @@ inline constexpr std::array<Product, 12> kProducts = {{
      .measured = true,
      .by_light = true,
      .aka = "diffdir diffusedirect"},
-    // Light of surfaces that nothing is in front of: no method has to be asked.
+    // Light without any occlusion: no method is needed.
     {.name = "unshadowed", .kind = ProductKind::light, .channels = "RGB", .by_light = true},
     // direct / unshadowed. Not clamped, so that their product is direct.
     {.name = "shadow",

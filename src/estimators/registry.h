@@ -16,14 +16,14 @@ std::span<const Method> methods();
 /// Errors: ExitCode::usage with the names that exist.
 const Method& find_method(std::string_view name);
 
-/// The one that bench holds all others to.
+/// The method that bench compares all others with.
 const Method& reference_method();
 
 /// Whether the method makes what the product is made of.
 bool makes(const Method& method, const Product& product);
 
-/// Whether a method takes light of lamps: what rays to them find, which methods that know no solids
-/// do not send. Their ao says how much is open, not whether a lamp is seen.
+/// Whether a method takes light of lamps. It needs rays to the lamps, which methods without solids
+/// do not trace: their ao says how much is open, not whether a lamp is visible.
 bool takes_lamps(const Method& method);
 
 /// Null where the method has none of that name.

@@ -19,7 +19,7 @@
 // - The bias grows by what the precision of P demands.
 // - What is outside the frame or background hides nothing; the authors' frames have a border of
 //   pixels that are rendered but not shown.
-// - Pixels that are not square are seen as they are.
+// - Pixels that are not square are taken into account.
 // - Seeds other than 0 turn all spirals by the same angle and move the taps along them, tap i to
 //   (i + u) / N, by the sequence R2 of Roberts (2018); the authors have one pattern for all frames.
 // - Left out are the authors' mean over quads of 2 x 2 pixels and their blur, which the filter

@@ -9,12 +9,12 @@
 //
 // s_i are points of the half-ball with lengths from 0.01 to 1, growing with the square of i / N; F
 // turns it about the normal to a random vector of a 4 x 4 pattern, by Gram-Schmidt. q_i is the
-// surface in the pixel that x_i projects to and d its depth. w takes points away that project
-// close to p, in units of the half-ball.
+// surface in the pixel that x_i projects to and d its depth. w reduces the weight of points that
+// project close to p, in units of the half-ball.
 //
 // What differs, and why:
-// - range and bias are in radii. The source has them as shares of the far plane's depth, of which
-//   a frame knows nothing, and names no values. What the precision of P demands adds to the bias.
+// - range and bias are in radii. The source has them as shares of the far plane's depth, which is
+//   not known of a frame, and names no values. What the precision of P demands adds to the bias.
 // - The pattern's vectors lie in the picture's plane, as in method ssao: the source does not show
 //   the texture that it reads them from.
 // - Outside the frame there is nothing that occludes.

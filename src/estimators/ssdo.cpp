@@ -11,7 +11,7 @@
 // sample sends, hidden or not, as in the listing.
 //
 // What differs, and why:
-// - "In front" is asked of the tangent plane of q, not of the depth at its pixel's centre: on a
+// - "In front" is tested against the tangent plane of q, not the depth at its pixel's centre: on a
 //   tilted plane the depth differs within a pixel by more than any bias would forgive.
 // - The bias is a share of the radius plus what the precision of P demands, not a constant.
 // - F has the factor R^2, the area that the samples stand for: the bounce and its clamp then do not
@@ -108,7 +108,7 @@ HWY_INLINE M is_hidden(const SsdoJob& job, const SsdoSample& s, V bias) {
   return hn::And(near, dot(from_q, gather_normal(job.planes, s.at)) < hn::Neg(bias));
 }
 
-/// part / whole; nothing of nothing is nothing.
+/// part / whole; 0 where `whole` is 0.
 HWY_INLINE V share_of(V part, V whole) {
   return hn::IfThenElseZero(whole > set(0), hn::Max(part, set(0)) / whole);
 }
@@ -131,7 +131,7 @@ void direct_of_tile(const SsdoJob& job, const Tile& tile, Plane<float>& ao,
       light = light + arriving;
       lit = mul_add(arriving, share, lit);
     }
-    // 2 pi / N over pi; a strength above 1 takes more than there is.
+    // 2 pi / N over pi; clamped, since with a strength above 1 the sum may be negative.
     const V open = saturate(visible * set(2 / float(job.points.size())));
     if (direct.empty()) return open;
     const V3 share = job.radiance ? V3{share_of(lit.x, light.x), share_of(lit.y, light.y),
@@ -206,7 +206,8 @@ std::optional<OctahedralMap> radiance_of(const Scene& scene, int samples) {
                                          scene.geometry.world_to_camera);
 }
 
-/// What every pixel sends: its albedo times all the light that arrives, or the layer that says so.
+/// The radiance that every pixel sends: its albedo times all the light that arrives, or that of the
+/// layer of radiance.
 Plane<glm::vec3> sender_radiance(const Scene& scene, const Products& so_far) {
   Plane<glm::vec3> sent(so_far.ao.width, so_far.ao.height);
   for_each_row(sent.height, [&](int y) {

@@ -10,27 +10,28 @@
 //   bounce  = sum L_out(q_i) / n                            q_i: the surface that is met first
 //
 // L is the environment without its sources, as it is: methods with light in spherical harmonics
-// differ by what these leave out. Where all is open, both ratios are exact with any n. Elsewhere
-// the first is biased where few rays meet bright parts of L by chance; such parts are among the
-// sources.
+// differ by what these leave out. Where nothing occludes, both ratios are exact with any n.
+// Elsewhere the ratio of direct light is biased if few rays meet bright parts of L by chance; such
+// parts are therefore among the sources.
 //
-// What a surface sends is its albedo times all the light that arrives, as in method bitmask: the
-// side that is not seen has the light of its own side, as far as the seen one is open.
+// As in method bitmask, a surface sends its albedo times all the light that arrives. Its hidden
+// side receives the unoccluded light of that side times the ao of the visible side.
 //
 // As in method bitmask, the hidden part of a solid counts only if its front is within the radius.
 // Otherwise the endless side walls of far objects raise the RMSE of ao on the ground of a closed
 // room, against a path tracer, from 0.04 to 0.10.
 //
-// What only other views show is a second set of triangles, in camera space, for it may lie behind
-// the camera; it sends what rays among all views find (other_views/other_view_light.h).
+// Surfaces that only other views show are a second set of triangles, in camera space because they
+// may lie behind the camera. The light that they send is found by rays among all views
+// (other_views/other_view_light.h).
 //
 // Rays start from the surface itself, whose normal comes from P (scene/normals/normals.h), in front
-// of all triangles of the pixel (trace/ray_origin.h). Those below the surface are blocked; their
-// directions are distributed about the normal of shading.
+// of all triangles of the pixel (trace/ray_origin.h). Ray directions are distributed about the
+// shading normal; rays below the surface count as blocked.
 //
 // Directions are points of Sobol's sequence, scrambled anew for every pixel (math/sobol.h). Their
 // error falls about as n^-3/4 and is independent among neighbours: no filter is needed, and means
-// over a frame are unbiased. Surfaces end with the frame.
+// over a frame are unbiased. Surfaces of the frame end at its border.
 #include "estimators/trace.h"
 
 #include <algorithm>
@@ -75,8 +76,8 @@ struct Receiver {
   std::size_t pixel;
   glm::vec3 position;
   glm::dvec3 origin;          ///< in front of all triangles of the pixel
-  glm::vec3 normal, surface;  ///< that of shading and that of the geometry
-  glm::mat3 frame;            ///< about the normal of shading
+  glm::vec3 normal, surface;  ///< of shading; of the geometry
+  glm::mat3 frame;            ///< about the shading normal
   std::uint32_t seed;
 };
 
@@ -130,12 +131,13 @@ class Trace {
   int width() const { return scene_.geometry.surfel.width; }
   int height() const { return scene_.geometry.surfel.height; }
 
-  /// Whether the frame or another view shows something in the way, or the surface itself is.
+  /// Whether an occluder in the frame or in another view, or the receiver's own surface, blocks a
+  /// ray.
   bool is_blocked(const Receiver& p, const glm::vec3& to) const {
     return glm::dot(to, p.surface) <= 0 || occluders_.is_blocked({p.origin, to}, kInfinity);
   }
 
-  /// The same of a ray to a point of a source.
+  /// The same for a ray to a point of a source, at `distance`.
   bool is_blocked(const Receiver& p, std::uint32_t source, const glm::vec3& to,
                   float distance) const {
     return glm::dot(to, p.surface) <= 0 || occluders_.is_blocked({p.origin, to}, distance, source);
@@ -200,8 +202,8 @@ class Trace {
     const float ao = float(open) / float(samples_);
     out_.ao[pixel] = ao;
     if (request_.products.bent) {
-      // What the sum over all directions lacks of the normal is added as far as the surface is
-      // open, so that an open one is exact.
+      // The difference between the sum over all directions and its expectation, times ao, is added:
+      // the bent normal of an open surface is then exact.
       const glm::vec3 bent = open_sum + ao * (2.0f / 3 * float(samples_) * p.normal - sum);
       const float length = glm::length(bent);
       out_.bent[pixel] = length > 0 ? bent / length : p.normal;
@@ -221,7 +223,7 @@ class Trace {
     for_each_surface([&](std::size_t pixel, const Receiver& p) { gather_reflection(pixel, p); });
   }
 
-  /// What facets mirror, each by as much as others leave of it.
+  /// What facets mirror, each weighted by the share of it that other facets do not hide.
   void gather_reflection(std::size_t pixel, const Receiver& p) {
     const float roughness = scene_.roughness.empty() ? float(request_.parameters.at("roughness"))
                                                      : scene_.roughness[pixel];
@@ -247,7 +249,7 @@ class Trace {
     out_.specular[pixel] = sums.surfaces();
   }
 
-  /// What the surface sends that a ray meets first; what only other views show sends nothing.
+  /// The radiance of the surface that a ray meets first; 0 if only other views show that surface.
   glm::vec3 sent_along(const Receiver& p, const glm::vec3& to) const {
     if (!mirrored_ || glm::dot(to, p.surface) <= 0) return {};
     const std::optional<Met> met = occluders_.first_met({p.origin, to});
@@ -268,10 +270,10 @@ class Trace {
     if (request_.products.error) luminances_[pixel] = groups;
   }
 
-  /// What a source gives; `groups` gain what it gives in each part of the samples, `share` is the
-  /// part of it that arrives. Every point of it counts by its own cosine: one at the horizon gives
-  /// less than one above it. A normal that faces away leaves the share to what stands in between:
-  /// it may be that of a normal map, and a filter takes it for neighbours.
+  /// The light of a source at a receiver. Its luminance in each group of samples is added to
+  /// `groups`; `share` is the part of the light that arrives. Every point of the source counts by
+  /// its own cosine. If the normal faces away, `share` is the visibility of the source's centre:
+  /// the normal may come from a normal map, and filters use the share for neighbours.
   glm::vec3 light_of(const Source& source, std::uint32_t number, const Receiver& p, Groups& groups,
                      float& share) const {
     const glm::vec3 unoccluded = source.taken_at(p.pixel) * source.unoccluded(p.position, p.normal);
@@ -306,12 +308,12 @@ class Trace {
     return senders;
   }
 
-  /// The bounce of the k-th of the senders.
+  /// The bounce plane of senders_[k].
   Plane<glm::vec3>& bounce_of(std::size_t k) {
     return k == 0 ? out_.bounce : out_.lights[k - 1].bounce;
   }
 
-  /// The same rays gather the light of all and of each.
+  /// One pass of bounces: the same rays gather all light together and each light apart.
   void gather_bounce(int pass) {
     const bool wants_error = pass == request_.bounces && request_.products.error;
     for (std::size_t k = 0; k < senders_.size(); ++k)
@@ -346,7 +348,7 @@ class Trace {
   PixelFootprint footprint_;
   FrameOccluders occluders_;
   std::vector<TraceSenders> senders_;     ///< of all light, then of each light apart
-  std::optional<TraceSenders> mirrored_;  ///< of all light, in mirrors; none: nothing
+  std::optional<TraceSenders> mirrored_;  ///< of all light, for `specular`; none: nothing sends
   bool wants_light_ = false;
   Plane<Groups> luminances_;  ///< of direct + bounce
   Products out_;

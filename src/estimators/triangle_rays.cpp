@@ -18,16 +18,16 @@ namespace {
 constexpr char kDevice[] = "max_isa=avx2";
 
 /// Embree divides by an estimate of a reciprocal that each maker's processors make in another way.
-/// So its rays go on as far as this times where they end or have met something, and a filter takes
-/// of the triangles that they meet the first one by hit_of().
+/// So the reach of its rays, and the distance of a hit, are multiplied by this factor; among the
+/// triangles that a ray then meets, a filter takes the first one by hit_of().
 constexpr float kReachForEmbree = 1 + 1e-5f;
 
 /// From this many triangles on memory counts more than the tenth of speed that it costs: a frame
 /// of 1920 x 1080 has half as many.
 constexpr std::size_t kLarge = 8'000'000;
 
-/// Whether Embree takes a ray: it ends the process over larger numbers, which only positions far
-/// outside their pixels lead to.
+/// Whether Embree can trace a ray: larger numbers make it end the process. Only positions far
+/// outside their pixels lead to these.
 bool is_traceable(const glm::vec3& v) {
   return std::abs(v.x) < kEndless && std::abs(v.y) < kEndless && std::abs(v.z) < kEndless;
 }
@@ -43,7 +43,7 @@ RTCRay ray_of(const TriangleRays::Ray& from) {
 
 }  // namespace
 
-/// A ray that asks for what counts and is within its reach.
+/// A ray that accepts hits within its reach that its rule counts.
 class TriangleRays::Query : public RayContext {
  public:
   Query(const std::vector<Mesh>& meshes, float reach, const Rule* rule)
@@ -51,7 +51,7 @@ class TriangleRays::Query : public RayContext {
     init_context(*this);
   }
 
-  /// What the ray meets first, once it was traced.
+  /// The first hit, once the ray was traced.
   const std::optional<TriangleHit>& first() const { return first_; }
 
   /// The filter of the query: Embree asks about one hit at a time.

@@ -18,7 +18,7 @@ struct FrameSurfaces {
   const Plane<HalfColor>& albedo;  ///< empty where there is none
 };
 
-/// How much of what one frame shows is there in the other.
+/// How much of what each of two frames shows is also in the other.
 struct Continuity {
   double met = 0;   ///< pixels whose point the other camera looked at, in either direction
   double kept = 0;  ///< those that show the same surface there, with the same albedo
@@ -27,9 +27,9 @@ struct Continuity {
   bool is_cut() const;
 };
 
-/// Compares every fourth pixel in a row and in a column. What is new in the picture, and what
-/// something else may have hidden, says nothing. `motion` is that of temporal.h; of the frames as
-/// they are and with motion, the result is the one of which more is kept.
+/// Compares every fourth pixel in a row and in a column. Points that are new in the picture, or
+/// that something else may have hidden, do not count. `motion` is that of temporal.h; frames are
+/// compared without and with it, and the result is that with more kept.
 Continuity compare_frames(const FrameSurfaces& before, const FrameSurfaces& now,
                           const Plane<glm::vec2>& motion = {});
 
@@ -45,7 +45,7 @@ class MotionRatios {
 
  private:
   std::size_t surfaces_ = 0;
-  std::vector<double> factors_[2];  ///< along each axis, of what the cameras say
+  std::vector<double> factors_[2];  ///< along each axis, of the layer over the cameras
 };
 
 /// Whether motion seems to have other units or signs than accumulate takes, by MotionRatios of all

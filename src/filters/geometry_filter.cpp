@@ -13,7 +13,7 @@
 //
 // The window is T + 1 wide, with b = 1/2 at its ends. Then each of the T x T members of the pattern
 // has a total weight of exactly 1, which removes the pattern on a plane; and the window has a
-// centre, which one of an even width T has not.
+// centre, unlike one of an even width T.
 //
 // For T = 8 this would be 81 neighbours. But that window is the mean of four windows of T = 4 whose
 // centres are (+-2, +-2) pixels away, so a second pass computes it from the result of the first:
@@ -21,19 +21,19 @@
 //   out(p) = m(p) + 1/4 sum_q w(p, q) l(p, q) (m(q) - m(p)),   m the result for T = 4
 //   l = ramp(|b_q - b_p| / (r (b_p + b_q + 1/2))),   b the mean over the channels of m
 //
-// w reduces the share of a q across a geometric edge, and l that of a q whose ao or share of the
-// light differs by more than noise, which lies across the edge of a shadow. In a dark pixel, noise
-// is large relative to its own b but small relative to the 1 of an open one, of which 1/4 is added
-// for each of both pixels. Bounce light has more noise and no sharp shadows: l = 1.
+// w lowers the weight of a q across a geometric edge; l lowers that of a q across the edge of a
+// shadow, whose ao or share of the light differs by more than noise. Noise in a dark pixel is large
+// relative to its own b but small relative to the 1 of an open pixel; so 1/4 is added for each of
+// the two pixels. Bounce light has more noise and no sharp shadows: l = 1.
 //
-// bounce = R (1 - ao), R the mean radiance of what hides. In the second pass ao keeps edges that
+// bounce = R (1 - ao), R the mean radiance of the occluders. In the second pass ao keeps edges that
 // bounce does not, so that their means would not belong together: a white furnace, ao + bounce = 1,
-// was off by up to 0.08. So R is averaged, by 1 - ao, and multiplied by what the pass leaves of
-// 1 - ao:
+// was off by up to 0.08. So R is averaged, by 1 - ao, and multiplied by the 1 - ao that the pass
+// gives:
 //
 //   out(p) = (mean of bounce + e bounce(p)) / (mean of 1 - ao + e (1 - ao(p))) (1 - ao_out(p))
 //
-// with l = 1 in both means. e is small: R is that of p where its neighbours are open.
+// with l = 1 in both means. e is small: where the neighbours of p are open, R is that of p alone.
 //
 // Lanes are neighbouring pixels of a row; two rows at a time share their loads. Pixels without a
 // surface have a normal of 0 here, so that w is 0. This file is compiled once for every instruction
@@ -94,7 +94,7 @@ class TileFilter {
     return distance < half_ ? 1.0f : distance == half_ ? 0.5f : 0.0f;
   }
 
-  /// A vector of pixels from column `x` of the tile on, in rows `y` and `y` + 1.
+  /// Filters a vector of pixels from column `x` of the tile on, in rows `y` and `y` + 1.
   void filter(int x, int y) {
     weigh(x, y);
     const int components = rows_.components();
@@ -141,7 +141,7 @@ class TileFilter {
     store(sum1, weight_sum(1) + x);
   }
 
-  /// kCount components of both rows, from `c` on.
+  /// Averages kCount components, from `c` on, of both rows.
   template <int kCount>
   HWY_INLINE void average_rows(int x, int y, int c) {
     const int stride = rows_.stride();
@@ -180,7 +180,7 @@ HWY_INLINE V likeness(V p, V q) {
   return saturate(hn::NegMulAdd(step, set(2 / kStepTolerance), set(2)));
 }
 
-/// Something for each of the four neighbours of the second pass.
+/// A value for each of the four neighbours of the second pass.
 struct Corners {
   V v[4];
 
@@ -228,7 +228,7 @@ class CornerFilter {
   float* result(int c) const { return results_.get() + c * rows_.stride(); }
   float* is_surface() const { return result(rows_.components()); }
 
-  /// What the first pass has found for component `c`.
+  /// The result of the first pass for component `c`.
   HWY_INLINE V mean(int c, int x, int y) const {
     return load(rows_.row(y, TileRows::kSurfelChannels + c) + x + offset_);
   }
@@ -267,7 +267,7 @@ class CornerFilter {
     return weights;
   }
 
-  /// A vector of pixels from column `x` of the tile on.
+  /// Filters a vector of pixels from column `x` of the tile on.
   HWY_INLINE void filter(int x, int y) {
     const Corners weights = weigh(x, y);
     int c = 0;
@@ -280,12 +280,12 @@ class CornerFilter {
     if (ao_ && !bounces_.empty()) hold_bounces_to_ao(x, y, weights);
   }
 
-  /// Turns the mean bounce of each light, and of all, into the mean radiance of what hides, times
-  /// what hides by the new ao.
+  /// Turns the mean bounce of each light, and of all, into the mean radiance of the occluders times
+  /// 1 - ao, with the new ao.
   HWY_INLINE void hold_bounces_to_ao(int x, int y, const Corners& weights) {
     const V e = set(kOwnRadiance), one = set(1), own_closed = one - mean(*ao_, x, y),
             closed = one - average(mean(*ao_, x, y), weights, means_around(*ao_, x, y));
-    // Below rounding nothing hides.
+    // Where the mean of 1 - ao is below rounding, nothing hides.
     const V whole = hn::MulAdd(e, own_closed, closed);
     const V scale = hn::IfThenElseZero(whole > set(1e-6f), (one - load(result(*ao_) + x)) / whole);
     for (const int bounce : bounces_) {

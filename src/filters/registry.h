@@ -22,7 +22,7 @@ struct Filter {
   Plane<float> (*shadow)(NoisyShadow noisy, const Plane<Surfel>& guide, int pattern_size) = nullptr;
 };
 
-/// In place of the name of a filter: that of each method's own source.
+/// Stands for the filter with which the source of each method ends.
 inline constexpr std::string_view kSourceFilter = "source";
 
 /// Every filter, in the order of --help.
@@ -31,10 +31,10 @@ std::span<const Filter> filters();
 /// Errors: ExitCode::usage with the names that exist.
 const Filter& find_filter(std::string_view name);
 
-/// What the name, which may be kSourceFilter, means for a method. Errors: as above.
+/// The filter that a name, which may be kSourceFilter, means for a method. Errors: as above.
 const Filter& find_filter(std::string_view name, const Method& method);
 
-/// One plane alone after the filter.
+/// Filters one plane alone.
 Plane<float> apply_filter(const Filter& filter, Plane<float> noisy, const Filtering& filtering,
                           const Plane<Surfel>& guide, int pattern_size);
 

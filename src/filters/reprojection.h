@@ -12,9 +12,9 @@ namespace ssdo {
 
 /// What the frame before shows at the place of a point of the present frame.
 enum class SeenBefore {
-  nothing,  ///< it is outside that picture, or something else may hide it
+  nothing,  ///< the point is outside that picture, or something may hide it
   same,     ///< its surface
-  through,  ///< what lies behind it: it was not there
+  through,  ///< what lies behind the point: it was not there
 };
 
 /// Pixels of the frame before that show a point of the present frame, with weights whose sum is 1.
@@ -31,7 +31,7 @@ class Reprojection {
  public:
   static constexpr double kSameNormal = 0.9;  ///< normals 26 degrees apart belong to two surfaces
   static constexpr double kLeastShare = 0.1;  ///< of the bilinear weight
-  static constexpr double kBehind = 0.02;     ///< of the depth: what is farther is another surface
+  static constexpr double kBehind = 0.02;     ///< of the depth; farther is another surface
 
   /// Both must know the world.
   Reprojection(const Geometry& before, const Geometry& now);
@@ -39,11 +39,12 @@ class Reprojection {
   /// From the camera space of the frame before to the present one.
   glm::mat3 to_present() const { return glm::mat3(glm::transpose(turn_)); }
 
-  /// Where the camera before saw a point of the present one's space, had it not moved: pixels of
-  /// the display window. Not finite where that camera looked away.
+  /// Where the camera before saw a point of the present camera space, had the point not moved:
+  /// pixels of the display window. Not finite where that camera looked away.
   glm::dvec2 place(const glm::vec3& position) const;
 
-  /// `from_motion` is the pixel in that frame according to a motion layer; not finite without one.
+  /// `from_motion` is the pixel in the frame before according to a motion layer; not finite without
+  /// one.
   PixelsBefore find(const Surfel& surfel, const glm::dvec2& from_motion) const;
 
  private:

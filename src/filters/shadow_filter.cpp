@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The filter of shadows. A pixel's ray to one point of a sun says yes or no; T x T pixels of the
-// pattern together look at all of it. But a sharp shadow, of a small sun or of something near, is
-// the same for all points of the sun, and a mean over the pattern would blur it, or wash a thin one
-// away. How wide the penumbra is follows from what is in the way: 2 a r, a the angular radius of
-// the sun and r the distance to it (Fernando 2005, Percentage-Closer Soft Shadows, takes a mean of
-// it too). So with the widths that blocked neighbours have found,
+// The filter of shadows. The ray of a pixel to one point of a sun is blocked or not; the T x T
+// pixels of the pattern together sample all of the sun. But a sharp shadow, of a small sun or of
+// something near, is the same for all points of the sun, and a mean over the pattern would blur it,
+// or wash a thin one away. How wide the penumbra is follows from what is in the way: 2 a r, a the
+// angular radius of the sun and r the distance to it (Fernando 2005, Percentage-Closer Soft
+// Shadows, takes a mean of it too). So with the widths that blocked neighbours have found,
 //
 //   W(p)   = sum_q (1 - v(q)) w(p, q) c(q) W(q) / sum_q (1 - v(q)) w(p, q) c(q)
 //   out(p) = sum_q b(q) w(p, q) c(q) v(q) / sum_q b(q) w(p, q) c(q)
 //
 // v being the shares, c the cosine of each ray, w that of geometry_filter.cpp and b a box, whole
-// pixels and parts of those at its border. It is T at most, and else B = W (1 + W / T) / 2 pixels
-// wide: a mean widens a penumbra by its own width, and what is three pixels wide loses its shadow
-// to a box of two. Of the umbra of posts of 3 pixels 15 % was lit with B = W, 9 % is so now and
-// 6 % without a filter; the error of walls and boxes is the same.
+// pixels and parts of those at its border. The box is B = W (1 + W / T) / 2 pixels wide, and T at
+// most: a mean widens a penumbra by its own width, and a box of two pixels removes the shadow of
+// what is three pixels wide. In the umbra of posts of 3 pixels, 15 % was lit with B = W; now it is
+// 9 %, and without a filter 6 %. The error of walls and boxes is the same.
 //
-// Penumbras that are wider still have room for a mean over 2T x 2T pixels, in which points repeat:
-// it is that of four windows whose centres are T / 2 aside,
+// Penumbras that are wider still have room for a mean over 2T x 2T pixels, in which points of the
+// sun repeat. It is the mean of four windows whose centres are T / 2 aside,
 //
 //   out2(p) = out(p) + f / 4 sum_q w(p, q) (out(q) - out(p)),   f = (W / T - 1) / 3, 0 to 1
 //
 // times 8 out (1 - out), at most 1: the ends of a penumbra have no noise, and would become wider.
 //
-// Most pixels have neighbours that all see the sun, or none that does: their share is that.
+// Most pixels keep their share, because all of their neighbours have the same one.
 #include "filters/shadow_filter.h"
 
 #include <algorithm>

@@ -13,14 +13,14 @@ struct NoisyShadow {
 };
 
 /// What the first pass leaves: the share, and W of shadow_filter.cpp in pixels, 0 where all
-/// neighbours see as much of the sun.
+/// neighbours have the same share.
 struct ShadowFound {
   Plane<float> share, penumbra;
 };
 
 /// The mean share of a sun that neighbours of a pixel on its surface have found, each by a ray to
 /// another point of it, as far as the penumbra there is wide: see shadow_filter.cpp. `pattern_size`
-/// is the most. Background pixels keep their values.
+/// is its T. Background pixels keep their values.
 Plane<float> filter_shadow(NoisyShadow noisy, const Plane<Surfel>& guide, int pattern_size);
 
 }  // namespace ssdo

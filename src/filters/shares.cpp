@@ -4,14 +4,15 @@
 //
 //   direct = E(N) S + sum over sources of E_k(P, N) s_k
 //
-// E(N) is the unoccluded light of the sky, a function of the normal, and so is that of a sun; S, by
-// channel, and s_k are the shares of it that arrive. Noise is in the shares alone, so filters
+// E(N) is the unoccluded light of the sky, a function of the normal, and E_k that of source k; S,
+// by channel, and s_k are the shares of them that arrive. Noise is in the shares alone, so filters
 // average these, and the product is taken afterwards: an average of the light itself blurs what
-// normal maps show. A sine of 15 degrees and 8 pixels under a sun kept 0.14 of its contrast.
+// normal maps show. Under a sun, a normal map with a sine of 15 degrees and 8 pixels kept 0.14 of
+// its contrast.
 //
-// A method that does not know the parts has one share of all light, direct / E(N). Where the normal
-// receives none, ao is the share. Methods that look the light up in another direction than N may
-// find far more than E(N) where that is dark: kMostShare, or such a pixel would light up those
+// A method that does not know the parts has one share of all light, direct / E(N). Where E(N) is 0,
+// ao is the share. Methods that look the light up in another direction than N may find far more
+// than E(N) where E(N) is small: kMostShare limits the share, or such a pixel would light up those
 // around it.
 //
 // The bent normal is averaged by how it deviates from N, in a frame in which N is the z axis, the
@@ -25,7 +26,7 @@
 //
 // Where the share of all light is ao, there is nothing to be filtered but ao.
 //
-// What each light gives is its own unoccluded light times its share: the terms of that sum.
+// The light of each lamp is its own unoccluded light times its share: a term of the sum above.
 //
 // ao is averaged as it is. What of ao is open by the normal alone would be divided out in
 // shares_of_row() and multiplied in light_of_row().
@@ -94,7 +95,8 @@ void shares_of_row(const Scene& scene, Products& products, int y) {
       });
 }
 
-/// Of some light, what arrives at a vector of pixels; `share_of(k)` of its source k does.
+/// The part of `light` that arrives at a vector of pixels: `sky` is the share of its sky,
+/// `share_of(k)` that of its source k.
 template <class ShareOf>
 HWY_INLINE V3 arriving(const Light& light, const Surfels& s, const V3& sky,
                        const ShareOf& share_of) {
@@ -211,7 +213,7 @@ struct Guesses {
   Plane<float> guessed, ao;
 };
 
-/// Their mean over a pattern of their own, whatever that of the method is.
+/// The mean of both over a pattern of kGuessedPattern pixels, whatever the method's pattern is.
 Guesses mean_of_guesses(const Filter& filter, Guesses noisy, const Plane<Surfel>& guide) {
   if (!filter.apply) return noisy;
   FilterPlanes planes;
@@ -234,8 +236,8 @@ Products find_shares(const Filter& filter, Products noisy, const Scene& scene, i
   Products found = filter_found(filter, std::move(noisy), scene, pattern_size, amend, as_shares);
   if (!have_guesses) return found;
   if (!apart) guesses.guessed = std::move(found.guessed), guesses.ao = found.ao;
-  // One mean leaves steps, eight pixels apart, where a ray of one pixel passes other things than
-  // that of its neighbour.
+  // A second mean: one alone leaves steps, eight pixels apart, where the rays of neighbouring
+  // pixels pass different things.
   guesses = mean_of_guesses(filter, std::move(guesses), guide);
   for (std::size_t i = 0; i < guesses.ao.size(); ++i)
     guesses.guessed[i] = guessed_product(guesses.guessed[i], std::clamp(guesses.ao[i], 0.0f, 1.0f));

@@ -16,8 +16,8 @@ Products filter_shares(const Filter& filter, Products noisy, const Scene& scene,
                        const std::function<void(Products&)>& amend = {});
 
 /// The two halves of filter_shares(), for frames that share what they find in between. The first
-/// stops at what is known of the light, whose means over neighbours it has taken: with `as_shares`
-/// in the form of to_shares() even where the filter is none. The second makes the light of it.
+/// ends with the filtered shares; with `as_shares` they have the form of to_shares() even without a
+/// filter. The second makes light from them.
 Products find_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size,
                      const std::function<void(Products&)>& amend, bool as_shares);
 Products light_of_shares(Products found, const Scene& scene, bool as_shares);

@@ -18,8 +18,7 @@ inline constexpr double kLargestRatio = 1 << 18;
 /// Memory of the machine, in bytes.
 double physical_memory();
 
-/// Sets the bytes that the run may use (--mem-limit), and tells them: those of the machine at
-/// first.
+/// Set and return the bytes that the run may use (--mem-limit); by default the machine's memory.
 void limit_memory(double bytes);
 double memory_limit();
 
@@ -30,7 +29,7 @@ void check_decoded_size(const std::filesystem::path& file, std::uint64_t file_by
                         double pixel_bytes, double needed_bytes,
                         double largest_ratio = kLargestRatio);
 
-/// The same for a picture or map: there are no bands of it, so that `needed_bytes` may not exceed
+/// The same for a picture or map. It is not read in bands, so `needed_bytes` may not exceed
 /// memory_limit() either.
 void check_picture_size(const std::filesystem::path& file, double pixel_bytes, double needed_bytes);
 

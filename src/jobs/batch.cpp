@@ -150,7 +150,7 @@ class Batch {
     }
   }
 
-  /// A frame that needs no others any more. Of a frame of `info`, what these show is said.
+  /// The next frame that needs no others any more. `info` reports what the others show of it.
   std::optional<Work> next_made() {
     if (!shot_.has_complete()) return std::nullopt;
     std::optional<Work> work = shot_.next_complete();
@@ -198,7 +198,7 @@ class Batch {
                                              files.input));
   }
 
-  /// Says what the frame before had otherwise; frames are prepared one after the other.
+  /// Adds warnings of what differs from the frame before; frames are prepared one after the other.
   void note_changes(Work& work) {
     const Job& job = jobs_[work.index];
     for (std::size_t v = 0; v < work.views.size() && !job.is_lent; ++v) {
@@ -308,7 +308,7 @@ class Batch {
     for (const std::string& loss : frame.losses()) work.losses.insert(loss);
   }
 
-  /// Says what became of a job, once all those before it are concluded.
+  /// Prints the result of a job, once all those before it are concluded.
   void conclude(Work& work) {
     for (const std::string& loss : work.losses) work.messages.add(loss + "; taken as background");
     if (!work.losses.empty() && code_ == ExitCode::done) code_ = ExitCode::input;
@@ -330,7 +330,7 @@ class Batch {
     progress_of(work.index)(1);
   }
 
-  /// A frame that others miss is no failure of theirs.
+  /// The frames around a lent frame do not fail if it does.
   void conclude_lent(Work& work) {
     print(work);
     if (work.error)
@@ -373,7 +373,7 @@ class Batch {
   const Resources& resources_;
   std::vector<Job> jobs_;
   const bool overlaps_;            ///< frames are read and written beside the one that is estimated
-  const bool writes_behind_;       ///< not only read
+  const bool writes_behind_;       ///< frames are written beside it too
   std::optional<Lighting> light_;  ///< read after the first listing of `info`
   OtherPictures pictures_;         ///< of all frames
   SequenceFrames frames_;

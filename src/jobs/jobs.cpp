@@ -50,7 +50,7 @@ std::vector<Target> targets_of(const OutputOptions& output, const std::vector<st
   return targets;
 }
 
-/// Those to relight.
+/// The files of a frame, once for each view to relight.
 std::vector<FrameFiles> views_of(const FrameFiles& files, const std::vector<std::string>& names) {
   std::vector<FrameFiles> views;
   for (const std::string& name : names) views.push_back(in_view(files, name));
@@ -97,12 +97,12 @@ Job job_of_frame(const RunOptions& options, const std::vector<Target>& targets, 
   return job;
 }
 
-/// The jobs of a shot by the numbers of their frames, with frames that tell others what they have
-/// found and are not among `jobs`: those are lent, where they exist.
+/// The jobs of a shot by the numbers of their frames, together with lent frames: those outside of
+/// `jobs` whose findings these want, where they exist.
 std::vector<Job> with_lent_frames(const RunOptions& options, std::vector<Job> jobs) {
   std::map<int, Job> all;
   for (Job& job : jobs) {
-    // Others may still want what it finds.
+    // Other frames may still want what this one finds.
     job.is_lent = options.batch.skip_existing && is_done(job);
     all.emplace(*job.frame, std::move(job));
   }

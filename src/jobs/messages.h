@@ -30,7 +30,7 @@ class Messages {
   /// Warnings that are printed elsewhere, and count in the summary.
   void note(const std::vector<std::string>& warnings, const std::string& view);
 
-  /// Gives them away.
+  /// Takes all lines out.
   std::vector<Line> take();
 
  private:
@@ -50,7 +50,7 @@ class Printer {
   /// is left for the summary.
   void print(Messages& messages, std::size_t place, int number);
 
-  /// Which frames the warnings hold for that several have.
+  /// A line for each warning that several frames have, with the frames that it holds for.
   std::vector<std::string> summary() const { return repeated_.summary(); }
 
  private:

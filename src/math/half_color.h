@@ -10,10 +10,10 @@
 
 namespace ssdo {
 
-/// A colour in EXR's half numbers: 11 bits of each channel. None is below 0 or above 65504.
+/// A colour in EXR's half format: 11 significant bits per channel, each in 0..65504.
 struct HalfColor {
   static constexpr float kMost = 65504;
-  /// What the bits of a half, as those of a float, are short of in value.
+  /// Factor from a float that has the bits of a half, shifted by kShift, to the value of the half.
   static constexpr float kScale = 0x1p112f;
   static constexpr int kShift = 13;  ///< from the bits of a half to those of a float
 

@@ -5,8 +5,8 @@
 
 namespace ssdo {
 
-/// Shares in the luminance of a linear colour with Rec. 709 primaries (ITU-R BT.709); close enough
-/// to rank others.
+/// Weights of the channels in the luminance of a linear colour with Rec. 709 primaries (ITU-R
+/// BT.709); close enough to rank colours of other primaries.
 constexpr float kLumaRed = 0.2126f, kLumaGreen = 0.7152f, kLumaBlue = 0.0722f;
 
 inline float luminance(const glm::vec3& c) {

@@ -7,8 +7,8 @@
 
 namespace ssdo {
 
-/// As wide as the pattern of marches repeats, so that what lies at one distance from the pixels of
-/// a vector is side by side in an overview.
+/// The period of the pattern of marches, so that samples at the same offset from the pixels of a
+/// vector are side by side in an overview.
 inline constexpr int kOverviewStride = 8;
 
 /// Which pixels of a picture are read: some of its rows, or one in the middle of every block of

@@ -7,8 +7,8 @@
 
 namespace ssdo {
 
-/// A share of some light in 16 bits, in steps of 1/8192. It holds what noise adds beyond 0..1, so
-/// that means are right, up to -4 and 4.
+/// A ratio of light in 16 bits, in steps of 1/8192. Values from -4 to 4 are kept: noise leaves the
+/// range 0..1, and clamping to that range would bias means.
 class Share16 {
  public:
   static constexpr float kSteps = 8192;           ///< of 1

@@ -46,8 +46,9 @@ inline std::uint32_t sobol_second(std::uint32_t index) {
   return sum;
 }
 
-/// Point `index` of the sequence that `seed` scrambles, in 0..1. Of any 2^k points from a multiple
-/// of 2^k on, each of 2^k equal boxes a power of two wide and high holds one.
+/// Point `index` of the sequence that `seed` scrambles, in 0..1. Any 2^k points that begin at a
+/// multiple of 2^k fill every grid of 2^k equal boxes, a power of two wide and high, with one point
+/// in each.
 inline glm::vec2 sobol_point(std::uint32_t index, std::uint32_t seed) {
   const auto to_unit = [](std::uint32_t reversed, std::uint32_t s) {
     // 24 bits, so that rounding to float keeps them below 1.

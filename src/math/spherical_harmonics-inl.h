@@ -29,7 +29,7 @@ HWY_INLINE void for_each_sh_polynomial(T x, T y, T z, const Set& set, const Add&
   static_assert(kLast <= kShOrder);
   if constexpr (kFirst == 0) add(0, set(1));
   if constexpr (kFirst <= 1 && kLast >= 1) add(1, y), add(2, z), add(3, x);
-  // Cosine and sine of m times the azimuth, times sin(polar)^m; sin2 is half of it.
+  // Cosine and sine of m times the azimuth, times sin(polar)^m; sin2 has half of that value.
   const T xx = x * x, yy = y * y, zz = z * z;
   const T sin2 = x * y, cos2 = xx - yy;
   const T sin3_over_y = MulSub(set(3), xx, yy), cos3_over_x = NegMulAdd(set(3), yy, xx);

@@ -17,15 +17,15 @@ constexpr int kShCount = (kShOrder + 1) * (kShOrder + 1);
 /// How many functions the orders 0..order have.
 constexpr int sh_count(int order) { return (order + 1) * (order + 1); }
 
-/// What the clamped cosine over pi leaves of each band: A_l / pi in the paper. Odd bands above 1
-/// have no irradiance at all, and what band 6 has is 1/64.
+/// The factor by which the clamped cosine over pi scales each band: A_l / pi in the paper. Odd
+/// bands above 1 have the factor 0, and band 6 has 1/64.
 constexpr std::array<float, kShOrder + 1> kCosineFactors = {1, 2.0f / 3, 0.25f, 0, -1.0f / 24};
 
-/// What the lobe max(0, cos - edge), scaled to an integral of 1, leaves of each band; edge in
-/// [-1, 1). Edge 0 gives kCosineFactors.
+/// The factor by which the lobe max(0, cos - edge), scaled to an integral of 1, scales each band;
+/// edge in [-1, 1). Edge 0 gives kCosineFactors.
 std::array<double, kShOrder + 1> sh_lobe_factors(double edge);
 
-/// What makes the polynomials of spherical_harmonics-inl.h orthonormal over the sphere.
+/// The factors that make the polynomials of spherical_harmonics-inl.h orthonormal on the sphere.
 constexpr std::array<float, kShCount> kShConstants = {
     0.2820947918f, 0.4886025119f, 0.4886025119f, 0.4886025119f, 1.0925484306f,
     1.0925484306f, 0.3153915653f, 1.0925484306f, 0.5462742153f, 0.5900435899f,

@@ -10,8 +10,8 @@ namespace ssdo {
 void prefer_large_pages(void* first, std::size_t bytes) {
   constexpr std::uintptr_t kLargePage = std::uintptr_t(2) << 20;
   if (bytes < 2 * kLargePage) return;
-  // Those that the plane fills: what lies beside it may never be touched. Where there are no such
-  // pages, all goes on as before.
+  // Only pages that the plane fills: the memory beside it may never be touched. On a system without
+  // large pages nothing changes.
   const std::uintptr_t begin = (std::uintptr_t(first) + kLargePage - 1) & -kLargePage,
                        end = (std::uintptr_t(first) + bytes) & -kLargePage;
   static_cast<void>(madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE));

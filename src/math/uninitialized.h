@@ -9,9 +9,9 @@
 
 namespace ssdo {
 
-/// Asks the system to back what a plane fills of large pages with such, where it has them: of pages
-/// of 4 KiB a frame of 1920 x 1080 touches 66,000, and each is a fault. A plane of less than two
-/// large pages (4 MiB) need not fill one.
+/// Asks the system for large pages (2 MiB), where it has them, for the memory of a plane: with
+/// pages of 4 KiB a frame of 1920 x 1080 causes 66,000 page faults. Only large pages that the plane
+/// fills are asked for, and none for a plane below 4 MiB, which may not fill any.
 void prefer_large_pages(void* first, std::size_t bytes);
 
 /// An allocator for elements that are left as they are in memory where they are given no value, so

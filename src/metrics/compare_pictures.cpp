@@ -22,7 +22,7 @@ PictureMask::PictureMask(const std::string& text) {
                                              picture.layers().size(), name.file));
   }
   PictureLayer layer = name.layer.empty() ? picture.layers()[0] : picture.find(name.layer);
-  // An opaque PNG is no mask of everything.
+  // Without its alpha, which would make an opaque PNG hold every pixel.
   if (!picture.exr() && name.layer.empty()) layer.channels = {"R", "G", "B"};
   window_ = picture.window(layer);
   planes_ = picture.read(layer);
@@ -32,7 +32,7 @@ bool PictureMask::holds(int x, int y) const {
   if (planes_.empty()) return true;
   if (!window_.contains(x, y)) return false;
   return std::any_of(planes_.begin(), planes_.end(), [&](const Plane<float>& p) {
-    return p(x - window_.x0, y - window_.y0) != 0;  // and not a number counts
+    return p(x - window_.x0, y - window_.y0) != 0;  // NaN holds too
   });
 }
 

@@ -44,7 +44,7 @@ struct Comparison {
 Comparison compare_pictures(const CompareOptions& options, const PictureMask& mask,
                             bool keeps_channels = false);
 
-/// Whether the gate lets them pass.
+/// Whether the comparison passes the gate.
 bool passes(const CompareOptions& options, const Comparison& all);
 
 /// Refuses a difference that cannot be written, or that would replace a picture.

@@ -31,7 +31,7 @@ CompareOptions options_at(const CompareOptions& options, int frame) {
   return at;
 }
 
-/// Those that are named, or that one of the sequences has.
+/// The frames that are named, or those that at least one of the sequences has.
 std::vector<int> frames_of(const CompareOptions& options) {
   if (options.frames) return *options.frames;
   std::set<int> all;

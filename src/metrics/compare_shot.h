@@ -52,11 +52,11 @@ struct ShotComparison {
 };
 
 /// Compares the frames of sequences, and measures their flicker where points are given: from each
-/// frame to the one that stands before it in the list. What is wrong with a frame stands in it.
+/// frame to the one before it in the list. Errors of one frame are kept in its ShotFrame.
 /// Errors: ExitCode::input where no frame exists.
 ShotComparison compare_shot(const CompareOptions& options);
 
-/// That of the first frame that has an error or does not pass the gate.
+/// The exit code of the first frame that has an error or does not pass the gate.
 ExitCode exit_code_of(const CompareOptions& options, const ShotComparison& shot);
 
 }  // namespace ssdo

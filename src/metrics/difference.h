@@ -37,7 +37,7 @@ struct Channels {
   }
 };
 
-/// Pixels that the mask holds and that are left out.
+/// Pixels inside the mask that are left out of a comparison.
 struct LeftOut {
   std::size_t in_both = 0;  ///< not finite in both pictures, as a depth is beyond all surfaces
   std::size_t in_one = 0;   ///< finite in one picture and not in the other
@@ -55,7 +55,7 @@ struct ChannelsDifference {
   LeftOut left_out;
   std::vector<Plane<float>> a_minus_b;  ///< over the window of A; 0 where a pixel does not count
 
-  /// Share of the pixels that one picture shows at least and the other does not.
+  /// The ratio of pixels without a counterpart to those that at least one picture shows.
   double invalid_share() const;
 };
 

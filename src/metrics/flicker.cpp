@@ -22,8 +22,8 @@
 // Constants change by nothing. Noise of single pixels of standard deviation s changes by 1.2 s, and
 // by 1.41 s where the camera rests.
 //
-// These rules are not those of the filters in filters/, although they ask alike: what is measured
-// has no say in where it is measured.
+// The filters in filters/ have similar rules of their own: the code that is measured has no say in
+// where it is measured.
 #include "metrics/flicker.h"
 
 #include <algorithm>
@@ -41,12 +41,12 @@ namespace ssdo {
 namespace {
 
 constexpr double kSameNormal = 0.95;  ///< normals 18 degrees apart belong to two surfaces
-constexpr double kGap = 0.5;          ///< of a pixel's width, from a pixel to the plane of another
-constexpr double kMoved = 0.1;        ///< the same of the surface that four pixels show
-constexpr double kOffPixels = 0.1;    ///< of a motion layer from what cameras say of still surfaces
+constexpr double kGap = 0.5;          ///< most pixel widths from a pixel to the plane of another
+constexpr double kMoved = 0.1;        ///< the same for the mean of the four pixels
+constexpr double kOffPixels = 0.1;    ///< most pixels between motion layer and camera motion
 
-/// Places this near to a column or a row of pixel centres, in pixels, are on it: a resting camera
-/// compares pixels with themselves. P as stored is no better.
+/// Places this near to a column or a row of pixel centres, in pixels, are moved onto it, so that a
+/// resting camera compares pixels with themselves. P as stored is no more precise.
 constexpr double kSnap = 1.0 / 64;
 
 /// Where a place lies along one axis: between the centres of pixel `first` and the next.
@@ -80,8 +80,8 @@ class Search {
         step_(before.camera.rotation * (now.camera.origin - before.camera.origin)),
         footprint_(before.camera) {}
 
-  /// Appends the point of pixel (x, y) of the present plane, if the frame before shows it. `moved`
-  /// is set where it does, and `motion` says that it was elsewhere.
+  /// Appends to `found` the point of pixel (x, y) of the present plane if the frame before shows
+  /// it, and to `moved` whether `motion` contradicts the place that the cameras give.
   void find(int x, int y, const glm::vec2* motion, std::vector<SharedPoint>& found,
             std::vector<bool>& moved) const {
     const Surfel& surfel = now_.surfel(x, y);
@@ -112,7 +112,7 @@ class Search {
            place.y < display.y0 + kBorder || place.y > display.y1 - kBorder;
   }
 
-  /// Whether the pixels around the point show its surface, where it is now.
+  /// Whether the pixels around the point show its surface at its present place.
   bool shows(const SharedPoint& point, const glm::dvec3& p, const Surfel& surfel) const {
     const glm::dvec3 normal = turn_ * glm::dvec3(surfel.normal);
     const double width = footprint_.at(float(before_.camera.depth_of(p)));

@@ -31,9 +31,9 @@ struct SharedPoints {
   bool motion_is_wrong = false;
 };
 
-/// Both frames must know the world. `motion` leads from each pixel of `now` to where what it shows
-/// was in the frame `before`, in pixels, x right and y down; empty: P alone tells what moves.
-/// `counts(x, y)` says which pixels of the present frame are asked, in display coordinates.
+/// Both frames must have `world_known`. `motion` leads from each pixel of `now` to the place of its
+/// point in the frame `before`, in pixels, x right and y down; if empty, only P tells what moves.
+/// Points are looked for at the pixels of `now` where `counts(x, y)`, in display coordinates.
 SharedPoints find_shared_points(const Geometry& before, const Geometry& now,
                                 const Plane<glm::vec2>& motion,
                                 const std::function<bool(int x, int y)>& counts);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A point of one frame has moved if the other frame looks through its place: all pixels around that
-// place show what lies farther away by kBehind of its depth, or nothing. An edge that falls between
-// the pixels of one frame looks alike, but makes lines of single pixels: a point counts if it has
-// moved together with kLeast - 1 of the eight around it.
+// place show a surface that is farther away by kBehind of its depth, or nothing. An edge between
+// the pixels of one frame passes this test too, but only in lines one pixel wide: a point counts if
+// kLeast - 1 of its eight neighbours pass too.
 //
-// These rules are not those of the filters in filters/, although they ask alike.
+// The filters in filters/ have similar rules of their own.
 #include "metrics/near_moving.h"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ struct OtherFrame {
   glm::dmat3 turn;
   glm::dvec3 step;
 
-  /// Whether it looks through the place of a point of the own frame.
+  /// Whether the other frame looks through the place of `surfel`, a point of the own frame.
   bool looks_through(const Surfel& surfel) const {
     if (!surfel.is_usable()) return false;
     const glm::dvec3 p = turn * glm::dvec3(surfel.position) + step;
@@ -47,7 +47,7 @@ struct OtherFrame {
       return false;
     const int left = int(corner.x), top = int(corner.y);
     for (int k = 0; k < 4; ++k) {
-      // Under a camera at rest, the pixels beside have no part in the place but for rounding.
+      // With a camera at rest, the neighbours' weights differ from 0 by rounding only.
       const double part = (k % 2 ? past.x : 1 - past.x) * (k / 2 ? past.y : 1 - past.y);
       if (part < kLeastPart) continue;
       const Surfel& q = geometry.surfel(left + k % 2 - window.x0, top + k / 2 - window.y0);

@@ -9,8 +9,8 @@ namespace ssdo {
 /// Pixels in x and in y within which something is near.
 constexpr int kNearMoving = 24;
 
-/// 1 in the pixels of `now` that are near what moved since the frame before, at both of its places,
-/// over the window of `now`; see near_moving.cpp. Both must know the world.
+/// 1 in the pixels of `now` that are near something that moved since the frame before, at its old
+/// or its new place, over the window of `now`; see near_moving.cpp. Both need `world_known`.
 Plane<unsigned char> near_moving(const Geometry& before, const Geometry& now);
 
 }  // namespace ssdo

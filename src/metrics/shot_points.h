@@ -19,12 +19,13 @@ View read_points(const FrameFiles& files, const InputOptions& input, const Camer
 /// The surfaces of the frames of a shot, of which it keeps those of the latest.
 class ShotPoints {
  public:
-  /// What `view`, of frame `number`, and the one before it in these calls both show, of the pixels
-  /// for which `counts(x, y)` holds, in display coordinates; nothing for the first. A motion layer
-  /// tells what moves where it leads to that frame. `display` is the display window of what is
-  /// measured; adds to `notes`. After an error the next frame has none before it.
-  /// Errors: ExitCode::layer where P does not tell the world space, and where the display window is
-  /// another one.
+  /// The points that `view`, of frame `number`, and the view of the call before both show, at
+  /// pixels for which `counts(x, y)` holds, in display coordinates; nothing for the first call. A
+  /// motion layer is used only if it leads to the frame of that earlier view. `display` is the
+  /// display window of what is measured; adds to `notes`. After an error the next call has no
+  /// earlier view.
+  /// Errors: ExitCode::layer where P does not tell the world space, and where `view` has another
+  /// display window.
   std::optional<SharedPoints> next(int number, View view, const Window& display,
                                    const std::function<bool(int x, int y)>& counts,
                                    std::vector<std::string>& notes);

@@ -46,7 +46,7 @@ json frame_json(const ShotComparison& shot, const ShotFrame& frame) {
   return j;
 }
 
-/// Over all frames, as those of one frame.
+/// The figures over all frames, in the form of those of one frame.
 LayerFlickerFigures figures_of(const LayerFlicker& flicker) {
   LayerFlickerFigures figures{flicker.a.figures(), {}};
   if (flicker.a_minus_b.points > 0) figures.a_minus_b = flicker.a_minus_b.figures();

@@ -19,7 +19,7 @@ Background::Background() : group_(std::make_unique<Group>()) {}
 Background::~Background() {
   try {
     wait();
-  } catch (...) {  // nobody has waited for it who could be told
+  } catch (...) {  // lost: the owner has not called wait()
   }
 }
 

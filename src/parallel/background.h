@@ -6,8 +6,8 @@
 
 namespace ssdo {
 
-/// Runs a job beside its owner, on the threads that ThreadLimit allows: none is added. Loops over
-/// tiles of either take the threads that the other leaves idle.
+/// Runs a job beside its owner, on the threads that ThreadLimit allows: none is added. Parallel
+/// loops of the job and of the owner use the threads that the other leaves idle.
 class Background {
  public:
   Background();

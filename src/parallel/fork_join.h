@@ -7,8 +7,9 @@
 
 namespace ssdo {
 
-/// Tells ThreadSanitizer the order that TBB keeps, whose library is not compiled with it: each task
-/// begins after the fork and ends before the join; two tasks have none. Nothing in other builds.
+/// Tells ThreadSanitizer, with which TBB is not compiled, the order that TBB keeps: each task
+/// begins after the fork and ends before the join; two tasks have no order. Does nothing in other
+/// builds.
 class ForkJoin {
  public:
   void fork() { release(&forked_); }
@@ -40,7 +41,7 @@ class ForkJoin {
   static void acquire(char*) {}
 #endif
 
-  char forked_ = 0, ended_ = 0;  ///< of which the addresses count
+  char forked_ = 0, ended_ = 0;  ///< only their addresses are used
 };
 
 }  // namespace ssdo

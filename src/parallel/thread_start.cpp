@@ -17,10 +17,10 @@
 namespace ssdo {
 namespace {
 
-/// For threads that a busy machine is slow to start; they come later then.
+/// The longest wait for threads that a busy machine is slow to start; they may start later.
 constexpr std::chrono::milliseconds kLongestWait(200);
 
-/// Where threads wait for each other, so that none of them takes the task of two.
+/// A barrier at which each task waits for all others, so that no thread runs two tasks.
 class Meeting {
  public:
   explicit Meeting(int count) : missing_(count) {}

@@ -16,17 +16,19 @@
 namespace ssdo {
 namespace {
 
-/// Bytes of a process without a frame, of each pixel at the peak of ao, direct, bounce and
-/// composite, and what a sun adds, bent and reflection, each, and specular. Measured, with a
-/// margin. An overview keeps as much for each pixel of its own.
+/// Measured bytes, with a margin: kBytes of a process without a frame, and for each pixel
+/// kBytesPerPixel at the peak of ao, direct, bounce and composite, kBytesOfSun for each sun,
+/// kBytesOfMore for bent and for reflection, kBytesOfSpecular for specular. An overview keeps as
+/// much for each pixel of its own.
 constexpr double kBytes = 60e6, kBytesPerPixel = 120, kBytesOfSun = 11, kBytesOfMore = 18,
                  kBytesOfSpecular = 72;
 
-/// What casts, where something does not: surfaces, senders, and what receives on marches.
+/// Bytes per pixel if some objects cast nothing: the surfaces and senders that do cast, and what
+/// receives on marches.
 constexpr double kBytesOfCasting = 60;
 
-/// What each scene adds that blocks the light of some lamps alone, and what the light without some
-/// objects does, to what it is compared with.
+/// Bytes per pixel for each scene of blockers that only some lamps have, and for the light without
+/// some objects together with the light it is compared with.
 constexpr double kBytesOfBlockers = 100, kBytesOfShadow = 150;
 
 /// What the learned prior adds: what it reads and changes of visibility, by pixel.
@@ -38,10 +40,10 @@ constexpr double kBytesOfSenders = 20;
 /// Suns of a map that are allowed for before it is known.
 constexpr int kUsualSuns = 3;
 
-/// What each light adds whose bounce, or direct light, is kept apart.
+/// Bytes per pixel for each light of which the bounce, or the direct light, is kept apart.
 constexpr double kBytesOfBounce = 50, kBytesOfDirect = 14;
 
-/// Lamps may share what blocks their light.
+/// How many scenes block the light of lamps; lamps may share a scene.
 std::size_t blockers_of(const Scene& scene) {
   std::set<const Scene*> found;
   for (const auto& [source, blockers] : scene.blockers) found.insert(blockers.get());
@@ -66,8 +68,9 @@ double bytes_per_pixel(const Plan& plan, const Scene& scene) {
 /// Bands end where chunks of every compression do.
 constexpr int kRowsAtOnce = 256;
 
-/// Where marches may end in a band if nothing is out of their reach: the farther, the nearer to
-/// what the frame would be in one piece, but rows that are read for several bands cost time.
+/// Reaches, in pixels, at which marches may end in a band if nothing is out of their reach. A
+/// larger reach is nearer to the frame in one piece, but rows that are read for several bands cost
+/// time.
 constexpr int kMarches[] = {512, 256, 128};
 
 /// Rows beyond the end of a march that are looked at: samples lie in blocks of pixels, and light
@@ -121,7 +124,7 @@ class Planner {
 
 std::string in_gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / double(1 << 30)); }
 
-/// What needs a whole frame; empty: nothing does.
+/// The first request that needs a whole frame; empty: none does.
 std::string needs_whole_frame(const Scene& overview, const Plan& plan,
                               const OutputOptions& output) {
   if (!plan.method->bands.overview) return fmt::format("method {}", plan.method->name);
@@ -140,7 +143,7 @@ std::string needs_whole_frame(const Scene& overview, const Plan& plan,
   return "";
 }
 
-/// Before anything but the header was read.
+/// The bytes that are expected when only the header has been read.
 double expected_bytes_per_pixel(const OutputOptions& output, int lamps) {
   const double of_light = output.per_light ? kBytesOfBounce + kBytesOfDirect : 0;
   return kBytesPerPixel + (kUsualSuns + lamps) * kBytesOfSun + 2 * kBytesOfMore +
@@ -163,7 +166,7 @@ BandPlan plan_bands(const std::string& file, const Window& frame, const Window& 
                     std::size_t memory) {
   const std::string size = fmt::format("{}: {} x {} pixels", file, frame.width(), frame.height());
   if (const std::string what = needs_whole_frame(overview, plan, output); !what.empty()) {
-    // The frame was read in small because of what was expected of it, which may be more.
+    // The frame was read as an overview because of its expected size, which may be larger.
     const double expected =
         kBytes +
         expected_bytes_per_pixel(output, int(overview.light.sources.size())) * double(frame.area());

@@ -12,9 +12,9 @@ namespace ssdo {
 /// How a frame that does not fit into memory is cut into bands of rows. Each is read with the rows
 /// around it that its light comes from.
 struct BandPlan {
-  int rows = 0;             ///< that a band writes, but for the last one
-  int reach_rows = 0;       ///< above and below a pixel, where marches in a band end
-  int march_px = 0;         ///< how far away they do
+  int rows = 0;             ///< that a band writes; the last may have fewer
+  int reach_rows = 0;       ///< above and below a pixel, that its marches in a band read
+  int march_px = 0;         ///< from a pixel, where its marches in a band end
   int halo_rows = 0;        ///< that a band reads above and below those that it writes
   bool marches_on = false;  ///< in an overview of the frame, beyond reach_rows
 };
@@ -35,7 +35,7 @@ BandPlan plan_bands(const std::string& file, const Window& frame, const Window& 
                     const Scene& overview, const Plan& plan, const OutputOptions& output,
                     std::size_t memory);
 
-/// The rows around those of a band, where marches reach so far.
+/// The rows to read above and below those of a band, if marches reach so many rows.
 int halo_rows(const Plan& plan, int reach_rows);
 
 /// For people.

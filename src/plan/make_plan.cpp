@@ -30,7 +30,7 @@ constexpr float kAutoRadius = 0.3f;
 /// A bounce from surfaces that are darker than this everywhere is below 1 % of the light.
 constexpr float kDarkAlbedo = 0.01f;
 
-/// What is wider, in degrees, is not called a sun.
+/// Messages call a distant source a sun up to this width, in degrees.
 constexpr float kWidestSun = 4;
 
 struct OptionOfModel {
@@ -116,7 +116,8 @@ void explain_reflection(Plan& plan, const Scene& scene) {
   }
 }
 
-/// Bounces by a fit belong to the light of a method, not to a product that could be left out.
+/// Refuses multi-bounce without an albedo: its bounces are part of direct, not a product of their
+/// own that could be left out.
 void check_multi_bounce(const Plan& plan, const Scene& scene, const std::string& file) {
   const auto wanted = plan.request.parameters.find("multi-bounce");
   if (wanted == plan.request.parameters.end() || wanted->second == 0) return;
@@ -205,7 +206,7 @@ void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geomet
   }
 }
 
-/// What is known of what lies behind surfaces.
+/// Adds to the reasons how many surfaces have measured solids behind them.
 void explain_measured(Plan& plan, const Scene& scene) {
   const Solids& solids = scene.solids;
   const auto is_measured = [](const SolidLayer& layer) {
@@ -254,8 +255,8 @@ void choose_march(Plan& plan, const ModelOptions& model) {
     plan.reasons.push_back("surfaces end at the border of the frame: as asked");
 }
 
-/// With --crop, pixels that no output holds gather nothing, where that changes no other pixel: not
-/// where their error counts, or where a later frame may show what they show.
+/// With --crop, limits the receivers to the pixels that outputs hold or filters read. Not where the
+/// error of all pixels counts, or where other frames use what the rest has found.
 void choose_receivers(Plan& plan, const OutputOptions& output, const Geometry& geometry,
                       const GBuffer& gbuffer, const std::string& file, int reach_of_prior) {
   // The windows of an overview are not those of the outputs.

@@ -37,9 +37,9 @@ constexpr int steps_of(Quality quality) { return kQualities[std::size_t(quality)
 /// What fills the directions that no picture shows.
 enum class Prior { rules, learned };
 
-/// Which frames around a frame of a sequence tell it what they have found.
+/// The frames around a frame of a sequence whose findings it uses.
 struct ShotWindow {
-  int count = 0;  ///< before, and as many after; 0: none do
+  int count = 0;  ///< before, and as many after; 0: none
   int step = 1;   ///< frames from one to the next
 };
 
@@ -47,8 +47,7 @@ struct ShotWindow {
 struct ModelOptions {
   std::string method{methods().front().name};
   std::optional<double> radius;  ///< scene units or infinity; chosen from the frame if not given
-  /// What auto is for a method that needs a limit, by frames of the sequence; empty: the frame
-  /// tells.
+  /// The radius of `auto` by frames of the sequence; empty: by this frame alone.
   std::optional<float> radius_of_shot = {};
   std::optional<double> thickness;  ///< scene units or infinity; found in the frame if not given
   bool extend_offscreen = true;     ///< surfaces go on beyond the frame
@@ -64,7 +63,7 @@ struct ModelOptions {
   ShotWindow shot = {};             ///< frames that share what they find with each other
 };
 
-/// What a learned prior is told of a frame by others than the estimate.
+/// What a learned prior needs to know of a frame besides the estimate.
 struct LearnedPrior {
   std::optional<glm::vec3> up;                        ///< unit, camera space; not known: nothing
   std::shared_ptr<const PriorContext> of_frame = {};  ///< where a band of it is computed

@@ -11,14 +11,14 @@
 namespace ssdo {
 namespace {
 
-/// Cells across a square frame, and by how much larger they are at each scale.
+/// Cells across a square frame, and the factor of their size at each scale.
 constexpr double kCells = 48;
 constexpr std::array kLarger = {1, 4, 12};
 
 /// Weight of the frame's mean in a cell, where a cell that shows nothing but surfaces has 1.
 constexpr float kOfTheFrame = 1e-3f;
 
-/// The most that a distance and a radius are told of, in halves of their logarithms.
+/// Limits of the inputs for distance and radius, in halves of their logarithms.
 constexpr float kMostLogDepth = 3, kMostLogRadius = 1.5f;
 
 int count_of(double cells, int larger, int most) {

@@ -23,17 +23,17 @@
 
 namespace ssdo {
 
-/// Rows right, ahead and up of the axes in which directions are told, which turn them from camera
-/// space. `up` unit, in camera space: then the axes stand upright and face where the camera looks,
-/// continuously also where it looks straight down. Without it, they are the camera's.
+/// The matrix that turns directions from camera space to the axes of the inputs; its rows are
+/// right, ahead and up. `up` unit, in camera space: then the axes stand upright and face where the
+/// camera looks, continuously also where it looks straight down. Without it, they are the camera's.
 glm::mat3 prior_axes(const std::optional<glm::vec3>& up);
 
-/// What the prior is told of a frame as a whole: of one that is computed in bands, its overview
-/// tells it.
+/// What the prior is told of a frame as a whole. For a frame that is computed in bands, it comes
+/// from the overview.
 struct PriorContext {
   static constexpr int kScales = 3;
 
-  /// What means are taken of; its squares, for deviations, stand last.
+  /// The values whose means are taken; names with 2 are squares, for deviations.
   enum Value {
     kNormal = 0,
     kLevel = 3,  ///< share of the normal that is vertical
@@ -49,7 +49,7 @@ struct PriorContext {
   };
   using Values = std::array<float, kValues>;
 
-  /// Of a cell: the share that shows surfaces, and sums over these by the size of the cell.
+  /// The share of a cell that shows surfaces, and sums over these, divided by the size of the cell.
   struct Cell {
     float covered = 0;
     Values sums = {};
@@ -70,8 +70,8 @@ class PriorInputs {
                                kShared = kOfFrame + 4 * kOfSide;
 
   /// `squares` with the means of what was found; `radius` in scene units, or infinity; `up` as
-  /// prior_axes() has it. `of_frame`: where the geometry is a band of a frame; null: the squares
-  /// tell it.
+  /// prior_axes() has it. `of_frame`: the context of the frame, if the geometry is a band; null:
+  /// found from the squares.
   PriorInputs(const Squares& squares, const Geometry& geometry, const std::optional<glm::vec3>& up,
               float radius, const PriorContext* of_frame = nullptr);
 

@@ -21,19 +21,19 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// Of what hides less than this, nothing is known.
+/// Least 1 - ao that the bounce is divided by: of smaller occluders, nothing is known.
 constexpr float kLeastHidden = 1e-3f;
 
-/// What a square that shows another surface weighs, where none shows the pixel's own.
+/// The weight of a square that shows another surface: decisive only where no square shows the
+/// pixel's.
 constexpr float kOtherSurface = 1e-3f;
 
-/// What the squares say of something, by square: values that are interpolated between them.
+/// Planes of values by square, which are interpolated between squares.
 template <int kCount>
 using SquareValues = std::array<const Plane<float>*, kCount>;
 
-/// A row of squares, spread to pixels: entry x is of the square whose centre is the last one not
-/// right of pixel x, entry x + step of the next. Channels 0 to 6 are those of TileRows, then the
-/// values.
+/// A row of squares, spread to pixels: entry x holds the last square whose centre is not right of
+/// pixel x, entry x + step the next square. Channels 0 to 6 are those of TileRows, then the values.
 template <int kCount>
 class SpreadRow {
  public:
@@ -73,8 +73,9 @@ class SpreadRow {
   std::vector<float> values_;
 };
 
-/// The mean of four squares by distance and by how far they show the surface of `p`; 0 where none
-/// exists. `right` and `low` are the shares of the squares to the right, and below.
+/// The mean of four squares, weighted by distance and by how far they show the surface of `p`; 0
+/// where no square exists. `right` and `low` are the weights of the squares to the right, and
+/// below.
 template <int kCount>
 HWY_INLINE void interpolate(const Shown& p, const SpreadRow<kCount>& above,
                             const SpreadRow<kCount>& below, std::size_t x, V right, V low,
@@ -109,7 +110,7 @@ HWY_INLINE V leaned(V ao, V guesses, V lean) {
   return hn::Clamp(hn::MulAdd(width, open / (open + closed) - s, ao), lo, hi);
 }
 
-/// Columns or rows of squares around pixels, and the shares of the second ones.
+/// The two columns, or rows, of squares around each pixel, and the weight of the second one.
 struct Axis {
   std::vector<int> square;  ///< of the first one, by pixel, and `step` pixels farther
   std::vector<float> share;
@@ -165,7 +166,8 @@ HWY_INLINE V amended(const Surfels& surfels, V ao, V guesses, V lean, float part
   return hn::IfThenElse(surfels.surface, after, ao);
 }
 
-/// The bounce of a vector of pixels, of a light that surfaces send `sent` of.
+/// Changes the bounce of a vector of pixels; `sent` is the mean radiance that surfaces send of its
+/// light.
 HWY_INLINE void amend_bounce(std::size_t i, int count, V ao, V after, const glm::vec3& sent,
                              Plane<glm::vec3>& bounce) {
   if (bounce.empty()) return;
@@ -175,7 +177,7 @@ HWY_INLINE void amend_bounce(std::size_t i, int count, V ao, V after, const glm:
   store_first(count, mul_add(set(sent), closer, found * hn::Min(opener, one)), &bounce[i]);
 }
 
-/// The answer by pixel.
+/// Writes the prior's answer for each pixel.
 void write_rows(const PriorField& field, const Geometry& geometry, float sun_past, int y0, int y1,
                 LearnedVisibility& learned) {
   between_squares<2>(
@@ -203,13 +205,13 @@ void amend_rows(const PriorField& field, const Scene& scene, int y0, int y1, Pro
     between_squares<2>(s, scene.geometry, {&s.guesses, &field.lean}, y0, y1, lean);
     return;
   }
-  // L(d) = mean + slope . d is what the first two bands of the sky hold.
+  // The first two bands of the sky are L(d) = mean + slope . d.
   const Light& light = scene.light;
   const glm::vec3 mean = light.coefficients[0] * kShConstants[0],
                   slope_y = light.coefficients[1] * kShConstants[1],
                   slope_z = light.coefficients[2] * kShConstants[2],
                   slope_x = light.coefficients[3] * kShConstants[3];
-  // Light that has directions comes halfway between open borders and surfaces that go on.
+  // Visibility for light with directions lies halfway between open borders and surfaces that go on.
   const bool has_directions = light.order > 0;
   const V halfway = set(has_directions ? 0.5f : 0.0f),
           part = set(has_directions ? kPartOfLight : 1.0f);

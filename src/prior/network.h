@@ -39,10 +39,10 @@ struct PriorModels {
 /// Errors: ExitCode::failed for anything else.
 PriorModels read_models(std::string_view bytes);
 
-/// Those that the tool carries.
+/// The networks that are built into the tool.
 const PriorModels& prior_models();
 
-/// A network of whose inputs the last ones are the same at many places.
+/// A network whose last inputs are the same at many places.
 class NetworkWithShared {
  public:
   /// `shared` are those inputs; their part of the first layer is summed once.

@@ -51,7 +51,7 @@ void average_over_squares(const PriorQuestion& question, const PriorAsked& asked
   s.bent = std::get<Plane<glm::vec3>>(std::move(planes[3].plane));
 }
 
-/// Less than this share of the sky tells nothing of a sun.
+/// Added to both terms of r of prior.h: a smaller ao tells nothing of a sun.
 constexpr float kLeastOpen = 0.03f;
 
 /// ao' of prior.h, of the mean of a square.

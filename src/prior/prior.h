@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A learned prior for what no picture shows. A method takes directions that nothing in the frame
-// decides for open or hidden by rules; how many they are, G of estimators/guessed.h says. A small
-// network that was trained on made scenes (data/prior) says for each place how far to lean to
-// either side, from the geometry of the pixel and the frame around it. Directions that are known
-// stay as they are:
+// A learned prior for what no picture shows. A method decides by rules whether directions are open
+// or hidden about which the frame tells nothing; G of estimators/guessed.h is the share of such
+// directions. A small network that was trained on made scenes (data/prior) says for each place how
+// far to lean to either side, from the geometry of the pixel and the frame around it. Directions
+// that are known stay as they are:
 //
 //   ao' = lo + (hi - lo) sigmoid(logit s + shift),   s = (ao - lo) / (hi - lo)
 //   lo = max(ao - g, 0),   hi = min(ao + g, 1),   g = guessed_product(G, ao)
@@ -13,8 +13,8 @@
 // exponentials in each pixel; u = 1/2 leaves ao as it is, and so does g = 0. s is held to
 // 0.02..0.98, beyond which only a share of that can be gained.
 //
-// It also says by how much the mean of V d over directions d by the cosine changes, V the
-// visibility: m' - m, with m as light with directions sees it, halfway between surfaces that go on
+// The network also gives the change m' - m of m, the cosine-weighted mean of V d over directions d,
+// V the visibility. Here m is what light with directions uses, halfway between surfaces that go on
 // beyond the border and surfaces that end there. Of a sky with the radiance c0 + c . d, irradiance
 // over pi is c0 ao + c . m, so that its share of the unoccluded E changes by
 //
@@ -50,8 +50,8 @@
 
 namespace ssdo {
 
-/// Pixels around a part whose values the prior of its pixels depends on, beside the means of the
-/// display window.
+/// Width in pixels of the border around a part on whose values the prior of the part depends,
+/// beside the means of the display window.
 inline constexpr int kPriorReach = 48;
 
 /// s is held to kLeastShare..1 - kLeastShare.
@@ -78,12 +78,12 @@ struct PriorField {
   Plane<float> opens;                  ///< how much more is open if surfaces end at the border
   std::array<Plane<float>, 3> moment;  ///< x, y, z in camera space of m' - m
   Plane<float> spread;                 ///< expected |error| of ao'
-  float part;                          ///< of `lean`, which ao takes; see part_of_ao()
+  float part;                          ///< the part of `lean` that ao takes; see part_of_ao()
   PriorContext context;                ///< of the frame
 };
 
-/// Who is asked: the model for a way up that is known, unit, in camera space, or that without; for
-/// a radius in scene units, or infinity.
+/// Selects the model, with a known direction `up`, unit, in camera space, or without; `radius` is
+/// in scene units, or infinity.
 struct PriorAsked {
   std::optional<glm::vec3> up;
   float radius;
@@ -91,15 +91,16 @@ struct PriorAsked {
   const PriorContext* of_frame = nullptr;  ///< where the scene is a band of a frame
 };
 
-/// Looks at the pixels in the part of the question.
+/// Looks at the pixels of `question.part`.
 PriorField find_prior(const PriorQuestion& question, const PriorAsked& asked);
 
-/// The same between the squares, by pixel. Of a sun comes 1 - (1 - r)^2 past the border, where
-/// nothing that is shown hides it; r = ao' / ao with open borders, the share of what nothing shown
-/// hides that is open. Error of the visibility of a sun in seven families of made scenes that the
-/// training never saw, over that with sun_past_beyond(): 0.98, in the worst of them 1.04. With
-/// 1 - (1 - r)^1.5 it is 0.96 (1.08), but a lit floor in an open set has 0.89 of its sun, for 0.95.
-/// The answer lies between that and `sun_past`, as PriorQuestion has it.
+/// The field interpolated between squares, by pixel. The share of a sun that comes past the border
+/// is 1 - (1 - r)^2 where nothing shown hides the sun; r = ao' / ao with open borders is the open
+/// share of the directions that nothing shown hides. Error of the visibility of a sun in seven
+/// families of made scenes that the training never saw, over that with sun_past_beyond(): 0.98, in
+/// the worst of them 1.04. With 1 - (1 - r)^1.5 it is 0.96 (1.08), but a lit floor in an open set
+/// has 0.89 of its sun, for 0.95. The answer lies between that and `sun_past`, as PriorQuestion has
+/// it.
 LearnedVisibility by_pixel(const PriorField& field, const Geometry& geometry, float sun_past);
 
 /// For Request: answers, and keeps in `field` what the prior said.

@@ -9,15 +9,15 @@
 namespace ssdo {
 namespace {
 
-/// The prior looks at frames as if they were about so many pixels wide, but takes one pixel of 16
-/// at least.
+/// About how many squares a frame is wide, and the largest side of a square in pixels: at least one
+/// pixel of 16 is looked at.
 constexpr double kLookedAt = 480;
 constexpr int kLargest = 4;
 
 int floor_div(int a, int b) { return int(std::floor(double(a) / b)); }
 
-/// The pixel that stands for a square, of those on a side: 8 squares in a row take 8 different
-/// columns of the sampling pattern.
+/// The place, along one side of a square, of the pixel that stands for it: 8 squares in a row take
+/// 8 different columns of the sampling pattern.
 int place_in(int square, int step) {
   constexpr int kPeriod = kGuessedPattern;
   const int turn = (square & (kPeriod - 1)) * step / kPeriod;
@@ -38,7 +38,7 @@ Squares make_squares(const Geometry& geometry, const Window& part, const Casting
   };
   Squares s;
   const int step = s.step = square_size(geometry.display.width());
-  // Of the first pixel of the geometry in the display window.
+  // The place of the geometry's first pixel in the display window.
   const int left = geometry.window.x0 - geometry.display.x0,
             top = geometry.window.y0 - geometry.display.y0;
   s.first = {floor_div(left + part.x0, step), floor_div(top + part.y0, step)};

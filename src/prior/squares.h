@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The coarse grid on which the prior works. Squares of pixels are counted from the first pixel of
-// the display window, so that they are the same for any crop. One pixel stands for each: another
-// one from square to square, so that those of 8 x 8 squares together take the directions of every
-// member of the sampling pattern (estimators/bitmask/slice_pattern.h).
+// the display window, so that they are the same for any crop. One pixel stands for each square. Its
+// place changes from square to square, so that the pixels of 8 x 8 squares together take the
+// directions of every member of the sampling pattern (estimators/bitmask/slice_pattern.h).
 #pragma once
 
 #include <cstdint>
@@ -21,10 +21,10 @@ struct Squares {
   glm::ivec2 first;    ///< number of the first square
   glm::ivec2 display;  ///< squares that the display window takes, which begins at square (0, 0)
   Plane<std::int32_t> pixel;  ///< that stands for the square, in the geometry; or kNoPixel
-  Plane<float> covered;  ///< 1 where a surface was found at first; 0: in a pixel beside, or none
-  Plane<Surfel> surfel;  ///< that the pixel shows
+  Plane<float> covered;       ///< 1: the chosen pixel shows a surface; 0: another pixel, or none
+  Plane<Surfel> surfel;       ///< that the pixel shows
   // After the mean over squares.
-  Plane<float> ao, open_ao;       ///< ao, and the same if surfaces end at the border
+  Plane<float> ao, open_ao;       ///< ao, and the ao if surfaces end at the border
   Plane<float> guesses, guessed;  ///< G of estimators/guessed.h, and its product with ao
   Plane<glm::vec3> bent;          ///< unit, camera space
 
@@ -37,9 +37,9 @@ struct Squares {
 /// Pixels on each side of a square, for frames that are so many pixels wide.
 int square_size(int display_width);
 
-/// Divides `part` of a geometry's window, which is in pixels of the window, into squares. What
-/// casts nothing and has nothing behind it, as a dome around the scene, is sky here. `casting`: of
-/// the geometry's scene, or null.
+/// Divides `part` of a geometry's window, which is in pixels of the window, into squares. A surface
+/// that casts nothing and has nothing behind it, such as a dome around the scene, counts as sky.
+/// `casting`: of the geometry's scene, or null.
 Squares make_squares(const Geometry& geometry, const Window& part,
                      const Casting* casting = nullptr);
 

@@ -70,7 +70,8 @@ class BandJob {
     }
   };
 
-  /// Of the frame, and of the frame without the objects of --shadow-of where that is made.
+  /// Fills `around_`: for the frame, and for the frame without the objects of --shadow-of where
+  /// that product is made.
   void look_around() {
     Stopwatch watch;
     around_.push_back(around(relit_.scene, frame_.plan));
@@ -94,7 +95,8 @@ class BandJob {
     return found;
   }
 
-  /// Finds what a prior is told of the frame, and has it answer for the overview.
+  /// Finds what a prior needs to know of the frame; returns a function that asks it for the
+  /// overview.
   AskPrior asking(const Scene& overview, const Plan& plan, LearnedPrior& told,
                   std::optional<PriorField>& field) const {
     Request request = plan.request;
@@ -123,7 +125,8 @@ class BandJob {
     return false;
   }
 
-  /// The overview does not show it to the bit: bands are read once more for it.
+  /// Finds the openness of the frame from all bands, which are read once more for it: the overview
+  /// does not give it to the bit.
   void find_openness() {
     std::vector<Openness> sums(around_.size());
     for_each_band([&](const Window& rows) {
@@ -147,8 +150,8 @@ class BandJob {
       work(Window{all_.x0, y, all_.x1, std::min(y + bands_.rows, all_.y1)});
   }
 
-  /// A band with the rows around it that it needs. How near surfaces come, the overview may not
-  /// have shown.
+  /// A band with the rows around it that it needs. The overview may not have shown how near
+  /// surfaces come.
   Band read(const Window& rows) {
     Band band =
         read_band(job_, relit_.scene, with_rows_around(rows, bands_.halo_rows), relit_.times);

@@ -8,16 +8,16 @@
 // `noise` is measured as the difference of two halves of the slices. The signed difference goes
 // through the filter as the light does, so that it shrinks as the noise of the light does, and is
 // squared after that. Both halves cover all directions (SlicePattern::half_sign). The noise of
-// suns, which few rays look at, is the difference from another set of rays
-// (filters/sun_errors.cpp); it is added with its sign, as it has nothing to do with that of the
+// suns, which few rays reach, is the difference from another set of rays
+// (filters/sun_errors.cpp); it is added with its sign, as it is independent of that of the
 // slices.
 //
 // `steps` is the bias of few steps. It is the same in every slice, so that halves of the slices do
 // not show it; a second run with half of the steps does. The bias falls about as 1 / steps: what
 // the second half of the steps changed is about what remains.
 //
-// Each is one draw of a random error. Its size is the root mean square over neighbours on the same
-// surface.
+// Each difference is a single draw of a random error, whose size is taken as the root mean square
+// over neighbours on the same surface.
 #include "relight/estimate.h"
 
 #include <fmt/format.h>
@@ -34,7 +34,7 @@
 namespace ssdo {
 namespace {
 
-// The most that --error goes to: beyond, rounding and guessed geometry cause larger errors.
+// The most slices and steps that --error takes: beyond, rounding and guessed geometry are worse.
 constexpr int kMostSlices = 64, kMostSteps = 128;
 
 double rms_over_surfaces(const Plane<float>& plane, const Geometry& geometry) {
@@ -47,8 +47,8 @@ double rms_over_surfaces(const Plane<float>& plane, const Geometry& geometry) {
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-/// Products of the receivers as planes of the whole geometry, as filters and outputs take them; the
-/// pixels around them are as those without a surface.
+/// Products of the receivers as planes of the whole geometry, as filters and outputs take them; all
+/// other pixels are filled like those without a surface.
 Products over_geometry(Products found, const Geometry& geometry, const Window& receivers) {
   if (receivers.area() == 0 || receivers == geometry.window) return found;
   const int left = receivers.x0 - geometry.window.x0, top = receivers.y0 - geometry.window.y0;
@@ -79,11 +79,11 @@ Plane<float> size_of(Plane<float> draw, const Geometry& geometry) {
   return size;
 }
 
-/// Scales the difference of two halves of the slices to the noise of all. They are evenly spaced,
-/// so that doubling them halves the error: the difference of halves is sqrt(2^2 - 1) times the
-/// error of all. Filters change nothing of that, as the halves of neighbours cover all directions
-/// about as evenly as all of their slices do. Measured with 2 to 24 slices on two frames, with the
-/// filter and without it: the noise is 0.95 to 1.5 times what other seeds change.
+/// Scales the difference of two halves of the slices to the noise of all slices. Slices are evenly
+/// spaced, so that twice as many halve the error: the difference of halves is sqrt(2^2 - 1) times
+/// the error of all. Filters do not change this factor, as the halves of neighbours cover all
+/// directions about as evenly as all of their slices do. Measured with 2 to 24 slices on two
+/// frames, with the filter and without: the noise is 0.95 to 1.5 times the change by other seeds.
 void scale_to_noise(Plane<float>& difference, const Method& method) {
   if (!method.takes.march) return;
   for (float& e : difference.pixels) e /= std::sqrt(3.0f);
@@ -114,13 +114,13 @@ struct Noisy {
   std::optional<PriorField> prior;
 };
 
-/// Whether all that is made is composed of what is known without an estimate.
+/// Whether no estimate is needed: all outputs are composed of what is known without.
 bool is_idle(const Request& request) { return request.products == ProductSet(); }
 
 /// Whether the light is known by its shares between the filter and light_products().
 bool has_shares(const Plan& plan) { return plan.filter->apply || plan.shot; }
 
-/// A single light is all of them.
+/// Completes the products of each light; those of a single light are those of all light.
 void finish_lights(const ProductSet& by_light, Products& products) {
   const bool is_all = products.lights.size() == 1;
   for (LightProducts& light : products.lights) {
@@ -194,7 +194,7 @@ class Round {
   /// Whether the method gathers the bounce light by light: that of a single light is all of it.
   bool bounces_by_light() const { return request_.by_light.bounce && names_.size() > 1; }
 
-  /// Has the prior answer, and keeps what it says in `field`.
+  /// A function that asks the prior and keeps the answer in `field`.
   AskPrior asking(std::optional<PriorField>& field) const {
     return ask_prior({plan_.prior->up, request_.radius, request_.seed, plan_.prior->of_frame.get()},
                      field);
@@ -227,7 +227,7 @@ class Round {
   double passes_, finished_ = 0;
 };
 
-/// The scene without what only methods look at.
+/// The scene without the parts that methods alone read.
 Scene seen_by_filters(Scene scene) {
   Scene seen;
   seen.geometry = std::move(scene.geometry);
@@ -256,7 +256,7 @@ double arriving(const LightShares& shares, std::size_t source, const Plane<Surfe
 std::vector<std::pair<std::string, double>> unlit_lamps(const Light& light,
                                                         const LightShares& shares,
                                                         const Plane<Surfel>& surfel) {
-  // So much passes where the frame has gaps and at its border, of lamps under the ground of frames.
+  // This much of the light of a lamp under the ground arrives, through gaps and at the border.
   constexpr double kNearlyNone = 0.03;
   std::vector<std::pair<std::string, double>> found;
   for (std::size_t k = 0; k < shares.suns.size(); ++k) {
@@ -301,7 +301,7 @@ Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double
     Noisy noisy = round.estimate(scene);
     const auto unlit = unlit_lamps(scene.light, noisy.products.shares, scene.geometry.surfel);
     estimate_ms += watch.lap();
-    // With --error another round may follow.
+    // With --error another round may need all of the scene.
     if (!plan.error) scene = seen_by_filters(std::move(scene));
     Estimate out = round.filter(std::move(noisy), scene);
     filter_ms += watch.lap();

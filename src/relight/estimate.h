@@ -33,7 +33,7 @@ struct Estimate {
   History history;                  ///< of a temporal plan, for the next frame; without a geometry
   double estimate_ms = 0, filter_ms = 0;  ///< by the clock
   std::vector<std::string> notes, warnings;
-  /// Names of lamps whose light surfaces block, and the small share of it that arrives.
+  /// The lamps whose light is nearly all blocked by surfaces: names, and the share that arrives.
   std::vector<std::pair<std::string, double>> unlit;
 };
 

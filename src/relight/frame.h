@@ -41,7 +41,7 @@ struct LampOfFrame {
   bool is_near;             ///< it has a position
   std::size_t source;       ///< its number in Light::sources
   Selection cast, receive;  ///< with files of this very frame
-  /// Its light, once more: of rows of the frame it takes what they show of `receive`.
+  /// Makes its source once more, for a band: the band sets what `receive` selects in its rows.
   std::function<std::shared_ptr<Source>()> make;
 };
 

@@ -14,7 +14,7 @@
 namespace ssdo {
 namespace {
 
-/// When an option has no effect, by what is asked and what it is asked of, and why.
+/// The condition under which options have no effect, by the request and by `Of`, and the reason.
 template <class Of>
 struct IdleRule {
   using Condition = std::function<bool(const FrameOptions&, const Of&)>;
@@ -75,8 +75,8 @@ bool has_specular(const std::vector<LayerRequest>& aovs) {
   return std::ranges::any_of(aovs, [](const LayerRequest& a) { return a.role == Role::specular; });
 }
 
-/// Whether all that is made is as it is without these products: occlude takes how much of the light
-/// arrives, and --error measures direct + bounce.
+/// Whether the outputs do not depend on these products: the composite is occlude, which needs only
+/// the arriving share of the light, and there is no --error, which measures direct + bounce.
 Condition occlude_without(const std::vector<std::string_view>& products) {
   return [products](const FrameOptions& o, Purpose purpose) {
     return purpose != Purpose::bench && !o.model.error &&

@@ -79,8 +79,8 @@ std::vector<OtherView> split_back_faces(std::vector<OtherView>& views, const Geo
   return backs;
 }
 
-/// Leaves out the files of --also that don't fit the frame, or changes them so that they do. Those
-/// of back faces show nothing that it shows, and stay.
+/// Leaves out the views that don't fit the frame, or changes them so that they do. Views of back
+/// faces show nothing that the frame shows, and stay.
 void register_views(KnownGeometry& known, const Geometry& frame, bool may_be_backs = false) {
   std::vector<OtherView> fitting;
   for (OtherView& view : known.views) {
@@ -158,7 +158,7 @@ class ViewReader {
       known_.warnings.insert(known_.warnings.end(), lines->begin(), lines->end());
   }
 
-  /// Nobody has asked for it: where it is of no use, it is left out.
+  /// No option asks for the other eye: where it is of no use, it is left out.
   void add_other_eye(const FrameFiles& files) {
     const Geometry& geometry = frame_.scene.geometry;
     if (geometry.median_depth <= 0 || frame_.gbuffer.grid.is_coarse()) return;
@@ -174,8 +174,8 @@ class ViewReader {
   }
 
  private:
-  /// Without the warnings of reading it: they are those of the frame. The picture is kept for other
-  /// frames: nothing that this one takes from its shot may decide how it is read.
+  /// Adds a view without the warnings of reading it, which are those of the frame. The picture is
+  /// kept for other frames: nothing that this frame takes from its shot may decide how it is read.
   void add_alike(const FrameFiles& files, CameraOptions camera, std::string_view role) {
     camera.shot = {};
     try {

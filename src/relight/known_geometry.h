@@ -47,12 +47,12 @@ struct TakenOut {
   }
 };
 
-/// Fills the solids, guessed where nothing is known, and the surfaces of other views of a scene:
-/// measured where deep images or other views show them, guessed elsewhere, or as thick as
-/// `thickness`. Gives what each view added, those of back faces last, which are taken out of
-/// `known`; of views of another scene, unit or axes, warnings tell. With `taken_out`, what that
-/// covers of the frame, and OtherPicture::taken of the views in `marks`, casts nothing. Errors:
-/// ExitCode::layer for a deep image of another frame.
+/// Fills the solids and the surfaces of other views of a scene: measured where deep images or other
+/// views show them, guessed elsewhere, or as thick as `thickness`. Returns what each view added,
+/// back faces last; the views of back faces are taken out of `known`. Warns of views of another
+/// scene, unit or axes. With `taken_out`, the surfaces that it covers in the frame, and those that
+/// it marks in OtherPicture::taken of the views, cast nothing. Errors: ExitCode::layer for a deep
+/// image of another frame.
 std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
                                             std::optional<float> thickness,
                                             const GBufferOptions& reading,

@@ -12,7 +12,7 @@
 namespace ssdo {
 namespace {
 
-/// The frame and the views without what is not selected, and without `out`.
+/// The scene that holds only what is selected of the frame and the views, without `out`.
 std::shared_ptr<const Scene> selected_alone(Frame& frame, const KnownGeometry& known,
                                             const Selection& selection, const TakenOut& out,
                                             const SolidOptions& options) {

@@ -33,9 +33,9 @@ LampLinks links_of(const std::vector<Lamp>& lamps, int number);
 /// selection does not cover, and those of `out`, which may be empty.
 Plane<float> all_but(const Plane<float>& selected, const Plane<float>& out, const Geometry& frame);
 
-/// Fills Scene::blockers of a scene of the frame: what the lamps of Frame::lamps select is left of
-/// what the frame and the views of `known` show, but for `out`. An edge between selected things and
-/// background is left. What is behind the rest is found as behind objects that cast nothing.
+/// Fills Scene::blockers of a scene of the frame: of what the frame and the views of `known` show,
+/// only what a lamp of Frame::lamps selects is kept, without `out`. Edges between selected objects
+/// and background are kept. Surfaces behind the rest are found as behind objects that cast nothing.
 /// Errors: those of selected_coverage().
 void find_blockers(Frame& frame, const KnownGeometry& known, const TakenOut& out,
                    const SolidOptions& options, Scene& scene);

@@ -70,8 +70,9 @@ constexpr float kSmallestHalf = 5.9604645e-08f;
 
 float brightest_channel(const glm::vec3& c) { return std::max({c.x, c.y, c.z}); }
 
-/// What no surface gets more of, as irradiance over pi: the light of all directions as if from one,
-/// or the brightest texel from everywhere if that is less. Of the brightest channels.
+/// The most light that a surface can get, as irradiance over pi, by the brightest channels: the
+/// light of all directions as if from a single one, or the brightest texel from everywhere if that
+/// is less.
 double most_light(const Plane<glm::vec3>& map) {
   double sum = 0, weights = 0, brightest = 0;
   for (int y = 0; y < map.height; ++y) {

@@ -17,7 +17,8 @@
 namespace ssdo {
 namespace {
 
-/// Finds what casts of some rows. What the overview has taken out somewhere is looked for here.
+/// Finds the casters of some rows. Objects that the overview has taken out anywhere are looked for
+/// in these rows.
 class CastersOfBand {
  public:
   CastersOfBand(const RelightJob& job, const Geometry& rows, const PixelGrid& grid)
@@ -47,7 +48,7 @@ class CastersOfBand {
     return selected_coverage(selection, {frame_.files, frame_.view}, rows_.window, grid_);
   }
 
-  /// Without `out`; with what blocks the light of linked lamps.
+  /// Fills a scene without `out`, and the blockers of linked lamps.
   void fill(Scene& scene, const Plane<float>& out, const Scene& overview) const {
     take_out_of(scene, out, overview);
     std::map<std::string, std::shared_ptr<const Scene>> found;  // as find_blockers() shares them

@@ -14,16 +14,17 @@
 namespace ssdo {
 namespace {
 
-/// Memory of what casts without some objects, over that of the frame. Measured: 100 bytes a pixel.
+/// Memory of a scene of casters without some objects, over that of the frame. Measured: 100 bytes a
+/// pixel.
 constexpr double kFurtherScene = 0.5;
 
-/// How many times the surfaces of a frame are held once more, without some objects.
+/// How many more scenes of casters there are, each without some objects.
 int further_scenes(const FrameFiles& files) {
   return int(!files.objects.no_cast.empty()) + int(!files.objects.shadow_of.empty()) +
          int(files.links.cast.size());
 }
 
-/// Names that nothing asks for are no reason to refuse a frame.
+/// The roles that nothing asks for: a wrong layer for one is no reason to refuse a frame.
 std::vector<Role> unused_roles(const FrameOptions& options, const FrameFiles& files) {
   std::vector<Role> unused;
   if (!wants_reflection(options.output, files.aovs)) unused.push_back(Role::roughness);

@@ -151,7 +151,7 @@ void append(std::vector<std::string>& lines, const std::vector<std::string>& mor
   lines.insert(lines.end(), more.begin(), more.end());
 }
 
-/// Warns of a lamp whose light surfaces block nearly all of: it stands in or behind them.
+/// Warns of a lamp nearly all of whose light surfaces block: it stands in or behind them.
 void warn_of_unlit(const Frame& frame, const std::string& lamp, double arrives,
                    std::vector<std::string>& lines) {
   const LampOfFrame& of = frame.lamps.at(lamp);

@@ -33,8 +33,9 @@ Findings take_findings(Relit& relit);
 /// have found, in the order of the shot.
 void relight_in_shot(Fusion& fusion, Relit& relit);
 
-/// The rest of it: compose, colour, write. `views` are those of one frame, usually one. All targets
-/// appear, or none. Adds to the times and clamped values of the first. Errors: those of the stages.
+/// The last stages of a frame: compose, colour, write. `views` are the views of one frame, usually
+/// a single one. All targets appear, or none. Adds to the times and clamped values of the first
+/// view. Errors: those of the stages.
 void write_outputs(const std::vector<RelitFrame>& views,
                    const std::function<void(double)>& on_progress);
 

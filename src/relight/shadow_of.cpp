@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The shadow of objects: light with them over light without them, a and b by channel. Both have
-// noise, and b may be hardly more than its own, where their ratio would be anything. So
+// The shadow of objects is a / b by channel, the light with the objects over the light without
+// them. Both have noise, and where b is hardly more than its own noise, the ratio could be
+// anything. So
 //
 //   b          = max(direct with, direct without) + bounce without
 //   shadow_of  = 1 + (a / b - 1) / (1 + (e / b)^2)
 //
 // Objects take direct light away and never add to it; what they add is bounce light. e is a share
-// of the light that a surface which faces each source would get there: few slices find bounce light
-// of so much by chance. What is brighter keeps its shadow to within (e / b)^2.
+// of the light that a surface facing each source would get there: bounce light of this size is
+// found by few slices, by chance. Brighter light keeps its shadow to within (e / b)^2.
 #include "relight/shadow_of.h"
 
 #include <glm/common.hpp>
@@ -21,15 +22,16 @@
 namespace ssdo {
 namespace {
 
-/// Of light that is this share of that of an open, facing surface, the ratio is half noise: on a
-/// still life under a lamp alone, the standard deviation over seeds is 0.6 below 0.03, 0.1 at 0.3.
+/// Where the light is this share of that on an open, facing surface, half of the ratio is noise: on
+/// a still life under a lamp alone, the standard deviation over seeds is 0.6 below 0.03, 0.1 at
+/// 0.3.
 constexpr float kNoise = 0.03f;
 
 glm::vec3 of(const Plane<glm::vec3>& light, std::size_t i) {
   return light.empty() ? glm::vec3(0) : light[i];
 }
 
-/// What a surface would get that faced each source, with nothing in front of it.
+/// The light of a surface that faces each source, with nothing in front of it.
 glm::vec3 facing_light(const Light& light, const Surfel& s, std::size_t pixel) {
   glm::vec3 sum = light.unoccluded_sky(s.normal);
   for (const auto& source : light.sources)
@@ -67,7 +69,7 @@ void find_shadow(Scene& without, Relit& relit) {
   Plane<glm::vec3> lit = filled(surfel.width, surfel.height, glm::vec3(0)), lit_without = lit;
   for_each_row(surfel.height, [&](int y) {
     for (std::size_t i = surfel.index(0, y); i < surfel.index(0, y + 1); ++i) {
-      // Where the objects stand, the pixel beside them that the hole is filled from.
+      // Where the objects stand: the pixel beside them that fills the hole.
       const std::size_t from = sender[i] >= 0 ? std::size_t(sender[i]) : i;
       if (!surfel[from].is_usable()) continue;
       const glm::vec3 a = with.direct[from] + of(with.bounce, from),

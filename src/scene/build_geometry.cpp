@@ -73,7 +73,8 @@ float median_depth(const Geometry& geometry) {
   return in_order.count() == 0 ? 0 : in_order.at(in_order.count() / 2);
 }
 
-/// A kind of depth fits normals clearly better if 1 - cosine is by this factor smaller on average.
+/// A kind of depth fits normals clearly better if its mean of 1 - cosine is below this share of the
+/// other's.
 constexpr double kClearlyBetter = 0.5;
 
 /// Normals count as rebuilt where less than half of them is as stored.
@@ -291,7 +292,8 @@ UsedNormals find_normals(const GBuffer& g, const Geometry& out, const std::strin
   return used;
 }
 
-/// Where P is filtered, as edges of the whole frame tell, its averages go back to surfaces.
+/// Moves averages of P at edges back to surfaces, where the edges of the whole frame show that P is
+/// filtered.
 void mend(const GBuffer& g, Geometry& out, GeometryReport& report, const Placement* known) {
   Placement& placement = report.placement;
   if (known) {
@@ -333,7 +335,7 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
   out.display = g.display;
   out.part_of = g.part_of;
   out.surfel = filled(g.window.width(), g.window.height(), Surfel{});
-  // Nor is the camera known where the overview of a frame shows none.
+  // Where the overview of a frame shows no surface, the camera is not known.
   if (known && known->median_depth <= 0) return out;
   if (!known && g.background_pixels + g.bad_pixels >= g.valid.size() &&
       std::none_of(g.valid.pixels.begin(), g.valid.pixels.end(), [](auto v) { return v != 0; })) {

@@ -121,7 +121,7 @@ class DepthModel::Fit {
     return right ? std::optional(model) : std::nullopt;
   }
 
-  /// Whether a unit of depth is one of P.
+  /// Whether depth and P may have the same unit.
   bool has_unit_of_positions(const DepthModel& model) const {
     const double length = model.length_of_unit();
     return length < 1 + kUnitLength && (is_flat(pixels_) || length > 1 - kUnitLength);

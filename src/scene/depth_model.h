@@ -26,7 +26,7 @@ class DepthModel {
   static std::optional<DepthModel> fit(const Plane<glm::vec3>& positions, const Plane<float>& depth,
                                        const Plane<unsigned char>& counts, float position_step);
 
-  /// The same of planar depths whose unit need not be that of P.
+  /// The same for planar depths, whose unit may differ from that of P.
   static std::optional<DepthModel> fit_in_any_unit(const Plane<glm::vec3>& positions,
                                                    const Plane<float>& depth,
                                                    const Plane<unsigned char>& counts,

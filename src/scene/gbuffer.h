@@ -30,12 +30,12 @@ struct Encodings {
 };
 
 /// The layers of one frame in the space and units of the file, with encodings undone. Every plane
-/// covers `window`, which holds P and the rendered layers that composites are made of, but those of
-/// the beauty, which cover that of the outputs; a role that the frame does not have is an empty
-/// plane.
+/// covers `window`, which holds P and the rendered layers that composites are made of; only those
+/// of the beauty cover the window of the outputs instead. A role that the frame does not have is an
+/// empty plane.
 struct GBuffer {
   PixelGrid grid = {};     ///< the pixels of the file that the planes hold
-  Window window, display;  ///< of them
+  Window window, display;  ///< in these pixels
   Window file_window;      ///< that of the frame in pixels of the file, whatever the grid
   Window file_display;     ///< of all, where the grid is coarser
   std::optional<Window> lead_window;  ///< what P, or else the depth, covers, where that is less:
@@ -55,8 +55,8 @@ struct GBuffer {
   Plane<float> depth, alpha;        ///< depth: along the axis or the ray, in scene units
   Plane<float> roughness;           ///< of what mirrors, 0..1
   Plane<glm::vec3> specular_color;  ///< what is mirrored of light along the normal (F0), 0..1
-  Plane<glm::vec2> motion;  ///< pixels, x right and y down, to where it was in the frame before
-  DepthKind depth_kind = DepthKind::planar;  ///< planar or ray: the others are undone
+  Plane<glm::vec2> motion;  ///< pixels, x right and y down, to its place in the frame before
+  DepthKind depth_kind = DepthKind::planar;  ///< planar or ray: others are converted
   std::string depth_source = {};             ///< what tells its kind, "P"; empty: it is assumed
   std::string albedo_alpha = {};    ///< how alpha was in the albedo; empty: it makes no difference
   std::optional<Space> space = {};  ///< of P and N, where the user says it

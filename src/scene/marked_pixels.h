@@ -11,7 +11,7 @@ namespace ssdo {
 /// How many pixels of a mask are not 0.
 std::size_t count_marked(const Plane<unsigned char>& mask);
 
-/// The places of every `stride`-th of them in the order of rows, from the first on.
+/// The indices of every `stride`-th such pixel in the order of rows, from the first on.
 std::vector<std::size_t> every_marked(const Plane<unsigned char>& mask, std::size_t stride);
 
 }  // namespace ssdo

@@ -13,9 +13,9 @@
 
 namespace ssdo {
 
-/// What stands at given places of many numbers in ascending order, without sorting them. Numbers
-/// without a sign are ordered as their bits are: they are counted by the upper half of these, and
-/// only those that share it with the one looked for are compared.
+/// The numbers at given places of an ascending order, without sorting. Floats without a sign are
+/// ordered as their bits are: they are counted by the upper half of the bits, and only those that
+/// share it with the wanted number are compared.
 class OrderStatistics {
  public:
   /// Numbers with a sign are left out. `values` have to outlive this.

@@ -26,8 +26,8 @@ struct SurfacePoint {
 /// little.
 constexpr float kSurfaceGap = 4;
 
-/// The same across a ridge, whose one side may be seen at an angle of 4 degrees; and most that one
-/// neighbour is above the plane of the other there, which is 0 where normals are those of the step.
+/// The same across a ridge, one side of which may be seen at an angle of 4 degrees; and how far one
+/// neighbour may lie above the other's plane there: 0 where normals are those of the step.
 constexpr float kRidgeGap = 16, kAboveRidge = 0.05f;
 
 /// Whether what two neighbouring pixels show belongs to one surface; `footprint` is that of the
@@ -57,6 +57,6 @@ inline bool on_one_surface(const SurfacePoint& a, const SurfacePoint& b,
 //
 // The vector form is in same_surface-inl.h.
 constexpr float kPlaneSine = 0.3f;  ///< of 17 degrees: what leaves the plane by more is not on it
-constexpr float kNormalCosine = 0.8f;  ///< normals 37 degrees apart share nothing
+constexpr float kNormalCosine = 0.8f;  ///< normals 37 degrees apart have weight 0
 
 }  // namespace ssdo

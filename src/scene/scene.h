@@ -18,7 +18,7 @@
 
 namespace ssdo {
 
-/// What the visible surfaces do with light, by pixel: what the sender of a solid indexes.
+/// What the visible surfaces do with light, by pixel; the sender of a solid is an index into it.
 struct Senders {
   Plane<HalfColor> albedo;    ///< needed for a bounce; else may be empty
   Plane<glm::vec3> radiance;  ///< what they send, where a layer says so; else empty
@@ -27,8 +27,8 @@ struct Senders {
 /// What hides and sends light, where that is not what the pixels show: objects that cast nothing
 /// are taken out, and what may be behind them is put in their place.
 struct Casting {
-  Geometry geometry;          ///< of the pixels of the scene's
-  Plane<int> sender;          ///< the pixel whose light such a pixel sends; -1: it is as it shows
+  Geometry geometry;          ///< at the pixels of Scene::geometry
+  Plane<int> sender;          ///< the pixel whose light a pixel sends; -1: its own surface's
   Plane<unsigned char> hole;  ///< 1 in the pixels of those objects
 };
 
@@ -39,12 +39,11 @@ struct Scene {
   std::optional<Casting> casting;
   Solids solids;                 ///< of what casts
   std::vector<OtherView> views;  ///< of other cameras
-  OtherSurfaces other_surfaces;  ///< what they show that the frame does not
+  OtherSurfaces other_surfaces;  ///< seen by `views`, but not by the frame
   Senders senders;
   Light light;
-  /// What blocks the light of a lamp that names its casters, by its number in Light::sources: this
-  /// frame and the other views without the rest. Casting, solids and other_surfaces alone are
-  /// filled.
+  /// For each lamp that names its casters, by its number in Light::sources: these casters alone, in
+  /// this frame and in the other views. Only casting, solids and other_surfaces are filled.
   std::map<std::size_t, std::shared_ptr<const Scene>> blockers;
   Plane<float> roughness;           ///< 0..1; empty: the same everywhere, a parameter of the method
   Plane<HalfColor> specular_color;  ///< F0, 0..1; empty: of an index of refraction, a parameter

@@ -4,14 +4,15 @@
 // rays through the pixel hit: a place between two surfaces, on neither, that hides what is beside
 // it and takes light from both. Such a pixel
 //
-// - lies off the ray through the middle of its pixel, since the mean leans to what is far away,
-//   while the others keep to theirs; and
+// - lies off the ray through the middle of its pixel, since the mean leans to the far surface,
+//   while the other pixels lie on their rays; and
 // - lies, for some pair of opposite neighbours, between them in depth and on neither's tangent
-//   plane. A step that is seen as a line of pixels does too, but is on its rays.
+//   plane. A step that is seen as a line of pixels does so too, but lies on its rays.
 //
-// It goes to the one of the two that is nearer in depth, which has the larger share of the mean:
-// to where its ray meets that neighbour's plane. Where an object ends before nothing, whose P is
-// 0, the mean has left the pixel altogether, and goes to whichever surface is beside it.
+// The pixel is moved to the surface of the neighbour that is nearer to it in depth, which has the
+// larger share of the mean: to where its ray meets that neighbour's plane. Where an object ends
+// before background, whose P is 0, the mean lies outside the pixel altogether: the pixel takes the
+// nearest surface beside it.
 //
 // A depth layer alone has no rays to be off; it is left as it is.
 #include "scene/silhouettes.h"
@@ -29,23 +30,23 @@
 namespace ssdo {
 namespace {
 
-/// Pixels from its middle at which P is no longer that of the ray, where all else is exact: an edge
-/// between depths that differ by a hundredth shifts the mean by so much.
+/// Distance in pixels from the middle of a pixel beyond which P is off the ray, where all else is
+/// exact: an edge between depths that differ by a hundredth shifts the mean by so much.
 constexpr double kOffRay = 0.001;
 
-/// P that is so far from its pixel belongs to none of the surfaces in it.
+/// P that lies so many pixels from the middle of its pixel belongs to no surface in it.
 constexpr double kOutsidePixel = 1;
 
-/// Distances from the middle of a pixel count from so many medians on: below, they are the error of
-/// the camera or of P. On four scenes of Cycles with averaged P, 2 and 8 change the mean RMSE of
-/// ao by at most 0.001 and the relative error of direct light by less than 0.003.
+/// The distance from the middle of a pixel counts beyond so many times its median: below, it is the
+/// error of the camera or of P. On four scenes of Cycles with averaged P, 2 and 8 change the mean
+/// RMSE of ao by at most 0.001 and the relative error of direct light by less than 0.003.
 constexpr double kUsualStray = 4;
 
 /// A pixel is on its neighbour's surface where it is nearer to its tangent plane than this, in
 /// pixel footprints. On the same scenes 1/2 and 2 change no mean error by more than 0.001.
 constexpr float kOffPlane = 1;
 
-/// Least share of a normal along the ray that is brought to its plane.
+/// Least cosine between a normal and the way to the viewer to move a pixel along its ray.
 constexpr double kLeastFacing = 0.05;
 
 /// Least share of the pixels at edges that look like averages where the renderer filters P. On five
@@ -63,7 +64,7 @@ class Silhouettes {
   Silhouettes(const Geometry& geometry, const Residual& residual)
       : g_(geometry), footprint_(geometry.camera), stray_(kUsualStray * residual.median_px) {}
 
-  /// What the pixel is to hold instead of an average; nothing where it holds none.
+  /// The surfel that replaces an average; nothing where the pixel holds no average.
   std::optional<Surfel> mended(int x, int y) const {
     const Surfel& s = g_.surfel(x, y);
     if (!s.is_surface()) return std::nullopt;
@@ -95,7 +96,8 @@ class Silhouettes {
   }
 
  private:
-  /// Pixels between P and the middle of its pixel, less what precision and the camera leave.
+  /// Distance in pixels between P and the middle of its pixel, less what precision and the camera
+  /// may cause.
   double off_ray(int x, int y) const {
     const Surfel& s = g_.surfel(x, y);
     const glm::dvec2 offset = g_.camera.project(glm::dvec3(s.position)) - middle(x, y);
@@ -106,14 +108,14 @@ class Silhouettes {
 
   double footprint(const Surfel& s) const { return double(footprint_.at(-s.position.z)); }
 
-  /// The surface of a pixel that keeps to it.
+  /// The surface at a pixel; null where there is none, or where its P lies outside the pixel.
   const Surfel* surface(int x, int y) const {
     if (x < 0 || y < 0 || x >= g_.surfel.width || y >= g_.surfel.height) return nullptr;
     const Surfel& s = g_.surfel(x, y);
     return s.is_surface() && off_ray(x, y) < kOutsidePixel ? &s : nullptr;
   }
 
-  /// The surface of the neighbours that is nearest to the viewer.
+  /// The neighbouring surface that is nearest to the viewer.
   const Surfel* any_surface_beside(int x, int y) const {
     const Surfel* nearest = nullptr;
     for (const Step& axis : kAxes) {

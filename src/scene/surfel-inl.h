@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// Surfels side by side; only `surface` counts where there is none.
+/// A vector of surfels; where there is no surface, only `surface` is valid.
 struct Surfels {
   V3 position, normal;
   V rounding;
@@ -43,7 +43,7 @@ HWY_INLINE Surfels load_surfels(const Surfel* from) {
 #endif
 }
 
-/// Those from column `x` of row `y` on; outside of the picture there is no surface.
+/// The surfels from column `x` of row `y` on; outside of the picture there is no surface.
 HWY_INLINE Surfels surfels_at(const Plane<Surfel>& surfels, int x, int y) {
   const bool in_rows = y >= 0 && y < surfels.height;
   if (in_rows && x >= 0 && x + kLanes <= surfels.width) return load_surfels(&surfels(x, y));

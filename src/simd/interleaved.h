@@ -56,8 +56,8 @@ class Interleaving {
   std::ptrdiff_t stride_;
 };
 
-/// Where pixels lie, in the same order, of which there is one in every `spacing` x `spacing`: no
-/// two have both the same row and the same column of the display window, divided by `spacing`.
+/// The same order for sparse pixels, one in every `spacing` x `spacing`: no two of them have both
+/// the same row and the same column of the display window, each divided by `spacing`.
 class SparseInterleaving {
  public:
   /// `spacing` divides Interleaving::kPeriod.

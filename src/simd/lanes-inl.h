@@ -106,8 +106,8 @@ HWY_INLINE V smooth(V t) { return t * t * hn::NegMulAdd(set(2), t, set(3)); }
 /// From 0 at `from` to 1 at `to`, as in GLSL.
 HWY_INLINE V smoothstep(V from, V to, V x) { return smooth(saturate((x - from) / (to - from))); }
 
-/// 1 / sqrt(x). An estimate by the processor would make a march a twentieth faster, but AVX2's is
-/// another on each maker's processors.
+/// 1 / sqrt(x). The processor's estimate would make a march a twentieth faster, but with AVX2 it
+/// differs between makers of processors.
 HWY_INLINE V reciprocal_sqrt(V x) { return set(1) / hn::Sqrt(x); }
 
 /// A place in a plane.

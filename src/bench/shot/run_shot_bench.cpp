@@ -46,7 +46,7 @@ std::vector<int> frames_of(const RunOptions& options) {
   return frames;
 }
 
-/// The frames in which a truth is there.
+/// The frames for which a truth exists.
 std::vector<int> frames_with(const std::string& picture, const std::vector<int>& frames) {
   std::vector<int> there;
   std::error_code ignored;
@@ -93,7 +93,7 @@ Frame first_frame(const ShotSubject& subject) {
   return frames.prepare(light, files_at(options, number), number);
 }
 
-/// Those that are asked for, or the usual ones that say something here; and those with a truth.
+/// The products asked for, or by default those that mean something here; and those with a truth.
 std::vector<std::string> products_of(const ShotSubject& subject, const Frame& frame) {
   const std::vector<std::string>& asked = subject.options.output.products;
   for (const std::string& name : asked) {

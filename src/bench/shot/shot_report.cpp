@@ -28,7 +28,7 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-/// The figures of a product as they are told: for light relative to its mean.
+/// The figures of a product as reports show them: those of light relative to its mean.
 struct Told {
   double flicker, p99, border, error, error_near_moving, flicker_of_error;
 };

@@ -9,10 +9,10 @@
 
 namespace ssdo {
 
-/// How the frames of a run take part in each other.
+/// How a run uses the neighbouring frames of each frame.
 struct ShotSetting {
   std::vector<std::string> arguments;  ///< of the main job; none: each frame alone
-  int frames = 0;                      ///< before and after each frame that it is made with
+  int frames = 0;                      ///< how many it uses before and after each frame
   bool temporal = false;
 
   /// "alone", or the arguments.

@@ -36,7 +36,7 @@ Texts spellings(const CLI::Option& option) {
   return names;
 }
 
-/// A function that prints what stands beside the name that it is given; `rows`: pattern and words.
+/// A shell function that looks up the name it is given; `rows`: a pattern, and words to print.
 std::string lookup(const std::string& function,
                    const std::vector<std::pair<std::string, Texts>>& rows) {
   std::string text = fmt::format("{}() {{\n  case $1 in\n", function);

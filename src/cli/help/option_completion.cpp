@@ -16,7 +16,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// The names of the rows of a table, and one more that stands for something else.
+/// The names of the rows of a table, and `more`, if not empty, as one more name.
 template <class Table>
 Words names_of(const Table& table, std::string_view more = "") {
   Words names;

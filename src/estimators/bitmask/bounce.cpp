@@ -5,7 +5,7 @@
 //   bounce = (1 - ao) sum w M(met by q) L_out(q) / sum w M(hidden)
 //
 // over both sides of all slices, and over the solids q that the march of a side meets, each with
-// the sectors that no nearer one hides. Compiled once for every instruction set.
+// the sectors that no nearer solid hides. Compiled once for every instruction set.
 //
 // The radiance around a pixel changes slowly along a surface; how much of it reaches the pixel is
 // known from ao. So where slices are few, one pixel of 2 x 2 marches, and the others take the mean
@@ -40,8 +40,8 @@ struct Gathered {
 
 HWY_INLINE Gathered no_light() { return {set(glm::vec3(0)), set(0)}; }
 
-/// Whether the surface at `q`, `step` away from the receiver, turns to it the side that the camera
-/// sees: its tangent plane is in front of the receiver in the receiver's pixel.
+/// Whether the surface at `q`, `step` away from the receiver, faces it with the side that the
+/// camera sees: in the receiver's pixel, the tangent plane of the surface lies behind the receiver.
 template <bool kOrthographic>
 HWY_INLINE M faces(const MarchPlanes& planes, std::ptrdiff_t q, const SliceStep& step,
                    const MarchReceiver& p) {
@@ -56,7 +56,7 @@ struct MetPixels {
   const SliceStep& step;
 };
 
-/// From the receivers to the solids of layer `layer` that those pixels hold.
+/// The vectors from the receivers to the fronts of the solids of layer `layer` in these pixels.
 template <bool kOrthographic>
 HWY_INLINE V3 way_to(const MarchScene& scene, const MarchReceiver& p, const MetPixels& met,
                      int layer = 0) {
@@ -70,9 +70,9 @@ HWY_INLINE V3 way_to(const MarchScene& scene, const MarchReceiver& p, const MetP
   return there - p.position;
 }
 
-/// What the march gathers of the light that pixels send: all but what rays do (rays/emitters.h).
-/// `seen`: they turn the side to the receivers that the camera sees. `of_all`: what that side sends
-/// of all lights.
+/// The part of the light sent by pixels that the march gathers: all but the part that rays gather
+/// (rays/emitters.h). `seen`: the lanes where the side that the camera sees faces the receiver.
+/// `of_all`: what the facing side sends of all lights.
 template <bool kOrthographic>
 HWY_INLINE V3 without_emitted(const BounceJob& job, const MarchReceiver& p, const MetPixels& met,
                               M seen, const V3& sent, const V3& of_all) {
@@ -105,14 +105,14 @@ HWY_INLINE V3 gather(const InterleavedVectors& color, VI at) {
   return {gather(color[0].data(), at), gather(color[1].data(), at), gather(color[2].data(), at)};
 }
 
-/// What solids send, and the lanes in which the frame shows it.
+/// The radiance that solids send, and the lanes in which the frame shows the sending side.
 struct Sent {
   V3 radiance;
   M shown;
 };
 
-/// Whether tangent planes of what the pixels `at` show, at those indices of the tilts, turn the
-/// side that the camera sees to who comes along `way`.
+/// Whether a ray along `way` meets the side that the camera sees of the tangent planes in the
+/// pixels `at`, whose tilts are at `index`.
 HWY_INLINE M sees_front(const MarchScene& scene, const InterleavedPlane& tilts, VI index,
                         const OverviewPixels& at, const V3& way) {
   const V tilt = gather(tilts.data(), index);
@@ -124,8 +124,8 @@ HWY_INLINE M sees_front(const MarchScene& scene, const InterleavedPlane& tilts, 
   return dot(normal, way) < set(0);
 }
 
-/// What the solids of layer `layer` send that those pixels hold, in the lanes of `bits`: what the
-/// pixels that show them do, if any.
+/// What the solids of layer `layer` in the pixels `met` send, in the lanes of `bits`: the radiance
+/// of the pixels that show these solids, or 0.
 template <bool kOrthographic>
 HWY_INLINE Sent sent_behind(const BounceJob& job, bool far, int layer, const MarchReceiver& p,
                             const MetPixels& met, VU bits) {
@@ -175,7 +175,7 @@ HWY_INLINE V measure_of(const MarchReceiver& p, const SideFrame& side, VU bits) 
   const V of_run =
       dot(V2{p.shading_v, side.shading_t}, V2{moment(1), moment(SliceSectors::sine_moment(1))});
   if (none(others)) return of_run;  // as nearly always
-  // The two ways round differently: which one is taken must not depend on the lanes beside.
+  // The two formulas round differently: the choice for a lane must not depend on other lanes.
   const auto moments = moments_of_bits<1>(bits);
   const V of_bits = dot(V2{p.shading_v, side.shading_t}, V2{moments.cosine[1], moments.sine[1]});
   return hn::IfThenElse(hn::RebindMask(D(), others == set_bits(0)), of_run, of_bits);
@@ -206,7 +206,7 @@ HWY_INLINE std::ptrdiff_t index_of_gatherer(const GatheredLight& light, const Pl
   return light.layout.index(place.y, place.column_phase, place.column);
 }
 
-/// What the solids of layer 0 send that those pixels hold.
+/// What the solids of layer 0 in the pixels `met` send.
 template <bool kOrthographic>
 HWY_INLINE Sent sent_by_front(const BounceJob& job, bool far, const MarchReceiver& p,
                               const MetPixels& met) {
@@ -240,7 +240,7 @@ void gather_light(const BounceJob& job, const Window& part) {
                 side_frame(march.scene, p, f, forward, slice.sides[forward ? 0 : 1].phase);
             const auto receive = [&](VU bits, const auto& sent) HWY_ATTR {
               if (none(bits)) return;
-              // Other lanes look where nothing may have been stored.
+              // In other lanes, sent() may have read places where nothing was stored.
               const M met = hn::RebindMask(D(), bits != set_bits(0));
               light.add(f.weight * measure_of(p, side, bits), if_then_else_zero(met, sent()));
             };
@@ -301,7 +301,7 @@ void gather_light(const BounceJob& job, const Window& part) {
       });
 }
 
-/// How far to the right of and below pixels that march a place is.
+/// The offset of a place from the top left pixel of its square of spacing x spacing, which marches.
 struct Offset {
   int x, y;
 };
@@ -311,7 +311,8 @@ HWY_INLINE Offset offset_of(const March& march, const Place& place) {
   return {place.column_phase & last, (place.y + march.scene.first_y) & last};
 }
 
-/// Calls `visit(place, dx, dy)` for the pixels around a place that march, or for itself if it does.
+/// Calls `visit(place, dx, dy)` for the marching pixels around a place, or only for the place
+/// itself if it marches.
 template <class Visit>
 HWY_INLINE void for_each_gatherer(const March& march, const Place& place, const Visit& visit) {
   const Interleaving& layout = march.scene.layout;

@@ -18,9 +18,9 @@ struct Followed {
   glm::vec3 from_afar{1};  ///< share of what surfaces send in the first pass; see only_from_afar()
 };
 
-/// Without the lamps that stand in the scene. These light what is near them, and nothing says that
-/// surfaces which are not shown are: of a street with one spot, a learned prior would make one that
-/// is lit everywhere.
+/// The light without the lamps that stand in the scene. Lamps light what is near them, and surfaces
+/// that are not shown need not be near: a learned prior would turn a street with one spot into a
+/// street that is lit everywhere.
 NamedLight only_from_afar(const NamedLight& light) {
   NamedLight afar = light;
   afar.light.sources.clear(), afar.numbers.clear();
@@ -37,15 +37,16 @@ NamedLight only_from_afar(const NamedLight& light) {
 struct Pass {
   int number;                        ///< from 1 on
   Window lit;                        ///< the pixels that send
-  Window to;                         ///< those that gather
+  Window to;                         ///< the pixels that gather
   const InterleavedVectors& of_all;  ///< what all lights together send
-  const Emitters& emitters;          ///< chosen by that
+  const Emitters& emitters;          ///< chosen by `of_all`
   const FarLight* far_of_all;
   GatheredLight& gathered;
 };
 
-/// What stands in place of objects that cast nothing sends what its sender does, a pixel beside it.
-/// Without one, nothing where no surface was shown: that has no light of its own.
+/// A surface that replaces objects which cast nothing sends what its sender, a pixel beside it,
+/// sends. Without a sender, and where no surface was shown, it sends nothing: it has no light of
+/// its own.
 void send_from_hole(const Raster& raster, const Plane<Surfel>& shown, const Plane<int>& senders,
                     InterleavedVectors& sent) {
   const Interleaving& layout = raster.layout();
@@ -101,7 +102,7 @@ class BouncePasses {
   }
 
   void run(int number, BouncedLights& out) {
-    // What is lit reaches as far as light is sent on.
+    // The lit pixels reach as far around the receivers as light is still sent on.
     const Window lit =
         with_senders(march_scene_, request_, march_scene_.receivers, times_sent_ - number + 1);
     // Light that is not sent on is needed by receivers only.
@@ -139,7 +140,7 @@ class BouncePasses {
     return ssdo::sent_light(in_, light.light, part, pass > 1 ? &light.found : nullptr);
   }
 
-  /// The mean radiance of what surfaces send of the light that comes from afar.
+  /// The mean radiance that surfaces send, of the light that comes from afar.
   glm::vec3 sent_by_unshown(Followed& light, const InterleavedVectors& sent,
                             const Pass& pass) const {
     const auto mean = [&](const InterleavedVectors& of) {
@@ -157,8 +158,8 @@ class BouncePasses {
     return light.from_afar * all;
   }
 
-  /// Replaces what a light sends by what of it arrives. Returns what bands need of the former,
-  /// where they do. `points`: what rays go to, with this light. `error` may be null.
+  /// Replaces the sent light by the light that arrives. Returns what bands need of the sent light,
+  /// if `keep_in` is set. `points`: targets of rays, with this light. `error` may be null.
   FarLight gather(Followed& light, InterleavedVectors& sent, const Pass& pass,
                   const FarLight* far_light, const Emitters& points, InterleavedPlane* error) {
     if (request_.ask_prior)
@@ -245,7 +246,7 @@ bool sends_two_sided(const Scene& scene) {
 InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& light,
                               const Window& part, const BouncedLight* before) {
   const Scene& scene = inputs.scene;
-  // A layer may say what is sent.
+  // The sent radiance may be given as a layer.
   if (!scene.senders.radiance.empty()) {
     InterleavedVectors given = inputs.raster.interleaved(scene.senders.radiance);
     if (scene.casting)

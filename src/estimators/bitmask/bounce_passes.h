@@ -50,12 +50,12 @@ struct BouncedLights {
 
 BouncedLights gather_bounces(const BounceInputs& inputs);
 
-/// Takes out of planes of lights, of one size or empty, that their senders are rounded one by one
-/// (two_in_one()): their sum becomes `of_all`.
+/// Scales the planes of lights, of one size or empty, so that their sum becomes `of_all`: senders
+/// are rounded light by light (two_in_one()).
 void make_add_up(std::vector<LightProducts>& lights, Plane<glm::vec3> LightProducts::*plane,
                  const Plane<glm::vec3>& of_all);
 
-/// Whether specular light has that of surfaces of the frame: their light is known.
+/// Whether specular light includes light of surfaces of the frame: their light is known.
 bool mirrors_surfaces(const Scene& scene, const Request& request);
 
 /// How often light is sent on: by bounces, then to what mirrors it.

@@ -24,30 +24,31 @@ struct VisibilityJob {
   /// Weights of the basis polynomials, (order + 1)^2 for red, then green, then blue.
   const float* light = nullptr;       ///< null: the same from all directions
   const Light* unoccluded = nullptr;  ///< sky and sources; read only if `difference` is set
-  float through_beyond = 0;  ///< share of it that comes through what may go on beyond the frame
+  float through_beyond = 0;           ///< share of light that passes surfaces beyond the frame
 
   InterleavedPlane* ao = nullptr;
   InterleavedPlane* open_ao = nullptr;  ///< if surfaces end at the border; null: not wanted
   InterleavedVectors* bent = nullptr;   ///< unit; null: not wanted
-  /// What of the light arrives, less ao: in one colour from everywhere, nothing, without rounding.
-  /// Null: not wanted.
+  /// The share of the light that arrives, less ao, by channel: 0, without rounding, for light of
+  /// one colour that is the same from everywhere. Null: not wanted.
   InterleavedColorShares* sky_share = nullptr;
   InterleavedPlane* difference =
-      nullptr;  ///< standard error of its luminance, signed; null: not wanted
+      nullptr;  ///< standard error of the direct light's luminance, signed; null: not wanted
 };
 
-/// Pixels that widths of penumbras, 32 at most, are stored as shares of.
+/// The unit, in pixels, in which widths of penumbras are stored; 32 pixels at most.
 inline constexpr float kPenumbraUnit = 8;
 
-/// What rays to a source have found: about 0..1, of what a surface of any normal would get, and
-/// ShadowDraw, with widths over kPenumbraUnit.
+/// What rays to a source have found. `share`: the share of the source's light that arrives, about
+/// 0..1, as if it met any normal; `weight` and `width`: as in ShadowDraw, with widths over
+/// kPenumbraUnit.
 struct SourceShares {
   explicit SourceShares(const Interleaving& layout)
       : share(layout), weight(layout), width(layout) {}
 
   InterleavedShares share, weight, width;
   InterleavedShares unseen = {};  ///< what arrives at the sides that the camera does not see, as
-                                  ///< `share`; empty: of this source they get as much as of the sky
+                                  ///< `share`; empty: their share of this source is that of the sky
 };
 
 /// How much of the light arrives at each pixel, as LightShares has it.
@@ -93,15 +94,15 @@ struct BounceJob {
   const InterleavedPlane* ao;
   /// The radiance that layer 0 sends; spread_bounce() replaces it by the light that arrives.
   InterleavedVectors* light;
-  /// What it sends of all lights together, of which `light` may be one: by that it is decided what
-  /// rays gather and what the march.
+  /// What layer 0 sends of all lights together, of which `light` may be one: this decides what rays
+  /// gather and what the march gathers.
   const InterleavedVectors* of_all;
   bool two_sided;                        ///< as SenderJob has it
   const Solids& solids;                  ///< of the scene: whose light layers 1, 2, ... send
   const BorderValues* sent_border;       ///< three: of surfaces that continue beyond the frame
   const OtherViewLight* sent_by_others;  ///< of what only other views show
   Window lit;                            ///< the pixels of the raster whose `sent` is known
-  const FarScene* overview;              ///< tells that of others; null where all are lit
+  const FarScene* overview;              ///< gives the light of the others; null: all are lit
   const FarLight* far;                   ///< what the overview sends
   const FarLight* far_of_all;            ///< the same as `of_all`
   const Emitters* emitters;              ///< whose light rays gather; null: there are none
@@ -138,8 +139,8 @@ struct SourceJob {
   const Source& source;
   PassBeyond pass;
   const InterleavedPlane* past = nullptr;  ///< by pixel, where pass.past is 0; null: of none
-  /// Finds SourceShares::unseen, of the solids of this raster, which may not be what blocks the
-  /// light; null: finds all others.
+  /// If set, SourceShares::unseen is found, for the solids of this raster, which may differ from
+  /// what blocks the light; null: the other members are found.
   const MarchScene* unseen_of = nullptr;
   bool together = true;  ///< as Walk::run(): the same to the bit, and slower without
   SourceShares* found = nullptr;

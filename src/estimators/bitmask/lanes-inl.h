@@ -25,8 +25,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// Error of a height above a tangent plane, over the distance to the viewer: 4 units in the last
-/// place.
+/// The rounding error of a height above a tangent plane, as a share of the distance to the viewer:
+/// 4 units in the last place.
 constexpr float kHeightError = 2.4e-7f;
 
 /// Least difference of two cosines that is more than rounding.
@@ -78,8 +78,8 @@ HWY_INLINE V3 back_of(const V3& sides) {
 /// holds_solid() of march_scene.h for a vector of depths: false where the depth is NaN.
 HWY_INLINE M holds_solid(V depth) { return depth == depth; }
 
-/// The place of a vector of pixels in the raster. The vector holds every eighth pixel of row `y`
-/// from `column_phase` on, less the first `column` ones.
+/// The place of a vector of pixels in the raster. Lane k is the pixel of row `y` and of column 8
+/// (column + k) + column_phase - Interleaving::phase().
 struct Place {
   std::ptrdiff_t index;
   int y, column_phase, column;
@@ -93,15 +93,15 @@ HWY_INLINE Place place_beside(const Interleaving& layout, const Place& place, in
   return {layout.index(y, column_phase, column), y, column_phase, column};
 }
 
-/// The columns of a vector of pixels in the raster; of lanes beside it, the first or the last.
+/// The columns of a vector of pixels; lanes beside the raster get its first or last column.
 HWY_INLINE VI columns_of(const MarchScene& scene, const Place& place) {
   const VI columns =
       hn::ConvertTo(DI(), lane_columns(scene.layout, place.column_phase, place.column));
   return hn::Clamp(columns, set_int(0), set_int(scene.layout.width() - 1));
 }
 
-/// What the surfels of a vector of pixels say beside their positions; of lanes beside the raster,
-/// those of its first or last column.
+/// The values of the surfels of a vector of pixels other than the position; lanes beside the raster
+/// get those of its first or last column.
 struct Shading {
   V3 normal;
   V rounding;
@@ -120,19 +120,20 @@ HWY_INLINE Shading load_shading(const MarchScene& scene, const Place& place) {
 struct MarchReceiver : Receiver {
   Place place;         ///< of all lanes
   float reach_px = 0;  ///< of all lanes: no pixel farther away in the picture is within the radius
-  V slope_x, slope_y;  ///< of the ray through it, or its place where the camera is orthographic
+  V slope_x, slope_y;  ///< of the pixel's ray, or its x and y where the camera is orthographic
   V3 to_viewer;        ///< unit: V
   V distance;          ///< to the viewer
   V facing;            ///< N.V
   V3 shading;          ///< unit
   V shading_v;         ///< its cosine to V
-  /// The surface in the pixel (dx, dy) away lies above the tangent plane, measured along V, by
-  /// depth (rise + rise_x dx + rise_y dy) + plane. What rounding may have added is subtracted.
+  /// The height of the surface in the pixel (dx, dy) away over the tangent plane, along V, is depth
+  /// (rise + rise_x dx + rise_y dy) + plane; for orthographic cameras see height_above(). A margin
+  /// for rounding is subtracted in `plane`.
   V rise, rise_x, rise_y, plane;
 };
 
-/// The normals, of some length, of tangent planes with a `tilt` as MarchPlanes has it, in pixels
-/// whose rays have this slope.
+/// The normals, not of unit length, of tangent planes with this `tilt` (as in MarchPlanes), in
+/// pixels whose rays have this slope.
 HWY_INLINE V3 normal_of_tilt(const MarchScene& scene, const V2& tilt, const V2& slope) {
   const V2 aside{tilt.x * set(-scene.fx), tilt.y * set(scene.fy)};
   const V one = set(1);
@@ -199,8 +200,8 @@ HWY_INLINE V3 usable(const V3& normals, M valid) {
   return if_then_else(valid, normals, set(glm::vec3(0, 0, 1)));
 }
 
-/// How much nearer the tangent planes of the pixels at index `q` come over a step to them, in the
-/// units of MarchScene::tilt.
+/// The change of nearness along the tangent planes of the pixels at index `q` over a step to them,
+/// in the units of MarchPlanes::tilt.
 HWY_INLINE V nearer_over(const MarchPlanes& planes, std::ptrdiff_t q, const SliceStep& step) {
   const V tilt = load(planes.tilt, q);
   return dot(V2{first_of_two(tilt), second_of_two(tilt)}, V2{set(step.dx), set(step.dy)});
@@ -214,8 +215,8 @@ HWY_INLINE V height_above(const MarchReceiver& p, V rise, V depth) {
   return hn::MulAdd(depth, rise, p.plane);
 }
 
-/// How much a neighbour, (dx, dy) pixels away, is on the receiver's surface: the weight of
-/// scene/same_surface.h, but for the plane all or nothing.
+/// The weight, 0..1, of a neighbour (dx, dy) pixels away as part of the receiver's surface: that of
+/// scene/same_surface.h, except that the test against the plane gives 0 or 1.
 template <bool kOrthographic>
 HWY_INLINE V likeness(const MarchScene& scene, const MarchReceiver& p, std::ptrdiff_t q, int dx,
                       int dy) {
@@ -232,9 +233,9 @@ HWY_INLINE V likeness(const MarchScene& scene, const MarchReceiver& p, std::ptrd
   return hn::IfThenElseZero(hn::And(valid, near), normal_weight(cosine));
 }
 
-/// Distance in the picture beyond which no point can be within `radius` of a receiver. A view ray
-/// whose slope differs by e from that of the receiver's passes it at a distance of d e / (l + e), d
-/// being the receiver's distance and l the length of its ray per unit of depth.
+/// The distance in the picture beyond which no point can be within `radius` of a receiver. A view
+/// ray whose slope differs by e from that of the receiver's ray passes the receiver at a distance
+/// of d e / (l + e), with d the receiver's distance and l the length of its ray per unit of depth.
 HWY_INLINE float reach_px(const MarchScene& scene, const MarchReceiver& p, float radius) {
   const float f = scene.fx > scene.fy ? scene.fx : scene.fy;
   if (scene.orthographic || radius > kEndless) return radius * f;
@@ -294,7 +295,7 @@ struct SideFrame {
   V start;         ///< start_of_sectors() of the side's phase
   VU above;        ///< the sectors above the plane across the shading normal
   VU above_count;  ///< their number, 0..31; the last sector points away from the viewer
-  VU open;         ///< those of them that the surface itself does not hide
+  VU open;         ///< the sectors in `above` that the surface itself does not hide
 };
 
 /// The sectors hidden by a solid whose front is at s and at the height `above` over the receiver's
@@ -337,9 +338,9 @@ HWY_INLINE SliceFrame slice_frame(const MarchScene& scene, const MarchReceiver& 
 }
 
 /// The number of sectors above the plane across a normal with these components along V and T. In
-/// the slice, the angle from V to that plane is that to the normal plus pi/2. Directions that
-/// rounding could lift above it are left out, and so is a sector of which more than half lies
-/// below: its integral is negative.
+/// the slice, the angle from V to this plane is the angle to the normal plus pi/2. Directions that
+/// rounding could lift above the plane are left out, and so is a sector of which more than half
+/// lies below it: its integral is negative.
 HWY_INLINE VU count_above(V n_v, V n_t, float phase) {
   const V2 normal{n_t, n_v};
   const V cosine = hn::NegMulAdd(n_t, reciprocal_sqrt(dot(normal, normal)), set(kCosineError));
@@ -347,7 +348,7 @@ HWY_INLINE VU count_above(V n_v, V n_t, float phase) {
   return hn::Min(sector_at(cosine, last_above), set_bits(31));
 }
 
-/// The side along the slice's direction, where `forward`, or against it.
+/// The side along the slice's direction if `forward`, otherwise the side against it.
 HWY_INLINE SideFrame side_frame(const MarchScene& scene, const MarchReceiver& p,
                                 const SliceFrame& f, bool forward, float phase) {
   SideFrame side;

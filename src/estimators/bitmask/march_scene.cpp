@@ -19,7 +19,7 @@ constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
 /// What a pixel shows, in the planes of MarchScene.
 struct Cell {
-  float depth = kNothing, ray_length = 1;  ///< the ray's per unit of depth
+  float depth = kNothing, ray_length = 1;  ///< length of the ray per unit of depth
   glm::vec2 slope{0};                      ///< of the ray
   glm::vec3 normal{kNothing};
 
@@ -56,7 +56,7 @@ class Cells {
   glm::vec2 tilt(const Cell& cell) const {
     if (!cell.is_surface()) return glm::vec2(kNothing);
     const glm::vec3 ray(scene_.orthographic ? glm::vec2(0) : cell.slope, -1.0f);
-    // A surface that turns away from the viewer is a line in its pixel.
+    // A surface that turns away from the viewer is treated as seen edge-on.
     const float per_ray = 1 / std::min(glm::dot(cell.normal, ray), -1e-9f);
     return per_ray * glm::vec2(cell.normal) * per_px_;
   }
@@ -84,7 +84,7 @@ class Cells {
     const float per_depth = scene_.orthographic ? -normal.z : glm::dot(normal, ray);
     if (!(-per_depth > kLeastFacing * length)) return depth;
     const float moved = depth + glm::dot(normal, position - on_ray) / per_depth;
-    // A depth has no scale to doubt it by where all rays are parallel: it may be next to nothing.
+    // Where all rays are parallel, a depth may be next to 0 and gives no scale for a test.
     const bool credible =
         scene_.orthographic ? moved > 0 : moved > 0.5f * depth && moved < 2 * depth;
     return credible ? moved : depth;
@@ -131,8 +131,8 @@ float reach_px(const Geometry& g, float radius) {
 
 namespace {
 
-/// Calls `visit(index, x, y, cell)` for what the pixels of a geometry show, x beyond it where the
-/// planes of `scene` are padded.
+/// Calls `visit(index, x, y, cell)` for the pixels of a geometry, and for the padding of the planes
+/// of `scene`, with x outside of the geometry and an empty cell.
 template <class Visit>
 void for_each_cell(const Geometry& g, const MarchScene& scene, const Cells& cells,
                    const Visit& visit) {
@@ -170,7 +170,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
     std::fill_n(values.data() + layout.size() - Interleaving::kPad, Interleaving::kPad, kNothing);
     return values;
   };
-  // What products are handed out by comes first: the rest is then freed in one piece.
+  // The planes that products still need at the end come first: the rest is then freed in one piece.
   std::vector<MarchLayer> layers;
   for (int k = 0; k < solids.layers(); ++k) layers.push_back({plane(), plane()});
   const Window frame = g.part_of.value_or(g.window);

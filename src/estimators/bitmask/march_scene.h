@@ -101,7 +101,7 @@ struct MarchScene : MarchPlanes {
   BorderLayout border;
   BorderValues border_depth, border_normal[3];
   BorderValues border_thickness;  ///< in scene units
-  BorderValues border_beyond;     ///< how far it may go on beyond the frame; empty: without limit
+  BorderValues border_beyond;     ///< how far surfaces may go on beyond the frame; empty: no limit
   /// The depth and tilt of receivers where what they show does not cast; else empty.
   InterleavedPlane own_depth, own_tilt, own_tilt_rest;
 
@@ -109,13 +109,13 @@ struct MarchScene : MarchPlanes {
 
   bool receives(std::ptrdiff_t i) const { return holds_solid(receiver_depth()[i]); }
 
-  /// Those of what receives.
+  /// The depth and tilt of what receives.
   const InterleavedPlane& receiver_depth() const { return own_depth.data() ? own_depth : depth(); }
   const InterleavedPlane& receiver_tilt() const { return own_depth.data() ? own_tilt : tilt; }
   const InterleavedPlane& receiver_tilt_rest() const {
     return own_depth.data() ? own_tilt_rest : tilt_rest;
   }
-  /// Whether nothing is there. A pixel that shows neither tells nothing.
+  /// Whether a pixel shows the background. A broken pixel shows neither background nor surface.
   bool shows_background(int x, int y) const {
     const Surfel& s = casting(x, y);
     return !s.is_surface() && !s.is_broken();
@@ -129,9 +129,9 @@ glm::vec2 ray_slope(const MarchScene& scene, int x, int y);
 /// The unit normal of the tangent plane of what a pixel shows.
 glm::vec3 tangent_normal(const MarchScene& scene, int x, int y);
 
-/// How far away in the picture something within the radius of a point, in camera space, may be, in
-/// pixels: as reach_px() of lanes-inl.h. Infinite where the camera is within the radius. `f` pixels
-/// per unit of slope, or per scene unit of an orthographic camera.
+/// The largest distance in the picture, in pixels, of anything within the radius of a point in
+/// camera space: as reach_px() of lanes-inl.h. Infinite where the camera is within the radius. `f`
+/// pixels per unit of slope, or per scene unit of an orthographic camera.
 float reach_px(float f, bool orthographic, const glm::vec3& point, float radius);
 
 /// The same of any surface.

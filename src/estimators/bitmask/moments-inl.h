@@ -89,7 +89,7 @@ HWY_INLINE RawMoments<kDegree> moments_of_bits(VU bits) {
   });
 }
 
-/// The same with the cosine to the normal as a weight, around the circle of a slice.
+/// RawMoments weighted by the cosine to the normal, around the circle of a slice.
 template <int kOrder>
 struct CircleMoments {
   V cosine[kOrder + 1], sine[kOrder + 1];
@@ -114,7 +114,7 @@ struct CircleMoments {
     }
   }
 
-  /// Takes a share of others away.
+  /// Subtracts a share of other moments.
   HWY_INLINE void subtract(const CircleMoments& other, V share) {
     for (int k = 0; k <= kOrder; ++k) {
       cosine[k] = hn::NegMulAdd(share, other.cosine[k], cosine[k]);
@@ -122,8 +122,8 @@ struct CircleMoments {
     }
   }
 
-  /// Weights of the direction at this angle, one of 2 kOrder + 2, with that of the opposite one
-  /// added and subtracted.
+  /// The sum and the difference of the weights of two directions: the one at this angle, which is
+  /// one of 2 kOrder + 2, and its opposite.
   HWY_INLINE void at(const float* cosines, const float* sines, V& both, V& difference) const {
     V sums[2] = {cosine[0] * set(0.5f), set(0)};
     for (int k = 1; k <= kOrder; ++k) {
@@ -202,7 +202,7 @@ struct Moments {
   /// 1 - M(hidden) / M(all): the visibility of the hemisphere, weighted by the cosine.
   HWY_INLINE V ao() const { return ao_of(hidden[0]); }
 
-  /// The same if only this sum is hidden.
+  /// ao() if only `sum_of_hidden` is hidden.
   HWY_INLINE V ao_of(V sum_of_hidden) const {
     const V zero = set(0), one = set(1);
     return hn::IfThenElse(all[0] > zero, hn::Clamp(one - sum_of_hidden / all[0], zero, one), one);
@@ -210,8 +210,8 @@ struct Moments {
 
   /// 1 - int_lost L dM / int_all L dM, for the light L with these weights. Both sums are over the
   /// same directions, so that noise cancels and an open surface receives exactly all of it.
-  /// `otherwise` where there is no light. Noise may lead out of 0..1, so that means among pixels
-  /// are right, but not far: few slices may hold next to no light.
+  /// `otherwise` where there is no light. With noise the result may leave 0..1, so that means over
+  /// pixels are right, but only up to a limit: with few slices, int_all may be next to no light.
   HWY_INLINE V visible_part(const float* light, V otherwise) const {
     V light_lost = set(0), light_of_all = set(0);
     for (int i = 0; i < kCount; ++i) {

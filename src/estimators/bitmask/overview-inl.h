@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What lies beyond a raster that is a part of the frame, for a vector of pixels: an overview of the
-// frame (FarScene). Slices read its planes by rows, rays and what goes on beyond the border its own
-// raster.
+// frame (FarScene). Slices read its planes by rows; rays, and surfaces that go on beyond the
+// border, read its own raster.
 #if defined(SSDO_BITMASK_OVERVIEW_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_OVERVIEW_INL_H_
 #undef SSDO_BITMASK_OVERVIEW_INL_H_
@@ -42,8 +42,8 @@ HWY_INLINE VI index_of(const FarRaster& far, const OverviewPixels& at) {
   return at.y * set_int(int(far.layout.stride())) + at.x + set_int(Interleaving::kPad);
 }
 
-/// Where the samples of a vector of receivers are: the planes, and the place there of what lies a
-/// step of (0, 0) away.
+/// Where the samples of a vector of receivers are: the planes, and the place in them of a step of
+/// (0, 0).
 struct Sampled {
   const MarchPlanes& planes;
   int row, rows, column, columns;

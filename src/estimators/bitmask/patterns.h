@@ -11,7 +11,7 @@ namespace ssdo {
 SlicePattern pattern_of(const Request& request, const Interleaving& layout, const Window& display,
                         const FarRaster* far = nullptr);
 
-/// Those in which it gathers bounce light.
+/// The slices in which a request gathers bounce light.
 SlicePattern bounce_pattern_of(const Request& request, const Interleaving& layout,
                                const Window& display, const FarRaster* far = nullptr);
 

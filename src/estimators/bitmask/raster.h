@@ -84,8 +84,8 @@ class Raster {
     return out;
   }
 
-  /// The values of an overview in the order of `far`, `changed` by something; not-a-number beside
-  /// it.
+  /// The values of an overview in the order of `far`, each mapped by `changed`; not-a-number beside
+  /// the overview.
   template <class Change = std::identity>
   InterleavedPlane in_whole_rows(const InterleavedPlane& values, const FarRaster& far,
                                  const Change& changed = {}) const {
@@ -120,12 +120,12 @@ class Raster {
     return of_receivers(background, [&](std::ptrdiff_t i) { return plane[i]; });
   }
 
-  /// What `unit` is to be multiplied by.
+  /// A picture of `unit` times the shares of a plane.
   Plane<float> picture(InterleavedShares plane, float unit) const {
     return of_receivers(0.0f, [&](std::ptrdiff_t i) { return unit * plane[i]; });
   }
 
-  /// What is to be added to `base`.
+  /// A picture of `base` plus the shares of each channel.
   Plane<glm::vec3> picture(InterleavedColorShares color, const InterleavedPlane& base) const {
     return of_receivers(glm::vec3(0), [&](std::ptrdiff_t i) {
       return base[i] + glm::vec3(color[0][i], color[1][i], color[2][i]);

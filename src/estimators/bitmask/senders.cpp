@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The direct light of each pixel, and the radiance that it sends to others: its albedo times all
-// light that arrives there. What arrives of the light is a mean over 4 x 4 pixels of its surface. A
-// pixel's own light comes from two slices and one ray to each sun, and many receivers look at the
-// same pixel: sent on as it is, it made the noise of the bounce 1.6 to 1.9 times as large (things
-// on a table, a box of a room). Compiled once for every instruction set.
+// light that arrives there. The light that arrives is a mean over 4 x 4 pixels of the same surface.
+// The light of a single pixel comes from two slices and one ray to each sun, and many receivers
+// look at the same pixel: without the mean, the noise of the bounce was 1.6 to 1.9 times as large
+// (things on a table, a box of a room). Compiled once for every instruction set.
 //
 // The side of a body that the camera does not see (scene/solids/unseen_side.h) is assumed to
-// receive the unoccluded light of its own hemisphere times the ao of the front; of a lamp, which
-// may be nearer than the solid is thick, the light that rays find there (SourceShares::unseen). The
-// sources of the method let surfaces that face away from a receiver send nothing: with that, five
-// of seven frames were too dark by 20 % or more.
+// receive the unoccluded light of its own hemisphere times the ao of the front; but from a lamp,
+// which may be nearer than the solid is thick, the light that rays find there
+// (SourceShares::unseen). In the papers of the method, surfaces that face away from a receiver send
+// nothing: with that, five of seven frames were too dark by 20 % or more.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/senders.cpp"
 #include <hwy/foreach_target.h>
@@ -25,7 +25,7 @@ namespace ssdo::HWY_NAMESPACE {
 /// evenly.
 constexpr int kWindow = 4;
 
-/// The pixels around each of a vector, and what they count in a mean over its surface.
+/// The pixels around each pixel of a vector, and their weights in a mean over its surface.
 struct Around {
   std::ptrdiff_t index[kWindow * kWindow];
   V weight[kWindow * kWindow];
@@ -71,21 +71,21 @@ HWY_INLINE V3 shading_normals(const MarchScene& scene, const Place& place) {
   return usable(load_shading(scene, place).normal, valid);
 }
 
-/// The share of the light of a source that those surfaces take.
+/// The share of a source's light that the surfaces in these pixels take.
 HWY_INLINE V taken_at(const MarchScene& scene, const Source& source, const Place& place) {
   if (!source.receivers) return set(1);
   return gather(&(*source.receivers)(0, place.y), columns_of(scene, place));
 }
 
-/// Where those surfaces are.
+/// The positions of the surfaces in these pixels.
 HWY_INLINE V3 positions(const MarchScene& scene, const Place& place) {
   const float* from = &scene.surfel(0, place.y).position.x;
   const VI at = columns_of(scene, place) * set_int(sizeof(Surfel) / sizeof(float));
   return {gather(from, at), gather(from + 1, at), gather(from + 2, at)};
 }
 
-/// The direct light of pixels; `share(planes)`, their sum, of some light of the sky arrives, and
-/// `of_source(plane)` of that of a source.
+/// The direct light of pixels. `share(planes...)`, for the sum of the planes, is the share of the
+/// sky's light that arrives; `of_source(plane)` is that of a source.
 template <class Share, class OfSource>
 HWY_INLINE V3 direct_light(const MarchScene& scene, const FoundShares& found, const Place& place,
                            const Share& share, const OfSource& of_source) {
@@ -149,8 +149,8 @@ HWY_INLINE V3 albedo_at(const SenderJob& job, const Place& place) {
 #endif
 }
 
-/// What a prior that changes ao makes of the light that arrives, as prior/prior.h says: factors of
-/// that from outside and of the bounce, and what is added to the latter.
+/// How a prior that changes ao changes the light that arrives (prior/prior.h): factors of the light
+/// from outside and of the bounce, and the radiance that is added to the bounce.
 struct Unshown {
   V of_light, of_bounce;
   V3 sent;

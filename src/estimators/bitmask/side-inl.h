@@ -129,7 +129,7 @@ HWY_INLINE VU hidden_beyond(const March& march, const MarchReceiver& p, const Si
     on_beyond(false, border, hn::And(open, bits));
     return bits;
   }
-  // Nearer than that, the border of the raster is the frame's.
+  // Up to from_px, the border of the raster is that of the frame.
   const M is_near = border.distance_px <= set(march.far->raster.from_px);
   const VU here = hn::VecFromMask(DU(), hn::RebindMask(DU(), is_near));
   bits = hn::And(bits, here);

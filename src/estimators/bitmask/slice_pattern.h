@@ -86,8 +86,8 @@ class SlicePattern {
     return half_signs_[std::size_t(row * Interleaving::kPeriod + column)];
   }
 
-  /// The most rows away from its pixel that a march samples whose light comes from so many pixels
-  /// around it.
+  /// The largest distance in rows between a pixel and the samples of its march, where all that
+  /// matters lies within `reach_px` of the pixel.
   int rows_within(float reach_px) const;
 
   /// The rank of each member, 0..T^2 - 1, in an order that puts neighbours far apart.

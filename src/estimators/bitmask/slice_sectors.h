@@ -19,10 +19,10 @@ struct SliceSectors {
   /// kDegree + k, k from 1: that of sin(k theta).
   static constexpr int sine_moment(int k) { return kDegree + k; }
 
-  /// Over those sectors of the four from 4 g on whose bits are set in n, at [moment][16 g + n].
+  /// Moments over the set n of the four sectors from 4 g on, by its bits, at [moment][16 g + n].
   alignas(64) std::array<std::array<float, 128>, kMoments> of_group;
 
-  /// Over the first n sectors, at [moment][n], n up to 31.
+  /// Moments over the first n sectors, at [moment][n], n up to 31.
   alignas(64) std::array<std::array<float, kCount>, kMoments> of_first;
 };
 

@@ -8,7 +8,7 @@
 //
 // all:    sectors above the plane across the shading normal
 // hidden: those of them that solids hide, found by a march over each side
-//         (open_ao counts those alone that the frame hides, and not what may go on beyond it)
+//         (open_ao counts only those that the frame hides, not surfaces that go on beyond it)
 // lost:   `hidden`, less the share `through_beyond` of what only surfaces beyond the border hide
 // w:      SliceFrame::weight
 // L:      light in spherical harmonics, so that moments of the sectors suffice (moments-inl.h);

@@ -10,8 +10,8 @@ namespace ssdo {
 /// A picture at one scale: depths and what is known of their obscurance.
 ///
 /// A pixel of scale k stands for 2^k x 2^k pixels of the display window and has the depth of the
-/// upper left one of them; where the data window lacks that one, of the nearest that it has. Planes
-/// repeat their first and last column for at least a vector on both sides.
+/// upper left one of them; where the data window lacks that pixel, that of the nearest one it has.
+/// Planes repeat their first and last column for at least a vector on both sides.
 struct DepthScale {
   static constexpr int kRepeats = 16;  ///< columns on the left; on the right at least twice that
 
@@ -22,7 +22,7 @@ struct DepthScale {
 
   DepthScale(int width, int height, int left, int top);
 
-  /// A row of one of the planes, the outermost ones for what is beyond them.
+  /// A row of one of the planes; beyond the plane, the outermost row.
   const float* row(const PaddedPlane& plane, int y) const {
     return plane.row(std::clamp(y, 0, height - 1));
   }

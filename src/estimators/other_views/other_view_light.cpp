@@ -24,8 +24,8 @@ constexpr int kRays = 16, kSourceRays = 4;
 /// Vertices that one task works on.
 constexpr int kBand = 1024;
 
-/// Rays begin this many footprints above their surface: on a curved surface, the triangles beside
-/// it rise above it by less.
+/// Rays begin this many footprints above their surface: on a curved surface, neighbouring triangles
+/// rise above the start by less.
 constexpr float kAbove = 0.3f;
 
 constexpr std::uint32_t kSurfaceSeed = 0x3c91, kSourceSeed = 0x77e5;
@@ -81,7 +81,7 @@ class OtherViewSenders {
     return seen ? light.seen : light.unseen;
   }
 
-  /// The vertices that send light to the frame; to each other as well, where light goes on.
+  /// The vertices that send light to the frame; with `all`, also those that send to other vertices.
   void find_senders(bool all) {
     std::vector<bool> sends(surfaces_.vertices.size(), false);
     for (const auto& triangle : all ? surfaces_.all : surfaces_.added)
@@ -90,8 +90,8 @@ class OtherViewSenders {
       if (sends[i]) senders_.push_back(std::uint32_t(i));
   }
 
-  /// Calls `work(vertex, side, whether it is the one that is seen)`. A surface is taken for thin:
-  /// its other side is lit by what is there.
+  /// Calls `work(vertex, side, whether it is the one that is seen)`. Surfaces are taken for thin:
+  /// the other side is lit by the light that arrives there.
   template <class Work>
   void for_each_side(const Work& work) const {
     const int count = int(senders_.size());
@@ -135,8 +135,8 @@ class OtherViewSenders {
     return direct;
   }
 
-  /// The share of the light of a source that a vertex takes with nothing in the way. What only a
-  /// view shows that does not know the selection takes nothing.
+  /// The share of a source's unoccluded light that a vertex receives. A vertex of a view that does
+  /// not know the source's selection receives nothing.
   float taken_by(const Source& source, std::uint32_t vertex) const {
     if (!source.receivers) return 1;
     const std::uint32_t pixel = surfaces_.vertices[vertex].frame_pixel;

@@ -9,14 +9,15 @@
 
 namespace ssdo {
 
-/// What the surfaces of other views send, by vertex: their albedo times the light that arrives.
+/// The radiance that surfaces of other views send, by vertex: albedo times the light that arrives.
 struct OtherViewLight {
   std::vector<glm::vec3> seen;    ///< from the side that a view has seen
   std::vector<glm::vec3> unseen;  ///< from the other side
 };
 
-/// What they send of one light, or of all as one, after 0, 1, ..., `bounces` bounces, by rays among
-/// all that is known of the scene. `radius` is the farthest at which things occlude.
+/// The radiance they send of one light, or of all lights as one, after 0, 1, ..., `bounces`
+/// bounces, by rays among all that is known of the scene. `radius` is the farthest at which things
+/// occlude.
 std::vector<OtherViewLight> light_other_surfaces(const Scene& scene, const NamedLight& light,
                                                  int bounces, float radius);
 

@@ -7,8 +7,8 @@
 namespace ssdo {
 namespace {
 
-/// A ray that meets the unseen side of a surface within so many footprints of its start began on
-/// the seen side of the same thin thing, which coarse triangles cut.
+/// Distance from the start of a ray, in footprints, within which hits on an unseen side are
+/// ignored: the ray began on the seen side of the same thin object, which coarse triangles cut.
 constexpr float kThinThing = 4;
 
 bool is_unseen(const Vertex& vertex, const glm::vec3& direction) {
@@ -17,7 +17,7 @@ bool is_unseen(const Vertex& vertex, const glm::vec3& direction) {
 
 }  // namespace
 
-/// What is not of the thing that a ray starts from.
+/// Accepts hits that are not on the object that a ray starts from.
 class OtherViewRays::OtherThings final : public TriangleRays::Rule {
  public:
   OtherThings(const OtherViewRays& rays, const glm::vec3& direction)

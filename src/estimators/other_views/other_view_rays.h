@@ -21,7 +21,7 @@ class OtherViewRays {
   OtherViewRays(const std::vector<Vertex>& vertices,
                 const std::vector<OtherSurfaces::Triangle>& triangles);
 
-  /// Those of what the frame does not show; null: there are none.
+  /// The triangles of surfaces that the frame does not show; null: there are none.
   static std::unique_ptr<OtherViewRays> of_added(const OtherSurfaces& surfaces);
 
   /// The surface that a ray meets first.

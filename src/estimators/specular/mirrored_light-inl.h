@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The light that rough surfaces mirror where nothing is in its way, for vectors of surfaces,
-// without noise:
+// The unoccluded light that rough surfaces mirror, for vectors of surfaces, without noise:
 //
 //   sky     = R L(w_i) averaged by F(w_i) G1(w_i)    R: reflectance for even light, from a table
 //   source  = E mean_k( weight_k F D' G1(v) G1(w_k) / (4 n.v) )
 //
 // w_i: directions that a few facets which the viewer sees mirror (Heitz 2018), the same for all
 // pixels. L is a mean over the solid angle that each stands for, 1 / (count density): Krivanek and
-// Colbert 2008, Real-time Shading with Filtered Importance Sampling. Light from everywhere alike is
-// exact with any number of them.
+// Colbert 2008, Real-time Shading with Filtered Importance Sampling. Light that is the same from
+// everywhere is exact with any number of directions.
 //
 // w_k: points of the source. Each stands for a part of it, of the solid angle omega, which a mirror
 // shows as a spot: D' has the distribution of the facets widened, along the plane of the viewer and
@@ -19,9 +18,9 @@
 //
 // for facets turn by half of what mirrored light turns by, and aside by 1 / h.l more: a round spot
 // is a streak of facets at a grazing view. Without the 2, a mirror shows each part with its own
-// radiance: the density of what it mirrors, 1 / (pi alpha_x' alpha_y' 4 h.l), is 1 / omega. Rays
-// that are sent at random, to the source or to what facets mirror, would leave to luck what is
-// small and bright. Compiled once for every instruction set.
+// radiance: the density of what it mirrors, 1 / (pi alpha_x' alpha_y' 4 h.l), is 1 / omega. With
+// random rays, to the source or to what facets mirror, small bright parts would be met by chance.
+// Compiled once for every instruction set.
 #if defined(SSDO_SPECULAR_MIRRORED_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_SPECULAR_MIRRORED_LIGHT_INL_H_
 #undef SSDO_SPECULAR_MIRRORED_LIGHT_INL_H_
@@ -43,9 +42,9 @@ namespace ssdo::HWY_NAMESPACE {
 
 constexpr int kSkyPoints = 32, kLeastSourcePoints = 8, kSourcePoints = 256;
 
-/// How much larger than its part of the source the spot of a point is, so that spots blend. RMSE of
-/// a mirrored square that is 40 degrees wide, roughness 0.2 and 64 points, relative to the RMS,
-/// with 1, 2 and 4: 0.14, 0.13, 0.17, and its largest value over the true one 1.13, 1.05, 0.97.
+/// Size of the spot of a point over its part of the source, above 1 so that spots blend. RMSE of a
+/// mirrored square that is 40 degrees wide, roughness 0.2 and 64 points, relative to the RMS, with
+/// 1, 2 and 4: 0.14, 0.13, 0.17, and its largest value over the true one 1.13, 1.05, 0.97.
 constexpr float kOverlap = 2;
 
 /// Reflectances::operator(), times the light that comes from everywhere alike: 1.

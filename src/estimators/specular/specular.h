@@ -14,8 +14,8 @@ namespace ssdo {
 /// S, s_k:        LightShares::mirrored_sky and LightShares::suns
 /// R, H:          what is mirrored of even light, and Products::specular as it comes in
 ///
-/// So S and H are averaged by a filter, and what normal maps show of lights is not. Does nothing
-/// where the product is not made; outside of surfaces it is 0.
+/// So a filter averages S and H, but not the detail that normal maps give to mirrored lights. Does
+/// nothing where the product is not made; outside of surfaces it is 0.
 void add_specular(Products& products, const Scene& scene);
 
 }  // namespace ssdo

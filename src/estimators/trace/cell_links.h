@@ -9,8 +9,8 @@
 namespace ssdo {
 
 /// Which fronts at the corners of a cell, a square between the centres of four pixels, are of one
-/// surface. For each side k, from corner k to the next, and each node at its start: the node at its
-/// end that it is joined to, or -1.
+/// surface. For each side k, from corner k to the next, and each node at the start of the side: the
+/// joined node at the end of the side, or -1.
 struct CellLinks {
   int to[4][kMostLayers];
   bool seen[4][kMostLayers] = {};
@@ -37,7 +37,7 @@ struct CellGroup {
   bool joined_to_next[4] = {};
 };
 
-/// All that are joined to a node, directly or by others; they become `seen`.
+/// All nodes that are joined to a node, directly or by others; they become `seen`.
 inline CellGroup group_from(CellLinks& links, int corner, int layer) {
   CellGroup group;
   group.layers[corner] = layer;

@@ -20,7 +20,7 @@ struct TraceRay {
   const glm::vec3& to;
 };
 
-/// What a ray may meet: the solids of a frame, and what only other views show.
+/// The occluders of a ray: the solids of a frame, and surfaces that only other views show.
 struct RayBlockers {
   RayScene solids;
   std::unique_ptr<OtherViewRays> other_views;  ///< null: there are none
@@ -39,16 +39,16 @@ class FrameOccluders {
 
   const RayScene& solids() const { return all_.solids; }
 
-  /// What a lamp names as what blocks its light, by its number; null: all does. Lamps that name the
-  /// same things share it.
+  /// The occluders that lamp `source` names for its light; null: everything blocks it. Lamps that
+  /// name the same things share them.
   const RayBlockers* named_by(std::size_t source) const;
 
   bool has_other_views() const { return all_.other_views != nullptr; }
 
-  /// Whether something stands in the way before `distance`.
+  /// Whether an occluder lies on the ray before `distance`.
   bool is_blocked(const TraceRay& ray, float distance) const;
 
-  /// The same of the light of a source, by its number: a lamp may name what blocks it.
+  /// The same for the light of a source, by its number: a lamp may name its occluders.
   bool is_blocked(const TraceRay& ray, float distance, std::size_t source) const;
 
   /// The surface that a ray meets first.

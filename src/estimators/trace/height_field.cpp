@@ -28,7 +28,8 @@ namespace {
 
 constexpr int kRowsOfBlock = 32;
 
-/// Embree knows where a triangle ends to 1e-7 of its length: of one so long, far below a pixel.
+/// Length at which endless walls are cut. Embree places the end of a triangle to within 1e-7 of its
+/// length: at this length, far below a pixel.
 constexpr float kExactLengthPx = 4096;
 
 /// A place of the picture, and the heights of a front and a back there.
@@ -85,7 +86,7 @@ class Builder {
     const Node* first() const { return count > 0 ? &node[0] : nullptr; }
   };
 
-  /// What rows of the frame add.
+  /// The triangles that a block of rows adds.
   struct Block {
     std::vector<std::array<std::uint32_t, 3>> sheets;
     TriangleMesh cuts;
@@ -99,8 +100,8 @@ class Builder {
            (solid.sender < 0 || is_solid(std::size_t(solid.sender)));
   }
 
-  /// Corners: fronts layer by layer and pixel by pixel, then the backs in the same order. In layer
-  /// 0 every pixel has one.
+  /// Corners: fronts layer by layer and pixel by pixel, then the backs in the same order. Layer 0
+  /// has a corner for every pixel.
   void make_nodes() {
     TriangleMesh& sheets = out_.sheets;
     const std::size_t count = geometry_.surfel.size();
@@ -163,9 +164,9 @@ class Builder {
     return on_one_surface(surface_point(a), surface_point(b), footprint_);
   }
 
-  /// Where the tangent plane of a node is at a place of the picture. Nothing where that is farther
-  /// than halfway to `other`, the surface on the far side of the cut, or to twice or half its own
-  /// depth.
+  /// The point of a node's tangent plane at another place of the picture. None if its height
+  /// differs by more than half the step to `other`, the surface on the far side of the cut, or
+  /// without `other` by more than half the node's own height.
   std::optional<Point> continued(const Node& n, const glm::vec2& at, const Node* other) const {
     const glm::vec3& c = corner(n);
     SurfacePoint here = surface_point(n);
@@ -209,7 +210,7 @@ class Builder {
     }
   }
 
-  /// Joins what is of one layer first, then across layers.
+  /// Joins nodes of the same layer first, then nodes of different layers.
   CellLinks link(const Cell& at) const {
     CellLinks links;
     for (int k = 0; k < 4; ++k) {
@@ -245,7 +246,7 @@ class Builder {
     if (size == 4 && sides >= 3)
       return add_sheet({*nodes[0], *nodes[1], *nodes[2], *nodes[3]}, block);
 
-    // On a round silhouette the surface lies behind all planes that touch it: the farthest counts.
+    // A round silhouette lies behind all of its tangent planes: the farthest one is taken.
     std::optional<Point> farthest;
     glm::vec2 at_all(0);
     bool all_continued = true;

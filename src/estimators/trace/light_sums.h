@@ -13,9 +13,9 @@ inline constexpr int kGroups = 4;
 
 using Groups = std::array<float, kGroups>;
 
-/// Standard error of the mean of all groups, if they are independent. Parts of one sequence are
-/// more even together than that: it errs on the safe side. It has the sign of the difference of two
-/// halves, so that a filter averages it as it averages noise.
+/// Standard error of the mean of all groups, if the groups are independent. Groups of one sequence
+/// are more even than that, so the true error is smaller. The value has the sign of the difference
+/// of two halves, so that a filter averages it as it averages noise.
 inline float standard_error(const Groups& groups) {
   float mean = 0, squares = 0;
   for (const float g : groups) mean += g / kGroups;

@@ -16,8 +16,8 @@ class RayScene {
   /// Errors: ExitCode::failed where memory does not suffice.
   explicit RayScene(HeightField field);
 
-  // Directions are unit vectors; a reach may be infinite. What a solid has behind its front counts
-  // only if that front is within reach too: how far back a distant thing goes is not known.
+  // Directions are unit vectors; a reach may be infinite. The sides and back of a solid count only
+  // if its front is within reach too, because the depth of a distant thing is not known.
 
   /// Whether a ray meets anything.
   bool is_blocked(const glm::dvec3& origin, const glm::dvec3& direction, double reach) const;

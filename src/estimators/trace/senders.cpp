@@ -12,7 +12,7 @@
 namespace ssdo {
 namespace {
 
-/// What of a light arrives.
+/// The direct light of `light` that arrives at a pixel.
 glm::vec3 direct_of(const NamedLight& light, const Products& found, const Surfel& s,
                     std::size_t pixel) {
   if (found.shares.are_ao || light.name.empty()) return found.direct[pixel];
@@ -24,7 +24,8 @@ glm::vec3 direct_of(const NamedLight& light, const Products& found, const Surfel
   return direct;
 }
 
-/// What stands in place of objects that cast nothing sends what its sender does, a pixel beside it.
+/// Surfaces in place of objects that cast nothing send the same as their sender, a pixel beside
+/// them.
 void send_from_hole(const Plane<int>& from, TraceSenders& senders) {
   for (std::size_t i = 0; i < from.size(); ++i) {
     if (from[i] < 0) continue;
@@ -33,8 +34,8 @@ void send_from_hole(const Plane<int>& from, TraceSenders& senders) {
   }
 }
 
-/// The light of the side that is not seen (scene/solids/unseen_side.h), had it nothing around it.
-/// An endless solid has no such side that a lamp could be near to.
+/// The unoccluded light at the side that is not seen (scene/solids/unseen_side.h). An endless solid
+/// has no such side that a lamp could be near to.
 glm::vec3 unoccluded_behind(const Scene& scene, const Light& light, std::size_t pixel) {
   const Surfel& s = scene.geometry.surfel[pixel];
   const Camera& camera = scene.geometry.camera;
@@ -72,7 +73,8 @@ void find_senders(const Scene& scene, const Products& found, const Plane<glm::ve
       const glm::vec3 albedo(scene.senders.albedo[i]);
       senders.front[i] = within_range(albedo * (direct_of(senders.light, found, s, i) + bounce[i]));
       if (!two_sided) continue;
-      // The side that is not seen has the light of its own side, as far as the seen one is open.
+      // The hidden side receives the unoccluded light of its own side times the ao of the visible
+      // side.
       const glm::vec3 behind = found.ao[i] * unoccluded_behind(scene, senders.light.light, i);
       senders.back[i] = within_range(albedo * (behind + bounce[i]));
     }

@@ -16,11 +16,11 @@ namespace ssdo {
 /// A surface that a ray meets.
 struct Met {
   bool other_view = false;  ///< whether the frame does not show it
-  bool back = false;        ///< whether it is the side that its view does not see
+  bool back = false;        ///< whether the ray meets the side that the view does not see
   std::size_t sender = 0;   ///< a pixel, or a vertex of another view
 };
 
-/// What surfaces send of one light, or of all as one, in a pass of bounces.
+/// The radiance that surfaces send of one light, or of all lights as one, in a pass of bounces.
 struct TraceSenders {
   NamedLight light;
   Plane<glm::vec3> front, back;        ///< by pixel; back is empty where both sides send the same
@@ -35,8 +35,8 @@ struct TraceSenders {
   }
 };
 
-/// Finds front and back: albedo times the light that arrives, or the layer that says so. `found`
-/// has ao, direct and its shares; `bounce` is that of the light in the pass before.
+/// Finds front and back: albedo times the light that arrives, or the layer of radiance. `found` has
+/// ao, direct and its shares; `bounce` is that of the light in the pass before.
 void find_senders(const Scene& scene, const Products& found, const Plane<glm::vec3>& bounce,
                   TraceSenders& senders);
 

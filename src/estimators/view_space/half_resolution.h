@@ -7,9 +7,9 @@
 
 namespace ssdo {
 
-/// A frame at half its width and height: of every 2 x 2 pixels of the display window the lower
-/// right one, which is the one that a lookup at their common corner gives. Where the data window
-/// ends before it, its neighbour in the window.
+/// A frame at half its width and height: the lower right one of every 2 x 2 pixels of the display
+/// window, which a lookup at their common corner gives. Where the data window lacks that pixel, its
+/// neighbour in the window.
 class HalfResolution {
  public:
   /// `full` are planes of the frame, which have to live as long as this.

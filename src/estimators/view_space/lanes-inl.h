@@ -48,7 +48,8 @@ HWY_INLINE ViewReceiver load_receiver(const ViewPlanes& planes, int x, int y) {
   return p;
 }
 
-/// A length at depth 1 in pixels, or at any where the camera is orthographic, at each receiver.
+/// A length in pixels at depth 1 (at any depth where the camera is orthographic) turned into pixels
+/// at the depth of each receiver.
 HWY_INLINE V length_px(const ViewPlanes& planes, const ViewReceiver& p, float at_depth_1) {
   return planes.orthographic ? set(at_depth_1) : set(-at_depth_1) / p.position.z;
 }
@@ -112,8 +113,9 @@ HWY_INLINE V3 gather_normal(const ViewPlanes& planes, const Pixels& at) {
   return {load(x), load(y), load(z)};
 }
 
-/// From each receiver to the surface at depth `z` so many pixels away. From differences, which
-/// loses less than to subtract positions. Not finite on background.
+/// The vector from each receiver to the surface at depth `z`, `right` and `down` pixels away. It is
+/// computed from differences, which loses less precision than subtracting positions. Not finite on
+/// background.
 HWY_INLINE V3 way_to(const ViewPlanes& planes, const ViewReceiver& from, V right, V down, V z) {
   const V deeper = z - from.position.z;
   V3 way{right * set(planes.slope_x), down * set(planes.slope_y), deeper};

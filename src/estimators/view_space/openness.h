@@ -13,7 +13,7 @@ namespace ssdo {
 Plane<float> find_openness(const ViewPlanes& receivers, const Progress& progress,
                            const std::function<void(const Tile&, Plane<float>&)>& find);
 
-/// What methods give that find `ao` and nothing else: where direct light is asked for, that is
+/// The products of methods that find only `ao`: direct light, where it is asked for, is that of
 /// ambient_light().
 Products products_of_ao(const Scene& scene, const Request& request, Plane<float> ao);
 

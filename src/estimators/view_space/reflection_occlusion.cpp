@@ -3,8 +3,8 @@
 // Reflection occlusion by cones: Jimenez et al., "Practical Realtime Strategies for Accurate
 // Indirect Occlusion", 2016, section 6, in the form that engines run.
 //
-// What a rough surface mirrors lies in a cone about the reflected direction r, what is visible in
-// one about the bent normal b. Their angles are s = max(roughness, 0.1) pi and u = |b| pi strength;
+// A rough surface mirrors a cone of directions about the reflected direction r; a cone about the
+// bent normal b is visible. Their angles are s = max(roughness, 0.1) pi and u = |b| pi strength;
 // with w the angle between r and b, D = |s - u| and S = s + u,
 //
 //   share = smoothstep(1 - saturate((w - D) / (S - D))) saturate((u - 0.1) / 0.2)
@@ -14,9 +14,9 @@
 //
 // What differs, and why:
 // - Engines take this share for the result, so that a narrow visible cone within a wide specular
-//   one counts as open. Here it is made a solid angle, times 1 - cos min(s, u), as Oat and Sander
-//   have it, from whom the smoothstep is ("Ambient aperture lighting", 2007): the RMSE against
-//   rays halves at a roughness of 0.5.
+//   cone counts as open. Here the share is made a solid angle, times 1 - cos min(s, u), as Oat and
+//   Sander have it, from whom the smoothstep is ("Ambient aperture lighting", 2007): the RMSE
+//   against rays halves at a roughness of 0.5.
 // - The result is that solid angle over the one of an open surface, whose b is N. At grazing angles
 //   a part of the specular cone is below the surface, which by itself reads as hidden: 0.7 is left
 //   of an open plane at 10 degrees of elevation and a roughness of 0.2.

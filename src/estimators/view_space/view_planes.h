@@ -18,8 +18,8 @@ constexpr float kBackgroundDepth = -std::numeric_limits<float>::infinity();
 /// Whether a depth of ViewPlanes, which DepthMips repeats, is that of a surface.
 inline bool shows_surface(float z) { return z > kBackgroundDepth; }
 
-/// The frame as methods read it that look at places which differ from pixel to pixel. Pixels are
-/// those of the data window, (0, 0) its upper left one, their centres at halves.
+/// The frame in the form for methods that look up places which differ from pixel to pixel. Pixels
+/// are those of the data window, (0, 0) its upper left one, their centres at halves.
 ///
 /// The position in the centre of a pixel follows from its depth: z (ray_x, ray_y, 1), or
 /// (ray_x, ray_y, z) where the camera is orthographic.

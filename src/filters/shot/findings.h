@@ -21,7 +21,7 @@ struct FoundPlane {
   static constexpr int kOfAll = -1, kOfSenders = -2;
 
   int channels = 0;     ///< 0: it is empty
-  int source = kOfAll;  ///< number of the source whose shadow it is, or another thing it is of
+  int source = kOfAll;  ///< the source whose shadow it is, or kOfAll or kOfSenders
   bool bends = false;   ///< directions, which are kept in world space
 };
 
@@ -33,11 +33,11 @@ struct Findings {
   KeptSurfaces surfaces;
   std::vector<FoundPlane> planes;  ///< in the order of for_each_found()
   int stride = 0;                  ///< channels of a pixel, with padding
-  /// By channel, a power of two near the mean of its plane, which values are stored in units of:
-  /// light has any scale, and half numbers have not.
+  /// The unit of the values, by channel: a power of two near the mean of the plane. Light may have
+  /// any scale, which half numbers alone could not hold.
   std::vector<float> unit;
-  /// Finite half numbers (IEEE 754), pixel after pixel by KeptSurfaces::index(): one that another
-  /// frame looks up lies in one or two cache lines.
+  /// Finite half numbers (IEEE 754), pixel after pixel by KeptSurfaces::index(): the pixel that
+  /// another frame looks up lies in one or two cache lines.
   std::vector<std::uint16_t, Uninitialized<std::uint16_t>> values;
   /// Luminance of the radiance, in the same order; empty: nothing glows.
   std::vector<float> glow;
@@ -63,8 +63,8 @@ constexpr int channels_of() {
 }
 
 /// Calls visit(plane, number of its source or what else it is of, whether it holds directions) for
-/// all planes that frames share, some of which may be empty. What the view of a camera decides,
-/// such as reflections, is not among them, nor is the error.
+/// all planes that frames share, some of which may be empty. Planes that depend on the view, such
+/// as reflections, are not among them, nor is the error.
 template <class Visit>
 void for_each_found(const Visit& visit, Products& products) {
   for_each_plane(

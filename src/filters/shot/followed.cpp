@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A point that moves is in the frame before where the motion of its own frame leads, and in the
-// frame after where the motion of that one leads back from:
+// In the frame before, a moving point lies where the motion layer of its own frame leads; in the
+// frame after, it lies where the motion layer of that frame leads back to it:
 //
 //   x(k - 1) = x(k) + m_k(x(k))          x(k + 1) + m_(k+1)(x(k + 1)) = x(k)
 //
@@ -9,8 +9,8 @@
 // Each step is tested as Reprojection does (filters/temporal.cpp): P may differ by twice the motion
 // across the view. A frame that lacks the layer, or is missing, ends both chains.
 //
-// Light at a point that travels changes. With d the way from its place in the world in the one
-// frame to that in the other, and c the cosine between both normals, another frame counts by
+// Light at a moving point changes. With d the distance between its places in the world in the two
+// frames, and c the cosine between its two normals, another frame has the weight
 //
 //   exp(-(d / D)^2) max(1 - (1 - c) / C, 0),   D = kReach times its distance
 //
@@ -33,13 +33,13 @@ namespace {
 /// and flicker of white ao on what moves.
 constexpr double kReach = 0.05, kTurn = 0.03;
 
-/// Pixels from rest.
+/// Distances from the place of rest, in pixels, between which the lookup changes.
 constexpr double kAtRest = 0.25, kFollowed = 0.75;
 
 /// Length of a motion over the part of it across the view, as Reprojection has it.
 constexpr double kSlant = 2;
 
-/// Iterations, and the pixels by which they may miss.
+/// Most iterations, and the pixels by which their result may miss.
 constexpr int kTries = 5;
 constexpr double kMiss = 0.1;
 
@@ -49,7 +49,7 @@ double ramp(double value, double from, double to) {
 
 bool is_finite(const glm::dvec2& v) { return std::isfinite(v.x) && std::isfinite(v.y); }
 
-/// 0..1 of the motion of a pixel apart from the cameras; 0 where it is not known.
+/// 0..1: how surely a pixel moves by more than noise, apart from the cameras; 0 where unknown.
 double speed_of(const OwnMotion& motion, std::size_t pixel) {
   const double speed = glm::length(motion.at(pixel));
   return speed > 0 ? ramp(speed, double(OwnMotion::kLeast), 2.0 * double(OwnMotion::kLeast)) : 0;
@@ -59,7 +59,7 @@ double speed_of(const OwnMotion& motion, std::size_t pixel) {
 
 Followed::Followed(const Findings& own) : own_(own), last_(&own) {}
 
-// A frame that is missing, or lacks its motion, ends the way to those beyond it.
+// A frame that is missing, or lacks its motion, ends the chain to the frames beyond it.
 void Followed::reach(const std::vector<OtherFindings>& others) {
   besides_.clear(), came_to_ = {};
   for (std::size_t k = 0; k < others.size(); ++k) {
@@ -87,7 +87,8 @@ void Followed::reach(const std::vector<OtherFindings>& others) {
     walks_.resize(std::size_t(own_.surfaces.window.height()));
 }
 
-/// Pixels of the frame after, at the four around where they were: the one that was nearest.
+/// Finds for each pixel which moving pixel of the frame after was nearest to it (`came_to_`). Each
+/// is tried at the four pixels around the place where it was.
 void Followed::mark_origins(const Link& link) {
   if (link.motion->pixels.empty()) return;
   const KeptSurfaces &own = own_.surfaces, &after = *link.after;
@@ -121,7 +122,7 @@ Followed::Spot Followed::spot_of(std::size_t pixel) const {
           {1, 0, 0, 0}};
 }
 
-/// The points of a row that move, on their way to the frame that is `next` to it.
+/// The moving points of a row, at the start of their walk to the adjacent frame `next`.
 std::vector<Followed::Walk> Followed::walks_of(int y, const Beside& next) const {
   std::vector<Walk> walks;
   if (next.is_before ? own_.motion.pixels.empty() : came_to_.empty()) return walks;
@@ -211,7 +212,7 @@ bool Followed::find(const CameraChange& change, const KeptSurfaces& to, const Sp
   return true;
 }
 
-/// False: the frame does not show it.
+/// Moves a walk to the frame before. False: that frame does not show the point.
 bool Followed::go_back(const Link& link, Walk& walk) const {
   const Spot from = walk.last;
   return find(link.back, *link.before, from, motion_at(link, from), walk.last);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Points that move, followed by the motion layers through the frames of a shot.
+// Points that move, followed through the frames of a shot by their motion layers.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@
 
 namespace ssdo {
 
-/// Points of a frame that move, in the frames before and after it; see followed.cpp. What is kept
-/// from one call of reach() to the next are the points, not the frames, but for the last of them.
+/// Points of a frame that move, in the frames before and after it; see followed.cpp. From one call
+/// of reach() to the next, the points are kept, but of the frames only the last one.
 class Followed {
  public:
   /// `own` has to outlive it.
@@ -40,15 +40,15 @@ class Followed {
   /// A frame and the link through which it is reached.
   struct Beside {
     std::size_t other;
-    bool is_before;  ///< the frame, in time
-    bool is_next;    ///< to the frame
+    bool is_before;  ///< earlier than the own frame
+    bool is_next;    ///< adjacent to the own frame
     Link link;
     CameraChange from_own;
   };
   /// A point in a frame, and the pixels around it that show its surface.
   struct Spot {
     glm::dvec2 at;               ///< pixels of the display window
-    glm::dvec2 aside;            ///< `at` less where `position` is seen, the mean of these pixels
+    glm::dvec2 aside;            ///< `at` less the weighted mean of these pixels
     glm::vec3 position, normal;  ///< camera space
     float rounding;
     std::int32_t pixel;  ///< as in Sights
@@ -73,12 +73,12 @@ class Followed {
   static glm::dvec2 motion_at(const Link& link, const Spot& spot);
 
   const Findings& own_;
-  const Findings* last_;  ///< that was reached; null: what moves is lost
+  const Findings* last_;  ///< the last frame reached; null: the chain is broken
   int last_away_ = 0;
   std::vector<Beside> besides_;           ///< of the last call of reach()
   std::vector<std::vector<Walk>> walks_;  ///< by row; empty: none have begun
-  /// By pixel, one of the frame after that moves and was there; -1: there is none. Empty: nothing
-  /// moves.
+  /// By pixel of the frame: a pixel of the frame after that moves and was there; -1: none. Empty:
+  /// nothing moves.
   std::vector<std::int32_t> came_to_;
 };
 

@@ -5,12 +5,12 @@
 
 namespace ssdo {
 
-/// Where another frame shows what a pixel shows that moves.
+/// Where another frame shows the moving point of a pixel.
 struct FollowedPoint {
   int x;               ///< of the pixel in its row
   std::int32_t pixel;  ///< of the other frame, and its weights, as in Sights
   float weight[4];
-  float follows;  ///< 0..1: 0 where it is found at rest as well
+  float follows;  ///< 0..1: weight of this lookup over the one at rest
   float counts;   ///< 0..1: how much of what the other frame says counts, of all light
                   ///< that is not of a source
 };

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the frames of a shot have found of a point, taken together.
+// Combines what the frames of a shot have found at the same point of a surface.
 //
-// Light at a point of a surface does not depend on the camera, but what a frame takes for it does:
-// each guesses what it does not show, from what it shows. Frames before and after show other parts
-// of the scene, and their guesses err in other ways. So a frame takes the mean,
+// Light at a point of a surface does not depend on the camera, but a frame's estimate of it does:
+// each frame guesses what it does not show from what it shows. Frames before and after show other
+// parts of the scene, and their guesses err in other ways. So a frame takes the mean,
 //
 //   value(p) = (own(p) + sum over others of w s(p')) / (1 + sum of w)
 //
 // s(p') is what another frame has found at the point that p shows, the bilinear average of the
 // pixels around it that show the same surface (filters/shot/sights.h). All frames count alike, so
-// that one that comes into reach, or leaves it, changes the mean least. Averaged are shares of
-// direct light, not light: shading by the normal stays that of the frame, and so does the light.
-// Bounce is averaged as it is.
+// that a frame that comes into reach, or leaves it, changes the mean least. For direct light,
+// shares are averaged and not the light, so that the light itself and the shading by normals stay
+// those of the frame. Bounce is averaged as it is.
 //
-// What is known is not the same at all times: things move, and light with them. w is less where
-// what stands in one of both frames, but not in the other, hides light from p
-// (filters/shot/moved_weights.h): for a source if it may throw its shadow there, for all other
-// light by the form factor. What moves itself is looked up where its motion layer leads, and its
-// light is that of the place to which it has gone (filters/shot/followed.cpp). Lamps in the picture
-// are switched: of the light that surfaces send, another frame counts by
+// Things move, and light changes with them. w is less where a thing that stands in only one of both
+// frames hides light from p (filters/shot/moved_weights.h): for a source if the thing may cast a
+// shadow on p, for all other light by its form factor. A surface that moves is looked up where its
+// motion layer leads, and its light there is that of its new place (filters/shot/followed.cpp).
+// Lamps in the picture are switched on and off: for light that surfaces send, another frame has the
+// weight
 //
 //   sum of min(L, L') / sum of max(L, L')
 //
-// over points that both show, L and L' what these radiate there.
+// over points that both frames show; L and L' are what a point radiates in either frame.
 //
 // Tried and left out: weights by how little of p each frame guesses (RMSE of white ao, K = 8, on
 // two shots with moving and still things: 0.073 for 0.067 and 0.119 for 0.117), and surfaces of the
@@ -99,8 +99,8 @@ HWY_INLINE hn::Vec<Channels> weights_at(const Saying& saying, const std::vector<
   return weight;
 }
 
-/// Adds to the sums of `count` points, `stride` channels each, what other frames say; `own` are the
-/// frame's values, whose units the sums have. `all` are the sums of the weights.
+/// Adds the values of other frames to the sums of `count` points, `stride` channels each. `own` are
+/// the frame's own values; the sums have the same units. `all` are the sums of the weights.
 void add_sayings(const std::uint16_t* own, int stride, int count, std::span<const Saying> sayings,
                  KindsOfGroup kinds, float* sums, float* all) {
   const Channels d;
@@ -113,7 +113,7 @@ void add_sayings(const std::uint16_t* own, int stride, int count, std::span<cons
         const int pixel = saying.sights->pixel[i];
         if (pixel < 0) continue;
         const auto unit = hn::LoadU(d, saying.units + c);
-        // Differences, so that what is constant stays as it is.
+        // Differences are summed, so that constant values stay exactly as they are.
         const std::uint16_t* from = saying.values + std::ptrdiff_t(pixel) * stride + c;
         const auto tap = [&](int k, const std::uint16_t* value) HWY_ATTR {
           return hn::Mul(hn::Set(d, saying.sights->weight[k][i]),
@@ -182,8 +182,8 @@ struct Fusion::Room {
   std::vector<Saying> sayings;
 };
 
-/// What a speaker says of a block of points: where they are at rest, and where those are
-/// that were followed.
+/// Adds what a speaker says of a block of points, at their places at rest and at those to which
+/// points were followed.
 void Fusion::add_speaker(const Speaker& s, const RowOfPixels& row, Room& room) {
   const Findings& there = s.findings;
   Saying saying{
@@ -243,7 +243,7 @@ Fusion::Fusion(const Findings& own, const Light& light)
   });
 }
 
-// One speaker after the other says something of a whole row, so that memory is read in order.
+// A whole row is done for one speaker before the next, so that memory is read in order.
 void Fusion::add(const std::vector<OtherFindings>& others, bool are_last) {
   if (!own_.surfaces.world_known || own_.stride == 0) return;
   const std::vector<Speaker> speakers = speakers_of(own_, others, light_, kinds_);

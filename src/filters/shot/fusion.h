@@ -22,10 +22,10 @@ class Fusion {
   /// `light` is in the camera space of the frame. Both have to outlive this.
   Fusion(const Findings& own, const Light& light);
 
-  /// All of the others at one time, or some of them at a time, in the order of Followed::reach(),
-  /// and until the next call they have to live as it says. `are_last`: no others follow. Others
-  /// without a world, or with other sources, say nothing; those that lack layers say nothing of
-  /// what is made from them.
+  /// Adds all other frames at once, or some at a time, in the order of Followed::reach(), which
+  /// also says how long they have to live. `are_last`: no others follow. Frames without a world, or
+  /// with other sources, add nothing; frames that lack layers add nothing to what is made from
+  /// these layers.
   void add(const std::vector<OtherFindings>& others, bool are_last);
 
   /// Fills the planes of `products` that take_findings() has left empty. `geometry` is that of the

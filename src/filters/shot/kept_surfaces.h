@@ -39,7 +39,7 @@ inline void copy_bits(const KeptSurface& from, float (&to)[4]) {
   std::memcpy(to, static_cast<const void*>(&from), sizeof(from));
 }
 
-/// Those of a frame, with a border of one pixel that shows nothing.
+/// The surfaces of a frame, with a border of one pixel that shows nothing.
 struct KeptSurfaces {
   Camera camera;
   Window window;
@@ -73,7 +73,7 @@ inline glm::vec3 normal_of(const KeptSurface& surface) {
   return glm::normalize(n);
 }
 
-/// Its rounding, in scene units.
+/// The rounding of a pixel, in scene units.
 inline float rounding_of(const KeptSurface& surface, const KeptSurfaces& surfaces) {
   return std::bit_cast<float>(
       (surface.packed >> KeptSurface::kRoundingShift << KeptSurface::kFloatShift) +
@@ -89,8 +89,8 @@ class CameraChange {
   glm::dvec3 position(const glm::vec3& p) const { return turn_ * glm::dvec3(p) + step_; }
   glm::vec3 direction(const glm::vec3& v) const { return glm::vec3(turn_ * glm::dvec3(v)); }
 
-  /// Pixels of the display window of a place in the space of the other camera; not finite behind
-  /// it.
+  /// Projects a position in the space of the other camera to pixels of the display window; not
+  /// finite behind that camera.
   glm::dvec2 place(const glm::dvec3& there) const {
     return to_->orthographic || there.z < 0 ? to_->project(there) : glm::dvec2(NAN);
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A point of one frame has moved, come or gone if the other frame looks through its place at what
-// lies behind (SeenBefore::through). Points are taken on a grid, and joined to balls. A body is
-// taken to be as deep as it is wide, in its picture, along a row or a column, whichever is less:
-// the middles of the balls lie half as far behind what is seen.
+// lies behind (SeenBefore::through). Points are taken on a grid, and joined to balls. The depth of
+// a body is taken to be its width in the picture, along a row or a column, whichever is less: the
+// centres of the balls lie half that depth behind the visible surface.
 #include "filters/shot/moved.h"
 
 #include <algorithm>
@@ -22,10 +22,10 @@ namespace {
 /// Points across a piece.
 constexpr int kPiece = 8;
 
-/// A piece of fewer points may be an edge that one of both cameras misses.
+/// Least points of a piece: fewer may be an edge that one of the two cameras misses.
 constexpr int kFewestPoints = 3;
 
-/// A ball reaches so much farther than the root mean square of its points.
+/// Reach of a ball over the root mean square distance of its points from their mean.
 constexpr float kBallReach = 1.5f;
 
 /// Points of a frame on a grid, and which of them have moved.
@@ -61,12 +61,12 @@ class MovedPoints {
     return stands_.pixels[stands_.index(column * stride_, row * stride_)].position;
   }
 
-  /// From one point to the next, at the depth of one.
+  /// Distance from one grid point to the next, at the depth of `p`.
   float spacing_at(const glm::vec3& p) const {
     return float(stride_) * (stands_.camera.orthographic ? 1.0f : -p.z) / float(stands_.camera.fx);
   }
 
-  /// Moved points in a line through one that has.
+  /// Number of moved points in an unbroken line through the moved point `from`.
   int run(glm::ivec2 from, glm::ivec2 step) const {
     int length = 1;
     for (const int sign : {-1, 1}) {

@@ -20,8 +20,8 @@ struct MovedPiece {
   glm::vec3 velocity{0};
 };
 
-/// Those that stand in one frame and that the other looks through, in the camera space of the
-/// first, whose motion it is. None where one of them does not know the world.
+/// The pieces that stand in the frame `stands` and that `looks` looks through, in the camera space
+/// of `stands`, to which `motion` belongs. None where one of the frames does not know the world.
 std::vector<MovedPiece> find_pieces(const KeptSurfaces& stands, const KeptSurfaces& looks,
                                     const OwnMotion& motion = {});
 

@@ -5,7 +5,7 @@
 //   F = A / (pi (d^2 + r^2)) (n . to + r) / (d + r)
 //
 // of what arrives by the cosine. Where the sum over balls is F, another frame is wrong at p by no
-// more than that, and counts by (1 - F / kMostHidden)^2, 0 from kMostHidden on: the mean with 16
+// more than F, and has the weight (1 - F / kMostHidden)^2, 0 from kMostHidden on: the mean with 16
 // such frames is wrong by less than half of kMostHidden.
 //
 // The shadow of a ball from a source is a cylinder that widens by the angle of the source. The
@@ -16,8 +16,9 @@
 // velocities times the number of frames between, counts by F min(w / 2r, 1), F the larger one of
 // its places at both times.
 //
-// Weights are found for squares of kSquare x kSquare pixels, by the surface in the middle. A pixel
-// takes the least of those around it and of what lies between their middles.
+// Weights are found for squares of kSquare x kSquare pixels, by the surface in the middle. Each
+// square takes the least weight of itself and the squares around it; pixels are interpolated
+// between the middles of squares.
 //
 // Compiled once for every instruction set, without fused steps, so that all round alike.
 #include "filters/shot/moved_weights.h"
@@ -144,7 +145,7 @@ HWY_EXPORT(weigh_source);
 
 namespace {
 
-/// The least of the squares around each.
+/// For each square, the least of itself and the eight around it.
 Plane<float> least_around(const Plane<float>& plane) {
   Plane<float> across = Plane<float>::like(plane), out = Plane<float>::like(plane);
   for_each_row(plane.height, [&](int y) {
@@ -162,7 +163,7 @@ Plane<float> least_around(const Plane<float>& plane) {
   return out;
 }
 
-/// Of the receivers, those that exist.
+/// Finds the cones of the receivers that exist; the others get a default cone.
 void find_cones(const Source& source, const RowOfPoints& points, ConesOfPoints& cones) {
   for (int i = 0; i < points.count; ++i) {
     const glm::vec3 at(points.position[0][i], points.position[1][i], points.position[2][i]);

@@ -10,11 +10,11 @@
 
 namespace ssdo {
 
-/// How much of what another frame says counts at the pixels of `now`, where pieces have moved
-/// between both; see moved_weights.cpp.
+/// The weights of another frame's values at the pixels of `now`, if pieces have moved between both
+/// frames; see moved_weights.cpp.
 class MovedWeights {
  public:
-  static constexpr int kSquare = 4;  ///< pixels across what has one weight before it is smoothed
+  static constexpr int kSquare = 4;  ///< pixels across a square of one weight, before smoothing
 
   /// `pieces` and `light` are in the camera space of `now`.
   MovedWeights(const KeptSurfaces& now, const std::vector<MovedPiece>& pieces, const Light& light);

@@ -13,7 +13,7 @@
 namespace ssdo {
 namespace {
 
-/// Where the cameras alone move a pixel to.
+/// The place to which the cameras alone move a pixel.
 glm::dvec2 by_cameras(const CameraChange& change, const KeptSurfaces& now, std::size_t i) {
   return change.place(change.position(now.pixels[i].position)) - now.centre(i);
 }

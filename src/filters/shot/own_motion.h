@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// How what a frame shows moves apart from the camera.
+// The motion of visible surfaces apart from that of the camera.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace ssdo {
 /// Motion since the frame before in time, in pixels, x right and y down, of which that of the
 /// cameras is subtracted.
 struct OwnMotion {
-  /// What moves less in all of a frame may be noise of P and of a layer of half numbers.
+  /// If nothing in a frame moves more, the motion may be noise of P and of a layer of half numbers.
   static constexpr float kLeast = 1.0f / 16;
 
   bool is_known = false;      ///< a layer tells it
@@ -31,13 +31,13 @@ struct OwnMotion {
   }
 };
 
-/// How a pixel of `now` moves apart from the camera, across the view: camera space, scene units in
-/// a frame. 0 where that is not known.
+/// The velocity of a pixel of `now` across the view, apart from the camera's motion: camera space,
+/// scene units in a frame. 0 where unknown.
 glm::vec3 velocity_of(const OwnMotion& motion, const KeptSurfaces& now, std::size_t pixel);
 
 /// `layer` leads from each pixel of `now` to where what it shows was in `before`, in pixels, x
-/// right and y down. Both must know the world. What P finds in its place in both frames stands
-/// still: where the layer contradicts the cameras on that (MotionRatios), its units are others.
+/// right and y down. Both must know the world. Surfaces that P shows at the same place in both
+/// frames stand still; a layer that contradicts the cameras there (MotionRatios) has other units.
 OwnMotion find_own_motion(const Plane<glm::vec2>& layer, const KeptSurfaces& now,
                           const KeptSurfaces& before);
 

@@ -7,16 +7,17 @@
 
 namespace ssdo {
 
-/// What other frames of a shot show of the surfaces of one: shares of the points of a grid.
+/// How much of the surfaces of one frame other frames of its shot show: shares of the points of a
+/// grid.
 struct SeenByOthers {
   int frames = 0;      ///< others that know the world
-  double some = 0;     ///< the share that one of them shows
+  double some = 0;     ///< the share that at least one of them shows
   double times = 0;    ///< how many of them show a point, in the mean
-  double through = 0;  ///< the share whose place one of them looks through: it has moved
+  double through = 0;  ///< the share that has moved: one of them looks through its place
 };
 
-/// Counts them, one frame after the other. Points are about 480 across the frame. Nothing is shown
-/// of a frame without a world, or without a surface.
+/// Counts the shown points, one frame after the other, on a grid of about 480 across the frame. A
+/// frame without a world shows nothing, and points without a surface do not count.
 class ShownPoints {
  public:
   /// `own` has to outlive it.

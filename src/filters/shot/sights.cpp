@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The tests of filters/temporal.cpp, for a vector of points. All numbers are sums and products
-// without fused steps, so that every instruction set rounds alike.
+// The tests of filters/temporal.cpp, for a vector of points. Sums and products are not fused, so
+// that every instruction set rounds alike.
 //
-// Three loops over at most 64 points: where they are in the picture of the other frame; the four
-// pixels around each are copied together, 16 bytes each; the tests. Compiled once for every
-// instruction set.
+// There are three loops over at most 64 points. The first projects them into the other frame, the
+// second copies the four pixels around each, 16 bytes per pixel, and the third tests these.
+// Compiled once for every instruction set.
 #include "filters/shot/sights.h"
 
 #include <algorithm>
@@ -89,14 +89,14 @@ HWY_INLINE V3 turn(const float* by, const V3& v) {
   return {row(0), row(1), row(2)};
 }
 
-/// Under a camera at rest, points lie in the middle of their pixels but for rounding, and the
-/// pixels beside, which show other things, then have no part in them.
+/// Rounds places to 1/1024 pixel. Under a camera at rest, points then lie exactly at the centres of
+/// their pixels, and the pixels beside, which show other things, have the weight 0.
 HWY_INLINE V to_steps(V pixels) {
   constexpr float kSteps = 1024;
   return hn::Floor(pixels * set(kSteps) + set(0.5f)) * set(1 / kSteps);
 }
 
-/// False where all are outside.
+/// Projects the points into the other frame. False where all are outside.
 HWY_INLINE bool find_places(const ShotReprojection::View& view, const RowOfPoints& points,
                             Places& places) {
   const DI di;
@@ -143,8 +143,9 @@ HWY_INLINE void copy_around(const ShotReprojection::View& view, const Places& pl
   }
 }
 
-/// The tests for a vector of points from `i` on. Returns where the surface of the point is shown;
-/// `weights` are those of the four pixels, 0 where it is not, and their sum is not scaled yet.
+/// The tests for a vector of points from `i` on. `same`: the frame shows the surface of the point;
+/// `through`: it shows what lies behind. `weights` are those of the four pixels, 0 where a pixel
+/// shows another surface, not yet divided by `sum`.
 struct Tested {
   M same, through;
   V weights[4], sum;
@@ -181,7 +182,7 @@ HWY_INLINE Tested test(const ShotReprojection::View& view, const RowOfPoints& po
   return tested;
 }
 
-/// Of a vector of points from `i` on, as far as there are points.
+/// Stores `through` for a vector of points from `i` on, up to `count`.
 HWY_INLINE void store_through(M looks_through, int i, int count, unsigned char* through) {
   alignas(64) float looks[kLanes];
   store(hn::IfThenElseZero(looks_through, set(1)), looks);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What other frames of a shot show at the places of the points of one, for many points at a time.
+// What other frames of a shot show at the points of one frame, for many points at a time.
 #pragma once
 
 #include <algorithm>
@@ -41,31 +41,31 @@ void for_each_points_of_grid(const KeptSurfaces& own, int step, const Visit& vis
 
 /// Where another frame shows the points.
 struct Sights {
-  /// The upper left one of four pixels, by KeptSurfaces::index(); -1: it does not show the point.
+  /// The upper left of the four pixels around a point, by KeptSurfaces::index(); -1: not shown.
   alignas(64) std::int32_t pixel[RowOfPoints::kMost];
-  /// Of the four, row by row; their sum is 1. 0: that pixel shows another surface.
+  /// Weights of the four pixels, row by row, with the sum 1. 0: the pixel shows another surface.
   alignas(64) float weight[4][RowOfPoints::kMost];
 };
 
-/// Finds the points of a frame in another one, as Reprojection does, which is the reference: for
-/// points that stand still, and by numbers in single precision, which moves them by a thousandth of
-/// a pixel at most where they are no farther than 10,000 times the camera's step. The same bits for
+/// Finds the points of a frame in another frame. Reprojection is the reference; this class assumes
+/// that points stand still, and works in single precision, which moves points by a thousandth of a
+/// pixel at most where they are no farther than 10,000 times the camera's step. The same bits for
 /// every instruction set.
 class ShotReprojection {
  public:
   /// Both must know the world, and `other` has to outlive it.
   ShotReprojection(const KeptSurfaces& other, const KeptSurfaces& own);
 
-  /// False where it shows none of them; `sights` then hold nothing. Where `through` is given, it is
-  /// filled as by find_through().
+  /// False where the other frame shows none of the points; `sights` then hold nothing. Where
+  /// `through` is given, it is filled as by find_through().
   bool find(const RowOfPoints& points, Sights& sights, unsigned char* through = nullptr) const;
 
-  /// Sets through[i] to 1 where it looks through the place of a point at what lies behind, which
-  /// find() does not find, else to 0: SeenBefore::through.
+  /// Sets through[i] to 1 where the other frame does not show point i but what lies behind its
+  /// place (SeenBefore::through), else to 0.
   void find_through(const RowOfPoints& points, unsigned char* through) const;
 
-  /// From the camera space of `own` to that of `other`, row by row, and its projection to places in
-  /// KeptSurfaces from the centre of its first pixel.
+  /// From the camera space of `own` to that of `other`, row by row, and from there to pixels of
+  /// `other`, counted from the centre of the first one.
   struct View {
     float turn[9], step[3];
     float fx, fy, cx, cy;

@@ -8,12 +8,12 @@
 namespace ssdo {
 namespace {
 
-/// Whether planes are of the same things, though a frame may lack some of them.
+/// Whether two frames have planes of the same kinds, of which either may lack some.
 bool same_things(const Findings& a, const Findings& b) {
   return std::ranges::equal(a.planes, b.planes, {}, &FoundPlane::source, &FoundPlane::source);
 }
 
-/// The channel of another frame that holds what each channel of `own` does; -1: it lacks that.
+/// For each channel of `own`, the corresponding channel of another frame; -1: it has none.
 std::vector<int> channels_in(const Findings& other, const Findings& own) {
   std::vector<int> channels;
   int there = 0;
@@ -41,7 +41,7 @@ std::vector<std::uint16_t> arrange(const Findings& other, const std::vector<int>
   return values;
 }
 
-/// How much of the radiance of the points that both show is the same.
+/// The part of the radiance that is the same in both frames, over points that both show.
 float same_glow(const Findings& own, const Findings& other, const ShotReprojection& reprojection) {
   if (own.glow.empty() && other.glow.empty()) return 1;
   const int step = grid_step(own.surfaces);

@@ -13,7 +13,7 @@
 
 namespace ssdo {
 
-/// Another frame that says something.
+/// Another frame whose values enter the mean.
 struct Speaker {
   const Findings& findings;
   std::size_t other;  ///< its place among the others
@@ -23,8 +23,8 @@ struct Speaker {
   std::vector<float> weights, weights_of_kinds, units;  ///< see fusion.cpp
 };
 
-/// Those of `others` that know the world and have the sources of `own`. `light` is in the camera
-/// space of the frame, `kinds` are those of light by channel.
+/// The frames of `others` that know the world and have the sources of `own`. `light` is in the
+/// camera space of the frame, `kinds` are those of light by channel.
 std::vector<Speaker> speakers_of(const Findings& own, const std::vector<OtherFindings>& others,
                                  const Light& light, const std::vector<int>& kinds);
 

@@ -33,8 +33,8 @@ class DeepPartReader {
  public:
   DeepPartReader(const ExrReader& file, int part)
       : file_(file), part_(file.parts()[std::size_t(part)]) {
-    // The table of counts takes four bytes of each pixel, also in those of a tile that lie outside;
-    // OpenEXR counts these in an int.
+    // The table of sample counts takes four bytes per pixel, also outside the image in a tile that
+    // crosses its border; OpenEXR counts the bytes of a chunk's table in an int.
     const double tile = 4.0 * pixels_per_chunk(part_),
                  table = std::max(4.0 * double(part_.data_window.area()), tile);
     const bool overflows = tile > std::numeric_limits<int>::max();
@@ -74,7 +74,8 @@ class DeepPartReader {
   const ExrPart& part() const { return part_; }
 
  private:
-  /// OpenEXR reads the counts again before it reads samples, and writes as many as they say then.
+  /// Before it reads samples, OpenEXR reads the counts again, and writes as many samples as the new
+  /// counts say: they must be the same.
   void read(Imf::DeepFrameBuffer buffer, bool samples) {
     const std::vector<unsigned> known = samples ? counts_ : std::vector<unsigned>();
     buffer.insertSampleCountSlice(
@@ -92,7 +93,7 @@ class DeepPartReader {
     }
   }
 
-  /// All chunks at once, or one by one those that are not missing.
+  /// Plans to read the whole data window or, where chunks are missing, each sound chunk alone.
   void find_windows() {
     windows_ = {part_.data_window};
     const MissingChunks& missing = file_.missing(part_.index);
@@ -113,7 +114,7 @@ class DeepPartReader {
   const ExrReader& file_;
   const ExrPart& part_;
   std::vector<unsigned> counts_;
-  std::vector<Window> windows_;  ///< that are read
+  std::vector<Window> windows_;  ///< to read, one after another
 };
 
 }  // namespace

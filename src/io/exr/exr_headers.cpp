@@ -50,8 +50,8 @@ void check_crop(const ExrOutput& output, const ExrPart& part,
 constexpr std::array<std::string_view, 4> kStorage = {"tiles", "chunkCount", "version",
                                                       "maxSamplesPerPixel"};
 
-/// Takes out what a header says of Cryptomattes and ids where no part of the output has their
-/// channels: those of a part with planes go without `keep_channels`, and those of deep ones anyway.
+/// Removes attributes of Cryptomattes and ids whose channels are in no part of the output: a part
+/// with planes loses its channels without `keep_channels`, and always if deep.
 void take_out_mattes(Imf::Header& header, const ExrOutput& output) {
   if (output.keep_channels && !part_of(output).deep) return;
   const auto is_kept = [&](const std::string& matte) {
@@ -77,7 +77,7 @@ void take_out_mattes(Imf::Header& header, const ExrOutput& output) {
   for (const std::string& name : lost) take_out(header, name);
 }
 
-/// The preview of an input is that of an output that shows the same picture.
+/// Removes the preview unless the output shows the same picture as the input.
 void take_out_preview(Imf::Header& header, const ExrOutput& output,
                       const std::vector<KeptChannel>& kept) {
   const ExrPart& part = part_of(output);
@@ -106,7 +106,7 @@ Imf::Header scanline_header(const ExrOutput& output, const ExrPart& part) {
   return header;
 }
 
-/// That of another part than the one with the planes.
+/// The header of a part without planes.
 Imf::Header other_header(const ExrOutput& output, const ExrPart& part) {
   if (!Imf::isSupportedType(part.header.type())) {
     throw Error(
@@ -118,7 +118,7 @@ Imf::Header other_header(const ExrOutput& output, const ExrPart& part) {
   if (!is_changed(output, part)) {
     check_copy(*output.input, part);
     Imf::Header header = part.header;
-    take_out(header, "chunkCount");  // OpenEXR counts, and refuses one of another type than its own
+    take_out(header, "chunkCount");  // OpenEXR sets its own; a wrong type makes it fail
     return header;
   }
   check_crop(output, part, part.channels);
@@ -147,11 +147,11 @@ Imf::Header header_for(const ExrOutput& output, const std::vector<KeptChannel>& 
     header.insert(std::string(kEarlierProducts), Imf::StringAttribute(products_text(output, kept)));
   }
   for (const auto& [name, text] : output.attributes) {
-    // That of an earlier run is replaced; one of another type has to go first.
+    // insert() replaces an attribute of an earlier run, but fails if the types differ.
     if (!header.findTypedAttribute<Imf::StringAttribute>(name)) take_out(header, name);
     header.insert(name, Imf::StringAttribute(text));
   }
-  // Kept beside the attributes by OpenEXR, for this header and no copy of its attributes.
+  // OpenEXR keeps the level outside of the attributes: copying only these would lose it.
   if (const auto level = level_for(output, header.compression())) set_level(header, *level);
   return header;
 }

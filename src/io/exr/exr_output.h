@@ -20,7 +20,7 @@ struct ExrPlane {
   std::string name;
   Imf::PixelType type = Imf::HALF;
   ChannelView pixels;
-  float background = 0;  ///< what it has where nothing is shown
+  float background = 0;  ///< the value of pixels that show nothing
 };
 
 /// A channel of a part of the input.
@@ -41,7 +41,7 @@ struct ExrOutput {
   bool keep_channels = false;        ///< pass the other channels and parts through unchanged
   bool crop = false;                 ///< of every flat part, write the display window only
   Downsampling downsampling = {};    ///< from the input's windows to the output's
-  std::vector<ChannelOfPart> geometry;  ///< those that cannot be filtered, whatever their names
+  std::vector<ChannelOfPart> geometry;          ///< not to be filtered, whatever their names
   std::optional<Imf::Compression> compression;  ///< the input's where not given
   std::optional<int> compression_level;  ///< of `compression`: ZIP and ZIPS 1 (fast) to 12 (small),
                                          ///< DWAA and DWAB 1 (exact) to 100000 (small), others
@@ -55,11 +55,11 @@ const ExrPart& part_of(const ExrOutput& output);
 /// The pixels of a part that are known, at the output's size.
 Window known_window(const ExrOutput& output, const ExrPart& part);
 
-/// Those that are written. Area 0 for a part that is cropped to nothing.
+/// The pixels that are written. Area 0 for a part that is cropped to nothing.
 Window written_window(const ExrOutput& output, const ExrPart& part);
 
-/// Whether the pixels of another part than that with the planes have to be written anew, as they
-/// are cropped or downsampled, or some are missing.
+/// Whether the pixels of a part without planes have to be written anew, because they are cropped or
+/// downsampled, or some are missing.
 bool is_changed(const ExrOutput& output, const ExrPart& part);
 
 /// What the written part is compressed with. A compression that the input brings along is kept if

@@ -60,14 +60,14 @@ std::size_t stored_bytes(const ExrPart& part, const ExrChannel& channel) {
          std::size_t(part.data_window.height() / channel.y_sampling) * bytes_of(channel.type);
 }
 
-/// How much less than a whole one a file may be and be read, in full or in part.
+/// The least size of a file with missing chunks that is still read, as a share of a whole file.
 constexpr double kLeastShare = 1.0 / 64;
 
 /// Blocks of a coarse grid whose rows are in memory at a time.
 constexpr int kBlocksOfStrip = 64;
 
-/// Pixels that are in memory at a time while `grid` is read of a part: its own, and those of a
-/// strip, twice where they are cut from tiles.
+/// The pixels in memory while `grid` of a part is read: the result, and one strip of the part,
+/// counted twice where the strip is cut from tiles.
 double pixels_in_memory(const ExrPart& part, const PixelGrid& grid) {
   const Window& all = part.data_window;
   const double own = double(grid.of(all).area());
@@ -76,7 +76,7 @@ double pixels_in_memory(const ExrPart& part, const PixelGrid& grid) {
   return own + double(all.width()) * rows * (is_tiled(part) ? 2 : 1);
 }
 
-/// `grid` is what is read of the part.
+/// Refuses a part that claims too much. Only `grid` of the part is read.
 void check_size(const ExrReader& reader, const ExrPart& part, Names names,
                 const PixelGrid& grid = {}) {
   double value_bytes = 0;  // of a pixel
@@ -89,7 +89,7 @@ void check_size(const ExrReader& reader, const ExrPart& part, Names names,
                      reader.salvage() == Salvage::none ? ratio : with_gaps);
 }
 
-/// What is read where chunks are missing: NaN, which is no surface, and 0 as stored.
+/// Fills `rows` as missing chunks are read: with NaN, which is no surface, or with 0 if as stored.
 void clear(const ExrPart& part, const Window& rows, const ChannelRows& to) {
   if (to.as_float)
     std::fill_n(reinterpret_cast<float*>(to.pixels), rows.area(), NAN);
@@ -124,8 +124,8 @@ void read_or_fail(const ExrReader& reader, const ExrPart& part, const Window& ro
   }
 }
 
-/// A frame buffer holds one slice per name, so a channel that is asked for twice was read into its
-/// last place only: copies it to the others.
+/// A frame buffer has one slice per name, so a channel that is asked for twice was read into its
+/// last place only. Copies it to the other places.
 template <class Pixels>
 void fill_repeated(Names names, std::vector<Pixels>& read) {
   std::map<std::string_view, std::size_t> last;

@@ -65,7 +65,7 @@ std::size_t ExrStrips::write(std::span<const ChannelView> planes) {
     if (filled_ == kStripRows || y == written_.y1) hand_on(y);
   }
   y_ = end;
-  // Whoever calls again may need the memory in the meantime.
+  // The caller may need the memory before the next call.
   if (filled_ == 0) strip_.assign(planes.size(), {});
   return clamped;
 }
@@ -112,7 +112,7 @@ std::size_t ExrStrips::fill(std::span<const ChannelView> planes, int y, int rows
   return clamped;
 }
 
-/// Gives away the rows of the strip, which end before `end`.
+/// Passes the rows of the strip to `write_rows_`; the last one is the row before `end`.
 void ExrStrips::hand_on(int end) {
   const Imath::Box2i window({written_.x0, end - filled_}, {written_.x1 - 1, end - 1});
   for (std::size_t i = 0; i < strip_.size(); ++i) {

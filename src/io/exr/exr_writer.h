@@ -15,29 +15,29 @@ namespace ssdo {
 /// are written from the top to the bottom, any number of rows at a time; how many does not change
 /// the file. Between two calls it holds 255 rows of the planes at most, and the kept channels.
 ///
-/// Levels are libdeflate's where ZipOutput writes the file. OpenEXR, which writes tiles, files of
-/// several parts and all else, packs levels above 9 as 9.
+/// Compression levels are libdeflate's where ZipOutput writes the file. OpenEXR writes all other
+/// files, such as those of tiles or several parts, and packs levels above 9 as 9.
 ///
 /// Planes go into one part of an input, or into several, such as those of its views. The header of
-/// such a part is kept: windows, pixel aspect, view, chromaticities and every attribute that does
-/// not describe the old file's storage, Cryptomattes that are not in this one, or, as a preview, a
-/// picture that it does not show. A data window may be larger than the input's: kept channels are 0
+/// such a part is kept: windows, pixel aspect, view, chromaticities and all other attributes,
+/// except those that describe the old file's storage, Cryptomattes that are not in the output, or a
+/// preview of another picture. A data window may be larger than the input's: kept channels are 0
 /// around it. Without `keep_channels` the file has these parts alone, in scanlines and flat. With
 /// it, their other channels keep type and bits (a tiled part keeps its full-resolution level; deep
 /// channels are dropped), and the other parts are copied without being decoded.
 ///
-/// With `crop` the data window of a part is what the display window shows of it. Other flat parts
-/// that reach beyond are decoded and come in scanlines, with the same bits in the pixels that stay.
-/// Deep parts are copied whole.
+/// With `crop` the data window of a part is cut to the display window. Other flat parts that reach
+/// beyond are decoded and written in scanlines; the pixels that stay keep their bits. Deep parts
+/// are copied whole.
 ///
-/// With `downsampling` the windows become smaller, and kept channels with them. Colours (R, G, B, A
-/// and a Y alone) are filtered. All others, those of `geometry`, whole numbers and Cryptomattes
-/// have the value next to the middle of a pixel, all of the same place. Other parts are decoded and
-/// come in scanlines.
+/// With `downsampling` the windows and the kept channels become smaller. Colours (R, G, B, A and a
+/// Y alone) are filtered. All other channels (those in `geometry`, whole numbers, Cryptomattes)
+/// take the value next to the middle of a pixel, at the same place in all. Other parts are decoded
+/// and written in scanlines.
 ///
 /// A kept channel whose name a plane takes moves to "input.NAME", or to "input.input.NAME" where
-/// the input has a channel of that name. An earlier product of this tool is dropped in place of
-/// that; see EarlierProducts.
+/// the input has a channel of that name. An earlier product of this tool is dropped instead of
+/// moved; see EarlierProducts.
 ///
 /// Errors of all: ExitCode::output if the disk is full or the file cannot be written;
 /// ExitCode::input if what is kept of the input cannot be read, or cannot be cropped: a part that
@@ -46,7 +46,7 @@ namespace ssdo {
 class ExrWriter {
  public:
   /// Writes the headers. `parts` are different parts of one input in its order, and agree in all
-  /// but planes, geometry and attributes. Of the planes names and types count, not the pixels.
+  /// but planes, geometry and attributes. Only names and types of the planes are used, no pixels.
   ExrWriter(const SafeFile& file, std::vector<ExrOutput> parts);
   ~ExrWriter();
 

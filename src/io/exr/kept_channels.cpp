@@ -83,7 +83,7 @@ std::vector<StoredChannel> read_channels(const ExrOutput& output, const ExrPart&
   return channels;
 }
 
-/// The name of a channel whose own a plane takes: none of another channel.
+/// The new name of a channel whose name a plane takes; no other channel has the new name.
 std::string moved_name(const ExrPart& part, const std::string& name) {
   std::string moved = name;
   do moved = "input." + moved;
@@ -91,7 +91,7 @@ std::string moved_name(const ExrPart& part, const std::string& name) {
   return moved;
 }
 
-/// The text of an attribute of ssdo, also where another program has put its own name before it.
+/// The text of an attribute of ssdo, even if another program has put a prefix before its name.
 std::string text_by_ssdo(const ExrPart& part, std::string_view name) {
   for (auto it = part.header.begin(); it != part.header.end(); ++it) {
     const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());

@@ -53,7 +53,7 @@ ZipOutput::ZipOutput(Imf::OStream& stream, const Imf::Header& header, int level)
       level_(level),
       chunk_rows_(lines_per_chunk(header.compression())),
       y_(header.dataWindow().min.y) {
-  // OpenEXR writes the header and a table of chunks, of which there are none yet.
+  // OpenEXR writes the header and a table of chunks, which finish() fills.
   { const Imf::MultiPartOutputFile empty(stream, &header, 1); }
   const Imath::Box2i& window = header.dataWindow();
   const auto chunks = std::uint64_t((window.max.y - window.min.y) / chunk_rows_ + 1);
@@ -98,7 +98,7 @@ std::vector<std::byte> ZipOutput::pack(const Imf::FrameBuffer& frame_buffer, int
   const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> deflate(
       libdeflate_alloc_compressor(level_), libdeflate_free_compressor);
   if (!deflate) throw std::bad_alloc();
-  // No room for what would not be smaller: the chunk is then stored as it is.
+  // The buffer is too small for a chunk that does not shrink, which is then stored unpacked.
   std::vector<std::byte> packed(bytes.size() - 1);
   packed.resize(libdeflate_zlib_compress(deflate.get(), differences.data(), differences.size(),
                                          packed.data(), packed.size()));

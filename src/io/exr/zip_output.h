@@ -16,11 +16,11 @@ namespace ssdo {
 /// takes for files of the same size. Header and layout are those that OpenEXR writes.
 class ZipOutput {
  public:
-  /// Whether files with this header are of that kind.
+  /// Whether this class can write files with this header.
   static bool takes(const Imf::Header& header);
 
-  /// A frame of 15 half channels takes 46 % of the time to write that it takes with zlib's level 4,
-  /// OpenEXR's own, for 0.4 % more bytes; level 4 takes 56 % of it for 1.3 % less.
+  /// libdeflate's level 1 writes a frame of 15 half channels in 46 % of the time of zlib's level 4,
+  /// OpenEXR's own, with 0.4 % more bytes; its level 4 takes 56 %, with 1.3 % fewer bytes.
   static constexpr int kDefaultLevel = 1;
 
   /// Writes all but the chunks. `level` is libdeflate's: 1 (fast) to 12 (small).
@@ -30,7 +30,7 @@ class ZipOutput {
   /// has a slice of each channel, in the type of the file and without gaps between its pixels.
   void write(const Imf::FrameBuffer& frame_buffer, int rows);
 
-  /// Tells the file where its chunks are: what OpenEXR calls an incomplete file is complete.
+  /// Writes the places of the chunks. Without them OpenEXR takes the file for incomplete.
   void finish();
 
  private:

@@ -16,7 +16,7 @@
 
 namespace ssdo {
 
-/// A pipe that has taken the place of a file is not waited for.
+/// Does not block where a pipe has taken the place of a file.
 InputFile::InputFile(std::filesystem::path path)
     : path_(std::move(path)), descriptor_(open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
 
@@ -56,7 +56,7 @@ InputStream::Buffer::int_type InputStream::Buffer::underflow() {
   return count == 0 ? traits_type::eof() : traits_type::to_int_type(bytes_[0]);
 }
 
-/// What is not in the buffer goes past it.
+/// After the bytes in the buffer, a large read goes directly into `to`.
 std::streamsize InputStream::Buffer::xsgetn(char* to, std::streamsize count) {
   const auto here = std::min(count, std::streamsize(egptr() - gptr()));
   std::copy_n(gptr(), here, to);

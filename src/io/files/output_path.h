@@ -18,8 +18,7 @@ std::filesystem::path follow_links(std::filesystem::path path);
 /// (libraries choose the format by it), and short enough for the file system.
 std::filesystem::path temporary_beside(const std::filesystem::path& target);
 
-/// What the names of all temporaries have in common whose process ids can be compared, and no
-/// others:
+/// The part that names of temporaries share if, and only if, their process ids can be compared:
 /// ".ssdo-" and 16 digits of the id that Linux draws at each start and of the processes' namespace.
 /// Empty where the system does not tell them.
 std::string mark_of_machine();

@@ -29,7 +29,7 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// A link to nothing may lead anywhere: a file out of the folder that was named is made on request.
+/// A dangling link may lead to any folder: the file that it names is made only on request.
 void check_dangling(const fs::path& path, const OutputPolicy& policy) {
   std::error_code ignored;
   if (policy.overwrite || !fs::is_symlink(path, ignored)) return;

@@ -32,7 +32,7 @@ class SafeFile {
   const std::filesystem::path& target() const { return target_; }
   const std::filesystem::path& temporary() const { return temporary_; }
 
-  /// Flushes the temporary to disk. Errors: ExitCode::output, as where only now a full disk shows.
+  /// Flushes the temporary to disk. Errors: ExitCode::output; a full disk may show only now.
   void flush();
 
   /// Flushes the temporary, once, and gives it the target's name. Without `overwrite` a target
@@ -51,8 +51,8 @@ class SafeFile {
   bool flushed_ = false, committed_ = false;
 };
 
-/// Commits files that belong together. None gets its name before all are on the disk, and no disk is
-/// waited for between their names: who is killed then leaves all of them or none, but for an instant.
+/// Commits files that belong together. All are flushed to disk before the first is renamed, and no
+/// rename waits for a disk: a process that is killed leaves all or none, but for an instant.
 void commit_all(const std::vector<std::unique_ptr<SafeFile>>& files);
 
 }  // namespace ssdo

@@ -8,9 +8,9 @@ namespace ssdo {
 /// The temporaries that have to go when the process ends before its time. The table has a fixed
 /// size, because a signal handler may not allocate.
 
-/// While it lives, no signal ends the process and no other thread uses the table: a temporary is
-/// made and entered in one step, or neither. A handler waits until the table is free, which it
-/// would do in vain if it interrupted the thread that holds it.
+/// While this object lives, no signal ends the process and no other thread uses the table: a
+/// temporary is made and entered in one step, or neither. A signal handler waits for the table; it
+/// would wait for ever if it interrupted the thread that holds the table.
 class TableInUse {
  public:
   TableInUse();

@@ -171,7 +171,7 @@ void check_spec(const fs::path& path, const OIIO::ImageSpec& spec, bool in_piece
   check_picture_size(path, std::max(bytes, tile_bytes), kept + tile_bytes);
 }
 
-/// A plane with memory for all of its rows, which is used when they come: a header claims much.
+/// A plane with no rows yet. Memory for all is reserved but untouched: a header may claim much.
 template <class T>
 Plane<T> plane_without_rows(const OIIO::ImageSpec& spec) {
   Plane<T> plane;

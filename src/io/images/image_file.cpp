@@ -39,7 +39,7 @@ void check_exists(const fs::path& path) {
   }
 }
 
-/// Beside the tool, where installing puts it, and above the tests of a build tree.
+/// The places of the module: beside the tool, in the folder of an installation, above the tests.
 std::vector<fs::path> places_of_codec() {
   const fs::path folder = fs::read_symlink("/proc/self/exe").parent_path();
   return {folder / kCodecFile, folder / SSDO_MODULE_FOLDER / kCodecFile,
@@ -47,14 +47,15 @@ std::vector<fs::path> places_of_codec() {
 }
 
 /// The libraries of the module start threads when they are loaded: OpenImageIO's pool, and five
-/// others at most (Debian 12). Some wait for ever where one of theirs does not start.
+/// others at most (Debian 12). Some libraries wait for ever if one of their threads does not start.
 void check_threads() {
   const int needed = std::max(1, io_threads() - 1) + 5;
   if (count_startable(needed) < needed) throw Error(ExitCode::failed, kNoThread);
 }
 
-/// Null where the module cannot be loaded. It is never closed: its libraries' threads live on. What
-/// their initialisers throw ends the process, as it leaves the loader locked.
+/// The codec, or null if the module cannot be loaded. The module is never closed: its libraries'
+/// threads live on. An exception in an initialiser of a library ends the process, because it leaves
+/// the loader locked.
 const ImageCodec* load(const fs::path& place) noexcept {
   void* const module = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* const found = module ? dlsym(module, kCodecFunction) : nullptr;

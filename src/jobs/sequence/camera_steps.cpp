@@ -10,8 +10,8 @@
 namespace ssdo {
 namespace {
 
-// A jump: how far it leads at least, how much farther than the steps around it, how many of these
-// are looked at on each side, and how far apart in time its frames may be.
+// A jump: its least length in widths of the picture; how much farther it leads than the steps
+// around it; how many of these are looked at on each side; how far apart in time its frames may be.
 constexpr double kLeastWidths = 0.25, kTimesFarther = 3;
 constexpr std::ptrdiff_t kAround = 4;
 constexpr int kMostApart = 4;

@@ -20,11 +20,11 @@
 namespace ssdo {
 namespace {
 
-/// How far a frame is looked for whose P tells its camera.
+/// How many frames away a frame is looked for whose P tells its camera.
 constexpr int kMostFramesAway = 8;
 
-/// How many frames on disk tell the radius: the median is that of more than half of a shot,
-/// whatever comes close to the camera for a part of it.
+/// How many frames on disk tell the radius. Their median holds for most of a shot, whatever comes
+/// close to the camera for a part of it.
 constexpr std::size_t kFramesForRadius = 5;
 
 /// The camera and samples of the surfaces tell which axis is up, and the median depth: an overview
@@ -70,7 +70,7 @@ std::optional<CameraBeside> SequenceFrames::camera_of(const FrameFiles& files) c
 }
 
 /// Calls `at` for those of `count` frames on disk, spread evenly over the shot from its first to
-/// its last, that show surfaces. Those of three are among them.
+/// its last, that show surfaces; `of_three` holds for the first, the middle and the last.
 void SequenceFrames::look(const std::string& name, std::size_t most_pixels,
                           const std::function<void(const View&, bool of_three)>& at,
                           std::size_t count) const {
@@ -89,7 +89,7 @@ void SequenceFrames::look(const std::string& name, std::size_t most_pixels,
   }
 }
 
-/// Each frame is read once for all that is asked.
+/// What frames on disk tell; each is read once for all that is asked.
 const std::vector<SequenceFrames::Told>& SequenceFrames::told(const std::string& name) {
   const auto [at, is_new] = told_.try_emplace(name);
   std::vector<Told>& all = at->second;
@@ -105,7 +105,7 @@ const std::vector<SequenceFrames::Told>& SequenceFrames::told(const std::string&
   return all;
 }
 
-/// The mean over frames, whose cameras are no independent witnesses.
+/// The mean evidence over frames, not the sum: their cameras are no independent witnesses.
 std::optional<UpEvidence> SequenceFrames::up(const std::string& name) {
   if (up_) return *up_;
   UpEvidence mean{};
@@ -118,7 +118,7 @@ std::optional<UpEvidence> SequenceFrames::up(const std::string& name) {
   return up_.emplace(count > 0 ? std::optional(mean) : std::nullopt);
 }
 
-/// The geometric mean over frames that show its shape.
+/// The geometric mean of the clearance over frames that show the backdrop's shape.
 std::optional<double> SequenceFrames::backdrop(const std::string& name) {
   if (backdrop_) return *backdrop_;
   double sum = 0, count = 0;
@@ -127,7 +127,7 @@ std::optional<double> SequenceFrames::backdrop(const std::string& name) {
   return backdrop_.emplace(count > 0 ? std::optional(std::exp(sum / count)) : std::nullopt);
 }
 
-/// That of the frame whose N agrees best with P.
+/// The space of N in the frame whose N agrees best with P.
 std::string SequenceFrames::normal_space(const std::string& name) {
   if (normal_space_) return *normal_space_;
   double best = 0;
@@ -140,7 +140,7 @@ std::string SequenceFrames::normal_space(const std::string& name) {
   return *normal_space_;
 }
 
-/// The median: its two in the middle are averaged.
+/// The median radius; of an even number, the two in the middle are averaged.
 std::optional<float> SequenceFrames::radius(const std::string& name) {
   if (!finds_radius(options_.model)) return std::nullopt;
   const auto [at, is_new] = radius_.try_emplace(name);

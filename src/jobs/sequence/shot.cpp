@@ -50,7 +50,7 @@ Shot::Shot(const std::vector<Job>& jobs, const ShotWindow& window, bool only_loo
   count();
 }
 
-/// Goes through the run as its frames will.
+/// Counts for most_kept_, by going through the run as its frames will.
 void Shot::count() {
   std::vector<int> wanting = wanting_;
   std::size_t first = 0, kept = 0;  // the job that has waited longest
@@ -62,7 +62,7 @@ void Shot::count() {
   }
 }
 
-/// Bytes that are left for all that waits, beside frames as large as this one on their way.
+/// Bytes left for everything that waits, besides the frames at work, each as large as this one.
 std::size_t Shot::room_beside(const Work& work) const {
   double of_frame = 0;
   for (const WorkOnView& view : work.views) {
@@ -80,7 +80,7 @@ Findings Shot::take_findings(WorkOnView& work) const {
   return findings;
 }
 
-/// Where the frame before in time is not there, nothing that moves is followed through the gap.
+/// Finds how things move from the frame before in time; nothing where that frame is missing.
 void Shot::find_motion(std::size_t job, std::size_t view, Work& work, Findings& own) const {
   Frame& frame = work.views[view].frame;
   const Plane<glm::vec2> layer = std::exchange(frame.gbuffer.motion, {});
@@ -130,7 +130,7 @@ void Shot::add(Work work) {
   waiting_.push_back(std::move(waiting));
 }
 
-/// The job after which a job has all that it wants.
+/// The job after which everything is there that this job wants.
 std::size_t Shot::complete_after(std::size_t job) const {
   return around_[job].empty() ? job : *std::ranges::max_element(around_[job]);
 }
@@ -193,7 +193,7 @@ void Shot::make(std::size_t job, std::size_t view, WorkOnView& work) {
   relight_in_shot(fusion, work.relit);
 }
 
-/// For `info`.
+/// Counts, for `info`, what the other frames show of this one.
 void Shot::look(std::size_t job, std::size_t view, WorkOnView& work) {
   Findings copy;
   ShownPoints shown(in_memory(findings_.at({job, view}), copy).surfaces);
@@ -203,8 +203,8 @@ void Shot::look(std::size_t job, std::size_t view, WorkOnView& work) {
   work.shown = shown.count();
 }
 
-/// What the second job looks through of what stands in the first, in a view: found once for both of
-/// them.
+/// The pieces that stand in the first job and that the second looks through, in a view. They are
+/// found once for both jobs.
 const std::vector<MovedPiece>& Shot::pieces(const std::array<std::size_t, 3>& of,
                                             const Findings& stands, const Findings& looks) {
   const auto [place, is_new] = pieces_.try_emplace(of);
@@ -212,7 +212,7 @@ const std::vector<MovedPiece>& Shot::pieces(const std::array<std::size_t, 3>& of
   return place->second;
 }
 
-/// A job wants nothing any more.
+/// Frees the findings that only this job still wanted.
 void Shot::release(std::size_t job) {
   for (const std::size_t other : around_[job]) {
     if (--wanting_[other] > 0) continue;

@@ -15,8 +15,8 @@
 namespace ssdo {
 namespace {
 
-/// By itself, a frame would have a radius that is other by this factor: the mean of ao then
-/// changes by 0.01 to 0.08 on shots of three path-traced scenes.
+/// Factor between the radius of the shot and that of a frame by itself from which on a line says
+/// so: the mean of ao then changes by 0.01 to 0.08 on shots of three path-traced scenes.
 constexpr float kOtherRadius = 1.5f;
 
 /// Kinds of values that a line tells apart.

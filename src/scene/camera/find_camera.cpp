@@ -42,7 +42,7 @@ void append(std::vector<std::string>& all, const std::vector<std::string>& more)
   all.insert(all.end(), more.begin(), more.end());
 }
 
-/// What of the header is not used. The lens counts where P determines none.
+/// What is unusable in the header: its poses, and its lenses too if P determines no camera.
 std::vector<std::string> unused_of(const GBuffer& g, bool is_fitted) {
   std::vector<std::string> all = unusable_poses(g.header);
   if (is_fitted) return all;
@@ -160,7 +160,7 @@ PictureWindows windows_of(const GBuffer& g) {
   return {display, g.grid.is_coarse() ? display : data, double(g.pixel_aspect)};
 }
 
-/// The camera where options give a projection. `given` is it on the grid of the G-buffer.
+/// The camera if options give a projection, which is `given` on the grid of the G-buffer.
 FoundCamera find_under_options(const GBuffer& g, const Camera& given, const CameraOptions& options,
                                const std::string& file, GeometryReport& report, bool& is_fitted) {
   const bool by_file = !options.file.empty();

@@ -18,8 +18,8 @@ struct UndeterminedCamera : Error {
 
 /// Decides by projection. The camera of the options is used if P projects to its own pixels under
 /// it, or if no camera fits better; else the camera fitted from P, with a warning. Without options,
-/// the camera is that fitted from P, and the header's where P or its lens agrees with it or where P
-/// leaves the camera open. Where none of them tells it, it is that beside, moved to fit P.
+/// the camera is that fitted from P, or the header's if P or the lens of P agrees with it, or if P
+/// leaves the camera open. If neither tells it, the camera of another frame is moved to fit P.
 /// Errors: ExitCode::layer where neither P nor the options nor the header determine the camera;
 /// UndeterminedCamera where there is a P.
 FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const std::string& file,

@@ -23,11 +23,11 @@ using Eigen::Vector3d;
 /// Positions are never better than about this, however well a few of them agree.
 constexpr double kPrecisionPx = 1e-4;
 
-/// The axes of an orthographic camera are known to about a degree, or not.
+/// An orthographic camera is accepted only if its axes are known to about a degree.
 constexpr double kMostUncertainAxes = 0.02;
 
-/// Samples that miss their pixels by more do not leave their camera open: they have none, and the
-/// nearest is for messages.
+/// If samples miss their pixels by more than this, no camera fits them; the nearest one is returned
+/// for messages.
 constexpr double kNoCameraPx = 0.5;
 
 Eigen::VectorXd null_vector_of(const Eigen::MatrixXd& normal_matrix) {
@@ -137,11 +137,11 @@ ProjectionModel fit_affine(const Samples& samples) {
   return model;
 }
 
-/// Relative standard error of the axes of an affine camera: by the residuals that are left, and by
-/// the perspective that the samples do not rule out. A lens at distance d divides a pixel's place
-/// B p by 1 + z/d, which moves it by B p z/d; what of that an affine camera can follow turns its
-/// axes, as on a few pixels of a ball, and the rest tells d. No lens is taken to be stronger than
-/// one whose focal length is the diagonal of the picture.
+/// Relative standard error of the axes of an affine camera, from the residuals and from the
+/// perspective that the samples do not rule out. A lens at distance d divides a pixel's place B p
+/// by 1 + z/d, which moves it by B p z/d. The part of this motion that an affine camera can follow
+/// turns its axes, as on a few pixels of a ball; the rest determines d. No lens is taken to be
+/// stronger than one whose focal length is the diagonal of the picture.
 double axes_uncertainty(const ProjectionModel& affine, const Samples& samples,
                         const Window& window) {
   const auto count = double(samples.items.size());

@@ -24,9 +24,9 @@ using Eigen::Vector3d;
 /// of the distance of what they show: a quarter turn in two seconds of 24 frames.
 constexpr double kUsualMove = 0.03;
 
-/// P is not held to be nearer to its pixels than this. In a shot of Cycles, P of 32 bits lands
-/// 0.0044 px from the middles of its pixels (median), 0.01 px (99 %). Pixels that lie beside each
-/// other tell the pose only as well as they are apart, over their own precision.
+/// P is taken to be no more precise than this. In a shot of Cycles, P of 32 bits lands 0.0044 px
+/// from the middles of its pixels (median), 0.01 px (99 %). The closer together pixels lie,
+/// relative to this precision, the less they tell of the pose.
 constexpr double kPrecisionInShotPx = 0.005;
 
 /// A plane seen by a known projection: the homography from the plane to directions holds two

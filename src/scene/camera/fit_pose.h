@@ -16,11 +16,11 @@ std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>&
                                const Plane<unsigned char>& valid, const Window& window,
                                double step = 0);
 
-/// Finds the pose of a frame of a sequence that leaves its camera open, down to a single pixel,
-/// from `beside`, the camera of another frame, whose projection it has: P is brought onto its own
-/// pixels, and what P does not tell stays as it is beside. Between the two, the balance is that of
-/// their precision, so that a pose that P tells in full is not drawn to the other. Returns nothing
-/// where that does not bring P within half a pixel and `step`.
+/// Finds the pose of a frame whose P leaves the camera open, down to a single pixel, from `beside`,
+/// the camera of another frame of the sequence, with the same projection. P is brought onto its own
+/// pixels; what P does not determine stays as in `beside`. The two are weighted by their precision,
+/// so that a pose that P determines in full is not drawn towards `beside`. Returns nothing if P
+/// does not come within half a pixel and `step`.
 std::optional<Camera> fit_pose_beside(const Camera& beside, const Plane<glm::vec3>& positions,
                                       const Plane<unsigned char>& valid, const Window& window,
                                       double step = 0);

@@ -14,8 +14,8 @@ namespace ssdo {
 struct FoundCamera {
   Camera camera, of_positions;
   bool world_given = false;  ///< --camera or the header gave the pose, and so the world
-  /// Where the header gave it and P cannot prove it: that reading first, then the others that
-  /// normals may decide for.
+  /// If the header gave the pose and P cannot prove it: the reading used, then the other readings
+  /// that normals may decide for.
   std::vector<HeaderCamera> readings = {};
 };
 

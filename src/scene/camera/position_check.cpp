@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A position projects to the centre of its own pixel. Where P does not under any camera, what was
-// done to it is undone in the ways that are known: if a camera fits then, that was it. A part of P
-// that was clipped is told by its coordinates, which are exactly 0 or 1 where P misses its pixels.
+// A position projects to the centre of its own pixel. If P does so under no camera, each known
+// encoding is undone in turn: if a camera fits then, P has this encoding. Clipped parts of P are
+// recognised by coordinates of exactly 0 or 1 where P misses its pixels.
 #include "scene/camera/position_check.h"
 
 #include <fmt/format.h>
@@ -30,23 +30,23 @@ namespace {
 /// Pixels that a camera is fitted to here, and the fewest that tell anything.
 constexpr std::size_t kMostPixels = 4000, kFewestPixels = 32;
 
-/// A coordinate counts as clipped from this many pixels on, from this share of all, and if half of
-/// them miss their places by this much.
+/// A coordinate counts as clipped if at least kFewestClipped pixels and kLeastClipped of all are at
+/// 0 or 1, and half of these miss their places by kClippedMissPx.
 constexpr double kFewestClipped = 16, kLeastClipped = 1e-3, kClippedMissPx = 2;
 
 /// An encoding of P is recognised if undoing it leaves less than this part of the distance by
 /// which P misses its pixels.
 constexpr double kExplained = 0.2;
 
-/// And this near where P as it is leaves the camera open.
+/// The most that P may miss with its encoding undone if P as it is leaves the camera open.
 constexpr double kExactPx = 0.1;
 
-/// Half of P misses its pixels by this share of the picture's diagonal where no camera has seen it.
-/// A lens with 25 % of distortion in the corners stays below, at 1.2 %.
+/// P fits no camera if half of it misses its pixels by this share of the picture's diagonal. A lens
+/// with 25 % of distortion in the corners stays below, at 1.2 %.
 constexpr double kNoCamera = 0.02;
 
 /// P is smooth where a position is nearer to the middle between its neighbours than this share of
-/// their distance, and is judged there alone if that share of the surfaces is smooth.
+/// their distance, and only these pixels are judged if kLeastSmooth of the surfaces are smooth.
 constexpr float kStraight = 0.02f;
 constexpr double kLeastSmooth = 0.1;
 
@@ -54,7 +54,7 @@ constexpr double kLeastSmooth = 0.1;
 /// from that of the picture.
 constexpr double kSameAspect = 0.02;
 
-/// A way to write coordinates that cannot be read as such.
+/// An encoding of coordinates that has to be undone before a camera is fitted.
 struct Encoding {
   std::string_view name;  ///< of what undoes it
   double (*decode)(double magnitude);
@@ -86,8 +86,8 @@ Plane<unsigned char> thinned(const Plane<unsigned char>& mask) {
   return thin;
 }
 
-/// Median over the pixels of a mask under the camera that fits them best; infinite where they are
-/// too few or determine none.
+/// The median miss of the pixels of a mask under the camera that fits them best; infinite if they
+/// are too few or determine no camera.
 double least_miss_px(const Plane<glm::vec3>& positions, const Plane<unsigned char>& mask,
                      const Window& window) {
   if (count_marked(mask) < kFewestPixels) return INFINITY;
@@ -116,7 +116,7 @@ Bounds bounds_of(const GBuffer& g) {
   return all;
 }
 
-/// One end of the coordinates along an axis, which some of them have and none passes.
+/// An end of the range of coordinates along an axis: 0 as their minimum, or 1 as their maximum.
 struct End {
   int axis;
   float value;
@@ -147,7 +147,7 @@ struct Fitted {
   double miss_px;
 };
 
-/// The camera of the pixels that are at none of the ends.
+/// Fits a camera to the pixels that are at none of the ends.
 Fitted fit_between(const GBuffer& g, const std::vector<End>& ends) {
   Plane<unsigned char> between = g.valid;
   for (std::size_t i = 0; i < between.size(); ++i)
@@ -159,8 +159,8 @@ Fitted fit_between(const GBuffer& g, const std::vector<End>& ends) {
   return {camera, median_miss_px(*camera, g.position, between, g.window)};
 }
 
-/// What is said of a P that was clipped at 0 or 1; empty where it was not. A floor at 0 lies at an
-/// end too, but projects to its pixels. `fitted` has a camera if that of the frame explains P.
+/// The message for a P that was clipped at 0 or 1; empty if it was not. A floor at 0 lies at an end
+/// too, but projects to its own pixels. `fitted` has a camera if the frame's camera explains P.
 std::string find_clipping(const GBuffer& g, Fitted fitted) {
   const std::vector<End> ends = ends_of(g);
   if (ends.empty()) return "";
@@ -181,7 +181,7 @@ std::string find_clipping(const GBuffer& g, Fitted fitted) {
   return "";
 }
 
-/// The length that nearly all have is 1.
+/// Whether nearly all values have length 1.
 bool has_length_1(const std::vector<glm::vec3>& values) {
   const auto of_length_1 = std::count_if(values.begin(), values.end(), [](const glm::vec3& v) {
     return std::abs(glm::length(v) - 1) < 0.01f;
@@ -189,7 +189,7 @@ bool has_length_1(const std::vector<glm::vec3>& values) {
   return 20 * std::size_t(of_length_1) > 19 * values.size();
 }
 
-/// Whether all coordinates are multiples of 1/255 from 0 to 1, and of many kinds.
+/// Whether all coordinates are multiples of 1/255 from 0 to 1, with more than 16 different values.
 bool is_in_8_bits(const GBuffer& g) {
   const float rounding = 1e-3f + 255 * g.position_step / 4;
   std::array<bool, 256> has{};
@@ -247,8 +247,8 @@ struct Decoded {
   double miss_px = INFINITY;
 };
 
-/// The encoding that P has. Coordinates that were clipped at 0 besides are left out, where there
-/// are any.
+/// The encoding under which P fits a camera best, with or without the pixels where a coordinate is
+/// 0 or less, which may have been clipped too.
 Decoded find_encoding(const GBuffer& g, const Plane<unsigned char>& mask) {
   Plane<unsigned char> above_0 = mask;
   for (std::size_t i = 0; i < mask.size(); ++i)
@@ -270,8 +270,8 @@ Decoded find_encoding(const GBuffer& g, const Plane<unsigned char>& mask) {
   return best;
 }
 
-/// What P looks like that misses its pixels by `miss_px`, which is infinite where no camera was
-/// found, with what to do; empty where nothing is recognised.
+/// What a P that misses its pixels by `miss_px` looks like, and what to do; empty if nothing is
+/// recognised. `miss_px` is infinite if no camera was found.
 std::string recognise(const GBuffer& g, double miss_px) {
   const Plane<unsigned char> mask = thinned(g.valid);
   std::vector<glm::vec3> values, as_vectors;
@@ -308,8 +308,8 @@ std::string recognise(const GBuffer& g, double miss_px) {
   return "";
 }
 
-/// Whether P was scaled to its bounding box, each axis for itself: seen by a level camera that
-/// gives a camera again, with pixels of another shape.
+/// Whether P was scaled to its bounding box, each axis separately. Seen by a level camera, such a P
+/// still fits a camera, but one with pixels of another shape.
 bool is_stretched_to_unit_cube(const GBuffer& g, const Camera& camera) {
   const double aspect = camera.fy / camera.fx / double(g.pixel_aspect);
   return std::abs(std::log(aspect)) > kSameAspect && fills_unit_cube(g);

@@ -8,11 +8,11 @@
 
 namespace ssdo {
 
-/// What a P looks like that no camera has seen, and what to do: clipped, encoded with a gamma,
-/// scaled to its bounding box, in 8 bits, normals or colours; the predicate of a sentence about it.
-/// Empty where P is accepted: rounding, averages over edges and lenses with distortion are.
-/// `camera` is what was found for P, in the pixels of the G-buffer; null where P leaves it open,
-/// which is no finding by itself.
+/// Says what is wrong with a P that fits no camera, and what to do: clipped, encoded with a gamma,
+/// scaled to its bounding box, in 8 bits, normals or colours. The text is the predicate of a
+/// sentence about P. It is empty if P is accepted, also with rounding, averages over edges or lens
+/// distortion. `camera` is what was found for P, in the pixels of the G-buffer; null where P leaves
+/// it open, which is no finding by itself.
 std::string find_fault_of_positions(const GBuffer& g, const Camera* camera);
 
 }  // namespace ssdo

@@ -45,16 +45,16 @@ struct ProjectionModel {
   glm::dvec2 project(const glm::dvec3& p) const;
 };
 
-/// The tool's camera in the space of P, of a model of normalised samples. The axis of an
-/// orthographic one, which may run anywhere, goes through the middle of `window`, and begins before
-/// all samples.
+/// Converts a model of normalised samples to a Camera in the space of P. The axis of an
+/// orthographic camera may be placed anywhere: it goes through the middle of `window`, and begins
+/// before all samples.
 Camera camera_of(const ProjectionModel& model, const Samples& samples, const Window& window);
 
 /// A camera as a model of normalised samples; no panorama.
 ProjectionModel model_of(const Camera& camera, const Samples& samples);
 
-/// The sum over samples, to which `add(sum, sample)` adds one, from `zero` on. It is made of those
-/// of equal parts, in their order: the same for any threads.
+/// The sum over samples, from `zero` on; `add(sum, sample)` adds one sample. Parts of equal length
+/// are summed first, then added in order: the result is the same for any number of threads.
 template <class Sum, class Add>
 Sum sum_over(const std::vector<Sample>& samples, const Sum& zero, const Add& add) {
   constexpr std::size_t kPart = 1024;

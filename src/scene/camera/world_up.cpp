@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// How likely a camera is held as it is if an axis is up, by what cameras of films do. These are
-// choices, not fits; what decides is that most cameras have no roll at all, to the precision of P,
-// while a wrong axis shows any roll: 3 in 1000 pass for level.
+// The likelihood of the camera's pose if an axis is up, from how film cameras are held. The
+// densities are choices, not fits. What decides is that most cameras have no roll at all, to the
+// precision of P, while a wrong axis gives any roll: 3 in 1000 pass for level.
 #include "scene/camera/world_up.h"
 
 #include <fmt/format.h>
@@ -17,9 +17,9 @@
 namespace ssdo {
 namespace {
 
-/// Odds from which on an axis is no guess, and up to which they are told. Of random poses of
-/// cameras that are level, held by hand (2 degrees of roll) or tilted by 15 degrees, these leave
-/// 0.1, 2 and up to 54 % to a guess.
+/// The odds from which on an axis is no guess, and the largest odds that are reported. Random poses
+/// of cameras that are level, held by hand (2 degrees of roll) or tilted by 15 degrees are left to
+/// a guess in 0.1, 2 and up to 54 % of cases.
 constexpr double kLeastOdds = 20, kLargestOdds = 1000;
 
 /// Most tools whose header does not tell have y up.
@@ -70,7 +70,7 @@ double share_of_floors(const Geometry& geometry, const glm::vec3& up) {
 double likelihood_of(const glm::dvec3& up, const Geometry& geometry) {
   // The camera looks along -z, x is to its right and y is its own up.
   const double pitch = glm::degrees(std::asin(std::clamp(up.z, -1.0, 1.0)));
-  // Straight from above, any direction may be that to the right.
+  // Seen straight from above, the roll is undefined.
   const double roll = std::abs(pitch) > kStraightDown ? 0 : glm::degrees(std::atan2(up.x, up.y));
   constexpr double kAnyScene = 0.2;
   return density_of_roll(roll) * density_of_pitch(pitch) *
@@ -98,7 +98,7 @@ UpEvidence up_evidence(const Geometry& geometry) {
   return evidence;
 }
 
-/// Blender and Unreal have one world.
+/// Whether the header tells which axis is up: Blender and Unreal always have z up.
 bool header_tells_up(const GBuffer& g) {
   const auto unreal = g.header.lower_bound("unreal/");
   return g.by_blender || (unreal != g.header.end() && unreal->first.starts_with("unreal/"));

@@ -10,9 +10,9 @@
 //   behind the last solid that is measured in a pixel.
 // - A guessed thickness ends at the next measured front. Where solids are measured behind a pixel,
 //   the guess of what is behind its surface is dropped.
-// - A measured solid that lies where a surface of the frame before was guessed to go on is that
+// - A measured solid that lies where a surface was guessed to go on in the step before is that
 //   surface, and sends its light; so do its neighbours on the same surface, along rows and columns.
-//   Others send nothing: nobody knows their albedo.
+//   Other measured solids send nothing: their albedo is not known.
 #include "scene/deep/join_measured.h"
 
 #include <algorithm>
@@ -82,7 +82,8 @@ class Join {
     return layer < measured_.behind.size() && measured_.behind[layer].distance[pixel] < kInfinity;
   }
 
-  /// From what the pixel shows to what it shows without what is in front of layer `k`.
+  /// The distance from the surface that the pixel shows to the one that it shows without what is in
+  /// front of layer `k`.
   float distance_to(std::size_t k, std::size_t pixel) const {
     return k == 0 ? 0 : measured_.behind[k - 1].distance[pixel];
   }

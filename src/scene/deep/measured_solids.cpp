@@ -25,9 +25,10 @@ namespace {
 /// behind.
 constexpr std::size_t kMostOnRay = 32;
 
-/// Shares of the pixels with samples: from the first on the frame agrees with a kind of depth, and
-/// no other is tried; where more than the second contradict the frame and fewer agree, the image is
-/// refused. Silhouettes of averaged samples contradict, and rarely cover more than a third.
+/// Shares of the pixels with samples. Where kAgrees of them agree with the frame by a kind of
+/// depth, no other kind is tried; where more than kContradicts contradict the frame and less than
+/// that agree, the image is refused. Silhouettes of averaged samples contradict, and rarely cover
+/// more than a third.
 constexpr double kAgrees = 0.9, kContradicts = 0.5;
 
 /// How pixels meet the frame.

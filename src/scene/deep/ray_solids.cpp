@@ -65,8 +65,8 @@ void RaySolids::make_events() {
   });
 }
 
-/// The solid that begins at this depth: as far as samples that stop half of the light themselves
-/// join, or else, in a medium, as far as any do.
+/// The solid that begins at `front`: it goes on as far as samples that each stop half of the light
+/// join, or else, in a medium, as far as any samples join.
 RaySolid RaySolids::solid_from(float front, bool in_medium) {
   for (const float least_alpha : {kHalf, 0.0f}) {
     float back = -1;

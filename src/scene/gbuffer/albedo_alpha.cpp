@@ -4,18 +4,17 @@
 //
 // In a pixel that a surface of albedo rho covers to the share A, a renderer that filters albedo as
 // it does the beauty stores A rho. Where albedo is divided by alpha, or comes from a single sample,
-// it is rho. Fully covered pixels nearby show rho as a range [low, high] in each channel, and the
-// stored a is compared with what either convention would store:
+// rho is stored. Fully covered pixels nearby show rho as a range [low, high] in each channel, and
+// the stored a is compared with what either convention would store:
 //
 //   vote = (|a - [low, high]| - |a - A [low, high]|) / ((1 - A) rho)   -1 straight .. 1
 //   premultiplied
 //
-// No surface reflects more than all light: where no such pixel is near, a > A is a vote for
-// straight.
+// Where no fully covered pixel is near, a > A is a vote for straight, as no albedo is above 1.
 //
 // The share of the votes for premultiplied decides. The documented convention has kDocumented votes
-// beforehand, and between 1/3 and 2/3 of the votes alpha is undone in part, so that in a shot no
-// frame takes another side than those beside it at one pixel more or less.
+// beforehand, and between 1/3 and 2/3 of the votes alpha is undone in part, so that one pixel more
+// or less does not make a frame of a shot decide otherwise than the frames beside it.
 #include "scene/gbuffer/albedo_alpha.h"
 
 #include <fmt/format.h>
@@ -33,15 +32,16 @@ namespace {
 /// From here on a pixel is fully covered: alpha is short of 1 by less than a step of 8 bits.
 constexpr float kFullAlpha = 0.998f;
 
-/// Fully covered pixels up to this many pixels away show rho; fewer than kFewest may be others'.
+/// Fully covered pixels up to this many pixels away show rho; fewer than kFewest may be of other
+/// surfaces.
 constexpr int kNear = 2, kFewest = 2;
 
 /// A difference between the two conventions of this much, summed over channels, has a whole vote:
 /// some steps of 8 bits.
 constexpr float kClear = 0.06f;
 
-/// Votes of the convention of ssdo.1, by which rendered layers are premultiplied: those of an edge
-/// of a few pixels, so that its noise does not decide.
+/// Votes given to the convention of ssdo.1, that rendered layers are premultiplied: as many as an
+/// edge of a few pixels has, so that the noise of such an edge does not decide.
 constexpr double kDocumented = 8;
 
 struct Votes {

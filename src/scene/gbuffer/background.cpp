@@ -21,7 +21,7 @@ constexpr float kLeastAlpha = 1e-4f;
 /// Where half floats end: what is stored in 16 bits and is this or more had no room.
 constexpr float kLargestHalf = HalfColor::kMost;
 
-/// From where on coordinates, or the depth that they are made from, show nothing.
+/// The value from which on coordinates, or the depth that they are made from, show nothing.
 float empty_from(const GBuffer& g) {
   return g.position_step < kStepHalf ? kEmptyDepth : kLargestHalf;
 }

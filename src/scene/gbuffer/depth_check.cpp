@@ -30,7 +30,7 @@ constexpr double kTolerance = 0.05, kLeastShare = 0.5;
 /// A wrong depth is named where the quantity that is named matches in nearly all pixels.
 constexpr double kExact = 1e-3, kNearlyAll = 0.9;
 
-/// A share of the pixels with a P that is as good as none.
+/// Up to this share, pixels with a P are as good as none.
 constexpr double kNextToNone = 0.01;
 
 bool shows_place(const glm::vec3& p) { return p != glm::vec3(0) && glm::length(p) < kEmptyDepth; }

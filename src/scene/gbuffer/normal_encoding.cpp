@@ -57,8 +57,9 @@ glm::vec3 undone(const Curve& curve, glm::vec3 n) {
 
 glm::vec3 from_color(const glm::vec3& n) { return 2.0f * n - 1.0f; }
 
-/// Lengths differ from 1 by more, in the middle, where a curve was applied, and by less where it
-/// was undone. Right normals in 16 bits differ by 1e-3; 2.2 undone in place of sRGB by 1e-2.
+/// The median difference of lengths from 1 is above kCurved where a curve was applied, and below
+/// kStraight where it was undone. Right normals in 16 bits differ by 1e-3; 2.2 undone in place of
+/// sRGB by 1e-2.
 constexpr double kCurved = 0.02, kStraight = 0.005;
 
 /// Normals along an axis have length 1 under every curve, and tell nothing unless they are colours.

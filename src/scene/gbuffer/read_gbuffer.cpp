@@ -177,7 +177,7 @@ void note_bright_albedo(GBuffer& g) {
   }
 }
 
-/// Warns where more than all light of the beauty is ambient: occlusion makes that black.
+/// Warns where the ambient layer is brighter than the beauty: occlusion may make it black.
 void note_bright_ambient(GBuffer& g) {
   constexpr float kRounding = 0.02f;
   if (g.beauty.empty() || g.ambient.size() != g.beauty.size()) return;
@@ -281,7 +281,7 @@ void find_windows(GBuffer& g, const std::vector<const ExrReader*>& files, const 
   if (!g.grid.is_coarse() && g.window != g.file_window) g.part_of = g.file_window;
   if (g.file_window != part.data_window) {
     g.lead_window = g.grid.of(part.data_window);
-    // Each part fits into memory; what lies between parts far from each other need not.
+    // Each part fits into memory; a window that holds parts far from each other may not.
     check_decoded_size(files[0]->path(), 0, 0, kBytesPerPixel * double(g.window.area()));
   }
   g.display = g.grid.is_coarse() ? g.grid.of(part.display_window) : part.display_window;

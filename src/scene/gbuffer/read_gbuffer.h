@@ -20,8 +20,8 @@ struct Rendered {
   Plane<float> alpha;      ///< 0 where the frame has none
 };
 
-/// Reads them over `window`, in pixels of the file, at the size of the outputs. What is not finite
-/// is 0. Errors: ExitCode::input for a window that does not fit into memory.
+/// Reads the rendered layers over `window`, in pixels of the file, at the size of the outputs. What
+/// is not finite is 0. Errors: ExitCode::input for a window that does not fit into memory.
 Rendered read_rendered(const std::vector<const ExrReader*>& files, const LayerTable& table,
                        const Window& window, const Downsampling& downsampling);
 

@@ -45,8 +45,8 @@ struct LayerGroup {
 /// before ("input.R" is the R of the file without a layer), and "input" as well.
 std::vector<LayerGroup> group_channels(const ExrReader& file, int file_index);
 
-/// Those of a view and those of none; all where `view` is empty or the file does not tell views
-/// apart.
+/// The groups of a view, and those of no view; all groups where `view` is empty or the file does
+/// not tell views apart.
 std::vector<LayerGroup> group_channels(const ExrReader& file, int file_index,
                                        const std::string& view);
 

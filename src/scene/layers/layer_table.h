@@ -37,7 +37,7 @@ struct LayerRequest {
 /// The layers of a frame by role.
 struct LayerTable {
   std::array<std::optional<Layer>, kRoleCount> layers;  ///< none for Role::light
-  std::map<std::string, Layer> lights;                  ///< those, by the name of the light
+  std::map<std::string, Layer> lights;  ///< of Role::light, by the name of the light
 
   const std::optional<Layer>& operator[](Role role) const { return layers[std::size_t(role)]; }
   std::optional<Layer>& operator[](Role role) { return layers[std::size_t(role)]; }

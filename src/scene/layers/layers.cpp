@@ -37,9 +37,9 @@ std::string quoted(const std::vector<std::string>& names) {
   return some_of(all);
 }
 
-/// The other parts of the view of `part`, which complete it. Not those with a position of their
-/// own where it has one, which show something else. Where it has only a depth, parts with a
-/// position or a depth of their own are left out.
+/// The other parts of the view of `part`, which complete it. Where `part` has a position, parts
+/// with a position of their own are left out, since they show something else. Where it has only a
+/// depth, parts with a position or a depth of their own are left out.
 std::vector<LayerGroup> parts_beside(const std::vector<LayerGroup>& part,
                                      const std::vector<LayerGroup>& all) {
   const bool position = !best_candidates(Role::position, part).empty();
@@ -178,7 +178,7 @@ class LayerFinder {
   std::string frame() const { return files_[0]->path().string(); }
 
   std::optional<Layer> find_by_name(Role role) const {
-    // What tells where surfaces are is of one eye alone.
+    // Position and depth are of one eye alone.
     const bool own = of_view_ && (role == Role::position || role == Role::depth);
     for (const auto& groups : own ? Tiers{tiers_[0]} : tiers_) {
       std::vector<Candidate> best = best_candidates(role, groups);
@@ -244,7 +244,7 @@ class LayerFinder {
   const std::vector<LayerRequest>& requests_;
   std::vector<std::vector<LayerGroup>> groups_;  ///< by file
   Tiers tiers_;                                  ///< of the frame
-  bool of_view_;                                 ///< they are of one eye
+  bool of_view_;                                 ///< whether these are of one eye
   std::string prefix_;                           ///< of layers that are preferred; may be empty
 };
 

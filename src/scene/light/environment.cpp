@@ -17,12 +17,13 @@
 namespace ssdo {
 namespace {
 
-/// Odd, so that nodes lie where the map is folded: between others, x = 0 and y = 0 were 1 degree
-/// off. Nodes are 3 degrees apart, the lobes 10 or wider.
+/// Odd, so that nodes lie on the folds of the octahedral map: without nodes there, x = 0 and y = 0
+/// were 1 degree off. Nodes are 3 degrees apart, the lobes 10 or wider.
 constexpr int kBlurredSize = 65;
 constexpr int kBlurSourceWidth = 128;  ///< patches of 2.8 degrees
 
-/// Over the texels, of the sum of the channels without its sign; at least what has a reciprocal.
+/// The mean over the texels of the absolute sum of the channels; at least the smallest normal
+/// float, so that it has a reciprocal.
 float mean_brightness(const Plane<glm::vec3>& map) {
   std::vector<double> of_row(std::size_t(map.height));
   for_each_row(map.height, [&](int y) {

@@ -51,8 +51,8 @@ class Environment {
   /// What turns a texel into radiance.
   float gain() const { return gain_; }
 
-  /// World direction of a texel's centre, and the place in texels, centres at halves, that lies in
-  /// a unit direction.
+  /// World direction of a texel's centre, and the place of a unit direction in the map, in texels
+  /// with centres at halves.
   glm::vec3 texel_direction(int x, int y) const;
   glm::vec2 texel_at(const glm::vec3& direction_world) const;
 

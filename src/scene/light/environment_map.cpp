@@ -25,8 +25,7 @@
 namespace ssdo {
 namespace {
 
-/// The layer with these of its channels only, by their components in lower case; nothing where it
-/// lacks one.
+/// The layer restricted to the `wanted` components, given in lower case; nothing if it lacks one.
 std::optional<PictureLayer> restrict_to(const PictureLayer& layer, const Components& wanted) {
   PictureLayer out = layer;
   out.channels.clear(), out.components.clear();
@@ -120,8 +119,7 @@ void refuse_luminance_chroma(const ExrReader& exr, const PictureLayer& layer) {
 /// Rows that are read at a time: whole chunks of every compression.
 constexpr int kRows = 256;
 
-/// The curve that is undone, with a word about it; null where colours are linear or stay as they
-/// are.
+/// The curve to undo, with a note in `map`; null if colours are linear or are taken as they are.
 std::optional<TransferCurve> choose_curve(const std::string& file,
                                           const std::optional<TransferCurve>& curve, bool integers,
                                           EnvironmentMap& map) {
@@ -143,8 +141,8 @@ std::optional<TransferCurve> choose_curve(const std::string& file,
   return curve;
 }
 
-/// Takes the rows of a file, from the top to the bottom: makes them linear, black where they are no
-/// light, and a map.
+/// Takes the rows of a file from top to bottom: makes colours linear, replaces values that are no
+/// light by black, and reduces the rows to a map.
 class Intake {
  public:
   /// Rows of `window` that never come are black. Errors: those of check_picture_size().
@@ -175,7 +173,7 @@ class Intake {
   }
 
  private:
-  /// Texels of the window, before memory is taken for them.
+  /// The number of texels of the window, checked before memory is taken for them.
   static std::size_t checked_area(const std::string& file, const Window& window, int most_columns) {
     constexpr double kTexel = sizeof(glm::vec3), kStored = 3 * sizeof(float);
     const double strip = double(window.width()) * std::min(kRows, window.height());
@@ -256,7 +254,7 @@ Window read_picture(const std::string& file, EnvironmentMap& map) {
   return window;
 }
 
-/// What a picture of a shape mostly is, and what to do.
+/// A ratio of width to height, and what a picture of this shape mostly is.
 struct Shape {
   int width, height;
   std::string_view what;
@@ -266,9 +264,9 @@ constexpr Shape kFaces[] = {{1, 6, "six faces of a cube in a column"},
                             {3, 4, "six faces of a cube in a cross"},
                             {4, 3, "six faces of a cube in a cross"}};
 
-/// Refuses pictures of all directions that are no lat-long map, and warns where one is likely. Any
-/// shape will do for a single colour. Notes how much smaller the map has become.
-/// Errors: ExitCode::input.
+/// Refuses the shapes of cube maps, and warns of other shapes that are not 2 to 1. A map of a
+/// single colour may have any shape. Notes how much smaller the map has become. Errors:
+/// ExitCode::input.
 void check_shape(const std::string& file, const Window& window, EnvironmentMap& map) {
   const Plane<glm::vec3>& texels = map.texels;
   const int width = window.width(), height = window.height();

@@ -27,8 +27,8 @@ struct EnvironmentMap {
 /// A map of 4096 columns or more is averaged to 2048 or somewhat more (MapReduction).
 /// The sphere is the display window, and texels outside the data window are black. Where the header
 /// says that it is a cube map, it is the data window, and the six faces are converted. Colours that
-/// the file says are encoded become linear. Texels that are not finite, negative or brighter than
-/// kBrightest become black, with a warning. A shape that is not two to one gets a warning.
+/// the file says are encoded become linear. Texels that are not finite or above kBrightest become
+/// black, and negative channels 0, with a warning. A shape that is not two to one gets a warning.
 /// Errors: ExitCode::input for a file that cannot be read, and for the shapes of six faces in a
 /// row, a column or a cross; ExitCode::layer where no layer or more than one may be the map; the
 /// message lists the candidates.

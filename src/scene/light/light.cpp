@@ -73,8 +73,8 @@ class Sky {
   std::vector<Block> blocks_;
 };
 
-/// Each texel of a small map as several: seen as points, large texels would fill bands that they
-/// do not have.
+/// A small map with each texel split into several: projected as points, large texels would add
+/// light to bands in which the map has none.
 Environment refined(const Environment& environment) {
   const Plane<glm::vec3>& map = *environment.map();
   const int across = std::max(1, kBandColumns / map.width);
@@ -144,8 +144,8 @@ void measure_residuals(const std::vector<Patch>& patches, const Sky& sky, Light&
   while (model.order < kShOrder && model.residual() > bound) ++model.order;
 }
 
-/// max(0, x) is (x + |x|) / 2. The first half sees band 1 alone. The second is the same for
-/// opposite normals, so that half of them are enough.
+/// The irradiance of the sky. max(0, x) is (x + |x|) / 2: x has only band 1, and |x| is the same
+/// for opposite normals, so that half of the nodes are enough.
 OctahedralMap irradiance(const Sky& sky, const Light& model) {
   OctahedralMap out(kIrradianceSize);
   constexpr int kEnd = kIrradianceSize - 1;

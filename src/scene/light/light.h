@@ -15,9 +15,9 @@
 
 namespace ssdo {
 
-/// A light that some order holds but for this share of it counts as limited to these bands, and
-/// keeps them all. Else a model keeps the smallest order that misses no more than kLightResidual:
-/// on seven frames lit by four maps, direct light with order 4 is no closer to a path tracer.
+/// If order 4 misses at most kBandLimited of a light, the model keeps the smallest order that does
+/// so too. Else it keeps the smallest order that misses at most kLightResidual: on seven frames lit
+/// by four maps, direct light with order 4 is no closer to a path tracer.
 constexpr double kBandLimited = 0.005, kLightResidual = 0.1;
 
 /// The light that falls on a scene, in the forms that estimators ask for. Camera space, except for
@@ -49,14 +49,14 @@ struct Light {
 
   glm::vec3 unoccluded_sky(const glm::vec3& normal) const;
 
-  /// The same with that of the sources, as if each lit every surface.
+  /// unoccluded_sky() plus the light of the sources, as if each lit every surface.
   glm::vec3 unoccluded(const glm::vec3& position, const glm::vec3& normal) const;
 
-  /// That of the surface in a pixel, of what lights it.
+  /// The same for the surface in a pixel, from each source as far as it lights this pixel.
   glm::vec3 unoccluded_in(std::size_t pixel, const glm::vec3& position,
                           const glm::vec3& normal) const;
 
-  /// Whether it comes from everywhere alike: one colour, no directions.
+  /// Whether the light is the same from all directions: one colour, and no sources.
   bool is_constant() const { return environment.is_constant() && sources.empty(); }
 };
 

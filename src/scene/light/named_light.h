@@ -17,14 +17,14 @@ inline constexpr std::string_view kEnvironmentName = "env";
 struct NamedLight {
   std::string name;                  ///< of its layers
   Light light;                       ///< as if it were the only one
-  std::vector<std::size_t> numbers;  ///< of its sources in Light::sources of all lights
+  std::vector<std::size_t> numbers;  ///< indices of its sources in Light::sources of all lights
 };
 
 /// The lights of a frame, whose sum is `all`: the environment, unless it is a colour of 0 beside
 /// lamps, then the lamps in their order.
 std::vector<NamedLight> lights_of(const Light& all);
 
-/// Whether some of it is of lamps.
+/// Whether some of the light comes from lamps.
 bool has_lamps(const Light& all);
 
 /// All of them as one light without a name.

@@ -35,11 +35,11 @@ struct SourceCone {
 ///
 ///   unoccluded(p, n) = irradiance received(p, n),   received = mean of weight max(0, cos)
 ///
-/// the mean being that over all its points, which are those of even `u` in the unit square. With
-/// occluders each point counts as far as a ray to it, `distance` long, is open.
+/// where the mean is over the points of the source for uniform `u` in the unit square. With
+/// occluders, each point counts by how open a ray to it, `distance` long, is.
 ///
 /// Suns come from model_light() in light.cpp, lamps from make_source() in lamps/lamp.h. light-inl.h
-/// asks a new type lane by lane.
+/// evaluates a new type lane by lane.
 struct Source {
   virtual ~Source() = default;
 
@@ -51,23 +51,23 @@ struct Source {
   std::shared_ptr<const Plane<float>> receivers;
   std::string receive;  ///< the text of that selection, by which other views know it
 
-  /// The share of its light that the surface of a pixel takes, with nothing in its way.
+  /// The share of its light that reaches the surface of a pixel with nothing in its way.
   float taken_at(std::size_t pixel) const { return receivers ? (*receivers)[pixel] : 1.0f; }
 
   virtual float received(const glm::vec3& position, const glm::vec3& normal) const = 0;
 
-  /// The point for `u`, in whatever form seen() takes: a place, the unit direction to one that is
-  /// endlessly far, or `u` itself where the receiver decides how points are spread.
+  /// The point for `u`, in the form that seen() takes: a place, a unit direction if the source is
+  /// endlessly far, or a place that seen() maps onto the source for each receiver.
   virtual glm::vec3 point(const glm::vec2& u) const = 0;
 
-  /// What of point() a receiver sees, and what of all of them.
+  /// What a receiver sees of point(), and of all points.
   virtual SourcePoint seen(const glm::vec3& position, const glm::vec3& point) const = 0;
   virtual SourceCone cone(const glm::vec3& position) const = 0;
 
-  /// This, if it is endlessly far: it looks the same from everywhere. Null: it is not.
+  /// This source if it is a DistantSource; else null.
   virtual const DistantSource* distant() const { return nullptr; }
 
-  /// This, if it is such a lamp: they have functions for vectors. Null: it is not.
+  /// This source if it is such a lamp, which has functions for vectors; else null.
   virtual const NearLamp* near_lamp() const { return nullptr; }
   virtual const DistantLamp* distant_lamp() const { return nullptr; }
 

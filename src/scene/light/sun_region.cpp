@@ -17,17 +17,19 @@ const float kStep = 1 / std::sqrt(2.0f);  ///< from one threshold to the next
 constexpr float kLeastGrowth = 1.2f;      ///< of what is missing: steps that add less add glow
 constexpr int kIdleSteps = 2;             ///< that many steps halve the threshold
 
-/// How far a piece of something longer reaches from where it starts, and how often it starts anew
+/// The radius of a piece of a longer region, about its start, and how often a piece is grown anew
 /// from its middle: one that starts at an end of a band would be half as long.
 const float kPieceRadius = glm::radians(36.0f);
 constexpr int kNewStarts = 3;
 
-/// How many patches lie between a piece and the rest of what it is cut from: its fringe.
+/// The width, in patches, of the fringe between a piece and the rest of the region that it is cut
+/// from.
 constexpr int kBesidePiece = 4;
 
-/// The share of its light that harmonics miss: a piece stays where it is at the first, and is taken
-/// out whole at the second. Of bands along the horizon of 6, 11, 16 and 18 degrees they miss 0.82,
-/// 0.67, 0.51 and 0.44; direct light on low boxes under one of 22 is as good with harmonics alone.
+/// Shares of a piece's light that harmonics miss: at kLeastMissing the piece stays in the map, and
+/// at kMostlyMissing it is taken out whole. Of bands along the horizon of 6, 11, 16 and 18 degrees
+/// they miss 0.82, 0.67, 0.51 and 0.44; direct light on low boxes under one of 22 is as good with
+/// harmonics alone.
 constexpr float kLeastMissing = 0.45f, kMostlyMissing = 0.65f;
 
 /// The first threshold that a radiance reaches; kSteps for none of them.
@@ -45,7 +47,8 @@ SunGrowth::SunGrowth(const SkyGrid& grid, HeldRadiance held)
       reached_(grid.patches.size()),
       by_piece_(grid.patches.size()) {}
 
-/// Takes what the threshold of `step` reaches; whether it may still be a source.
+/// Adds the patches that the threshold of `step` reaches. Returns whether the region may still be a
+/// source.
 bool SunGrowth::flood(int step, const glm::vec3& start, Sums& sums) {
   const double most = 2 * glm::pi<double>() * (1 - std::cos(double(kMostSunRadius)));
   const float farthest = std::cos(is_piece_ ? kPieceRadius : 2 * kMostSunRadius);

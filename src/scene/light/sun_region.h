@@ -12,7 +12,8 @@
 
 namespace ssdo {
 
-/// What is farther from the middle of a source belongs to the sky: harmonics hold most of it.
+/// The largest radius of a source. Light farther from its middle belongs to the sky: harmonics hold
+/// most of it.
 const float kMostSunRadius = glm::radians(40.0f);
 
 /// Patches of a grid that touch each other and are brighter than what is around them.
@@ -28,7 +29,7 @@ struct SunRegion {
 /// Radiance that harmonics hold in a patch.
 using HeldRadiance = std::function<float(std::size_t patch)>;
 
-/// What a source with this middle has to be missing at least: irradiance over pi.
+/// The least irradiance over pi that harmonics must miss of a source with this middle.
 using LeastMissing = std::function<float(const glm::vec3& middle)>;
 
 /// Finds the patches around a bright one that form a source.
@@ -37,9 +38,9 @@ class SunGrowth {
   SunGrowth(const SkyGrid& grid, HeldRadiance held);
 
   /// Lowers the threshold from the radiance of `seed` on, step by step, and adds what is connected.
-  /// Returns the region of the first step that is missing `least` at least and that half the
-  /// threshold would hardly add to; nothing if there is none within kMostSunRadius. Of what is
-  /// longer and hardly held by harmonics, such as a bright band along the horizon, a piece.
+  /// Returns the first region whose `missing` is at least `least` and to which half the threshold
+  /// would add little; nothing if there is none within kMostSunRadius. Of a longer region that
+  /// harmonics hardly hold, such as a bright band along the horizon, returns a piece.
   std::optional<SunRegion> grow(std::size_t seed, const LeastMissing& least);
 
  private:

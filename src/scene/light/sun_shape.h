@@ -26,8 +26,8 @@ class SunShape {
   /// `light` is what each texel adds to the irradiance, in any unit, 0 or more; not all are 0.
   SunShape(const Place& place, const Plane<float>& light);
 
-  /// Unit direction to a point of the source. Even `u` in the unit square give points in proportion
-  /// to the light: across the rows by the second, along one by the first, evenly within a texel.
+  /// Unit direction to a point of the source. Uniform `u` in the unit square give points in
+  /// proportion to the light: u.y gives the row, u.x the place along it, uniformly within a texel.
   glm::vec3 point(const glm::vec2& u) const;
 
   void turn(const glm::mat3& by) { place_.axes = by * place_.axes; }

@@ -29,8 +29,9 @@ class SunTexels {
   std::optional<DistantSource> measure(const std::vector<Window>& windows, float threshold,
                                        const Surroundings& around) const;
 
-  /// Leaves the sky around in place of a source, and all but `part` of the source, 0..1. Returns
-  /// what each window would lose with all of it: radiance times solid angle.
+  /// Removes `part`, 0..1, of a source: in its place stays the sky around it, with the rest of the
+  /// source. Returns what each window would lose with all of the source: radiance times solid
+  /// angle.
   std::vector<glm::vec3> remove(const std::vector<Window>& windows, const Surroundings& around,
                                 float part);
 

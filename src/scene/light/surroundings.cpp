@@ -13,10 +13,11 @@
 namespace ssdo {
 namespace {
 
-/// A partly covered texel, and one that resizing of the map has lit.
+/// The patches by which a region is widened: a partly covered texel, and one that resizing of the
+/// map has lit.
 constexpr int kFringe = 2;
 
-/// A ring is so wide, and two patches at least.
+/// The width of a ring, which is at least two patches wide.
 const float kRing = glm::radians(1.0f);
 
 /// The brightest part of a ring is left out: another source may stand beside this one.

@@ -28,7 +28,7 @@ class Surroundings {
   glm::vec3 mean_{0}, right_{0}, up_{0}, least_{0}, most_{0};
 };
 
-/// A source with its partly covered texels, and what is next to it.
+/// The patches of a source with its partly covered texels, and those of the ring around it.
 struct RegionAndRing {
   std::vector<std::size_t> patches, ring;
 };

@@ -25,9 +25,10 @@ constexpr int kMostTries = 24;       ///< bright places examined, whether source
 constexpr int kFineColumns = 1024;   ///< patches of 0.35 degrees, of which regions consist
 constexpr int kCoarseColumns = 128;  ///< patches of 2.8 degrees, for harmonics
 
-/// Shares of the irradiance, which is how much darker a shadow is: a source of the first stays in
-/// the map, one of the second is taken out whole. Between them a part is that grows evenly, so that
-/// no shadow appears at once where a sun comes out of the haze. What harmonics hold starts late.
+/// Shares of the irradiance, that is, how much darker a shadow is: a source of kLeastShare stays in
+/// the map, one of kWholeShare is taken out whole. Between them a smoothly growing part is, so that
+/// no shadow appears at once where a sun comes out of the haze. For light that harmonics hold,
+/// kLeastShareHeld takes the place of kLeastShare.
 constexpr float kLeastShare = 0.02f, kLeastShareHeld = 0.045f, kWholeShare = 0.05f;
 constexpr float kLeastTaken = 0.001f;  ///< of the irradiance: less is not worth its rays
 
@@ -110,7 +111,7 @@ std::optional<std::size_t> SunSearch::most_missing() const {
   return found;
 }
 
-/// Whether enough is missing within reach of a source that has `d` at its border.
+/// Whether harmonics miss enough within reach of a source that has `d` at its border.
 bool SunSearch::may_be_source(const glm::vec3& d) const {
   float missing = 0;
   for (std::size_t i = 0; i < held_.size(); ++i) {
@@ -157,9 +158,9 @@ Window SunSearch::texels_of(std::size_t patch) const {
           first(x + 1, fine_.columns, texels_.width()), first(y + 1, fine_.rows, texels_.height())};
 }
 
-/// Takes what a region is brighter than the sky around it out of the map, or a part of it where it
-/// is little of the irradiance there; the search goes on without any of it. Otherwise the map
-/// stays.
+/// Takes the light by which a region exceeds the sky around it out of the map, or a part of this
+/// light if it is little of the irradiance there; the search goes on without any of it. Returns
+/// nothing, with the map unchanged, if too little would be taken.
 std::optional<DistantSource> SunSearch::take(const SunRegion& region) {
   const RegionAndRing parts = widen(fine_, region);
   if (parts.ring.empty()) return std::nullopt;

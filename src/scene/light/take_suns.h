@@ -11,14 +11,14 @@ namespace ssdo {
 /// An environment in two parts whose light adds up to the whole in every texel.
 struct SunsAndRest {
   std::vector<DistantSource> suns;  ///< strongest first, at most 8, in world space
-  Environment rest;  ///< in place of suns the radiance around them, and what of them is not taken
+  Environment rest;  ///< where suns were: the radiance around them, and what is not taken
 };
 
 /// Takes out the sources that spherical harmonics cannot hold: connected bright texels, no farther
 /// than 40 degrees from their middle, whose light less that of harmonics in the same place is at
-/// least 5 % of the irradiance of a surface that faces it. Of 2 % nothing is taken out, and a
-/// growing part from there on. What is longer, and hardly held by harmonics, is taken in pieces.
-/// Not for a constant.
+/// least 5 % of the irradiance of a surface that faces it. A source of 2 % stays in the map; from
+/// there on, a growing part of it is taken out. A longer region that harmonics hardly hold is taken
+/// in pieces. Not for a constant.
 SunsAndRest take_suns(const Environment& whole);
 
 }  // namespace ssdo

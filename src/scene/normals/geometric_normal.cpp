@@ -19,8 +19,7 @@
 namespace ssdo {
 namespace {
 
-/// Positions on both sides of a pixel lie on a smooth surface with it where they lie about on a
-/// line.
+/// The surface at a pixel is smooth where its position and those on both sides are about on a line.
 constexpr float kMostBend = 0.05f;      ///< sine between the halves
 constexpr float kMostUneven = 1.3f;     ///< longer to shorter half
 constexpr float kMostRounding = 0.03f;  ///< of the step
@@ -90,8 +89,8 @@ namespace {
 
 HWY_EXPORT(normals_of_row);
 
-/// From the pixel before along one axis to the one after, where the surface is smooth: those two
-/// and the pixel lie about on a line. Zero elsewhere.
+/// The step from the pixel before to the one after along one axis, where these two and the pixel
+/// lie about on a line, as on a smooth surface. Zero elsewhere.
 glm::vec3 smooth_step(const Plane<Surfel>& surfels, int x, int y, int dx, int dy) {
   // At the border and beside background, from the two on the other side.
   const Surfel& here = surfels(x, y);

@@ -36,17 +36,18 @@ constexpr std::size_t kMostSamples = 6000;
 constexpr float kWithin = 0.6f;  ///< cosine of 53 degrees
 constexpr float kClose = 0.9f;   ///< of 25 degrees
 
-/// Normals of which fewer point to the side that P shows are all turned round.
+/// If a smaller share of the normals points to the side that P shows, all are turned round.
 constexpr double kMostPositive = 0.1;
 
-/// At one pixel, a space is better than another if its cosine is larger by this. It replaces the
-/// space of P if it is better at this many times as many pixels as it is worse, and at enough of
-/// them.
+/// At one pixel, a space is better than another if its cosine is larger by kBetter. It replaces the
+/// named space if it is better at more than kTimesBetter times as many pixels as it is worse, plus
+/// kLeastBetter, plus one in kSmallestShare of all.
 constexpr float kBetter = 0.1f;
 constexpr std::size_t kTimesBetter = 3, kLeastBetter = 8, kSmallestShare = 500;
 
-/// A named space is told from another by the pixels whose normals differ by more than 2 degrees
-/// between them; it misses the gradient of P by clearly less if by less than half the angle.
+/// Two named spaces are compared at the pixels where their normals differ by more than 2 degrees.
+/// One is clearly nearer to the gradient of P if its median angle is below this share of the
+/// other's.
 constexpr float kClearlyNearer = 0.5f;
 
 /// Rotations below 2 degrees count as none: precision and shading cause as much.
@@ -151,10 +152,10 @@ struct Candidate {
   }
 };
 
-/// Between two lines.
+/// The angle between two lines, in radians, by its cosine.
 double angle_of(float cosine) { return std::acos(std::min(1.0, double(std::abs(cosine)))); }
 
-/// Pixels at which something has to hold for it to be no accident.
+/// How many of so many pixels a finding has to hold at to be no accident.
 std::size_t enough_of(std::size_t pixels) { return kLeastBetter + pixels / kSmallestShare; }
 
 /// Whether `other` agrees with P at clearly more pixels than `rule`.
@@ -169,7 +170,7 @@ bool is_clearly_better(const Candidate& other, const Candidate& rule) {
 }
 
 /// Whether the normals of `other` are clearly nearer to the gradient of P than those of `first`,
-/// where the two differ. Bumps and smooth normals hide small turns: then they are not.
+/// where the two differ. The answer is no where bumps and smooth normals hide a small rotation.
 bool is_clearly_nearer(const Candidate& other, const Candidate& first,
                        const std::vector<Witness>& witnesses) {
   std::vector<double> of_other, of_first;
@@ -208,7 +209,7 @@ NormalSpace described(const Candidate& found, const std::vector<Witness>& witnes
   space.turning_share = turning_share(found, witnesses);
   space.mean_cosine = found.mean();
   space.is_own = found.is_own;
-  // The normals of leaves below a crown may point away from the viewer, all being as they should.
+  // The normals of leaves may rightly point away from a viewer who is below the crown.
   const bool as_they_are = found.axes.text().empty();
   const bool by_shot = found.is_turned && count < NormalSpace::kFewestSmoothPixels;
   if (by_shot || double(positive) < (as_they_are ? kMostPositive : 0.5) * double(count)) {
@@ -224,7 +225,7 @@ bool is_known(const Candidate& candidate, const std::vector<Witness>& witnesses)
   return described(candidate, witnesses).is_known();
 }
 
-/// The space with its axes as they are that P shows; the first, unless another is clearly nearer.
+/// The space, with its axes unchanged, that fits P: the first, unless another is clearly nearer.
 Candidate named_space(const std::vector<NamedRotation>& spaces,
                       const std::vector<Witness>& witnesses) {
   Candidate found(spaces[0], {}, witnesses);
@@ -290,8 +291,8 @@ glm::mat3 rotation_to_gradients(const Candidate& candidate, const std::vector<Wi
   return rotation;
 }
 
-/// Normals of a space that is turned against the others, such as a world whose pose is not known:
-/// the candidate turned to P, if that is a turn and brings the pixels that it moves much closer.
+/// The candidate rotated to fit P, if that turns it by 2 degrees or more and brings the pixels that
+/// it moves much closer; else as it is. For a space of its own, such as a world of unknown pose.
 Candidate turned_to_gradients(Candidate candidate, const std::vector<Witness>& witnesses) {
   if (witnesses.empty()) return candidate;
   const glm::mat3 turn = rotation_to_gradients(candidate, witnesses);

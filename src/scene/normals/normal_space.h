@@ -18,7 +18,7 @@ struct NormalSpace {
   std::size_t smooth_pixels = 0;  ///< around which P is smooth: N is compared with P there
   double share = 0;               ///< of them, where N and the gradient are within 53 degrees
   double close_share = 0;         ///< the same within 25 degrees
-  double turning_share = 0;       ///< of these, where N is not the prevailing one
+  double turning_share = 0;       ///< the same, where N is not the prevailing one
   double mean_cosine = 0;         ///< between N and the gradient, over them, without their signs
   bool is_own = false;            ///< of none of the spaces that were given
 
@@ -41,14 +41,14 @@ struct NamedRotation {
   std::string name;
 };
 
-/// Decides in which of `spaces` and by which axes the normals are stored, of any order and sign.
-/// What agrees best with the gradient of P where P is smooth is taken; the first space with its
-/// axes as they are, unless another is known and clearly better, or there is nothing to decide by.
-/// Leaves whose normals all point up agree with no axes, and with many by chance. Spaces
-/// that differ by a few degrees are told apart where normals are no rougher than that. Normals that
-/// agree with none, but with P once they are turned by one rotation, have a space of their own.
-/// `of_shot` is the name of what other frames of the sequence have, which may go on with more: it
-/// takes the place of the first space, so that a frame that does not tell goes with them.
+/// Decides in which of `spaces` and by which axes the normals are stored, of any order and sign: in
+/// the first space with its axes unchanged, unless another choice is known and agrees clearly
+/// better with the gradient of P where P is smooth. Leaves whose normals all point up agree with no
+/// axes, and with many by chance. Spaces that differ by a few degrees are told apart where normals
+/// are no rougher than that. Normals that agree with no space, but with P once they are turned by
+/// one rotation, have a space of their own. `of_shot` is the name of the space in other frames of
+/// the sequence, which may have more text after it: it takes the place of the first space, for a
+/// frame that cannot decide by itself.
 NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
                               const std::vector<NamedRotation>& spaces, bool orthographic,
                               const std::string& of_shot = "");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Whether normals belong to P shows at their edges. Where a normal jumps between two smooth patches
+// The edges of N tell whether N belongs to P. Where a normal jumps between two smooth patches
 // and N follows P on both sides, P has a crease or a silhouette there: the edge is confirmed. Where
 // N follows P on one side, contradicts it on the other, and P runs smoothly across, the surface is
 // torn. Measured on the frames of data/ and of five scenes of Cycles, with and without a pixel
@@ -27,7 +27,7 @@
 namespace ssdo {
 namespace {
 
-/// From where to where a quantity counts: 0 up to `from`, 1 beyond `to`; `from` may be the larger.
+/// A linear ramp: 0 up to `from`, 1 beyond `to`; `from` may be the larger of the two.
 struct Ramp {
   double from, to;
   double at(double x) const { return std::clamp((x - from) / (to - from), 0.0, 1.0); }
@@ -36,11 +36,12 @@ struct Ramp {
 /// Share of smooth pixels with N within 53 degrees of the gradient of P. Frames of Cycles have 0.99
 /// and more, and are not looked at further.
 constexpr Ramp kIsInDoubt{0.97, 0.95};
-/// Share of the edges that are torn, beyond those that are forgiven: a few, and one in so many
-/// smooth pixels.
+/// Share of the edges that are torn. kForgivenEdges, and one in kPixelsPerForgivenEdge smooth
+/// pixels, are left out.
 constexpr Ramp kIsOfAnotherFrame{0.1, 0.3};
 constexpr double kForgivenEdges = 4, kPixelsPerForgivenEdge = 1000;
-/// Share of the smooth surfaces that lie in cells whose N follows P: below, N follows P nowhere.
+/// Share of the smooth pixels that lie in cells where N follows P; below it, N is used in those
+/// cells alone.
 constexpr Ramp kFollowsP{0.35, 0.6};
 /// Share of smooth pixels in which N is close to the gradient and differs from the prevailing N. A
 /// constant N agrees with a floor, and with nothing else.
@@ -63,7 +64,7 @@ class Comparison {
              bool orthographic)
       : stored_(stored), surfels_(surfels), space_(space), orthographic_(orthographic) {}
 
-  /// The unit normal as stored, in camera space; nothing on background and where there is none.
+  /// The unit normal as stored, in camera space; nothing on background or where none is stored.
   std::optional<glm::vec3> normal(int x, int y) const {
     if (!surface_at(surfels_, x, y)) return std::nullopt;
     const glm::vec3 n = space_.to_camera * stored_(x, y);
@@ -79,8 +80,8 @@ class Comparison {
 
   enum class Edge { none, confirmed, torn };
 
-  /// Whether N has an edge between the pixels on both sides of (x, y), (dx, dy) being along a row
-  /// or a column.
+  /// The edge of N, if any, between the pixels on both sides of (x, y); (dx, dy) is a step along a
+  /// row or a column.
   Edge edge(int x, int y, int dx, int dy) const {
     constexpr std::array<int, 4> kPlaces = {-2, -1, 1, 2};
     std::array<glm::vec3, 4> n;
@@ -121,7 +122,7 @@ class Comparison {
   bool orthographic_;
 };
 
-/// How surely N is that of another frame, from 0 to 1, where P is smooth in so many pixels.
+/// How sure it is that N is of another frame, 0 to 1; P is smooth in `smooth_pixels` pixels.
 double foreignness(const Comparison& comparison, const Plane<Surfel>& surfels,
                    double smooth_pixels) {
   struct Count {
@@ -158,7 +159,7 @@ struct Sums {
     const float length = glm::length(gradients);
     if (pixels < kFewestPixels || !(length > 0)) return 0;
     const glm::vec3 mean = normals / pixels, axis = gradients / length;
-    // Renderers that leave the normals of back faces leave those of a whole object.
+    // Without the sign: renderers that leave normals of back faces do so for a whole object.
     const float along = std::abs(glm::dot(mean, axis)),
                 across = glm::length(glm::cross(mean, axis));
     return kIsCoherent.at(along) * kIsNear.at(across / std::max(along, 1e-6f));
@@ -177,8 +178,8 @@ Sums sums_of(const Comparison& comparison, const Window& cell) {
   return sums;
 }
 
-/// The agreement in every cell: its own or that of the three by three cells around it, which bumps
-/// may need that are wider than one.
+/// The agreement in every cell: the larger of its own and that of the 3 x 3 cells around it, as
+/// bumps may be wider than a cell.
 Plane<double> agreements_of(const Plane<Sums>& cells) {
   Plane<double> agreements(cells.width, cells.height);
   for (int j = 0; j < cells.height; ++j) {

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A sky dome in a G-buffer is a surface like any other, and hides all of the sky. What tells it
-// from the walls of a place is its shape: the far surfaces of the frame lie on one sphere, which
-// has the camera inside, is seen from its inside, and is several times as large as all else that is
-// seen.
+// A sky dome in a G-buffer is a surface like any other, and hides all of the sky. Its shape tells
+// it from the walls of a place: the far surfaces of the frame lie on one sphere, which encloses the
+// camera, faces inward, and is several times as large as everything else in the frame.
 //
 // The sphere |p - c| = r is fitted as |p|^2 = 2 c.p + k, which is linear, to the far surfaces, then
 // again to those that lie on it. A room, a street or a terrain has far surfaces of which most lie
 // on no sphere, however it is fitted. How many pixels show the dome does not matter.
 //
 // Cards behind a set, the sides of a box around it (the proxy of a volume) and cylinders of sky
-// have the shape of walls: on the frames of a street a facade may be all that is seen beside a
-// lamppost. What walls do not have is a gap: the ground leads up to them. So planes and upright
-// cylinders are backdrops only where nothing is seen between them and all else, over a wide range
-// of distances, and where no sky is seen above them. A ground that is seen far below, behind the
-// edge of a roof or a table, has such a gap too, but faces up. Those that stand on a ground are
-// told by their scale alone: scene/objects/standing_backdrop.cpp.
+// have the shape of walls: in a frame of a street, a facade may be all that is seen besides a
+// lamppost. But the ground leads up to walls, without a gap in distance. So planes and upright
+// cylinders are backdrops only where nothing is seen between them and everything else, over a wide
+// range of distances, and where no sky is seen above them. A ground that is seen far below, behind
+// the edge of a roof or a table, has such a gap too, but faces up. Backdrops that stand on a ground
+// are told by their scale alone: scene/objects/standing_backdrop.cpp.
 #include "scene/objects/backdrop.h"
 
 #include <fmt/format.h>
@@ -38,14 +37,14 @@ namespace {
 /// beyond the gap that lie on planes or a cylinder.
 constexpr double kMostOnSphere = 0.8, kMostOnWalls = 0.95;
 
-/// Least radius over the distance of all but a tenth of what is not on it.
+/// Least ratio of the radius to the distance within which nine tenths of the other surfaces lie.
 constexpr double kLarger = 3;
 
-/// Least distance of planes and cylinders over that of all that is nearer. Of the frames of `data`
-/// and `truth` none has a gap of 3 before smooth surfaces.
+/// Least ratio of the distance of planes and cylinders to that of the surfaces before the gap. No
+/// frame of `data` and `truth` has a gap of 3 before smooth surfaces.
 constexpr double kGap = 10;
 
-/// Gaps below this do not make a frame ask its shot.
+/// With a gap below this, the other frames of the shot are not asked for their answer.
 constexpr double kAnyGap = 2;
 
 /// Share of the surfaces that have to be before the gap: a set, and not one thing before a wall.
@@ -54,20 +53,20 @@ constexpr double kLeastBefore = 0.2;
 /// One of so many samples may be in the gap.
 constexpr std::size_t kInGap = 200;
 
-/// Cosine between the way up and the normal of a plane from which on it is a ground. A roof slopes
-/// less; a card that leans back does not lean so far.
+/// A plane is a ground if the cosine between its normal and the way up is at least this. A roof
+/// slopes less than that; a card that leans back does not lean so far.
 constexpr double kGround = 0.7;
 
-/// Share of the columns of a backdrop that may show sky above it, and of its pixels that may be sky
-/// beside one that stands.
+/// Largest share of the columns of a backdrop that show sky above it; and, for a backdrop that
+/// stands on a ground, most sky pixels in the frame, relative to its own pixels.
 constexpr double kSkyAbove = 0.1;
 
-/// Least mean distance of what is on a sphere from the camera, over the radius. Far rows of a floor
-/// are arcs, which lie on spheres too, with a middle high above them, and planes lie on all that is
-/// large.
+/// Least mean distance from the camera of the surfaces on a sphere, over its radius. The far rows
+/// of a floor are arcs, which lie on spheres too, with a middle high above them; and any plane lies
+/// on a sphere that is large enough.
 constexpr double kAround = 0.5;
 
-/// A dome, by the far surfaces of all.
+/// The dome that the far ones of these surfaces show.
 std::optional<BackdropShape> find_dome(const SurfelSamples& samples) {
   const double farthest = farthest_of(samples);
   const std::optional<RoundShape> sphere =
@@ -87,7 +86,7 @@ std::optional<BackdropShape> find_dome(const SurfelSamples& samples) {
   if (on < double(kFewestOfShape) || on < kMostOnSphere * far || inward < kInward * on)
     return std::nullopt;
   if (distances < kAround * sphere->radius * on) return std::nullopt;
-  // Seen through a narrow lens it may be a wall as well.
+  // Through a narrow lens, what fits a sphere may be a wall as well.
   SurfelSamples on_sphere;
   std::ranges::copy_if(samples, std::back_inserter(on_sphere),
                        [&](const Surfel* s) { return sphere->has(glm::dvec3(s->position)); });
@@ -127,9 +126,9 @@ Behind behind_gap(SurfelSamples samples) {
   return found;
 }
 
-/// The way up in camera space: that axis of the world, y or z, which is nearer to the way up in the
-/// picture. A camera that looks down steeply along the other one takes that for up, and sees no
-/// plane that faces that way.
+/// The way up in camera space: the axis of the world, y or z, that is nearer to the way up in the
+/// picture. A camera that looks steeply down may take the wrong axis, but then it sees no plane
+/// that faces along that one.
 glm::dvec3 up_of(const Geometry& g) {
   if (!g.world_known) return {0, 1, 0};
   const glm::dvec3 y(g.world_to_camera[1]), z(g.world_to_camera[2]);
@@ -205,7 +204,8 @@ bool has_sky_beside(const Geometry& g, double share) {
   return double(sky) > kSkyAbove * share * double(g.surfel.size());
 }
 
-/// What the frame shows of a shape; nothing where sky is seen above it, or beside one that stands.
+/// The pixels of the frame on a shape, as a backdrop; nothing where much sky is seen above the
+/// shape, or beside one that stands on a ground.
 std::optional<Backdrop> shown(const Geometry& g, const BackdropShape& shape) {
   Backdrop found{Plane<float>::like(g.surfel), 0, shape.what, shape.clearance, shape.has};
   const std::size_t covered = count_over_rows(g.surfel.height, [&](int y) {

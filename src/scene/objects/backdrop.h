@@ -15,11 +15,11 @@ struct Backdrop {
   Plane<float> coverage;  ///< 1 in pixels that show it
   double share = 0;       ///< of the frame's pixels
   std::string what;       ///< for messages: "a dome of radius 500 around everything"
-  double clearance = 0;   ///< how much farther away it is than all else, or than the camera is high
-                          ///< above the ground, over the least of a backdrop
+  double clearance = 0;   ///< ratio of its distance to that of all else, or to the height of the
+                          ///< camera, over the least such ratio of a backdrop
   std::function<bool(const Surfel&)> has;  ///< whether a surface is of it
 
-  /// Whether it is one by this frame alone. In a shot the frames are asked together.
+  /// Whether it counts as a backdrop by this frame alone. The frames of a shot decide together.
   bool is_far() const { return clearance >= 1; }
 };
 

@@ -13,16 +13,16 @@ namespace {
 /// Samples of a frame, in rows and columns.
 constexpr int kSamples = 96;
 
-/// Samples whose plane is tried for all of them.
+/// How many samples have their plane tried as that of all samples.
 constexpr std::size_t kCandidates = 64;
 
-/// Least mean distance of what is on a cylinder from the camera, over the radius.
+/// Least mean distance from the camera of the samples on a cylinder, over its radius.
 constexpr double kAroundCylinder = 0.5;
 
 constexpr int kRounds = 6;
 
-/// Distances in units of `unit`, so that sums keep their digits. Nothing is known of the middle
-/// along an axis: that of the least length is taken.
+/// Fits in units of `unit`, so that sums keep their digits. The middle along an axis is not
+/// determined: the one of the least length is taken.
 std::optional<RoundShape> fit(const SurfelSamples& samples, const glm::dvec3& axis, double unit) {
   if (samples.size() < kFewestOfShape) return std::nullopt;
   RoundShape round{axis};

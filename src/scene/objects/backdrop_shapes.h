@@ -20,8 +20,8 @@ using SurfelSamples = std::vector<const Surfel*>;
 /// Fewest samples that a shape is fitted to.
 inline constexpr std::size_t kFewestOfShape = 24;
 
-/// What lies off a shape by less than this share of its radius, or of its distance, is on it: domes
-/// of 16 segments do.
+/// A surface is on a shape if it lies off by less than this share of the shape's radius or
+/// distance; domes of 16 segments do.
 inline constexpr double kOnShape = 0.02;
 
 /// Most sides of a box that are seen from inside of it.
@@ -39,7 +39,7 @@ struct BackdropShape {
   bool stands = false;  ///< on a ground that leads up to it
 };
 
-/// A sphere, or a cylinder along `axis`, whose places count across it alone.
+/// A sphere, or a cylinder along `axis`, of whose points only the place across the axis counts.
 struct RoundShape {
   glm::dvec3 axis{0};  ///< unit; 0: a sphere
   glm::dvec3 middle{0};
@@ -68,14 +68,14 @@ struct Flat {
 /// Surfaces of a frame, one in each cell of a coarse grid.
 SurfelSamples samples_of(const Geometry& geometry);
 
-/// From the camera.
+/// The distance of a sample from the camera.
 inline double distance_of(const Surfel* s) { return glm::length(glm::dvec3(s->position)); }
 
-/// 0 where there are none.
+/// The largest distance of the samples; 0 where there are none.
 double farthest_of(const SurfelSamples& samples);
 SurfelSamples farther_than(const SurfelSamples& samples, double distance);
 
-/// Of one value or more.
+/// The median of one value or more.
 double median(std::vector<double> all);
 
 /// The sphere, or the cylinder along `axis`, of far surfaces: fitted to all, then to those that lie
@@ -86,8 +86,8 @@ std::optional<RoundShape> round_of(const SurfelSamples& far, const glm::dvec3& a
 /// and is far from it.
 bool is_cylinder_around(const RoundShape& cylinder, const SurfelSamples& far, double share);
 
-/// The plane of a sample that most of these lie on, then the mean of those; nothing if none lie on
-/// it.
+/// The plane through a sample on which most samples lie, averaged over these; nothing where none
+/// lie on it.
 std::optional<Flat> flat_of(const SurfelSamples& all);
 
 /// Planes that this share of `left` lies on, kMostPlanes of them at most, each with as many samples

@@ -123,7 +123,7 @@ void check_header(const ExrReader& file, const CryptomatteHeader& header) {
   };
   if (!header.conversion.empty() && header.conversion != kConversion)
     refuse("conversion", header.conversion, kConversion);
-  // A manifest has the ids, whatever they were made by.
+  // A manifest gives the ids, whatever hash made them.
   const bool has_manifest = !header.manifest.empty() || !header.file.empty();
   if (!has_manifest && !header.hash.empty() && header.hash != kHash)
     refuse("hash", header.hash, kHash);

@@ -56,7 +56,7 @@ class Manifest {
     return read_text(in, path, kMostBytes, ExitCode::input);
   }
 
-  /// A name that is there twice would be one of two things.
+  /// A name that occurs twice would be ambiguous.
   json parse(const std::string& text) const {
     std::set<std::string> names;
     const auto note = [&](int depth, json::parse_event_t event, const json& parsed) {

@@ -233,7 +233,7 @@ class Selector {
   }
 
   static float is_selected(const SelectionTerm& term, float value) {
-    // Antialiased ids are of nothing.
+    // Antialiased ids belong to no object.
     if (!(std::abs(value) < 1e9f) || value != std::floor(value)) return 0;
     const auto is_in = [&](const SelectionTerm::Range& range) {
       return range.first <= std::int64_t(value) && std::int64_t(value) <= range.last;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A backdrop may stand on a ground that leads up to it: a card, the sides of a box, a cylinder of
-// sky, or a sweep, whose ground bends into its wall along an arc. By its shape it is the wall of a
-// room or the facade at the end of a street. What is left is its scale, and the one length that a
-// frame has to compare it with is the height of the camera above the ground. What is 150 times as
-// far away as that, and is seen 30 times as high without an end, is too large to be a wall: for a
-// camera at the height of eyes, 240 and 48 metres.
+// sky, or a sweep, whose ground bends into its wall along an arc. Its shape is that of the wall of
+// a room or of the facade at the end of a street. This leaves its scale, and the only length in a
+// frame to compare it with is the height of the camera above the ground. What is 150 times as far
+// away as that, and rises 30 times as high with no sky above, is too large to be a wall: for a
+// camera at eye level, 240 and 48 metres.
 //
 // A camera that stands on the floor of a hall comes near these limits, and nothing in the frame
 // tells it from a high one before a card.
@@ -29,8 +29,8 @@ namespace {
 /// Measured: see man ssdo, OBJECTS.
 constexpr double kFarAway = 150, kHigh = 30;
 
-/// Share of the surfaces farther than half of all that lie on the backdrop: things may stand before
-/// it.
+/// Least share of the far surfaces that lie on the backdrop, far being beyond half of the largest
+/// distance: objects may stand before it.
 constexpr double kMostOnIt = 0.8;
 
 /// Share of the samples that show the ground.
@@ -40,20 +40,21 @@ constexpr double kLeastGround = 0.02;
 constexpr double kPerpendicular = 0.1;
 
 /// How far below the ground a backdrop may be seen, over the height of the camera: where the ground
-/// ends before it, what is behind its edge lies deeper.
+/// ends before the backdrop, what is seen behind the edge of the ground lies deeper.
 constexpr double kBelow = 0.5;
 
-/// Shares of the heights of what is on a backdrop that its lowest and highest places leave out.
+/// The lowest and the highest place of a backdrop are these quantiles of its heights.
 constexpr double kLowest = 0.005, kHighest = 0.95;
 
-/// A backdrop is so many times as high as all else but this share of the samples. A roof is as high
-/// as its walls, and so are walls at the sides; trees and houses before a card are not.
+/// A backdrop is at least kHigher times as high as all else, but for kStandOut of the samples. A
+/// roof is as high as its walls, and so are walls at the sides; trees and houses before a card are
+/// not.
 constexpr double kHigher = 2, kStandOut = 0.02;
 
 /// Points of an arc have one radius, within this share of it.
 constexpr double kOneRadius = 0.1;
 
-/// Cosine between the ground's normal and that of the place from which on a sweep stands upright.
+/// A place on a sweep is upright if the cosine between its normal and the ground's is below this.
 constexpr double kUpright = 0.7;
 
 glm::dvec3 normal_of(const Surfel& s) { return glm::dvec3(s.normal); }
@@ -74,8 +75,8 @@ struct Ground {
   }
 };
 
-/// The plane that most of what is nearby lies on: of what is perpendicular to a far plane, or of
-/// all, where that plane is none, as of an arc.
+/// The plane that most nearby surfaces lie on: most of those perpendicular to the far plane, or
+/// else of all, since the far surfaces may be an arc instead of a plane.
 std::optional<Ground> find_ground(const SurfelSamples& samples, double nearer_than,
                                   const Flat& far) {
   SurfelSamples nearby, lying;
@@ -110,7 +111,7 @@ struct Arc {
                  out = glm::dot(normal_of(s), wall.normal);
     return up > -kPerpendicular && out > -kPerpendicular && std::hypot(up, out) > kInward;
   }
-  /// That of the arc through a point u above the ground and v before the wall:
+  /// The radius of the arc through a point u above the ground and v before the wall:
   /// (R - u)^2 + (R - v)^2 = R^2.
   double radius_through(const Surfel& s) const {
     const double u = std::max(above(s), 0.0), v = std::max(before(s), 0.0);

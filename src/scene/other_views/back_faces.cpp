@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A picture from the camera of the frame in which front faces are culled shows where the solids of
-// the frame end. It is told from other views by where its surfaces are, whichever way its normals
-// point: renderers turn them to the viewer or do not.
+// the frame end. It is recognised by where its surfaces are, not by its normals: only some
+// renderers turn normals to the viewer.
 //
 // - Its rays are those of the frame: the same place (or, of orthographic cameras, the same
 //   direction) and the same axes. Its size and its windows need not be the frame's; each pixel of
-//   the frame takes the nearest of its pixels, and the place where the pixel's ray meets the
-//   tangent plane there.
-// - Where both show a surface, a good part of it lies behind that of the frame, and next to nothing
-//   before it. The frame itself lies behind nowhere, and where things move, some come nearer.
+//   the frame takes the nearest pixel of the picture, and the point where its own view ray meets
+//   the tangent plane there.
+// - Where both show a surface, a good part of the picture lies behind the surfaces of the frame,
+//   and next to nothing before them. A copy of the frame lies behind it nowhere; where things have
+//   moved, some of them are nearer.
 //
-// A surface at the very place of the frame's is one that the frame sees from behind: a sheet, or
-// the inside of a hull. It says nothing about what is behind it, so that the guess stays, as it
-// does where there is no back face, or one before the surface.
+// A surface that coincides with the frame's is one that the frame sees from behind: a sheet, or the
+// inside of a hull. It tells no thickness, so the guess stays. The guess also stays where there is
+// no back face, or where the back face lies before the surface.
 #include "scene/other_views/back_faces.h"
 
 #include <algorithm>
@@ -32,18 +33,20 @@ namespace {
 
 constexpr float kNowhere = std::numeric_limits<float>::infinity();
 
-/// Cameras are one if their pictures of what is at the median distance differ by less, in pixels.
+/// Two cameras are the same if their images of points at the median distance differ by less than
+/// this, in pixels.
 constexpr double kSamePx = 0.5;
 
-/// Surfaces are at one place if they are no farther apart than so many times what storing P may
-/// have moved them, and this share of a pixel's width.
+/// Surfaces coincide if they are no farther apart than kRoundings times the rounding of their P
+/// plus kFootprints of the width of a pixel.
 constexpr float kRoundings = 4, kFootprints = 0.1f;
 
-/// Least share of what both show that lies behind the frame, and most of what lies before it, as a
-/// share of that.
+/// Least share of the common pixels that lie behind the frame, and the most that lie before it, as
+/// a share of those behind.
 constexpr double kLeastBehind = 0.1, kMostBefore = 0.1;
 
-/// Least cosine at which a tangent plane says where the ray of a neighbouring place meets it.
+/// Least cosine between a view ray and a normal at which the ray is intersected with the tangent
+/// plane.
 constexpr float kLeastFacingBack = 0.1f;
 
 /// Whether the rays of a view are among those of the frame.
@@ -109,7 +112,7 @@ class BackFaces {
     return s.is_surface() ? &s : nullptr;
   }
 
-  /// Along the view ray of `front`, to the tangent plane of `back`.
+  /// The distance along the view ray of `front` to the tangent plane of `back`.
   float distance_between(const Surfel& front, const Surfel& back) const {
     const glm::vec3 along = -direction_to_viewer(front.position, frame_.camera.orthographic),
                     way = back.position - front.position;

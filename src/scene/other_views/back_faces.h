@@ -12,12 +12,13 @@
 
 namespace ssdo {
 
-/// The distance from what each pixel of a frame shows to the back face behind it, along its view
-/// ray; infinite where the view shows none. Nothing where `view` is not of back faces from the
-/// frame's own camera: see back_faces.cpp.
+/// The distance along the view ray from the surface in each pixel of a frame to the back face
+/// behind it; infinite where the view shows none. Nothing if `view` is not a picture of back faces
+/// from the camera of the frame: see back_faces.cpp.
 std::optional<Plane<float>> find_back_faces(const OtherView& view, const Geometry& frame);
 
-/// Ends what is seen at the nearest of its back faces, unless a deep image has measured it already.
+/// Ends each visible solid at its nearest back face, unless a deep image has measured its end
+/// already.
 void end_at_back_faces(Solids& solids, const std::vector<Plane<float>>& distances);
 
 /// How many pixels have a back face.

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Along the view ray of a pixel, and along the tangent plane beyond the frame's border, points are
-// asked for what the views know about them, near to far in steps that grow as distances do. Where a
-// view looks through a point nothing is solid, and the guess ends.
+// Points along the view ray of each pixel, and along the tangent plane beyond the frame's border,
+// are looked up in the other views, near to far, in steps that grow with the distance. Where a view
+// looks through a point, nothing is solid, and the guess ends.
 //
-// A surface that was guessed behind others stays where views show one there. It has the light that
-// the frame shows, and no gaps: what coarse triangles of a view show of the ground ends some pixels
-// before the things on it. Without, a cone that lies on a lit ground got a quarter of the light
-// from there.
+// A surface that was guessed behind others is kept where views show a surface. It sends the light
+// that the frame shows, and has no gaps, while the coarse triangles of a view show the ground only
+// up to some pixels before the things on it. Without the guess, a cone on a lit ground got a
+// quarter of the light from the ground.
 #include "scene/other_views/carve.h"
 
 #include <algorithm>
@@ -24,10 +24,10 @@
 namespace ssdo {
 namespace {
 
-/// Points lie farther apart by this factor each, the first one this many footprints away.
+/// Each point is kGrowth times as far away as the one before; the first is kFirst footprints away.
 constexpr float kGrowth = 2, kFirst = 2;
 
-/// No guess is asked for beyond so many times the distance to the farthest surface.
+/// Guesses are not tested beyond this many times the distance to the farthest surface.
 constexpr float kFarthest = 4;
 
 /// What the views know about the points of one line.
@@ -40,9 +40,9 @@ class SightLines {
     for (const OtherView& view : views_) lines_.emplace_back(view, start, direction);
   }
 
-  /// Whether a view looks through the point `t` behind a front, which would be inside of something
-  /// so wide. One that looks through the front too shows another time, when that thing stood
-  /// elsewhere: it knows nothing of it.
+  /// Whether a view looks through the point `t` behind `front`, inside a solid of that thickness. A
+  /// view that looks through the front too is ignored: it shows another time, when the solid was
+  /// elsewhere.
   bool is_empty(float front, float t) const {
     return std::any_of(lines_.begin(), lines_.end(), [&](const SightLine& line) {
       return line.at(front + t, t) == Sight::empty && line.at(front) != Sight::empty;
@@ -57,9 +57,9 @@ class SightLines {
     });
   }
 
-  /// Whether a surface that goes on beyond the frame from the start of the line ends at `t`: where
-  /// a view looks through it. Where one shows it the guess was right, and goes on beyond that
-  /// view's picture too; but a panorama has no border, so that it needs no guess from there on.
+  /// Whether a surface that continues beyond the frame along the line ends at `t`: where a view
+  /// looks through it, or a panorama shows a surface. Another view that shows a surface there
+  /// confirms the guess, which continues beyond the border of that view; a panorama has no border.
   bool ends_beyond(float t) const {
     if (is_empty(0, t)) return true;
     for (std::size_t k = 0; k < views_.size(); ++k)
@@ -72,7 +72,7 @@ class SightLines {
   std::vector<SightLine> lines_;
 };
 
-/// The least distance that `ends`, to within a tenth of it; `most` if none does.
+/// The least distance for which `ends` is true, to within a tenth; `most` if there is none.
 template <class Ends>
 float first_on_way(float first, float most, const Ends& ends) {
   for (float t = first; t < most; t *= kGrowth) {
@@ -117,8 +117,8 @@ class Carver {
  private:
   float first_step(const Surfel& s) const { return kFirst * footprint_.at(-s.position.z); }
 
-  /// Where the solid that a pixel shows ends, as far as it was asked for. Views are coarse: of each
-  /// 2 x 2 pixels those on one surface share it.
+  /// The end of the solid that a pixel shows, searched up to the distance `asked`. Views are
+  /// coarse: of each 2 x 2 pixels, those on one surface share the result.
   struct Ending {
     const Surfel* of = nullptr;
     float asked = 0, end = 0;
@@ -168,13 +168,13 @@ class Carver {
     }
   }
 
-  /// Where a solid of this thickness, whose front lies at `distance` on the lines, ends because a
-  /// view looks through it; `most` where none does.
+  /// Where a solid whose front lies at `distance` on the lines ends because a view looks through
+  /// it; `most` if no view does.
   float end_of(float first, float most, float distance, const SightLines& lines) const {
     return first_on_way(first, most, [&](float t) { return lines.is_empty(distance, t); });
   }
 
-  /// How far what the border shows goes on beyond it.
+  /// Finds how far the surfaces at the border of the frame continue beyond it.
   void end_continuations() {
     const int w = frame_.surfel.width, h = frame_.surfel.height;
     solids_.beyond = BorderOf<float>(w, h, std::numeric_limits<float>::infinity());
@@ -182,8 +182,8 @@ class Carver {
     const auto end = [&](int x, int y, const glm::vec2& outward) {
       const Surfel& s = frame_.surfel(x, y);
       if (!s.is_usable()) return;
-      // The direction in the tangent plane whose picture leads straight out of the frame: within
-      // the plane through the viewer, the surface and a place beside it.
+      // The direction in the tangent plane that projects straight out of the frame: it lies in the
+      // plane through the viewer, the surface point and a point beside it.
       const glm::vec3 to_viewer = direction_to_viewer(s.position, frame_.camera.orthographic);
       const glm::vec3 aside(outward.x, -outward.y, 0);
       const glm::vec3 across = aside - glm::dot(aside, to_viewer) * to_viewer;

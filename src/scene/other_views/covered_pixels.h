@@ -10,11 +10,11 @@ namespace ssdo {
 /// Cosine of the angle between normals from which on neighbours may be of one surface: 18 degrees.
 constexpr float kOneNormal = 0.95f;
 
-/// Which pixels show what is covered, 1 or 0: a pixel shows one surface, while coverage, 0..1, is
-/// antialiased. All from 0.99 on do. What is covered in part does, however little, unless it lies
-/// on the surface of a pixel beside it that is not covered at all: so the rim of a thing before the
-/// sky, wires and hair are whole, and the ground beside them is not theirs. Where there is no
-/// surface, half of the pixel counts. Both planes are of the same pixels.
+/// Which pixels show the covered object, 1 or 0: a pixel shows one surface, while coverage, 0..1,
+/// is antialiased. Pixels with a coverage of 0.99 or more do. A pixel with less does, however
+/// little, unless its surface is that of a neighbouring pixel without any coverage: so the rim of a
+/// thing before the sky, wires and hair are whole, and the ground beside them is left out. A pixel
+/// without a surface does from a coverage of one half on. Both planes are of the same pixels.
 Plane<unsigned char> covered_pixels(const Plane<Surfel>& surfels, const Camera& camera,
                                     const Plane<float>& coverage);
 

@@ -4,13 +4,13 @@
 //
 // - What lies within kSurfaceTolerance footprints of a surface that the frame shows there is that
 //   surface. The frame knows it better: coarse triangles would cut through the finer surface.
-// - What lies before what the frame shows there would be seen by it. It has moved, and is dropped.
-// - All else is new: behind what the frame shows, outside of it, or a surface's other side. Of what
-//   several views show, the one whose pixels are finest there adds it.
+// - A surface before what the frame shows there would hide it. It has moved, and is dropped.
+// - All else is new: behind what the frame shows, outside the frame, or the other side of a
+//   surface. If several views show a place, the view with the finest pixels there adds it.
 //
-// Neighbours of one view are joined as those of the frame are, if they share their fate. Where they
-// are not, each reaches half-way to the next on its own tangent plane: leaves and wires are single
-// pixels of a small view, and would be lost between triangles.
+// Neighbouring pixels of a view are joined by the rule for pixels of the frame if they have the
+// same Fate. Where they are not joined, each reaches half-way to the next on its own tangent plane:
+// leaves and wires are single pixels of a small view, and would be lost between triangles.
 #include "scene/other_views/merge.h"
 
 #include <algorithm>
@@ -29,16 +29,16 @@
 namespace ssdo {
 namespace {
 
-/// The frame among the surfaces that light other views: with so many columns at most.
+/// The most columns to which the frame is thinned as one of the surfaces that light other views.
 constexpr int kFrameColumns = 320;
 
-/// Between frames of a sequence where half has changed, of so many pixels, there is a cut, as
-/// --temporal has it.
+/// The other eye is of another scene if at least kFewestInCommon of its pixels should be seen by
+/// the frame too, and less than kLeastInCommon of these are: as --temporal finds cuts.
 constexpr std::size_t kFewestInCommon = 50;
 constexpr double kLeastInCommon = 0.5;
 
-/// A frame of the same sequence or pair sees of what the frame sees too, unless it is of another
-/// scene, place or unit.
+/// Least share of the surfaces of the other eye that the frame shows too; less means another scene,
+/// place or unit.
 constexpr double kLeastSeenByOtherEye = 0.02;
 
 enum class Fate : unsigned char { none, added, repeated, seen, contradictory };
@@ -47,7 +47,7 @@ class Merger {
  public:
   explicit Merger(const Geometry& frame) : frame_(frame), footprint_(frame.camera) {}
 
-  /// What the frame knows of a place that another view shows.
+  /// Compares a view's surface with what the frame shows at its place.
   Fate judge(const Surfel& s) const {
     const glm::vec3 p = s.position;
     const bool ortho = frame_.camera.orthographic;
@@ -83,21 +83,21 @@ class Merger {
   PixelFootprint footprint_;
 };
 
-/// What one other view shows of the others' surfaces.
+/// A view, compared with the other views by how finely it shows a surface.
 class Rival {
  public:
   explicit Rival(const OtherView& view) : view_(view) {}
 
   bool has_albedo() const { return !view_.picture->albedo.empty(); }
 
-  /// Width of what the pixel of a place covers of its surface, in scene units; infinite where it is
-  /// seen from behind or nearly edge-on.
+  /// Width, in scene units, that a pixel of the view covers on the surface `s`; infinite if the
+  /// view sees this surface from behind or nearly edge-on.
   float width_of(const Surfel& s) const {
     const glm::dvec3 own = view_.camera.to_camera(glm::dvec3(s.position));
     return width_of(own, view_.camera.rotation * glm::dvec3(s.normal));
   }
 
-  /// The same where it shows that surface; infinite where it does not.
+  /// width_of() if the view shows this surface; else infinite.
   float width_if_shown(const Surfel& s) const {
     const Camera& camera = view_.camera;
     const glm::dvec3 own = camera.to_camera(glm::dvec3(s.position)),
@@ -130,8 +130,9 @@ class Rival {
   const OtherView& view_;
 };
 
-/// The `k`-th view leaves out what another one shows more finely, or as finely and earlier. One
-/// without albedo replaces none that has it: its surfaces send no light.
+/// Marks as repeated the pixels of view `k` whose surface another view shows more finely, or as
+/// finely and earlier in the order. A view without albedo replaces none with albedo: its surfaces
+/// send no light.
 void leave_out_repeated(const std::vector<Rival>& rivals, std::size_t k,
                         const Plane<Surfel>& surfel, Plane<Fate>& fates) {
   for_each_row(surfel.height, [&](int y) {
@@ -204,7 +205,8 @@ class Mesher {
         taken.back() = coverage[from];
       }
     }
-    // One pixel of 2 x 2 is lit for all that are on its surface: a bounce averages over many.
+    // One pixel of each 2 x 2 is lit for all of them that are on its surface: a bounce averages
+    // over many pixels.
     const int lit_x = x & ~1, lit_y = y & ~1;
     const std::uint32_t lit = index_(lit_x, lit_y);
     if (lit != kNone && fate(x, y) == fate(lit_x, lit_y) && joined(own, lit))
@@ -222,7 +224,8 @@ class Mesher {
     if (is_new) out_.added.push_back({i, j, k});
   }
 
-  /// What is between four neighbours: one surface, or what each of them shows up to the middle.
+  /// Fills the cell between four neighbours: with one surface, or with the tangent plane of each up
+  /// to the middle.
   void add_cell(int x, int y) {
     struct Corner {
       int x, y;
@@ -257,7 +260,7 @@ class Mesher {
     }
   }
 
-  /// A place on the tangent plane of a vertex, as it shows at this place of the grid.
+  /// Adds the point of a vertex's tangent plane that is seen at (x, y) of the grid.
   std::uint32_t add_place(std::uint32_t of, double x, double y) {
     Vertex place = out_.vertices[of];
     const glm::dvec2 pixel(grid_.window.x0 + x * grid_.step + 0.5,
@@ -275,7 +278,7 @@ class Mesher {
     return std::uint32_t(out_.vertices.size() - 1);
   }
 
-  /// Most of the distance from the middle of a pixel to its corner, in footprints.
+  /// The largest distance from the middle of a pixel to its corner, in footprints.
   static constexpr double kWidest = 4;
 
   const Grid& grid_;

@@ -19,8 +19,8 @@ namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
-/// Most of the median distance by which P may miss its pixel: of another camera than a pinhole or
-/// a panorama, or filtered beyond use.
+/// The largest median distance by which P may miss its pixel. Above it, P is of another camera than
+/// a pinhole or a panorama, or filtered beyond use.
 constexpr double kMostMissPx = 0.5;
 
 /// Layers that no other picture needs.
@@ -56,8 +56,8 @@ void check(const View& view, const std::string& file) {
   }
 }
 
-/// Marks what a selection covers of a picture, as far as that tells. A matte of the frame says
-/// nothing about it.
+/// Marks the pixels of a picture that a selection covers, if the picture knows the selection. A
+/// matte of the frame says nothing about another picture.
 void mark(OtherPicture& picture, const Selection& selection, unsigned char with,
           const SelectionFiles& in) {
   if (selection.empty()) return;

@@ -30,8 +30,8 @@ class OtherPictures {
   explicit OtherPictures(bool allow_partial = false, ObjectOptions objects = {})
       : allow_partial_(allow_partial), objects_(std::move(objects)) {}
 
-  /// A further frame will ask for its files, until it is released. Files that no frame expects any
-  /// more are forgotten; those that none has expected are kept.
+  /// Announces that `frame` will ask for its files, until it is released. Files that no frame
+  /// expects any more are dropped; files that were never announced are kept.
   void expect(const FrameFiles& frame);
   void release(const FrameFiles& frame);
 

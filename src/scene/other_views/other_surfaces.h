@@ -16,7 +16,7 @@ struct Vertex {
   glm::vec3 albedo{0};
   float footprint = 0;       ///< width of what its pixel shows, in scene units
   std::uint32_t sender = 0;  ///< the vertex whose light it sends: the middle of its pixel
-  /// The pixel of the frame that it is of; kOfOtherView: it is of another view.
+  /// The pixel of the frame that shows it; kOfOtherView for a vertex of another view.
   std::uint32_t frame_pixel = kOfOtherView;
 
   static constexpr std::uint32_t kOfOtherView = ~0u;
@@ -28,10 +28,10 @@ struct OtherSurfaces {
 
   std::vector<Vertex> vertices;
   std::vector<Triangle> added;  ///< of what the frame does not show
-  std::vector<Triangle> all;  ///< those, what the frame shows as well, and what it shows, coarsely
+  std::vector<Triangle> all;    ///< these, what the frame shows as well, and the frame, coarsely
 
-  /// What linked lamps light of the vertices of other views, 0..1, by the text of the selection
-  /// (OtherPicture::receives).
+  /// For vertices of other views, the share that linked lamps light, 0..1, by the text of the
+  /// selection (OtherPicture::receives).
   std::map<std::string, std::vector<float>> receives;
 
   bool empty() const { return added.empty(); }

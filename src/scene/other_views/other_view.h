@@ -32,8 +32,8 @@ struct OtherPicture {
   Plane<HalfColor> albedo;  ///< empty where the file has none
   /// The bits above, by pixel; empty: none anywhere.
   Plane<unsigned char> taken;
-  /// What blocks the light of linked lamps, by the text of the selection: 1 in pixels that show
-  /// it. Without those that the picture does not know.
+  /// What blocks the light of linked lamps, by the text of the selection: 1 in pixels that show a
+  /// blocker. Selections that the picture does not know are missing.
   std::map<std::string, Plane<unsigned char>> casts;
   /// What linked lamps light, 0..1, likewise.
   std::map<std::string, Plane<float>> receives;
@@ -59,8 +59,8 @@ struct OtherView {
   }
 };
 
-/// The camera that takes points of the frame's camera space to those of `view`'s, which are both in
-/// one world.
+/// The camera that maps points from the camera space of `frame` to that of `view`. Both cameras are
+/// given in one world.
 Camera seen_from(const Camera& view, const Camera& frame);
 
 /// Places a picture in the camera space of a frame whose world is known.

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// P of another view is in the world of the application that rendered it: in another unit, with y
-// up in place of z, or of another scene. Whether it fits is seen where both cameras look. A sample
-// of one, seen from the other camera, lies
+// P of another view may be in another unit, have y up in place of z, or be of another scene.
+// Whether it fits is tested where both cameras look: a sample of one picture, seen from the other
+// camera, lies
 //
-// - on what that shows there: they share it;
-// - before it: they contradict each other, for the other camera would see it;
+// - on a surface that the other picture shows: they share it;
+// - before it: they contradict each other, for the other camera would see the sample;
 // - behind it, or out of the picture: nothing is known.
 //
-// The share that is shared of the first two is near 1 for every view of the scene, also for one
-// from behind, which shares few of its pixels. Worlds differ by a unit, by which axis is up and by
-// the signs of the axes: all of these that keep camera space right-handed are tried.
+// Among the samples that are shared or contradictory, the share of shared ones is near 1 for every
+// view of the scene, also for a view from behind, which shares few of its pixels. Worlds differ by
+// a unit, by which axis is up and by the signs of the axes: all of these that keep camera space
+// right-handed are tried.
 #include "scene/other_views/registration.h"
 
 #include <fmt/format.h>
@@ -32,11 +33,11 @@
 namespace ssdo {
 namespace {
 
-/// About so many pixels of a picture are looked at.
+/// The approximate number of pixels that are sampled in a picture.
 constexpr int kSamples = 1500;
 
-/// Pixels that show so many times as much as those of the other picture tell nothing: from far
-/// enough away everything is in one place.
+/// Pixels more than this many times as wide as the other picture's are not compared: from far
+/// enough away, everything is in one place.
 constexpr double kCoarsest = 10;
 
 /// Least cosine between a surface and the way to a camera that sees it.
@@ -45,10 +46,11 @@ constexpr float kLeastFacing = 0.2f;
 /// Fewest samples in all, and on one side, from which agreement is judged.
 constexpr std::size_t kFewest = 30, kFewestOfSide = 20;
 
-/// A view fits if so much of what tells is shared, and another world for it if so much is, of two
-/// sides at least, and of so much of all samples of the frame. Views of five scenes of Cycles share
-/// 0.95 and more, panoramas of the other scenes 0.02 to 0.71, and one 0.90. Where 0.9 of all
-/// samples fit, the rest is taken for things that have moved.
+/// A view fits as stored if share() is at least kLeastShared, or if kLeastOfAll of all samples are
+/// shared: the rest is then taken for things that have moved. Another unit or other axes fit if
+/// share() is at least kLeastOfOtherWorld over two sides or more, and the shared samples are at
+/// least kLeastOfFrame of those of the frame. Views of five scenes of Cycles share 0.95 and more,
+/// panoramas of the other scenes 0.02 to 0.71, and one 0.90.
 constexpr double kLeastShared = 0.75, kLeastOfAll = 0.9, kLeastOfOtherWorld = 0.9,
                  kLeastOfFrame = 0.5;
 
@@ -69,8 +71,8 @@ struct Shown {
     return float((camera.orthographic ? 1.0 : depth) / std::min(camera.fx, camera.fy));
   }
 
-  /// What is known of a point with this normal, which is unit and on the side that is seen, and of
-  /// which another camera shows so much in a pixel.
+  /// What this camera knows of the surface at `p`, with the unit normal `n` on the side that is
+  /// seen. `width` is what a pixel of the other camera covers there.
   enum class Sees { nothing, it, past_it };
   Sees look_at(const glm::dvec3& p, const glm::dvec3& n, double rounding, double width) const {
     const glm::dvec3 own = camera.to_camera(p), normal = camera.rotation * n;
@@ -113,7 +115,7 @@ std::vector<Surfel> samples_of(const Plane<Surfel>& surfel) {
   return samples;
 }
 
-/// Asks both pictures for samples of each other.
+/// Compares samples of each picture with the other picture.
 class Comparison {
  public:
   Comparison(const OtherPicture& picture, const Geometry& frame)
@@ -203,8 +205,8 @@ std::vector<glm::dmat3> all_axes() {
   return all;
 }
 
-/// Whether axes are turned by 180 degrees. No two tools differ by that, and in a room that is the
-/// same to both sides a view of the other side would fit.
+/// Whether axes are turned by 180 degrees. No two tools differ by that, and in a symmetric room a
+/// view in the opposite direction would fit.
 bool is_half_turn(const glm::dmat3& axes) {
   const bool keeps_axes = axes[0][0] != 0 && axes[1][1] != 0 && axes[2][2] != 0;
   return keeps_axes && axes != glm::dmat3(1) && glm::determinant(axes) > 0;
@@ -235,7 +237,7 @@ bool contradicts(const Agreement& found) {
          double(found.shared()) < kLeastOfAll * double(found.all());
 }
 
-/// A plane alone fits in many worlds.
+/// Needs more than one side: a single flat surface fits in many worlds.
 bool fits_well(const Agreement& found, std::size_t of_frame) {
   return double(found.shared()) >= kLeastOfFrame * double(of_frame) && found.known_sides() > 1 &&
          found.share() >= kLeastOfOtherWorld;

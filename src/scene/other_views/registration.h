@@ -26,8 +26,8 @@ struct Agreement {
   std::size_t shared() const;
   std::size_t all() const;
 
-  /// Sides of which enough is known, and the mean of what is shared of these, 0..1: many scenes
-  /// have the same ground.
+  /// The number of sides with enough samples, and the mean of their shares of shared samples, 0..1.
+  /// Each side counts alike, since many scenes have the same ground.
   int known_sides() const;
   double share() const;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Millions of points are asked for, so that all but the start of a line is in float: its rounding
-// is far below the footprints by which depths are told apart.
+// Millions of points are looked up, so that all but the start of a line is computed in float: its
+// rounding is far below the footprints by which depths are compared.
 #include "scene/other_views/sight.h"
 
 #include <cmath>

@@ -9,7 +9,8 @@
 
 namespace ssdo {
 
-/// Points within so many footprints of the plane of what a picture shows are on that surface.
+/// Points within this many footprints of the tangent plane of a surface in a picture are on this
+/// surface.
 inline constexpr float kSurfaceTolerance = 3;
 
 /// What another view knows about a point.
@@ -27,9 +28,9 @@ class SightLine {
   /// this.
   SightLine(const OtherView& view, const glm::vec3& start, const glm::vec3& direction);
 
-  /// What the four pixels around the picture of the point at distance `t` say. A view does not
-  /// show what is narrower than a few of its pixels but looks past it: `width` is that of what the
-  /// point would be in, in scene units.
+  /// What the four pixels around the projection of the point at distance `t` show. A view may look
+  /// past things narrower than a few of its pixels: `width` is that of the solid that the point
+  /// would be in, in scene units.
   Sight at(float t, float width = std::numeric_limits<float>::infinity()) const;
 
   /// Whether any of these pixels shows a surface there.

@@ -5,24 +5,23 @@
 //
 // - what another view shows on its view ray, behind the object,
 // - what the surfaces around the hole suggest. Four lines run through the pixel, and each ends in
-//   two pixels beside the hole. Where both show one plane, that plane is there; depths
-//   of a plane change linearly in 1/z along a line of the picture. Else each of the two goes on as
-//   its tangent plane, or as background. What goes on from nearby counts more, by the square of the
-//   distance in pixels, and guesses that agree count together. So a floor goes on below a thing
-//   that stands on it, and a wall behind it.
+//   two pixels beside the hole. If both show one plane, the pixel gets this plane, whose 1/z is
+//   linear along the line. Else the surface at each end continues on its tangent plane, or as
+//   background. Guesses weigh as 1 over the squared distance in pixels, and those that agree count
+//   together. So a floor continues below a thing that stands on it, and a wall behind it.
 //
 // Where two guesses are of surfaces that meet in a corner, the nearer one is seen.
 //
-// Nothing that is put in may be before the object, which would have been hidden by it.
+// A guess may not lie before the object: it would have hidden the object.
 //
-// A surface goes on by twice the length that is seen of it in that direction, and past that it
-// counts less, by the square of the distance again: what rests on the object, or ends beside it,
-// is not continued below it.
+// A surface is continued by twice the length that is seen of it in this direction. Beyond that its
+// weight falls, again by the square of the distance: a thing that rests on the object, or ends
+// beside it, is not continued below it.
 //
-// Some rows of a frame may end within the hole. A line that leaves them has no end there: what the
-// hole of an overview was filled with counts in its place, as far away as the last of the rows.
+// If the geometry is only some rows of a frame, a line may leave these rows before it finds an end.
+// The filled hole of the overview then gives the guess, at the distance of the last row.
 //
-// Which pixels show the object, covered_pixels() says: a rim that is left behind would cast as a
+// covered_pixels() decides which pixels show the object: a rim that is left behind would cast as a
 // sheet.
 #include "scene/other_views/take_out.h"
 
@@ -43,21 +42,22 @@
 namespace ssdo {
 namespace {
 
-/// Two ends of a line show one plane if each lies off the other's by less than this share of their
-/// distance, and they have one normal.
+/// Two ends of a line show one plane if their normals agree and each end lies off the other's
+/// tangent plane by at most this share of the distance between them.
 constexpr float kOnePlane = 0.05f;
 
 /// Guesses agree if their depths differ by less than this share, and they have one normal.
 constexpr float kSameDepth = 0.03f;
 
-/// Share of the weight of the best guess from which on another one counts beside it.
+/// Guesses with less than this share of the weight of the best one are ignored at corners.
 constexpr float kSecond = 0.1f;
 
-/// A surface goes on by so many times the length that is seen of it, which is followed for so many
-/// pixels.
+/// A surface is continued by kGoesOn times the length that is seen of it, and without limit once
+/// this gives kFollowed pixels.
 constexpr float kGoesOn = 2, kFollowed = 256;
 
-/// A plane that a line meets so many times farther away than the pixel that suggests it has ended.
+/// A guess is background if the pixel's view ray meets the tangent plane at more than this many
+/// times the depth of the pixel that suggests it.
 constexpr float kFarthestMet = 50;
 
 struct Step {
@@ -68,7 +68,7 @@ constexpr std::array<Step, 8> kWays = {
 
 constexpr int kNone = -1;
 
-/// What may stand in a pixel of the hole.
+/// A surface, or background, that may fill a pixel of the hole.
 struct Guess {
   float nearness = 0;  ///< 1/z, or z where the camera is orthographic; not for background
   bool is_background = false;
@@ -120,8 +120,8 @@ class Hole {
     return out;
   }
 
-  /// What a pixel sends is known of the frame's own pixels: `end`, if it is one of them, else the
-  /// nearest surface beside the hole.
+  /// The pixel of the frame whose light a filled pixel sends: `end` if it is outside the hole, else
+  /// the nearest surface beside the hole.
   int sender(int x, int y, int end, const EndsOfPixel& ends) const {
     if (end != kNone && !is_open_[std::size_t(end)]) return end;
     int nearest = kNone;
@@ -148,7 +148,7 @@ class Hole {
     return !s.is_surface() || depth >= -s.position.z;
   }
 
-  /// Puts in what another view shows behind the object; of several points, the nearest.
+  /// Fills pixels with what another view shows behind the object; the nearest of several points.
   void add(const OtherView& view) {
     const Plane<Surfel> seen = view.surfels_in_frame();
     const bool ortho = shown_.camera.orthographic;
@@ -169,7 +169,7 @@ class Hole {
     }
   }
 
-  /// Pixels of the hole with the mark `known` count as known too.
+  /// Finds the ends for all pixels. Pixels of the hole with the mark `known` count as known too.
   Ends find_ends(unsigned char known) const {
     Ends ends;
     for_each_task(kWays.size(), [&](std::size_t k) {
@@ -197,14 +197,15 @@ class Hole {
     return std::hypot(float(end % w - x), float(end / w - y));
   }
 
-  /// How far the plane of an end is expected to go on, in pixels, up to `away` or a little more.
+  /// The distance, in pixels, by which the surface at an end is expected to continue; at most
+  /// `away`.
   float goes_on(int end, const Step& way, float away) const {
     const int w = is_open_.width, x = end % w, y = end / w;
     const Surfel& s = known(end);
     float on = kGoesOn;
     for (int k = 1; on < std::min(away, kFollowed); ++k, on += kGoesOn) {
       const int nx = x + k * way.dx, ny = y + k * way.dy;
-      // Nothing is known of where it ends.
+      // The border or the hole hides where the surface ends.
       if (nx < 0 || ny < 0 || nx >= w || ny >= is_open_.height || is_open_(nx, ny)) return away;
       const Surfel& q = shown_.surfel(nx, ny);
       if (!q.is_surface() || glm::dot(q.normal, s.normal) < kOneNormal) return on;
@@ -216,7 +217,8 @@ class Hole {
 
   const Surfel& known(int end) const { return casting_.geometry.surfel[std::size_t(end)]; }
 
-  /// The tangent plane of an end, on the ray of a pixel; `way` leads on from the hole.
+  /// The guess from one end alone: its tangent plane on the view ray of a pixel. `way` points away
+  /// from the hole.
   Guess alone(int x, int y, int end, const Step& way) const {
     const Surfel& s = known(end);
     const float away = distance_px(x, y, end);
@@ -228,7 +230,7 @@ class Hole {
     return guess;
   }
 
-  /// What the overview has at a pixel, for lines that leave the rows so far away.
+  /// The guess from the overview at a pixel, for a line that leaves the rows after `away` pixels.
   Guess in_overview(int x, int y, float away) const {
     const Geometry& small = *overview_;
     const auto block = [](int pixel, int first, int first_small, int size) {
@@ -241,7 +243,8 @@ class Hole {
     return on_plane_of(small.surfel(column, row), x, y, away);
   }
 
-  /// How far away a line leaves the rows for others of the frame, in pixels; 0: it does not.
+  /// The distance, in pixels, at which a line leaves these rows for others of the frame; 0 if it
+  /// does not.
   float leaves_rows(int y, const Step& way) const {
     if (!overview_ || way.dy == 0) return 0;
     const bool goes_on =
@@ -250,7 +253,7 @@ class Hole {
     return goes_on ? float(rows) * std::hypot(float(way.dx), 1.0f) : 0;
   }
 
-  /// The tangent plane of what is so many pixels away, on the ray of a pixel.
+  /// The guess from the tangent plane of `s`, `away` pixels from here, on the view ray of a pixel.
   Guess on_plane_of(const Surfel& s, int x, int y, float away) const {
     Guess guess{0, !s.is_surface(), 1 / (away * away), kNone, s.normal};
     if (s.is_broken()) guess.weight = 0;
@@ -261,7 +264,7 @@ class Hole {
                  depth = glm::dot(glm::dvec3(s.normal), glm::dvec3(s.position) - origin) / per,
                  own = -double(s.position.z);
     if (!(per < 0) || !(depth > 0)) {
-      guess.weight = 0;  // it does not go there
+      guess.weight = 0;  // the ray does not meet its front
     } else if (depth > double(kFarthestMet) * own) {
       guess.is_background = true;
     } else {
@@ -270,8 +273,7 @@ class Hole {
     return guess;
   }
 
-  /// What the plane that both ends of a line show has at a pixel between them; weight 0: they show
-  /// none.
+  /// The guess between two ends that show one plane; weight 0 if they do not.
   Guess between(int x, int y, int a, int b) const {
     const Surfel &s = known(a), &t = known(b);
     if (!s.is_surface() || !t.is_surface() || glm::dot(s.normal, t.normal) < kOneNormal) return {};

@@ -9,8 +9,8 @@
 
 namespace ssdo {
 
-/// The surfaces of a frame without what a selection covers: a hole, in which stands what other
-/// views show there, else what the surfaces around it suggest (take_out.cpp). `coverage` is as
+/// The surfaces of a frame without what a selection covers. This hole is filled with what other
+/// views show there, else with what the surfaces around it suggest (take_out.cpp). `coverage` is as
 /// selected_coverage() has it, over the window of the geometry. Where `backdrop` is 1, nothing is
 /// left; it may be empty. If the geometry is some rows of a frame, `overview` is what casts in a
 /// smaller picture of it, one pixel of every kOverviewStride x kOverviewStride: it suggests what

@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// on_one_surface().
+/// on_one_surface() of vectors of surfels.
 HWY_INLINE M are_connected(const Surfels& a, const Surfels& b, const PixelFootprint& footprint) {
   const V3 step = b.position - a.position;
   const V of_a = dot(step, a.normal), of_b = dot(step, b.normal),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// How deep a thing is, by the sides of it that a frame shows and by those that it does not. All of
-// this is in the plane through the viewer and a line of the picture, where a thing is a section,
-// and what the frame shows of it a curve from one silhouette to the other.
+// The depth of an object, by the sides of it that a frame shows and by those that should be seen
+// but are not. All is computed in the plane through the viewer and a line of the picture: the
+// object is a section there, and its visible part a curve from one silhouette to the other.
 //
 // - Boxes, boards, posts, balls: their hidden half is the shown one, turned by 180 degrees about
 //   the middle between the silhouettes. So the section has twice the area between the curve and
@@ -10,21 +10,22 @@
 //
 //     shown = 2 area / width
 //
-// - The frame shows no depth of a flat front. But where that comes nearer to the viewer towards a
-//   silhouette, a side at a right angle to it would be seen there, as wide in the picture as its
-//   depth times v . m: v is the unit direction to the viewer and m that away from the front, in its
-//   plane and normal to the edge. There is none, so it is narrower than a pixel, by half a one in
-//   the mean:
+// - A flat front shows no depth. But where it comes nearer to the viewer towards a silhouette, a
+//   side at a right angle to it would be seen there. In the picture, this side would be as wide as
+//   its depth times v . m, where v is the unit direction to the viewer, and m the one away from the
+//   front, in its plane and normal to the edge. It is not seen, so it is narrower than a pixel, by
+//   half a pixel in the mean:
 //
 //     unseen = pixel / (2 v . m)   for v . m > 0, else infinite
 //
-//   What begins beyond the silhouette has to lie deeper than that: it would hide the side. The
-//   direction of the edge is known but for a pixel over its length, which counts against v . m.
+//   The surface beyond the silhouette has to lie deeper than that, or else it would hide the side.
+//   The direction of the edge is uncertain by a pixel over its length, which lowers the cosine v .
+//   m.
 //
-// The depth is shown + unseen. So a board of which one side should be seen is thin, a box that
-// shows a side is as deep as that is long, and of a box that is seen face-on, or of a ball, nothing
-// is known. Only two parallel silhouettes belong together: a line across the corner of a box enters
-// it by a side and leaves it by the next.
+// The depth is shown + unseen. So a board is thin if one of its sides should be seen but is not,
+// and a box that shows a side is as deep as the side is long. The depth of a box that is seen
+// face-on, or of a ball, stays unknown. Only two parallel silhouettes belong together: a line
+// across the corner of a box enters it by one side and leaves it by the next.
 #include "scene/solids/shown_depth.h"
 
 #include <algorithm>
@@ -42,16 +43,16 @@
 namespace ssdo {
 namespace {
 
-/// A round thing, whose mean depth is pi / 4 of its width, stays as deep as it is guessed to be.
+/// A round object, whose mean depth is pi / 4 of its width, keeps the depth guessed from its width.
 constexpr float kRoundThing = kDepthOfWidth / (std::numbers::pi_v<float> / 4);
 
 /// Least cosine between the view ray and a normal by which a surface is extended over half a pixel.
 constexpr float kLeastCosine = 0.05f;
 
-/// Cosines between two silhouettes from which on they are parallel, and up to which they are not:
-/// 16 and 26 degrees. Edges that are some tens of pixels long are known to a few degrees; those of
-/// tapered legs differ by up to ten. Chosen with a box of the truth scene `props` in view: made
-/// scenes do not tell them from 26 and 45 degrees.
+/// Two silhouettes are parallel from the first cosine between them on, and not parallel below the
+/// second: 16 and 26 degrees. Edges that are some tens of pixels long are known to a few degrees;
+/// those of tapered legs differ by up to ten. Chosen with a box of the truth scene `props` in view:
+/// synthetic scenes give the same results with 26 and 45 degrees.
 constexpr float kParallel = 0.96f, kCrossing = 0.9f;
 
 /// Long runs are sampled at about so many pixels, and at each of those next to their ends, where
@@ -123,8 +124,8 @@ class Section {
     return std::clamp((cosine - kCrossing) / (kParallel - kCrossing), 0.0f, 1.0f);
   }
 
-  /// The depth in pixels of the side that the frame does not show at an end; `outward` leads there
-  /// from the other one.
+  /// The mean depth, in pixels, of a side at this end that is too narrow to be seen; `outward`
+  /// leads here from the other end.
   float unseen(const End& end, const glm::vec3& outward) const {
     const glm::vec3 view = to_viewer(end.position), edge = glm::normalize(end.edge / px_),
                     normal_to_edge = glm::normalize(outward - glm::dot(outward, edge) * edge);
@@ -139,7 +140,7 @@ class Section {
     return side < room ? side / std::min(1.0f, 2 - 2 * side / room) : kInfinity;
   }
 
-  /// Between the curve and its chord, in pixels.
+  /// Twice the area between the curve and its chord, in square pixels.
   float twice_area(const glm::vec3& chord) const {
     const int step = std::max(1, run_.pixels / kSamples), near_last = run_.pixels - kNextToEnd;
     glm::vec3 sum(0), before(0);

@@ -19,9 +19,9 @@ struct WholeRun {
   int lines = 0;                          ///< beside the run that show the same two silhouettes
 };
 
-/// The depth of a thing along the view rays, in scene units, by the sides that one run of its
-/// pixels shows and by those that it does not; infinite where it does not tell. See
-/// shown_depth.cpp.
+/// The depth of an object along the view rays, in scene units, by the sides that one run of its
+/// pixels shows and by those that should be seen but are not; infinite where these give no limit.
+/// See shown_depth.cpp.
 float shown_depth(const Geometry& geometry, const WholeRun& run);
 
 /// The least depth along the view ray of what a pixel shows, in scene units: its surface is closed

@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// One depth layer does not know how thick things are, nor what is behind them, and that is the
-// largest error of all screen-space light: an order above sampling noise. Two guesses, both from
-// runs of pixels along a line of the frame that lie on one surface:
+// A single depth layer tells neither how thick objects are nor what lies behind them. This is the
+// largest error of all screen-space light, an order of magnitude above sampling noise. Two guesses
+// are made, both from runs: pixels along a line of the frame that show one surface.
 //
-// - Things are kDepthOfWidth times as thick as they are wide. The width at a pixel is the least
+// - Objects are kDepthOfWidth times as thick as they are wide. The width at a pixel is the least
 //   length, in space, of the runs through it in four directions (rows, columns, diagonals). A run
-//   that ends where something nearer begins shows only a part of the thing: it counts kPartlySeen
-//   times; one with both ends behind something, or at the frame's border, shows nothing of its
-//   width. So walls and grounds are endless, blades of grass are thin, and a box is about as deep
-//   as it is wide.
+//   with one end behind something nearer, or at the border of the frame, shows only a part of the
+//   object: its length counts kPartlySeen times. With two such ends the width is unknown. So walls
+//   and grounds are endless, blades of grass are thin, and a box is about as deep as it is wide.
 //
-//   The pixel grid cuts the edges of a thing, so that the runs of a straight, tilted post differ by
-//   a pixel, which on a side that is seen edge-on is a large part of the width; and where something
-//   else comes near the post in the picture, they show a part of it. With the rays of a sun its
-//   shadow is a comb. So the width of a run is the mean over runs beside it that are about as long,
-//   up to kWidthReach to each side, and those that are seen whole tell it for those that are not.
+//   The pixel grid makes the runs across a straight, tilted post differ by a pixel, which is a
+//   large part of the width of a side that is seen edge-on. Where a nearer object meets the post in
+//   the picture, runs show only a part of it. The shadow of such a post under a sun would be a
+//   comb. So the width of a run is the mean over the runs beside it that are about as long, up to
+//   kWidthReach to each side. Runs that are seen whole give the width of those that are not.
 //
-//   Some things show more (scene/solids/shown_depth.h): a board whose side should be seen, and is
-//   not, is thin, and a box is as deep as its side. Between a pixel and the next a surface is
-//   closed.
+//   The sides of an object may tell more (scene/solids/shown_depth.h): a board whose side should be
+//   seen, but is not, is thin, and a box is as deep as its side is long. No surface is so thin that
+//   it is open between a pixel and the next.
 //
 // - Surfaces go on as a second layer. Where a run ends and something farther begins, the farther
 //   surface continues behind the run as its tangent plane. Each pixel takes the surface that
@@ -49,13 +48,13 @@
 namespace ssdo {
 namespace {
 
-/// Depths of a pixel and of the overview's that stands for it differ by less than this share where
-/// they show the same thing.
+/// A pixel and the overview pixel that stands for it show the same object where their depths differ
+/// by less than this share.
 constexpr float kSameDepth = 0.1f;
 
-/// Factor on the width of a run that is occluded at one end. Mean over four scenes of Cycles: with
-/// 1.5, 3 and 6 the RMSE of ao is 0.072, 0.071 and 0.073 at a small radius and 0.134, 0.136 and
-/// 0.139 without one, the relative error of direct light 0.411, 0.418 and 0.430. So it matters
+/// Factor on the width of a run of which only one end is seen. Mean over four scenes of Cycles:
+/// with 1.5, 3 and 6 the RMSE of ao is 0.072, 0.071 and 0.073 at a small radius and 0.134, 0.136
+/// and 0.139 without one, the relative error of direct light 0.411, 0.418 and 0.430. So it matters
 /// little: no value is the best for all of them, and 3 is for occluders nearby.
 constexpr float kPartlySeen = 3;
 
@@ -64,19 +63,19 @@ enum class Meets : unsigned char {
   ends,         ///< before something farther, or nothing
   goes_behind,  ///< something nearer
   border,
-  cut,  ///< the frame goes on, but not the rows of it that are known
+  cut,  ///< where the known rows end, but not the frame
 };
 
-/// A plane that was fitted to a point passes by it within so many footprints.
+/// A normal was rebuilt from a neighbour's P if this lies so few footprints off the tangent plane.
 constexpr float kOnPlane = 0.05f;
 
-/// Lines to both sides in which a run that is seen whole tells the width of one that is not.
+/// Lines to each side of a partly seen run in which runs that are seen whole give its width.
 constexpr int kReachOfPart = 4 * kWidthReach;
 
-/// Weight of what a run that is not seen whole suggests, beside 1 of those that are.
+/// Weight of the own width of a partly seen run; runs that are seen whole weigh up to 1.
 constexpr float kWeightOfPart = 0.02f;
 
-/// A run of pixels of one surface, where a walk along its line has come to.
+/// A run of pixels of one surface, as far as a walk along its line has come.
 struct Run {
   bool goes_on = false;   ///< to the next pixel of the walk
   std::size_t first = 0;  ///< pixel
@@ -200,8 +199,8 @@ class GuessAlongLines {
     return direction_.dy * std::ptrdiff_t(connections_.width) + direction_.dx;
   }
 
-  /// Limits the depth of a whole run by what its sides tell. The runs beside it that are about as
-  /// long show its silhouettes.
+  /// Limits the depth of a run that is seen whole by shown_depth(). The ends of the runs beside it
+  /// that are about as long show its silhouettes.
   void limit_depth(std::size_t start) const {
     WidthOfRun& own = widths_[start];
     WholeRun run{start, stride(), own.pixels, step_px_};
@@ -223,7 +222,7 @@ class GuessAlongLines {
     own.depth = std::min(own.depth, shown_depth(geometry_, run));
   }
 
-  /// The mean depth of the runs about the one of a pixel: harmonic, as some may be endless.
+  /// The harmonic mean of the depths of a pixel's run and those beside it: some may be infinite.
   float depth_beside(std::size_t pixel) const {
     const WidthOfRun& own = widths_[std::size_t(starts_[pixel])];
     if (own.depth == kUnknown) return kUnknown;
@@ -260,8 +259,8 @@ class GuessAlongLines {
     return connections_(first.x, first.y) >> k & 1;
   }
 
-  /// How the surface of a pixel meets a neighbour, which is on another surface or on none. Of two
-  /// at the same depth, the one before goes on behind.
+  /// How the surface of a pixel meets a neighbour, which is on another surface or on none. At equal
+  /// depths, the earlier pixel of the line goes behind the later one.
   Meets meet(std::size_t pixel, int x, int y, bool is_after) const {
     const Plane<Surfel>& surfel = geometry_.surfel;
     if (x < 0 || x >= surfel.width) return Meets::border;
@@ -273,7 +272,7 @@ class GuessAlongLines {
     return before_other ? Meets::ends : Meets::goes_behind;
   }
 
-  /// To row `y`, outside of the raster.
+  /// Whether the frame goes on to row `y`, outside of the raster.
   bool frame_goes_on(int y) const {
     if (!overview_ || !geometry_.part_of) return false;
     return y < 0 ? geometry_.window.y0 > geometry_.part_of->y0
@@ -295,8 +294,8 @@ class GuessAlongLines {
     return same ? overview_->thickness(column, row) : kInfinity;
   }
 
-  /// Whether a normal that was rebuilt from P is that of the step to another surface: what is seen
-  /// through a slit one pixel wide has no tangent plane.
+  /// Whether the normal of a pixel was rebuilt from P across the step to another surface. Where a
+  /// surface is seen through a slit one pixel wide, its tangent plane is not known.
   bool leans_on_an_edge(int x, int y) const {
     const Surfel& here = geometry_.surfel(x, y);
     for (const std::size_t axis : {0, 1}) {
@@ -344,8 +343,8 @@ class GuessAlongLines {
     return out;
   }
 
-  /// Continues the surface from which the walk came behind the next pixel of the run, unless
-  /// another one is nearer by.
+  /// Continues the surface that the walk came from behind this pixel of the run, unless another
+  /// surface reaches the pixel from a nearer end.
   void continue_behind(Run& run, std::size_t pixel) const {
     if (run.sender < 0) return;
     const float away_px = float(++run.away) * step_px_;

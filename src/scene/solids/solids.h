@@ -42,13 +42,13 @@ struct SolidLayer {
 
   Plane<Provenance> provenance;
   Plane<float> distance;
-  Plane<float> thickness;  ///< empty: that of each sender where it is seen
+  Plane<float> thickness;  ///< empty: that of each sender's layer 0
   Plane<int> sender;
   Plane<glm::vec3> normal;  ///< unit, camera space, of solids without a sender, on the viewer's
                             ///< side; empty: they face the viewer
 };
 
-/// A value for each pixel at the border of a picture; those in the corners have one.
+/// A value for each pixel at the border of a picture; a pixel in a corner has one.
 template <class T>
 class BorderOf {
  public:
@@ -111,7 +111,8 @@ struct Solids {
   void separate_thicknesses();
 };
 
-/// Whether solids may be thinner than neighbours on a surface are apart: guessed ones seldom are.
+/// Whether solids may be thinner than the distance of neighbours on a surface, as guessed ones
+/// seldom are.
 bool may_be_thin(const Solids& solids);
 
 /// Throws std::logic_error where there are more than kMostLayers: whoever reads solids has room for
@@ -125,8 +126,8 @@ glm::vec3 point_behind(const Geometry& geometry, std::size_t pixel, float distan
 glm::vec3 normal_of_solid(const Geometry& geometry, const Solids& solids, int layer,
                           std::size_t pixel);
 
-/// A smaller picture of the frame that a geometry is some rows of, one pixel of every
-/// kOverviewStride x kOverviewStride, and what it suggests of how thick things are.
+/// The overview of a frame of which the geometry holds some rows: one pixel of every
+/// kOverviewStride x kOverviewStride, and the thickness that is guessed from it.
 struct SolidsOfOverview {
   const Geometry& geometry;
   const Plane<float>& thickness;

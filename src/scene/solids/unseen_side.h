@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The side of a body that the camera does not see is taken for the image of the seen one in a plane
-// across the view ray. Of a ball this is the ball, and of a box that shows two sides alike the
-// other two. What a pixel shows of a ball near the ground is near the ground on both sides: with
-// the point opposite to the pixel and the normal reversed, the ball's upper half lit the ground
-// below it. Relative error of the bounce of nine lamps, frame alone, and with overscan and four
-// views: 0.69 and 0.73 with the opposite point, 0.66 and 0.70 with the image. Under maps both are
-// alike: 0.467 and 0.471 in five scenes, 0.357 and 0.354 of things on a table, 0.140 and 0.137 in a
-// room with overscan.
+// The hidden side of a body is taken for the mirror image of the visible one in a plane across the
+// view ray. This is right for a ball, and for a box that shows two sides alike. The image of a
+// point near the ground is near the ground too: with the point opposite to the pixel and the normal
+// reversed, a ball's upper half lit the ground below it. Relative error of the bounce of nine
+// lamps, frame alone, and with overscan and four views: 0.69 and 0.73 with the opposite point, 0.66
+// and 0.70 with the image. Under environment maps both are alike: 0.467 and 0.471 in five scenes,
+// 0.357 and 0.354 of things on a table, 0.140 and 0.137 in a room with overscan.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -20,9 +19,9 @@ namespace ssdo {
 /// The solid of a point may be in the way within so many pixels of it: those beside its own.
 constexpr float kBesidePx = 1.5f;
 
-/// The way through a body along the view ray: of a ball its width where the ray passes, of which
-/// the thickness that is guessed (scene/solids/width_of_run.h) is a share. Runs of pixels are
-/// measured to the middle of the last one. `pixel`: the width of what a pixel shows.
+/// The length of the view ray inside a body: for a ball, its width where the ray passes. The
+/// guessed thickness (scene/solids/width_of_run.h) is a share of it. Runs of pixels are measured to
+/// the middle of the last one. `pixel`: the width of what a pixel shows.
 inline float way_through(float thickness, float pixel) {
   return thickness / kDepthOfWidth + 0.5f * pixel;
 }

@@ -12,7 +12,7 @@ inline constexpr float kDepthOfWidth = 0.85f;
 /// Lines to both sides of a pixel over which the width of what it shows is averaged.
 inline constexpr int kWidthReach = 16;
 
-/// In place of the depth of a run that the border of some rows of a frame cuts.
+/// The depth of a run that is cut where the known rows of a frame end.
 constexpr float kUnknown = -1;
 
 /// A run of pixels, and the guess that what it shows is kDepthOfWidth times as deep as it is wide.
@@ -21,10 +21,10 @@ constexpr float kUnknown = -1;
 /// shown_depth() limited them: RMSE of ao 0.0641, 0.0645, 0.0648, 0.0653 and 0.0669 at a small
 /// radius, 0.0832, 0.0824, 0.0822, 0.0822 and 0.0829 at a large one, 0.1223, 0.1210, 0.1206, 0.1202
 /// and 0.1198 without one; relative error of direct light 0.288, 0.284, 0.283, 0.281 and 0.279, of
-/// bounce 0.540, 0.535, 0.532, 0.530 and 0.525. Of what a ball on the ground lights or leaves dark,
-/// 0.7 % of the frame's pixels are wrong with 1, 2.6 % with 0.85 and 4.7 % with 0.7.
+/// bounce 0.540, 0.535, 0.532, 0.530 and 0.525. What a ball on the ground lights or leaves dark is
+/// wrong in 0.7 % of the frame's pixels with 1, in 2.6 % with 0.85 and in 4.7 % with 0.7.
 struct WidthOfRun {
-  float depth = std::numeric_limits<float>::infinity();  ///< where neither end is seen; or kUnknown
+  float depth = std::numeric_limits<float>::infinity();  ///< infinite: no end is seen; or kUnknown
   int pixels = 0;
   bool is_whole = false;  ///< both ends are seen
 };

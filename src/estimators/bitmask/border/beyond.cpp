@@ -14,15 +14,15 @@ namespace {
 
 constexpr int kPeriod = Interleaving::kPeriod, kSlices = 8, kSteps = 16;
 
-/// The mean ao of a frame from which on all of a sun comes past the border.
+/// The mean ao of a frame from which on all of a sun's light passes the border.
 constexpr float kOpenFrame = 0.6f;
 
-/// How much more sky tells than walls do, and the share of a frame above the horizon that tells
-/// all.
+/// The weight of sky over that of walls, and the share of a frame above the horizon from which on
+/// the frame counts in full.
 constexpr double kSkyTells = 10, kAboveTellsAll = 1 / 3.0;
 
-/// Sine of the elevation from which on a pixel is all above the horizon: not at once, for all
-/// pixels of an orthographic camera pass the horizon together.
+/// The sine of elevation from which on a pixel counts in full as above the horizon; gradual,
+/// because all pixels of an orthographic camera cross the horizon together.
 constexpr double kAllAbove = 0.1;
 
 bool is_endlessly_far(const Source& source) {
@@ -97,7 +97,7 @@ bool needs_openness(const Scene& scene, const Request& request) {
   const auto& sources = scene.light.sources;
   const bool has_far = std::any_of(sources.begin(), sources.end(),
                                    [](const auto& source) { return is_endlessly_far(*source); });
-  // A panorama shows what stands beyond the border, and rays have asked it.
+  // A panorama shows what stands beyond the border, and rays are tested against it.
   const bool all_is_shown = std::any_of(scene.views.begin(), scene.views.end(),
                                         [](const OtherView& view) { return view.picture->closed; });
   return (products.direct || products.bounce || products.error) && has_far &&

@@ -55,19 +55,20 @@ inline constexpr float kLightThroughBeyond = 0.5f;
 /// and seed.
 SlicePattern mean_ao_pattern(const Interleaving& layout, const Window& display);
 
-/// Adds what some rows of a raster tell, of one pixel of each pattern: ao where surfaces go on
-/// beyond the frame. `up` unit, in camera space; `radius` in scene units, or infinity.
+/// Adds the openness of some rows of a raster, from one pixel of each pattern, with ao where
+/// surfaces go on beyond the frame. `up` unit, in camera space; `radius` in scene units, or
+/// infinity.
 void add_openness(const MarchScene& scene, const Window& display, const glm::vec3& up, float radius,
                   const Window& rows, Openness& sum);
 
-/// Adds what the receivers of a band show.
+/// Adds the openness of the receivers of a band.
 void add_openness(const Scene& band, const Request& request, Openness& sum);
 
 /// The way up in camera space, unit.
 glm::vec3 up_in_camera(const Scene& scene);
 
 /// Whether part of a source lies behind a plane, unit `normal`: rays to it from in front of the
-/// plane meet that.
+/// plane meet the plane.
 bool is_behind(const Source& source, const glm::vec3& position, const glm::vec3& normal);
 
 /// The planes that rays to any of the sources of a light meet, which has to outlive this.
@@ -76,25 +77,26 @@ MayMeetPlane met_by_rays_to_sources(const Light& light);
 /// Whether the openness of the frame changes the light that is asked for.
 bool needs_openness(const Scene& scene, const Request& request);
 
-/// Whether bands have to be read once more for it: the overview does not show it to the bit.
+/// Whether bands have to be read once more for the openness of the frame, which the overview does
+/// not give to the bit.
 bool band_needs_openness(const Scene& overview, const Request& request);
 
-/// That of all of a frame.
+/// The openness of all of a frame.
 Openness openness_of(const MarchScene& scene, const Scene& frame, float radius);
 
 /// Share of a sun's light, 0..1, that reaches a receiver past the frame's border where no surface
 /// that goes on hides it.
 float sun_past_beyond(const Openness& frame);
 
-/// The same where it counts for what is asked of a scene; else 1.
+/// The same where openness changes the light that is asked of a scene; else 1.
 float sun_past_beyond_of(const Openness& frame, const Scene& scene, const Request& request);
 
-/// The same of a frame, or of the one that it is a band of.
+/// The same of a frame or, for a band, of the frame around it.
 float sun_past_beyond(const MarchScene& scene, const Scene& frame, const Request& request);
 
-/// The shares for one source. One that harmonics would keep 0.25 or more of (a disc of 11 degrees)
-/// is treated as sky, and a smaller one the less so. Relative error of direct light of a room under
-/// two soft boxes: 0.141 if it is sky by Source::held alone, 0.093 so.
+/// The shares for one source. A source of which harmonics would keep 0.25 or more (a disc of 11
+/// degrees) is treated as sky, and a smaller one the less so. Relative error of direct light of a
+/// room under two soft boxes: 0.141 if a source is sky by Source::held alone, 0.093 so.
 ///
 /// A place that is closed against the sky is not closed against a lamp, which stands in it: only
 /// surfaces that go on hide a source that is not endlessly far.

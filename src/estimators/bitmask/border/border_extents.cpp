@@ -14,41 +14,42 @@
 namespace ssdo {
 namespace {
 
-/// How much farther than seen a surface goes on at most, over the length that is seen: sideways,
-/// and up or down. Share of the sun on sunlit floors of 18 views of an open set with 1, 0.5 and 0.3
-/// upward: 0.89, 0.94 and 0.96 (truth 1). Sideways 1, 2 and 4 differ by less. A level surface, such
-/// as a ceiling, has no height: it is as likely to be as deep as it is seen wide.
+/// The largest continuation of a surface beyond what is seen of it, over the length that is seen:
+/// sideways, and up or down. Share of the sun on sunlit floors of 18 views of an open set with 1,
+/// 0.5 and 0.3 upward: 0.89, 0.94 and 0.96 (truth 1). Sideways 1, 2 and 4 differ by less. A level
+/// surface, such as a ceiling, has no height: it is as likely to be as deep as it is seen wide.
 constexpr float kMostAside = 2, kMostUp = 0.3f;
 
-/// The same of a surface that is seen to end at least kEndMargin diagonals of the frame before the
-/// border, over what it is for others.
+/// The factor on this continuation for a surface that is seen to end at least kEndMargin diagonals
+/// of the frame before the border.
 constexpr float kEndShare = 0.05f, kEndMargin = 0.1f;
 
 /// A point is on a tangent plane if it is off by no more than this share of the way to it plus this
 /// many pixels at its depth.
 constexpr float kPlaneShare = 0.02f, kPlanePx = 0.75f;
 
-/// What looks elsewhere by more than this cosine is not of the same surface, as the floor at the
-/// foot of a wall.
+/// The least cosine between two normals of one surface: the floor at the foot of a wall is another
+/// surface.
 constexpr float kSameWay = 0.7f;
 
-/// A surface ends where others are seen behind its plane for so many pixels and a share of those
-/// over which it was seen: windows and gaps between houses are no ends. Behind what stands before
-/// it, it goes on if it is seen again before it would be so many times as long, or have this share
-/// of the diagonal of the frame at its depth.
+/// A surface ends where others are seen behind its plane over more than kGapPx pixels plus
+/// kGapShare of the pixels over which it was seen: windows and gaps between houses are no ends.
+/// Behind an occluder the surface goes on if it is seen again within kHiddenTimes its length so
+/// far, or within kHiddenShare of the frame's diagonal at its depth.
 constexpr float kGapPx = 2, kGapShare = 0.1f, kHiddenTimes = 4 / 3.0f, kHiddenShare = 0.1f;
 
-/// None of these limits is sharp, for cameras move: what exceeds one counts the less, up to not at
-/// all at so many times the limit. With sharp ones in between a row of houses, seen past a gap or
-/// not, halved the light of a street between two frames.
+/// All these limits are gradual, because cameras move: the weight falls from 1 at a limit to 0 at
+/// kNotAtAll times the limit. With sharp limits, a row of houses, seen past a gap or not, halved
+/// the light of a street between two frames.
 constexpr float kNotAtAll = 2;
 
-/// The steps of a walk grow with the way, by one pixel in so many, up to this share of the frame.
-/// So many other walks start from each, at right angles, to both sides.
+/// A step of a walk is one pixel for every kPixelsPerStep pixels of the way so far, but no more
+/// than the frame over kMostSteps. From each walk, kWalksAcross others start at right angles, to
+/// both sides.
 constexpr int kPixelsPerStep = 8, kMostSteps = 128, kWalksAcross = 3;
 
-/// Pixels along the border share the walks of the first of their group where they show its surface:
-/// groups are as long as a pixel of a frame with this diagonal.
+/// Pixels along the border form groups: those that show the surface of the first pixel of their
+/// group share its walks. Groups are as long as a pixel of a frame with this diagonal.
 constexpr float kDetailPx = 512;
 
 constexpr glm::ivec2 kWays[4] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
@@ -64,15 +65,16 @@ float within(float value, float limit) {
 
 /// What a walk over the frame has met of the surface.
 struct Run {
-  glm::vec3 from{0}, to{0};  ///< where it begins and last met it, from the pixel at the border
+  glm::vec3 from{0}, to{0};  ///< start, and last meeting with the surface, from the border pixel
   float px = 0;              ///< walked until there
-  float cut = 1;  ///< 0..1: 1 where the border or something before it hides where it ends
+  float cut = 1;             ///< 0..1; 1: the border or an occluder hides the end of the surface
 };
 
-/// How far a surface is seen along one axis, and whether it ends there. Of walks that end at about
-/// the same place some may have seen the end and others not: they count by the fourth power of how
-/// far they came, which goes over from one to another smoothly, and by how much they led along the
-/// axis. What a walk along the top of a wall meets tells nothing of its height.
+/// How far a surface is seen along one axis, and whether it ends there. Some walks that end at
+/// about the same place may have seen the end and others not: each has as weight the fourth power
+/// of how far it came, so that the result changes smoothly from one walk to another, times the
+/// squared cosine between its way and the axis: a walk along the top of a wall says nothing about
+/// the height.
 class SeenAlong {
  public:
   explicit SeenAlong(const glm::vec3& axis) : axis_(axis) {}
@@ -109,7 +111,7 @@ class CutSurface {
         reach_px_(reach_px(std::max(scene.fx, scene.fy), scene.orthographic, start_, radius)),
         diagonal_px_(diagonal_px(scene)) {}
 
-  /// Without the extent.
+  /// The depth and normal, without the extent.
   BorderExtent shown() const { return {-start_.z, normal_}; }
 
   bool asked(const MayMeetPlane& may_meet) const { return !may_meet || may_meet(start_, normal_); }
@@ -175,7 +177,7 @@ class CutSurface {
     return {right, -right, uphill, -uphill};
   }
 
-  /// How far off its plane a point may seem to be.
+  /// How far a point of the surface may seem to be off the plane.
   float tolerance(const glm::vec3& there, const glm::vec3& to) const {
     return kPlaneShare * glm::length(to) + kPlanePx * footprint(-there.z);
   }
@@ -200,15 +202,15 @@ class CutSurface {
                       : (way.y > 0 ? scene_.frame_height - 1 - y : y);
   }
 
-  /// From a pixel on, in the direction `way`.
+  /// Follows the surface from a pixel in the direction `way`.
   Run walk(const glm::ivec2& from, const glm::ivec2& way) const {
     const int largest_step =
         std::max(1, (way.x != 0 ? scene_.frame_width : scene_.frame_height) / kMostSteps);
     Run run{position(from) - start_};
     const float at_least =
         kHiddenTimes * glm::length(run.from) + kHiddenShare * diagonal_px_ * footprint(-start_.z);
-    // How sure it is that what the walk meets is still the same surface, how well the end is seen
-    // of one that is not, and up to where what it has met counts.
+    // `sure`: the certainty that the walk still meets the same surface; `cut`: Run::cut where it
+    // does not; `gap`: pixels since it last met the surface; `last_px` and `last`: where that was.
     float sure = 1, cut = 0, gap = 0, last_px = 0;
     glm::vec3 last(0);
     const auto most_gap = [&] { return kGapPx + kGapShare * run.px; };

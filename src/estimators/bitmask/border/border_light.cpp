@@ -15,11 +15,12 @@ namespace ssdo {
 
 namespace {
 
-/// What the front sides of the pixels at the border send; what shows no surface, nothing.
+/// What the front sides of the pixels at the border send; 0 for pixels without a surface.
 std::array<BorderValues, 3> sent_at_border(const MarchScene& scene,
                                            const InterleavedVectors& radiance, bool two_sided) {
   std::array<BorderValues, 3> sent;
-  // By a mask: of a choice between first_of_two() and the number, g++ 12 takes the latter with -O2.
+  // A mask, because g++ 12 with -O2 turns a choice between first_of_two() and the number into the
+  // number.
   const std::uint32_t kept = two_sided ? kFirstOfTwo : ~std::uint32_t(0);
   for (std::size_t c = 0; c < 3; ++c) {
     sent[c] = scene.border.gather([&](int x, int y) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Where the rays of small squares of pixels may meet something: what lies before and behind that is
-// bounded for all sixteen of them at once, and most rays that meet nothing are done with here
+// Where the rays of small squares of pixels may meet something: the ways before and behind are
+// ruled out by bounds for all sixteen rays at once, and most rays that meet nothing end here
 // (Boulos, Wald and Shirley 2006, Geometric and Arithmetic Culling Methods for Entire Ray Packets).
 // Compiled once for every instruction set.
 //
 // After t pixels, a ray that began at x_i with the nearness r_i is at x_i + t s_i and has the
-// nearness r_i + t q_i, and a front is in its way only if it is as near (walk-inl.h). Of the rays
-// of a square, all of this lies between bounds that are linear in t. The nearness is taken less
-// that of the mean tangent plane of the square, so that a plane is no nearer than the rays that
-// leave it, however flat.
+// nearness r_i + t q_i, and a front is in its way only if it is as near (walk-inl.h). For the rays
+// of a square, all of these lie between bounds that are linear in t. Nearness is relative to the
+// mean tangent plane of the square, so that a plane is no nearer than the rays that leave it,
+// however flat they are.
 #if defined(SSDO_BITMASK_BEAMS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_BEAMS_INL_H_
 #undef SSDO_BITMASK_BEAMS_INL_H_
@@ -25,11 +25,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// Between what the numbers of some rays lie, in each lane.
+/// The interval in which a number of some rays lies, in each lane.
 struct Between {
   V least, most;
 
-  /// Of none. Written out, so that it is compiled for the instruction set of those who call it.
+  /// The empty interval. Written out, so that it is compiled for the instruction set of its
+  /// callers.
   HWY_INLINE Between()
       : least(set(std::numeric_limits<float>::infinity())),
         most(set(-std::numeric_limits<float>::infinity())) {}
@@ -38,7 +39,7 @@ struct Between {
     least = hn::Min(least, hn::IfThenElse(counts, value, least));
     most = hn::Max(most, hn::IfThenElse(counts, value, most));
   }
-  /// The others are 0.
+  /// Sets the other lanes to 0.
   HWY_INLINE void keep_where(M counts) {
     least = hn::IfThenElseZero(counts, least), most = hn::IfThenElseZero(counts, most);
   }
@@ -87,8 +88,8 @@ class Beams {
       largest = hn::Max(largest, hn::IfThenElseZero(goes, hn::Abs(nearness)));
     });
     above_.keep_where(looks), rising_.keep_where(looks);
-    // The pixels that a ray visits are up to half a pixel aside, and its heights are those over its
-    // own tangent plane.
+    // A ray visits pixels up to half a pixel beside it, and measures heights over its own tangent
+    // plane.
     const V apart = hn::Max(slopes_x.most - slope_x_, slope_x_ - slopes_x.least) +
                     hn::Max(slopes_y.most - slope_y_, slope_y_ - slopes_y.least);
     const V off = hn::MulAdd(set(kBesideRay), apart, largest * set(kRounding));
@@ -104,7 +105,7 @@ class Beams {
     while (any(busy)) {
       const V to = hn::Min(t + step, end_);
       const M clear = is_clear(scene, bounds, t, to);
-      // Of the way up to the first thing, all is found.
+      // Until something is met, steps are halved to find where it begins.
       const M refines = hn::AndNot(clear, hn::And(first, step > set(kLeastStep)));
       const M meets = hn::AndNot(hn::Or(clear, refines), busy);
       found.add(meets, t), found.add(meets, to);
@@ -128,18 +129,18 @@ class Beams {
  private:
   static constexpr float kFirstStep = 2, kLeastStep = 4, kMostStep = 128;
 
-  /// How far the middle of a pixel that a ray visits may be from it, with what a walk goes past the
-  /// border of a cell.
+  /// The largest distance, in pixels, between a ray and the middle of a pixel that it visits, with
+  /// the step of a walk past the border of a cell.
   static constexpr float kBesideRay = 0.52f;
 
-  /// Rounding moves no nearness by more than this share of it.
+  /// The largest rounding error of a nearness, relative to it.
   static constexpr float kRounding = 2e-6f;
 
   static HWY_INLINE M goes_on(const RaysOfBlock& rays, int i) {
     return rays(RayNumber::end, i) > rays(RayNumber::from, i);
   }
 
-  /// What a coordinate may be between two t.
+  /// The interval of a coordinate between two t.
   static HWY_INLINE Between place(const Between& start, const Between& step, V t, V to) {
     Between at;
     at.least = start.least + hn::Min(t * step.least, to * step.least) - set(kBesideRay);
@@ -147,8 +148,7 @@ class Beams {
     return at;
   }
 
-  /// Whether all rays pass in front of the solids that are about their way between two t, or
-  /// behind.
+  /// Whether, between two t, all rays pass in front of the solids near their way, or behind them.
   HWY_INLINE M is_clear(const MarchScene& scene, const std::vector<DepthBounds>& bounds, V t,
                         V to) const {
     const D d;
@@ -161,7 +161,7 @@ class Beams {
     };
     const Between x = inside(place(x_, step_x_, t, to), scene.layout.width()),
                   y = inside(place(y_, step_y_, t, to), scene.layout.height());
-    // Cells of the size of the box, of which it touches two in a row and in a column.
+    // Cells about as large as the box, so that it touches at most two in a row and in a column.
     const V extent = hn::Max(x.most - x.least, y.most - y.least) + set(1);
     const VI needed = hn::ShiftRight<23>(hn::BitCast(di, extent)) - set_int(126),
              size =
@@ -177,7 +177,7 @@ class Beams {
              first_row = hn::ShiftLeft<1>(all_rows -
                                           (all_rows >> (size - set_int(DepthBounds::kSmallest))));
     const V last = hn::ConvertTo(d, (set_int(1) << size) - set_int(1));
-    // Linear functions are least and largest at one of both t.
+    // A linear function is least at one of the two t and largest at the other.
     const V least = above_.least + hn::Min(t * rising_.least, to * rising_.least),
             most = above_.most + hn::Max(t * rising_.most, to * rising_.most);
     for (const VI row : rows) {
@@ -222,7 +222,8 @@ class Beams {
   Between above_, rising_;  ///< the nearness less that of this plane, and per pixel
 };
 
-/// Leaves of the ways of all rays of a block what is between things that they may meet.
+/// Shortens the ways of all rays of a block to the part between the first and the last thing that
+/// they may meet.
 HWY_INLINE void shorten_ways(const MarchScene& scene, const std::vector<DepthBounds>& bounds,
                              RaysOfBlock& rays) {
   for (int first = 0; first < Interleaving::kPeriod; first += Block::kRows) {

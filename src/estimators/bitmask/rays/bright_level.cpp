@@ -16,12 +16,12 @@
 namespace ssdo {
 namespace {
 
-/// How much brighter than its surroundings a sender is that rays go to: a march finds the light of
-/// what is less so with less noise than that of their shadows.
+/// How much brighter than its surroundings a sender must be for rays to go to it: the light of a
+/// less bright sender has less noise from the march than from the shadows of rays.
 constexpr float kBright = 4;
 
-/// Shares of the light that the frame shows: where less exceeds the level, nothing is gathered by
-/// rays, which cost half of the estimate; where more does, all of it is.
+/// Shares of the light that the frame shows: if less than the first exceeds the level, rays, which
+/// cost half of the estimate, gather nothing; if more than the second does, they gather all of it.
 constexpr double kLeastShare = 0.05, kFullShare = 0.15;
 
 /// Luminance of what pixels show.

@@ -16,17 +16,17 @@
 namespace ssdo {
 namespace {
 
-/// More than rounding moves a nearness, relative to it.
+/// A margin larger than the rounding error of a nearness, relative to it.
 constexpr float kRounding = 1e-6f;
 
-/// A number that keeps its value as the upper half of a float.
+/// The number cut off so that the upper half of a float holds it.
 float shortened(float x) {
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) & 0xffff0000u);
 }
 
 }  // namespace
 
-/// What is known of a cell; a pixel is one too.
+/// The bounds of a cell; a pixel is a cell too.
 struct DepthBounds::Cell {
   float nearest = -kInfinity;
   glm::vec2 slope{0};
@@ -37,8 +37,8 @@ struct DepthBounds::Cell {
 
 namespace {
 
-/// A cell among those that make up a larger one: `way` leads from the middle of that to its own,
-/// and `half` from there to its outermost pixels.
+/// A cell among those that make up a larger one: `way` leads from the middle of the larger cell to
+/// the middle of this one, and `half` from there to its outermost pixels.
 template <class Cell>
 struct Member {
   Cell cell;
@@ -46,7 +46,7 @@ struct Member {
   float half;
 };
 
-/// The least plane with this slope above all members, at the middle.
+/// The nearness, at the middle, of the lowest plane with this slope above all members.
 template <class Cell>
 float least_above(std::span<const Member<Cell>> members, const glm::vec2& slope) {
   float least = -kInfinity;

@@ -10,13 +10,14 @@
 
 namespace ssdo {
 
-/// Between which depths the solids of a layer lie, in square cells of pixels of several sizes: a
-/// ray that passes in front of all of them, or behind, need not look at the pixels.
+/// Bounds of the depths of the solids of a layer, in square cells of pixels of several sizes: a ray
+/// that passes in front of all solids of a cell, or behind them, need not look at its pixels.
 ///
 /// Depths are given by a nearness that changes linearly along a straight line in the picture, of
 /// points on a straight line in space: 1 / depth, or -depth where the camera is orthographic. So
-/// planes have a linear nearness too, and the bound of the fronts is a plane: of a floor it is the
-/// floor itself, and a ray that leaves it misses the whole cell, however flat it runs.
+/// planes have a linear nearness too, and the bound of the fronts is a plane: the bound of a floor
+/// is the floor itself, and a ray that leaves the floor misses the whole cell, however flat it
+/// runs.
 class DepthBounds {
  public:
   /// Sides of cells are powers of two, from kSmallest to kLargest; their exponents.
@@ -39,8 +40,8 @@ class DepthBounds {
     float unused = 0;
   };
 
-  /// Cells of kSmallest are at row * columns() + column. They have the first rows(); those of each
-  /// size follow on those of the one before with half as many rows.
+  /// Cells of kSmallest are at row * columns() + column, in the first rows() rows. Each larger size
+  /// follows on the one before, with half as many rows.
   int columns() const { return columns_; }
   int rows() const { return rows_; }
   const Stored* cells() const { return cells_.data(); }
@@ -63,7 +64,7 @@ class DepthBounds {
   std::vector<glm::vec2, Uninitialized<glm::vec2>> pixels_;
 };
 
-/// Those of every layer of a scene.
+/// The bounds of every layer of a scene.
 std::vector<DepthBounds> depth_bounds(const MarchScene& scene);
 
 }  // namespace ssdo

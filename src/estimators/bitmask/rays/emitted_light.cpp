@@ -5,10 +5,10 @@
 //
 //   sum_k power_k cos_k cos'_k / (pi d_k^2 + area_k)
 //
-// and all of it arrives or none, as a ray finds to one of the points, which is taken as often as it
-// gives of the sum (resampled importance sampling: Talbot, Cline and Egbert, 2005). So where
-// nothing is in the way there is no noise but that of the points, which a filter over the pattern
-// averages. Compiled once for every instruction set.
+// and all of the sum arrives or none of it: a ray to one of the points decides, chosen with a
+// probability proportional to its part of the sum (resampled importance sampling: Talbot, Cline and
+// Egbert, 2005). So where nothing blocks the rays, the only noise is that of the points, which a
+// filter over the pattern averages. Compiled once for every instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/rays/emitted_light.cpp"
 #include <hwy/foreach_target.h>
@@ -31,7 +31,7 @@ struct Chosen {
   V3 light;  ///< of all points, in the colour of this one; 0: there is none
 };
 
-/// What a point gives each lane over the luminance of its power, without occluders.
+/// The light that a point gives each lane without occluders, per unit of its power.
 HWY_INLINE V seen_size(const March& march, const MarchReceiver& p, const Emitter& e) {
   const V zero = set(0);
   const V3 to = set(e.position) - p.position;
@@ -132,7 +132,7 @@ void emitted(const EmittedJob& job, const Window& part) {
   Occluders<kOrthographic> occluders(job.march, job.bounds);
   EmittedRays rays;
   for_each_block(scene, part, [&](const Block& block) HWY_ATTR {
-    // Twice where the error is wanted, which is what other points and rays change.
+    // Twice where the error is wanted: it is what changes with other points and rays.
     for (int set_of_rays = 0; set_of_rays < (job.error ? 2 : 1); ++set_of_rays) {
       find_arriving<kOrthographic>(job, block, set_of_rays, occluders, rays);
       // Halves of the slices differ by the square root of 3 times the error, two sets by that of 2.

@@ -21,16 +21,16 @@ namespace {
 
 constexpr int kTile = 16;  ///< pixels
 
-/// Depth that a body may gain from a pixel to the next, in pixels of its width.
+/// The largest change in depth from a pixel of a body to the next, in widths of a pixel there.
 constexpr float kMostSlope = 8;
 
-/// Growth of u^2 from which on a body is round: at the rim of a ball 200 pixels wide.
+/// Rim::growth above which a body counts as round: that at the rim of a ball 200 pixels wide.
 constexpr float kLeastGrowth = 0.02f;
 
-/// One side of what a pixel shows: what it sends above the level.
+/// One side of the surface in a pixel, with the light that it sends above the level.
 struct Side {
   Emitter point;  ///< as if it stood for the pixel alone
-  float light;    ///< luminance of the radiance
+  float light;    ///< luminance of the radiance, less the level
 
   double power() const { return double(light) * double(point.area); }
 };
@@ -40,7 +40,7 @@ glm::vec3 each(float (*of)(float), const glm::vec3& v) { return {of(v.x), of(v.y
 /// The pixels of a raster that send.
 class Senders {
  public:
-  /// What hides a point is not what lies within `beside_px` of it.
+  /// Solids within `beside_px` pixels of a point do not hide it.
   Senders(const MarchScene& scene, const InterleavedVectors& radiance, bool two_sided, float level,
           float beside_px)
       : scene_(scene),
@@ -107,10 +107,10 @@ class Senders {
     float width_px;     ///< of the body, in pixels, at its rim; else 0
   };
 
-  /// The area is the mean of 1 / u, where u^2 changes linearly. On a ball of R pixels u^2 is
-  /// 1 - (d / R)^2, and grows by 2 / R per pixel at the rim. The last pixel has all up to there,
-  /// and of what lies beyond it, which the camera sees less of the nearer it is, r^2 / distance for
-  /// each unit of the rim's length.
+  /// The area is the mean of 1 / u, where u^2 changes linearly. On a ball of R pixels, u^2 is 1 -
+  /// (d / R)^2, and grows by 2 / R per pixel at the rim. The last pixel stands for all of the
+  /// surface up to the rim, and for r^2 / distance per unit of the rim's length beyond it, where a
+  /// camera sees less of the ball the nearer it is.
   Patch patch(int x, int y, float u) const {
     constexpr float kFrontal = 0.8f;  // 1 / u hardly changes within a pixel
     if (u > kFrontal) return {1 / u, 0};
@@ -200,8 +200,8 @@ struct Part {
   }
 };
 
-/// The lit rows of the raster and, where it is a band of a frame, the others as the overview shows
-/// them.
+/// The lit rows of the raster and, where the raster is a band of a frame, the other rows of the
+/// frame as the overview shows them.
 std::vector<Part> parts_of(const SentLight& sent, float level) {
   std::vector<Part> parts;
   const auto add = [&](const MarchScene& scene, const InterleavedVectors& radiance,
@@ -227,7 +227,7 @@ std::vector<Part> parts_of(const SentLight& sent, float level) {
   return parts;
 }
 
-/// Where the k-th of all points belongs.
+/// The index in Emitters::points of the k-th of all points.
 class Order {
  public:
   explicit Order(unsigned seed) {
@@ -251,7 +251,7 @@ class Points {
   Points(double power, const Order& order, Emitters& out)
       : order_(order), each_(power / double(out.points.size())), out_(out) {}
 
-  /// The sides of a tile; `before`: the power of all that come before it.
+  /// Takes the sides of a tile; `before`: the power of all tiles before it.
   template <class ForEachSide>
   void add(double before, double power, const ForEachSide& for_each_side) const {
     auto next = std::size_t(std::max(0.0, std::ceil(before / each_ - 0.5)));

@@ -14,13 +14,13 @@
 // 1e-4 in it. Where half of the frame is bright, as a lawn in the sun is, nothing exceeds it. Light
 // goes over from one part to the other without a step, and both find the same.
 //
-// Rays go to points that stand for equal shares of the power that exceeds. Nearer than the size of
-// its share, a point is no picture of it, and the march sees it well: of a point of area A at
-// distance d, rays gather the part pi d^2 / (pi d^2 + A), which bounds what a point can give as the
-// form factor of a disc is bounded, and the march the rest.
+// Rays go to points that stand for equal shares of the power that exceeds the level. From nearer
+// than the size of its area, a point is a poor stand-in for the area, and the march sees the area
+// well: of a point of area A at distance d, rays gather the part pi d^2 / (pi d^2 + A), which
+// bounds what a point can give as the form factor of a disc is bounded, and the march the rest.
 //
-// A solid sends from its back as well, as it does to the march: from the image of what the camera
-// sees of it (scene/solids/unseen_side.h), which of a round body is all of its hidden half.
+// A solid sends from its back as well, as it does in the march: from the mirror image of its
+// visible side (scene/solids/unseen_side.h), which for a round body is all of its hidden half.
 #pragma once
 
 #include <cstddef>
@@ -35,10 +35,10 @@ namespace ssdo {
 struct Emitter {
   glm::vec3 position, normal;  ///< it sends to the side of the normal, unit
   glm::vec3 power;             ///< radiance times the area that it stands for
-  float area;                  ///< that area
+  float area;                  ///< the area that it stands for
   float solid;           ///< how far before the point, on a ray to it, its own solid may begin
   float per_radiance;    ///< power over the radiance of the pixel that it is taken from
-  int pixel;             ///< that: the index of its radiance
+  int pixel;             ///< the index of the radiance of that pixel
   bool is_back, is_far;  ///< whether its back sends; whether it is a pixel of the overview
 };
 

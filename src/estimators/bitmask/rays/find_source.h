@@ -14,9 +14,9 @@ namespace ssdo {
 /// set here.
 SourceShares find_source(SourceJob job, const Window& to, const Progress& progress);
 
-/// How much of it arrives at the sides of `solids` that the camera does not see, as SourceShares
-/// has it: what goes on beyond the frame hides nothing from them. The job's scene, of the same
-/// pixels, is what blocks the light.
+/// How much of a source arrives at the sides of `solids` that the camera does not see, as
+/// SourceShares has it: what goes on beyond the frame hides nothing from them. The job's scene, of
+/// the same pixels, is what blocks the light.
 void find_unseen_light(SourceJob job, const MarchScene& solids, const Window& to,
                        SourceShares& found);
 

@@ -11,7 +11,7 @@
 
 namespace ssdo {
 
-/// What blocks the light of lamps that name it (Scene::blockers), as rays read it.
+/// The blockers of lamps that name their own (Scene::blockers), as rays read them.
 class OwnBlockers {
  public:
   /// `far`: what goes on in an overview beyond the raster; null: nothing.
@@ -38,7 +38,7 @@ std::map<std::size_t, std::shared_ptr<const FarScene>> far_blockers(const Scene&
                                                                     const Request& request,
                                                                     const FarRaster& raster);
 
-/// Those of all sources of a scene. Lamps that name the same things share them.
+/// The OwnBlockers of all sources of a scene. Lamps that name the same blockers share them.
 class BlockersOfSources {
  public:
   BlockersOfSources(const Scene& scene, const Request& request, const SlicePattern& pattern)

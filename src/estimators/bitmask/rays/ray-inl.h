@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What is in the way of rays, for a vector of pixels, each with a direction of its own: one
-// question for light of sources, of bright senders and of what is mirrored. See Occluders.
+// What blocks rays, for a vector of pixels, each with its own direction: the same test for light of
+// sources, of bright senders and of mirrored surfaces. See Occluders.
 #if defined(SSDO_BITMASK_RAY_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_RAY_INL_H_
 #undef SSDO_BITMASK_RAY_INL_H_
@@ -18,25 +18,25 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// How many pixels of the border are asked, and how far they lie on both sides of the place where
-/// the ray leaves the frame, in diagonals of it. A single one may show a ledge, or the gap beside
-/// it, and cast a wrong shadow across the frame. Relative error of direct light with one and with
-/// five: a street 0.994 and 0.946, things on a table 0.121 and 0.113; more pixels, or pixels
-/// farther away, change little.
+/// The number of border pixels that are tested for a ray, and how far they lie on both sides of the
+/// place where the ray leaves the frame, in diagonals of the frame. A single pixel may show a
+/// ledge, or the gap beside it, and cast a wrong shadow across the frame. Relative error of direct
+/// light with one and with five: a street 0.994 and 0.946, things on a table 0.121 and 0.113; more
+/// pixels, or pixels farther away, change little.
 constexpr int kWitnesses = 5;
 constexpr float kWitnessReach = 0.05f;
 
-/// A ray that leaves through the top may be hidden by what stands at the side: as many pixels there
-/// are asked, next to the corner. They tell less of where the ray goes. RMSE of direct light of ten
-/// made streets with 0, 0.5, 0.7 and 1: 0.169, 0.169, 0.170 and 0.177, with 0.28, 0.27, 0.24 and
-/// 0.20 of the sun where there is none.
+/// The weight of pixels of the other border. A ray that leaves through the top may be hidden by
+/// what stands at the side, so as many pixels of the side are tested, next to the corner; they say
+/// less about where the ray goes. RMSE of direct light of ten made streets with 0, 0.5, 0.7 and 1:
+/// 0.169, 0.169, 0.170 and 0.177, with 0.28, 0.27, 0.24 and 0.20 of the sun where there is none.
 constexpr float kCornerTrust = 0.5f;
 
 /// Stands for the distance of an occluder where none is met, and of a border that is not reached.
 constexpr float kFarAway = 1e30f;
 
-/// How likely it is, 0..1, that a surface is there so far along an axis of its plane, of which
-/// BorderExtent tells ahead and back.
+/// The likelihood, 0..1, that a surface extends to `way` along an axis of its plane; the other
+/// arguments are the values of BorderExtent ahead and back along this axis.
 HWY_INLINE V is_there(V way, V seen_ahead, V seen_back, V most_ahead, V most_back) {
   const M ahead = way >= set(0);
   const V beyond = hn::Abs(way) - hn::IfThenElse(ahead, seen_ahead, seen_back);
@@ -44,7 +44,8 @@ HWY_INLINE V is_there(V way, V seen_ahead, V seen_back, V most_ahead, V most_bac
   return share * share;
 }
 
-/// Sines over the plane of a surface from which on it hides nothing of a receiver, and all.
+/// Sines of the elevation of a receiver over the tangent plane of a border pixel: below the first,
+/// the surface hides nothing from the receiver; above the second, its likelihood counts in full.
 constexpr float kBehindPlane = 0.02f, kInFrontOfPlane = 0.1f;
 
 /// A ray from each receiver, in those lanes that ask what is in its way.
@@ -62,8 +63,8 @@ HWY_INLINE Ray in_far_pixels(Ray ray) {
   return ray;
 }
 
-/// How likely it is, 0..1, that rays which leave the frame at `leaves` meet the surface of a pixel
-/// at the border beyond it; `ground` is that of PassLanes.
+/// The likelihood, 0..1, that rays which leave the frame at `leaves` meet, beyond the border, the
+/// surface of the border pixel `border`; `ground` is that of PassLanes.
 template <bool kOrthographic>
 HWY_INLINE V meets_beyond(const March& march, const MarchReceiver& p, const Ray& ray, V leaves,
                           const Border& border, bool ground) {
@@ -95,16 +96,16 @@ HWY_INLINE V meets_beyond(const March& march, const MarchReceiver& p, const Ray&
     const V end = border(scene.border_beyond);
     likely = hn::IfThenElseZero(dot(beyond, beyond) <= end * end, likely);
   }
-  // What curves away, as a hill does, has its own surface behind the planes of its border: they
-  // hide what is well in front of them.
+  // A surface that curves away, such as a hill, lies behind the tangent planes of its border
+  // pixels: these hide only receivers that are well in front of them.
   const V distance = hn::Sqrt(dot(to_border, to_border)),
           sine = hn::Neg(dot(to_border, normal)) / distance;
   likely = likely * smoothstep(set(kBehindPlane), set(kInFrontOfPlane), sine);
   return hn::IfThenElseZero(may_meet, likely);
 }
 
-/// A pixel of the other border that rays go to once they have left the frame, `inward_px` from the
-/// corner between both: they pass beside it.
+/// A pixel of the other border in the direction of the rays, `inward_px` from the corner between
+/// the two borders: outside of the frame, the rays pass beside this border.
 HWY_INLINE Border beside_corner(const MarchScene& scene, const MarchReceiver& p, Border border,
                                 float inward_px) {
   const V zero = set(0), right = set(float(scene.layout.width() - 1)),
@@ -126,16 +127,16 @@ HWY_INLINE Border beside_corner(const MarchScene& scene, const MarchReceiver& p,
 struct PassLanes {
   V past;
   float through;
-  /// Whether surfaces that look up go on without end, whatever their extent in the frame
-  /// (border/border_extents.h), and others the less the steeper they are: what is mirrored from
-  /// below the horizon is ground.
+  /// Whether surfaces that face up go on without end, whatever their extent in the frame
+  /// (border/border_extents.h), and other surfaces with a likelihood that falls with their
+  /// steepness: what is mirrored from below the horizon is ground.
   bool ground = false;
 };
 
-/// The share of the rays that pass what is beyond the frame, 0..1: all that end in it, `through` of
-/// those that a surface which goes on is likely to hide, and `past` of the others that leave it
-/// within the radius. `turn` in 0..1 differs from member to member of the pattern. Calls
-/// `on_met(border, likely)` for each surface that goes on.
+/// The share of the rays, 0..1, that nothing beyond the frame blocks: all of the rays that end
+/// inside the frame, `through` of those that a surface which goes on is likely to hide, and at
+/// least `past` of the others that leave the frame within the radius. `turn` in 0..1 differs from
+/// member to member of the pattern. Calls `on_met(border, likely)` for each surface that goes on.
 template <bool kOrthographic, class Met>
 HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const Ray& ray, float turn,
                          const PassLanes& pass, const Met& on_met) {
@@ -170,8 +171,8 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const Ray& 
   return hn::IfThenElse(leaves_frame, hn::MulAdd(hidden, set(pass.through) - past, past), set(1));
 }
 
-/// How far away in the picture a point is that lies on each lane's ray. A ray to a point beside or
-/// behind a perspective camera never ends in the picture.
+/// The distance in the picture to a point on each lane's ray. A ray to a point beside or behind a
+/// perspective camera never ends in the picture.
 template <bool kOrthographic>
 HWY_INLINE V pixels_to(const MarchScene& scene, const MarchReceiver& p, const RayInSlice& ray,
                        const V3& point) {
@@ -206,16 +207,16 @@ HWY_INLINE Ray make_ray(const MarchScene& scene, const MarchReceiver& p, const V
   return ray;
 }
 
-/// What becomes of rays.
+/// What the test of rays finds.
 struct Arrival {
-  V share;        ///< of the ray, 0..1, that sees past all that is known
-  V lost_beyond;  ///< share that only what may be beyond the border takes
-  V blocked_at;   ///< way along it to what the frame shows in its way, or kFarAway
+  V share;        ///< of the ray, 0..1, that nothing blocks
+  V lost_beyond;  ///< share that only surfaces assumed beyond the border block
+  V blocked_at;   ///< way along it to its occluder in the frame, or kFarAway
 };
 
-/// All that may be in the way of rays: the solids of the frame, those of the overview where the
-/// raster is a part of the frame, what other views show, and what goes on beyond the border.
-/// Rays of a block are asked about together, and go over the frame between both calls:
+/// All that may block rays: the solids of the frame, those of the overview where the raster is a
+/// part of the frame, surfaces of other views, and surfaces that go on beyond the border. The rays
+/// of a block are tested together, and run() follows them over the frame:
 ///
 ///   clear(); ask(i, ...) for some vectors; run(); arrival(i, ...) for each of them
 template <bool kOrthographic>
@@ -242,13 +243,13 @@ class Occluders {
     }
   }
 
-  /// As Walk.
+  /// As Walk::run().
   HWY_INLINE void run(bool together) {
     near_.run(together);
     if (far_) far_->run(false);
   }
 
-  /// What of the rays asked about arrives; `pass` and `on_met` are those of open_beyond().
+  /// How much of the rays given to ask() arrives; `pass` and `on_met` are those of open_beyond().
   template <class Met>
   HWY_INLINE Arrival arrival(int i, const MarchReceiver& p, const Ray& ray, const PassLanes& pass,
                              const Met& on_met) const {
@@ -278,7 +279,7 @@ class Occluders {
   }
 
  private:
-  /// As Walk.
+  /// As Walk::blocked_px(), in pixels of the raster.
   HWY_INLINE V blocked_px(int i) const {
     const V near = near_.blocked_px(i);
     if (!far_) return near;

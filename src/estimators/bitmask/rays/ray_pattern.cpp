@@ -24,8 +24,8 @@ int reversed(int rank) {
 
 int rays_to_source(int slices) { return int(std::bit_floor(unsigned(std::max(1, slices / 2)))); }
 
-// Points of Sobol's sequence: of the rays of a pixel, of those of neighbours in the pattern, as of
-// consecutive seeds, any power of two are spread evenly in both coordinates.
+// Points of Sobol's sequence: any power of two of them are spread evenly in both coordinates, among
+// the rays of a pixel, of neighbours in the pattern and of consecutive seeds.
 std::vector<PointsOfSource> points_of(const Source& source, int rays, unsigned seed, RaySet set) {
   std::vector<PointsOfSource> points(static_cast<std::size_t>(rays));
   for (std::size_t block = 0; block < points[0].size(); ++block) {

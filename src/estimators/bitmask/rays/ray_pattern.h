@@ -15,7 +15,7 @@ namespace ssdo {
 using PointsOfSource =
     std::array<std::array<glm::vec3, Interleaving::kPeriod * Interleaving::kPeriod>, 4>;
 
-/// Points of a source that have nothing to do with those of the other set.
+/// Two independent sets of points of a source.
 enum class RaySet { of_light, of_error };
 
 /// Rays of each pixel to each source where it marches so many slices, a power of two: their noise

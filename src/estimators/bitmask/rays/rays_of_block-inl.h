@@ -17,8 +17,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// What is known of each ray; see walk-inl.h. A ray looks for something if its kEnd exceeds its
-/// kFrom.
+/// What is known of each ray; see walk-inl.h. A ray is followed only if its `end` exceeds its
+/// `from`.
 enum class RayNumber {
   x,
   y,  ///< the receiver's pixel
@@ -49,11 +49,11 @@ class RaysOfBlock {
     std::fill_n(numbers_.get(), std::size_t(RayNumber::count) * Block::kPixels, 0.0f);
   }
 
-  /// Of a vector of pixels.
+  /// The numbers of a vector of pixels.
   HWY_INLINE V operator()(RayNumber which, int i) const { return load(first(which) + i); }
   HWY_INLINE void set_at(RayNumber which, int i, V value) { store(value, first(which) + i); }
 
-  /// Of single ones.
+  /// The numbers of single pixels.
   HWY_INLINE V of(RayNumber which, VI at) const { return gather(first(which), at); }
   float& of(RayNumber which, int at) { return first(which)[at]; }
   float of(RayNumber which, int at) const { return first(which)[at]; }

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// How much of what a rough surface mirrors is not blocked: rays to what the facets show that the
-// viewer sees. For specular light, each ray counts by what its facet mirrors of it, channel by
-// channel:
+// How much of what a rough surface mirrors is not blocked: rays go where the facets mirror the
+// viewer's direction. For specular light, the weight of each ray is the part of its light that its
+// facet mirrors, channel by channel:
 //
 //   S = sum_open w_i L(w_i) / sum_all w_i L(w_i),   H = sum_met w_i sent_i / sum_all w_i
 //   w_i = F(w_i) G1(w_i)
 //
-// L is the sky as mirrored_light-inl.h takes it, sent_i the radiance of the surface in the pixel
-// where the ray ends: that of its back if it turns that to the ray. What goes on beyond the border
-// sends what its pixels there do; what only other views show sends nothing. Compiled once for every
-// instruction set.
+// L is the sky as mirrored_light-inl.h has it, sent_i the radiance of the surface in the pixel
+// where the ray ends, of its back if the ray meets the back. Surfaces that go on beyond the border
+// send what their border pixels send; surfaces that only other views show send nothing. Compiled
+// once for every instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/rays/reflection.cpp"
 #include <hwy/foreach_target.h>
@@ -30,9 +30,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// What the facets of each lane mirror to the viewer for one point of the unit square: unit
-/// directions, and how much of it other facets leave; 0 where it lies below the surface. Beside
-/// it the cosine to the facet and the density of the direction.
+/// What a facet of each lane, chosen by one point of the unit square, mirrors to the viewer: the
+/// direction, unit; the share of the light from there that other facets do not block, 0 below the
+/// surface; the cosine to the facet; and the density of the direction.
 struct Mirrored {
   V3 to;
   V share, facing, density;
@@ -64,7 +64,7 @@ HWY_INLINE V3 f0_at(const MirroredLightJob& job, const MarchScene& scene, const 
   return load(colors);
 }
 
-/// What the surfaces send to the receivers that rays meet after `way`.
+/// What the surfaces that rays meet after `way` send to the receivers.
 template <bool kOrthographic>
 HWY_INLINE V3 sent_from(const MirroredLightJob& job, const MarchScene& scene,
                         const MarchReceiver& p, const V3& to, V way) {
@@ -176,8 +176,8 @@ HWY_INLINE Ray ray_of(const MarchScene& scene, const MarchReceiver& p, const Mir
                                  hn::And(p.valid, m.share > set(0)));
 }
 
-/// The k-th ray of all pixels of a block goes over the frame together: one in so many parts of what
-/// facets mirror, as points of Sobol's sequence are, so that these rays are near to each other.
+/// The k-th rays of all pixels of a block are followed together: as points of Sobol's sequence,
+/// they lie in the same part, one in so many, of what facets mirror, and so near to each other.
 template <bool kOrthographic>
 void reflection(const ReflectionJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;

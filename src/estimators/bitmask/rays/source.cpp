@@ -3,9 +3,10 @@
 // The light of a source, by rays from each pixel to points of the source: one ray per pixel with
 // few slices (rays_to_source()). Compiled once for every instruction set.
 //
-// All pixels have rays of their own. Where those of some of them decide for their neighbours, thin
-// shadows are missed: with one in four, those of two pixels were not there in a third of the frames
-// of a slow pan, and a test that is sure of what lies between them costs as much as the rays.
+// Every pixel has its own rays. If the rays of some pixels decide for their neighbours, thin
+// shadows are missed: with the rays of one pixel in four, shadows two pixels wide were missing in a
+// third of the frames of a slow pan, and a safe test of what lies between rays costs as much as the
+// rays.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/rays/source.cpp"
 #include <hwy/foreach_target.h>
@@ -21,8 +22,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// The points that the rays of a vector of pixels go to, `aside` members away from its own. Lanes
-/// are in blocks beside each other.
+/// The target points of the rays of a vector of pixels, from the member `aside` places after its
+/// own. Neighbouring lanes are in neighbouring blocks of the pattern.
 HWY_INLINE V3 points_of(const MarchScene& scene, const PointsOfSource& points, const Place& place,
                         int aside) {
   const std::size_t member = std::size_t(member_at(scene, place) + aside) % points.front().size();
@@ -33,8 +34,8 @@ HWY_INLINE V3 points_of(const MarchScene& scene, const PointsOfSource& points, c
   return {hn::OddEven(odd.x, even.x), hn::OddEven(odd.y, even.y), hn::OddEven(odd.z, even.z)};
 }
 
-/// The points that the rays of a vector of pixels go to. Where that is below the horizon of a lane,
-/// as part of a source may be, another one.
+/// The target points of the rays of a vector of pixels. Where such a point is below the horizon of
+/// a lane, as part of a source may be, it is replaced by the point of another member.
 HWY_INLINE SourcePoints points_above(const SourceJob& job, const PointsOfSource& points,
                                      const MarchReceiver& p) {
   constexpr int kTries = 8, kApart = 9;  // members that lie apart in both directions
@@ -55,8 +56,9 @@ HWY_INLINE SourcePoints points_above(const SourceJob& job, const PointsOfSource&
   return found;
 }
 
-/// Width in pixels of the penumbra that something throws at this distance, where the source is
-/// `source_distance` away: half of the way to it, and the penumbra is as wide as the source.
+/// The width in pixels of the penumbra of an occluder at this distance, where the source is
+/// `source_distance` away: an occluder half way to the source throws a penumbra as wide as the
+/// source.
 template <bool kOrthographic>
 HWY_INLINE V penumbra_px(const SourceJob& job, const MarchReceiver& p, V distance,
                          V source_distance) {
@@ -77,8 +79,8 @@ HWY_INLINE PassLanes pass_of(const SourceJob& job, const Place& place) {
 /// What the rays of the pixels of a block have found, by Block::first_of().
 struct BlockSums {
   alignas(64) float weight[Block::kPixels];    ///< the light of the rays
-  alignas(64) float share[Block::kPixels];     ///< that of the rays that arrive
-  alignas(64) float width_px[Block::kPixels];  ///< of penumbras, by the light of the others
+  alignas(64) float share[Block::kPixels];     ///< the light of the rays that arrive
+  alignas(64) float width_px[Block::kPixels];  ///< of penumbras, weighted by the blocked light
 
   HWY_INLINE void clear(int i) {
     for (float* sum : {weight, share, width_px}) store(set(0), sum + i);
@@ -104,7 +106,8 @@ HWY_INLINE Ray ray_of(const MarchScene& scene, const MarchReceiver& p, const Sou
   return make_ray<kOrthographic>(scene, p, rays.to(i), rays.length(i), rays.light(i) > set(0));
 }
 
-/// The points whose light is found, of the pixels that show `shown`.
+/// The points whose light is computed: those that the pixels show or, with `unseen_of`, the points
+/// on their unseen sides.
 HWY_INLINE MarchReceiver lit_point(const SourceJob& job, const MarchReceiver& shown) {
   MarchReceiver p = shown;
   if (!job.unseen_of) return p;
@@ -114,7 +117,8 @@ HWY_INLINE MarchReceiver lit_point(const SourceJob& job, const MarchReceiver& sh
   return p;
 }
 
-/// Where their rays in the direction `to` begin: of unseen sides, past their own solids.
+/// The starts of rays from these points in the direction `to`: on unseen sides, past their own
+/// solids.
 HWY_INLINE MarchReceiver start_of_ray(const SourceJob& job, const MarchReceiver& shown,
                                       const V3& to) {
   const MarchScene& scene = job.march.scene;

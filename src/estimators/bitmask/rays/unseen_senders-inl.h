@@ -30,12 +30,12 @@ struct UnseenSenders {
 
   bool is_full() const { return count == kMost; }
 
-  /// Solids of pixels that are `way` from the receivers. A ray at the angle t to V meets the view
-  /// ray of the point (s, v) of a slice after
+  /// Adds solids of pixels that are `way` from the receivers. A ray at the angle t to V meets the
+  /// view ray of the point (s, v) of a slice after
   ///
   ///   s / ((s / L) cos t + (1 - v / L) sin t),   L the distance to the viewer
   ///
-  /// `behind`: they lie somewhere behind what these show.
+  /// `behind`: the solids lie somewhere behind what these pixels show.
   template <bool kOrthographic>
   HWY_INLINE void add(const MarchReceiver& p, const SideFrame& side, const V3& way, bool behind,
                       VU in, const V3& radiance) {

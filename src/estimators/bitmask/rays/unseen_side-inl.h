@@ -38,8 +38,8 @@ HWY_INLINE UnseenSide unseen_side(const MarchScene& scene, const MarchReceiver& 
 }
 
 /// `p` moved to a point in front of the camera from which a ray leaves in the direction `to`, unit.
-/// The plane that bounds what it meets (Walk) is one through the point that the ray and the
-/// direction to the viewer are equally far above.
+/// The plane that bounds what the ray meets (Walk) passes through the point; the ray and the
+/// direction to the viewer have the same angle to it.
 HWY_INLINE MarchReceiver moved_to(const MarchScene& scene, MarchReceiver p, const V3& position,
                                   const V3& to) {
   const V one = set(1), zero = set(0);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The way of a ray over the frame, for a vector of pixels, each with a direction of its own. No
-// solid of a pixel or more is missed: rays visit every pixel that they cross, but for those of
-// cells (bitmask/rays/depth_bounds.h) whose solids all lie behind the ray, in front of it or below
-// the receiver's tangent plane. Where a cell may hold something in the way they look at smaller
-// ones (hierarchical depth: Greene, Kass and Miller, 1993).
+// The way of a ray over the frame, for a vector of pixels, each with its own direction. No solid as
+// large as a pixel is missed: rays visit every pixel that they cross, except in cells
+// (bitmask/rays/depth_bounds.h) whose solids all lie behind the ray, in front of it or below the
+// receiver's tangent plane. Where a cell may hold a solid in the way, rays visit smaller cells in
+// it (hierarchical depth: Greene, Kass and Miller, 1993).
 //
-// With t the distance in the picture, everything here is linear. e is the height above the
-// receiver's tangent plane, measured along the view ray of the place and divided by its depth (by 1
-// where the camera is orthographic):
+// With t the distance in the picture, everything here is linear. e is the height of a point above
+// the receiver's tangent plane, measured along the receiver's V and divided by the depth of the
+// point (by 1 where the camera is orthographic):
 //
 //   e = a n + b + b_x dx + b_y dy     of a point of nearness n, (dx, dy) pixels away
 //   e = g t                           of the ray, g > 0
@@ -29,13 +29,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// Rays on their way over the frame, one in each lane. A ray that has met something or has left the
-/// frame gives its lane to the next that waits: rays differ in length, and lanes that wait for the
-/// longest of a vector would be idle for half of the time.
+/// Rays on their way over the frame, one in each lane. A ray that has met a solid or has left the
+/// frame gives its lane to the next waiting ray: rays differ in length, and lanes that waited for
+/// the longest ray of a vector would be idle for half of the time.
 template <bool kOrthographic>
 class Walk {
  public:
-  /// The rays go from one distance in the picture to another.
+  /// Rays are followed from `from_px` to `until_px`, distances in the picture.
   Walk(const March& march, const std::vector<DepthBounds>& bounds, float from_px = 0,
        float until_px = 1e9f)
       : march_(march), bounds_(bounds), from_px_(from_px), until_px_(until_px) {
@@ -70,14 +70,14 @@ class Walk {
           hn::MulAdd(a, ray.nearing, hn::MulAdd(p.rise_x, ray.step_x, p.rise_y * ray.step_y)));
     write(RayNumber::across_x, side.across.x), write(RayNumber::across_y, side.across.y);
     write(RayNumber::slope, side.slope);
-    // Their own pixels are not in the way.
+    // The pixel of a receiver does not block its ray.
     const V zero = set(0),
             leaves = hn::Min(Axis(ray.step_x).exit(zero, zero), Axis(ray.step_y).exit(zero, zero));
     write(RayNumber::from, hn::Max(leaves + set(kPastBorder), set(from_px_)));
     write(RayNumber::end, hn::IfThenElseZero(hn::And(looks, moves), end));
   }
 
-  /// Sends all rays that have been put. `together`: those of neighbours go about the same way.
+  /// Follows all rays that have been put. `together`: rays of neighbours have similar directions.
   HWY_INLINE void run(bool together) {
     if (together) shorten_ways(march_.scene, bounds_, rays_);
     const D d;
@@ -96,12 +96,12 @@ class Walk {
         looks = fill(w, looks, next);
       if (!any(looks)) return;
       const V at = hn::IfThenElseZero(looks, w.t);
-      // Beyond the frame only by rounding.
+      // Rounding alone could lead beyond the frame.
       const VI at_x = hn::Clamp(w.x + hn::NearestInt(hn::MulAdd(at, w.step_x, w.aside_x)), left,
                                 right),
                at_y = hn::Clamp(w.y + hn::NearestInt(hn::MulAdd(at, w.step_y, w.aside_y)), top,
                                 bottom);
-      // To larger cells where the ray has come into another of them.
+      // Takes the next larger cells where the ray has entered another cell of that size.
       const VI larger = hn::IfThenElse(w.size == set_int(0), set_int(DepthBounds::kSmallest),
                                        hn::Min(w.size + one, set_int(DepthBounds::kLargest)));
       const auto moved = hn::Or(at_x ^ w.last_x, at_y ^ w.last_y) >> larger;
@@ -135,20 +135,21 @@ class Walk {
     }
   }
 
-  /// The distance in the picture of what is in the way of rays; negative: they see past what the
-  /// frame shows.
+  /// The distance in the picture at which each ray is blocked; negative: nothing in the frame
+  /// blocks it.
   HWY_INLINE V blocked_px(int i) const { return rays_(RayNumber::blocked_px, i); }
 
  private:
-  /// Past the border of a cell, in pixels.
+  /// How far a ray steps past the border of a cell, in pixels.
   static constexpr float kPastBorder = 0.01f;
 
-  /// With so few lanes busy it pays to fill the others.
+  /// At most this many lanes are busy when the others are given new rays.
   static constexpr int kFewBusy = kLanes * 3 / 4;
 
-  /// A surface is known in the middles of pixels, and its tangent plane from those of neighbours. A
-  /// front less than kBendPx away may be the same surface, bent in between: it is in the way only
-  /// if it rises over the ray by more than a slope, kBend at the receiver and 0 at kBendPx.
+  /// A surface is known only at the middles of pixels, and its tangent plane from the middles of
+  /// neighbours. A front less than kBendPx away may be the receiver's surface, bent in between: it
+  /// blocks a ray only if it rises above the ray by more than a slope, which falls from kBend at
+  /// the receiver to 0 at kBendPx.
   static constexpr float kBend = 0.1f, kBendPx = 8;
 
   /// The way along an axis of the picture.
@@ -162,7 +163,7 @@ class Walk {
       ahead = hn::IfThenElseZero(per_step > set(0), set(1));
       beside = ahead - set(0.5f);
     }
-    /// Where the ray leaves cells, as t; `low` is the middle of their first pixel.
+    /// The t at which the ray leaves cells; `low` is the middle of the first pixel of a cell.
     HWY_INLINE V exit(V low, V extent) const {
       return hn::MulAdd(extent, ahead, low + beside) * per_step;
     }
@@ -172,11 +173,11 @@ class Walk {
   struct Way {
     VI place;            ///< in the block
     VI x, y;             ///< the receiver's pixel in the grid of cells
-    V aside_x, aside_y;  ///< from its middle to the receiver
+    V aside_x, aside_y;  ///< from the pixel's middle to the receiver
     V step_x, step_y, a, b, rise_x, rise_y, growth, end;
     Axis along_x, along_y;
-    V t;                      ///< how far it has come
-    VI size, last_x, last_y;  ///< of the cell that it has come to, and the pixel
+    V t;                      ///< how far the ray has come
+    VI size, last_x, last_y;  ///< size of the cell that the ray is in; its pixel
   };
 
   /// Gives idle lanes the rays from `next` on; returns the lanes that are busy then.
@@ -226,8 +227,8 @@ class Walk {
       if (is_blocked[lane]) rays_.of(RayNumber::blocked_px, places[lane]) = t[lane];
   }
 
-  /// Whether something of the cells may be in the way from where rays are to `to`. The middles of
-  /// cells are (dx, dy) away and their outermost pixels `half` from those.
+  /// Whether solids in the cells may block the rays between their present t and `to`. The middles
+  /// of the cells are (dx, dy) away, and their outermost pixels `half` from these middles.
   HWY_INLINE M may_meet(const Way& w, M looks, VI column, VI row, V dx, V dy, V half, V to) const {
     const D d;
     const DI di;
@@ -265,8 +266,8 @@ class Walk {
     return hn::MulAdd(dx, w.rise_x, hn::MulAdd(dy, w.rise_y, w.b));
   }
 
-  /// Which lanes of `looks` have a solid of their pixel in the way. The pixel is (dx, dy) away, and
-  /// (x, y) from the first one of the grid of cells.
+  /// The lanes of `looks` in which a solid of the ray's pixel blocks the ray. The pixel is (dx, dy)
+  /// away from the receiver, and (x, y) from the first pixel of the grid of cells.
   HWY_INLINE M is_blocked(const Way& w, V dx, V dy, VI x, VI y, M looks) const {
     constexpr int kSmallest = DepthBounds::kSmallest;
     const VI in_cell = set_int((1 << kSmallest) - 1);
@@ -274,12 +275,12 @@ class Walk {
         hn::ShiftRight<kSmallest>(y) * set_int(bounds_[0].columns()) + hn::ShiftRight<kSmallest>(x);
     const VI pixel = hn::ShiftLeft<2 * kSmallest>(cell) +
                      hn::ShiftLeft<kSmallest>(hn::And(y, in_cell)) + hn::And(x, in_cell);
-    // Two pixels have four numbers.
+    // One gather reads the four numbers of two pixels.
     const VI one = set_int(1), index = hn::IfThenElseZero(hn::RebindMask(DI(), looks),
                                                           hn::ShiftLeft<1>(hn::AndNot(one, pixel)));
     const M is_second = hn::RebindMask(D(), hn::And(pixel, one) == one);
-    // A pixel stands for its row or column of the ray if that passes nearest to its middle; those
-    // that it only touches would widen everything by a part of a pixel.
+    // A pixel counts only if the ray passes nearest to its middle in its row or column: pixels that
+    // the ray only touches would widen all solids by a part of a pixel.
     const V aside = hn::Abs(dx * w.step_y - dy * w.step_x);
     looks = hn::And(looks, aside <= set(0.5f) * hn::Max(hn::Abs(w.step_x), hn::Abs(w.step_y)));
     const V t = hn::MulAdd(dx, w.step_x, dy * w.step_y);

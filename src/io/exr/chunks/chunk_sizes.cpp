@@ -38,7 +38,7 @@ std::size_t pixel_bytes(const ExrPart& part, const Window& chunk) {
   return bytes;
 }
 
-/// `most` for bytes that are damaged or inflate to more: OpenEXR has messages for them.
+/// The inflated size; `most` if `packed` is damaged or exceeds it, which OpenEXR reports itself.
 std::size_t inflated_bytes(Bytes packed, std::size_t most) {
   const auto inflated = std::make_unique_for_overwrite<std::byte[]>(most);
   const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> inflate(
@@ -62,9 +62,9 @@ std::size_t bytes_of_runs(Bytes packed) {
   return bytes;
 }
 
-/// Whether a chunk of DWAA or DWAB holds its pixels: all channels that are deflated, stored as
-/// runs, or transformed in blocks of 8 x 8. OpenEXR takes what is there of each, and does not
-/// compare it with the pixels.
+/// Whether a chunk of DWAA or DWAB holds all its pixels, of the channels that are deflated, stored
+/// as runs, or transformed in blocks of 8 x 8. OpenEXR decodes as much of each as there is, and
+/// does not compare this with the number of pixels.
 bool holds_dwa_pixels(const ExrPart& part, const Window& chunk, Bytes packed) {
   const auto dwa = read_dwa_chunk(packed);
   if (!dwa) return false;
@@ -90,8 +90,8 @@ bool holds_dwa_pixels(const ExrPart& part, const Window& chunk, Bytes packed) {
           (!dwa->deflated.empty() && inflated_bytes(dwa->deflated, deflated) == deflated));
 }
 
-/// What the bytes of a chunk unpack to, as far as OpenEXR does not check that itself: it has an
-/// error for PXR24 and B44, and decodes PIZ to as many values as there are pixels.
+/// The unpacked size of a chunk, or `most` where OpenEXR checks it: PXR24 and B44 give an error,
+/// and PIZ is decoded to as many values as there are pixels.
 std::size_t unpacked_bytes(const ExrPart& part, const Window& chunk, Bytes packed,
                            std::size_t most) {
   if (packed.empty() || packed.size() >= most) return packed.size();
@@ -111,8 +111,8 @@ std::size_t unpacked_bytes(const ExrPart& part, const Window& chunk, Bytes packe
   }
 }
 
-/// The largest chunk, or table of counts, that OpenEXR takes, whose decoders count bytes in an int.
-/// In a tile that the image fills in part, the bytes of a whole one may be packed.
+/// The most bytes of a chunk, or of a table of counts: those of a whole tile, even one that the
+/// image fills in part, and no more than an int, in which OpenEXR's decoders count bytes.
 std::size_t most_packed(const ExrPart& part) {
   constexpr double kMost = std::numeric_limits<std::int32_t>::max();
   const double pixel = part.deep ? sizeof(std::uint32_t) : bytes_per_pixel(part);
@@ -144,7 +144,7 @@ void check_chunk_sizes(const ExrFile& file, const ExrPart& part, const Window& r
       errors[i] = std::current_exception();
     }
   });
-  // That of the first chunk, whichever thread comes first.
+  // The error of the first damaged chunk, whichever thread comes first.
   for (const std::exception_ptr& error : errors) {
     if (error) std::rethrow_exception(error);
   }

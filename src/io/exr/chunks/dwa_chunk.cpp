@@ -23,7 +23,7 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
-/// Those of chunks that hold none.
+/// The rules of chunks that hold none.
 std::vector<DwaRule> rules_before_version_2() {
   std::vector<DwaRule> rules;
   for (const char* name : {"r", "red", "g", "grn", "green", "b", "blu", "blue", "y", "by", "ry"}) {

@@ -10,20 +10,20 @@
 
 #include "io/exr/file/exr_parts.h"
 
-// A chunk of DWAA or DWAB begins with eleven numbers of eight bytes, little endian: its version; of
-// the channels that are deflated, the bytes and what they are packed to; the packed bytes of the
-// coefficients of channels that are transformed, but for the first of each block of 8 x 8, of these
-// first ones, and of channels that are stored as runs; the bytes of runs, and of the channels that
-// they hold; the numbers of coefficients and of first ones; and how coefficients are packed. From
-// version 2 on rules follow that say which channel is which, after the bytes they take. Then comes
-// what is deflated. (OpenEXR 3.1, ImfDwaCompressor.h, DataSizesSingle; ImfDwaCompressor.cpp.)
+// A chunk of DWAA or DWAB begins with eleven numbers of eight bytes, little endian: its version;
+// the bytes of the deflated channels, before and after packing; the packed bytes of the AC
+// coefficients, of the DC coefficients (the first of each block of 8 x 8), and of the runs; the
+// bytes of the runs when unpacked, and of the channels that they hold; the numbers of AC and of DC
+// coefficients; and how the AC ones are packed. From version 2 on, the size of a list of rules and
+// the rules follow, which say how each channel is stored. Then come the deflated channels. (OpenEXR
+// 3.1, ImfDwaCompressor.h, DataSizesSingle; ImfDwaCompressor.cpp.)
 
 namespace ssdo {
 
 /// How a channel is stored, numbered as in files.
 enum class DwaScheme { deflated, transformed, runs };
 
-/// Says so of channels by the last part of their name, and their type.
+/// Gives the scheme of channels by the last part of their name and by their type.
 struct DwaRule {
   std::string suffix;
   Imf::PixelType type;

@@ -72,7 +72,7 @@ class Tiles {
   Imf::TiledInputPart tiles_;
 };
 
-/// Where `rows` begin or end within tiles, these go through memory of their own.
+/// Where `rows` begin or end within tiles, whole tiles go through a buffer of their own.
 void read_tiles(const ExrFile& file, const ExrPart& part, const Window& rows,
                 std::span<const ChannelRows> channels, const MissingChunks& missing) {
   Tiles tiles(file, part);
@@ -88,7 +88,7 @@ void read_tiles(const ExrFile& file, const ExrPart& part, const Window& rows,
   const auto above = std::size_t(rows.y0 - whole.y0);
   for (ChannelRows& to : to_planes) {
     auto& plane = planes.emplace_back(std::size_t(whole.height()) * line_bytes(to));
-    // What no tile overwrites stays as it was.
+    // Pixels of missing tiles keep their present values.
     std::memcpy(&plane[above * line_bytes(to)], to.pixels,
                 std::size_t(rows.height()) * line_bytes(to));
     to.pixels = plane.data();
@@ -124,8 +124,8 @@ bool can_read(const ExrFile& file, const ExrPart& part, const PackedChunks& chun
     return true;
   } catch (const std::exception& error) {
     throw_unless_of_file(error);
-    // After an IoExc the next chunk can be read: OpenEXR took the bytes and could not decode them.
-    // To recover is to open the part again, and takes as long as it has chunks.
+    // After an IoExc no recovery is needed: OpenEXR read the bytes and could not decode them. A
+    // recovery opens the part again; its time grows with the number of chunks.
     const bool asked = dynamic_cast<const Iex::BaseExc*>(&error);
     if (asked && !dynamic_cast<const Iex::IoExc*>(&error)) file.recover();
     return false;
@@ -135,7 +135,7 @@ bool can_read(const ExrFile& file, const ExrPart& part, const PackedChunks& chun
 }  // namespace
 
 MissingChunks find_missing_chunks(const ExrFile& file, const ExrPart& part) {
-  if (!Imf::isSupportedType(part.header.type())) return {};  // which nothing is read of
+  if (!Imf::isSupportedType(part.header.type())) return {};  // never read
   const PackedChunks chunks(file, part);
   MissingChunks missing{{}, chunks.count()};
   for (std::size_t chunk = 0; chunk < chunks.count(); ++chunk)

@@ -67,7 +67,7 @@ std::vector<std::byte> PackedChunks::read(std::size_t chunk, std::size_t most) c
 void PackedChunks::check_smaller_levels(std::size_t most) const {
   for (std::size_t i = count(); i < places_.size(); ++i) {
     const ChunkHead head = places_[i] == 0 ? ChunkHead() : tables_.head_at(places_[i]);
-    if (head.part == &part_) check_size(head, most);  // all others OpenEXR refuses itself
+    if (head.part == &part_) check_size(head, most);  // OpenEXR refuses all others
   }
 }
 
@@ -78,7 +78,7 @@ void PackedChunks::check_size(const ChunkHead& head, std::size_t most) const {
   if (!head.has_sizes || head.place > size_ || head.bytes > size_ - head.place ||
       head.samples > size_ - head.place - head.bytes)
     throw std::runtime_error("a chunk is cut short");
-  // OpenEXR counts them in an int, the head of a deep chunk with them.
+  // OpenEXR counts the bytes of a deep chunk, including its head, in an int.
   constexpr std::size_t kHead = 40, kMost = std::numeric_limits<std::int32_t>::max() - kHead;
   if (head.samples > 0 && head.bytes + head.samples > kMost)
     throw std::runtime_error("a chunk is larger than 2 GiB");
@@ -91,7 +91,7 @@ void PackedChunks::add_place(std::uint64_t found) {
   if (!head.is_full_resolution()) return places_.push_back(found);
   const std::int64_t row =
       is_tiled(part_) ? head.y : (std::int64_t(head.y) - part_.data_window.y0) / height_;
-  // The file may have changed since.
+  // The file may have changed since the search.
   if (head.x < 0 || head.x >= columns_ || row < 0 || row >= rows_) return;
   std::uint64_t& place = places_[std::size_t(row) * std::size_t(columns_) + std::size_t(head.x)];
   place = place == 0 || place == found ? found : kNowhere;
@@ -109,8 +109,8 @@ bool PackedChunks::is_of(const ChunkHead& head, std::size_t chunk) const {
          head.y == (is_tiled(part_) ? row : window(chunk).y0);
 }
 
-/// In a file of one part OpenEXR does not look up where the chunk of scanlines is that comes after
-/// the one it has just read: it takes what stands next in the file.
+/// In a file of one part, OpenEXR does not look up the place of the next chunk of scanlines: after
+/// one chunk it reads whatever follows in the file.
 /// Source: OpenEXR 3.1, ImfScanLineInputFile.cpp and ImfDeepScanLineInputFile.cpp, readPixelData().
 void PackedChunks::check_is_next(std::size_t chunk, std::size_t most) const {
   if (is_tiled(part_) || Imf::isMultiPart(file_.file().version())) return;

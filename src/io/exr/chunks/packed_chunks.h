@@ -11,7 +11,7 @@
 namespace ssdo {
 
 /// The chunks of a part as they are packed in the file: scanlines from the top, or the tiles of the
-/// full resolution row by row. OpenEXR gives those of tiles in the order of the file only.
+/// full resolution row by row. OpenEXR gives chunks of tiles in the order of the file only.
 /// Source: OpenEXR file layout, "Chunk Offset Table" and "Pixel data".
 class PackedChunks {
  public:

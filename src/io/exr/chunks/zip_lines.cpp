@@ -54,7 +54,7 @@ struct ChunkBytes {
   std::size_t count;
   bool split;
 
-  /// Those from `begin` on, which is even, as `length` is.
+  /// Copies `length` bytes from `begin` on; both are even.
   void copy(std::size_t begin, std::size_t length, std::byte* to) const {
     if (!split) {
       std::memcpy(to, bytes + begin, length);
@@ -102,7 +102,7 @@ class ZipLines {
     try {
       packed = chunks_.read(chunk, size);
     } catch (const Error&) {
-      throw;  // of the disk, not of the file
+      throw;  // the disk failed, not the file
     } catch (const std::runtime_error&) {
       return false;
     }
@@ -147,7 +147,7 @@ class ZipLines {
   std::vector<Wanted> wanted_;
 };
 
-/// Whether chunks are those of io/exr/chunks/zip_chunk.h, of values that need no other conversion.
+/// Whether chunks are as in io/exr/chunks/zip_chunk.h, and at most half has to become float.
 bool is_readable(const ExrPart& part, std::span<const ChannelRows> channels) {
   return is_zip(part.header.compression()) && !part.deep && !is_tiled(part) &&
          std::all_of(part.channels.begin(), part.channels.end(),

@@ -17,14 +17,14 @@ namespace {
 
 constexpr std::uint32_t kMultiPartFlag = 0x1000;
 constexpr std::size_t kLongestName = 255;
-constexpr std::int64_t kNoFile = std::int64_t(1) << 62;  ///< bytes that none has
+constexpr std::int64_t kNoFile = std::int64_t(1) << 62;  ///< more bytes than any file
 
 /// Most bytes of the list of channels. Each channel takes 20 bytes or more in the file and many
 /// times that in memory; files of renderers have some hundreds of channels.
 constexpr std::int32_t kLargestChannelList = 1 << 18;
 
-/// Types whose values have a size of their own, in bytes. OpenEXR reads as many, whatever size the
-/// header says, and takes what is left for the next attribute.
+/// Types whose values have a fixed size, in bytes. OpenEXR reads that many, whatever size the
+/// header says, and takes the remaining bytes for the next attribute.
 struct FixedSize {
   std::string_view type;
   std::int32_t bytes;
@@ -72,7 +72,7 @@ std::string read_name(std::istream& in) {
   return name;
 }
 
-/// The bytes that OpenEXR takes of `in` for a value of this type, or at least tries to.
+/// The bytes that OpenEXR reads, or tries to read, from `in` for a value of this type.
 std::int64_t bytes_taken(std::istream& in, std::string_view type, std::int32_t size) {
   const auto* fixed = std::ranges::find(kFixedSizes, type, &FixedSize::type);
   if (fixed != std::end(kFixedSizes)) return fixed->bytes;
@@ -112,7 +112,7 @@ std::uint64_t check_attribute_sizes(const InputFile& file) {
   const bool multi_part = std::uint32_t(read_int(in)) & kMultiPartFlag;
   for (std::string before = "magic number and flags"; in;) {
     const std::string name = read_name(in);
-    // An empty name ends a header, and in a file of parts a second one all headers.
+    // An empty name ends a header; a second one ends all headers of a multi-part file.
     if (name.empty() && (!multi_part || before.empty())) return std::uint64_t(in.tellg());
     before = name;
     if (name.empty()) continue;

@@ -67,7 +67,7 @@ bool is_mip_mapped(const ExrPart& part) {
   return part.header.tileDescription().mode == Imf::MIPMAP_LEVELS;
 }
 
-/// The largest size of a flat chunk that OpenEXR does not take for a negative one.
+/// The largest size of a flat chunk; OpenEXR reads larger ones as negative numbers.
 constexpr std::uint64_t kMostBytes = std::numeric_limits<std::int32_t>::max();
 
 }  // namespace
@@ -121,7 +121,7 @@ ChunkHead ChunkTables::head_at(std::uint64_t place) const {
     head.bytes = numbers.next<std::uint32_t>();
   }
   head.has_sizes = numbers.are_all();
-  // Behind the sizes of a deep chunk stands that of its samples when unpacked.
+  // The sizes of a deep chunk are followed by the size of its samples when unpacked.
   head.place = place + numbers.taken() + (head.part->deep ? sizeof(std::uint64_t) : 0);
   return head;
 }
@@ -152,8 +152,8 @@ ChunkTables::OfPart ChunkTables::describe(const ExrPart& part, std::uint64_t beg
   return of;
 }
 
-/// Goes as far as OpenEXR does: to the first chunk that its part does not have, or whose sizes are
-/// none. That chunk's place counts where the part has it.
+/// Stops where OpenEXR does: at a chunk that its part does not have, which is left out, or at a
+/// chunk without valid sizes, which is still recorded.
 void ChunkTables::search(std::uint64_t first) {
   std::uint64_t chunks = 0;
   for (const OfPart& part : parts_) chunks += part.count;
@@ -167,8 +167,8 @@ void ChunkTables::search(std::uint64_t first) {
   }
 }
 
-/// Whether the part has such a scanline or tile. OpenEXR takes the rows of mip maps for those of
-/// the level that the columns have.
+/// Whether the part has such a scanline or tile. For the rows of a mip map, OpenEXR uses the level
+/// of the columns.
 bool ChunkTables::has_chunk(const ChunkHead& head) const {
   const ExrPart& part = *head.part;
   if (!is_tiled(part)) return head.y >= part.data_window.y0 && head.y < part.data_window.y1;

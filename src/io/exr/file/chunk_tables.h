@@ -10,8 +10,8 @@
 
 namespace ssdo {
 
-/// What stands before the bytes of a chunk. OpenEXR takes its place as soon as it has read where in
-/// the part it belongs.
+/// The numbers before the bytes of a chunk. A search of OpenEXR records the chunk as soon as it has
+/// read where in the part the chunk belongs.
 struct ChunkHead {
   const ExrPart* part = nullptr;  ///< none: there is no chunk
   std::int32_t x = 0, y = 0;      ///< the column and row of a tile, or the first scanline
@@ -25,8 +25,8 @@ struct ChunkHead {
   bool is_full_resolution() const { return x_level == 0 && y_level == 0; }
 };
 
-/// The tables of where the chunks of all parts begin, which follow the headers. Where a place is
-/// missing in any of them, OpenEXR looks for the chunks of all parts: it goes from one to the next.
+/// The tables of where the chunks of all parts begin, which follow the headers. If any table lacks
+/// a place, OpenEXR searches for the chunks of all parts, going from one chunk to the next.
 /// Source: OpenEXR file layout, "Chunk Offset Table"; OpenEXR 3.1, ImfMultiPartInputFile.cpp,
 /// chunkOffsetReconstruction().
 class ChunkTables {
@@ -36,15 +36,15 @@ class ChunkTables {
   ChunkTables(const InputFile& input, const Imf::MultiPartInputFile& file,
               std::span<const ExrPart> all, std::uint64_t begin);
 
-  /// Whether the table of a part has a place for each chunk, as partComplete() of OpenEXR 3.1 says:
-  /// that of 3.4 goes by what it has found.
+  /// Whether the table of a part has a place for each chunk, as partComplete() of OpenEXR 3.1 says;
+  /// in 3.4 that function also counts the chunks that a search has found.
   bool is_complete(const ExrPart& part) const;
 
   /// What the table of a part says: full resolution first, 0 for a chunk that is missing.
   std::vector<std::uint64_t> places(const ExrPart& part) const;
 
-  /// Where OpenEXR finds chunks of a part when it looks for them, in this order: of two for the
-  /// same scanline or tile it takes the last.
+  /// The places where a search of OpenEXR finds chunks of a part, in this order; of two places for
+  /// the same scanline or tile, OpenEXR takes the last.
   std::span<const std::uint64_t> found(const ExrPart& part) const { return of(part).found; }
 
   ChunkHead head_at(std::uint64_t place) const;

@@ -59,11 +59,11 @@ std::unique_ptr<InputFile> open_exr(const fs::path& file) {
   return opened;
 }
 
-/// What OpenEXR 3.4 says of a file beside its exceptions, which do not tell why one cannot be opened.
+/// The message of OpenEXR 3.4 on why a file cannot be opened, which its exceptions do not say.
 /// Empty with earlier versions.
 thread_local std::string reported;
 
-/// Takes what OpenEXR 3.4 would print.
+/// Opens the file, and keeps in `reported` what OpenEXR 3.4 would print.
 std::unique_ptr<Imf::MultiPartInputFile> open_parts(ExrInputStream& stream) {
 #if __has_include(<ImfContextInit.h>)
   reported.clear();
@@ -103,7 +103,7 @@ const ChunkTables& ExrFile::chunk_tables() const {
 
 void ExrFile::recover() const {
   stream_->clear();
-  file_->flushPartCache();  // which holds where the stream stood
+  file_->flushPartCache();  // its parts remember the old place in the stream
 }
 
 bool begins_as_exr(const fs::path& file) {

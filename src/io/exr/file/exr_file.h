@@ -69,7 +69,7 @@ class ExrFile {
 /// Whether `file` is a plain file that begins as an EXR does, whatever its name.
 bool begins_as_exr(const std::filesystem::path& file);
 
-/// Throws `error` itself where nothing is wrong with the file: of memory, or of its disk.
+/// Throws `error` itself where the file is not at fault: errors of memory and of the disk.
 void throw_unless_of_file(const std::exception& error);
 
 /// Throws ExitCode::input for a part whose pixels could not be read.

@@ -18,8 +18,8 @@
 namespace ssdo {
 namespace {
 
-/// What all channels of a row of tiles take, of which OpenEXR makes room for all, also where the
-/// image is smaller than a tile. 0 for scanlines.
+/// The bytes of all channels of a row of tiles, which OpenEXR allocates even where the image is
+/// smaller than a tile. 0 for scanlines.
 double tile_row_bytes(const ExrPart& part) {
   if (!is_tiled(part)) return 0;
   const Imf::TileDescription& tiles = part.header.tileDescription();
@@ -27,8 +27,8 @@ double tile_row_bytes(const ExrPart& part) {
          double(tiles.ySize);
 }
 
-/// The lines of a chunk by what OpenEXR says of a compression: earlier releases do not tell, and
-/// have none that this is asked for, but those of one line.
+/// The lines of a chunk, as OpenEXR reports them for a compression. Earlier releases report none,
+/// and the only compressions of theirs that come here have one line.
 template <class Compression>
 int lines_as_told(Compression compression) {
   if constexpr (requires { getCompressionNumScanlines(compression); })
@@ -79,7 +79,7 @@ ExrPart describe_part(const Imf::MultiPartInputFile& file, int index) {
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
     part.channels.push_back(
         {c.name(), c.channel().type, c.channel().xSampling, c.channel().ySampling});
-    // OpenEXR does not look at those of a part whose type it does not know.
+    // OpenEXR does not check the sampling in a part whose type it does not know.
     const ExrChannel& channel = part.channels.back();
     if (channel.x_sampling < 1 || channel.y_sampling < 1) {
       throw std::runtime_error(fmt::format("channel '{}' is subsampled {}x{}", channel.name,

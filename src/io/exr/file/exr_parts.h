@@ -68,7 +68,7 @@ int lines_per_chunk(Imf::Compression compression);
 /// The bytes of a value in files.
 constexpr std::size_t bytes_of(Imf::PixelType type) { return type == Imf::HALF ? 2 : 4; }
 
-/// What a pixel takes that has a value of every channel.
+/// The bytes of a pixel that has a value of every channel.
 double bytes_per_pixel(const ExrPart& part);
 
 /// Pixels of a tile, or of the scanlines that are packed together.
@@ -84,8 +84,8 @@ double decoder_bytes(const ExrPart& part);
 /// Bytes per pixel of a channel stored as float: 4, or less if it is subsampled.
 double float_bytes(const ExrChannel& channel);
 
-/// What a header claims of a part: its pixels with `value_bytes` of each, or a row of its tiles
-/// where these are large.
+/// The bytes that a header claims for a part: `value_bytes` for each pixel, or those of a row of
+/// its tiles where these are large and take more.
 double claimed_bytes(const ExrPart& part, double value_bytes);
 
 /// Takes an attribute out of a header, if it is there. Header::erase() of OpenEXR 3.4 frees it, and

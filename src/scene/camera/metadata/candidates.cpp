@@ -71,12 +71,12 @@ struct Fov {
   double degrees;
 };
 
-/// Degrees, as of --fov.
+/// The limits of a field of view in degrees, as for --fov.
 constexpr double kLeastFov = 0.01, kMostFov = 179;
 
 bool is_lens(const Fov& fov) { return fov.degrees >= kLeastFov && fov.degrees <= kMostFov; }
 
-/// What the attributes of a row say: its field of view, then that of its film.
+/// The fields of view by the attributes of a row: the stored one, then that of its film.
 std::vector<Fov> fovs_of(const Header& header, const RendererRow& row) {
   const auto fov = number(header, row.fov), focal = number(header, row.focal_length),
              aperture = number(header, row.aperture);
@@ -186,14 +186,15 @@ std::vector<HeaderCamera> of_standard(const Header& header, const PictureWindows
   return all;
 }
 
-/// V-Ray's other attributes beside a worldToCamera that has no worldToNDC: OpenImageIO reads
-/// cameraTransform, which leads to the world, under this name, and writes it under it.
+/// Whether worldToCamera is V-Ray's cameraTransform, a matrix to the world, which OpenImageIO reads
+/// and writes under this name: V-Ray's other attributes are there, and worldToNDC is not.
 bool is_renamed_by_oiio(const Header& header) {
   return header.contains("worldToCamera") && !header.contains("worldToNDC") &&
          !header.contains("cameraTransform") && header.contains("cameraFov");
 }
 
-/// Without V-Ray's numbers of other projections than that of a pinhole, which mean others.
+/// The header without V-Ray's lens if the projection is not that of a pinhole: the numbers then
+/// mean something else.
 Header of_pinholes(Header header) {
   if (number(header, "cameraProjection").value_or(0) != 0) {
     for (const std::string_view name : {kVRay.fov, kVRay.focal_length, kVRay.aperture})

@@ -32,7 +32,7 @@ struct HeaderCamera {
 ///   unreal/.../curPos/x, curRot/yaw, fov, focalLength, sensorWidth     Unreal
 ///
 /// OpenImageIO renames V-Ray's cameraTransform to worldToCamera; beside V-Ray's other attributes
-/// that is read as V-Ray's.
+/// worldToCamera is read as cameraTransform.
 std::vector<HeaderCamera> header_cameras(const std::map<std::string, std::vector<double>>& header,
                                          const PictureWindows& windows);
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// P proves a camera: it lands on its own pixels under no other. Where P is in camera space, it
-// proves the lens alone, and of a frame of depth nothing is proved; then the header has to agree
-// with itself, and normals of the world, where there are any, decide later
-// (normals/world_of_normals.cpp).
+// P proves a camera, since P lands on its own pixels under no other. In camera space, P proves the
+// lens alone, and a frame of depth alone proves nothing. Then the header has to agree with itself,
+// and normals of the world, where there are any, decide later (normals/world_of_normals.cpp).
 #include "scene/camera/metadata/check.h"
 
 #include <fmt/format.h>
@@ -41,7 +40,7 @@ HeaderFinding found(const HeaderCamera& camera, HeaderProof proof) {
   return {camera.source, camera.reading, proof, std::nullopt};
 }
 
-/// Proved by P, which misses its pixels by little under `proved`.
+/// The finding for a reading, with the median by which P misses its pixels under `proved`.
 HeaderFinding found(const HeaderCamera& camera, HeaderProof proof, const Camera& proved,
                     const GBuffer& g) {
   const double miss = median_miss_px(proved, g.position, g.valid, g.window);
@@ -92,7 +91,8 @@ bool is_plausible(const Camera& camera, const GBuffer& g) {
   return centred && std::abs(camera.fy / camera.fx / double(g.pixel_aspect) - 1) < 0.01;
 }
 
-/// Overscan: renders have it, or tools that widen the data window and leave the header as it was.
+/// Whether there is overscan: from the renderer, or from tools that widen the data window and leave
+/// the header as it was.
 bool exceeds_display(const GBuffer& g) {
   const Window data = g.lead_window.value_or(g.window), &display = g.display;
   return data.x0 < display.x0 || data.y0 < display.y0 || data.x1 > display.x1 ||

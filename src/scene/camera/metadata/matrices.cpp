@@ -107,7 +107,7 @@ PixelRows pixel_rows(const StoredMatrix& stored, bool transposed, NdcWindow ndc,
           (top + 0.5 * height) * w - shorter * (y - 0.5 * w), w};
 }
 
-/// w is the same everywhere, but for the rounding of what x is made of.
+/// Whether the projection is parallel: w is the same everywhere, to the rounding of floats.
 bool is_parallel(const PixelRows& picture) {
   return glm::length(glm::dvec3(picture.w)) <= 1e-9 * glm::length(glm::dvec3(picture.x));
 }

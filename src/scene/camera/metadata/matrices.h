@@ -48,7 +48,7 @@ struct PoseReading {
 /// is too. Nothing for a matrix that is no rotation and translation.
 std::vector<PoseReading> read_pose(const StoredMatrix& stored, const PoseConvention& convention);
 
-/// The pictures that worldToNDC may lie on.
+/// The parts of the picture that worldToNDC may map to 0..1.
 enum class NdcWindow {
   y_down,  ///< OpenEXR: from the upper left corner of the display window to the lower right
   y_up,    ///< from the lower left to the upper right
@@ -65,7 +65,7 @@ struct PictureWindows {
   double pixel_aspect = 1;
 };
 
-/// How messages name one: "" for OpenEXR's.
+/// The name of an NDC window in messages: "" for OpenEXR's.
 std::string_view name_of(NdcWindow window);
 
 /// The camera whose worldToNDC this is: projection and pose of a perspective one. Nothing for a
@@ -73,9 +73,9 @@ std::string_view name_of(NdcWindow window);
 std::optional<Camera> read_perspective(const StoredMatrix& stored, bool transposed, NdcWindow ndc,
                                        const PictureWindows& windows);
 
-/// The camera of a worldToNDC that may be stored with the other sign, which is the same projection:
-/// turned round where the plane of its near or far end, z = 0 or z = w, lies behind it. As it is
-/// where z does not tell.
+/// The camera of a worldToNDC that may be stored with the opposite sign, which gives the same
+/// projection. The camera is turned round if the plane of its near or far end, z = 0 or z = w, lies
+/// behind it, and left as it is if z does not tell.
 Camera turned_to_picture(Camera camera, const StoredMatrix& stored, bool transposed);
 
 /// The orthographic camera at `pose` whose worldToNDC this is. Nothing where they differ.

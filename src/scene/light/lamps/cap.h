@@ -16,9 +16,9 @@ namespace ssdo {
 struct Cap {
   double sine = 0, cosine = 1;  ///< of the angle, 0 to pi
 
-  /// The part of the sphere that a ball covers, seen from outside. Inside, the directions that are
-  /// left when the ball's far side closes behind the receiver: half of all on the surface of the
-  /// ball, all in its middle, so that nothing jumps.
+  /// The part of the sphere that a ball covers, seen from outside. Inside the ball, the cap grows
+  /// from half of all directions on the surface of the ball to all of them in its middle, so that
+  /// nothing jumps.
   static Cap of_ball(double radius, double distance) {
     const bool inside = distance < radius;
     const double sine = inside ? distance / radius : (distance > 0 ? radius / distance : 0);
@@ -40,7 +40,8 @@ struct Cap {
 /// `middle` is the cosine from the normal to its middle.
 ///
 /// The exact form for a cap that the horizon cuts: Snyder 1996, Area Light Sources for Real-Time
-/// Graphics (Microsoft Research MSR-TR-96-11). A cap so small that this would round is flat.
+/// Graphics (Microsoft Research MSR-TR-96-11). A cap so small that this form would lose precision
+/// is treated as flat.
 inline double mean_cosine_of_small_cap(double middle, const Cap& cap) {
   constexpr double kFlat = 1e-5;  // the form loses eps / sine, the flat one sine
   if (middle >= cap.sine) return middle;
@@ -64,8 +65,8 @@ inline double form_factor_of_cap(double middle, const Cap& cap) {
   return 1 - rest.sine * rest.sine * mean_cosine_of_small_cap(-middle, rest);
 }
 
-/// The point of the unit disc for a point of the unit square: even, and near ones stay near
-/// (Shirley and Chiu 1997, A Low Distortion Map Between Disk and Square).
+/// Maps a point of the unit square to the unit disc: uniform points stay uniform, and near ones
+/// near (Shirley and Chiu 1997, A Low Distortion Map Between Disk and Square).
 inline glm::dvec2 to_disk(const glm::vec2& u) {
   const double a = 2.0 * u.x - 1, b = 2.0 * u.y - 1;
   if (a == 0 && b == 0) return glm::dvec2(0);
@@ -75,8 +76,8 @@ inline glm::dvec2 to_disk(const glm::vec2& u) {
   return {r * std::cos(angle), r * std::sin(angle)};
 }
 
-/// The direction in a cap about z, of this height, for a place of the unit disk: even ones give
-/// even ones, since an area of a sphere goes with its height.
+/// The direction in a cap of this height about z for a place of the unit disk. Uniform places give
+/// uniform directions, since area on a sphere is proportional to height.
 inline glm::dvec3 direction_in_cap(double height, const glm::dvec2& disk) {
   const double down = glm::dot(disk, disk) * height;
   return {disk * std::sqrt(height * (2 - down)), 1 - down};

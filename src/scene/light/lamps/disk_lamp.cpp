@@ -6,7 +6,7 @@
 //   integral of the cosine = -1/2 of the integral of n . (r x dr) / |r|^2
 //
 // r being the way from the receiver to the border, counter-clockwise seen from the front, and n its
-// normal. The border of what the receiver's horizon leaves of a disk is an arc and a chord.
+// normal. The part of a disk above the receiver's horizon has an arc and a chord as its border.
 #include "scene/light/lamps/disk_lamp.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct ArcIntegrals {
   double one = 0, cosine = 0, sine = 0;
 
   ArcIntegrals(double a, double b, double s, double from, double to) {
-    constexpr double kEven = 1e-6;  // b / a: of less, (a * one - span) / b would only be rounding
+    constexpr double kEven = 1e-6;  // b / a: below this, (a * one - span) / b is only rounding
     const double span = to - from;
     if (b < kEven * a) {
       one = span / a, cosine = (std::sin(to) - std::sin(from)) / a;
@@ -42,7 +42,7 @@ struct ArcIntegrals {
   }
 };
 
-/// A disk and a receiver at (off, 0, height), turned to there about the axis.
+/// The space of a disk, turned about its axis so that the receiver is at (off, 0, height).
 struct Turned {
   double off, height;
   glm::dvec2 out{1, 0};  ///< from the axis to the receiver

@@ -10,8 +10,8 @@
 
 namespace ssdo {
 
-/// A round even patch of the sky. received() is 1 for a surface that faces one of at most half of
-/// the sky.
+/// A round patch of the sky of the same radiance everywhere. received() is 1 for a surface that
+/// faces its middle.
 struct DistantLamp final : Source {
   glm::vec3 direction{0};  ///< unit, towards its middle
   Cap cap;

@@ -42,7 +42,7 @@ struct Lamp {
   /// What `normalize` divides by; 1 for lamps without a size.
   double area() const;
 
-  /// Radius of a ball that holds it, about its position.
+  /// Radius of a ball about its position that holds the lamp.
   double reach() const;
 
   /// color * temperature * intensity * 2^exposure.
@@ -55,9 +55,9 @@ struct WorldToCamera {
   glm::dvec3 origin{0};
 };
 
-/// The light of a lamp in camera space. `nearest` is the distance at which a receiver
-/// is as near as can be told: half a pixel; nearer ones get no more light than there. What it
-/// lights is left to be set.
+/// The light of a lamp in camera space. `nearest` is the smallest distance that can be resolved,
+/// half a pixel: nearer receivers get no more light than at this distance. Source::receivers is
+/// left to be set.
 std::shared_ptr<Source> make_source(const Lamp& lamp, const WorldToCamera& camera, double nearest);
 
 }  // namespace ssdo

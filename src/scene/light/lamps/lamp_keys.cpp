@@ -38,7 +38,7 @@ const std::vector<std::pair<std::string, LampType>> kTypes = {{"sphere", LampTyp
                                                               {"rect", LampType::rect},
                                                               {"distant", LampType::distant}};
 
-/// What lamps of a type have besides what all of them have.
+/// The keys that lamps of a type may have.
 std::vector<std::string> keys_of(LampType type) {
   std::vector<std::string> keys = {
       "name",      "type",     "position",  "direction",         "up",      "matrix", "color",

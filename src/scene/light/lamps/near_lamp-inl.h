@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Lamps on vectors of surfaces: the functions of NearLamp in floats. Receivers that the horizon,
-// the edge of a cone or the lamp's own surface cuts are few: each is computed alone, by NearLamp.
-// Compiled once for every instruction set.
+// Lamps on vectors of surfaces: the functions of NearLamp in floats. Few receivers have the lamp
+// cut by their horizon, by the edge of a cone or by its own surface: each of these is computed
+// alone, by NearLamp. Compiled once for every instruction set.
 #if defined(SSDO_SCENE_NEAR_LAMP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_SCENE_NEAR_LAMP_INL_H_
 #undef SSDO_SCENE_NEAR_LAMP_INL_H_
@@ -29,8 +29,7 @@ struct SourcePoints {
   V distance, weight;
 };
 
-/// SourceCone, and how far the source can be from a plane that its middle lies in, at a distance
-/// of 1.
+/// SourceCone, and the sine of `angular_radius`.
 struct SourceCones {
   V3 to;
   V angular_radius, sine;
@@ -59,8 +58,8 @@ HWY_INLINE V3 in_frame_about(const V3& n, const V3& v) {
   return mul_add(first, v.x, mul_add(second, v.y, n * v.z));
 }
 
-/// What turns a solid angle, in units of the lamp, into received(): 1 over its area, dimmed for
-/// receivers that are too near.
+/// The factor from a solid angle, in units of the lamp, to received(): 1 over the area that the
+/// lamp shows, dimmed for receivers that are too near.
 HWY_INLINE V per_solid_angle(const NearLamp& lamp, V distance) {
   const float nearest = float(lamp.nearest / lamp.size);
   const V ratio =
@@ -68,7 +67,8 @@ HWY_INLINE V per_solid_angle(const NearLamp& lamp, V distance) {
   return ratio * ratio * set(float(1 / (lamp.shown_area() * lamp.size * lamp.size)));
 }
 
-/// An integral of the cosine, and the lanes for which it is not: those are to be computed alone.
+/// An integral of the cosine, and the lanes in which `value` does not hold: these are computed
+/// alone.
 struct Integral {
   V value;
   M open;
@@ -142,10 +142,10 @@ HWY_INLINE V share_in_cone(const Cone& cone, V cosine) {
                                  : hn::IfThenElseZero(off_axis < outer, set(1));
 }
 
-/// What a cone leaves of the light of a lamp so small that its share is smooth over it: the mean of
-/// the shares of a few places, by what each gives to the receiver. A cubature of degree 5, for a
-/// disk that of Radon (Stroud 1971, Approximate Calculation of Multiple Integrals, S2 5-1), for a
-/// rectangle that of Gauss.
+/// The share of light that the cone passes, for a lamp so small that this share is smooth over it:
+/// the mean of the shares at a few places, weighted by what each place gives to the receiver. A
+/// cubature of degree 5, for a disk that of Radon (Stroud 1971, Approximate Calculation of Multiple
+/// Integrals, S2 5-1), for a rectangle that of Gauss.
 HWY_INLINE V mean_share(const NearLamp& lamp, const V3& p, const V3& n) {
   constexpr float kGauss[] = {-0.77459667f, 0, 0.77459667f};  // sqrt(3 / 5)
   constexpr float kHexagon[][2] = {{0.81649658f, 0},          // sqrt(2 / 3) away
@@ -178,8 +178,8 @@ HWY_INLINE V mean_share(const NearLamp& lamp, const V3& p, const V3& n) {
   return share / light;
 }
 
-/// The lanes of a lamp with a cone that see all of it, those for which mean_share() holds, and
-/// those that see its edge or are near it.
+/// For a lamp with a cone: the lanes that get light from all of it, those for which mean_share()
+/// holds, and those near the edge of the cone, which are computed alone.
 struct InCone {
   M whole, smooth, open;
 };

@@ -5,9 +5,10 @@
 //
 //   integral of share(t) sin t (integral of max(0, n_z cos t + n_t sin t cos(a - a_n)) da) dt
 //
-// of which the inner one is exact: where the lamp and the hemisphere of the receiver are seen, a
-// are a few arcs. The outer one is by Gauss's quadrature between the angles at which the arcs
-// change their shape, where they open as square roots: sin takes these away.
+// The inner integral is exact: the angles a at which the lamp is seen above the horizon of the
+// receiver form a few arcs. The outer integral is by Gauss's quadrature between the angles at which
+// the arcs change their shape. The arcs open there as square roots, which a substitution by sin
+// takes away.
 #include "scene/light/lamps/near_lamp.h"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ constexpr std::array<double, kNodes> kWeights = {
 double cosine_over(const LampArc& arc, double along, double across, double towards) {
   if (along <= -across) return 0;
   const double open = along >= across ? kPi : std::acos(-along / across);
-  // In angles from `towards`; the open part is there at 0 and, from the other side, at 2 pi.
+  // In angles from `towards`, where the open part repeats every 2 pi.
   const double middle = std::remainder(arc.middle - towards, 2 * kPi);
   double sum = 0;
   for (const double turn : {-2 * kPi, 0.0, 2 * kPi}) {
@@ -85,7 +86,7 @@ double NearLamp::within_cone(const LampReceiver& r) const {
       const double s = kPi / 2 * kPlaces[std::size_t(k)];
       const double off_axis = (from + to + (to - from) * std::sin(s)) / 2,
                    step = kWeights[std::size_t(k)] * kPi / 4 * (to - from) * std::cos(s);
-      // The direction to a place that sends this far off its axis goes against the axis.
+      // A place that sends this far off its axis is seen against the axis: the cosine is negative.
       const double along = -r.normal.z * std::cos(off_axis), sine = std::sin(off_axis);
       const LampArcs found = arcs(r.position, off_axis);
       double about = 0;

@@ -22,13 +22,13 @@ struct LampReceiver {
 struct LampSample {
   glm::dvec3 to{0};
   double distance = 0;
-  double solid_angle = 0;  ///< of the lamp, had it all the density of its points that there is here
+  double solid_angle = 0;  ///< of the lamp, if its points were everywhere as dense as here
 };
 
 /// Receivers nearer to the plane of a flat lamp see its points as from this far away.
 constexpr double kNearestToPlane = 1e-9;
 
-/// Farther than this, points of a rect are even over its area: floats lose the angles of its
+/// Beyond this distance, points of a rect are uniform over its area: floats lose the angles of its
 /// corners, and the light of its points differs by a quarter at most.
 constexpr double kFarFromRect = 8;
 
@@ -55,14 +55,14 @@ struct LampArcs {
 
 enum class LampShape { sphere, disk, rect };
 
-/// A lamp of a place and a size. `irradiance` is its radiance times the area that it shows, over
-/// pi: of a disk with the size of a sphere, of a flat lamp all of it. received() is the integral of
-/// the cosine over the directions in which it is seen, over this area: far in front of it,
-/// cos / distance^2.
+/// A lamp with a place and a size. `irradiance` is its radiance times the area that it shows, over
+/// pi: a sphere shows a disk of its radius, a flat lamp all of its area. received() is the integral
+/// of the cosine over the directions in which the lamp is seen, divided by this area: far in front
+/// of the lamp, cos / distance^2.
 ///
 /// Points are spread by solid angle, so that near lamps have no points that are much brighter than
-/// others: point() is a place of the unit disk or square, for which the receiver decides what it
-/// is.
+/// others: point() is a place of the unit disk or square, which seen() maps onto the lamp for each
+/// receiver.
 struct NearLamp : Source {
   const LampShape shape;
   glm::vec3 center{0};

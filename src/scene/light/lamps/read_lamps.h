@@ -8,8 +8,8 @@
 
 namespace ssdo {
 
-/// The lamps of a frame. Each costs about a tenth of a run, and planes and layers of its own: with
-/// more, a run with a map of them is cheaper and shows the same.
+/// The most lamps of a frame. Each costs about a tenth of a run, and has planes and layers of its
+/// own: instead of more, a map of them is cheaper and shows the same.
 constexpr std::size_t kMostLamps = 64;
 
 /// Reads a JSON object with `lights`, an array of objects with the keys of `man ssdo`, LIGHTS; a

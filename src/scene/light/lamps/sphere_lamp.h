@@ -5,9 +5,9 @@
 
 namespace ssdo {
 
-/// A ball that sends the same radiance from all of its surface; `size` is its radius. Inside of it,
-/// it is seen in all directions but those in which its surface is far: see Cap::of_ball(). Or a
-/// disk of that radius which faces every receiver (NearLamp::turns).
+/// A ball that sends the same radiance from all of its surface; `size` is its radius. A receiver
+/// inside sees it in the directions of Cap::of_ball(). With NearLamp::turns, it is instead a disk
+/// of that radius which faces every receiver.
 struct SphereLamp final : NearLamp {
   SphereLamp() : NearLamp(LampShape::sphere) {}
 
