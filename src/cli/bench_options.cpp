@@ -19,10 +19,10 @@ const std::set<std::string> kRefused = {
     "--method",     "--quality",      "--slices",        "--steps",         "--error",
     "--temporal",   "--output",       "--save",          "--pixel-type",    "--compression",
     "--bits",       "--frames",       "--keep-channels", "--skip-existing", "--on-error",
-    "--crop",       "--dry-run",      "--stats",         "--shot",    "--list-methods",
+    "--crop",       "--dry-run",      "--stats",         "--shot",          "--list-methods",
     "--downsample", "--allow-partial"};
 
-/// Of those, the ones that a bench of a sequence takes, which measures one method and quality.
+/// The options that a bench of a sequence takes: it measures one method and quality.
 const std::set<std::string> kOfSequences = {"--method", "--quality", "--slices",
                                             "--steps",  "--error",   "--frames"};
 

@@ -14,7 +14,8 @@ namespace ssdo {
 /// Pixels that count, over a window of their own.
 class PictureMask {
  public:
-  /// Of FILE or FILE:LAYER; an empty text holds every pixel. Errors: ExitCode::input, layer.
+  /// The mask in FILE or FILE:LAYER; an empty text holds every pixel. Errors: ExitCode::input,
+  /// layer.
   explicit PictureMask(const std::string& text);
 
   /// Whether the mask is not 0 there, in the coordinates of the windows.

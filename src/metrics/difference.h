@@ -43,7 +43,7 @@ struct LeftOut {
   std::size_t in_one = 0;   ///< finite in one picture and not in the other
   std::size_t outside = 0;  ///< in the window of one picture only
 
-  /// Those that one picture shows and the other does not.
+  /// The pixels that one picture shows and the other does not.
   std::size_t without_counterpart() const { return in_one + outside; }
   std::size_t all() const { return in_both + without_counterpart(); }
 };

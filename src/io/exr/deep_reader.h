@@ -26,7 +26,7 @@ struct DeepImage {
   std::vector<std::size_t> first;  ///< of each pixel of the window, row by row, and the end
   std::vector<DeepSample> samples;
 
-  /// Those of pixel (x, y); none outside of the window.
+  /// The samples of pixel (x, y); none outside of the window.
   std::span<const DeepSample> at(int x, int y) const {
     if (!window.contains(x, y)) return {};
     const std::size_t i =

@@ -16,7 +16,7 @@ namespace ssdo {
 namespace {
 
 /// Findings in memory: those that are kept, or `copy`, which is filled with those on disk.
-/// Of these, the first `arrays` suffice.
+/// The first `arrays` of these suffice.
 const Findings& in_memory(const auto& kept, Findings& copy,
                           std::size_t arrays = std::numeric_limits<std::size_t>::max()) {
   if (!kept.arrays) return kept.findings;
