@@ -147,8 +147,8 @@ Surface facets(double side, double height) {
   };
 }
 
-/// Of a lamp that grazes them, single pixels lost all light: a neighbour on the next facet rises a
-/// little over a pixel's tangent plane, and what is so near is not filtered.
+/// Under a lamp that grazes the facets, single pixels lost all light: a neighbour on the next facet
+/// rises a little over a pixel's tangent plane, and what is so near is not filtered.
 TEST(LampShadows, FacetsOfADenseMeshAreNotSpeckled) {
   const Scene scene = scene_with(facets(0.06, 0.002), from_above(), ball({-9, 3, 1}, 0.8));
   const Products out = lit(scene);

@@ -263,9 +263,14 @@ TEST(BitmaskBeyond, ExtentsAreSeenToThePixel) {
   const Window window{0, 0, 1920, 24};
   const double pixel = 40.0 / 1920;
   const Surface scene = front(8, [&](double x, double) { return x < -20 + 8 * pixel; });
-  for (const BorderExtent& e :
-       extents_at_left(geometry_of(scene, level_ortho(40, 0, window), window)))
-    EXPECT_NEAR(e.seen[0], 7 * pixel, 0.1 * pixel);
+  const std::vector<BorderExtent> extents =
+      extents_at_left(geometry_of(scene, level_ortho(40, 0, window), window));
+  for (std::size_t y = 0; y < extents.size(); ++y) {
+    EXPECT_NEAR(extents[y].seen[0], 7 * pixel, 0.1 * pixel);
+    // Three rows share their walks; each has its own way to the top and the bottom.
+    EXPECT_NEAR(extents[y].seen[2], double(y) * pixel, 0.1 * pixel);
+    EXPECT_NEAR(extents[y].seen[3], double(window.height() - 1 - int(y)) * pixel, 0.1 * pixel);
+  }
 }
 
 /// The lower part of a wall ends, the upper part goes on behind what stands before it. Where one
@@ -292,7 +297,7 @@ TEST(BitmaskBeyond, AGapEndsARowLittleByLittle) {
   const double pixel = 8.0 / 96;
   std::vector<float> seen;
   for (int gap = 0; gap <= 24; ++gap) {
-    const double from = (-8.25) * pixel, to = from + gap * pixel;
+    const double from = -8.25 * pixel, to = from + gap * pixel;
     const Surface scene = front(8, [=](double x, double) { return x < from || x > to; });
     seen.push_back(extents_at_left(geometry_of(scene, level_ortho(8), kWide))[31].seen[0]);
   }
