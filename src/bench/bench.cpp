@@ -56,7 +56,7 @@ class Bench {
     report_.products = subject_.products;
     report_.width = frame_.scene.geometry.display.width();
     report_.height = frame_.scene.geometry.display.height();
-    report_.pixels = frame_.scene.geometry.surfel.size();
+    report_.pixels = frame_.scene.geometry.surfaces.size();
     report_.surface_pixels = subject_.surface_pixels;
     for (const auto& [product, truth] : subject_.truths)
       report_.truths[product] = truth.file + ":" + truth.layer;

@@ -127,7 +127,7 @@ ChannelsDifference compare_surfaces(const Frame& frame, const Channels& a, const
   const Geometry& g = frame.scene.geometry;
   return compare_channels(a, b, [&](int x, int y) {
     return g.window.contains(x, y) &&
-           g.is_surface(g.surfel.index(x - g.window.x0, y - g.window.y0));
+           g.is_surface(g.surfaces.index(x - g.window.x0, y - g.window.y0));
   });
 }
 

@@ -60,7 +60,7 @@ std::vector<std::string> choose_products(const BenchJob& job, const Subject& sub
 
 std::size_t count_surfaces(const Frame& frame) {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < frame.scene.geometry.surfel.size(); ++i)
+  for (std::size_t i = 0; i < frame.scene.geometry.surfaces.size(); ++i)
     count += frame.scene.geometry.is_surface(i);
   if (count > 0) return count;
   throw Error(ExitCode::failed,

@@ -124,7 +124,7 @@ Arriving arriving_light(const Results& r, const LitBy* by) {
         light.part[i] *= r.shown().ao[i];
       } else {
         light.part[i] *= by->direct[i];
-        const Surfel& s = r.scene.geometry.surfel[i];
+        const Surfel& s = r.scene.geometry.surfaces[i];
         light.whole[i] *= by->light.unoccluded_in(i, s.position, s.normal);
       }
     }

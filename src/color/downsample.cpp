@@ -66,7 +66,7 @@ template Plane<glm::vec3> at_output_size(Plane<glm::vec3>, const GBuffer&);
 
 Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer) {
   const Geometry& geometry = scene.geometry;
-  auto alpha = Plane<float>::like(geometry.surfel);
+  auto alpha = Plane<float>::like(geometry.surfaces);
   for_each_row(alpha.height, [&](int y) {
     for (std::size_t i = alpha.index(0, y); i < alpha.index(0, y + 1); ++i) {
       const float a = gbuffer.alpha.empty() ? 1.0f : gbuffer.alpha[i];
@@ -79,7 +79,7 @@ Plane<float> coverage(const Scene& scene, const GBuffer& gbuffer) {
 Plane<float> weights_by_coverage(const Results& r) {
   Plane<float> weights = coverage(r.scene, r.gbuffer);
   for (std::size_t i = 0; i < weights.size(); ++i) {
-    if (!r.scene.geometry.surfel[i].is_usable())
+    if (!r.scene.geometry.surfaces[i].is_usable())
       weights[i] = 0;
     else if (r.gbuffer.downsampling.is_identity())
       weights[i] = 1;

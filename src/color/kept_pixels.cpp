@@ -30,7 +30,7 @@ void open_light(Plane<glm::vec3>& direct, const Plane<float>& kept, const Scene&
 
 void open_bent(Plane<glm::vec3>& bent, const Plane<float>& kept, const Geometry& geometry) {
   mix(bent, kept, [&](std::size_t i) {
-    return geometry.is_surface(i) ? geometry.surfel[i].normal : glm::vec3(0);
+    return geometry.is_surface(i) ? geometry.surfaces[i].normal : glm::vec3(0);
   });
   for (std::size_t i = 0; i < bent.size(); ++i) {
     const float length = glm::length(bent[i]);

@@ -7,10 +7,10 @@
 namespace ssdo {
 
 Plane<glm::vec3> unoccluded_light(const Scene& scene, const Light& light) {
-  auto all = Plane<glm::vec3>::like(scene.geometry.surfel);
+  auto all = Plane<glm::vec3>::like(scene.geometry.surfaces);
   for_each_row(all.height, [&](int y) {
     for (std::size_t i = all.index(0, y); i < all.index(0, y + 1); ++i) {
-      const Surfel& s = scene.geometry.surfel[i];
+      const Surfel& s = scene.geometry.surfaces[i];
       all[i] = s.is_usable() ? light.unoccluded_in(i, s.position, s.normal) : glm::vec3(0);
     }
   });

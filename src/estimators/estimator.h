@@ -41,7 +41,7 @@ inline constexpr Parameter kIndexOfRefraction = {
 using ParameterValues = std::map<std::string, double, std::less<>>;
 
 /// A filter of a map of ao. `guide` has the size of the map: what each of its pixels shows.
-using MapFilter = std::function<Plane<float>(Plane<float> map, const Plane<Surfel>& guide)>;
+using MapFilter = std::function<Plane<float>(Plane<float> map, const Surfaces& guide)>;
 
 /// What a method keeps of an overview of a frame whose rows come one band after the other: each
 /// method that works on bands has its own.

@@ -70,8 +70,8 @@ class Guesses {
  public:
   Guesses(const Scene& scene, float radius)
       : scene_(scene),
-        surfel_(scene.geometry.surfel),
-        casting_(scene.casters().surfel),
+        surfaces_(scene.geometry.surfaces),
+        casting_(scene.casters().surfaces),
         footprint_(scene.geometry.camera),
         radius_(radius),
         other_views_(OtherViewRays::of_added(scene.other_surfaces)) {
@@ -79,7 +79,7 @@ class Guesses {
     f_ = {float(camera.fx), float(camera.fy)};
     c_ = {float(camera.cx - scene.geometry.window.x0), float(camera.cy - scene.geometry.window.y0)};
     far_ = scene.views.empty() ? radius : std::min(radius, kFarthest * farthest_surface());
-    const float diagonal = std::hypot(float(surfel_.width), float(surfel_.height));
+    const float diagonal = std::hypot(float(surfaces_.width), float(surfaces_.height));
     for (std::size_t i = 0; i < distances_.size(); ++i)
       distances_[i] =
           std::pow(diagonal, std::pow((float(i) + 0.5f) / float(distances_.size()), kCloser));
@@ -87,7 +87,7 @@ class Guesses {
 
   /// Copies the depths from the surfels into a plane of their own: faster if many rays follow.
   void gather_depths() {
-    Plane<float> depth = Plane<float>::like(surfel_);
+    Plane<float> depth = Plane<float>::like(surfaces_);
     for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = depth_at(i);
     depth_ = std::move(depth);
   }
@@ -111,7 +111,7 @@ class Guesses {
   /// Calls on_guessed(place) with the first unseen place that each guessed ray of a pixel passed.
   template <class OnGuessed>
   void gather(int x, int y, const Samples& samples, const OnGuessed& on_guessed) const {
-    const Surfel& s = surfel_(x, y);
+    const Surfel& s = surfaces_(x, y);
     const float above =
         kAboveRoundings * s.rounding + kAboveFootprints * footprint_.at(-s.position.z);
     const glm::vec3 origin = s.position + above * s.normal;
@@ -139,8 +139,8 @@ class Guesses {
   }
 
   /// The surface at which the view ray of a pixel ends.
-  const Surfel& shown(std::size_t pixel) const {
-    return is_hole(pixel) ? surfel_[pixel] : casting_[pixel];
+  Surfel shown(std::size_t pixel) const {
+    return is_hole(pixel) ? surfaces_[pixel] : casting_[pixel];
   }
 
   /// Depth along the view axis; infinite where no surface is shown.
@@ -153,7 +153,7 @@ class Guesses {
   /// Distance to the viewer of the farthest surface.
   float farthest_surface() const {
     float farthest = 0;
-    for (const Surfel& s : surfel_.pixels)
+    for (const Surfel& s : surfaces_.each())
       if (s.is_usable()) farthest = std::max(farthest, glm::length(s.position));
     return farthest;
   }
@@ -175,8 +175,8 @@ class Guesses {
     const auto crosses = [](float from, float way, float size) {
       return way > 0 ? (size - from) / way : way < 0 ? from / -way : kInfinity;
     };
-    const float across = crosses(line.from.x, line.way.x, float(surfel_.width)),
-                down = crosses(line.from.y, line.way.y, float(surfel_.height));
+    const float across = crosses(line.from.x, line.way.x, float(surfaces_.width)),
+                down = crosses(line.from.y, line.way.y, float(surfaces_.height));
     if (across < down) return {across, line.way.x > 0 ? Unseen::right : Unseen::left};
     return {down, line.way.y > 0 ? Unseen::bottom : Unseen::top};
   }
@@ -187,7 +187,7 @@ class Guesses {
     const auto whole = [](float x, int size) {
       return x > 0 ? int(std::min(x, float(size - 1))) : 0;
     };
-    return surfel_.index(whole(at.x, surfel_.width), whole(at.y, surfel_.height));
+    return surfaces_.index(whole(at.x, surfaces_.width), whole(at.y, surfaces_.height));
   }
 
   /// How far, along the view axis, a ray at `r` lies behind the surface that its pixel shows; 0 if
@@ -225,7 +225,7 @@ class Guesses {
   bool is_in_measured_solid(std::size_t pixel, float behind) const {
     if (is_hole(pixel)) return false;  // solids are of what stands there in its place
     const Solids& solids = scene_.solids;
-    const glm::vec3& p = surfel_[pixel].position;
+    const glm::vec3& p = surfaces_[pixel].position;
     const float distance =
         scene_.geometry.camera.orthographic ? behind : behind * glm::length(p) / -p.z;
     if (solids.end_is_measured(pixel) && distance <= solids.thickness[pixel]) return true;
@@ -291,9 +291,9 @@ class Guesses {
   }
 
   const Scene& scene_;
-  const Plane<Surfel>& surfel_;   ///< what receives
-  const Plane<Surfel>& casting_;  ///< what casts
-  Plane<float> depth_;            ///< depth_at() of all pixels; empty: not gathered
+  const Surfaces& surfaces_;  ///< what receives
+  const Surfaces& casting_;   ///< what casts
+  Plane<float> depth_;        ///< depth_at() of all pixels; empty: not gathered
   PixelFootprint footprint_;
   float radius_, far_;
   std::unique_ptr<OtherViewRays> other_views_;  ///< null: there are no other views
@@ -313,7 +313,7 @@ Plane<float> guessed_shares(const Scene& scene, const Window& part, float radius
       [&](const Tile& tile) {
         for (int y = tile.y0; y < tile.y1; ++y) {
           for (int x = tile.x0; x < tile.x1; ++x) {
-            if (!scene.geometry.surfel(part.x0 + x, part.y0 + y).is_usable()) continue;
+            if (!scene.geometry.surfaces(part.x0 + x, part.y0 + y).is_usable()) continue;
             float sum = 0;
             const int px = part.x0 + x, py = part.y0 + y;
             guesses.gather(px, py, guesses.samples_at(px, py, seed), [&](Unseen at) {
@@ -338,7 +338,7 @@ Plane<float> guessed_shares(const Scene& scene, const Plane<std::int32_t>& pixel
       for (int x = tile.x0; x < tile.x1; ++x) {
         const std::int32_t pixel = pixels(x, y);
         if (pixel == kNoPixel) continue;
-        const int width = scene.geometry.surfel.width,
+        const int width = scene.geometry.surfaces.width,
                   place = ((first.y + y) & kLast) * kGuessedPattern + ((first.x + x) & kLast);
         const Guesses::Samples samples{SlicePattern::rank(place), 1, hash_of(seed, 0, kSeed)};
         guesses.gather(pixel % width, pixel / width, samples, [&](Unseen at) {
@@ -352,27 +352,27 @@ Plane<float> guessed_shares(const Scene& scene, const Plane<std::int32_t>& pixel
 
 GuessedMean mean_guessed(const Scene& scene, float radius) {
   const Guesses guesses(scene, radius);
-  const Plane<Surfel>& surfel = scene.geometry.surfel;
+  const Surfaces& surfaces = scene.geometry.surfaces;
   const Window &window = scene.geometry.window,
                shown = intersection(window, scene.geometry.display);
   const int apart = std::max(1, int(std::sqrt(double(shown.area()) / kPixelsOfMean)));
   const int first = shown.y0 - window.y0 + apart / 2, end = shown.y1 - window.y0;
   std::array<std::atomic<int>, kUnseenPlaces.size()> rays = {};
-  std::atomic<int> surfaces = 0;
+  std::atomic<int> points = 0;
   for_each_row(std::max(0, (end - first + apart - 1) / apart), [&](int row) {
     const int y = first + row * apart;
     for (int x = shown.x0 - window.x0 + apart / 2; x < shown.x1 - window.x0; x += apart) {
-      if (!surfel(x, y).is_usable()) continue;
-      ++surfaces;
+      if (!surfaces(x, y).is_usable()) continue;
+      ++points;
       const Guesses::Samples samples{0, kRaysOfMean,
                                      hash_of(std::uint32_t(x), std::uint32_t(y), kSeed)};
       guesses.gather(x, y, samples, [&](Unseen at) { ++rays[std::size_t(at)]; });
     }
   });
-  if (surfaces == 0) return {};
+  if (points == 0) return {};
   GuessedMean mean;
   for (std::size_t place = 0; place < rays.size(); ++place) {
-    mean.at[place] = float(rays[place]) / float(kRaysOfMean * surfaces);
+    mean.at[place] = float(rays[place]) / float(kRaysOfMean * points);
     mean.all += mean.at[place];
   }
   return mean;

@@ -63,7 +63,7 @@
 #include "scene/normals/geometric_normal.h"
 #include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
-#include "scene/surfel.h"
+#include "scene/surfaces.h"
 
 namespace ssdo {
 namespace {
@@ -128,8 +128,8 @@ class Trace {
   }
 
  private:
-  int width() const { return scene_.geometry.surfel.width; }
-  int height() const { return scene_.geometry.surfel.height; }
+  int width() const { return scene_.geometry.surfaces.width; }
+  int height() const { return scene_.geometry.surfaces.height; }
 
   /// Whether an occluder in the frame or in another view, or the receiver's own surface, blocks a
   /// ray.
@@ -147,10 +147,10 @@ class Trace {
 
   Receiver receiver(int x, int y, std::size_t pixel) const {
     const Geometry& g = scene_.geometry;
-    const Surfel& s = g.surfel[pixel];
+    const Surfel& s = g.surfaces[pixel];
     const glm::vec3 normal(s.normal), position(s.position),
         view = direction_to_viewer(position, g.camera.orthographic),
-        surface = geometric_normal(g.surfel, x, y, view);
+        surface = geometric_normal(g.surfaces, x, y, view);
     return {pixel,
             position,
             ray_origin(occluders_.solids(), s, {surface, view, footprint_.at(-position.z)}),
@@ -169,8 +169,8 @@ class Trace {
         [&](const Tile& tile) {
           for (int y = tile.y0; y < tile.y1; ++y) {
             for (int x = tile.x0; x < tile.x1; ++x) {
-              const std::size_t pixel = scene_.geometry.surfel.index(x, y);
-              if (scene_.geometry.surfel[pixel].is_usable()) work(pixel, receiver(x, y, pixel));
+              const std::size_t pixel = scene_.geometry.surfaces.index(x, y);
+              if (scene_.geometry.surfaces[pixel].is_usable()) work(pixel, receiver(x, y, pixel));
             }
           }
         },

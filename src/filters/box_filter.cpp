@@ -27,7 +27,7 @@ struct BothSurfaces {
   }
 };
 
-void box_tile(const FilterPlanes& noisy, const Plane<Surfel>& guide, const std::vector<Tap>& taps,
+void box_tile(const FilterPlanes& noisy, const Surfaces& guide, const std::vector<Tap>& taps,
               const Tile& tile, FilterPlanes& out) {
   WindowAverage<BothSurfaces>(noisy, guide, taps, {}, tile, out).run();
 }
@@ -40,7 +40,7 @@ namespace ssdo {
 
 HWY_EXPORT(box_tile);
 
-FilterPlanes filter_box(FilterPlanes noisy, const Plane<Surfel>& guide, int pattern_size) {
+FilterPlanes filter_box(FilterPlanes noisy, const Surfaces& guide, int pattern_size) {
   std::vector<Tap> window;
   const int first = -(pattern_size / 2);
   for (int dy = first; dy < first + pattern_size; ++dy) {

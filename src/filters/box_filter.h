@@ -7,6 +7,6 @@ namespace ssdo {
 
 /// The mean of the T x T pixels of the sampling pattern, across edges; see box_filter.cpp. Means
 /// are finished as with filter_geometry().
-FilterPlanes filter_box(FilterPlanes noisy, const Plane<Surfel>& guide, int pattern_size);
+FilterPlanes filter_box(FilterPlanes noisy, const Surfaces& guide, int pattern_size);
 
 }  // namespace ssdo

@@ -47,14 +47,14 @@ void add_pixels(Continuity& sum, const FrameSurfaces& before, const FrameSurface
                 const Plane<glm::vec2>& motion) {
   const Reprojection reprojection(before.geometry, now.geometry);
   const bool colored = !before.albedo.empty() && !now.albedo.empty();
-  const Plane<Surfel>& surfel = now.geometry.surfel;
-  for (int y = 0; y < surfel.height; y += kEvery) {
-    for (int x = 0; x < surfel.width; x += kEvery) {
-      const std::size_t i = surfel.index(x, y);
+  const Surfaces& surfaces = now.geometry.surfaces;
+  for (int y = 0; y < surfaces.height; y += kEvery) {
+    for (int x = 0; x < surfaces.width; x += kEvery) {
+      const std::size_t i = surfaces.index(x, y);
       if (!now.geometry.is_surface(i)) continue;
       const glm::dvec2 from_motion =
           motion.empty() ? glm::dvec2(NAN) : centre_of(now.geometry, x, y) + glm::dvec2(motion[i]);
-      const PixelsBefore at = reprojection.find(surfel[i], from_motion);
+      const PixelsBefore at = reprojection.find(surfaces[i], from_motion);
       if (at.sight == SeenBefore::nothing) continue;
       sum.met += 1;
       if (at.sight == SeenBefore::same && (!colored || is_like(now.albedo[i], before.albedo, at)))
@@ -100,12 +100,12 @@ bool contradicts_cameras(const Geometry& before, const Geometry& geometry,
   if (!before.world_known || !geometry.world_known) return false;
   const Reprojection reprojection(before, geometry);
   MotionRatios ratios;
-  for (int y = 0; y < geometry.surfel.height; y += kEvery) {
-    for (int x = 0; x < geometry.surfel.width; x += kEvery) {
-      const std::size_t i = geometry.surfel.index(x, y);
+  for (int y = 0; y < geometry.surfaces.height; y += kEvery) {
+    for (int x = 0; x < geometry.surfaces.width; x += kEvery) {
+      const std::size_t i = geometry.surfaces.index(x, y);
       if (!geometry.is_surface(i)) continue;
       ratios.add(glm::dvec2(motion[i]),
-                 reprojection.place(geometry.surfel[i].position) - centre_of(geometry, x, y));
+                 reprojection.place(geometry.surfaces[i].position) - centre_of(geometry, x, y));
     }
   }
   return ratios.contradict();

@@ -38,7 +38,7 @@ struct DepthsAlike {
   }
 };
 
-void depth_tile(const FilterPlanes& noisy, const Plane<Surfel>& guide, const std::vector<Tap>& taps,
+void depth_tile(const FilterPlanes& noisy, const Surfaces& guide, const std::vector<Tap>& taps,
                 const Tile& tile, FilterPlanes& out) {
   WindowAverage<DepthsAlike>(noisy, guide, taps, {}, tile, out).run();
 }
@@ -51,7 +51,7 @@ namespace ssdo {
 
 HWY_EXPORT(depth_tile);
 
-FilterPlanes filter_depth(FilterPlanes noisy, const Plane<Surfel>& guide, int /*pattern_size*/) {
+FilterPlanes filter_depth(FilterPlanes noisy, const Surfaces& guide, int /*pattern_size*/) {
   constexpr std::array<double, 5> kWeights = {0.15317, 0.444893, 0.422649, 0.392902, 0.36297};
   constexpr int kSpacing = 2;
   std::vector<Tap> row;

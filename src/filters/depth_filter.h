@@ -8,6 +8,6 @@ namespace ssdo {
 /// Nine taps, two pixels apart, along rows and then columns, weighted by how near they are in
 /// depth; see depth_filter.cpp. The size of the pattern does not count. Means are finished as
 /// with filter_geometry(), after every pass.
-FilterPlanes filter_depth(FilterPlanes noisy, const Plane<Surfel>& guide, int pattern_size);
+FilterPlanes filter_depth(FilterPlanes noisy, const Surfaces& guide, int pattern_size);
 
 }  // namespace ssdo

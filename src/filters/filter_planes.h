@@ -10,7 +10,7 @@
 #include "estimators/products.h"
 #include "math/plane.h"
 #include "parallel/tiles.h"
-#include "scene/surfel.h"
+#include "scene/surfaces.h"
 
 namespace ssdo {
 
@@ -56,11 +56,11 @@ inline std::vector<Tap> transposed(std::vector<Tap> taps) {
 }
 
 /// Averages one tile of `from` in the window of `taps`.
-using TilePass = void (*)(const FilterPlanes& from, const Plane<Surfel>& guide,
+using TilePass = void (*)(const FilterPlanes& from, const Surfaces& guide,
                           const std::vector<Tap>& taps, const Tile& tile, FilterPlanes& to);
 
 /// Runs `pass` from `noisy` with each window in turn, each on what the one before has left.
-inline FilterPlanes in_passes(FilterPlanes noisy, const Plane<Surfel>& guide,
+inline FilterPlanes in_passes(FilterPlanes noisy, const Surfaces& guide,
                               const std::vector<std::vector<Tap>>& windows, TilePass pass) {
   FilterPlanes to = like(noisy);
   for (const std::vector<Tap>& taps : windows) {

@@ -11,7 +11,7 @@ namespace ssdo {
 namespace {
 
 /// Filters every share that has a draw, if the filter treats them apart. Whether it does.
-bool filter_shadows(const Filter& filter, LightShares& shares, const Plane<Surfel>& guide,
+bool filter_shadows(const Filter& filter, LightShares& shares, const Surfaces& guide,
                     int pattern_size) {
   const auto each = [&](std::vector<Plane<float>>& suns, std::vector<ShadowDraw>& draws) {
     for (std::size_t k = 0; filter.shadow && k < draws.size(); ++k)
@@ -25,7 +25,7 @@ bool filter_shadows(const Filter& filter, LightShares& shares, const Plane<Surfe
 
 }  // namespace
 
-Products filter_products(const Filter& filter, Products noisy, const Plane<Surfel>& guide,
+Products filter_products(const Filter& filter, Products noisy, const Surfaces& guide,
                          int pattern_size) {
   if (!filter.apply) return noisy;
   LightShares& shares = noisy.shares;

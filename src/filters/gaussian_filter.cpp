@@ -37,8 +37,8 @@ struct SameSurface {
   }
 };
 
-void gaussian_tile(const FilterPlanes& noisy, const Plane<Surfel>& guide,
-                   const std::vector<Tap>& taps, const Tile& tile, FilterPlanes& out) {
+void gaussian_tile(const FilterPlanes& noisy, const Surfaces& guide, const std::vector<Tap>& taps,
+                   const Tile& tile, FilterPlanes& out) {
   WindowAverage<SameSurface>(noisy, guide, taps, {}, tile, out).run();
 }
 
@@ -50,7 +50,7 @@ namespace ssdo {
 
 HWY_EXPORT(gaussian_tile);
 
-FilterPlanes filter_gaussian(FilterPlanes noisy, const Plane<Surfel>& guide, int /*pattern_size*/) {
+FilterPlanes filter_gaussian(FilterPlanes noisy, const Surfaces& guide, int /*pattern_size*/) {
   constexpr int kRadius = 5, kRounds = 3;
   constexpr double kSigma = 2.5;
   std::vector<Tap> row;

@@ -59,8 +59,8 @@ constexpr float kStepTolerance = 0.15f;  ///< r; measured, with the 1/4
 
 class TileFilter {
  public:
-  TileFilter(const FilterPlanes& noisy, const Plane<Surfel>& guide, int pattern_size,
-             const Tile& tile, FilterPlanes& out)
+  TileFilter(const FilterPlanes& noisy, const Surfaces& guide, int pattern_size, const Tile& tile,
+             FilterPlanes& out)
       : half_(pattern_size / 2),
         tile_(tile),
         rows_(views_of(noisy), guide, tile, half_, window() + 1),
@@ -197,7 +197,7 @@ HWY_INLINE V average(V own, const Corners& weights, const Corners& values) {
 /// The second pass.
 class CornerFilter {
  public:
-  CornerFilter(const FilterPlanes& means, const Plane<Surfel>& guide, int offset, const Tile& tile,
+  CornerFilter(const FilterPlanes& means, const Surfaces& guide, int offset, const Tile& tile,
                FilterPlanes& out)
       : offset_(offset),
         tile_(tile),
@@ -306,13 +306,13 @@ class CornerFilter {
   AlignedFloats results_;     ///< by component and column; last component: 0 without a surface
 };
 
-void filter_tile(const FilterPlanes& noisy, const Plane<Surfel>& guide, int pattern_size,
+void filter_tile(const FilterPlanes& noisy, const Surfaces& guide, int pattern_size,
                  const Tile& tile, FilterPlanes& out) {
   TileFilter(noisy, guide, pattern_size, tile, out).run();
 }
 
-void filter_corners(const FilterPlanes& means, const Plane<Surfel>& guide, int offset,
-                    const Tile& tile, FilterPlanes& out) {
+void filter_corners(const FilterPlanes& means, const Surfaces& guide, int offset, const Tile& tile,
+                    FilterPlanes& out) {
   CornerFilter(means, guide, offset, tile, out).run();
 }
 
@@ -325,7 +325,7 @@ namespace ssdo {
 HWY_EXPORT(filter_tile);
 HWY_EXPORT(filter_corners);
 
-FilterPlanes filter_geometry(FilterPlanes noisy, const Plane<Surfel>& guide, int pattern_size) {
+FilterPlanes filter_geometry(FilterPlanes noisy, const Surfaces& guide, int pattern_size) {
   constexpr int kMostAtOnce = 4;
   const bool twice = pattern_size > kMostAtOnce;
   FilterPlanes means = like(noisy);

@@ -33,8 +33,8 @@ struct NormalsAlike {
   }
 };
 
-void normal_tile(const FilterPlanes& noisy, const Plane<Surfel>& guide,
-                 const std::vector<Tap>& taps, const Tile& tile, FilterPlanes& out) {
+void normal_tile(const FilterPlanes& noisy, const Surfaces& guide, const std::vector<Tap>& taps,
+                 const Tile& tile, FilterPlanes& out) {
   WindowAverage<NormalsAlike>(noisy, guide, taps, {}, tile, out).run();
 }
 
@@ -46,7 +46,7 @@ namespace ssdo {
 
 HWY_EXPORT(normal_tile);
 
-FilterPlanes filter_normal(FilterPlanes noisy, const Plane<Surfel>& guide, int /*pattern_size*/) {
+FilterPlanes filter_normal(FilterPlanes noisy, const Surfaces& guide, int /*pattern_size*/) {
   constexpr std::array<double, 4> kWeights = {0.37004405286, 0.31718061674, 0.19823788546,
                                               0.11453744493};
   std::vector<Tap> row;

@@ -44,7 +44,7 @@ const Filter& find_filter(std::string_view name, const Method& method) {
 }
 
 Plane<float> apply_filter(const Filter& filter, Plane<float> noisy, const Filtering& filtering,
-                          const Plane<Surfel>& guide, int pattern_size) {
+                          const Surfaces& guide, int pattern_size) {
   if (!filter.apply) return noisy;
   FilterPlanes planes;
   planes.push_back({std::move(noisy), filtering});

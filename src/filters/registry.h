@@ -16,10 +16,10 @@ struct Filter {
   std::string_view name, summary;
   /// Takes away the noise of a T x T sampling pattern; `guide` is what each pixel shows. Null:
   /// leaves the planes as they are.
-  FilterPlanes (*apply)(FilterPlanes noisy, const Plane<Surfel>& guide, int pattern_size);
+  FilterPlanes (*apply)(FilterPlanes noisy, const Surfaces& guide, int pattern_size);
   int reach = 0;  ///< pixels on each side that a pixel depends on, for patterns of up to 8 x 8
   /// Filters the visibility of a sun that was found with one ray per pixel; null: `apply` does it.
-  Plane<float> (*shadow)(NoisyShadow noisy, const Plane<Surfel>& guide, int pattern_size) = nullptr;
+  Plane<float> (*shadow)(NoisyShadow noisy, const Surfaces& guide, int pattern_size) = nullptr;
 };
 
 /// Stands for the filter with which the source of each method ends.
@@ -36,6 +36,6 @@ const Filter& find_filter(std::string_view name, const Method& method);
 
 /// Filters one plane alone.
 Plane<float> apply_filter(const Filter& filter, Plane<float> noisy, const Filtering& filtering,
-                          const Plane<Surfel>& guide, int pattern_size);
+                          const Surfaces& guide, int pattern_size);
 
 }  // namespace ssdo

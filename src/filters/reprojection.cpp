@@ -44,7 +44,7 @@ PixelsBefore Reprojection::find(const Surfel& surfel, const glm::dvec2& from_mot
   const glm::dvec2 at =
       (moves ? from_motion : still) - glm::dvec2(before_.window.x0 + 0.5, before_.window.y0 + 0.5);
   const double left = std::floor(at.x), top = std::floor(at.y);
-  const int width = before_.surfel.width, height = before_.surfel.height;
+  const int width = before_.surfaces.width, height = before_.surfaces.height;
   if (!(left >= -1 && left < width && top >= -1 && top < height)) return found;
   const glm::dvec3 normal = turn_ * glm::dvec3(surfel.normal);
   double sum = 0;
@@ -54,9 +54,9 @@ PixelsBefore Reprojection::find(const Surfel& surfel, const glm::dvec2& from_mot
     const double across = at.x - left, down = at.y - top,
                  weight = (dx ? across : 1 - across) * (dy ? down : 1 - down);
     if (x < 0 || y < 0 || x >= width || y >= height) continue;
-    const std::size_t i = before_.surfel.index(x, y);
+    const std::size_t i = before_.surfaces.index(x, y);
     if (!before_.is_surface(i)) continue;
-    const Surfel& q = before_.surfel[i];
+    const Surfel& q = before_.surfaces[i];
     through = through && double(q.position.z) < p.z - kBehind * std::abs(p.z) - way;
     if (!shows_same(q, p, normal, limit)) continue;
     found.pixel[found.count] = i;

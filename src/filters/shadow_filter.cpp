@@ -44,8 +44,8 @@ inline PlaneView view_of(const Plane<float>& plane) { return {plane.pixels.data(
 
 class ShadowTile {
  public:
-  ShadowTile(const NoisyShadow& noisy, const Plane<Surfel>& guide, int pattern_size,
-             const Tile& tile, ShadowFound& out)
+  ShadowTile(const NoisyShadow& noisy, const Surfaces& guide, int pattern_size, const Tile& tile,
+             ShadowFound& out)
       : half_(pattern_size / 2),
         most_(float(pattern_size)),
         tile_(tile),
@@ -177,7 +177,7 @@ class ShadowTile {
 /// than one.
 class WidePenumbraTile {
  public:
-  WidePenumbraTile(const ShadowFound& found, const Plane<Surfel>& guide, int pattern_size,
+  WidePenumbraTile(const ShadowFound& found, const Surfaces& guide, int pattern_size,
                    const Tile& tile, Plane<float>& out)
       : half_(pattern_size / 2),
         tile_(tile),
@@ -223,12 +223,12 @@ class WidePenumbraTile {
   Plane<float>& out_;
 };
 
-void shadow_of_tile(const NoisyShadow& noisy, const Plane<Surfel>& guide, int pattern_size,
+void shadow_of_tile(const NoisyShadow& noisy, const Surfaces& guide, int pattern_size,
                     const Tile& tile, ShadowFound& out) {
   ShadowTile(noisy, guide, pattern_size, tile, out).run();
 }
 
-void wide_penumbra_of_tile(const ShadowFound& found, const Plane<Surfel>& guide, int pattern_size,
+void wide_penumbra_of_tile(const ShadowFound& found, const Surfaces& guide, int pattern_size,
                            const Tile& tile, Plane<float>& out) {
   WidePenumbraTile(found, guide, pattern_size, tile, out).run();
 }
@@ -242,7 +242,7 @@ namespace ssdo {
 HWY_EXPORT(shadow_of_tile);
 HWY_EXPORT(wide_penumbra_of_tile);
 
-Plane<float> filter_shadow(NoisyShadow noisy, const Plane<Surfel>& guide, int pattern_size) {
+Plane<float> filter_shadow(NoisyShadow noisy, const Surfaces& guide, int pattern_size) {
   ShadowFound found{Plane<float>::like(noisy.share), Plane<float>::like(noisy.share)};
   for_each_tile(guide.width, guide.height, [&](const Tile& tile) {
     HWY_DYNAMIC_DISPATCH(shadow_of_tile)(noisy, guide, pattern_size, tile, found);

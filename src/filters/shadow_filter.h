@@ -2,7 +2,7 @@
 #pragma once
 
 #include "estimators/products.h"
-#include "scene/surfel.h"
+#include "scene/surfaces.h"
 
 namespace ssdo {
 
@@ -21,6 +21,6 @@ struct ShadowFound {
 /// The mean share of a sun that neighbours of a pixel on its surface have found, each by a ray to
 /// another point of it, as far as the penumbra there is wide: see shadow_filter.cpp. `pattern_size`
 /// is its T. Background pixels keep their values.
-Plane<float> filter_shadow(NoisyShadow noisy, const Plane<Surfel>& guide, int pattern_size);
+Plane<float> filter_shadow(NoisyShadow noisy, const Surfaces& guide, int pattern_size);
 
 }  // namespace ssdo

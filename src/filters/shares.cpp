@@ -49,6 +49,7 @@
 
 #include "filters/tile_rows-inl.h"
 #include "scene/light/light-inl.h"
+#include "scene/surfaces-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -58,11 +59,11 @@ constexpr float kMostShare = 2;
 /// Calls `work(index, count, surfels)` for vectors of a row; the last may have fewer pixels than
 /// lanes. The normal is (0, 0, 1) where there is no surface.
 template <class Work>
-HWY_INLINE void for_each_vector(const Plane<Surfel>& surfel, int y, const Work& work) {
-  for (int x = 0; x < surfel.width; x += kLanes) {
-    Surfels s = surfels_at(surfel, x, y);
+HWY_INLINE void for_each_vector(const Surfaces& surfaces, int y, const Work& work) {
+  for (int x = 0; x < surfaces.width; x += kLanes) {
+    Surfels s = surfels_at(surfaces, x, y);
     s.normal = if_then_else(s.surface, s.normal, set(glm::vec3(0, 0, 1)));
-    work(surfel.index(x, y), surfel.width - x, s);
+    work(surfaces.index(x, y), surfaces.width - x, s);
   }
 }
 
@@ -77,7 +78,7 @@ HWY_INLINE V3 turned(const V3& v, const V3& a, const V3& b) {
 void shares_of_row(const Scene& scene, Products& products, int y) {
   const bool has_ao = !products.ao.empty();
   for_each_vector(
-      scene.geometry.surfel, y, [&](std::size_t i, int count, const Surfels& s) HWY_ATTR {
+      scene.geometry.surfaces, y, [&](std::size_t i, int count, const Surfels& s) HWY_ATTR {
         if (!products.bent.empty()) {
           const V3 bent = load_first(count, &products.bent[i]),
                    deviation = turned(bent, s.normal, set(glm::vec3(0, 0, 1)));
@@ -117,7 +118,7 @@ void lights_of_row(const Scene& scene, const std::vector<NamedLight>& lights, Pr
                    int y) {
   const LightShares& shares = products.shares;
   for_each_vector(
-      scene.geometry.surfel, y, [&](std::size_t i, int count, const Surfels& s) HWY_ATTR {
+      scene.geometry.surfaces, y, [&](std::size_t i, int count, const Surfels& s) HWY_ATTR {
         const V3 sky = load_first(count, &shares.sky[i]);
         for (std::size_t l = 0; l < lights.size(); ++l) {
           const auto share_of = [&](std::size_t k) HWY_ATTR {
@@ -135,7 +136,7 @@ void light_of_row(const Scene& scene, Products& products, int y) {
   const Light& light = scene.light;
   Plane<glm::vec3>& found = products.shares.sky.empty() ? products.direct : products.shares.sky;
   for_each_vector(
-      scene.geometry.surfel, y, [&](std::size_t i, int count, const Surfels& s) HWY_ATTR {
+      scene.geometry.surfaces, y, [&](std::size_t i, int count, const Surfels& s) HWY_ATTR {
         const V3 n = s.normal;
         if (!products.bent.empty()) {
           const V3 deviation = load_first(count, &products.bent[i]),
@@ -190,8 +191,8 @@ void find_lights(Products& products, const Scene& scene) {
   if (products.lights.size() < 2 || products.shares.sky.empty()) return;
   const std::vector<NamedLight> lights = lights_of(scene.light);
   for (LightProducts& light : products.lights)
-    light.direct = Plane<glm::vec3>::like(scene.geometry.surfel);
-  for_each_row(scene.geometry.surfel.height, [&](int y) {
+    light.direct = Plane<glm::vec3>::like(scene.geometry.surfaces);
+  for_each_row(scene.geometry.surfaces.height, [&](int y) {
     HWY_DYNAMIC_DISPATCH(lights_of_row)(scene, lights, products, y);
   });
 }
@@ -200,7 +201,7 @@ Products filter_found(const Filter& filter, Products noisy, const Scene& scene, 
                       const std::function<void(Products&)>& amend, bool as_shares) {
   if (as_shares) noisy = to_shares(std::move(noisy), scene);
   if (filter.apply)
-    noisy = filter_products(filter, std::move(noisy), scene.geometry.surfel, pattern_size);
+    noisy = filter_products(filter, std::move(noisy), scene.geometry.surfaces, pattern_size);
   add_sun_errors(noisy, scene);
   // Unfiltered, direct is the method's own, and so are its parts.
   if (!as_shares) find_lights(noisy, scene);
@@ -214,7 +215,7 @@ struct Guesses {
 };
 
 /// The mean of both over a pattern of kGuessedPattern pixels, whatever the method's pattern is.
-Guesses mean_of_guesses(const Filter& filter, Guesses noisy, const Plane<Surfel>& guide) {
+Guesses mean_of_guesses(const Filter& filter, Guesses noisy, const Surfaces& guide) {
   if (!filter.apply) return noisy;
   FilterPlanes planes;
   planes.push_back({std::move(noisy.guessed), find_product("guessed").filtering});
@@ -229,7 +230,7 @@ Guesses mean_of_guesses(const Filter& filter, Guesses noisy, const Plane<Surfel>
 Products find_shares(const Filter& filter, Products noisy, const Scene& scene, int pattern_size,
                      const std::function<void(Products&)>& amend, bool as_shares) {
   Guesses guesses;
-  const Plane<Surfel>& guide = scene.geometry.surfel;
+  const Surfaces& guide = scene.geometry.surfaces;
   const bool have_guesses = !noisy.guessed.empty(), apart = pattern_size != kGuessedPattern;
   if (have_guesses && apart)
     guesses = mean_of_guesses(filter, {std::exchange(noisy.guessed, {}), noisy.ao}, guide);
@@ -262,7 +263,7 @@ Products to_shares(Products products, const Scene& scene) {
   add_emitted(products, -1);
   if (!products.shares.sky.empty() || products.shares.are_ao) products.direct = {};
   if (products.direct.empty() && products.bent.empty()) return products;
-  for_each_row(scene.geometry.surfel.height, [&](int y) {
+  for_each_row(scene.geometry.surfaces.height, [&](int y) {
     HWY_DYNAMIC_DISPATCH(shares_of_row)(scene, products, y);
   });
   return products;
@@ -272,9 +273,9 @@ Products from_shares(Products products, const Scene& scene) {
   add_emitted(products, 1);
   find_lights(products, scene);
   // The light of the sky's share takes its place.
-  if (products.shares.are_ao) products.direct = Plane<glm::vec3>::like(scene.geometry.surfel);
+  if (products.shares.are_ao) products.direct = Plane<glm::vec3>::like(scene.geometry.surfaces);
   if (!products.direct.empty() || !products.shares.sky.empty() || !products.bent.empty()) {
-    for_each_row(scene.geometry.surfel.height, [&](int y) {
+    for_each_row(scene.geometry.surfaces.height, [&](int y) {
       HWY_DYNAMIC_DISPATCH(light_of_row)(scene, products, y);
     });
   }

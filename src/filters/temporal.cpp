@@ -103,7 +103,7 @@ History accumulate(const History* before, const Geometry& geometry, const Produc
                    const Plane<glm::vec2>& motion) {
   History after;
   after.mean = now;
-  after.frames = Plane<float>(geometry.surfel.width, geometry.surfel.height);
+  after.frames = Plane<float>(geometry.surfaces.width, geometry.surfaces.height);
   for (std::size_t i = 0; i < after.frames.size(); ++i) after.frames[i] = geometry.is_surface(i);
   if (!before || !before->geometry.world_known || !geometry.world_known ||
       !same_products(before->mean, now)) {
@@ -111,13 +111,13 @@ History accumulate(const History* before, const Geometry& geometry, const Produc
   }
   const Reprojection reprojection(before->geometry, geometry);
   const glm::mat3 turn = reprojection.to_present();
-  for_each_row(geometry.surfel.height, [&](int y) {
-    for (int x = 0; x < geometry.surfel.width; ++x) {
-      const std::size_t i = geometry.surfel.index(x, y);
+  for_each_row(geometry.surfaces.height, [&](int y) {
+    for (int x = 0; x < geometry.surfaces.width; ++x) {
+      const std::size_t i = geometry.surfaces.index(x, y);
       if (!geometry.is_surface(i)) continue;
       const glm::dvec2 from_motion =
           motion.empty() ? glm::dvec2(NAN) : centre_of(geometry, x, y) + glm::dvec2(motion[i]);
-      const PixelsBefore at = reprojection.find(geometry.surfel[i], from_motion);
+      const PixelsBefore at = reprojection.find(geometry.surfaces[i], from_motion);
       if (at.count == 0) continue;
       const float frames = std::min(average(before->frames, at), kMostFrames);
       mix_products(after.mean, i, before->mean, at, turn, frames);

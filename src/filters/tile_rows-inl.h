@@ -17,7 +17,7 @@
 
 #include "filters/filter_planes.h"
 #include "parallel/tiles.h"
-#include "scene/surfel-inl.h"
+#include "scene/surfaces.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -69,10 +69,10 @@ struct Shown {
 /// surface, be it outside the picture.
 class TileRows {
  public:
-  static constexpr int kSurfelChannels = 7;
+  static constexpr int kRounding = 6, kSurfelChannels = 7;
 
   /// Holds `height` rows; the halo is `half` pixels wide.
-  TileRows(std::vector<PlaneView> noisy, const Plane<Surfel>& guide, const Tile& tile, int half,
+  TileRows(std::vector<PlaneView> noisy, const Surfaces& guide, const Tile& tile, int half,
            int height)
       : guide_(guide),
         tile_(tile),
@@ -95,7 +95,7 @@ class TileRows {
   HWY_INLINE Shown shown(int y, int x) const {
     const float* from = row(y, 0) + x;
     return {load_apart(from, stride_), load_apart(from + 3 * stride_, stride_),
-            load(from + 6 * stride_)};
+            load(from + kRounding * stride_)};
   }
 
   /// Takes row `y` in, in place of the row that was taken in `height` rows ago.
@@ -110,7 +110,7 @@ class TileRows {
     const std::size_t first = guide_.index(x0, y);
     if (y + kAhead < guide_.height) fetch(guide_.index(x0, y + kAhead), count);
     to += x0 - left;
-    gather_surfels(&guide_[first], count, to);
+    gather_surfels(first, count, to);
     to += kSurfelChannels * stride_;
     for (const PlaneView& plane : planes_) {
       gather_plane(plane, first, count, to);
@@ -147,25 +147,28 @@ class TileRows {
     const auto each_line = [](const float* from, int floats) {
       for (int i = 0; i < floats; i += kLine) hwy::Prefetch(from + i);
     };
-    each_line(&guide_[first].position.x, count * int(sizeof(Surfel) / sizeof(float)));
+    for (const auto* planes : {&guide_.position, &guide_.normal})
+      for (const Plane<float>& plane : *planes) each_line(&plane[first], count);
+    each_line(&guide_.rounding[first], count);
     for (const PlaneView& plane : planes_)
       each_line(plane.values + first * std::size_t(plane.components), count * plane.components);
   }
 
-  void gather_surfels(const Surfel* from, int count, float* to) {
+  void gather_surfels(std::size_t first, int count, float* to) {
+    const float* const from[kSurfelChannels] = {
+        &guide_.position[0][first], &guide_.position[1][first], &guide_.position[2][first],
+        &guide_.normal[0][first],   &guide_.normal[1][first],   &guide_.normal[2][first],
+        &guide_.rounding[first]};
     const auto single = [&](int i) {
-      const glm::vec3 p = from[i].position, n = from[i].normal;
-      const bool surface = from[i].is_surface();
-      const float values[kSurfelChannels] = {p.x, p.y, p.z, n.x, n.y, n.z, from[i].rounding};
+      const bool surface = from[kRounding][i] >= 0;
       surface_[std::size_t(i)] = surface;
-      for (int c = 0; c < kSurfelChannels; ++c) to[c * stride_ + i] = surface ? values[c] : 0.0f;
+      for (int c = 0; c < kSurfelChannels; ++c) to[c * stride_ + i] = surface ? from[c][i] : 0.0f;
     };
     const auto whole = [&](int i) HWY_ATTR {
-      const Surfels q = load_surfels(from + i);
-      store(hn::IfThenElseZero(q.surface, set(1)), surface_.get() + i);
-      store_apart(if_then_else_zero(q.surface, q.position), stride_, to + i);
-      store_apart(if_then_else_zero(q.surface, q.normal), stride_, to + 3 * stride_ + i);
-      store(hn::IfThenElseZero(q.surface, q.rounding), to + 6 * stride_ + i);
+      const M surface = load(from[kRounding] + i) >= set(0);
+      store(hn::IfThenElseZero(surface, set(1)), surface_.get() + i);
+      for (int c = 0; c < kSurfelChannels; ++c)
+        store(hn::IfThenElseZero(surface, load(from[c] + i)), to + c * stride_ + i);
     };
     cover(count, whole, single);
   }
@@ -217,7 +220,7 @@ class TileRows {
     cover(count, whole, single);
   }
 
-  const Plane<Surfel>& guide_;
+  const Surfaces& guide_;
   const Tile tile_;
   const int half_, height_;
   const std::vector<PlaneView> planes_;

@@ -30,7 +30,7 @@ constexpr float kLeastCosine = 0.8f;
 template <class Similarity>
 class WindowAverage {
  public:
-  WindowAverage(const FilterPlanes& noisy, const Plane<Surfel>& guide, const std::vector<Tap>& taps,
+  WindowAverage(const FilterPlanes& noisy, const Surfaces& guide, const std::vector<Tap>& taps,
                 const Similarity& similarity, const Tile& tile, FilterPlanes& out)
       : taps_(taps),
         similarity_(similarity),

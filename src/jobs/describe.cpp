@@ -158,7 +158,7 @@ json camera_json(const Frame& frame) {
 
 std::size_t surface_pixels(const Frame& frame) {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < frame.scene.geometry.surfel.size(); ++i)
+  for (std::size_t i = 0; i < frame.scene.geometry.surfaces.size(); ++i)
     count += frame.scene.geometry.is_surface(i);
   return count;
 }
@@ -214,7 +214,7 @@ std::string describe(const Frame& frame) {
   line("camera", describe_camera(frame));
   if (frame.report.header) line("header", describe(*frame.report.header));
   line("surfaces", fmt::format("{} of {} pixels ({} background, {} broken), median depth {:.4g}",
-                               surface_pixels(frame), frame.scene.geometry.surfel.size(),
+                               surface_pixels(frame), frame.scene.geometry.surfaces.size(),
                                frame.gbuffer.background_pixels, frame.gbuffer.bad_pixels,
                                frame.scene.geometry.median_depth));
   line("light", frame.light);
@@ -248,7 +248,7 @@ nlohmann::json to_json(const Frame& frame) {
             {"agreement", frame.report.normal_agreement},
             {"rebuilt", frame.report.normals_rebuilt},
             {"turned", frame.report.normals_turned}}},
-          {"pixels", g.surfel.size()},
+          {"pixels", g.surfaces.size()},
           {"surface_pixels", surface_pixels(frame)},
           {"background_pixels", frame.gbuffer.background_pixels},
           {"bad_pixels", frame.gbuffer.bad_pixels},

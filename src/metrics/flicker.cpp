@@ -84,7 +84,7 @@ class Search {
   /// it, and to `moved` whether `motion` contradicts the place that the cameras give.
   void find(int x, int y, const glm::vec2* motion, std::vector<SharedPoint>& found,
             std::vector<bool>& moved) const {
-    const Surfel& surfel = now_.surfel(x, y);
+    const Surfel& surfel = now_.surfaces(x, y);
     if (!surfel.is_usable()) return;
     const glm::dvec3 p = turn_ * glm::dvec3(surfel.position) + step_;
     if (!(before_.camera.depth_of(p) > 0) && !before_.camera.orthographic) return;
@@ -123,7 +123,7 @@ class Search {
       if (corners.weight[k] == 0) continue;
       const int x = point.left + k % 2, y = point.top + k / 2;
       if (!before_.window.contains(x, y)) return false;
-      const Surfel& q = before_.surfel(x - before_.window.x0, y - before_.window.y0);
+      const Surfel& q = before_.surfaces(x - before_.window.x0, y - before_.window.y0);
       if (!q.is_usable()) return false;
       const glm::dvec3 away = glm::dvec3(q.position) - p, other(q.normal);
       const double limit = kGap * width + surfel.rounding + q.rounding;
@@ -171,10 +171,10 @@ SharedPoints find_shared_points(const Geometry& before, const Geometry& now,
     std::vector<SharedPoint> points;
     std::vector<bool> moved;
   };
-  std::vector<Row> rows(std::size_t(now.surfel.height));
-  for_each_row(now.surfel.height, [&](int y) {
+  std::vector<Row> rows(std::size_t(now.surfaces.height));
+  for_each_row(now.surfaces.height, [&](int y) {
     Row& row = rows[std::size_t(y)];
-    for (int x = 0; x < now.surfel.width; ++x) {
+    for (int x = 0; x < now.surfaces.width; ++x) {
       const int in_display_x = now.window.x0 + x, in_display_y = now.window.y0 + y;
       if (!now.display.contains(in_display_x, in_display_y) || !counts(in_display_x, in_display_y))
         continue;

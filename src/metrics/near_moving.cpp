@@ -50,7 +50,7 @@ struct OtherFrame {
       // With a camera at rest, the neighbours' weights differ from 0 by rounding only.
       const double part = (k % 2 ? past.x : 1 - past.x) * (k / 2 ? past.y : 1 - past.y);
       if (part < kLeastPart) continue;
-      const Surfel& q = geometry.surfel(left + k % 2 - window.x0, top + k / 2 - window.y0);
+      const Surfel& q = geometry.surfaces(left + k % 2 - window.x0, top + k / 2 - window.y0);
       if (q.is_broken()) return false;
       if (q.is_surface() && double(q.position.z) > p.z - kBehind * std::abs(p.z)) return false;
     }
@@ -61,12 +61,12 @@ struct OtherFrame {
 /// 1 in the pixels of `own` whose points have moved.
 Plane<unsigned char> moved(const Geometry& own, const Geometry& other) {
   const OtherFrame frame(other, own);
-  const int width = own.surfel.width, height = own.surfel.height;
-  auto through = Plane<unsigned char>::like(own.surfel);
+  const int width = own.surfaces.width, height = own.surfaces.height;
+  auto through = Plane<unsigned char>::like(own.surfaces);
   for_each_row(height, [&](int y) {
-    for (int x = 0; x < width; ++x) through(x, y) = frame.looks_through(own.surfel(x, y));
+    for (int x = 0; x < width; ++x) through(x, y) = frame.looks_through(own.surfaces(x, y));
   });
-  auto out = Plane<unsigned char>::like(own.surfel);
+  auto out = Plane<unsigned char>::like(own.surfaces);
   for_each_row(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       int count = 0;
@@ -102,7 +102,7 @@ Plane<unsigned char> near_moving(const Geometry& before, const Geometry& now) {
   for (std::size_t i = 0; i < gone.size(); ++i) {
     if (!gone[i]) continue;
     const glm::dvec2 place =
-        now.camera.project(frame.turn * glm::dvec3(before.surfel[i].position) + frame.step);
+        now.camera.project(frame.turn * glm::dvec3(before.surfaces[i].position) + frame.step);
     near(int(std::floor(place.x)) - now.window.x0, int(std::floor(place.y)) - now.window.y0) = 1;
   }
   spread(near, near.height, near.width, near.width, 1);

@@ -84,7 +84,7 @@ class Planner {
       : frame_(frame), plan_(plan) {
     const double of_pixel = bytes_per_pixel(plan, overview);
     bytes_of_row_ = of_pixel * frame.width();
-    bytes_ = kBytes + of_pixel * double(overview.geometry.surfel.size());
+    bytes_ = kBytes + of_pixel * double(overview.geometry.surfaces.size());
     rows_ = int(std::clamp((double(memory) - bytes_) / bytes_of_row_, 0.0, 1e9));
     exact_ = plan.method->bands.reach_rows(overview.geometry, kOverviewStride, frame, display,
                                            plan.request);

@@ -96,7 +96,7 @@ void choose_filter(Plan& plan, const std::string& name) {
   if (!half) return;
   plan.half_filter = std::exchange(plan.filter, &find_filter("none"));
   plan.request.filter_half = [filter = plan.half_filter, of_half = plan.method->pattern_size / 2](
-                                 Plane<float> ao, const Plane<Surfel>& guide) {
+                                 Plane<float> ao, const Surfaces& guide) {
     return apply_filter(*filter, std::move(ao), find_product("ao").filtering, guide, of_half);
   };
 }
@@ -216,7 +216,7 @@ void explain_measured(Plan& plan, const Scene& scene) {
   if (std::none_of(solids.behind.begin(), solids.behind.end(), is_measured)) return;
   std::size_t surfaces = 0, pixels = 0;
   int most = 0;
-  for (std::size_t i = 0; i < scene.geometry.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < scene.geometry.surfaces.size(); ++i) {
     int measured = 0;
     for (int k = 1; k < solids.layers(); ++k)
       measured += solids.at(k, i).exists() && solids.provenance(k, i) == Provenance::measured;

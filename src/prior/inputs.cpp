@@ -89,7 +89,7 @@ void PriorInputs::find_log_depth(bool is_known) {
   for (int y = 0; y < log_depth_.height; ++y) {
     for (int x = 0; x < log_depth_.width; ++x) {
       if (squares_.pixel(x, y) == kNoPixel) continue;
-      log_depth_(x, y) = of(squares_.surfel(x, y));
+      log_depth_(x, y) = of(squares_.surfaces(x, y));
       if (squares_.covered(x, y) == 0 || !squares_.in_display(x, y)) continue;
       sum += double(log_depth_(x, y)), count += 1;
     }
@@ -104,7 +104,7 @@ void PriorInputs::find_log_depth(bool is_known) {
 
 PriorInputs::Values PriorInputs::values_of(int x, int y) const {
   const std::size_t i = squares_.ao.index(x, y);
-  const glm::vec3 normal = axes_ * squares_.surfel[i].normal, bent = axes_ * squares_.bent[i];
+  const glm::vec3 normal = axes_ * squares_.surfaces[i].normal, bent = axes_ * squares_.bent[i];
   const float ao = squares_.ao[i], depth = log_depth_[i], guessed = squares_.guessed[i];
   return {normal.x,      normal.y, normal.z, std::abs(normal.z),       depth,
           depth * depth, ao,       guessed,  squares_.open_ao[i] - ao, bent.x,
@@ -225,7 +225,7 @@ void PriorInputs::write(int y, std::size_t stride, float* rows) const {
     float* to = rows + x;
     const auto put = [&](float value) { *to = value, to += stride; };
     const Values own = values_of(x, y);
-    const Surfel& s = squares_.surfel(x, y);
+    const Surfel& s = squares_.surfaces(x, y);
     const float extent = orthographic_ ? lens_ : -s.position.z * lens_,
                 across = (float(squares_.first.x + x) + 0.5f) / float(squares_.display.x),
                 down = (float(squares_.first.y + y) + 0.5f) / float(squares_.display.y);

@@ -17,6 +17,7 @@
 
 #include "filters/similarity-inl.h"
 #include "scene/light/light-inl.h"
+#include "scene/surfaces-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -43,7 +44,7 @@ class SpreadRow {
       : step_(step), stride_(width + std::size_t(step) + kLanes), values_(kChannels * stride_) {}
 
   /// `columns` are those of the squares, by entry.
-  void spread(const Plane<Surfel>& squares, const SquareValues<kCount>& values, int row,
+  void spread(const Surfaces& squares, const SquareValues<kCount>& values, int row,
               const std::vector<int>& columns) {
     for (std::size_t x = 0; x < columns.size(); ++x) {
       const std::size_t i = squares.index(columns[x], row);
@@ -133,29 +134,29 @@ template <int kCount, class Work>
 HWY_INLINE void between_squares(const Squares& s, const Geometry& geometry,
                                 const SquareValues<kCount>& values, int y0, int y1,
                                 const Work& work) {
-  const int width = geometry.surfel.width, step = s.step,
+  const int width = geometry.surfaces.width, step = s.step,
             left = geometry.window.x0 - geometry.display.x0,
             top = geometry.window.y0 - geometry.display.y0;
   const Axis columns = make_axis(left, s.first.x, s.pixel.width, width, step),
-             rows = make_axis(top, s.first.y, s.pixel.height, geometry.surfel.height, step);
+             rows = make_axis(top, s.first.y, s.pixel.height, geometry.surfaces.height, step);
   SpreadRow<kCount> above(std::size_t(width), step), below(std::size_t(width), step);
   int spread_above = -1, spread_below = -1;
   for (int y = y0; y < y1; ++y) {
     const int row = rows.square[std::size_t(y)], next = rows.square[std::size_t(y + step)];
     const auto spread = [&](SpreadRow<kCount>& to, int from) {
-      to.spread(s.surfel, values, from, columns.square);
+      to.spread(s.surfaces, values, from, columns.square);
     };
     if (row == spread_below) std::swap(above, below), std::swap(spread_above, spread_below);
     if (row != spread_above) spread(above, row), spread_above = row;
     if (next != spread_below) spread(below, next), spread_below = next;
     for (int x = 0; x < width; x += kLanes) {
-      const Surfels surfels = surfels_at(geometry.surfel, x, y);
+      const Surfels surfels = surfels_at(geometry.surfaces, x, y);
       if (!any(surfels.surface)) continue;
       V found[kCount];
       interpolate<kCount>({surfels.position, surfels.normal, surfels.rounding}, above, below,
                           std::size_t(x), load(&columns.share[std::size_t(x)]),
                           set(rows.share[std::size_t(y)]), found);
-      work(geometry.surfel.index(x, y), width - x, surfels, found);
+      work(geometry.surfaces.index(x, y), width - x, surfels, found);
     }
   }
 }
@@ -276,26 +277,26 @@ HWY_EXPORT(write_rows);
 HWY_EXPORT(finish_rows);
 
 LearnedVisibility by_pixel(const PriorField& field, const Geometry& geometry, float sun_past) {
-  const Plane<Surfel>& surfel = geometry.surfel;
-  LearnedVisibility learned{Plane<float>(surfel.width, surfel.height, 0.0f),
-                            Plane<float>(surfel.width, surfel.height, 1.0f)};
-  for_each_band(surfel.height, [&](int y0, int y1) {
+  const Surfaces& surfaces = geometry.surfaces;
+  LearnedVisibility learned{Plane<float>(surfaces.width, surfaces.height, 0.0f),
+                            Plane<float>(surfaces.width, surfaces.height, 1.0f)};
+  for_each_band(surfaces.height, [&](int y0, int y1) {
     HWY_DYNAMIC_DISPATCH(write_rows)(field, geometry, sun_past, y0, y1, learned);
   });
   return learned;
 }
 
 void apply_prior(const PriorField& field, const Scene& scene, Products& products) {
-  for_each_band(scene.geometry.surfel.height, [&](int y0, int y1) {
+  for_each_band(scene.geometry.surfaces.height, [&](int y0, int y1) {
     HWY_DYNAMIC_DISPATCH(amend_rows)(field, scene, y0, y1, products);
   });
 }
 
 void finish_with_prior(const PriorField& field, const Scene& scene, bool wants_guessed,
                        Products& products) {
-  const Plane<Surfel>& surfel = scene.geometry.surfel;
-  if (wants_guessed) products.guessed = Plane<float>(surfel.width, surfel.height, 0.0f);
-  for_each_band(scene.geometry.surfel.height, [&](int y0, int y1) {
+  const Surfaces& surfaces = scene.geometry.surfaces;
+  if (wants_guessed) products.guessed = Plane<float>(surfaces.width, surfaces.height, 0.0f);
+  for_each_band(scene.geometry.surfaces.height, [&](int y0, int y1) {
     HWY_DYNAMIC_DISPATCH(finish_rows)(field, scene, y0, y1, products);
   });
 }

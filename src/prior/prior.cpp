@@ -40,11 +40,11 @@ void average_over_squares(const PriorQuestion& question, const PriorAsked& asked
   planes.push_back({std::move(s.open_ao), filtering("ao")});
   planes.push_back({std::move(s.guesses), filtering("guessed")});
   planes.push_back({std::move(s.bent), filtering("bent")});
-  planes = filter.apply(std::move(planes), s.surfel, kGuessedPattern);
+  planes = filter.apply(std::move(planes), s.surfaces, kGuessedPattern);
   s.ao = std::get<Plane<float>>(std::move(planes[0].plane));
   s.open_ao = std::get<Plane<float>>(std::move(planes[1].plane));
   s.guesses = apply_filter(filter, std::get<Plane<float>>(std::move(planes[2].plane)),
-                           filtering("guessed"), s.surfel, kGuessedPattern);
+                           filtering("guessed"), s.surfaces, kGuessedPattern);
   s.guessed = Plane<float>::like(s.ao);
   for (std::size_t i = 0; i < s.ao.size(); ++i)
     s.guessed[i] = guessed_product(s.guesses[i], std::clamp(s.ao[i], 0.0f, 1.0f));

@@ -33,8 +33,8 @@ int square_size(int display_width) {
 
 Squares make_squares(const Geometry& geometry, const Window& part, const Casting* casting) {
   const auto shows_surface = [&](std::size_t pixel) {
-    return geometry.surfel[pixel].is_usable() &&
-           (!casting || casting->geometry.surfel[pixel].is_usable());
+    return geometry.surfaces[pixel].is_usable() &&
+           (!casting || casting->geometry.surfaces[pixel].is_usable());
   };
   Squares s;
   const int step = s.step = square_size(geometry.display.width());
@@ -48,14 +48,14 @@ Squares make_squares(const Geometry& geometry, const Window& part, const Casting
             height = floor_div(top + part.y1 - 1, step) + 1 - s.first.y;
   s.pixel = Plane<std::int32_t>(width, height, kNoPixel);
   s.covered = Plane<float>(width, height, 0.0f);
-  s.surfel = Plane<Surfel>(width, height);
+  s.surfaces = Surfaces(width, height);
   for_each_row(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const int x0 = (s.first.x + x) * step - left, y0 = (s.first.y + y) * step - top;
       const auto take = [&](int px, int py) {
-        if (!part.contains(px, py) || !shows_surface(geometry.surfel.index(px, py))) return false;
-        s.pixel(x, y) = std::int32_t(geometry.surfel.index(px, py));
-        s.surfel(x, y) = geometry.surfel(px, py);
+        if (!part.contains(px, py) || !shows_surface(geometry.surfaces.index(px, py))) return false;
+        s.pixel(x, y) = std::int32_t(geometry.surfaces.index(px, py));
+        s.surfaces.set(x, y, geometry.surfaces(px, py));
         return true;
       };
       if (take(x0 + place_in(s.first.x + x, step), y0 + place_in(s.first.y + y, step))) {

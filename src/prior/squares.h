@@ -22,7 +22,7 @@ struct Squares {
   glm::ivec2 display;  ///< squares that the display window takes, which begins at square (0, 0)
   Plane<std::int32_t> pixel;  ///< that stands for the square, in the geometry; or kNoPixel
   Plane<float> covered;       ///< 1: the chosen pixel shows a surface; 0: another pixel, or none
-  Plane<Surfel> surfel;       ///< that the pixel shows
+  Surfaces surfaces;          ///< that the pixel shows
   // After the mean over squares.
   Plane<float> ao, open_ao;       ///< ao, and the ao if surfaces end at the border
   Plane<float> guesses, guessed;  ///< G of estimators/guessed.h, and its product with ao

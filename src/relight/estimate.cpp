@@ -55,7 +55,7 @@ Products over_geometry(Products found, const Geometry& geometry, const Window& r
   const auto place = [&](auto& plane, float background) {
     if (plane.empty()) return;
     using Value = std::decay_t<decltype(plane[0])>;
-    Plane<Value> whole(geometry.surfel.width, geometry.surfel.height, Value(background));
+    Plane<Value> whole(geometry.surfaces.width, geometry.surfaces.height, Value(background));
     for (int y = 0; y < plane.height; ++y)
       std::copy_n(&plane(0, y), plane.width, &whole(left, top + y));
     plane = std::move(whole);
@@ -74,7 +74,7 @@ Plane<float> size_of(Plane<float> draw, const Geometry& geometry) {
   constexpr int kNeighbours = 2;
   for (float& e : draw.pixels) e *= e;
   Plane<float> size =
-      apply_filter(find_filter("geometry"), std::move(draw), {}, geometry.surfel, kNeighbours);
+      apply_filter(find_filter("geometry"), std::move(draw), {}, geometry.surfaces, kNeighbours);
   for (float& e : size.pixels) e = std::sqrt(std::max(e, 0.0f));
   return size;
 }
@@ -101,7 +101,7 @@ Plane<float> change_by_steps(const Scene& scene, const Method& method, Request f
   fewer.products = {.direct = true, .bounce = fewer.products.bounce};
   fewer.by_light = {};
   const Products other = method.estimate(scene, fewer, progress);
-  auto change = Plane<float>::like(scene.geometry.surfel);
+  auto change = Plane<float>::like(scene.geometry.surfaces);
   for (std::size_t i = 0; i < change.size(); ++i)
     change[i] = brightness(products, i) - brightness(other, i);
   return change;
@@ -184,7 +184,7 @@ class Round {
     if (request_.products.error) {
       if (compares_steps_)
         noisy.change =
-            apply_filter(*plan_.filter, std::move(noisy.change), {}, geometry.surfel, pattern);
+            apply_filter(*plan_.filter, std::move(noisy.change), {}, geometry.surfaces, pattern);
       out.error = measure(products.error, std::move(noisy.change), geometry);
     }
     return out;
@@ -239,12 +239,12 @@ Scene seen_by_filters(Scene scene) {
 }
 
 /// The share of the light of a source that arrives at the surfaces of a frame.
-double arriving(const LightShares& shares, std::size_t source, const Plane<Surfel>& surfel) {
+double arriving(const LightShares& shares, std::size_t source, const Surfaces& surfaces) {
   const Plane<float>& share = shares.suns[source];
   const bool weighs = source < shares.draws.size() && !shares.draws[source].weight.empty();
   double all = 0, arrives = 0;
   for (std::size_t i = 0; i < share.size(); ++i) {
-    if (!surfel[i].is_surface()) continue;
+    if (!surfaces[i].is_surface()) continue;
     const double light = weighs ? double(shares.draws[source].weight[i]) : 1;
     all += light, arrives += light * double(share[i]);
   }
@@ -255,13 +255,13 @@ double arriving(const LightShares& shares, std::size_t source, const Plane<Surfe
 /// arrives.
 std::vector<std::pair<std::string, double>> unlit_lamps(const Light& light,
                                                         const LightShares& shares,
-                                                        const Plane<Surfel>& surfel) {
+                                                        const Surfaces& surfaces) {
   // This much of the light of a lamp under the ground arrives, through gaps and at the border.
   constexpr double kNearlyNone = 0.03;
   std::vector<std::pair<std::string, double>> found;
   for (std::size_t k = 0; k < shares.suns.size(); ++k) {
     const std::string& name = light.sources[k]->name;
-    const double share = name.empty() ? 1 : arriving(shares, k, surfel);
+    const double share = name.empty() ? 1 : arriving(shares, k, surfaces);
     if (share < kNearlyNone) found.emplace_back(name, share);
   }
   return found;
@@ -299,7 +299,7 @@ Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double
     Stopwatch watch;
     Round round(plan, request, scene.light, on_progress);
     Noisy noisy = round.estimate(scene);
-    const auto unlit = unlit_lamps(scene.light, noisy.products.shares, scene.geometry.surfel);
+    const auto unlit = unlit_lamps(scene.light, noisy.products.shares, scene.geometry.surfaces);
     estimate_ms += watch.lap();
     // With --error another round may need all of the scene.
     if (!plan.error) scene = seen_by_filters(std::move(scene));

@@ -125,13 +125,12 @@ void take_out(OtherView& view, const TakenOut& out) {
   const bool names_any = cast != view.picture->casts.end();
   const unsigned char marks = out.marks_of(view);
   OtherPicture picture = *view.picture;
-  for (std::size_t i = 0; i < picture.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < picture.surfaces.size(); ++i) {
     const bool is_marked = !taken.empty() && (taken[i] & marks) != 0,
                is_named = !is_of_lamp || (names_any && cast->second[i] != 0);
     if (!is_marked && is_named) continue;
     // Its depth stays: up to there nothing is in the way, and what is behind it is not known.
-    picture.surfel[i] = Surfel();
-    picture.surfel[i].rounding = Surfel::kBroken;
+    picture.surfaces.set(i, {glm::vec3(0), glm::vec3(0), Surfel::kBroken});
   }
   view.picture = std::make_shared<const OtherPicture>(std::move(picture));
 }

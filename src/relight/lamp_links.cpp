@@ -61,11 +61,11 @@ LampLinks links_of(const std::vector<Lamp>& lamps, int number) {
 }
 
 Plane<float> all_but(const Plane<float>& selected, const Plane<float>& out, const Geometry& frame) {
-  const Plane<Surfel>& surfel = frame.surfel;
-  const Plane<unsigned char> shown = covered_pixels(surfel, frame.camera, selected);
-  Plane<float> rest = out.empty() ? Plane<float>(surfel.width, surfel.height, 0.0f) : out;
-  for (std::size_t i = 0; i < surfel.size(); ++i)
-    if (surfel[i].is_surface() && !shown[i]) rest[i] = 1;
+  const Surfaces& surfaces = frame.surfaces;
+  const Plane<unsigned char> shown = covered_pixels(surfaces, frame.camera, selected);
+  Plane<float> rest = out.empty() ? Plane<float>(surfaces.width, surfaces.height, 0.0f) : out;
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    if (surfaces[i].is_surface() && !shown[i]) rest[i] = 1;
   return rest;
 }
 

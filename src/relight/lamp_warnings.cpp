@@ -24,7 +24,7 @@ struct Surroundings {
 
 Surroundings look_around(const glm::vec3& center, const Source& source, const Geometry& geometry) {
   Surroundings found;
-  const Plane<Surfel>& surfels = geometry.surfel;
+  const Surfaces& surfels = geometry.surfaces;
   const int step_x = std::max(1, surfels.width / kLooks),
             step_y = std::max(1, surfels.height / kLooks);
   for (int y = step_y / 2; y < surfels.height; y += step_y) {
@@ -49,7 +49,7 @@ double behind_surface(const glm::dvec3& center, const Geometry& geometry) {
   const glm::dvec2 pixel = geometry.camera.project(center);
   const double x = std::floor(pixel.x) - geometry.window.x0,
                y = std::floor(pixel.y) - geometry.window.y0;
-  const Plane<Surfel>& surfels = geometry.surfel;
+  const Surfaces& surfels = geometry.surfaces;
   if (!(x >= 0 && y >= 0 && x < surfels.width && y < surfels.height)) return -1;
   const Surfel& s = surfels(int(x), int(y));
   if (!s.is_surface()) return -1;

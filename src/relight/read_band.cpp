@@ -24,9 +24,9 @@ class CastersOfBand {
   CastersOfBand(const RelightJob& job, const Geometry& rows, const PixelGrid& grid)
       : frame_(job.frame), model_(job.options.model), rows_(rows), grid_(grid) {
     if (!frame_.is_backdrop) return;
-    backdrop_ = Plane<float>(rows.surfel.width, rows.surfel.height, 0.0f);
+    backdrop_ = Plane<float>(rows.surfaces.width, rows.surfaces.height, 0.0f);
     for (std::size_t i = 0; i < backdrop_.size(); ++i)
-      if (rows.surfel[i].is_surface() && frame_.is_backdrop(rows.surfel[i])) backdrop_[i] = 1;
+      if (rows.surfaces[i].is_surface() && frame_.is_backdrop(rows.surfaces[i])) backdrop_[i] = 1;
   }
 
   /// Fills `scene`, of these rows, as `overview` is filled.
@@ -44,7 +44,7 @@ class CastersOfBand {
 
  private:
   Plane<float> coverage_of(const Selection& selection) const {
-    if (selection.empty()) return {rows_.surfel.width, rows_.surfel.height, 0.0f};
+    if (selection.empty()) return {rows_.surfaces.width, rows_.surfaces.height, 0.0f};
     return selected_coverage(selection, {frame_.files, frame_.view}, rows_.window, grid_);
   }
 

@@ -112,9 +112,9 @@ void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& opti
     SolidOptions solids{{}, options.input.gbuffer};
     if (options.model.thickness) solids.thickness = float(*options.model.thickness);
     const ObjectOptions& objects = frame.objects;
-    const Plane<Surfel>& surfel = frame.scene.geometry.surfel;
+    const Surfaces& surfaces = frame.scene.geometry.surfaces;
     const auto coverage = [&](const Selection& selection) {
-      if (selection.empty()) return Plane<float>(surfel.width, surfel.height, 0.0f);
+      if (selection.empty()) return Plane<float>(surfaces.width, surfaces.height, 0.0f);
       std::vector<std::string> warnings;
       Plane<float> found = selected_coverage(selection, frame.selections(warnings),
                                              frame.gbuffer.window, frame.gbuffer.grid);

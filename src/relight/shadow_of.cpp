@@ -65,17 +65,17 @@ void find_shadow(Scene& without, Relit& relit) {
   relit.times.estimate += found.estimate_ms;
   relit.times.filter += found.filter_ms;
   const Products& with = relit.products;
-  const Plane<Surfel>& surfel = scene.geometry.surfel;
-  Plane<glm::vec3> lit = filled(surfel.width, surfel.height, glm::vec3(0)), lit_without = lit;
-  for_each_row(surfel.height, [&](int y) {
-    for (std::size_t i = surfel.index(0, y); i < surfel.index(0, y + 1); ++i) {
+  const Surfaces& surfaces = scene.geometry.surfaces;
+  Plane<glm::vec3> lit = filled(surfaces.width, surfaces.height, glm::vec3(0)), lit_without = lit;
+  for_each_row(surfaces.height, [&](int y) {
+    for (std::size_t i = surfaces.index(0, y); i < surfaces.index(0, y + 1); ++i) {
       // Where the objects stand: the pixel beside them that fills the hole.
       const std::size_t from = sender[i] >= 0 ? std::size_t(sender[i]) : i;
-      if (!surfel[from].is_usable()) continue;
+      if (!surfaces[from].is_usable()) continue;
       const glm::vec3 a = with.direct[from] + of(with.bounce, from),
                       b = glm::max(with.direct[from], found.products.direct[from]) +
                           of(found.products.bounce, from),
-                      noise = kNoise * facing_light(scene.light, surfel[from], from);
+                      noise = kNoise * facing_light(scene.light, surfaces[from], from);
       lit[i] = lit_without[i] = b;
       for (int c = 0; c < 3; ++c) {
         const float share = noise[c] / b[c];

@@ -27,11 +27,11 @@ namespace {
 /// Camera-space positions, and the radius by which rounding may have moved each of them. Returns
 /// how many were left out because they lie behind the camera.
 std::size_t place_positions(const GBuffer& g, const Camera& camera, DepthKind kind, Geometry& out) {
-  std::vector<std::size_t> behind(std::size_t(out.surfel.height));
-  for_each_row(out.surfel.height, [&](int y) {
-    for (int x = 0; x < out.surfel.width; ++x) {
-      const std::size_t i = out.surfel.index(x, y);
-      if (!g.broken.empty() && g.broken[i]) out.surfel[i].rounding = Surfel::kBroken;
+  std::vector<std::size_t> behind(std::size_t(out.surfaces.height));
+  for_each_row(out.surfaces.height, [&](int y) {
+    for (int x = 0; x < out.surfaces.width; ++x) {
+      const std::size_t i = out.surfaces.index(x, y);
+      if (!g.broken.empty() && g.broken[i]) out.surfaces.rounding[i] = Surfel::kBroken;
       if (!g.valid[i]) continue;
       glm::dvec3 p;
       double magnitude;
@@ -49,12 +49,10 @@ std::size_t place_positions(const GBuffer& g, const Camera& camera, DepthKind ki
       }
       if (!camera.panorama && !(float(p.z) < 0)) {
         ++behind[std::size_t(y)];
-        out.surfel[i].rounding = Surfel::kBroken;
+        out.surfaces.rounding[i] = Surfel::kBroken;
         continue;
       }
-      out.surfel[i].position = glm::vec3(p);
-      out.surfel[i].valid = 1;
-      out.surfel[i].rounding = float(magnitude) * g.position_step;
+      out.surfaces.set(i, {glm::vec3(p), glm::vec3(0), float(magnitude) * g.position_step});
     }
   });
   return std::accumulate(behind.begin(), behind.end(), std::size_t(0));
@@ -62,10 +60,10 @@ std::size_t place_positions(const GBuffer& g, const Camera& camera, DepthKind ki
 
 float median_depth(const Geometry& geometry) {
   constexpr float kLeftOut = -1;
-  Plane<float> depths = Plane<float>::like(geometry.surfel);
+  Plane<float> depths = Plane<float>::like(geometry.surfaces);
   for_each_row(depths.height, [&](int y) {
     for (int x = 0; x < depths.width; ++x) {
-      const Surfel& s = geometry.surfel(x, y);
+      const Surfel& s = geometry.surfaces(x, y);
       depths(x, y) = s.is_surface() ? float(geometry.camera.depth_of(s.position)) : kLeftOut;
     }
   });
@@ -123,8 +121,9 @@ NamedRotation given_space_of_normals(const GBuffer& g, const Geometry& out,
 /// The normals as --space says, whether or not they agree with P.
 NormalSpace given_normal_space(const GBuffer& g, const Geometry& out, const std::string& file,
                                GeometryReport& report) {
-  NormalSpace space = measure_normal_space(
-      g.normal, out.surfel, given_space_of_normals(g, out, report, file), out.camera.orthographic);
+  NormalSpace space =
+      measure_normal_space(g.normal, out.surfaces, given_space_of_normals(g, out, report, file),
+                           out.camera.orthographic);
   report.normal_agreement = space.share;
   space.name += ", by --space";
   if (space.smooth_pixels >= NormalSpace::kFewestSmoothPixels &&
@@ -145,10 +144,10 @@ bool is_depth_planar(const GBuffer& g, const Geometry& planar, const NormalSpace
                      GeometryReport& report) {
   if (planar.camera.orthographic) return true;
   Geometry by_rays;
-  by_rays.surfel = filled(planar.surfel.width, planar.surfel.height, Surfel{});
+  by_rays.surfaces = Surfaces(planar.surfaces.width, planar.surfaces.height);
   place_positions(g, to_grid(report.placement.of_positions, g.grid), DepthKind::ray, by_rays);
   const NormalSpace of_rays =
-      find_normal_space(g.normal, by_rays.surfel, spaces_of_normals(g, report), false);
+      find_normal_space(g.normal, by_rays.surfaces, spaces_of_normals(g, report), false);
   const bool clearly = 1 - of_rays.mean_cosine < kClearlyBetter * (1 - of_planar.mean_cosine);
   if (!clearly || of_rays.smooth_pixels < NormalSpace::kFewestSmoothPixels) return true;
   report.warnings.push_back(
@@ -178,7 +177,7 @@ std::optional<NormalSpace> space_of_normals(const GBuffer& g, const Geometry& ou
                                             GeometryReport& report) {
   if (g.normal.empty()) return std::nullopt;
   if (g.space) return given_normal_space(g, out, file, report);
-  NormalSpace space = find_normal_space(g.normal, out.surfel, spaces_of_normals(g, report),
+  NormalSpace space = find_normal_space(g.normal, out.surfaces, spaces_of_normals(g, report),
                                         out.camera.orthographic, of_shot);
   report.normal_agreement = space.share;
   report.normals_known = space.is_known();
@@ -202,7 +201,7 @@ UsedNormals judge_normals(const GBuffer& g, const Geometry& out, NormalSpace& sp
     space.name += ", unchecked: P is nowhere smooth";
     return {space.to_camera};
   }
-  NormalTrust trust = find_normal_trust(g.normal, out.surfel, space, out.camera.orthographic);
+  NormalTrust trust = find_normal_trust(g.normal, out.surfaces, space, out.camera.orthographic);
   if (trust.least() < kMostlyStored) {
     const bool nowhere = trust.most() == 0;
     report.warnings.push_back(
@@ -231,7 +230,7 @@ struct PlacedNormal {
 /// says. A smooth normal may lean away from the viewer at a silhouette. One below the surface is
 /// negated if it is nearly opposite to the geometric normal (a back face); otherwise it is mirrored
 /// in the surface (a leaf that is lit as a crown).
-PlacedNormal placed_normal(const Plane<Surfel>& surfels, int x, int y, const glm::vec3& stored,
+PlacedNormal placed_normal(const Surfaces& surfels, int x, int y, const glm::vec3& stored,
                            float trust, bool orthographic) {
   using Fate = PlacedNormal::Fate;
   const glm::vec3& p = surfels(x, y).position;
@@ -263,15 +262,15 @@ PlacedNormal placed_normal(const Plane<Surfel>& surfels, int x, int y, const glm
 void place_normals(const GBuffer& g, const UsedNormals& used, Geometry& out,
                    GeometryReport& report) {
   using Fate = PlacedNormal::Fate;
-  Plane<Fate> fates(out.surfel.width, out.surfel.height, Fate::kept);
-  for_each_row(out.surfel.height, [&](int y) {
-    for (int x = 0; x < out.surfel.width; ++x) {
-      const std::size_t i = out.surfel.index(x, y);
+  Plane<Fate> fates(out.surfaces.width, out.surfaces.height, Fate::kept);
+  for_each_row(out.surfaces.height, [&](int y) {
+    for (int x = 0; x < out.surfaces.width; ++x) {
+      const std::size_t i = out.surfaces.index(x, y);
       if (!out.is_surface(i)) continue;
       const glm::vec3 stored = used.to_camera ? *used.to_camera * g.normal[i] : glm::vec3(0);
       const PlacedNormal placed =
-          placed_normal(out.surfel, x, y, stored, used.trust.at(x, y), out.camera.orthographic);
-      out.surfel[i].normal = placed.normal;
+          placed_normal(out.surfaces, x, y, stored, used.trust.at(x, y), out.camera.orthographic);
+      out.surfaces.set_normal(i, placed.normal);
       fates[i] = placed.fate;
     }
   });
@@ -334,7 +333,7 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
   out.window = g.window;
   out.display = g.display;
   out.part_of = g.part_of;
-  out.surfel = filled(g.window.width(), g.window.height(), Surfel{});
+  out.surfaces = Surfaces(g.window.width(), g.window.height());
   // Where the overview of a frame shows no surface, the camera is not known.
   if (known && known->median_depth <= 0) return out;
   if (!known && g.background_pixels + g.bad_pixels >= g.valid.size() &&
@@ -360,7 +359,7 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
         fmt::format("{} positions lie behind the camera and are left out", behind));
   }
   if (!readings.empty()) {
-    settle_world(g, out.surfel, readings, report);
+    settle_world(g, out.surfaces, readings, report);
     out.camera = to_grid(placement.camera, g.grid);
   }
   const UsedNormals normals = known ? UsedNormals{known->normals_to_camera}

@@ -10,7 +10,7 @@
 #include "math/plane.h"
 #include "scene/camera/camera.h"
 #include "scene/gbuffer.h"
-#include "scene/surfel.h"
+#include "scene/surfaces.h"
 
 namespace ssdo {
 
@@ -41,13 +41,13 @@ struct Geometry {
   Window window, display;
   std::optional<Window> part_of;  ///< the window of the frame, where this is some rows of it
   Camera camera;
-  Plane<Surfel> surfel;
+  Surfaces surfaces;
   float median_depth = 0;             ///< along the axis, over the surfaces
   bool world_known = false;           ///< false where P is in camera space and no pose is known
   glm::mat3 world_to_camera{1.0f};    ///< of directions; identity where the world is not known
   glm::mat3 normals_to_camera{1.0f};  ///< from the space of the input's normals; orthogonal
 
-  bool is_surface(std::size_t i) const { return surfel[i].is_surface(); }
+  bool is_surface(std::size_t i) const { return surfaces.is_surface(i); }
 
   /// Height of the display window at depth `depth`, in scene units.
   float frame_height_at(float depth) const {

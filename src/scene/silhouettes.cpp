@@ -66,19 +66,19 @@ class Silhouettes {
 
   /// The surfel that replaces an average; nothing where the pixel holds no average.
   std::optional<Surfel> mended(int x, int y) const {
-    const Surfel& s = g_.surfel(x, y);
+    const Surfel& s = g_.surfaces(x, y);
     if (!s.is_surface()) return std::nullopt;
     const double off = off_ray(x, y);
     if (off > kOutsidePixel) {
-      const Surfel* beside = any_surface_beside(x, y);
+      const auto beside = any_surface_beside(x, y);
       return beside ? std::optional(on_plane_of(*beside, x, y)) : std::nullopt;
     }
     if (off <= kOffRay) return std::nullopt;
-    const Surfel* nearest = nullptr;
+    std::optional<Surfel> nearest;
     for (const Step& axis : kAxes) {
-      const Surfel *a = surface(x - axis.dx, y - axis.dy), *b = surface(x + axis.dx, y + axis.dy);
+      const auto a = surface(x - axis.dx, y - axis.dy), b = surface(x + axis.dx, y + axis.dy);
       if (!a || !b || !is_between(s, *a, *b) || is_on(s, *a) || is_on(s, *b)) continue;
-      for (const Surfel* q : {a, b})
+      for (const auto& q : {a, b})
         if (!nearest || apart(s, *q) < apart(s, *nearest)) nearest = q;
     }
     return nearest ? std::optional(on_plane_of(*nearest, x, y)) : std::nullopt;
@@ -87,9 +87,9 @@ class Silhouettes {
   /// Whether two opposite neighbours of a pixel are on different surfaces, or exactly one of them
   /// shows a surface.
   bool is_at_edge(int x, int y) const {
-    if (x == 0 || y == 0 || x + 1 == g_.surfel.width || y + 1 == g_.surfel.height) return false;
+    if (x == 0 || y == 0 || x + 1 == g_.surfaces.width || y + 1 == g_.surfaces.height) return false;
     for (const Step& axis : kAxes) {
-      const Surfel *a = surface(x - axis.dx, y - axis.dy), *b = surface(x + axis.dx, y + axis.dy);
+      const auto a = surface(x - axis.dx, y - axis.dy), b = surface(x + axis.dx, y + axis.dy);
       if (bool(a) != bool(b) || (a && !is_on(*a, *b) && !is_on(*b, *a))) return true;
     }
     return false;
@@ -99,7 +99,7 @@ class Silhouettes {
   /// Distance in pixels between P and the middle of its pixel, less what precision and the camera
   /// may cause.
   double off_ray(int x, int y) const {
-    const Surfel& s = g_.surfel(x, y);
+    const Surfel& s = g_.surfaces(x, y);
     const glm::dvec2 offset = g_.camera.project(glm::dvec3(s.position)) - middle(x, y);
     return glm::length(offset) - stray_ - 2 * double(s.rounding) / footprint(s);
   }
@@ -108,19 +108,19 @@ class Silhouettes {
 
   double footprint(const Surfel& s) const { return double(footprint_.at(-s.position.z)); }
 
-  /// The surface at a pixel; null where there is none, or where its P lies outside the pixel.
-  const Surfel* surface(int x, int y) const {
-    if (x < 0 || y < 0 || x >= g_.surfel.width || y >= g_.surfel.height) return nullptr;
-    const Surfel& s = g_.surfel(x, y);
-    return s.is_surface() && off_ray(x, y) < kOutsidePixel ? &s : nullptr;
+  /// The surface at a pixel; none where there is none, or where its P lies outside the pixel.
+  std::optional<Surfel> surface(int x, int y) const {
+    if (x < 0 || y < 0 || x >= g_.surfaces.width || y >= g_.surfaces.height) return std::nullopt;
+    const Surfel& s = g_.surfaces(x, y);
+    return s.is_surface() && off_ray(x, y) < kOutsidePixel ? std::optional(s) : std::nullopt;
   }
 
   /// The neighbouring surface that is nearest to the viewer.
-  const Surfel* any_surface_beside(int x, int y) const {
-    const Surfel* nearest = nullptr;
+  std::optional<Surfel> any_surface_beside(int x, int y) const {
+    std::optional<Surfel> nearest;
     for (const Step& axis : kAxes) {
       for (const int sign : {-1, 1}) {
-        const Surfel* q = surface(x + sign * axis.dx, y + sign * axis.dy);
+        const auto q = surface(x + sign * axis.dx, y + sign * axis.dy);
         if (q && (!nearest || q->position.z > nearest->position.z)) nearest = q;
       }
     }
@@ -149,7 +149,7 @@ class Silhouettes {
     const double facing = glm::dot(normal, ray);
     glm::dvec3 moved = at_depth_of_q;
     if (-facing > kLeastFacing) moved += ray * glm::dot(normal, position - moved) / facing;
-    return {glm::vec3(moved), 1, q.normal, q.rounding};
+    return {glm::vec3(moved), q.normal, q.rounding};
   }
 
   const Geometry& g_;
@@ -159,10 +159,10 @@ class Silhouettes {
 
 /// Pixels at the edges of what the frame shows.
 std::size_t count_edges(const Silhouettes& silhouettes, const Geometry& geometry) {
-  std::vector<std::size_t> in_row(std::size_t(geometry.surfel.height));
-  for_each_row(geometry.surfel.height, [&](int y) {
-    for (int x = 0; x < geometry.surfel.width; ++x) {
-      const bool surface = geometry.surfel(x, y).is_surface();
+  std::vector<std::size_t> in_row(std::size_t(geometry.surfaces.height));
+  for_each_row(geometry.surfaces.height, [&](int y) {
+    for (int x = 0; x < geometry.surfaces.width; ++x) {
+      const bool surface = geometry.surfaces(x, y).is_surface();
       in_row[std::size_t(y)] += surface && silhouettes.is_at_edge(x, y);
     }
   });
@@ -177,9 +177,9 @@ std::size_t mend_silhouettes(Geometry& geometry, const Residual& residual, bool 
     int x;
     Surfel surfel;
   };
-  std::vector<std::vector<Mended>> rows(std::size_t(geometry.surfel.height));
-  for_each_row(geometry.surfel.height, [&](int y) {
-    for (int x = 0; x < geometry.surfel.width; ++x) {
+  std::vector<std::vector<Mended>> rows(std::size_t(geometry.surfaces.height));
+  for_each_row(geometry.surfaces.height, [&](int y) {
+    for (int x = 0; x < geometry.surfaces.width; ++x) {
       if (const auto surfel = silhouettes.mended(x, y))
         rows[std::size_t(y)].push_back({x, *surfel});
     }
@@ -190,8 +190,8 @@ std::size_t mend_silhouettes(Geometry& geometry, const Residual& residual, bool 
     return double(count) < kFewestAverages * double(count_edges(silhouettes, geometry));
   };
   if (count == 0 || (!is_filtered && few())) return 0;
-  for (int y = 0; y < geometry.surfel.height; ++y) {
-    for (const Mended& m : rows[std::size_t(y)]) geometry.surfel(m.x, y) = m.surfel;
+  for (int y = 0; y < geometry.surfaces.height; ++y) {
+    for (const Mended& m : rows[std::size_t(y)]) geometry.surfaces.set(m.x, y, m.surfel);
   }
   return count;
 }

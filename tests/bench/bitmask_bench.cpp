@@ -39,7 +39,7 @@ double bare_seconds(const Geometry& g, const Solids& solids, int slices, int ste
   double best = 1e9;
   for (int run = 0; run < 3; ++run) {
     const std::clock_t start = std::clock();
-    benchmark::DoNotOptimize(bare_loads(march, 0, g.surfel.height));
+    benchmark::DoNotOptimize(bare_loads(march, 0, g.surfaces.height));
     best = std::min(best, double(std::clock() - start) / CLOCKS_PER_SEC);
   }
   return best;
@@ -71,7 +71,7 @@ void estimate(benchmark::State& state, const std::string& isa, const Size& size,
       .slices = job.slices,
       .steps = job.steps};
   for (auto _ : state) benchmark::DoNotOptimize(bitmask_method().estimate(scene, request, {}));
-  const double samples = double(g.surfel.size()) * job.slices * job.steps * 2;
+  const double samples = double(g.surfaces.size()) * job.slices * job.steps * 2;
   using benchmark::Counter;
   state.counters["ns/sample"] =
       Counter(samples * 1e-9, Counter::kIsIterationInvariantRate | Counter::kInvert);
@@ -90,10 +90,10 @@ void filter(benchmark::State& state, const std::string& isa, const Size& size, i
   products.bent = products.direct = products.bounce =
       Plane<glm::vec3>(size.width, size.height, glm::vec3(0.5f));
   for (auto _ : state)
-    products = filter_products(find_filter("geometry"), std::move(products), g.surfel,
+    products = filter_products(find_filter("geometry"), std::move(products), g.surfaces,
                                bitmask_method().pattern_size);
   using benchmark::Counter;
-  state.counters["ns/pixel"] = Counter(double(g.surfel.size()) * 1e-9,
+  state.counters["ns/pixel"] = Counter(double(g.surfaces.size()) * 1e-9,
                                        Counter::kIsIterationInvariantRate | Counter::kInvert);
 }
 

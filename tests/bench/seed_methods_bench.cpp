@@ -66,7 +66,7 @@ void estimate(benchmark::State& state, const std::string& isa, const Row& row, i
                         .bounces = row.products.bounce ? 1 : 0,
                         .parameters = resolve_parameters(method, row.set)};
   for (auto _ : state) benchmark::DoNotOptimize(method.estimate(scene, request, {}));
-  count_samples(state, double(g.surfel.size()) * row.samples);
+  count_samples(state, double(g.surfaces.size()) * row.samples);
 }
 
 void filter(benchmark::State& state, const std::string& isa, const FilterRow& row, int threads) {
@@ -74,10 +74,10 @@ void filter(benchmark::State& state, const std::string& isa, const FilterRow& ro
   const ThreadLimit limit(threads);
   const Geometry& g = frame_of(1920, 1080);
   Products noisy;
-  noisy.ao = Plane<float>(g.surfel.width, g.surfel.height, 0.5f);
+  noisy.ao = Plane<float>(g.surfaces.width, g.surfaces.height, 0.5f);
   for (auto _ : state)
-    benchmark::DoNotOptimize(filter_products(find_filter(row.name), noisy, g.surfel, 4));
-  count_samples(state, double(g.surfel.size()) * row.taps);
+    benchmark::DoNotOptimize(filter_products(find_filter(row.name), noisy, g.surfaces, 4));
+  count_samples(state, double(g.surfaces.size()) * row.taps);
 }
 
 void add(const std::string& name, const std::function<void(benchmark::State&)>& run) {

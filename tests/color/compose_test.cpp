@@ -24,8 +24,8 @@ class Composites : public testing::Test {
   Composites() {
     Geometry g;
     g.window = g.display = {0, 0, 2, 1};
-    g.surfel = Plane<Surfel>(2, 1);
-    g.surfel[0].position = {0, 0, -1}, g.surfel[0].valid = 1, g.surfel[0].normal = {0, 0, 1};
+    g.surfaces = Surfaces(2, 1);
+    g.surfaces.set(0, {{0, 0, -1}, {0, 0, 1}, 0});
     // A quarter of a turn about z: x of the input's normals is y of the camera.
     g.normals_to_camera = glm::mat3(glm::vec3(0, 1, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 0, 1));
     scene_ = scene_of(g, Environment::constant(glm::vec3(1)), 0.5f);

@@ -27,12 +27,12 @@ class Downsample : public testing::TestWithParam<int> {
     gbuffer_.downsampling = {GetParam(), display_};
     Geometry g;
     g.window = gbuffer_.window, g.display = display_;
-    g.surfel = Plane<Surfel>(large_.width, large_.height);
-    for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+    g.surfaces = Surfaces(large_.width, large_.height);
+    for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
       const bool is_surface = int(i) % large_.width > large_.width / 3;
       if (!is_surface) continue;
-      g.surfel[i].position = {0, 0, -1}, g.surfel[i].valid = 1;
-      g.surfel[i].normal = glm::normalize(random_vector() - 0.5f + glm::vec3(0, 0, 1));
+      g.surfaces.set_position(i, {0, 0, -1}), g.surfaces.rounding[i] = 0;
+      g.surfaces.set_normal(i, glm::normalize(random_vector() - 0.5f + glm::vec3(0, 0, 1)));
     }
     scene_ = scene_of(g, two_lights());
     gbuffer_.alpha = Plane<float>(large_.width, large_.height);
@@ -76,8 +76,8 @@ class Downsample : public testing::TestWithParam<int> {
 
   bool is_surface(std::size_t i) const { return scene_.geometry.is_surface(i); }
   glm::vec3 open(std::size_t i) const {
-    return scene_.light.unoccluded(scene_.geometry.surfel[i].position,
-                                   scene_.geometry.surfel[i].normal);
+    return scene_.light.unoccluded(scene_.geometry.surfaces[i].position,
+                                   scene_.geometry.surfaces[i].normal);
   }
   Results results() const { return {scene_, gbuffer_, products_, composition_}; }
 

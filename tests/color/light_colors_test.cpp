@@ -26,8 +26,8 @@ class LightColors : public testing::Test {
   LightColors() {
     Geometry g;
     g.window = g.display = {0, 0, 2, 1};
-    g.surfel = Plane<Surfel>(2, 1);
-    g.surfel[0].position = {0, 0, -1}, g.surfel[0].valid = 1, g.surfel[0].normal = {0, 0, 1};
+    g.surfaces = Surfaces(2, 1);
+    g.surfaces.set(0, {{0, 0, -1}, {0, 0, 1}, 0});
     scene_ = scene_of(g, paint(64, [](const glm::vec3& d) {
                         return glm::vec3(1 + 0.5f * d.z, 1, 1 - 0.5f * d.x);
                       }));
@@ -42,7 +42,7 @@ class LightColors : public testing::Test {
       LightProducts& light = products_.lights.emplace_back();
       light.name = lights_[k].name;
       light.direct = Plane<glm::vec3>(2, 1, glm::vec3(0));
-      const Surfel& s = scene_.geometry.surfel[0];
+      const Surfel& s = scene_.geometry.surfaces[0];
       light.direct[0] = shares[k] * lights_[k].light.unoccluded(s.position, s.normal);
       products_.direct[0] += light.direct[0];
     }

@@ -97,9 +97,9 @@ TEST(Bitmask, AnOpenPlaneReadsOneWhereverInItsPixelsPIs) {
         const double aside = 0.4 * std::sin(7.0 * x + y), down = 0.4 * std::cos(x + 5.0 * y);
         const Ray ray = ray_through(camera, x + 0.5 + aside, y + 0.5 + down);
         const auto hit = ground(ray);
-        if (!hit || !g.is_surface(g.surfel.index(x, y))) continue;
+        if (!hit || !g.is_surface(g.surfaces.index(x, y))) continue;
         const glm::dvec3 p = camera.to_camera(ray.origin + hit->distance * ray.direction);
-        g.surfel(x, y).position = glm::vec3(p);
+        g.surfaces.set_position(g.surfaces.index(x, y), glm::vec3(p));
       }
     }
     EXPECT_LT(worst(run(g, {.slices = 2, .steps = 16})), 1e-4) << projection.orthographic;

@@ -150,9 +150,9 @@ TEST(DeepSolids, SendLightOnlyWhereAPixelShowsTheirSurface) {
   const Geometry g = geometry_of(scene(), camera, kWindow);
   const Solids solids = measured(g, deep_of(camera, false));
   int box = 0, floor = 0;
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
     const Solid behind = solids.at(1, i);
-    if (g.surfel[i].position.z < -10 || !behind.exists()) continue;
+    if (g.surfaces[i].position.z < -10 || !behind.exists()) continue;
     const bool is_box = std::abs(behind.distance - 1.8) < 1e-3;
     EXPECT_EQ(behind.sender >= 0, !is_box) << "pixel " << i;
     (is_box ? box : floor)++;

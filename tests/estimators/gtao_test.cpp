@@ -37,9 +37,9 @@ struct SlowGtao {
     bool above = false;
     double falloff = 1;
     if (x >= 0 && y >= 0 && x < g.window.width() && y < g.window.height() &&
-        g.surfel(x, y).is_surface()) {
+        g.surfaces(x, y).is_surface()) {
       const glm::dvec3 to = g.camera.unproject({x + g.window.x0 + 0.5, y + g.window.y0 + 0.5},
-                                               -double(g.surfel(x, y).position.z)) -
+                                               -double(g.surfaces(x, y).position.z)) -
                             p;
       const double d = glm::length(to), up = glm::dot(to, glm::dvec3(s.normal));
       cosine = glm::dot(to, v) / d;
@@ -67,7 +67,7 @@ struct SlowGtao {
     doubtful = false, ao = 0, bent = glm::dvec3(0);
     double ao_if_open = 0;
     glm::dvec3 bent_if_open(0);
-    const Surfel& s = g.surfel(x, y);
+    const Surfel& s = g.surfaces(x, y);
     const glm::dvec3 p(s.position), normal(s.normal);
     const glm::dvec3 v = g.camera.orthographic ? glm::dvec3(0, 0, 1) : glm::normalize(-p);
     const int column = x + g.window.x0 - g.display.x0, row = y + g.window.y0 - g.display.y0;
@@ -214,7 +214,8 @@ TEST(Gtao, TheBentNormalOfAnOpenPlaneIsItsNormal) {
         const Products out = estimate(g, 1, {slices});
         for (std::size_t i = 0; i < out.bent.size(); ++i) {
           if (!g.is_surface(i)) continue;
-          ASSERT_LT(glm::distance(out.bent[i], g.surfel[i].normal), 1e-4) << tilt << " " << slices;
+          ASSERT_LT(glm::distance(out.bent[i], g.surfaces[i].normal), 1e-4)
+              << tilt << " " << slices;
         }
       }
     }
@@ -234,7 +235,7 @@ TEST(Gtao, TheFootOfAWallSeesTheSkyThatTheWallLeaves) {
   const Products out = estimate(g, 25.6f, {"slices=16", "steps=256"});
   int compared = 0;
   for (int y = 2; y < 94; ++y) {
-    const Surfel& s = g.surfel(120, y);
+    const Surfel& s = g.surfaces(120, y);
     const glm::dvec3 p =
         g.camera.origin + glm::transpose(g.camera.rotation) * glm::dvec3(s.position);
     if (!s.is_surface() || p.z > 1e-3 || p.y < -1 || p.y > 0.8) continue;
@@ -260,7 +261,7 @@ TEST(Gtao, ADistantForegroundDoesNotOcclude) {
     const Products with = estimate(g, radius), without = estimate(alone, radius);
     float most = 0;
     for (std::size_t i = 0; i < with.ao.size(); ++i) {
-      if (g.surfel[i].position.z < -5) most = std::max(most, without.ao[i] - with.ao[i]);
+      if (g.surfaces[i].position.z < -5) most = std::max(most, without.ao[i] - with.ao[i]);
     }
     return most;
   };

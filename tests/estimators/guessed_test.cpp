@@ -131,7 +131,7 @@ TEST(Guessed, WhatIsTakenOutIsNotMet) {
   const Geometry open = geometry_of(floor, by, kWindow);
   Plane<float> coverage(kWindow.width(), kWindow.height(), 0.0f);
   for (std::size_t i = 0; i < coverage.size(); ++i)
-    coverage[i] = seen.geometry.surfel[i].position != open.surfel[i].position ? 1.0f : 0.0f;
+    coverage[i] = seen.geometry.surfaces[i].position != open.surfaces[i].position ? 1.0f : 0.0f;
   Scene hole = scene_of(seen.geometry);
   hole.casting = take_out(hole.geometry, coverage, {}, {});
   const Plane<float> with = shares(seen, 3), without = shares(hole, 3);
@@ -140,7 +140,7 @@ TEST(Guessed, WhatIsTakenOutIsNotMet) {
   double before = 0, after = 0, count = 0;
   for (std::size_t i = 0; i < coverage.size(); ++i) {
     const glm::dvec3 p =
-        glm::transpose(by.rotation) * glm::dvec3(open.surfel[i].position) + by.origin;
+        glm::transpose(by.rotation) * glm::dvec3(open.surfaces[i].position) + by.origin;
     if (coverage[i] > 0 || std::abs(p.x) > 0.5 || p.y < -1.5 || p.y > -0.6) continue;
     before += double(with[i]), after += double(without[i]), count += 1;
   }

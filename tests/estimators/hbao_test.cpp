@@ -27,7 +27,7 @@ struct SlowHbao {
   double ao(int x, int y) {
     doubtful = false;
     const HbaoPattern pattern = hbao_pattern(0);
-    const Surfel& s = g.surfel(x, y);
+    const Surfel& s = g.surfaces(x, y);
     const glm::dvec3 p(s.position), n(s.normal);
     const int column = x + g.window.x0 - g.display.x0, row = y + g.window.y0 - g.display.y0;
     const std::size_t cell = std::size_t((row & 3) * 4 + (column & 3));
@@ -45,7 +45,7 @@ struct SlowHbao {
           doubtful |= std::abs(offset - std::floor(offset) - 0.5) < 1e-3;
         const int qx = x + int(std::lround(dx)), qy = y + int(std::lround(dy));
         if (qx < 0 || qy < 0 || qx >= g.window.width() || qy >= g.window.height()) continue;
-        const Surfel& q = g.surfel(qx, qy);
+        const Surfel& q = g.surfaces(qx, qy);
         if (!q.is_surface()) continue;
         const glm::dvec3 v = glm::dvec3(q.position) - p;
         const double vv = std::max(glm::dot(v, v), least * least * radius * radius);
@@ -114,7 +114,7 @@ struct SlowHorizons {
   double ao(int x, int y) {
     doubtful = false;
     const HbaoPattern pattern = hbao_pattern(0);
-    const Surfel& s = g.surfel(x, y);
+    const Surfel& s = g.surfaces(x, y);
     const glm::dvec3 p(s.position), n(s.normal);
     const glm::dvec3 viewer = g.camera.orthographic ? glm::dvec3(0, 0, 1) : -glm::normalize(p);
     const std::size_t cell = std::size_t((y & 3) * 4 + (x & 3));
@@ -133,8 +133,8 @@ struct SlowHorizons {
           doubtful |= std::abs(offset - std::floor(offset) - 0.5) < 1e-3;
         const int qx = x + int(std::lround(dx)), qy = y + int(std::lround(dy));
         if (qx < 0 || qy < 0 || qx >= g.window.width() || qy >= g.window.height()) continue;
-        if (!g.surfel(qx, qy).is_surface()) continue;
-        const glm::dvec3 v = glm::dvec3(g.surfel(qx, qy).position) - p;
+        if (!g.surfaces(qx, qy).is_surface()) continue;
+        const glm::dvec3 v = glm::dvec3(g.surfaces(qx, qy).position) - p;
         const double lift = glm::dot(v, n) - double(s.rounding);
         doubtful |= std::abs(glm::length(v) - radius) < 1e-4;
         if (lift <= 0 || glm::length(v) >= radius) continue;
@@ -233,7 +233,7 @@ TEST(Hbao, ConsecutiveSeedsSpreadEvenlyInEveryPixel) {
 TEST(Hbao, TheUnitOfTheSceneDoesNotMatter) {
   Geometry g = still(camera_from_fov(50, kWindow, 1));
   const Products metres = obscure(hbao_method(), g, 0.5f);
-  for (Surfel& s : g.surfel.pixels) s.position *= 128, s.rounding *= 128;
+  g.surfaces.change_each([&](Surfel& s) { s.position *= 128, s.rounding *= 128; });
   const Products other = obscure(hbao_method(), g, 64);
   EXPECT_LT(*std::min_element(other.ao.pixels.begin(), other.ao.pixels.end()), 0.6f);
   for (std::size_t i = 0; i < other.ao.size(); ++i) EXPECT_NEAR(other.ao[i], metres.ao[i], 1e-5);
@@ -262,7 +262,7 @@ TEST(Hbao, AWallDarkensTheFloorBeforeItAndLessFartherAway) {
     int count = 0;
     for (int y = 0; y < out.ao.height; ++y) {
       const glm::dvec3 world =
-          glm::transpose(g.camera.rotation) * glm::dvec3(g.surfel(48, y).position) +
+          glm::transpose(g.camera.rotation) * glm::dvec3(g.surfaces(48, y).position) +
           g.camera.origin;
       if (std::abs(world.z) > 1e-3 || world.y < from || world.y > to) continue;
       for (int x = 40; x < 56; ++x) sum += double(out.ao(x, y)), ++count;
@@ -282,7 +282,7 @@ TEST(Hbao, WhatIsFartherInFrontThanTheRadiusMakesNoHalo) {
     const Products out = obscure(hbao_method(), g, 0.5f);
     float least = 1;
     for (std::size_t i = 0; i < out.ao.size(); ++i)
-      if (g.surfel[i].position.z < -6.1f) least = std::min(least, out.ao[i]);
+      if (g.surfaces[i].position.z < -6.1f) least = std::min(least, out.ao[i]);
     return least;
   };
   EXPECT_EQ(darkest_behind(0.52), 1);
@@ -295,7 +295,7 @@ TEST(Hbao, SurfacesBeyondTheMaximumDistanceAreOpen) {
                  near = obscure(hbao_method(), g, 0.8f, {"max-distance=4.5"});
   int cut = 0;
   for (std::size_t i = 0; i < all.ao.size(); ++i) {
-    const bool far = g.surfel[i].position.z < -4.5f;
+    const bool far = g.surfaces[i].position.z < -4.5f;
     EXPECT_EQ(near.ao[i], far ? 1 : all.ao[i]);
     cut += far && all.ao[i] < 0.9f;
   }

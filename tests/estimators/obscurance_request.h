@@ -36,15 +36,17 @@ inline Geometry broken_geometry() {
   std::mt19937 random(3);
   Geometry g =
       geometry_of(sphere({0, 0, 0}, 2), tilted(camera_from_fov(40, window, 1), 30), window);
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
-    glm::vec3& p = g.surfel[i].position;
-    if (random() % 10 == 0) p = glm::vec3(0), g.surfel[i].valid = 0;
-    if (g.is_surface(i) && random() % 10 == 0) p *= 1e6f;
-    if (g.is_surface(i) && random() % 10 == 0) p = glm::vec3(0, 0, -1e-30f);
-    if (g.is_surface(i) && random() % 20 == 0) p.z = NAN;
-    if (g.is_surface(i) && random() % 20 == 0) p.x = INFINITY;
-    if (random() % 20 == 0) g.surfel[i].normal.y = NAN;
-    if (random() % 20 == 0) g.surfel[i].normal = glm::vec3(0), g.surfel[i].rounding = 0;
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
+    Surfel s = g.surfaces[i];
+    glm::vec3& p = s.position;
+    if (random() % 10 == 0) s = {};
+    if (s.is_surface() && random() % 10 == 0) p *= 1e6f;
+    if (s.is_surface() && random() % 10 == 0) p = glm::vec3(0, 0, -1e-30f);
+    if (s.is_surface() && random() % 20 == 0) p.z = NAN;
+    if (s.is_surface() && random() % 20 == 0) p.x = INFINITY;
+    if (random() % 20 == 0) s.normal.y = NAN;
+    if (s.is_surface() && random() % 20 == 0) s.normal = glm::vec3(0), s.rounding = 0;
+    g.surfaces.set(i, s);
   }
   return g;
 }

@@ -26,7 +26,7 @@ struct SlowSao {
 
   double ao(int x, int y) {
     doubtful = false;
-    const Surfel& s = g.surfel(x, y);
+    const Surfel& s = g.surfaces(x, y);
     const glm::dvec3 p(s.position), n(s.normal);
     const int column = x + g.window.x0 - g.display.x0, row = y + g.window.y0 - g.display.y0;
     const double spin = 10.0 * unsigned((3 * column) ^ (row + column * row)) +
@@ -119,7 +119,7 @@ TEST(Sao, TheUnitOfTheSceneDoesNotMatter) {
       still_life(), look_at(camera_from_fov(50, kWindow, 1), {1, -4, 3}, {0, 0.2, 0.4}, {0, 0, 1}),
       kWindow);
   const Products metres = obscure(sao_method(), g, 0.5f);
-  for (Surfel& s : g.surfel.pixels) s.position *= 128, s.rounding *= 128;
+  g.surfaces.change_each([&](Surfel& s) { s.position *= 128, s.rounding *= 128; });
   const Products other = obscure(sao_method(), g, 64);
   EXPECT_LT(*std::min_element(other.ao.pixels.begin(), other.ao.pixels.end()), 0.5f);
   for (std::size_t i = 0; i < other.ao.size(); ++i) EXPECT_NEAR(other.ao[i], metres.ao[i], 1e-5);
@@ -132,7 +132,7 @@ TEST(Sao, AnOpenPlaneReadsOneWhileItsTapsReadFullResolution) {
     for (const double tilt : {0.0, 30.0, 60.0, 80.0}) {
       const Geometry g = geometry_of(plane({}, {0, 0, 1}), tilted(projection, tilt), kWindow);
       float nearest = 1e9f;
-      for (const Surfel& s : g.surfel.pixels)
+      for (const Surfel& s : g.surfaces.each())
         if (s.is_surface()) nearest = std::min(nearest, -s.position.z);
       const float radius = 15 / float(g.camera.fy) * (g.camera.orthographic ? 1 : nearest);
       for (const float ao : obscure(sao_method(), g, radius).ao.pixels) EXPECT_EQ(ao, 1) << tilt;
@@ -145,10 +145,11 @@ TEST(Sao, WhatRoundingMovedDoesNotHide) {
       geometry_of(plane({}, {0, 0, 1}), tilted(camera_from_fov(60, kWindow, 1), 0), kWindow);
   std::mt19937 random(1);
   const float step = 1.0f / 256;  // half floats from 4 to 8 units
-  for (Surfel& s : g.surfel.pixels)
+  g.surfaces.change_each([&](Surfel& s) {
     s.position.z += (float(random() % 1024) / 1024 - 0.5f) * step, s.rounding = step;
+  });
   for (const float ao : obscure(sao_method(), g, 0.2f).ao.pixels) EXPECT_EQ(ao, 1);
-  for (Surfel& s : g.surfel.pixels) s.rounding = 0;
+  g.surfaces.change_each([&](Surfel& s) { s.rounding = 0; });
   EXPECT_LT(obscure(sao_method(), g, 0.2f).ao(48, 36), 1) << "not even without knowing of it";
 }
 
@@ -211,7 +212,7 @@ TEST(Sao, ACropFarEnoughInsideIsThatPartOfTheWhole) {
   for (int y = 0; y < part.height(); ++y) {
     for (int x = 0; x < part.width(); ++x) {
       const int wx = x + part.x0 - window.x0, wy = y + part.y0 - window.y0;
-      const double disc = g.camera.fy * radius / double(-g.surfel(wx, wy).position.z);
+      const double disc = g.camera.fy * radius / double(-g.surfaces(wx, wy).position.z);
       const double margin = disc + 32;
       if (x < margin || y < margin || x >= part.width() - margin || y >= part.height() - margin)
         continue;

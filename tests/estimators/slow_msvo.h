@@ -54,7 +54,7 @@ class SlowMsvo {
     for (int y = 0; y < s.depth.height; ++y) {
       for (int x = 0; x < s.depth.width; ++x) {
         const Surfel& surfel =
-            g_.surfel(std::max(((s.x0 + x) << k) - x0_, 0), std::max(((s.y0 + y) << k) - y0_, 0));
+            g_.surfaces(std::max(((s.x0 + x) << k) - x0_, 0), std::max(((s.y0 + y) << k) - y0_, 0));
         s.depth(x, y) = surfel.is_surface() ? -double(surfel.position.z) / far : 1e5;
       }
     }

@@ -14,7 +14,7 @@ namespace ssdo::test {
 
 /// The formula with the defaults, sample by sample, in double. Noise (column, row).
 inline double slow_ssao_fade(const Geometry& g, int x, int y, int column, int row, double radius) {
-  const Surfel& s = g.surfel(x, y);
+  const Surfel& s = g.surfaces(x, y);
   if (!s.is_surface()) return 1;
   const glm::dvec3 p(s.position), n(s.normal);
   const glm::dvec3 m(fade_noise(0)[std::size_t((row & 3) * 4 + (column & 3))]);
@@ -37,12 +37,12 @@ inline double slow_ssao_fade(const Geometry& g, int x, int y, int column, int ro
 /// The pixel of a frame, its upper left one at the display window's, that one of the map at half
 /// resolution is evaluated at.
 inline glm::ivec2 sampled_pixel(const Geometry& g, int x, int y) {
-  return {std::min(2 * x + 1, g.surfel.width - 1), std::min(2 * y + 1, g.surfel.height - 1)};
+  return {std::min(2 * x + 1, g.surfaces.width - 1), std::min(2 * y + 1, g.surfaces.height - 1)};
 }
 
 /// The map at half resolution, with the defaults.
 inline Plane<double> slow_half_map(const Geometry& g, double radius) {
-  Plane<double> half((g.surfel.width + 1) / 2, (g.surfel.height + 1) / 2);
+  Plane<double> half((g.surfaces.width + 1) / 2, (g.surfaces.height + 1) / 2);
   for (int y = 0; y < half.height; ++y) {
     for (int x = 0; x < half.width; ++x) {
       const glm::ivec2 pixel = sampled_pixel(g, x, y);

@@ -54,14 +54,14 @@ TEST(SsaoFade, TheMapAtHalfResolutionIsFilteredBeforeItGoesUp) {
   const Window odd{0, 0, 93, 71};
   const Geometry g = room(camera_from_fov(50, odd, 1), odd);
   int calls = 0;
-  const auto filter = [&](Plane<float> map, const Plane<Surfel>& surfel) {
+  const auto filter = [&](Plane<float> map, const Surfaces& surfaces) {
     ++calls;
     EXPECT_EQ(map.width, 47);
     EXPECT_EQ(map.height, 36);
     for (int y = 0; y < map.height; ++y) {
       for (int x = 0; x < map.width; ++x) {
         const glm::ivec2 pixel = sampled_pixel(g, x, y);
-        EXPECT_EQ(surfel(x, y).position, g.surfel(pixel.x, pixel.y).position);
+        EXPECT_EQ(surfaces(x, y).position, g.surfaces(pixel.x, pixel.y).position);
         map(x, y) = 0.25f;
       }
     }
@@ -100,7 +100,7 @@ TEST(SsaoFade, WhatIsFartherInFrontThanTheFadeMakesNoHalo) {
     const Products out = run(ssao_fade_method(), g, {.radius = 0.5f, .set = kEveryPixel});
     float least = 1;
     for (std::size_t i = 0; i < out.ao.size(); ++i) {
-      if (g.surfel[i].position.z < -6.1f) least = std::min(least, out.ao[i]);
+      if (g.surfaces[i].position.z < -6.1f) least = std::min(least, out.ao[i]);
     }
     return least;
   };
@@ -129,7 +129,7 @@ TEST(SsaoFade, TheEffectFadesWithDistance) {
           .ao;
   int kept = 0, gone = 0;
   for (std::size_t i = 0; i < whole.size(); ++i) {
-    const double left = std::clamp(6.5 + double(g.surfel[i].position.z), 0.0, 1.0);
+    const double left = std::clamp(6.5 + double(g.surfaces[i].position.z), 0.0, 1.0);
     EXPECT_NEAR(1 - faded[i], left * (1 - whole[i]), 1e-6);
     kept += left == 1 && whole[i] < 0.9;
     gone += left == 0 && whole[i] < 0.9;

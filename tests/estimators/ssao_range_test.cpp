@@ -21,7 +21,7 @@ struct Settings {
 
 /// The formula, sample by sample, in double.
 double slow_ssao_range(const Geometry& g, int x, int y, double radius, const Settings& settings) {
-  const Surfel& s = g.surfel(x, y);
+  const Surfel& s = g.surfaces(x, y);
   if (!s.is_surface()) return 1;
   const glm::dvec3 p(s.position), n(s.normal);
   const glm::dvec3 random(frame_noise(0)[std::size_t((y & 3) * 4 + (x & 3))]);
@@ -75,7 +75,7 @@ TEST(SsaoRange, WhatIsFartherInFrontThanTheRangeMakesNoHalo) {
     const Products out = run(ssao_range_method(), g, {.radius = 0.5f});
     float least = 1;
     for (std::size_t i = 0; i < out.ao.size(); ++i) {
-      if (g.surfel[i].position.z < -6.1f) least = std::min(least, out.ao[i]);
+      if (g.surfaces[i].position.z < -6.1f) least = std::min(least, out.ao[i]);
     }
     return least;
   };

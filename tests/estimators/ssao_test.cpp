@@ -14,7 +14,7 @@ const Window kWindow{0, 0, 96, 72};
 /// The formula, sample by sample, in double.
 double slow_ssao(const Geometry& g, int x, int y, double radius, double bias, int samples,
                  unsigned seed) {
-  const Surfel& s = g.surfel(x, y);
+  const Surfel& s = g.surfaces(x, y);
   if (!s.is_surface()) return 1;
   const glm::dvec3 p(s.position), n(s.normal);
   const int column = (x + g.window.x0 - g.display.x0) & 3,
@@ -74,7 +74,7 @@ TEST(Ssao, TheRangeCheckKeepsAHaloAway) {
     const Products out = run(ssao_method(), g, {.radius = 0.5f});
     float least = 1;
     for (std::size_t i = 0; i < out.ao.size(); ++i) {
-      if (g.surfel[i].position.z < -6.1f) least = std::min(least, out.ao[i]);
+      if (g.surfaces[i].position.z < -6.1f) least = std::min(least, out.ao[i]);
     }
     return least;
   };

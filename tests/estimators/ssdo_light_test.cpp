@@ -70,7 +70,7 @@ class SlowDirect {
 
   void look_from(int x, int y) {
     doubtful = false;
-    const Surfel& s = g_.surfel(x, y);
+    const Surfel& s = g_.surfaces(x, y);
     const glm::dmat3 frame(frame_about(s.normal));
     double visible = 0;
     glm::dvec3 lit(0), light(0);
@@ -102,7 +102,7 @@ class SlowDirect {
     const glm::dvec2 at = g_.camera.project(point);
     for (const double place : {at.x, at.y}) doubtful |= std::abs(place - std::round(place)) < 1e-3;
     if (!g_.window.contains(int(std::floor(at.x)), int(std::floor(at.y)))) return false;
-    const Surfel& q = g_.surfel(int(at.x), int(at.y));
+    const Surfel& q = g_.surfaces(int(at.x), int(at.y));
     if (!q.is_surface()) return false;
     const glm::dvec3 from_q = point - glm::dvec3(q.position);
     const double below = -glm::dot(from_q, glm::dvec3(q.normal)) -
@@ -143,7 +143,7 @@ int expect_the_slow_light(const SlowDirect::Parameters& parameters) {
   int compared = 0, without_red = 0;
   for (int y = 1; y < kWindow.height(); y += 5) {
     for (int x = 2; x < kWindow.width(); x += 5) {
-      if (!g.surfel(x, y).is_surface()) continue;
+      if (!g.surfaces(x, y).is_surface()) continue;
       slow.look_from(x, y);
       if (slow.doubtful) continue;
       EXPECT_NEAR(out.ao(x, y), slow.ao, 1e-4) << x << "," << y;
@@ -198,7 +198,7 @@ struct SlowBounce {
                         double radius) {
     constexpr int kPoints = 16;
     const auto pattern = half_ball_pattern(4, kPoints, 0);
-    const glm::dvec3 p(g.surfel(x, y).position), n(g.surfel(x, y).normal);
+    const glm::dvec3 p(g.surfaces(x, y).position), n(g.surfaces(x, y).normal);
     const glm::dmat3 frame(frame_about(glm::vec3(n)));
     glm::dvec3 sum(0);
     for (const HalfBallSample& s : pattern[std::size_t((y % 4) * 4 + x % 4)]) {
@@ -206,11 +206,11 @@ struct SlowBounce {
       const glm::dvec2 at = g.camera.project(point);
       if (!g.window.contains(int(std::floor(at.x)), int(std::floor(at.y)))) continue;
       const int qx = int(at.x), qy = int(at.y);
-      const glm::dvec3 delta = p - glm::dvec3(g.surfel(qx, qy).position),
+      const glm::dvec3 delta = p - glm::dvec3(g.surfaces(qx, qy).position),
                        unit = glm::normalize(delta);
       if (delta == glm::dvec3(0)) continue;
       const double receiver = std::max(0.0, glm::dot(unit, -n)),
-                   sender = std::max(0.0, glm::dot(unit, glm::dvec3(g.surfel(qx, qy).normal))),
+                   sender = std::max(0.0, glm::dot(unit, glm::dvec3(g.surfaces(qx, qy).normal))),
                    form_factor = radius * radius * receiver * sender / glm::dot(delta, delta);
       cut += form_factor > singularity, whole += form_factor > 0 && form_factor < singularity;
       sum += strength * std::min(singularity, form_factor) * glm::dvec3(sent(qx, qy));

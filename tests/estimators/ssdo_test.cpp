@@ -44,8 +44,9 @@ TEST(Ssdo, AnOpenPlaneReadsOneAtEveryTilt) {
 TEST(Ssdo, ConstantLightIsThatColourTimesAo) {
   const Surface scene = all_of({plane({}, {0, 0, 1}), sphere({0, 0, 0.6}, 0.6)});
   const glm::vec3 color(0.25f, 1, 8);
-  const Products out = run_ssdo(geometry_of(scene, tilted(camera_from_fov(40, kWindow, 1), 50), kWindow),
-                           {.environment = Environment::constant(color)});
+  const Products out =
+      run_ssdo(geometry_of(scene, tilted(camera_from_fov(40, kWindow, 1), 50), kWindow),
+               {.environment = Environment::constant(color)});
   double occluded = 0;
   for (std::size_t i = 0; i < out.ao.size(); ++i) {
     occluded += 1 - out.ao[i];
@@ -57,7 +58,7 @@ TEST(Ssdo, ConstantLightIsThatColourTimesAo) {
   const auto map = std::make_shared<Plane<glm::vec3>>(64, 32, color);
   const Products mapped =
       run_ssdo(geometry_of(scene, tilted(camera_from_fov(40, kWindow, 1), 50), kWindow),
-          {.environment = Environment(map, {})});
+               {.environment = Environment(map, {})});
   for (std::size_t i = 0; i < out.ao.size(); ++i) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(mapped.direct[i][c], out.direct[i][c], 1e-4 * color[c]);
   }
@@ -108,15 +109,15 @@ TEST(Ssdo, ADistantForegroundDoesNotOcclude) {
       run_ssdo(geometry_of(all_of({floor, near_strip}), camera, kWindow), {.radius = 1});
   for (const float ao : with.ao.pixels) EXPECT_NEAR(ao, 1, 1e-5);
   const Products seen = run_ssdo(geometry_of(all_of({floor, near_strip}), camera, kWindow),
-                            {.radius = 1, .set = {"singularity=100"}});
+                                 {.radius = 1, .set = {"singularity=100"}});
   EXPECT_LT(*std::min_element(seen.ao.pixels.begin(), seen.ao.pixels.end()), 0.9f)
       << "without the window it would";
 }
 
 TEST(Ssdo, BackgroundIsOpenAndUntouched) {
-  const Products out =
-      run_ssdo(geometry_of(sphere({0, 0, 0}, 1), tilted(camera_from_fov(40, kWindow, 1), 30), kWindow),
-          {.bounces = 1});
+  const Products out = run_ssdo(
+      geometry_of(sphere({0, 0, 0}, 1), tilted(camera_from_fov(40, kWindow, 1), 30), kWindow),
+      {.bounces = 1});
   EXPECT_EQ(out.ao(0, 0), 1);
   EXPECT_EQ(out.direct(0, 0), glm::vec3(0));
   EXPECT_EQ(out.bounce(0, 0), glm::vec3(0));
@@ -168,10 +169,12 @@ TEST(Ssdo, NothingThatComesInMakesANaN) {
   std::mt19937 random(3);
   Geometry g =
       geometry_of(sphere({0, 0, 0}, 2), tilted(camera_from_fov(40, kWindow, 1), 30), kWindow);
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
-    if (random() % 10 == 0) g.surfel[i].position = glm::vec3(0), g.surfel[i].valid = 0;
-    if (g.is_surface(i) && random() % 10 == 0) g.surfel[i].position *= 1e6f;
-    if (g.is_surface(i) && random() % 10 == 0) g.surfel[i].position = glm::vec3(0, 0, -1e-30f);
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
+    if (random() % 10 == 0)
+      g.surfaces.set_position(i, glm::vec3(0)), g.surfaces.rounding[i] = Surfel::kBackground;
+    if (g.is_surface(i) && random() % 10 == 0)
+      g.surfaces.set_position(i, 1e6f * g.surfaces[i].position);
+    if (g.is_surface(i) && random() % 10 == 0) g.surfaces.set_position(i, glm::vec3(0, 0, -1e-30f));
   }
   for (const float radius : {1e-6f, 1.0f, 1e6f}) {
     const Products out = run_ssdo(g, {.radius = radius, .bounces = 3});

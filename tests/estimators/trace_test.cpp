@@ -29,10 +29,10 @@ TEST(Trace, AnOpenPlaneReadsOneAtEveryTilt) {
         const Products out =
             run_trace(g, {.radius = radius, .products = {.ao = true, .bent = true}});
         double worst = 1, off = 0;
-        for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+        for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
           if (!g.is_surface(i)) continue;
           worst = std::min(worst, double(out.ao[i]));
-          off = std::max(off, double(glm::distance(out.bent[i], g.surfel[i].normal)));
+          off = std::max(off, double(glm::distance(out.bent[i], g.surfaces[i].normal)));
         }
         EXPECT_GE(worst, 1 - 1e-4) << "tilt " << tilt << ", orthographic " << orthographic;
         EXPECT_LE(off, 1e-5) << "tilt " << tilt;
@@ -44,7 +44,7 @@ TEST(Trace, AnOpenPlaneReadsOneAtEveryTilt) {
 /// As a file stores it with half precision: the ground is a staircase.
 TEST(Trace, AnOpenPlaneOfHalfFloatsReadsOne) {
   Geometry g = ground_seen_at(50, false);
-  for (Surfel& s : g.surfel.pixels) {
+  g.surfaces.change_each([](Surfel& s) {
     for (int c = 0; c < 3; ++c) {
       int exponent;
       std::frexp(s.position[c], &exponent);
@@ -52,7 +52,7 @@ TEST(Trace, AnOpenPlaneOfHalfFloatsReadsOne) {
       s.position[c] = std::round(s.position[c] / step) * step;
     }
     s.rounding = glm::length(s.position) / 2048;
-  }
+  });
   const Products out = run_trace(g, {});
   double sum = 0;
   for (const float ao : out.ao.pixels) sum += ao;
@@ -233,7 +233,7 @@ TEST(Trace, AConstantLightGivesItsShare) {
   TraceRequest request = all_products();
   request.environment = Environment::constant({2, 0.5f, 3});
   const Products out = run_trace(g, request);
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
     const glm::vec3 expected = g.is_surface(i) ? out.ao[i] * glm::vec3(2, 0.5f, 3) : glm::vec3(0);
     ASSERT_LE(glm::distance(out.direct[i], expected), 1e-5f);
   }
@@ -257,7 +257,7 @@ TEST(Trace, TheFurnace) {
     const Products out = run_trace(g, request);
     glm::dvec3 sum(0);
     double count = 0;
-    for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+    for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
       if (!g.is_surface(i)) continue;
       const glm::vec3 all = out.direct[i] + out.bounce[i];
       ASSERT_LE(all.x, 1 + 1e-4f);
@@ -324,7 +324,7 @@ TEST(Trace, TheErrorIsThatOfTheNoise) {
   request.samples = 1024;
   const Products many = run_trace(g, request);
   double said = 0, found = 0;
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
     const double difference =
         few.direct[i].x + few.bounce[i].x - many.direct[i].x - many.bounce[i].x;
     found += difference * difference;
@@ -341,9 +341,9 @@ TEST(Trace, BrokenPixelsBreakNoOthers) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   int k = 0;
   for (const float bad : {nan, INFINITY, -INFINITY, 1e30f, 1e-40f}) {
-    for (int c = 0; c < 3; ++c) {
-      g.surfel(20 + 7 * k, 20).position[c] = bad;
-      g.surfel(20 + 7 * k++, 40).normal[c] = bad;
+    for (std::size_t c = 0; c < 3; ++c) {
+      g.surfaces.position[c](20 + 7 * k, 20) = bad;
+      g.surfaces.normal[c](20 + 7 * k++, 40) = bad;
     }
   }
   const Solids solids = guess_solids(g);
@@ -365,7 +365,7 @@ TEST(Trace, BrokenPixelsBreakNoOthers) {
 TEST(Trace, FramesOfNothingAndOfOnePixel) {
   Geometry nothing;
   nothing.window = nothing.display = {0, 0, 5, 4};
-  nothing.surfel = Plane<Surfel>(5, 4);
+  nothing.surfaces = Surfaces(5, 4);
   const Products out = run_trace(nothing, all_products());
   for (std::size_t i = 0; i < out.ao.size(); ++i) {
     EXPECT_EQ(out.ao[i], 1);

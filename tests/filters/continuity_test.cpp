@@ -30,7 +30,7 @@ Shot take(const Surface& things, const Camera& camera, const Texture& texture) {
   Shot shot{geometry_of(all_of({plane({}, {0, 0, 1}), things}), camera, kWindow),
             Plane<HalfColor>(kWindow.width(), kWindow.height())};
   for (std::size_t i = 0; i < shot.albedo.size(); ++i) {
-    const glm::dvec3 p(shot.geometry.surfel[i].position);
+    const glm::dvec3 p(shot.geometry.surfaces[i].position);
     if (shot.geometry.is_surface(i))
       shot.albedo[i] = texture(camera.origin + glm::transpose(camera.rotation) * p);
   }

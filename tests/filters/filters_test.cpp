@@ -18,7 +18,7 @@ namespace ssdo::test::filters_test {
 namespace {
 
 Products filtered(std::string_view name, const Products& in, const Geometry& g) {
-  return filter_products(find_filter(name), in, g.surfel, 4);
+  return filter_products(find_filter(name), in, g.surfaces, 4);
 }
 
 /// All that change anything.
@@ -62,7 +62,7 @@ TEST_P(EveryFilter, GivesAPlaneAloneWhatItGivesAmongOthers) {
   const Geometry g = random_geometry(60, 40, 7);
   const Products in = random_products(g, 8), all = filtered(GetParam(), in, g);
   const auto alone = [&](const Plane<float>& plane, const char* product) {
-    return apply_filter(find_filter(GetParam()), plane, find_product(product).filtering, g.surfel,
+    return apply_filter(find_filter(GetParam()), plane, find_product(product).filtering, g.surfaces,
                         4);
   };
   EXPECT_EQ(alone(in.ao, "ao").pixels, all.ao.pixels);
@@ -84,7 +84,7 @@ TEST_P(EveryFilter, GivesTheSameBitsInACropAndOnAnyNumberOfThreads) {
 
   const Window window{13, 7, 124, 130};
   Geometry part;
-  part.surfel = crop(g.surfel, window);
+  part.surfaces = crop(g.surfaces, window);
   Products part_in;
   part_in.ao = crop(in.ao, window);
   part_in.bent = crop(in.bent, window);
@@ -108,7 +108,7 @@ TEST_P(EveryFilter, TakesNothingFromTheBackgroundBeItBroken) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     broken.ao[i] = nan;
     broken.direct[i] = glm::vec3(nan);
-    holes.surfel[i] = {glm::vec3(nan), 0, glm::vec3(nan), nan};
+    holes.surfaces.set(i, {glm::vec3(nan), glm::vec3(nan), nan});
   }
   const Products expected = filtered(GetParam(), clean, g),
                  out = filtered(GetParam(), broken, holes);

@@ -43,21 +43,21 @@ float pattern(const glm::dvec3& on_box) {
 struct AFrame {
   AFrame(int frame, const AFrame* before, float layer_scale = 1)
       : geometry(geometry_of(scene_at(frame), camera_at(frame), kWindow)) {
-    const Plane<Surfel>& surfel = geometry.surfel;
+    const Surfaces& surfaces = geometry.surfaces;
     Products products;
-    products.ao = Plane<float>(surfel.width, surfel.height, 0.5f);
+    products.ao = Plane<float>(surfaces.width, surfaces.height, 0.5f);
     products.shares.suns = {products.ao};
-    layer = Plane<glm::vec2>(surfel.width, surfel.height);
-    is_box = Plane<unsigned char>(surfel.width, surfel.height);
-    for (std::size_t i = 0; i < surfel.size(); ++i) {
+    layer = Plane<glm::vec2>(surfaces.width, surfaces.height);
+    is_box = Plane<unsigned char>(surfaces.width, surfaces.height);
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
       const Camera& camera = geometry.camera;
       const glm::dvec3 p =
-          glm::transpose(camera.rotation) * glm::dvec3(surfel[i].position) + camera.origin;
+          glm::transpose(camera.rotation) * glm::dvec3(surfaces[i].position) + camera.origin;
       is_box[i] = p.z > 1e-4;
       const glm::dvec3 was = is_box[i] ? p - kStep : p;
       const Camera last = camera_at(frame - 1);
       layer[i] = layer_scale * glm::vec2(last.project(last.to_camera(was)) -
-                                         camera.project(glm::dvec3(surfel[i].position)));
+                                         camera.project(glm::dvec3(surfaces[i].position)));
       if (!is_box[i]) continue;
       products.ao[i] = pattern(p - middle_at(frame)) + (frame % 2 ? 0.1f : -0.1f);
       products.shares.suns[0][i] = products.ao[i];
@@ -150,14 +150,14 @@ TEST_F(AMovingBox, IsFoundWhereItWasAndWhereItWillBe) {
         ++whole;
         const Camera& camera = now().geometry.camera;
         const glm::dvec3 p = glm::transpose(camera.rotation) *
-                                 glm::dvec3(now().geometry.surfel(point.x, y).position) +
+                                 glm::dvec3(now().geometry.surfaces(point.x, y).position) +
                              camera.origin + double(all[k].away) * kStep;
         const glm::dvec2 wanted = there.camera.project(there.camera.to_camera(p)),
                          found = there.centre(std::size_t(point.pixel)) +
                                  glm::dvec2(double(w[1] + w[3]), double(w[2] + w[3]));
         EXPECT_LT(glm::distance(found, wanted), 0.16) << point.x << " " << y << " " << k;
         const double way = std::abs(all[k].away) * glm::length(kStep),
-                     from_camera = glm::length(now().geometry.surfel(point.x, y).position),
+                     from_camera = glm::length(now().geometry.surfaces(point.x, y).position),
                      share = way / (0.05 * from_camera);
         EXPECT_NEAR(point.counts, std::exp(-share * share), 0.05);
       }
@@ -175,7 +175,7 @@ TEST_F(AMovingBox, TakesTheMeanOfTheSamePoint) {
     if (!now().is_box[i]) continue;
     const Camera& camera = now().geometry.camera;
     const glm::dvec3 p =
-        glm::transpose(camera.rotation) * glm::dvec3(now().geometry.surfel[i].position) +
+        glm::transpose(camera.rotation) * glm::dvec3(now().geometry.surfaces[i].position) +
         camera.origin;
     const double wanted = double(pattern(p - middle_at(kNow)));
     error += std::abs(double(mean.ao[i]) - wanted), alone += 0.1;

@@ -14,16 +14,17 @@
 namespace ssdo::test::geometry_filter_lanes_test {
 namespace {
 
-const Surfel* surface_at(const Geometry& g, int x, int y) {
-  if (x < 0 || y < 0 || x >= g.surfel.width || y >= g.surfel.height) return nullptr;
-  return g.is_surface(g.surfel.index(x, y)) ? &g.surfel(x, y) : nullptr;
+std::optional<Surfel> surface_at(const Geometry& g, int x, int y) {
+  if (x < 0 || y < 0 || x >= g.surfaces.width || y >= g.surfaces.height) return std::nullopt;
+  const Surfel s = g.surfaces(x, y);
+  return s.is_surface() ? std::optional(s) : std::nullopt;
 }
 
 /// w of the pixel (dx, dy) from (x, y), which shows a surface.
 double reference_weight(const Geometry& g, int x, int y, int dx, int dy) {
   const auto ramp = [](double t) { return std::clamp(2 - 2 * t, 0.0, 1.0); };
-  const Surfel &p = g.surfel(x, y), *q = surface_at(g, x + dx, y + dy),
-               *o = surface_at(g, x - dx, y - dy);
+  const Surfel p = g.surfaces(x, y);
+  const auto q = surface_at(g, x + dx, y + dy), o = surface_at(g, x - dx, y - dy);
   if (!q) return 0;
   const glm::dvec3 n(p.normal);
   const auto above = [&](const Surfel& s) {
@@ -100,12 +101,12 @@ TEST(GeometryFilterLanes, AreTheReference) {
     const Geometry g = random_geometry(size.width, size.height, 1);
     const Products in = random_products(g, 2);
     for (const int pattern_size : {2, 4, 8}) {
-      const Products out = filter_products(find_filter("geometry"), in, g.surfel, pattern_size);
+      const Products out = filter_products(find_filter("geometry"), in, g.surfaces, pattern_size);
       for (int y = 0; y < size.height; ++y) {
         for (int x = 0; x < size.width; ++x) {
           SCOPED_TRACE(testing::Message() << size.width << "x" << size.height << " T "
                                           << pattern_size << " at " << x << ", " << y);
-          if (!g.is_surface(g.surfel.index(x, y))) {
+          if (!g.is_surface(g.surfaces.index(x, y))) {
             EXPECT_EQ(out.ao(x, y), in.ao(x, y));
             EXPECT_EQ(out.error(x, y), in.error(x, y));
             EXPECT_EQ(out.direct(x, y), in.direct(x, y));
@@ -144,10 +145,10 @@ TEST(GeometryFilter, IsOddInTheErrorAndLinear) {
   minus = sum = a;
   for (float& e : minus.error.pixels) e = -e;
   for (std::size_t i = 0; i < sum.error.size(); ++i) sum.error[i] += b.error[i];
-  const Products of_a = filter_products(find_filter("geometry"), a, g.surfel, 4),
-                 of_b = filter_products(find_filter("geometry"), b, g.surfel, 4),
-                 of_minus = filter_products(find_filter("geometry"), minus, g.surfel, 4),
-                 of_sum = filter_products(find_filter("geometry"), sum, g.surfel, 4);
+  const Products of_a = filter_products(find_filter("geometry"), a, g.surfaces, 4),
+                 of_b = filter_products(find_filter("geometry"), b, g.surfaces, 4),
+                 of_minus = filter_products(find_filter("geometry"), minus, g.surfaces, 4),
+                 of_sum = filter_products(find_filter("geometry"), sum, g.surfaces, 4);
   for (std::size_t i = 0; i < a.error.size(); ++i) {
     EXPECT_EQ(of_minus.error[i], -of_a.error[i]);
     EXPECT_NEAR(of_sum.error[i], of_a.error[i] + of_b.error[i], 1e-5);
@@ -159,7 +160,7 @@ TEST(GeometryFilter, LeavesNoDirectionWithoutLength) {
   const Geometry g = random_geometry(40, 30, 10);
   Products p;
   p.bent = Plane<glm::vec3>(40, 30);
-  const Products out = filter_products(find_filter("geometry"), p, g.surfel, 4);
+  const Products out = filter_products(find_filter("geometry"), p, g.surfaces, 4);
   for (const glm::vec3& bent : out.bent.pixels) EXPECT_EQ(bent, glm::vec3(0));
 }
 

@@ -17,10 +17,10 @@ const Window kWindow{0, 0, 64, 48};
 /// Numbers of a T x T pattern; ao has the mean 1/2, direct (T^2 - 1) / 2.
 Products noise_of_a_pattern(const Geometry& g, int size = 4, float contrast = 1) {
   Products p;
-  p.ao = Plane<float>(g.surfel.width, g.surfel.height, 1);
-  p.direct = Plane<glm::vec3>(g.surfel.width, g.surfel.height);
-  for (int y = 0; y < g.surfel.height; ++y) {
-    for (int x = 0; x < g.surfel.width; ++x) {
+  p.ao = Plane<float>(g.surfaces.width, g.surfaces.height, 1);
+  p.direct = Plane<glm::vec3>(g.surfaces.width, g.surfaces.height);
+  for (int y = 0; y < g.surfaces.height; ++y) {
+    for (int x = 0; x < g.surfaces.width; ++x) {
       const int members = size * size, member = (y % size) * size + x % size;
       const float noise = float((member * 7) % members) / float(members - 1) - 0.5f;
       p.ao(x, y) = 0.5f + contrast * noise;
@@ -37,10 +37,10 @@ TEST(GeometryFilter, RemovesThePatternOnAPlaneExactly) {
                 {0, -5 * std::sin(glm::radians(tilt)), 5 * std::cos(glm::radians(tilt))}, {0, 0, 0},
                 {0, 1, 0.1});
     const Geometry g = geometry_of(plane({}, {0, 0, 1}), camera, kWindow);
-    const Products out =
-                       filter_products(find_filter("geometry"), noise_of_a_pattern(g), g.surfel, 4),
+    const Products out = filter_products(find_filter("geometry"), noise_of_a_pattern(g), g.surfaces,
+                                         4),
                    of_wide = filter_products(find_filter("geometry"),
-                                             noise_of_a_pattern(g, 8, 0.3f), g.surfel, 8);
+                                             noise_of_a_pattern(g, 8, 0.3f), g.surfaces, 8);
     for (int y = 4; y < kWindow.height() - 4; ++y) {
       for (int x = 4; x < kWindow.width() - 4; ++x) {
         EXPECT_NEAR(out.ao(x, y), 0.5, 1e-5);
@@ -64,7 +64,7 @@ TEST(GeometryFilter, KeepsTheEdgeOfAShadow) {
   }
   p.shares.suns = {p.ao};
   // Averaged over 8 x 8, these would have 0.56 and 0.74 of ao.
-  const Products out = filter_products(find_filter("geometry"), p, g.surfel, 8);
+  const Products out = filter_products(find_filter("geometry"), p, g.surfaces, 8);
   EXPECT_LT(out.shares.suns[0](28, 24), 0.47);
   EXPECT_GT(out.shares.suns[0](31, 24), 0.83);
   EXPECT_LT(out.ao(28, 24), 0.47);
@@ -86,7 +86,7 @@ TEST(GeometryFilter, ABounceBelongsToItsAo) {
   }
   p.bounce = Plane<glm::vec3>(kWindow.width(), kWindow.height());
   for (std::size_t i = 0; i < p.ao.size(); ++i) p.bounce[i] = glm::vec3(1 - p.ao[i]);
-  const Products out = filter_products(find_filter("geometry"), p, g.surfel, 8);
+  const Products out = filter_products(find_filter("geometry"), p, g.surfaces, 8);
   for (std::size_t i = 0; i < p.ao.size(); ++i)
     EXPECT_LT(difference(out.bounce[i], glm::dvec3(1 - out.ao[i])), 1e-4);
   EXPECT_EQ(out.bounce(60, 20), glm::vec3(0));
@@ -95,7 +95,8 @@ TEST(GeometryFilter, ABounceBelongsToItsAo) {
 TEST(GeometryFilter, LeavesLittleOfThePatternOnACurvedSurface) {
   const Geometry g = geometry_of(
       sphere({}, 2), look_at(camera_from_fov(40, kWindow, 1), {0, 0, 8}, {}, {0, 1, 0}), kWindow);
-  const Products out = filter_products(find_filter("geometry"), noise_of_a_pattern(g), g.surfel, 4);
+  const Products out =
+      filter_products(find_filter("geometry"), noise_of_a_pattern(g), g.surfaces, 4);
   for (int y = 16; y < 32; ++y) {
     for (int x = 24; x < 40; ++x) EXPECT_NEAR(out.ao(x, y), 0.5, 0.02);
   }
@@ -106,11 +107,11 @@ TEST(GeometryFilter, FollowsACoarseMeshUnderSmoothNormals) {
   Geometry g =
       geometry_of(plane({}, {0, 0, 1}),
                   look_at(camera_from_fov(40, kWindow, 1), {0, 0, 5}, {}, {0, 1, 0}), kWindow);
-  for (Surfel& s : g.surfel.pixels) {
-    const double lean = glm::radians(40.0);
-    s.normal = glm::vec3(0, std::sin(lean), std::cos(lean));
-  }
-  const Products out = filter_products(find_filter("geometry"), noise_of_a_pattern(g), g.surfel, 4);
+  const double lean = glm::radians(40.0);
+  g.surfaces.change_each(
+      [&](Surfel& s) { s.normal = glm::vec3(0, std::sin(lean), std::cos(lean)); });
+  const Products out =
+      filter_products(find_filter("geometry"), noise_of_a_pattern(g), g.surfaces, 4);
   for (int y = 4; y < kWindow.height() - 4; ++y) {
     for (int x = 4; x < kWindow.width() - 4; ++x) EXPECT_NEAR(out.ao(x, y), 0.5, 1e-5);
   }
@@ -127,8 +128,8 @@ TEST(GeometryFilter, DoesNotCrossEdges) {
   Products step;
   step.ao = Plane<float>(kWindow.width(), kWindow.height());
   for (std::size_t i = 0; i < step.ao.size(); ++i)
-    step.ao[i] = g.surfel[i].position.z > -4.75f ? 1.0f : 0.0f;
-  const Products out = filter_products(find_filter("geometry"), step, g.surfel, 4);
+    step.ao[i] = g.surfaces[i].position.z > -4.75f ? 1.0f : 0.0f;
+  const Products out = filter_products(find_filter("geometry"), step, g.surfaces, 4);
   for (std::size_t i = 0; i < step.ao.size(); ++i) EXPECT_EQ(out.ao[i], step.ao[i]);
 
   // Two planes that meet at a right angle: near the edge the distance is small, the normals differ.
@@ -136,8 +137,8 @@ TEST(GeometryFilter, DoesNotCrossEdges) {
       geometry_of(all_of({plane({}, {0, 0, 1}), plane({}, {0, -1, 0})}),
                   look_at(camera_from_fov(40, kWindow, 1), {0, -4, 4}, {}, {0, 0, 1}), kWindow);
   for (std::size_t i = 0; i < step.ao.size(); ++i)
-    step.ao[i] = corner.surfel[i].normal.y > 0.5f ? 1.0f : 0.0f;
-  const Products walls = filter_products(find_filter("geometry"), step, corner.surfel, 4);
+    step.ao[i] = corner.surfaces[i].normal.y > 0.5f ? 1.0f : 0.0f;
+  const Products walls = filter_products(find_filter("geometry"), step, corner.surfaces, 4);
   for (std::size_t i = 0; i < step.ao.size(); ++i) EXPECT_EQ(walls.ao[i], step.ao[i]);
 }
 
@@ -147,7 +148,7 @@ TEST(GeometryFilter, LeavesTheBackgroundAlone) {
   Products p;
   p.ao = Plane<float>(kWindow.width(), kWindow.height());
   for (std::size_t i = 0; i < p.ao.size(); ++i) p.ao[i] = g.is_surface(i) ? 0.25f : 1.0f;
-  const Products out = filter_products(find_filter("geometry"), p, g.surfel, 4);
+  const Products out = filter_products(find_filter("geometry"), p, g.surfaces, 4);
   for (std::size_t i = 0; i < p.ao.size(); ++i) EXPECT_FLOAT_EQ(out.ao[i], p.ao[i]);
 }
 

@@ -59,7 +59,7 @@ struct Shadows {
     for (int y = 0; y < found.height; ++y) {
       for (int x = 0; x < found.width; ++x) {
         if (!surface(ray_through(camera, x + 0.5, y + 0.5))) continue;
-        const Surfel& s = scene.geometry.surfel(x, y);
+        const Surfel& s = scene.geometry.surfaces(x, y);
         const float all = scene.light.unoccluded(s.position, s.normal).x;
         const Point p = point_at(surface, camera, kWindow, x, y);
         const glm::dvec3 way = lamp.position - p.position, to = glm::normalize(way);
@@ -153,7 +153,7 @@ TEST(LampShadows, FacetsOfADenseMeshAreNotSpeckled) {
   const Scene scene = scene_with(facets(0.06, 0.002), from_above(), ball({-9, 3, 1}, 0.8));
   const Products out = lit(scene);
   const auto share = [&](int x, int y) {
-    const Surfel& s = scene.geometry.surfel(x, y);
+    const Surfel& s = scene.geometry.surfaces(x, y);
     return out.direct(x, y).x / scene.light.unoccluded(s.position, s.normal).x;
   };
   int dark = 0;

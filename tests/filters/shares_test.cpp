@@ -29,10 +29,10 @@ const Camera& camera() {
 
 /// Normals of a map of waves along x, which lean up to `degrees`.
 void add_waves(Geometry& g, double length_px, double degrees = 15) {
-  for (int y = 0; y < g.surfel.height; ++y) {
-    for (int x = 0; x < g.surfel.width; ++x) {
+  for (int y = 0; y < g.surfaces.height; ++y) {
+    for (int x = 0; x < g.surfaces.width; ++x) {
       const double lean = glm::radians(degrees) * std::sin(2 * 3.14159265358979 * x / length_px);
-      g.surfel(x, y).normal = glm::vec3(std::sin(lean), 0, std::cos(lean));
+      g.surfaces.set_normal(g.surfaces.index(x, y), glm::vec3(std::sin(lean), 0, std::cos(lean)));
     }
   }
 }
@@ -96,7 +96,7 @@ TEST(Shares, ContrastOfNormalMapsIsKept) {
         const Products noisy = estimated(method, scene, {.ao = true, .direct = true, .bent = true}),
                        out = through_filter(method, scene, noisy);
         const auto light = [&](int x, int y) {
-          return double(scene.light.unoccluded({}, scene.geometry.surfel(x, y).normal).y);
+          return double(scene.light.unoccluded({}, scene.geometry.surfaces(x, y).normal).y);
         };
         const auto green = [](const Products& p) {
           return [&p](int x, int y) { return double(p.direct(x, y).y); };
@@ -109,7 +109,7 @@ TEST(Shares, ContrastOfNormalMapsIsKept) {
         if (out.bent.empty()) continue;
         // The plane itself hides what lies below it from normals that lean.
         const auto normal = [&](int x, int y) {
-          return double(scene.geometry.surfel(x, y).normal.x);
+          return double(scene.geometry.surfaces(x, y).normal.x);
         };
         const auto bent = [](const Products& p) {
           return [&p](int x, int y) { return double(p.bent(x, y).x); };
@@ -126,12 +126,12 @@ TEST(Shares, BentOnAnOpenSurfaceIsItsNormal) {
   add_waves(g, 7, 20);
   const Scene scene = scene_of(g);
   Products p;
-  p.bent = Plane<glm::vec3>::like(g.surfel);
-  for (std::size_t i = 0; i < p.bent.size(); ++i) p.bent[i] = g.surfel[i].normal;
+  p.bent = Plane<glm::vec3>::like(g.surfaces);
+  for (std::size_t i = 0; i < p.bent.size(); ++i) p.bent[i] = g.surfaces[i].normal;
   for (const Filter& filter : filters()) {
     const Products out = filter_shares(filter, p, scene, 8);
     for (std::size_t i = 0; i < p.bent.size(); ++i)
-      EXPECT_LT(difference(out.bent[i], g.surfel[i].normal), 1e-6) << filter.name;
+      EXPECT_LT(difference(out.bent[i], g.surfaces[i].normal), 1e-6) << filter.name;
   }
 }
 
@@ -173,7 +173,7 @@ TEST(Shares, TheEdgeOfAShadowStaysWhereItIs) {
   const DistantSource& sun = sun_of(scene.light);
   const int y = kWindow.height() / 2;
   for (int x = 8; x < kWindow.width() - 8; ++x) {
-    const glm::vec3 n = g.surfel(x, y).normal;
+    const glm::vec3 n = g.surfaces(x, y).normal;
     const double arrives = double(out.direct(x, y).x - scene.light.irradiance(n).x) /
                            double(sun.irradiance.x * std::max(0.0f, glm::dot(n, sun.direction)));
     // Four pixels are averaged whatever they show.
@@ -188,9 +188,9 @@ TEST(Shares, AreOfTheLightThatTheNormalReceives) {
   const Scene scene = scene_of(g, light_from_a_side(true, 0.01f));
   Products p;
   p.ao = Plane<float>(kWindow.width(), kWindow.height(), 0.5f);
-  p.direct = Plane<glm::vec3>::like(g.surfel);
+  p.direct = Plane<glm::vec3>::like(g.surfaces);
   for (std::size_t i = 0; i < p.direct.size(); ++i)
-    p.direct[i] = 0.7f * scene.light.unoccluded({}, g.surfel[i].normal);
+    p.direct[i] = 0.7f * scene.light.unoccluded({}, g.surfaces[i].normal);
   const Products shares = to_shares(p, scene);
   for (const glm::vec3& share : shares.direct.pixels)
     EXPECT_LT(difference(share, glm::dvec3(0.7)), 1e-4);
@@ -202,7 +202,7 @@ TEST(Shares, AreOfTheLightThatTheNormalReceives) {
   const Products light = from_shares(to_shares(parts, scene), scene);
   EXPECT_TRUE(light.shares.sky.empty() && light.shares.suns.empty());
   for (std::size_t i = 0; i < p.direct.size(); ++i) {
-    const glm::vec3 n = g.surfel[i].normal;
+    const glm::vec3 n = g.surfaces[i].normal;
     const DistantSource& sun = sun_of(scene.light);
     const glm::vec3 expected = glm::vec3(0.3f, 1, 0) * scene.light.irradiance(n) +
                                0.6f * std::max(0.0f, glm::dot(n, sun.direction)) * sun.irradiance;
@@ -314,7 +314,7 @@ TEST(Shares, BackgroundStaysBlackWhateverItHolds) {
   p.shares.suns.resize(1);
   for (std::size_t i = 0; i < p.ao.size(); ++i) {
     if (g.is_surface(i)) continue;
-    scene.geometry.surfel[i] = {glm::vec3(NAN), 0, glm::vec3(NAN), NAN};
+    scene.geometry.surfaces.set(i, {glm::vec3(NAN), glm::vec3(NAN), NAN});
     p.shares.sky[i] = glm::vec3(NAN);
   }
   const Products out = filter_shares(find_filter("geometry"), p, scene, 8);

@@ -37,7 +37,7 @@ Counts compare(const Geometry& now, const Geometry& other) {
     const bool some = reprojection.find(points, sights);
     reprojection.find_through(points, through);
     for (int i = 0; i < row.count; ++i) {
-      const Surfel& s = now.surfel(row.x + i, row.y);
+      const Surfel& s = now.surfaces(row.x + i, row.y);
       if (!s.is_surface()) {
         EXPECT_TRUE(!some || sights.pixel[i] < 0);
         EXPECT_EQ(through[i], 0);
@@ -53,8 +53,8 @@ Counts compare(const Geometry& now, const Geometry& other) {
       for (int k = 0; k < 4; ++k) {
         double weight = 0;
         for (int j = 0; j < at.count; ++j) {
-          const int x = int(at.pixel[j]) % other.surfel.width,
-                    y = int(at.pixel[j]) / other.surfel.width;
+          const int x = int(at.pixel[j]) % other.surfaces.width,
+                    y = int(at.pixel[j]) / other.surfaces.width;
           if (int(kept.index(x, y)) == sights.pixel[i] + k % 2 + k / 2 * kept.stride())
             weight = double(at.weight[j]);
         }
@@ -70,19 +70,19 @@ TEST(KeptSurfaces, KeepNormalsAndRoundings) {
   const Window window{0, 0, 70, 30};
   const Camera camera = look_at(camera_from_fov(45, window, 1), {0, 0, 4}, {}, {0, 1, 0});
   Geometry geometry = geometry_of(plane({}, {0, 0, 1}), camera, window);
-  const int count = int(geometry.surfel.size());
+  const int count = int(geometry.surfaces.size());
   for (int i = 0; i < count; ++i) {
     const double z = 1 - (2 * i + 1.0) / count, turn = 2.4 * i, across = std::sqrt(1 - z * z);
-    Surfel& s = geometry.surfel[std::size_t(i)];
-    s.normal = glm::vec3(across * std::cos(turn), across * std::sin(turn), z);
-    s.rounding = float(1e-4 * std::pow(1000, double(i) / count));
+    geometry.surfaces.set_normal(std::size_t(i),
+                                 {across * std::cos(turn), across * std::sin(turn), z});
+    geometry.surfaces.rounding[std::size_t(i)] = float(1e-4 * std::pow(1000, double(i) / count));
   }
   const KeptSurfaces kept = keep_surfaces(geometry);
   for_each_points_of_grid(kept, 1, [&](const RowOfPixels& row) {
     RowOfPoints points;
     load_points(kept, row, points);
     for (int i = 0; i < row.count; ++i) {
-      const Surfel& s = geometry.surfel(row.x + i, row.y);
+      const Surfel& s = geometry.surfaces(row.x + i, row.y);
       const glm::vec3 normal(points.normal[0][i], points.normal[1][i], points.normal[2][i]);
       EXPECT_LT(glm::distance(normal, s.normal), 1e-3f);
       EXPECT_GE(points.rounding[i], s.rounding);
@@ -121,10 +121,10 @@ TEST(Sights, AnotherNormalIsAnotherSurface) {
   for (const double degrees : {20.0, 35.0}) {  // of 26
     Geometry turned = now;
     const double angle = degrees * 3.14159265358979 / 180;
-    for (Surfel& s : turned.surfel.pixels) {
+    turned.surfaces.change_each([&](Surfel& s) {
       const glm::vec3 across = glm::normalize(glm::cross(s.normal, glm::vec3(1, 0, 0)));
       s.normal = float(std::cos(angle)) * s.normal + float(std::sin(angle)) * across;
-    }
+    });
     const Counts counts = compare(now, turned);
     EXPECT_EQ(counts.other_same, 0);
     EXPECT_EQ(counts.same, degrees < 26 ? counts.all : 0);

@@ -130,7 +130,7 @@ TEST(Specular, TheFilterLeavesHighlightsOfNormalMapsAlone) {
   for (int y = 0; y < kWindow.height(); ++y) {
     for (int x = 0; x < kWindow.width(); ++x) {
       const double lean = glm::radians(15.0) * std::sin(2 * kPi * x / 8);
-      g.surfel(x, y).normal = glm::vec3(std::sin(lean), 0, std::cos(lean));
+      g.surfaces.set_normal(g.surfaces.index(x, y), glm::vec3(std::sin(lean), 0, std::cos(lean)));
     }
   }
   const Scene scene = scene_of(std::move(g), painted([](const glm::vec3& d) {

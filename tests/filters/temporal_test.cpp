@@ -64,7 +64,7 @@ TEST(Temporal, ASequenceAtRestConvergesToTheMeanOfItsFrames) {
   // P in float lands on its pixel's centre to 1e-5 px, and the noise has steps of 2 beside it.
   constexpr double kRounding = 1e-4;
   const Products out = products_of(history);
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
     if (!g.is_surface(i)) continue;
     double ao = 0, error = 0, reflection = 0;
     glm::dvec3 direct(0), bounce(0), bent(0);
@@ -84,7 +84,7 @@ TEST(Temporal, ASequenceAtRestConvergesToTheMeanOfItsFrames) {
   // From then on it forgets: the 17th frame counts 1/16.
   const Products last = random_products(g, 99);
   const Products later = products_of(sequence.feed(g, last));
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
     if (!g.is_surface(i)) continue;
     EXPECT_NEAR(later.ao[i], out.ao[i] * 15 / 16 + last.ao[i] / 16, kRounding);
   }
@@ -103,7 +103,7 @@ Expected slow(const History& before, const Geometry& g, const Products& now, std
   const auto turned = [](const Camera& c, const glm::vec3& n) {
     return glm::transpose(c.rotation) * glm::dvec3(n);
   };
-  const Surfel& s = g.surfel[i];
+  const Surfel& s = g.surfaces[i];
   const glm::dvec3 p = world(g.camera, s.position), n = turned(g.camera, s.normal),
                    seen = b.camera.to_camera(p);
   glm::dvec2 at = b.camera.project(seen);
@@ -116,13 +116,13 @@ Expected slow(const History& before, const Geometry& g, const Products& now, std
     at = told;
   }
   double weights = 0, ao = 0, frames = 0;
-  for (int y = 0; y < b.surfel.height; ++y) {
-    for (int x = 0; x < b.surfel.width; ++x) {
+  for (int y = 0; y < b.surfaces.height; ++y) {
+    for (int x = 0; x < b.surfaces.width; ++x) {
       const double weight = std::max(0.0, 1 - std::abs(at.x - (b.window.x0 + x + 0.5))) *
                             std::max(0.0, 1 - std::abs(at.y - (b.window.y0 + y + 0.5)));
-      const std::size_t k = b.surfel.index(x, y);
+      const std::size_t k = b.surfaces.index(x, y);
       if (weight == 0 || !b.is_surface(k)) continue;
-      const Surfel& q = b.surfel[k];
+      const Surfel& q = b.surfaces[k];
       const glm::dvec3 away = world(b.camera, q.position) - p, m = turned(b.camera, q.normal);
       const double limit = pixel / 2 + s.rounding + q.rounding + 2 * way;
       if (glm::dot(n, m) < 0.9 || std::abs(glm::dot(n, away)) > limit ||
@@ -139,21 +139,21 @@ Expected slow(const History& before, const Geometry& g, const Products& now, std
 }
 
 glm::dvec3 world(const Geometry& g, std::size_t i) {
-  return g.camera.origin + glm::transpose(g.camera.rotation) * glm::dvec3(g.surfel[i].position);
+  return g.camera.origin + glm::transpose(g.camera.rotation) * glm::dvec3(g.surfaces[i].position);
 }
 
 /// How far from its pixel a point of the world was in the picture before.
 glm::vec2 motion_to(const Geometry& before, const glm::dvec3& point, const Geometry& g,
                     std::size_t i) {
-  const glm::dvec2 centre(g.window.x0 + int(i) % g.surfel.width + 0.5,
-                          g.window.y0 + int(i) / g.surfel.width + 0.5);
+  const glm::dvec2 centre(g.window.x0 + int(i) % g.surfaces.width + 0.5,
+                          g.window.y0 + int(i) / g.surfaces.width + 0.5);
   return glm::vec2(before.camera.project(before.camera.to_camera(point)) - centre);
 }
 
 /// About what the cameras say, and a tenth of it unknown.
 Plane<glm::vec2> random_motion(const Geometry& before, const Geometry& g, unsigned seed) {
   Random random(seed);
-  Plane<glm::vec2> motion(g.surfel.width, g.surfel.height);
+  Plane<glm::vec2> motion(g.surfaces.width, g.surfaces.height);
   for (std::size_t i = 0; i < motion.size(); ++i) {
     const float size = between(random, 0, 1) < 0.5f ? 0.1f : 3;
     motion[i] = motion_to(before, world(g, i), g, i) + glm::vec2(vector_of(random, size));
@@ -180,7 +180,7 @@ TEST(Temporal, IsItsFormulaUnderMovingCamerasAndThings) {
                                           ? random_motion(before.geometry, g, unsigned(n))
                                           : Plane<glm::vec2>();
       History after = accumulate(n > 0 ? &before : nullptr, g, now, motion);
-      for (std::size_t i = 0; n > 0 && i < g.surfel.size(); ++i) {
+      for (std::size_t i = 0; n > 0 && i < g.surfaces.size(); ++i) {
         if (!g.is_surface(i)) {
           EXPECT_EQ(after.mean.ao[i], now.ao[i]);
           continue;
@@ -201,10 +201,10 @@ TEST(Temporal, IsItsFormulaUnderMovingCamerasAndThings) {
 /// 0 on the card, 1 on the wall.
 Products card_is_dark(const Geometry& g, double height) {
   Products p;
-  p.ao = Plane<float>(g.surfel.width, g.surfel.height, 1.0f);
+  p.ao = Plane<float>(g.surfaces.width, g.surfaces.height, 1.0f);
   const glm::dmat3 to_world = glm::transpose(g.camera.rotation);
   for (std::size_t i = 0; i < p.ao.size(); ++i) {
-    const double z = (g.camera.origin + to_world * glm::dvec3(g.surfel[i].position)).z;
+    const double z = (g.camera.origin + to_world * glm::dvec3(g.surfaces[i].position)).z;
     if (g.is_surface(i) && z > height / 2) p.ao[i] = 0;
   }
   return p;
@@ -227,7 +227,7 @@ TEST(Temporal, NothingIsLeftBehindASilhouetteThatMoves) {
           const Products now = card_is_dark(g, height);
           const History& history = sequence.feed(g, now);
           EXPECT_EQ(history.mean.ao.pixels, now.ao.pixels) << "frame " << n;
-          for (std::size_t i = 0; n == 7 && i < g.surfel.size(); ++i)
+          for (std::size_t i = 0; n == 7 && i < g.surfaces.size(); ++i)
             (history.frames[i] > 1 ? continued : begun) += g.is_surface(i);
         }
         EXPECT_GT(begun, height > 1 ? 20u : 2u) << "the silhouette reveals nothing";
@@ -251,7 +251,7 @@ struct MovingBall {
     return g.is_surface(i) && std::abs(glm::length(world(g, i) - centre(n)) - kSize) < 1e-4;
   }
   Plane<glm::vec2> motion(const Geometry& before, const Geometry& g, int n) const {
-    Plane<glm::vec2> motion(g.surfel.width, g.surfel.height);
+    Plane<glm::vec2> motion(g.surfaces.width, g.surfaces.height);
     for (std::size_t i = 0; i < motion.size(); ++i) {
       const glm::dvec3 now = world(g, i);
       motion[i] = motion_to(before, shows_ball(g, i, n) ? now - step : now, g, i);
@@ -276,7 +276,7 @@ TEST(Temporal, MotionCarriesTheHistoryOfWhatMoves) {
     for (int n = 0; n < 6; ++n) {
       const Geometry g = ball.geometry(n);
       Products now;
-      now.ao = Plane<float>(g.surfel.width, g.surfel.height, 1.0f);
+      now.ao = Plane<float>(g.surfaces.width, g.surfaces.height, 1.0f);
       for (std::size_t i = 0; i < now.ao.size(); ++i)
         if (ball.shows_ball(g, i, n)) now.ao[i] = float(ball.texture(g, i, n));
       const History& carried =
@@ -289,7 +289,7 @@ TEST(Temporal, MotionCarriesTheHistoryOfWhatMoves) {
           continue;
         }
         // Away from the rim, where the ball is seen at a grazing angle and turns into sight.
-        if (g.surfel[i].normal.z < 0.6f) continue;
+        if (g.surfaces[i].normal.z < 0.6f) continue;
         inside += 1;
         kept += carried.frames[i] > 5.9f;
         kept_without += rejected.frames[i] > 5.9f;
@@ -330,7 +330,7 @@ TEST(Temporal, DirectionsTurnWithTheCamera) {
     Products now;
     now.bent = Plane<glm::vec3>(64, 48, glm::vec3(camera.rotation * bent));
     const Products out = products_of(sequence.feed(g, now));
-    for (std::size_t i = 0; i < g.surfel.size(); ++i)
+    for (std::size_t i = 0; i < g.surfaces.size(); ++i)
       EXPECT_LT(difference(out.bent[i], camera.rotation * bent), 1e-6);
   }
 }
@@ -436,11 +436,12 @@ TEST(Temporal, TakesTheFlickerOfNoiseAwayUnderAMovingCamera) {
     // Without --temporal every frame has the same pattern.
     const Products alone = occlusion(g, 0), turned = occlusion(g, unsigned(n));
     noisy.add(g, alone.ao);
-    noisy_filtered.add(g, filter_products(find_filter("geometry"), alone, g.surfel, 4).ao);
+    noisy_filtered.add(g, filter_products(find_filter("geometry"), alone, g.surfaces, 4).ao);
     steady.add(g, sequence.feed(g, turned).mean.ao);
     steady_filtered.add(
-        g, filtered_sequence.feed(g, filter_products(find_filter("geometry"), turned, g.surfel, 4))
-               .mean.ao);
+        g,
+        filtered_sequence.feed(g, filter_products(find_filter("geometry"), turned, g.surfaces, 4))
+            .mean.ao);
   }
   EXPECT_LT(steady.rms(), noisy.rms() / 2.5) << noisy.rms();
   // What the filter leaves is for a good part no noise: shadows that move over the pixel grid.

@@ -38,7 +38,7 @@ Scene open_floor() {
 double largest_difference(const Scene& scene, const Products& products, bool by_ao) {
   double worst = 0;
   for (std::size_t i = 0; i < products.direct.size(); ++i) {
-    const Surfel& s = scene.geometry.surfel[i];
+    const Surfel& s = scene.geometry.surfaces[i];
     if (!s.is_surface()) continue;
     const float part = by_ao ? products.ao[i] : 1;
     const glm::vec3 expected = part * scene.light.unoccluded(s.position, s.normal);

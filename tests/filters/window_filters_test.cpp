@@ -22,7 +22,7 @@ constexpr int kPattern = 4;
 const char* const kFilters[] = {"box", "gaussian", "normal", "depth"};
 
 Products filtered(std::string_view name, const Products& in, const Geometry& g) {
-  return filter_products(find_filter(name), in, g.surfel, kPattern);
+  return filter_products(find_filter(name), in, g.surfaces, kPattern);
 }
 
 using Weight = std::function<double(const Surfel& p, const Surfel& q, int dx, int dy)>;
@@ -41,7 +41,7 @@ Plane<glm::dvec3> slow_pass(const Plane<glm::dvec3>& in, const Geometry& g, int 
           const int qx = x + dx, qy = y + dy;
           if (qx < 0 || qy < 0 || qx >= in.width || qy >= in.height) continue;
           if (!g.is_surface(in.index(qx, qy))) continue;
-          const double w = weight(g.surfel(x, y), g.surfel(qx, qy), dx, dy);
+          const double w = weight(g.surfaces(x, y), g.surfaces(qx, qy), dx, dy);
           sum += w * in(qx, qy);
           weights += w;
         }
@@ -158,8 +158,8 @@ const Window kWindow{0, 0, 64, 48};
 /// 1 where `here` holds, 0 elsewhere.
 Products step(const Geometry& g, const std::function<bool(const Surfel&)>& here) {
   Products p;
-  p.ao = Plane<float>(g.surfel.width, g.surfel.height);
-  for (std::size_t i = 0; i < p.ao.size(); ++i) p.ao[i] = here(g.surfel[i]) ? 1.0f : 0.0f;
+  p.ao = Plane<float>(g.surfaces.width, g.surfaces.height);
+  for (std::size_t i = 0; i < p.ao.size(); ++i) p.ao[i] = here(g.surfaces[i]) ? 1.0f : 0.0f;
   return p;
 }
 

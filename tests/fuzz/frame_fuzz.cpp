@@ -13,12 +13,10 @@ namespace ssdo::fuzz {
 namespace {
 
 /// What --aov may ask for: layers of some files, a channel of a layer, and what no file has.
-const LayerRequest kRequests[] = {{Role::position, "", "ViewLayer.Position"},
-                                  {Role::normal, "", "N"},
-                                  {Role::depth, "", "ViewLayer.Depth.Z"},
-                                  {Role::depth, "", "P.X"},
-                                  {Role::ambient, "", "ViewLayer.Combined"},
-                                  {Role::motion, "", "none"}};
+const LayerRequest kRequests[] = {
+    {Role::position, "", "ViewLayer.Position"}, {Role::normal, "", "N"},
+    {Role::depth, "", "ViewLayer.Depth.Z"},     {Role::depth, "", "P.X"},
+    {Role::ambient, "", "ViewLayer.Combined"},  {Role::motion, "", "none"}};
 
 struct Choices {
   InputOptions input;
@@ -54,7 +52,7 @@ std::vector<ExrKind> kinds() {
 }
 
 void check(const Geometry& geometry) {
-  for (const Surfel& surfel : geometry.surfel.pixels) {
+  for (const Surfel& surfel : geometry.surfaces.each()) {
     if (!surfel.is_surface()) continue;
     for (int i = 0; i < 3; ++i) {
       require(std::isfinite(surfel.position[i]), "a surface whose position is not finite");

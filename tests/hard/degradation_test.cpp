@@ -49,9 +49,9 @@ Geometry averaged_still_life(Plane<unsigned char>& averaged) {
 }
 
 Plane<float> ao_of(const Method& method, const Geometry& g) {
-  const HardFrame frame{g, Plane<HalfColor>(g.surfel.width, g.surfel.height, glm::vec3(0.5f)),
+  const HardFrame frame{g, Plane<HalfColor>(g.surfaces.width, g.surfaces.height, glm::vec3(0.5f)),
                         Environment::constant(glm::vec3(1)), kRadius, 0};
-  return filter_products(find_filter("geometry"), run_method(method, frame), g.surfel,
+  return filter_products(find_filter("geometry"), run_method(method, frame), g.surfaces,
                          method.pattern_size)
       .ao;
 }
@@ -119,7 +119,7 @@ class Frames {
     columns.push_back({"averaged edges", at_edges.rms()});
     columns.push_back({"beside them", beside.rms()});
     for (const auto& [title, geometry] : planes_) {
-      const Plane<float> open(geometry.surfel.width, geometry.surfel.height, 1.0f);
+      const Plane<float> open(geometry.surfaces.width, geometry.surfaces.height, 1.0f);
       columns.push_back({title, between(ao_of(method, geometry), open).rms()});
     }
     return columns;

@@ -83,8 +83,8 @@ Measured light_gained(const Subject& s) {
   if (s.method() == "ssdo" || (set.contains("multi-bounce") && set.at("multi-bounce") != 0))
     return std::nullopt;
   Scene scene = with_light(s.frame.scene, Environment::constant(glm::vec3(1)));
-  const Plane<Surfel>& surfel = scene.geometry.surfel;
-  scene.senders = {Plane<HalfColor>(surfel.width, surfel.height, glm::vec3(1)), {}};
+  const Surfaces& surfaces = scene.geometry.surfaces;
+  scene.senders = {Plane<HalfColor>(surfaces.width, surfaces.height, glm::vec3(1)), {}};
   for (Vertex& v : scene.other_surfaces.vertices) v.albedo = glm::vec3(1);
   Plan plan = s.frame.plan;
   const bool bounces = plan.method->products.bounce;

@@ -38,7 +38,7 @@ HardFrame written(const Writing& how) {
     return how.scene({ray.origin - how.moved, ray.direction});
   };
   HardFrame frame = hard_frame(scene, camera, how.window);
-  frame.shown = frame.geometry.surfel;
+  frame.shown = frame.geometry.surfaces;
   frame.position_error = how.position_error;
   Picture picture = take_picture(scene, camera, how.window);
   if (how.change) how.change(picture);

@@ -25,7 +25,7 @@ struct HardFrame {
   bool open_plane = false;  ///< nothing hides anything: ao is 1 to within 1e-4
 
   /// What a frame that was read from a file has to show; empty where that is not known.
-  Plane<Surfel> shown = {};
+  Surfaces shown = {};
   float position_error = 0;  ///< that the file's precision leaves
 };
 

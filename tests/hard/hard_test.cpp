@@ -31,7 +31,7 @@ template <class Value, class Fine>
 std::string fault_of(std::string_view name, const Plane<Value>& plane, const Geometry& g,
                      const Value& background, const Fine& is_fine) {
   if (plane.empty()) return "";
-  if (plane.size() != g.surfel.size()) return fmt::format("{} has another size", name);
+  if (plane.size() != g.surfaces.size()) return fmt::format("{} has another size", name);
   std::size_t wrong = 0, first = 0;
   for (std::size_t i = 0; i < plane.size(); ++i) {
     const bool fine = g.is_surface(i) ? is_fine(plane[i]) : plane[i] == background;
@@ -134,7 +134,7 @@ TEST_P(HardCases, ThroughEveryFilter) {
     EXPECT_EQ(find_fault(*first, frame_.geometry), "");
   };
   for (const Filter& filter : filters())
-    check(filter.name, [&] { return filter_products(filter, clean, frame_.geometry.surfel, 4); });
+    check(filter.name, [&] { return filter_products(filter, clean, frame_.geometry.surfaces, 4); });
   check(kSourceFilter, [&] { return fade_with_its_filter(frame_); });
   check("temporal", [&] {
     History history = accumulate(nullptr, frame_.geometry, clean);
@@ -150,8 +150,8 @@ TEST_P(HardFiles, ShowWhatTheSceneShows) {
   const Geometry& g = frame_.geometry;
   std::size_t missing = 0, moved = 0, turned = 0;
   double farthest = 0;
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
-    const Surfel &found = g.surfel[i], &shown = frame_.shown[i];
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
+    const Surfel &found = g.surfaces[i], &shown = frame_.shown[i];
     missing += found.is_surface() != shown.is_surface();
     if (!found.is_surface() || !shown.is_surface()) continue;
     const double distance = glm::distance(glm::dvec3(found.position), glm::dvec3(shown.position));
@@ -162,7 +162,7 @@ TEST_P(HardFiles, ShowWhatTheSceneShows) {
   }
   EXPECT_EQ(missing, 0u);
   EXPECT_EQ(moved, 0u) << "by " << farthest << " at most";
-  EXPECT_LE(turned, g.surfel.size() / 20);
+  EXPECT_LE(turned, g.surfaces.size() / 20);
 }
 
 std::string name_of(const testing::TestParamInfo<HardCase>& info) { return info.param.name; }

@@ -56,9 +56,8 @@ HardFrame wires() {
   for (int y = 0; y < kWindow.height(); ++y) {
     for (int x = 0; x < kWindow.width(); ++x) {
       if (x % 5 != 0 && x != y) continue;
-      Surfel& s = frame.geometry.surfel(x, y);
-      s.position *= 0.95f;
-      s.normal = glm::vec3(0, 0, 1);
+      const Surfel s = frame.geometry.surfaces(x, y);
+      frame.geometry.surfaces.set(x, y, {0.95f * s.position, {0, 0, 1}, s.rounding});
     }
   }
   return frame;
@@ -68,7 +67,7 @@ HardFrame wires() {
 std::vector<std::size_t> some_pixels(const Geometry& g, unsigned share) {
   std::mt19937 random(5);
   std::vector<std::size_t> pixels;
-  for (std::size_t i = 0; i < g.surfel.size(); ++i)
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i)
     if (random() % share == 0) pixels.push_back(i);
   return pixels;
 }
@@ -80,14 +79,15 @@ HardFrame broken_values() {
                           3e38f, -3e38f,    1e19f,      -1e-30f, 5.0f};
   std::size_t n = 0;
   for (const std::size_t i : some_pixels(frame.geometry, 6)) {
-    Surfel& s = frame.geometry.surfel[i];
+    Surfel s = frame.geometry.surfaces[i];
     const float value = odd[n % odd.size()];
     const std::size_t channel = n++ / odd.size() % 9;
     if (channel < 3) s.position[int(channel)] = value;
     if (channel >= 3 && channel < 6) s.normal[int(channel) - 3] = value;
     if (channel == 6) s.rounding = value;
-    if (channel == 7) s.position = glm::vec3(value), s.valid = 1;
+    if (channel == 7) s.position = glm::vec3(value), s.rounding = std::max(s.rounding, 0.0f);
     if (channel == 8) s.normal = glm::vec3(value), s.rounding = 1e-7f;
+    frame.geometry.surfaces.set(i, s);
   }
   return frame;
 }
@@ -95,8 +95,8 @@ HardFrame broken_values() {
 /// Positions that no frame has, side by side: all of it is what a broken transform makes.
 HardFrame all_positions(const glm::vec3& position) {
   HardFrame frame = still_life(camera_from_fov(30, kWindow, 1));
-  for (std::size_t i = 0; i < frame.geometry.surfel.size(); i += 3)
-    frame.geometry.surfel[i].position = position, frame.geometry.surfel[i].valid = 1;
+  for (std::size_t i = 0; i < frame.geometry.surfaces.size(); i += 3)
+    frame.geometry.surfaces.set_position(i, position), frame.geometry.surfaces.rounding[i] = 0;
   return frame;
 }
 
@@ -104,15 +104,14 @@ HardFrame all_positions(const glm::vec3& position) {
 HardFrame normals_away() {
   HardFrame frame = still_life(camera_from_fov(30, kWindow, 1));
   for (const std::size_t i : some_pixels(frame.geometry, 3)) {
-    glm::vec3& n = frame.geometry.surfel[i].normal;
-    n = -n;
+    frame.geometry.surfaces.set_normal(i, -frame.geometry.surfaces[i].normal);
   }
   return frame;
 }
 
 HardFrame background_only() {
   HardFrame frame = still_life(camera_from_fov(30, kWindow, 1));
-  for (Surfel& s : frame.geometry.surfel.pixels) s = {};
+  frame.geometry.surfaces = Surfaces(kWindow.width(), kWindow.height());
   return open(std::move(frame));
 }
 

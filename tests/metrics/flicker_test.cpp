@@ -38,13 +38,13 @@ Geometry frame_at(double degrees, const glm::dvec3& ball = kBall) {
 }
 
 glm::dvec3 world_of(const Geometry& g, std::size_t i) {
-  return g.camera.origin + glm::transpose(g.camera.rotation) * glm::dvec3(g.surfel[i].position);
+  return g.camera.origin + glm::transpose(g.camera.rotation) * glm::dvec3(g.surfaces[i].position);
 }
 
 /// A layer of one channel: a function of the world's point.
 Channels layer_of(const Geometry& g, const std::function<double(const glm::dvec3&)>& value) {
   Channels layer{g.window, {Plane<float>(g.window.width(), g.window.height())}};
-  for (std::size_t i = 0; i < g.surfel.size(); ++i)
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i)
     if (g.is_surface(i)) layer.planes[0][i] = float(value(world_of(g, i)));
   return layer;
 }
@@ -60,7 +60,7 @@ std::function<double(const glm::dvec3&)> sines(double period) {
 /// Where each pixel of `now` was in `before`, as a motion layer has it; `moved` is the way of the
 /// ball since then.
 Plane<glm::vec2> motion_of(const Geometry& before, const Geometry& now, const glm::dvec3& moved) {
-  Plane<glm::vec2> motion(now.surfel.width, now.surfel.height, glm::vec2(0));
+  Plane<glm::vec2> motion(now.surfaces.width, now.surfaces.height, glm::vec2(0));
   for (int y = 0; y < motion.height; ++y) {
     for (int x = 0; x < motion.width; ++x) {
       const glm::dvec3 p = world_of(now, motion.index(x, y));
@@ -77,7 +77,7 @@ Plane<glm::vec2> motion_of(const Geometry& before, const Geometry& now, const gl
 std::size_t on_ball(const SharedPoints& shared, const Geometry& now, const glm::dvec3& centre) {
   std::size_t count = 0;
   for (const SharedPoint& point : shared.points) {
-    const glm::dvec3 p = world_of(now, now.surfel.index(point.x, point.y));
+    const glm::dvec3 p = world_of(now, now.surfaces.index(point.x, point.y));
     count += std::abs(glm::length(p - centre) - 0.6) < 1e-3;
   }
   return count;
@@ -158,7 +158,7 @@ TEST(Flicker, LeavesOutWhatTheFrameBeforeDoesNotShow) {
   EXPECT_GT(shared.points.size(), kWindow.area() / 2);
   EXPECT_LT(shared.points.size(), 0.97 * double(kWindow.area()));
   for (const SharedPoint& point : shared.points) {
-    const glm::dvec3 p = world_of(now, now.surfel.index(point.x, point.y));
+    const glm::dvec3 p = world_of(now, now.surfaces.index(point.x, point.y));
     const glm::dvec3 eye = before.camera.origin, way = p - eye;
     const auto hit = scene({eye, glm::normalize(way)});
     ASSERT_TRUE(hit);

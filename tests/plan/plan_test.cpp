@@ -34,8 +34,8 @@ struct Case {
 
 Plan plan_of(const Case& c) {
   Geometry geometry;
-  geometry.surfel = Plane<Surfel>(1, 1);
-  geometry.surfel[0].position = {0, 0, -2}, geometry.surfel[0].valid = 1;
+  geometry.surfaces = Surfaces(1, 1);
+  geometry.surfaces.set_position(0, {0, 0, -2}), geometry.surfaces.rounding[0] = 0;
   geometry.median_depth = 2;
   geometry.camera = camera_from_fov(90, {0, 0, 1, 1}, 1);
   geometry.display = geometry.window = {0, 0, 1, 1};

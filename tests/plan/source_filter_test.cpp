@@ -66,9 +66,9 @@ TEST(SourceFilter, IsThatOfTheSourceAndThePlanSaysSo) {
 /// One pass of the blur of ssao-fade's source over a map, along (dx, dy).
 Plane<double> slow_pass(const Plane<double>& map, const Geometry& g, int dx, int dy) {
   Plane<double> out = map;
-  const auto surfel = [&](int x, int y) -> const Surfel& {
+  const auto surfel = [&](int x, int y) {
     const glm::ivec2 pixel = sampled_pixel(g, x, y);
-    return g.surfel(pixel.x, pixel.y);
+    return g.surfaces(pixel.x, pixel.y);
   };
   for (int y = 0; y < map.height; ++y) {
     for (int x = 0; x < map.width; ++x) {

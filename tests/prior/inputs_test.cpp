@@ -36,16 +36,14 @@ Geometry frame_of_vectors(const std::vector<float>& camera) {
   g.window = g.display = {0, 0, spec.width, spec.height};
   g.camera.fx = spec.width / (2 * double(camera[9])), g.camera.cx = spec.width / 2.0;
   g.camera.fy = spec.height / (2 * double(camera[10])), g.camera.cy = spec.height / 2.0;
-  g.surfel = Plane<Surfel>(spec.width, spec.height);
+  g.surfaces = Surfaces(spec.width, spec.height);
   for (int y = 0; y < spec.height; ++y) {
     for (int x = 0; x < spec.width; ++x) {
-      const float* from = &pixels[g.surfel.index(x, y) * std::size_t(spec.nchannels)];
+      const float* from = &pixels[g.surfaces.index(x, y) * std::size_t(spec.nchannels)];
       const glm::vec3 n(from[normal], from[normal + 1], from[normal + 2]);
       if (!(from[depth] < 1e9f) || glm::length(n) == 0) continue;
-      Surfel& s = g.surfel(x, y);
-      s.position = glm::vec3(g.camera.unproject({x + 0.5, y + 0.5}, double(from[depth])));
-      s.normal = to_camera * glm::normalize(n);
-      s.valid = 1;
+      const glm::vec3 p(g.camera.unproject({x + 0.5, y + 0.5}, double(from[depth])));
+      g.surfaces.set(x, y, {p, to_camera * glm::normalize(n), 0});
     }
   }
   return g;
@@ -53,16 +51,16 @@ Geometry frame_of_vectors(const std::vector<float>& camera) {
 
 /// The estimate that data/prior/vectors.py makes up.
 Squares made_up(const Geometry& g) {
-  Squares s = make_squares(g, {0, 0, g.surfel.width, g.surfel.height});
+  Squares s = make_squares(g, {0, 0, g.surfaces.width, g.surfaces.height});
   EXPECT_EQ(s.step, 1);
-  s.ao = s.open_ao = s.guessed = Plane<float>::like(g.surfel);
-  s.bent = Plane<glm::vec3>::like(g.surfel);
-  for (int y = 0; y < g.surfel.height; ++y) {
-    for (int x = 0; x < g.surfel.width; ++x) {
+  s.ao = s.open_ao = s.guessed = Plane<float>::like(g.surfaces);
+  s.bent = Plane<glm::vec3>::like(g.surfaces);
+  for (int y = 0; y < g.surfaces.height; ++y) {
+    for (int x = 0; x < g.surfaces.width; ++x) {
       const double ao = 0.5 + 0.3 * std::sin(0.05 * x) * std::cos(0.07 * y);
       s.ao(x, y) = float(ao), s.open_ao(x, y) = float(std::min(1.0, ao + 0.1));
       s.guessed(x, y) = float(0.3 + 0.2 * std::cos(0.03 * (x + y)));
-      s.bent(x, y) = g.surfel(x, y).normal;
+      s.bent(x, y) = g.surfaces(x, y).normal;
     }
   }
   return s;
@@ -79,7 +77,7 @@ TEST(PriorInputs, AreThoseOfTheTraining) {
   for (const PriorVector& place : vectors.places) {
     const PriorInputs inputs(squares, geometry, place.upright ? std::optional(up) : std::nullopt,
                              place.radius);
-    const auto stride = std::size_t(geometry.surfel.width);
+    const auto stride = std::size_t(geometry.surfaces.width);
     std::vector<float> rows(PriorInputs::kOwn * stride);
     inputs.write(place.row, stride, rows.data());
     std::vector<float> found;

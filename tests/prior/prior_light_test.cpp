@@ -89,8 +89,8 @@ Found find(const Scene& scene, const ProductSet& products, bool learned = true) 
 /// Calls visit(pixel, normal) for every surface.
 template <class Visit>
 void for_each_surface(const Scene& scene, const Visit& visit) {
-  for (std::size_t i = 0; i < scene.geometry.surfel.size(); ++i)
-    if (scene.geometry.is_surface(i)) visit(i, scene.geometry.surfel[i].normal);
+  for (std::size_t i = 0; i < scene.geometry.surfaces.size(); ++i)
+    if (scene.geometry.is_surface(i)) visit(i, scene.geometry.surfaces[i].normal);
 }
 
 double mean_change(const Plane<glm::vec3>& a, const Plane<glm::vec3>& b) {
@@ -150,7 +150,7 @@ TEST(PriorLight, OfASunComesWhereTheSkyDoes) {
 TEST(PriorLight, OfASunIsWhatThePriorLetsPass) {
   const Scene scene = room_in(sunny());
   const auto mean_share = [&](float past) {
-    const Plane<float>& any = Plane<float>::like(scene.geometry.surfel);
+    const Plane<float>& any = Plane<float>::like(scene.geometry.surfaces);
     Request request{.products = {.direct = true}, .radius = kNoLimit, .shares_suffice = true};
     request.ask_prior = [&](const PriorQuestion& question) {
       EXPECT_TRUE(question.for_light);

@@ -157,7 +157,7 @@ TEST(Prior, KnowsNoUnit) {
   const Scene scene = room_seen();
   Scene large = scene;
   constexpr float kUnit = 128;
-  for (Surfel& s : large.geometry.surfel.pixels) s.position *= kUnit, s.rounding *= kUnit;
+  large.geometry.surfaces.change_each([&](Surfel& s) { s.position *= kUnit, s.rounding *= kUnit; });
   large.geometry.median_depth *= kUnit;
   large.solids = guess_solids(large.geometry);
   const Found a = find(scene, up_of(scene), 2), b = find(large, up_of(scene), 2 * kUnit);
@@ -186,9 +186,7 @@ TEST(Squares, TogetherHaveTheMembersOfThePattern) {
   for (const int width : {480, 720, 1920}) {
     Geometry geometry;
     geometry.window = geometry.display = {0, 0, width, 64};
-    geometry.surfel = Plane<Surfel>(width, 64);
-    for (Surfel& s : geometry.surfel.pixels)
-      s.valid = 1, s.position = {0, 0, -1}, s.normal = {0, 0, 1};
+    geometry.surfaces = Surfaces(width, 64, {{0, 0, -1}, {0, 0, 1}, 0});
     const Squares squares = make_squares(geometry, geometry.window);
     EXPECT_EQ(squares.step, width / 480 > 1 ? 4 : width == 720 ? 2 : 1);
     std::set<std::pair<int, int>> members;

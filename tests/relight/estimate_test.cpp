@@ -37,7 +37,7 @@ TEST(Estimate, TakesTheSceneAndLeavesItWithoutSolids) {
     const Estimate found = estimate_light(scene, plan);
     EXPECT_FALSE(scene.solids.thickness.empty()) << "the test needs some";
     EXPECT_TRUE(found.scene.solids.thickness.empty());
-    EXPECT_EQ(found.scene.geometry.surfel.size(), scene.geometry.surfel.size());
+    EXPECT_EQ(found.scene.geometry.surfaces.size(), scene.geometry.surfaces.size());
     EXPECT_EQ(found.scene.senders.albedo.size(), scene.senders.albedo.size());
     EXPECT_EQ(found.request.slices > plan.request.slices, error.has_value())
         << "one round, or several";

@@ -13,8 +13,8 @@
 #include "relight/estimate.h"
 #include "scene/light/named_light.h"
 #include "scene/light/painted_map.h"
-#include "support/estimate_light.h"
 #include "support/error_matchers.h"
+#include "support/estimate_light.h"
 #include "support/point_source.h"
 
 namespace ssdo::test::light_layers_test {
@@ -71,9 +71,7 @@ Plan plan_of(const Scene& scene, const std::string& method, bool per_light,
   return make_plan(model, output, scene, {}, "in.exr");
 }
 
-Estimate run(const Scene& scene, const Plan& plan) {
-  return estimate_light(scene, plan);
-}
+Estimate run(const Scene& scene, const Plan& plan) { return estimate_light(scene, plan); }
 
 /// Root mean square of a - b, relative to the mean of b.
 double difference(const Plane<glm::vec3>& a, const Plane<glm::vec3>& b) {
@@ -190,8 +188,8 @@ TEST(LightLayers, UnshadowedAloneNeedsNoEstimate) {
   const std::vector<NamedChannels> each = light_channels("unshadowed", results);
   ASSERT_EQ(each.size(), 3u);
   EXPECT_EQ(each[2].channels[1].name, "unshadowed.kick.G");
-  for (std::size_t i = 0; i < scene.geometry.surfel.size(); ++i) {
-    const Surfel& s = scene.geometry.surfel[i];
+  for (std::size_t i = 0; i < scene.geometry.surfaces.size(); ++i) {
+    const Surfel& s = scene.geometry.surfaces[i];
     const float expected = s.is_surface() ? scene.light.unoccluded(s.position, s.normal).y : 0.0f;
     EXPECT_EQ(all.channels[1].pixels[i], expected);
     float sum = 0;

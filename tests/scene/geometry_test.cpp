@@ -40,11 +40,11 @@ struct Difference {
 
 Difference difference(const Geometry& a, const Geometry& b) {
   Difference most;
-  for (std::size_t i = 0; i < a.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < a.surfaces.size(); ++i) {
     EXPECT_EQ(a.is_surface(i), b.is_surface(i));
     const auto apart = [](const glm::vec3& p, const glm::vec3& q) { return glm::distance(p, q); };
-    most.position = std::max(most.position, apart(a.surfel[i].position, b.surfel[i].position));
-    most.normal = std::max(most.normal, apart(a.surfel[i].normal, b.surfel[i].normal));
+    most.position = std::max(most.position, apart(a.surfaces[i].position, b.surfaces[i].position));
+    most.normal = std::max(most.normal, apart(a.surfaces[i].normal, b.surfaces[i].normal));
   }
   return most;
 }
@@ -139,8 +139,8 @@ TEST(Geometry, LeavesOutWhatLiesBehindTheCamera) {
       build_geometry(g, {(dir / "camera.json").string(), {}, {}}, "f", report);
   EXPECT_FALSE(geometry.is_surface(behind));
   EXPECT_TRUE(geometry.is_surface(behind + 1));
-  for (std::size_t i = 0; i < geometry.surfel.size(); ++i)
-    EXPECT_EQ(geometry.surfel[i].is_broken(), i == behind || i == broken) << i;
+  for (std::size_t i = 0; i < geometry.surfaces.size(); ++i)
+    EXPECT_EQ(geometry.surfaces[i].is_broken(), i == behind || i == broken) << i;
   EXPECT_THAT(report.warnings, ElementsAre(HasSubstr("1 positions lie behind the camera")));
 }
 
@@ -149,7 +149,7 @@ TEST(Geometry, OfAFrameWithoutSurfacesIsEmpty) {
   g.background_pixels = g.valid.size();
   GeometryReport report;
   const Geometry geometry = build_geometry(g, {}, "f", report);
-  for (std::size_t i = 0; i < geometry.surfel.size(); ++i) ASSERT_FALSE(geometry.is_surface(i));
+  for (std::size_t i = 0; i < geometry.surfaces.size(); ++i) ASSERT_FALSE(geometry.is_surface(i));
   EXPECT_THAT(report.warnings, ElementsAre("the frame shows no surface"));
 }
 

@@ -24,10 +24,10 @@ std::size_t mended(const Picture& picture) {
   GeometryReport report;
   Geometry geometry = build_geometry(gbuffer_of(picture), {}, "test", report);
   std::size_t moved = 0;
-  for (std::size_t i = 0; i < geometry.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < geometry.surfaces.size(); ++i) {
     if (!geometry.is_surface(i)) continue;
     const glm::dvec3 p = geometry.camera.to_camera(glm::dvec3(picture.position[i]));
-    moved += glm::length(glm::dvec3(geometry.surfel[i].position) - p) > 1e-4 * glm::length(p);
+    moved += glm::length(glm::dvec3(geometry.surfaces[i].position) - p) > 1e-4 * glm::length(p);
   }
   return moved;
 }

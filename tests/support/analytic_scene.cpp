@@ -112,17 +112,17 @@ Geometry geometry_of(const Surface& scene, const Camera& camera, const Window& w
   g.camera = camera;
   g.world_known = true;
   g.world_to_camera = glm::mat3(camera.rotation);
-  g.surfel = Plane<Surfel>(window.width(), window.height());
+  g.surfaces = Surfaces(window.width(), window.height());
   for (int y = window.y0; y < window.y1; ++y) {
     for (int x = window.x0; x < window.x1; ++x) {
       const Ray ray = ray_through(camera, x + 0.5, y + 0.5);
       const auto hit = scene(ray);
       if (!hit) continue;
-      const std::size_t i = g.surfel.index(x - window.x0, y - window.y0);
+      const std::size_t i = g.surfaces.index(x - window.x0, y - window.y0);
       const glm::dvec3 p = camera.to_camera(ray.origin + hit->distance * ray.direction);
       const glm::dvec3 n = glm::dot(hit->normal, ray.direction) > 0 ? -hit->normal : hit->normal;
-      g.surfel[i] = {glm::vec3(p), 1, glm::vec3(camera.rotation * n),
-                     float(glm::length(p)) / 16777216};
+      g.surfaces.set(
+          i, {glm::vec3(p), glm::vec3(camera.rotation * n), float(glm::length(p)) / 16777216});
     }
   }
   return g;

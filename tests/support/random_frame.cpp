@@ -30,7 +30,7 @@ Geometry random_geometry(int width, int height, unsigned seed) {
   Random random(seed);
   Geometry g;
   g.window = g.display = {0, 0, width, height};
-  g.surfel = Plane<Surfel>(width, height);
+  g.surfaces = Surfaces(width, height);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       if (between(random, 0, 1) < 0.1f) continue;
@@ -38,7 +38,7 @@ Geometry random_geometry(int width, int height, unsigned seed) {
       const glm::vec3 p = glm::vec3(0.1f * float(x), -0.1f * float(y), -5 - float(step)) +
                           vector_of(random, 0.01f),
                       n = glm::vec3(0.3f * float(step), 0, 1) + vector_of(random, 0.25f);
-      g.surfel(x, y) = {p, 1, glm::normalize(n), 1e-3f * between(random, 0, 1)};
+      g.surfaces.set(x, y, {p, glm::normalize(n), 1e-3f * between(random, 0, 1)});
     }
   }
   return g;
@@ -49,14 +49,14 @@ Products random_products(const Geometry& g, unsigned seed) {
   Products products;
   for_each_plane(
       [&](const Product& product, auto& plane) {
-        plane = std::decay_t<decltype(plane)>::like(g.surfel);
+        plane = std::decay_t<decltype(plane)>::like(g.surfaces);
         for (auto& value : plane.pixels) value = random_value(random, product.kind, value);
       },
       products);
   products.shares.suns.resize(2);
   for_each_share(
       [&](auto& plane) {
-        plane = std::decay_t<decltype(plane)>::like(g.surfel);
+        plane = std::decay_t<decltype(plane)>::like(g.surfaces);
         for (auto& value : plane.pixels) value = random_value(random, ProductKind::light, value);
       },
       products);

@@ -109,13 +109,13 @@ template <class Value>
 Error2 compare(const Geometry& g, const std::array<Plane<float>, 3>& truth, int block,
                const Value& value) {
   double sum2 = 0, sum = 0, mean = 0, count = 0;
-  for (int y = 0; y + block <= g.surfel.height; y += block) {
-    for (int x = 0; x + block <= g.surfel.width; x += block) {
+  for (int y = 0; y + block <= g.surfaces.height; y += block) {
+    for (int x = 0; x + block <= g.surfaces.width; x += block) {
       for (int c = 0; c < 3; ++c) {
         double difference = 0, level = 0;
         int surfaces = 0;
         for (int i = 0; i < block * block; ++i) {
-          const std::size_t at = g.surfel.index(x + i % block, y + i / block);
+          const std::size_t at = g.surfaces.index(x + i % block, y + i / block);
           if (!g.is_surface(at)) continue;
           difference += value(at, c) - truth[std::size_t(c)][at];
           level += truth[std::size_t(c)][at];
@@ -221,21 +221,21 @@ class Prediction {
            const std::string& layer) {
     constexpr int kBlock = 8;
     const Plane<float> right = std::move(read_truth(scene, truth, layer)[0]);
-    const Plane<Surfel>& surfel = r.geometry.surfel;
-    for (int y = 0; y + kBlock <= surfel.height; y += kBlock) {
-      for (int x = 0; x + kBlock <= surfel.width; x += kBlock) {
+    const Surfaces& surfaces = r.geometry.surfaces;
+    for (int y = 0; y + kBlock <= surfaces.height; y += kBlock) {
+      for (int x = 0; x + kBlock <= surfaces.width; x += kBlock) {
         double error = 0, guessed = 0;
-        int surfaces = 0;
+        int count = 0;
         for (int i = 0; i < kBlock * kBlock; ++i) {
-          const std::size_t at = surfel.index(x + i % kBlock, y + i / kBlock);
+          const std::size_t at = surfaces.index(x + i % kBlock, y + i / kBlock);
           if (!r.geometry.is_surface(at)) continue;
           const double e = double(r.products.ao[at]) - double(right[at]),
                        g = double(r.products.guessed[at]);
           if (g < kLittle) little_.rmse += e * e, little_.mean += 1;
-          error += std::abs(e), guessed += g, ++surfaces;
+          error += std::abs(e), guessed += g, ++count;
         }
-        if (surfaces < kBlock * kBlock) continue;
-        errors_.push_back(error / surfaces), guesses_.push_back(guessed / surfaces);
+        if (count < kBlock * kBlock) continue;
+        errors_.push_back(error / count), guesses_.push_back(guessed / count);
       }
     }
   }

@@ -147,7 +147,7 @@ class ShotSum {
                       geometry.display.height()));
     }
     const auto is_surface = [&](int x, int y) {
-      return geometry.window.contains(x, y) && geometry.is_surface(geometry.surfel.index(
+      return geometry.window.contains(x, y) && geometry.is_surface(geometry.surfaces.index(
                                                    x - geometry.window.x0, y - geometry.window.y0));
     };
     sum.error.add(compare_channels(now, truth.channels, is_surface).figures);

@@ -47,7 +47,7 @@ struct Pass {
 /// A surface that replaces objects which cast nothing sends what its sender, a pixel beside it,
 /// sends. Without a sender, and where no surface was shown, it sends nothing: it has no light of
 /// its own.
-void send_from_hole(const Raster& raster, const Plane<Surfel>& shown, const Plane<int>& senders,
+void send_from_hole(const Raster& raster, const Surfaces& shown, const Plane<int>& senders,
                     InterleavedVectors& sent) {
   const Interleaving& layout = raster.layout();
   for_each_row(senders.height, [&](int y) {
@@ -250,7 +250,7 @@ InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& ligh
   if (!scene.senders.radiance.empty()) {
     InterleavedVectors given = inputs.raster.interleaved(scene.senders.radiance);
     if (scene.casting)
-      send_from_hole(inputs.raster, scene.geometry.surfel, scene.casting->sender, given);
+      send_from_hole(inputs.raster, scene.geometry.surfaces, scene.casting->sender, given);
     return given;
   }
   InterleavedVectors sent = inputs.raster.make_color();
@@ -264,7 +264,7 @@ InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& ligh
                           sends_two_sided(scene)};
   for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
   if (scene.casting)
-    send_from_hole(inputs.raster, scene.geometry.surfel, scene.casting->sender, sent);
+    send_from_hole(inputs.raster, scene.geometry.surfaces, scene.casting->sender, sent);
   return sent;
 }
 

@@ -108,10 +108,10 @@ struct Shading {
 };
 
 HWY_INLINE Shading load_shading(const MarchScene& scene, const Place& place) {
-  constexpr int kStride = sizeof(Surfel) / sizeof(float);
-  const float* from = &scene.surfel(0, place.y).normal.x;
-  const VI at = columns_of(scene, place) * set_int(kStride);
-  return {{gather(from, at), gather(from + 1, at), gather(from + 2, at)}, gather(from + 3, at)};
+  const auto& [x, y, z] = scene.surfaces.normal;
+  const VI at = columns_of(scene, place);
+  return {{gather(&x(0, place.y), at), gather(&y(0, place.y), at), gather(&z(0, place.y), at)},
+          gather(&scene.surfaces.rounding(0, place.y), at)};
 }
 
 /// Receivers among the pixels of MarchScene. Their normals are bent to face the viewer. The march

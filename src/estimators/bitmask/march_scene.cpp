@@ -10,7 +10,7 @@
 
 #include "parallel/tiles.h"
 #include "scene/normals/geometric_normal.h"
-#include "scene/surfel.h"
+#include "scene/surfaces.h"
 
 namespace ssdo {
 namespace {
@@ -43,7 +43,7 @@ class Cells {
   /// `normal` is that of the surface.
   Cell at(int x, int y, const glm::vec3& normal) const {
     Cell cell;
-    const Surfel& s = g_.surfel(x, y);
+    const Surfel& s = g_.surfaces(x, y);
     if (!s.is_usable()) return cell;
     const glm::vec2 slope = cell.slope = ray_slope(scene_, x, y);
     if (!scene_.orthographic) cell.ray_length = std::sqrt(1 + glm::dot(slope, slope));
@@ -122,7 +122,7 @@ float reach_px(float f, bool orthographic, const glm::vec3& point, float radius)
 float reach_px(const Geometry& g, float radius) {
   const auto f = float(std::max(g.camera.fx, g.camera.fy));
   float reach = 0;
-  for (const Surfel& s : g.surfel.pixels) {
+  for (const Surfel& s : g.surfaces.each()) {
     if (!s.is_surface()) continue;
     reach = std::max(reach, reach_px(f, g.camera.orthographic, s.position, radius));
   }
@@ -137,22 +137,22 @@ template <class Visit>
 void for_each_cell(const Geometry& g, const MarchScene& scene, const Cells& cells,
                    const Visit& visit) {
   const Interleaving& layout = scene.layout;
-  for_each_row(g.surfel.height, [&](int y) {
+  for_each_row(g.surfaces.height, [&](int y) {
     constexpr int kPad = Interleaving::kPad;
     // From left to right: eight walks over every eighth pixel would each fetch three rows of
     // surfels.
-    std::vector<glm::vec3> normals(std::size_t(g.surfel.width));
-    find_geometric_normals(g.surfel, y, g.camera.orthographic, normals);
+    std::vector<glm::vec3> normals(std::size_t(g.surfaces.width));
+    find_geometric_normals(g.surfaces, y, g.camera.orthographic, normals);
     std::vector<Cell> cells_of_row;
     cells_of_row.reserve(normals.size());
-    for (int x = 0; x < g.surfel.width; ++x)
+    for (int x = 0; x < g.surfaces.width; ++x)
       cells_of_row.push_back(cells.at(x, y, normals[std::size_t(x)]));
     for (int column_phase = 0; column_phase < Interleaving::kPeriod; ++column_phase) {
       const std::ptrdiff_t row = layout.index(y, column_phase, 0);
       for (int column = -kPad; column < int(layout.stride()) - kPad; ++column) {
         const int x = column * Interleaving::kPeriod + column_phase - layout.phase();
         visit(row + column, x, y,
-              x >= 0 && x < g.surfel.width ? cells_of_row[std::size_t(x)] : Cell());
+              x >= 0 && x < g.surfaces.width ? cells_of_row[std::size_t(x)] : Cell());
       }
     }
   });
@@ -163,7 +163,7 @@ void for_each_cell(const Geometry& g, const MarchScene& scene, const Cells& cell
 MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Window& receivers,
                             const Geometry* receiving) {
   check_layers(solids);
-  const Interleaving layout(g.surfel.width, g.surfel.height,
+  const Interleaving layout(g.surfaces.width, g.surfaces.height,
                             (g.window.x0 - g.display.x0) & (Interleaving::kPeriod - 1));
   const auto plane = [&] {
     InterleavedPlane values(layout);
@@ -188,8 +188,8 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
                    frame.width(),
                    frame.height(),
                    g.window.y0 - frame.y0,
-                   receiving ? receiving->surfel : g.surfel,
-                   g.surfel,
+                   receiving ? receiving->surfaces : g.surfaces,
+                   g.surfaces,
                    BorderLayout(layout),
                    {},
                    {},
@@ -205,7 +205,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
     scene.tilt[i] = two_in_one(tilt.x, tilt.y), scene.tilt_rest[i] = rest_of_two(tilt.x, tilt.y);
     for (int k = 0; k < solids.layers(); ++k) {
       const Span span =
-          cell.is_surface() ? cells.span(cell, solids.at(k, g.surfel.index(x, y))) : Span();
+          cell.is_surface() ? cells.span(cell, solids.at(k, g.surfaces.index(x, y))) : Span();
       MarchLayer& layer = scene.layers[std::size_t(k)];
       layer.depth[i] = span.depth, layer.thickness[i] = span.thickness;
     }
@@ -227,7 +227,7 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
         scene.border.gather([&](int x, int y) { return tangent_normal(scene, x, y)[c]; });
   }
   scene.border_thickness = scene.border.gather([&](int x, int y) {
-    return std::min(solids.at(0, g.surfel.index(x, y)).thickness, kEndlessLength);
+    return std::min(solids.at(0, g.surfaces.index(x, y)).thickness, kEndlessLength);
   });
   if (!solids.beyond.empty()) {
     scene.border_beyond = scene.border.gather(

@@ -9,7 +9,7 @@
 #include "math/two_in_one.h"
 #include "scene/geometry.h"
 #include "scene/solids/solids.h"
-#include "scene/surfel.h"
+#include "scene/surfaces.h"
 #include "simd/interleaved.h"
 
 namespace ssdo {
@@ -96,8 +96,8 @@ struct MarchScene : MarchPlanes {
   int frame_y;                    ///< rows of that frame above the raster
   /// What only receivers need: the normal that shading sees, by which light is weighed, and the
   /// rounding.
-  const Plane<Surfel>& surfel;
-  const Plane<Surfel>& casting;  ///< what the raster holds
+  const Surfaces& surfaces;
+  const Surfaces& casting;  ///< what the raster holds
   BorderLayout border;
   BorderValues border_depth, border_normal[3];
   BorderValues border_thickness;  ///< in scene units

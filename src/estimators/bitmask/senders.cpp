@@ -79,9 +79,9 @@ HWY_INLINE V taken_at(const MarchScene& scene, const Source& source, const Place
 
 /// The positions of the surfaces in these pixels.
 HWY_INLINE V3 positions(const MarchScene& scene, const Place& place) {
-  const float* from = &scene.surfel(0, place.y).position.x;
-  const VI at = columns_of(scene, place) * set_int(sizeof(Surfel) / sizeof(float));
-  return {gather(from, at), gather(from + 1, at), gather(from + 2, at)};
+  const auto& [x, y, z] = scene.surfaces.position;
+  const VI at = columns_of(scene, place);
+  return {gather(&x(0, place.y), at), gather(&y(0, place.y), at), gather(&z(0, place.y), at)};
 }
 
 /// The direct light of pixels. `share(planes...)`, for the sum of the planes, is the share of the

@@ -13,7 +13,7 @@
 #include <hwy/foreach_target.h>
 
 #include "estimators/specular/mirrored_light-inl.h"
-#include "scene/surfel-inl.h"
+#include "scene/surfaces-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -26,12 +26,12 @@ void specular_of_frame(const Scene& scene, Products& products) {
   for (int k = 0; k < kSkyPoints; ++k) points.emplace_back(sobol_point(std::uint32_t(k), 0));
   std::vector<MirroredSource> sources;
   for (const auto& source : light.sources) sources.emplace_back(*source);
-  const Plane<Surfel>& surfel = scene.geometry.surfel;
-  for_each_row(surfel.height, [&](int y) HWY_ATTR {
-    for (int x = 0; x < surfel.width; x += kLanes) {
-      const std::size_t i = surfel.index(x, y);
-      const int count = std::min(kLanes, surfel.width - x);
-      const Surfels s = surfels_at(surfel, x, y);
+  const Surfaces& surfaces = scene.geometry.surfaces;
+  for_each_row(surfaces.height, [&](int y) HWY_ATTR {
+    for (int x = 0; x < surfaces.width; x += kLanes) {
+      const std::size_t i = surfaces.index(x, y);
+      const int count = std::min(kLanes, surfaces.width - x);
+      const Surfels s = surfels_at(surfaces, x, y);
       if (!any(s.surface)) {
         store_first(count, set(glm::vec3(0)), &products.specular[i]);
         continue;
@@ -52,8 +52,8 @@ void specular_of_frame(const Scene& scene, Products& products) {
       const V3 sky = light.sky.is_constant() ? set(light.sky.constant_radiance())
                                              : mirrored_sky(model, points, frame, f0);
       const V3 share = saturate(load_first(count, &products.shares.mirrored_sky[i])),
-               surfaces = load_first(count, &products.specular[i]);
-      V3 sum = even * (sky * share + surfaces);
+               mirrored = load_first(count, &products.specular[i]);
+      V3 sum = even * (sky * share + mirrored);
       for (std::size_t k = 0; k < sources.size(); ++k) {
         const V arrives = saturate(load_first(count, &products.shares.suns[k][i])) *
                           taken_at(*light.sources[k], i, count);

@@ -43,7 +43,7 @@ std::optional<Met> FrameOccluders::first_met(const TraceRay& ray) const {
   }
   if (hit.sender < 0) return std::nullopt;
   const auto q = std::size_t(hit.sender);
-  return Met{false, hit.layer == 0 && glm::dot(scene_.casters().surfel[q].normal, ray.to) > 0, q};
+  return Met{false, hit.layer == 0 && glm::dot(scene_.casters().surfaces[q].normal, ray.to) > 0, q};
 }
 
 }  // namespace ssdo

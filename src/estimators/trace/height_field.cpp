@@ -21,7 +21,7 @@
 #include "scene/normals/geometric_normal.h"
 #include "scene/normals/normals.h"
 #include "scene/same_surface.h"
-#include "scene/surfel.h"
+#include "scene/surfaces.h"
 
 namespace ssdo {
 namespace {
@@ -50,8 +50,8 @@ class Builder {
   Builder(const Geometry& geometry, const Solids& solids)
       : geometry_(geometry),
         solids_(solids),
-        width_(geometry.surfel.width),
-        height_(geometry.surfel.height),
+        width_(geometry.surfaces.width),
+        height_(geometry.surfaces.height),
         footprint_(geometry.camera),
         out_{PictureSpace(geometry), {}, {}} {}
 
@@ -92,7 +92,7 @@ class Builder {
     TriangleMesh cuts;
   };
 
-  bool is_solid(std::size_t pixel) const { return geometry_.surfel[pixel].is_usable(); }
+  bool is_solid(std::size_t pixel) const { return geometry_.surfaces[pixel].is_usable(); }
 
   bool has_solid(int layer, std::size_t pixel) const {
     const Solid solid = solids_.at(layer, pixel);
@@ -104,7 +104,7 @@ class Builder {
   /// has a corner for every pixel.
   void make_nodes() {
     TriangleMesh& sheets = out_.sheets;
-    const std::size_t count = geometry_.surfel.size();
+    const std::size_t count = geometry_.surfaces.size();
     sheets.corners.reserve(2 * count);
     sheets.owners.reserve(2 * count);
     backs_.reserve(count);
@@ -118,7 +118,7 @@ class Builder {
       finite_.push_back(!std::isinf(thickness));
     };
     for (std::size_t i = 0; i < count; ++i) {
-      add(is_solid(i) ? geometry_.surfel[i].position : glm::vec3(0, 0, -1), 0, solids_.at(0, i));
+      add(is_solid(i) ? geometry_.surfaces[i].position : glm::vec3(0, 0, -1), 0, solids_.at(0, i));
     }
     for (int layer = 1; layer < solids_.layers(); ++layer) {
       behind_.emplace_back(count, 0);
@@ -140,7 +140,7 @@ class Builder {
   Nodes nodes_at(int x, int y) const {
     Nodes nodes;
     if (x < 0 || y < 0 || x >= width_ || y >= height_) return nodes;
-    const std::size_t pixel = geometry_.surfel.index(x, y);
+    const std::size_t pixel = geometry_.surfaces.index(x, y);
     if (!is_solid(pixel)) return nodes;
     nodes.node[0] = {int(pixel), 0, std::uint32_t(pixel)};
     nodes.count = 1;
@@ -153,7 +153,7 @@ class Builder {
 
   SurfacePoint surface_point(const Node& n) const {
     const auto pixel = std::size_t(n.pixel);
-    const Surfel& seen = geometry_.surfel[pixel];
+    const Surfel& seen = geometry_.surfaces[pixel];
     if (n.layer == 0) return {seen.position, seen.normal};
     return {point_behind(geometry_, pixel, solids_.at(n.layer, pixel).distance),
             normal_of_solid(geometry_, solids_, n.layer, pixel)};
@@ -172,8 +172,8 @@ class Builder {
     SurfacePoint here = surface_point(n);
     const glm::vec3 view = direction_to_viewer(here.position, out_.space.orthographic());
     if (n.layer == 0) {
-      const int w = geometry_.surfel.width;
-      here.normal = geometric_normal(geometry_.surfel, n.pixel % w, n.pixel / w, view);
+      const int w = geometry_.surfaces.width;
+      here.normal = geometric_normal(geometry_.surfaces, n.pixel % w, n.pixel / w, view);
     }
     const float step = glm::dot(out_.space.slope(here.position, here.normal), at - glm::vec2(c));
     const float room = other ? std::abs(corner(*other).z - c.z) : std::abs(c.z);

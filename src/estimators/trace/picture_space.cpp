@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "scene/surfel.h"
+#include "scene/surfaces.h"
 
 namespace ssdo {
 namespace {
@@ -19,9 +19,9 @@ constexpr double kEndless = 1e4;
 PictureSpace::PictureSpace(const Geometry& g)
     : orthographic_(g.camera.orthographic), fx_(g.camera.fx), fy_(g.camera.fy) {
   double logarithms = 0, count = 0, farthest = 0;
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
-    if (!g.surfel[i].is_usable()) continue;
-    const glm::vec3 p(g.surfel[i].position);
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
+    if (!g.surfaces[i].is_usable()) continue;
+    const glm::vec3 p(g.surfaces[i].position);
     logarithms += std::log2(double(-p.z));
     count += 1;
     farthest = std::max(farthest, double(glm::length(p)));

@@ -4,7 +4,7 @@
 #include <glm/vec3.hpp>
 
 #include "estimators/trace/ray_scene.h"
-#include "scene/surfel.h"
+#include "scene/surfaces.h"
 
 namespace ssdo {
 

@@ -37,7 +37,7 @@ void send_from_hole(const Plane<int>& from, TraceSenders& senders) {
 /// The unoccluded light at the side that is not seen (scene/solids/unseen_side.h). An endless solid
 /// has no such side that a lamp could be near to.
 glm::vec3 unoccluded_behind(const Scene& scene, const Light& light, std::size_t pixel) {
-  const Surfel& s = scene.geometry.surfel[pixel];
+  const Surfel& s = scene.geometry.surfaces[pixel];
   const Camera& camera = scene.geometry.camera;
   const glm::vec3 view = direction_to_viewer(s.position, camera.orthographic),
                   normal = unseen_normal(s.normal, view);
@@ -64,7 +64,7 @@ void find_senders(const Scene& scene, const Products& found, const Plane<glm::ve
   if (two_sided) senders.back = senders.front;
   for_each_row(bounce.height, [&](int y) {
     for (std::size_t i = bounce.index(0, y); i < bounce.index(0, y + 1); ++i) {
-      const Surfel& s = scene.geometry.surfel[i];
+      const Surfel& s = scene.geometry.surfaces[i];
       if (!s.is_usable()) continue;
       if (is_given) {
         senders.front[i] = within_range(scene.senders.radiance[i]);

@@ -12,7 +12,7 @@ Plane<glm::vec3> ambient_light(const Scene& scene, const Plane<float>& ao,
   for_each_row(ao.height, [&](int y) {
     for (int x = 0; x < ao.width; ++x) {
       const std::size_t i = ao.index(x, y);
-      const Surfel& s = scene.geometry.surfel[i];
+      const Surfel& s = scene.geometry.surfaces[i];
       if (!s.is_usable()) continue;
       const bool bent = facing && (*facing)[i] != glm::vec3(0);
       const glm::vec3 normal = bent ? (*facing)[i] : s.normal;

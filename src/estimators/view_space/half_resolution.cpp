@@ -131,11 +131,11 @@ int HalfResolution::column(int x) const {
 
 int HalfResolution::row(int y) const { return sampled_pixel(y, full_.height(), full_.first_row); }
 
-Plane<Surfel> HalfResolution::sampled_surfels() const {
-  Plane<Surfel> out(half_count(full_.width(), full_.first_column),
-                    half_count(full_.height(), full_.first_row));
+Surfaces HalfResolution::sampled_surfels() const {
+  Surfaces out(half_count(full_.width(), full_.first_column),
+               half_count(full_.height(), full_.first_row));
   for_each_row(out.height, [&](int y) {
-    for (int x = 0; x < out.width; ++x) out(x, y) = full_.surfel(column(x), row(y));
+    for (int x = 0; x < out.width; ++x) out.set(x, y, full_.surfaces(column(x), row(y)));
   });
   return out;
 }

@@ -22,7 +22,7 @@ class HalfResolution {
   const ViewPlanes& receivers() const { return receivers_; }
 
   /// What those pixels show, for filters of values at half resolution.
-  const Plane<Surfel>& surfels() const { return surfels_; }
+  const Surfaces& surfels() const { return surfels_; }
 
   /// Bilinear upsampling of values at half resolution, as textures have it: it takes a value to
   /// lie in the middle of its 2 x 2 pixels and knows nothing of edges. Background: 1.
@@ -44,11 +44,11 @@ class HalfResolution {
   /// The column, and the row, of the frame that one of the half frame is evaluated at.
   int column(int x) const;
   int row(int y) const;
-  Plane<Surfel> sampled_surfels() const;
+  Surfaces sampled_surfels() const;
 
   const ViewPlanes& full_;
   Taps columns_, rows_;
-  Plane<Surfel> surfels_;
+  Surfaces surfels_;
   ViewPlanes receivers_;
 };
 

@@ -13,7 +13,7 @@
 #include "estimators/view_space/tiled_noise.h"
 #include "estimators/view_space/view_planes.h"
 #include "parallel/tiles.h"
-#include "scene/surfel-inl.h"
+#include "scene/surfaces-inl.h"
 #include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -41,7 +41,7 @@ HWY_INLINE ViewReceiver load_receiver(const ViewPlanes& planes, int x, int y) {
   p.valid = shows_surface(z);
   p.ray_x = load(planes.ray_x() + x), p.ray_y = set(planes.ray_y()[y]);
   p.position = along_ray(planes, p.ray_x, p.ray_y, hn::IfThenElse(p.valid, z, set(-1)));
-  const Surfels shown = surfels_at(planes.surfel, x, y);
+  const Surfels shown = surfels_at(planes.surfaces, x, y);
   p.normal = if_then_else_zero(p.valid, shown.normal);
   p.rounding = hn::IfThenElseZero(p.valid, shown.rounding);
   p.x = iota(float(x)), p.y = set(float(y));
@@ -103,14 +103,9 @@ HWY_INLINE V gather_depth(const ViewPlanes& planes, const Pixels& at) {
 /// The normals that pixels show; those of the pixel (0, 0) outside the frame, and of any value
 /// where there is no surface.
 HWY_INLINE V3 gather_normal(const ViewPlanes& planes, const Pixels& at) {
-  alignas(64) std::int32_t column[kLanes], row[kLanes];
-  alignas(64) float x[kLanes], y[kLanes], z[kLanes];
-  hn::Store(at.column, DI(), column), hn::Store(at.row, DI(), row);
-  for (int k = 0; k < kLanes; ++k) {
-    const glm::vec3& n = planes.surfel(column[k], row[k]).normal;
-    x[k] = n.x, y[k] = n.y, z[k] = n.z;
-  }
-  return {load(x), load(y), load(z)};
+  const auto& [x, y, z] = planes.surfaces.normal;
+  const VI index = at.row * set_int(planes.width()) + at.column;
+  return {gather(&x[0], index), gather(&y[0], index), gather(&z[0], index)};
 }
 
 /// The vector from each receiver to the surface at depth `z`, `right` and `down` pixels away. It is

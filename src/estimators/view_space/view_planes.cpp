@@ -19,7 +19,7 @@ std::vector<float> rays(int first, int count, double centre, double scale) {
 
 }  // namespace
 
-ViewPlanes::ViewPlanes(const Plane<Surfel>& shown)
+ViewPlanes::ViewPlanes(const Surfaces& shown)
     : layout(shown.width, shown.height),
       orthographic(false),
       fx(1),
@@ -31,19 +31,19 @@ ViewPlanes::ViewPlanes(const Plane<Surfel>& shown)
       first_column(0),
       first_row(0),
       z(layout),
-      surfel(shown) {
+      surfaces(shown) {
   for_each_row(height(), [&](int y) {
     z.fill_row(y, kBackgroundDepth);
     float* depth = z.row(y);
     for (int x = 0; x < width(); ++x) {
-      const Surfel& s = surfel(x, y);
+      const Surfel& s = surfaces(x, y);
       if (s.is_usable()) depth[x] = s.position.z;
     }
   });
 }
 
 ViewPlanes make_view_planes(const Geometry& g) {
-  ViewPlanes planes(g.surfel);
+  ViewPlanes planes(g.surfaces);
   const Camera& camera = g.camera;
   planes.orthographic = camera.orthographic;
   planes.fx = float(camera.fx), planes.fy = float(camera.fy);

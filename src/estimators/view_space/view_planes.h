@@ -33,8 +33,8 @@ struct ViewPlanes {
   /// The pixel (0, 0) in the display window, which patterns are fixed to. May be negative.
   int first_column, first_row;
 
-  PaddedPlane z;  ///< camera space, negative in front of the viewer; or kBackgroundDepth
-  const Plane<Surfel>& surfel;        ///< normals and rounding; they count where z shows a surface
+  PaddedPlane z;             ///< camera space, negative in front of the viewer; or kBackgroundDepth
+  const Surfaces& surfaces;  ///< normals and rounding; they count where z shows a surface
   std::vector<float> rays_x, rays_y;  ///< by column and by row, padded as planes are
 
   const float* ray_x() const { return rays_x.data() + PaddedLayout::kPad; }
@@ -43,7 +43,7 @@ struct ViewPlanes {
   int height() const { return layout.height; }
 
   /// Without a camera. `shown` has to live as long as this.
-  explicit ViewPlanes(const Plane<Surfel>& shown);
+  explicit ViewPlanes(const Surfaces& shown);
 };
 
 /// `geometry` has to live as long as the planes.

@@ -77,17 +77,17 @@ void store(const glm::vec3& value, float* to) { std::copy_n(&value.x, 3, to); }
 /// The values of a row of pixels, side by side, in their units.
 void store_row(Products& products, const Geometry& geometry, int y, Findings& out,
                std::vector<float>& row) {
-  const Plane<Surfel>& surfel = geometry.surfel;
+  const Surfaces& surfaces = geometry.surfaces;
   const glm::mat3 to_camera(geometry.camera.rotation);
   std::size_t channel = 0;
   for_each_found(
       [&](auto& plane, int, bool bends) {
         using T = std::decay_t<decltype(plane[0])>;
         if (plane.empty()) return;
-        for (int x = 0; x < surfel.width; ++x) {
+        for (int x = 0; x < surfaces.width; ++x) {
           T value = plane(x, y);
           if constexpr (std::is_same_v<T, glm::vec3>) {
-            const Surfel& s = surfel(x, y);
+            const Surfel& s = surfaces(x, y);
             if (bends && s.is_surface()) value = to_world(value, s.normal, to_camera);
           }
           store(value / out.unit[channel],

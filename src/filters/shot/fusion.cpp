@@ -277,31 +277,31 @@ void Fusion::add(const std::vector<OtherFindings>& others, bool are_last) {
 }
 
 void Fusion::finish(const Geometry& geometry, Products& products) {
-  const Plane<Surfel>& surfel = geometry.surfel;
+  const Surfaces& surfaces = geometry.surfaces;
   std::size_t number = 0;
   for_each_found(
       [&](auto& plane, int, bool) {
         if (own_.planes[number++].channels > 0)
-          plane = std::remove_reference_t<decltype(plane)>::like(surfel);
+          plane = std::remove_reference_t<decltype(plane)>::like(surfaces);
       },
       products);
   const glm::mat3 to_camera(geometry.camera.rotation);
   const auto stride = std::size_t(own_.stride);
-  for_each_row(own_.stride > 0 ? surfel.height : 0, [&](int y) {
+  for_each_row(own_.stride > 0 ? surfaces.height : 0, [&](int y) {
     const std::size_t at = own_.surfaces.index(0, y) * stride;
     float* means = &sums_[at];
     HWY_DYNAMIC_DISPATCH(finish_means)
-    (&own_.values[at], surfel.width * own_.stride, &all_[at], means);
+    (&own_.values[at], surfaces.width * own_.stride, &all_[at], means);
     std::size_t plane_number = 0, channel = 0;
     for_each_found(
         [&](auto& plane, int, bool) {
           const FoundPlane& found = own_.planes[plane_number++];
-          for (int x = 0; found.channels > 0 && x < surfel.width; ++x) {
+          for (int x = 0; found.channels > 0 && x < surfaces.width; ++x) {
             auto& value = plane(x, y);
             load(&means[std::size_t(x) * stride + channel], value);
             value *= own_.unit[channel];
             if constexpr (std::is_same_v<std::decay_t<decltype(value)>, glm::vec3>) {
-              const Surfel& s = surfel(x, y);
+              const Surfel& s = surfaces(x, y);
               if (found.bends && s.is_surface())
                 value = turned(to_camera * value, s.normal, glm::vec3(0, 0, 1));
             }

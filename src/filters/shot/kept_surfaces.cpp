@@ -46,20 +46,20 @@ CameraChange::CameraChange(const KeptSurfaces& from, const KeptSurfaces& to)
       step_(to.camera.rotation * (from.camera.origin - to.camera.origin)) {}
 
 KeptSurfaces keep_surfaces(const Geometry& geometry) {
-  const Plane<Surfel>& surfel = geometry.surfel;
+  const Surfaces& surfaces = geometry.surfaces;
   KeptSurfaces kept{geometry.camera, geometry.window, geometry.world_known, 0, {}};
   std::uint32_t most = 0;
-  for (const Surfel& s : surfel.pixels)
+  for (const Surfel& s : surfaces.each())
     if (s.is_surface()) most = std::max(most, steps_of(s.rounding));
   const std::uint32_t least = most - std::min(most, 255u);
   kept.least_rounding = least << KeptSurface::kFloatShift;
   kept.pixels.resize(kept.size());
-  for_each_row(surfel.height + 2, [&](int row) {
+  for_each_row(surfaces.height + 2, [&](int row) {
     KeptSurface* out = &kept.pixels[kept.index(-1, row - 1)];
     std::fill_n(out, kept.stride(), kNothing);
-    if (row == 0 || row > surfel.height) return;
-    for (int x = 0; x < surfel.width; ++x) {
-      const Surfel& s = surfel(x, row - 1);
+    if (row == 0 || row > surfaces.height) return;
+    for (int x = 0; x < surfaces.width; ++x) {
+      const Surfel& s = surfaces(x, row - 1);
       if (!s.is_surface()) continue;
       const std::uint32_t steps = steps_of(s.rounding);
       out[x + 1] = {s.position, pack_normal(s.normal) | (steps - std::min(steps, least))

@@ -37,7 +37,7 @@ void for_each_array(WorkOnView& work, const Visit& visit) {
     for (ShadowDraw& draw : *draws) visit_plane(draw.weight), visit_plane(draw.width_px);
   visit_plane(work.relit.products.lit), visit_plane(work.relit.products.lit_without);
   Scene& scene = work.relit.found.scene;
-  visit_plane(scene.geometry.surfel);
+  scene.geometry.surfaces.for_each_plane(visit_plane);
   visit_plane(scene.senders.albedo), visit_plane(scene.senders.radiance);
   visit_plane(scene.roughness), visit_plane(scene.specular_color);
   GBuffer& layers = work.frame.gbuffer;

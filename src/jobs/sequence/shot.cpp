@@ -67,7 +67,7 @@ std::size_t Shot::room_beside(const Work& work) const {
   double of_frame = 0;
   for (const WorkOnView& view : work.views) {
     const Scene& scene = only_looks_ ? view.frame.scene : view.relit.found.scene;
-    of_frame += bytes_in_one_piece(view.frame.plan, scene, scene.geometry.surfel.size());
+    of_frame += bytes_in_one_piece(view.frame.plan, scene, scene.geometry.surfaces.size());
   }
   return std::size_t(std::max(0.0, double(memory_.bytes) - memory_.frames * of_frame));
 }

@@ -57,12 +57,12 @@ struct Candidate {
 double share_of_floors(const Geometry& geometry, const glm::vec3& up) {
   constexpr std::size_t kMostSamples = 6000;
   constexpr float kClose = 0.9f;
-  const std::size_t stride = (geometry.surfel.size() / kMostSamples) | 1;
+  const std::size_t stride = (geometry.surfaces.size() / kMostSamples) | 1;
   double floors = 0, surfaces = 0;
-  for (std::size_t i = 0; i < geometry.surfel.size(); i += stride) {
+  for (std::size_t i = 0; i < geometry.surfaces.size(); i += stride) {
     if (!geometry.is_surface(i)) continue;
     surfaces += 1;
-    floors += glm::dot(geometry.surfel[i].normal, up) > kClose;
+    floors += glm::dot(geometry.surfaces[i].normal, up) > kClose;
   }
   return floors / std::max(surfaces, 1.0);
 }

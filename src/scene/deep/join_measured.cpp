@@ -37,7 +37,7 @@ class Join {
         thickness_(thickness),
         footprint_(geometry.camera),
         shown_(geometry),
-        owner_(geometry.surfel.width, geometry.surfel.height) {
+        owner_(geometry.surfaces.width, geometry.surfaces.height) {
     for (std::size_t i = 0; i < owner_.size(); ++i) owner_[i] = int(i);
     guess_ = guess();
   }
@@ -108,7 +108,7 @@ class Join {
       to.distance[i] = distance_to(k, i) + found.distance;
       to.thickness[i] = found.thickness;
       to.sender[i] = owner_[source];
-      to.normal[i] = shown_.surfel[source].normal;
+      to.normal[i] = shown_.surfaces[source].normal;
     });
   }
 
@@ -122,7 +122,7 @@ class Join {
       to.sender[i] = senders[i] = sender_of(k, i);
     });
     for_each_pixel([&](std::size_t i) {
-      if (has(k, i)) shown_.surfel[i].position = point_behind(geometry_, i, to.distance[i]);
+      if (has(k, i)) shown_.surfaces.set_position(i, point_behind(geometry_, i, to.distance[i]));
     });
     owner_ = std::move(senders);
     for_each_row(owner_.height, [&](int y) {
@@ -132,7 +132,7 @@ class Join {
       }
     });
     for_each_pixel([&](std::size_t i) {
-      if (has(k, i)) shown_.surfel[i].normal = to.normal[i];
+      if (has(k, i)) shown_.surfaces.set_normal(i, to.normal[i]);
     });
     spread_senders(k);
   }
@@ -171,7 +171,7 @@ class Join {
   }
 
   bool joined(std::size_t i, std::size_t j) const {
-    const Surfel &a = shown_.surfel[i], &b = shown_.surfel[j];
+    const Surfel &a = shown_.surfaces[i], &b = shown_.surfaces[j];
     return a.is_surface() && b.is_surface() &&
            on_one_surface({a.position, a.normal}, {b.position, b.normal}, footprint_);
   }
@@ -183,7 +183,7 @@ class Join {
     const Solid found = guess_.at(1, i);
     if (!found.exists()) return -1;
     const glm::vec3 front = point_behind(geometry_, i, measured_.behind[k].distance[i]),
-                    normal = shown_.surfel[std::size_t(found.sender)].normal;
+                    normal = shown_.surfaces[std::size_t(found.sender)].normal;
     const float apart = measured_.behind[k].distance[i] - distance_to(k, i) - found.distance,
                 facing = std::max(glm::dot(normal, to_viewer(front)), kLeastCosine);
     const bool joined = std::abs(apart) * facing <= kSurfaceGap * footprint_.at(-front.z);
@@ -191,8 +191,8 @@ class Join {
   }
 
   glm::vec3 normal_at(int x, int y) const {
-    const glm::vec3 view = to_viewer(shown_.surfel(x, y).position),
-                    normal = gradient_normal(shown_.surfel, x, y, view);
+    const glm::vec3 view = to_viewer(shown_.surfaces(x, y).position),
+                    normal = gradient_normal(shown_.surfaces, x, y, view);
     return normal == glm::vec3(0) ? view : normal;
   }
 

@@ -107,7 +107,7 @@ class Placement {
 
 MeasuredSolids find(const Geometry& geometry, const std::vector<DeepImage>& images, DepthKind kind,
                     float far, Tally& tally) {
-  const int w = geometry.surfel.width, h = geometry.surfel.height;
+  const int w = geometry.surfaces.width, h = geometry.surfaces.height;
   MeasuredSolids found{Plane<float>(w, h, kInfinity), {}};
   for (std::size_t k = 0; k < kMostBehind; ++k)
     found.behind.push_back({Plane<float>(w, h, kInfinity), Plane<float>(w, h, kInfinity)});
@@ -117,13 +117,13 @@ MeasuredSolids find(const Geometry& geometry, const std::vector<DeepImage>& imag
     RaySolids ray(far);
     std::size_t with_samples = 0, agreeing = 0, contradicting = 0, most = 0;
     for (int x = 0; x < w; ++x) {
-      const std::size_t i = geometry.surfel.index(x, y);
-      if (!geometry.surfel[i].is_usable()) continue;
+      const std::size_t i = geometry.surfaces.index(x, y);
+      if (!geometry.surfaces[i].is_usable()) continue;
       for (const DeepImage& image : images)
         ray.add(image.at(geometry.window.x0 + x, geometry.window.y0 + y));
       const std::vector<RaySolid>& solids = ray.find(kMostOnRay);
       if (solids.empty()) continue;
-      const OnRay on_ray = placement.find(geometry.surfel[i], solids);
+      const OnRay on_ray = placement.find(geometry.surfaces[i], solids);
       found.seen_thickness[i] = on_ray.seen_thickness;
       for (std::size_t k = 0; k < on_ray.count; ++k) {
         found.behind[k].distance[i] = on_ray.behind[k].distance;

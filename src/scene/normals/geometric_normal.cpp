@@ -12,7 +12,7 @@
 #define HWY_TARGET_INCLUDE "scene/normals/geometric_normal.cpp"
 #include <hwy/foreach_target.h>
 
-#include "scene/surfel-inl.h"
+#include "scene/surfaces-inl.h"
 
 #ifndef SSDO_GEOMETRIC_NORMAL_LIMITS
 #define SSDO_GEOMETRIC_NORMAL_LIMITS
@@ -51,7 +51,7 @@ HWY_INLINE V3 step_across(const Surfels& before, const Surfels& here, const Surf
   return if_then_else_zero(hn::And(hn::And(even, straight), known), step);
 }
 
-void normals_of_row(const Plane<Surfel>& surfels, int y, bool orthographic,
+void normals_of_row(const Surfaces& surfels, int y, bool orthographic,
                     std::span<glm::vec3> normals) {
   for (int x = 0; x < surfels.width; x += kLanes) {
     const Surfels here = surfels_at(surfels, x, y), left = surfels_at(surfels, x - 1, y),
@@ -91,11 +91,11 @@ HWY_EXPORT(normals_of_row);
 
 /// The step from the pixel before to the one after along one axis, where these two and the pixel
 /// lie about on a line, as on a smooth surface. Zero elsewhere.
-glm::vec3 smooth_step(const Plane<Surfel>& surfels, int x, int y, int dx, int dy) {
+glm::vec3 smooth_step(const Surfaces& surfels, int x, int y, int dx, int dy) {
   // At the border and beside background, from the two on the other side.
   const Surfel& here = surfels(x, y);
-  const Surfel *before = surface_at(surfels, x - dx, y - dy), *middle = &here,
-               *after = surface_at(surfels, x + dx, y + dy);
+  std::optional<Surfel> before = surface_at(surfels, x - dx, y - dy), middle = here,
+                        after = surface_at(surfels, x + dx, y + dy);
   if (!before) before = middle, middle = after, after = surface_at(surfels, x + 2 * dx, y + 2 * dy);
   if (!after) after = middle, middle = before, before = surface_at(surfels, x - 2 * dx, y - 2 * dy);
   if (!before || !middle || !after) return glm::vec3(0);
@@ -114,7 +114,7 @@ glm::vec3 smooth_step(const Plane<Surfel>& surfels, int x, int y, int dx, int dy
 
 }  // namespace
 
-glm::vec3 geometric_normal(const Plane<Surfel>& surfels, int x, int y, const glm::vec3& view) {
+glm::vec3 geometric_normal(const Surfaces& surfels, int x, int y, const glm::vec3& view) {
   const glm::vec3 shading = surfels(x, y).normal;
   const glm::vec3 n =
       glm::cross(smooth_step(surfels, x, y, 0, 1), smooth_step(surfels, x, y, 1, 0));
@@ -125,7 +125,7 @@ glm::vec3 geometric_normal(const Plane<Surfel>& surfels, int x, int y, const glm
   return steep || glm::dot(normal, shading) > kSameCosine ? shading : normal;
 }
 
-void find_geometric_normals(const Plane<Surfel>& surfels, int y, bool orthographic,
+void find_geometric_normals(const Surfaces& surfels, int y, bool orthographic,
                             std::span<glm::vec3> normals) {
   HWY_DYNAMIC_DISPATCH(normals_of_row)(surfels, y, orthographic, normals);
 }

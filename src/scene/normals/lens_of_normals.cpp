@@ -51,14 +51,15 @@ std::size_t cell_of(const Eigen::Vector3d& n) {
 }
 
 /// The step over a pixel between its neighbours, if the three are nearly on a line.
-std::optional<glm::vec3> straight_step(const Surfel& p, const Surfel* before, const Surfel* after) {
+std::optional<glm::vec3> straight_step(const Surfel& p, const std::optional<Surfel>& before,
+                                       const std::optional<Surfel>& after) {
   if (!before || !after) return std::nullopt;
   if (!is_straight(before->position, p.position, after->position, kStraight)) return std::nullopt;
   return after->position - before->position;
 }
 
 /// The unit normal of the surface through a pixel that faces the viewer; 0 where it is not smooth.
-glm::vec3 smooth_normal(const Plane<Surfel>& surfels, int x, int y) {
+glm::vec3 smooth_normal(const Surfaces& surfels, int x, int y) {
   const Surfel& s = surfels(x, y);
   const auto right = straight_step(s, surface_at(surfels, x - 1, y), surface_at(surfels, x + 1, y)),
              up = straight_step(s, surface_at(surfels, x, y + 1), surface_at(surfels, x, y - 1));
@@ -72,7 +73,7 @@ glm::vec3 smooth_normal(const Plane<Surfel>& surfels, int x, int y) {
 std::vector<Pair> collect(const Plane<glm::vec3>& stored, const Geometry& geometry) {
   std::vector<Pair> pairs;
   std::array<std::size_t, kCells * kCells * kCells> counts{};
-  const Plane<Surfel>& surfels = geometry.surfel;
+  const Surfaces& surfels = geometry.surfaces;
   for (std::size_t k = 0; k < std::min(surfels.size(), kMostPixels); ++k) {
     // A stride that is prime visits every pixel once, spread over the picture.
     const std::size_t i = k * kPrimeStride % surfels.size();

@@ -66,7 +66,7 @@ struct Witness {
   glm::vec3 gradient, stored;  ///< unit; in camera space, and as stored
 };
 
-std::vector<Witness> collect_witnesses(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
+std::vector<Witness> collect_witnesses(const Plane<glm::vec3>& stored, const Surfaces& surfels,
                                        bool orthographic) {
   std::vector<Witness> witnesses;
   const std::size_t stride = (surfels.size() / kMostSamples) | 1;
@@ -309,7 +309,7 @@ Candidate turned_to_gradients(Candidate candidate, const std::vector<Witness>& w
 
 }  // namespace
 
-NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
+NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Surfaces& surfels,
                               const std::vector<NamedRotation>& spaces, bool orthographic,
                               const std::string& of_shot) {
   const std::vector<Witness> witnesses = collect_witnesses(stored, surfels, orthographic);
@@ -326,7 +326,7 @@ NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel
   return described(turned_to_gradients(is_better ? best : rule, witnesses), witnesses);
 }
 
-NormalSpace measure_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
+NormalSpace measure_normal_space(const Plane<glm::vec3>& stored, const Surfaces& surfels,
                                  const NamedRotation& space, bool orthographic) {
   const std::vector<Witness> witnesses = collect_witnesses(stored, surfels, orthographic);
   NormalSpace measured = described(Candidate(space, {}, witnesses), witnesses);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "math/plane.h"
-#include "scene/surfel.h"
+#include "scene/surfaces.h"
 
 namespace ssdo {
 
@@ -49,12 +49,12 @@ struct NamedRotation {
 /// one rotation, have a space of their own. `of_shot` is the name of the space in other frames of
 /// the sequence, which may have more text after it: it takes the place of the first space, for a
 /// frame that cannot decide by itself.
-NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
+NormalSpace find_normal_space(const Plane<glm::vec3>& stored, const Surfaces& surfels,
                               const std::vector<NamedRotation>& spaces, bool orthographic,
                               const std::string& of_shot = "");
 
 /// How far the stored normals agree with the gradient of P if they are in `space`, with its axes.
-NormalSpace measure_normal_space(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
+NormalSpace measure_normal_space(const Plane<glm::vec3>& stored, const Surfaces& surfels,
                                  const NamedRotation& space, bool orthographic);
 
 }  // namespace ssdo

@@ -60,7 +60,7 @@ constexpr float kQuiet = 0.985f, kJump = 0.866f, kFollows = 0.94f, kContradicts 
 
 class Comparison {
  public:
-  Comparison(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels, const NormalSpace& space,
+  Comparison(const Plane<glm::vec3>& stored, const Surfaces& surfels, const NormalSpace& space,
              bool orthographic)
       : stored_(stored), surfels_(surfels), space_(space), orthographic_(orthographic) {}
 
@@ -106,7 +106,7 @@ class Comparison {
 
  private:
   bool is_smooth(int x, int y, int dx, int dy) const {
-    const Surfel* here = surface_at(surfels_, x, y);
+    const auto here = surface_at(surfels_, x, y);
     if (!here) return false;
     for (int k = 1; k <= 2; ++k) {
       const glm::vec3 a = surfels_(x - k * dx, y - k * dy).position,
@@ -117,14 +117,13 @@ class Comparison {
   }
 
   const Plane<glm::vec3>& stored_;
-  const Plane<Surfel>& surfels_;
+  const Surfaces& surfels_;
   const NormalSpace& space_;
   bool orthographic_;
 };
 
 /// How sure it is that N is of another frame, 0 to 1; P is smooth in `smooth_pixels` pixels.
-double foreignness(const Comparison& comparison, const Plane<Surfel>& surfels,
-                   double smooth_pixels) {
+double foreignness(const Comparison& comparison, const Surfaces& surfels, double smooth_pixels) {
   struct Count {
     std::size_t confirmed = 0, torn = 0;
   };
@@ -229,7 +228,7 @@ float NormalTrust::at(int x, int y) const {
          t * ((1 - s) * cells(i, l) + s * cells(k, l));
 }
 
-NormalTrust find_normal_trust(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
+NormalTrust find_normal_trust(const Plane<glm::vec3>& stored, const Surfaces& surfels,
                               const NormalSpace& space, bool orthographic) {
   const double doubt = kIsInDoubt.at(space.share);
   if (doubt == 0) return {};

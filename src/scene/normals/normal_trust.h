@@ -4,7 +4,7 @@
 #include <glm/vec3.hpp>
 
 #include "math/plane.h"
-#include "scene/surfel.h"
+#include "scene/surfaces.h"
 
 namespace ssdo {
 
@@ -33,7 +33,7 @@ struct NormalTrust {
 /// disagree are kept too (leaves that are lit as a crown), unless most cells disagree, or N shows
 /// edges across surfaces that P shows to be smooth: then N is that of another frame, and all of it
 /// is rebuilt. All steps between are continuous in what the frame shows.
-NormalTrust find_normal_trust(const Plane<glm::vec3>& stored, const Plane<Surfel>& surfels,
+NormalTrust find_normal_trust(const Plane<glm::vec3>& stored, const Surfaces& surfels,
                               const NormalSpace& space, bool orthographic);
 
 }  // namespace ssdo

@@ -15,12 +15,12 @@ constexpr float kOverRounding = 32;
 
 /// The step across a pixel along one axis where P is smooth: to the nearest pixels on both sides
 /// that are far enough apart for the precision of P, if all three are on a line.
-std::optional<glm::vec3> smooth_step(const Plane<Surfel>& surfels, int x, int y, int dx, int dy) {
+std::optional<glm::vec3> smooth_step(const Surfaces& surfels, int x, int y, int dx, int dy) {
   const Surfel& s = surfels(x, y);
   const glm::vec3 p(s.position);
   for (const int pixels : {1, 2, 4, 8, 16}) {
-    const Surfel* a = surface_at(surfels, x - pixels * dx, y - pixels * dy);
-    const Surfel* b = surface_at(surfels, x + pixels * dx, y + pixels * dy);
+    const auto a = surface_at(surfels, x - pixels * dx, y - pixels * dy);
+    const auto b = surface_at(surfels, x + pixels * dx, y + pixels * dy);
     if (!a || !b) continue;
     const glm::vec3 before(a->position), after(b->position), step = after - before;
     if (!(glm::length(step) > kOverRounding * s.rounding)) continue;
@@ -32,7 +32,7 @@ std::optional<glm::vec3> smooth_step(const Plane<Surfel>& surfels, int x, int y,
 
 }  // namespace
 
-std::optional<glm::vec3> smooth_gradient(const Plane<Surfel>& surfels, int x, int y,
+std::optional<glm::vec3> smooth_gradient(const Surfaces& surfels, int x, int y,
                                          const glm::vec3& view) {
   const auto right = smooth_step(surfels, x, y, 1, 0), down = smooth_step(surfels, x, y, 0, 1);
   if (!right || !down) return std::nullopt;

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "math/plane.h"
-#include "scene/surfel.h"
+#include "scene/surfaces.h"
 
 namespace ssdo {
 
@@ -15,7 +15,7 @@ constexpr float kStraight = 0.1f;
 /// The unit normal of the geometry at a pixel around which P is smooth: three pixels in a row and
 /// three in a column lie on a line each, over distances that the precision of P can tell. Turned to
 /// the viewer, who is along `view` from the surface. Nothing elsewhere.
-std::optional<glm::vec3> smooth_gradient(const Plane<Surfel>& surfels, int x, int y,
+std::optional<glm::vec3> smooth_gradient(const Surfaces& surfels, int x, int y,
                                          const glm::vec3& view);
 
 }  // namespace ssdo

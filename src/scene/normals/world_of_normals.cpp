@@ -27,7 +27,7 @@ bool is_same_turn(const glm::mat3& a, const glm::mat3& b) {
 
 /// What normals say of a pose: they lie in its world with their axes as they are, in camera space,
 /// or in a space that is turned against both.
-Verdict judge(const GBuffer& g, const Plane<Surfel>& surfels, const HeaderCamera& reading,
+Verdict judge(const GBuffer& g, const Surfaces& surfels, const HeaderCamera& reading,
               const Placement& found) {
   constexpr const char* kWorld = "the world";
   std::vector<NamedRotation> spaces = {{glm::mat3(1), "camera space"}};
@@ -69,7 +69,7 @@ void use(const HeaderCamera& reading, GeometryReport& report) {
 
 }  // namespace
 
-void settle_world(const GBuffer& g, const Plane<Surfel>& surfels,
+void settle_world(const GBuffer& g, const Surfaces& surfels,
                   const std::vector<HeaderCamera>& readings, GeometryReport& report) {
   const HeaderCamera& first = readings.front();
   if (!g.normal.empty() && !g.space) {

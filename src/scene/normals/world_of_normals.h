@@ -13,7 +13,7 @@ namespace ssdo {
 /// prove it; normals of another world refute all of them, and the frame stays in camera space.
 /// Where they are in camera space or there are none, the first reading holds, with a warning unless
 /// the header confirms it. Sets the placement, the finding and the warnings of `report`.
-void settle_world(const GBuffer& g, const Plane<Surfel>& surfels,
+void settle_world(const GBuffer& g, const Surfaces& surfels,
                   const std::vector<HeaderCamera>& readings, GeometryReport& report);
 
 }  // namespace ssdo

@@ -74,14 +74,14 @@ std::optional<BackdropShape> find_dome(const SurfelSamples& samples) {
   if (!sphere || glm::length(sphere->middle) >= sphere->radius) return std::nullopt;
   std::vector<double> others;
   double far = 0, on = 0, inward = 0, distances = 0;
-  for (const Surfel* s : samples) {
-    const glm::dvec3 p(s->position);
+  for (const Surfel& s : samples) {
+    const glm::dvec3 p(s.position);
     const bool is_on = sphere->has(p);
     if (!is_on) others.push_back(distance_of(s));
     far += distance_of(s) > 0.5 * sphere->radius;
     if (!is_on) continue;
     on += 1, distances += distance_of(s);
-    inward += glm::dot(glm::dvec3(s->normal), sphere->to_middle(p));
+    inward += glm::dot(glm::dvec3(s.normal), sphere->to_middle(p));
   }
   if (on < double(kFewestOfShape) || on < kMostOnSphere * far || inward < kInward * on)
     return std::nullopt;
@@ -89,10 +89,10 @@ std::optional<BackdropShape> find_dome(const SurfelSamples& samples) {
   // Through a narrow lens, what fits a sphere may be a wall as well.
   SurfelSamples on_sphere;
   std::ranges::copy_if(samples, std::back_inserter(on_sphere),
-                       [&](const Surfel* s) { return sphere->has(glm::dvec3(s->position)); });
+                       [&](const Surfel& s) { return sphere->has(glm::dvec3(s.position)); });
   if (const std::optional<Flat> flat = flat_of(on_sphere);
       flat && double(std::ranges::count_if(
-                  on_sphere, [&](const Surfel* s) { return flat->has(*s); })) >= kMostOnWalls * on)
+                  on_sphere, [&](const Surfel& s) { return flat->has(s); })) >= kMostOnWalls * on)
     return std::nullopt;
   BackdropShape found{[sphere](const Surfel& s) { return sphere->has(glm::dvec3(s.position)); },
                       fmt::format("a dome of radius {:.3g} around everything", sphere->radius), 1,
@@ -142,7 +142,7 @@ std::optional<BackdropShape> find_flats(const Behind& behind, const glm::dvec3& 
       left, kMostOnWalls, [&](const Flat& flat) { return glm::dot(flat.normal, up) < kGround; });
   if (double(left.size()) > (1 - kMostOnWalls) * double(behind.samples.size())) return std::nullopt;
   const auto has = [flats, nearest = behind.nearest](const Surfel& s) {
-    return distance_of(&s) >= nearest &&
+    return distance_of(s) >= nearest &&
            std::ranges::any_of(flats, [&](const Flat& flat) { return flat.has(s); });
   };
   const std::string which = flats.size() == 1 ? "a plane" : fmt::format("{} planes", flats.size());
@@ -156,7 +156,7 @@ std::optional<BackdropShape> find_cylinder(const Behind& behind, const glm::dvec
   const std::optional<RoundShape> found = round_of(behind.samples, axis, behind.nearest);
   if (!found || !is_cylinder_around(*found, behind.samples, kMostOnWalls)) return std::nullopt;
   const auto has = [shape = *found, nearest = behind.nearest](const Surfel& s) {
-    return distance_of(&s) >= nearest && shape.has(glm::dvec3(s.position));
+    return distance_of(s) >= nearest && shape.has(glm::dvec3(s.position));
   };
   return BackdropShape{has,
                        fmt::format("a cylinder of radius {:.3g} around everything", found->radius),
@@ -183,7 +183,7 @@ bool has_sky_above(const Geometry& g, const Plane<float>& coverage) {
     for (int x = 0; x < coverage.width; ++x) {
       Above& so_far = above[std::size_t(x)];
       if (so_far == Above::covered) continue;
-      const Surfel& s = g.surfel(x, y);
+      const Surfel& s = g.surfaces(x, y);
       if (!s.is_surface() && !s.is_broken()) so_far = Above::sky;
       if (!(coverage(x, y) > 0)) continue;
       columns += 1, with_sky += so_far == Above::sky;
@@ -195,29 +195,27 @@ bool has_sky_above(const Geometry& g, const Plane<float>& coverage) {
 
 /// Whether the frame shows much sky beside what is covered.
 bool has_sky_beside(const Geometry& g, double share) {
-  const std::size_t sky = count_over_rows(g.surfel.height, [&](int y) {
-    const auto row = g.surfel.pixels.begin() + std::ptrdiff_t(g.surfel.index(0, y));
-    return std::size_t(std::count_if(row, row + g.surfel.width, [](const Surfel& s) {
-      return !s.is_surface() && !s.is_broken();
-    }));
+  const std::size_t sky = count_over_rows(g.surfaces.height, [&](int y) {
+    const float* row = &g.surfaces.rounding(0, y);
+    return std::size_t(std::count(row, row + g.surfaces.width, Surfel::kBackground));
   });
-  return double(sky) > kSkyAbove * share * double(g.surfel.size());
+  return double(sky) > kSkyAbove * share * double(g.surfaces.size());
 }
 
 /// The pixels of the frame on a shape, as a backdrop; nothing where much sky is seen above the
 /// shape, or beside one that stands on a ground.
 std::optional<Backdrop> shown(const Geometry& g, const BackdropShape& shape) {
-  Backdrop found{Plane<float>::like(g.surfel), 0, shape.what, shape.clearance, shape.has};
-  const std::size_t covered = count_over_rows(g.surfel.height, [&](int y) {
+  Backdrop found{Plane<float>::like(g.surfaces), 0, shape.what, shape.clearance, shape.has};
+  const std::size_t covered = count_over_rows(g.surfaces.height, [&](int y) {
     std::size_t in_row = 0;
-    for (std::size_t i = g.surfel.index(0, y); i < g.surfel.index(0, y + 1); ++i) {
-      const bool has = g.surfel[i].is_surface() && shape.has(g.surfel[i]);
+    for (std::size_t i = g.surfaces.index(0, y); i < g.surfaces.index(0, y + 1); ++i) {
+      const bool has = g.surfaces[i].is_surface() && shape.has(g.surfaces[i]);
       found.coverage[i] = has;
       in_row += has;
     }
     return in_row;
   });
-  found.share = double(covered) / double(g.surfel.size());
+  found.share = double(covered) / double(g.surfaces.size());
   if (!shape.is_dome && has_sky_above(g, found.coverage)) return std::nullopt;
   if (shape.stands && has_sky_beside(g, found.share)) return std::nullopt;
   return found;

@@ -15,7 +15,7 @@
 
 namespace ssdo {
 
-using SurfelSamples = std::vector<const Surfel*>;
+using SurfelSamples = std::vector<Surfel>;
 
 /// Fewest samples that a shape is fitted to.
 inline constexpr std::size_t kFewestOfShape = 24;
@@ -69,7 +69,7 @@ struct Flat {
 SurfelSamples samples_of(const Geometry& geometry);
 
 /// The distance of a sample from the camera.
-inline double distance_of(const Surfel* s) { return glm::length(glm::dvec3(s->position)); }
+inline double distance_of(const Surfel& s) { return glm::length(glm::dvec3(s.position)); }
 
 /// The largest distance of the samples; 0 where there are none.
 double farthest_of(const SurfelSamples& samples);

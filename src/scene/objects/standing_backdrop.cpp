@@ -67,7 +67,7 @@ struct Ground {
     return plane.distance + glm::dot(plane.normal, glm::dvec3(s.position));
   }
   bool has(const Surfel& s) const {
-    return std::abs(height(s)) <= kOnShape * distance_of(&s) &&
+    return std::abs(height(s)) <= kOnShape * distance_of(s) &&
            glm::dot(normal_of(s), plane.normal) > kInward;
   }
   bool is_below(const Flat& wall) const {
@@ -81,15 +81,15 @@ std::optional<Ground> find_ground(const SurfelSamples& samples, double nearer_th
                                   const Flat& far) {
   SurfelSamples nearby, lying;
   std::ranges::copy_if(samples, std::back_inserter(nearby),
-                       [&](const Surfel* s) { return distance_of(s) < nearer_than; });
-  std::ranges::copy_if(nearby, std::back_inserter(lying), [&](const Surfel* s) {
-    return std::abs(glm::dot(normal_of(*s), far.normal)) < kPerpendicular;
+                       [&](const Surfel& s) { return distance_of(s) < nearer_than; });
+  std::ranges::copy_if(nearby, std::back_inserter(lying), [&](const Surfel& s) {
+    return std::abs(glm::dot(normal_of(s), far.normal)) < kPerpendicular;
   });
   for (const SurfelSamples& of : {lying, nearby}) {
     const std::optional<Flat> plane = flat_of(of);
     if (!plane) continue;
     const Ground ground{*plane};
-    const auto on = std::ranges::count_if(of, [&](const Surfel* s) { return ground.has(*s); });
+    const auto on = std::ranges::count_if(of, [&](const Surfel& s) { return ground.has(s); });
     if (double(on) >= kLeastGround * double(samples.size())) return ground;
   }
   return std::nullopt;
@@ -131,23 +131,22 @@ struct Arc {
 std::optional<Arc> find_arc(const SurfelSamples& samples, const Ground& ground) {
   SurfelSamples bent;
   glm::dvec3 out(0);
-  for (const Surfel* s : samples) {
-    const double up = glm::dot(normal_of(*s), ground.plane.normal);
+  for (const Surfel& s : samples) {
+    const double up = glm::dot(normal_of(s), ground.plane.normal);
     if (up < kPerpendicular || up > kInward) continue;
     bent.push_back(s);
-    out += glm::normalize(normal_of(*s) - up * ground.plane.normal);
+    out += glm::normalize(normal_of(s) - up * ground.plane.normal);
   }
   if (bent.size() < kFewestOfShape || !(glm::length(out) > 0)) return std::nullopt;
   Arc arc{ground, {glm::normalize(out)}};
-  std::erase_if(bent, [&](const Surfel* s) { return !arc.turns_as(*s); });
+  std::erase_if(bent, [&](const Surfel& s) { return !arc.turns_as(s); });
   if (bent.size() < kFewestOfShape) return std::nullopt;
   std::vector<double> radii, distances;
-  for (const Surfel* s : bent)
-    radii.push_back(arc.above(*s) / (1 - glm::dot(normal_of(*s), ground.plane.normal)));
+  for (const Surfel& s : bent)
+    radii.push_back(arc.above(s) / (1 - glm::dot(normal_of(s), ground.plane.normal)));
   arc.radius = median(radii);
-  for (const Surfel* s : bent)
-    distances.push_back(arc.radius * (1 - glm::dot(normal_of(*s), arc.wall.normal)) -
-                        arc.before(*s));
+  for (const Surfel& s : bent)
+    distances.push_back(arc.radius * (1 - glm::dot(normal_of(s), arc.wall.normal)) - arc.before(s));
   arc.wall.distance = median(distances);
   if (!(arc.radius > 0 && arc.wall.distance > 0)) return std::nullopt;
   return arc;
@@ -166,7 +165,7 @@ std::optional<Standing> find_sweep(const SurfelSamples& far, const Ground& groun
   const std::optional<Arc> arc = find_arc(far, ground);
   if (!arc) return std::nullopt;
   const auto off = std::ranges::count_if(
-      far, [&](const Surfel* s) { return !arc->wall.has(*s) && !arc->has(*s); });
+      far, [&](const Surfel& s) { return !arc->wall.has(s) && !arc->has(s); });
   if (double(off) > (1 - kMostOnIt) * double(far.size())) return std::nullopt;
   return Standing{
       [arc](const Surfel& s) { return arc->wall.has(s) || (arc->has(s) && arc->is_upright(s)); },
@@ -204,13 +203,13 @@ std::optional<BackdropShape> find_standing_backdrop(const SurfelSamples& samples
   if (!plane) return std::nullopt;
   const std::optional<Ground> ground = find_ground(samples, 0.5 * farthest, *plane);
   if (!ground) return std::nullopt;
-  std::erase_if(far, [&](const Surfel* s) { return ground->has(*s); });
+  std::erase_if(far, [&](const Surfel& s) { return ground->has(s); });
   if (far.size() < kFewestOfShape) return std::nullopt;
   const std::optional<Standing> found = find_standing(far, *ground);
   if (!found) return std::nullopt;
   std::vector<double> heights;
-  for (const Surfel* s : far)
-    if (found->has(*s)) heights.push_back(ground->height(*s));
+  for (const Surfel& s : far)
+    if (found->has(s)) heights.push_back(ground->height(s));
   if (heights.size() < kFewestOfShape) return std::nullopt;
   std::ranges::sort(heights);
   const auto height_at = [&](double share) {
@@ -219,9 +218,9 @@ std::optional<BackdropShape> find_standing_backdrop(const SurfelSamples& samples
   const double camera = ground->plane.distance, top = height_at(kHighest);
   if (height_at(kLowest) < -kBelow * camera) return std::nullopt;
   std::vector<double> others;
-  for (const Surfel* s : samples)
-    if (!found->has(*s) && !(found->leads_to_it && found->leads_to_it(*s)))
-      others.push_back(ground->height(*s));
+  for (const Surfel& s : samples)
+    if (!found->has(s) && !(found->leads_to_it && found->leads_to_it(s)))
+      others.push_back(ground->height(s));
   const std::size_t out = std::size_t(kStandOut * double(samples.size()));
   double of_others = 0;
   if (out < others.size()) {

@@ -70,18 +70,18 @@ class BackFaces {
   BackFaces(const OtherView& view, const Geometry& frame)
       : view_(view),
         shown_(*view.picture),
-        surfel_(view.surfels_in_frame()),
+        surfaces_(view.surfels_in_frame()),
         frame_(frame),
         footprint_(frame.camera) {}
 
   std::optional<Plane<float>> find() const {
-    Plane<float> out(frame_.surfel.width, frame_.surfel.height, kNowhere);
+    Plane<float> out(frame_.surfaces.width, frame_.surfaces.height, kNowhere);
     std::atomic<std::size_t> common{0}, behind{0}, before{0};
     for_each_row(out.height, [&](int y) {
       std::size_t here = 0, farther = 0, nearer = 0;
       for (std::size_t i = out.index(0, y), end = i + std::size_t(out.width); i < end; ++i) {
-        const Surfel& s = frame_.surfel[i];
-        const Surfel* back = s.is_usable() ? shown_at(s.position) : nullptr;
+        const Surfel& s = frame_.surfaces[i];
+        const auto back = s.is_usable() ? shown_at(s.position) : std::nullopt;
         if (!back) continue;
         const float distance = distance_between(s, *back),
                     tolerance = kRoundings * (s.rounding + back->rounding) +
@@ -102,14 +102,14 @@ class BackFaces {
 
  private:
   /// What the view shows in the direction of a point.
-  const Surfel* shown_at(const glm::vec3& p) const {
+  std::optional<Surfel> shown_at(const glm::vec3& p) const {
     const glm::dvec3 own = view_.camera.to_camera(glm::dvec3(p));
-    if (!view_.camera.orthographic && !(own.z < 0)) return nullptr;
+    if (!view_.camera.orthographic && !(own.z < 0)) return std::nullopt;
     const glm::dvec2 at = view_.camera.project(own);
     const double x = std::floor(at.x - shown_.window.x0), y = std::floor(at.y - shown_.window.y0);
-    if (!(x >= 0 && y >= 0 && x < surfel_.width && y < surfel_.height)) return nullptr;
-    const Surfel& s = surfel_(int(x), int(y));
-    return s.is_surface() ? &s : nullptr;
+    if (!(x >= 0 && y >= 0 && x < surfaces_.width && y < surfaces_.height)) return std::nullopt;
+    const std::size_t i = surfaces_.index(int(x), int(y));
+    return surfaces_.is_surface(i) ? std::optional(surfaces_[i]) : std::nullopt;
   }
 
   /// The distance along the view ray of `front` to the tangent plane of `back`.
@@ -125,7 +125,7 @@ class BackFaces {
 
   const OtherView& view_;
   const OtherPicture& shown_;
-  const Plane<Surfel> surfel_;  ///< in the camera space of the frame
+  const Surfaces surfaces_;  ///< in the camera space of the frame
   const Geometry& frame_;
   PixelFootprint footprint_;
 };

@@ -92,7 +92,7 @@ class Carver {
  public:
   Carver(Solids& solids, const Geometry& frame, const std::vector<OtherView>& views)
       : solids_(solids), frame_(frame), views_(views), footprint_(frame.camera) {
-    for (const Surfel& s : frame.surfel.pixels)
+    for (const Surfel& s : frame.surfaces.each())
       if (s.is_usable()) farthest_ = std::max(farthest_, kFarthest * glm::length(s.position));
   }
 
@@ -100,15 +100,15 @@ class Carver {
     solids_.separate_thicknesses();
     if (solids_.end.empty())
       solids_.end =
-          Plane<Provenance>(frame_.surfel.width, frame_.surfel.height, Provenance::guessed);
-    const int w = frame_.surfel.width, h = frame_.surfel.height;
+          Plane<Provenance>(frame_.surfaces.width, frame_.surfaces.height, Provenance::guessed);
+    const int w = frame_.surfaces.width, h = frame_.surfaces.height;
     for_each_row((h + 1) / 2, [&](int block_y) {
       SightLines lines(views_);
       for (int x0 = 0; x0 < w; x0 += 2) {
         Ending known;
         for (int y = 2 * block_y; y < std::min(2 * block_y + 2, h); ++y)
           for (int x = x0; x < std::min(x0 + 2, w); ++x)
-            carve_pixel(frame_.surfel.index(x, y), known, lines);
+            carve_pixel(frame_.surfaces.index(x, y), known, lines);
       }
     });
     end_continuations();
@@ -120,7 +120,7 @@ class Carver {
   /// The end of the solid that a pixel shows, searched up to the distance `asked`. Views are
   /// coarse: of each 2 x 2 pixels, those on one surface share the result.
   struct Ending {
-    const Surfel* of = nullptr;
+    std::optional<Surfel> of;
     float asked = 0, end = 0;
   };
 
@@ -132,7 +132,7 @@ class Carver {
   }
 
   void carve_pixel(std::size_t pixel, Ending& known, SightLines& lines) {
-    const Surfel& s = frame_.surfel[pixel];
+    const Surfel& s = frame_.surfaces[pixel];
     if (!s.is_usable()) return;
     const float first = first_step(s);
     bool aimed = false;
@@ -146,7 +146,7 @@ class Carver {
       const float most = std::min(thickness, farthest_);
       if (!holds_for(known, s, most)) {
         aim();
-        known = {&s, most, end_of(first, most, 0, lines)};
+        known = {s, most, end_of(first, most, 0, lines)};
       }
       if (known.end < std::min(most, known.asked)) {
         thickness = known.end;
@@ -176,11 +176,11 @@ class Carver {
 
   /// Finds how far the surfaces at the border of the frame continue beyond it.
   void end_continuations() {
-    const int w = frame_.surfel.width, h = frame_.surfel.height;
+    const int w = frame_.surfaces.width, h = frame_.surfaces.height;
     solids_.beyond = BorderOf<float>(w, h, std::numeric_limits<float>::infinity());
     SightLines lines(views_);
     const auto end = [&](int x, int y, const glm::vec2& outward) {
-      const Surfel& s = frame_.surfel(x, y);
+      const Surfel& s = frame_.surfaces(x, y);
       if (!s.is_usable()) return;
       // The direction in the tangent plane that projects straight out of the frame: it lies in the
       // plane through the viewer, the surface point and a point beside it.

@@ -16,7 +16,7 @@ constexpr float kAll = 0.99f;
 
 class CoveredPixels {
  public:
-  CoveredPixels(const Plane<Surfel>& surfels, const Camera& camera, const Plane<float>& coverage)
+  CoveredPixels(const Surfaces& surfels, const Camera& camera, const Plane<float>& coverage)
       : surfels_(surfels), coverage_(coverage), footprint_(camera) {}
 
   bool operator()(int x, int y) const {
@@ -26,7 +26,7 @@ class CoveredPixels {
     if (!s.is_surface()) return covered >= 0.5f;
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
-        const Surfel* q = surface_at(surfels_, x + dx, y + dy);
+        const auto q = surface_at(surfels_, x + dx, y + dy);
         if (!q || coverage_(x + dx, y + dy) > 0) continue;
         const bool is_alike = glm::dot(s.normal, q->normal) > kOneNormal;
         if (is_alike &&
@@ -38,14 +38,14 @@ class CoveredPixels {
   }
 
  private:
-  const Plane<Surfel>& surfels_;
+  const Surfaces& surfels_;
   const Plane<float>& coverage_;
   PixelFootprint footprint_;
 };
 
 }  // namespace
 
-Plane<unsigned char> covered_pixels(const Plane<Surfel>& surfels, const Camera& camera,
+Plane<unsigned char> covered_pixels(const Surfaces& surfels, const Camera& camera,
                                     const Plane<float>& coverage) {
   Plane<unsigned char> covered(coverage.width, coverage.height);
   const CoveredPixels is_covered(surfels, camera, coverage);

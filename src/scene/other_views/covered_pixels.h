@@ -3,7 +3,7 @@
 
 #include "math/plane.h"
 #include "scene/camera/camera.h"
-#include "scene/surfel.h"
+#include "scene/surfaces.h"
 
 namespace ssdo {
 
@@ -15,7 +15,7 @@ constexpr float kOneNormal = 0.95f;
 /// little, unless its surface is that of a neighbouring pixel without any coverage: so the rim of a
 /// thing before the sky, wires and hair are whole, and the ground beside them is left out. A pixel
 /// without a surface does from a coverage of one half on. Both planes are of the same pixels.
-Plane<unsigned char> covered_pixels(const Plane<Surfel>& surfels, const Camera& camera,
+Plane<unsigned char> covered_pixels(const Surfaces& surfels, const Camera& camera,
                                     const Plane<float>& coverage);
 
 }  // namespace ssdo

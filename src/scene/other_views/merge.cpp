@@ -55,12 +55,12 @@ class Merger {
     const bool faces_away = glm::dot(s.normal, direction_to_viewer(p, ortho)) <= 0;
     const glm::dvec2 at = frame_.camera.project(glm::dvec3(p));
     const double px = std::floor(at.x - frame_.window.x0), py = std::floor(at.y - frame_.window.y0);
-    if (!(px >= 0 && py >= 0 && px < frame_.surfel.width && py < frame_.surfel.height))
+    if (!(px >= 0 && py >= 0 && px < frame_.surfaces.width && py < frame_.surfaces.height))
       return Fate::added;
     bool behind = false;
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
-        const Surfel* shown = surface_at(frame_.surfel, int(px) + dx, int(py) + dy);
+        const auto shown = surface_at(frame_.surfaces, int(px) + dx, int(py) + dy);
         if (!shown) continue;
         const float tolerance =
             kSurfaceTolerance * footprint_.at(-shown->position.z) + s.rounding + shown->rounding;
@@ -108,7 +108,7 @@ class Rival {
     const Window& window = view_.picture->window;
     const double px = std::floor(at.x - window.x0), py = std::floor(at.y - window.y0);
     if (!(std::abs(px) < 1e6 && std::abs(py) < 1e6)) return kNowhere;
-    const Surfel* shown = surface_at(view_.picture->surfel, int(px), int(py));
+    const auto shown = surface_at(view_.picture->surfaces, int(px), int(py));
     if (!shown || glm::dot(glm::vec3(normal), shown->normal) < kAlike) return kNowhere;
     const float off =
         std::abs(glm::dot(glm::vec3(own - glm::dvec3(shown->position)), shown->normal));
@@ -133,15 +133,15 @@ class Rival {
 /// Marks as repeated the pixels of view `k` whose surface another view shows more finely, or as
 /// finely and earlier in the order. A view without albedo replaces none with albedo: its surfaces
 /// send no light.
-void leave_out_repeated(const std::vector<Rival>& rivals, std::size_t k,
-                        const Plane<Surfel>& surfel, Plane<Fate>& fates) {
-  for_each_row(surfel.height, [&](int y) {
-    for (int x = 0; x < surfel.width; ++x) {
+void leave_out_repeated(const std::vector<Rival>& rivals, std::size_t k, const Surfaces& surfaces,
+                        Plane<Fate>& fates) {
+  for_each_row(surfaces.height, [&](int y) {
+    for (int x = 0; x < surfaces.width; ++x) {
       if (fates(x, y) != Fate::added) continue;
-      const float own = rivals[k].width_of(surfel(x, y));
+      const float own = rivals[k].width_of(surfaces(x, y));
       for (std::size_t j = 0; j < rivals.size(); ++j) {
         if (j == k || (rivals[k].has_albedo() && !rivals[j].has_albedo())) continue;
-        const float other = rivals[j].width_if_shown(surfel(x, y));
+        const float other = rivals[j].width_if_shown(surfaces(x, y));
         if (other < own || (j < k && other == own && std::isfinite(other)))
           fates(x, y) = Fate::repeated;
       }
@@ -151,7 +151,7 @@ void leave_out_repeated(const std::vector<Rival>& rivals, std::size_t k,
 
 /// The pixels of a view, or every so many of them.
 struct Grid {
-  const Plane<Surfel>& surfel;
+  const Surfaces& surfaces;
   const Plane<HalfColor>& albedo;
   Camera camera;  ///< of the view, posed in the frame's camera space
   Window window;
@@ -168,8 +168,8 @@ class Mesher {
         fates_(fates),
         out_(out),
         to_frame_(glm::transpose(grid.camera.rotation)),
-        width_((grid.surfel.width + grid.step - 1) / grid.step),
-        height_((grid.surfel.height + grid.step - 1) / grid.step),
+        width_((grid.surfaces.width + grid.step - 1) / grid.step),
+        height_((grid.surfaces.height + grid.step - 1) / grid.step),
         index_(width_, height_, kNone) {}
 
   void run() {
@@ -186,8 +186,8 @@ class Mesher {
 
   void add_vertex(int x, int y) {
     if (fate(x, y) != Fate::added && fate(x, y) != Fate::seen) return;
-    const std::size_t from = grid_.surfel.index(x * grid_.step, y * grid_.step);
-    const Surfel& s = grid_.surfel[from];
+    const std::size_t from = grid_.surfaces.index(x * grid_.step, y * grid_.step);
+    const Surfel& s = grid_.surfaces[from];
     const double depth = grid_.camera.depth_of(grid_.camera.to_camera(glm::dvec3(s.position)));
     const double width = (grid_.camera.orthographic ? 1.0 : depth) /
                          std::min(grid_.camera.fx, grid_.camera.fy) * grid_.step;
@@ -289,11 +289,11 @@ class Mesher {
   Plane<std::uint32_t> index_;
 };
 
-Plane<Fate> judge(const Plane<Surfel>& surfel, const Merger& merger, MergeCounts& counts) {
-  Plane<Fate> fates(surfel.width, surfel.height, Fate::none);
-  for_each_row(surfel.height, [&](int y) {
-    for (int x = 0; x < surfel.width; ++x) {
-      const Surfel& s = surfel(x, y);
+Plane<Fate> judge(const Surfaces& surfaces, const Merger& merger, MergeCounts& counts) {
+  Plane<Fate> fates(surfaces.width, surfaces.height, Fate::none);
+  for_each_row(surfaces.height, [&](int y) {
+    for (int x = 0; x < surfaces.width; ++x) {
+      const Surfel& s = surfaces(x, y);
       if (s.is_surface()) fates(x, y) = merger.judge(s);
     }
   });
@@ -342,22 +342,22 @@ OtherSurfaces merge_views(const std::vector<OtherView>& views, const Geometry& f
   }
   for (std::size_t k = 0; k < judged.size(); ++k) {
     auto& [view, fates] = judged[k];
-    const Plane<Surfel> surfel = view->surfels_in_frame();
-    leave_out_repeated(rivals, k, surfel, fates);
+    const Surfaces surfaces = view->surfels_in_frame();
+    leave_out_repeated(rivals, k, surfaces, fates);
     const OtherPicture& picture = *view->picture;
-    Mesher({surfel, picture.albedo, view->camera, picture.window, picture.closed, 1,
+    Mesher({surfaces, picture.albedo, view->camera, picture.window, picture.closed, 1,
             &picture.receives},
            fates, out)
         .run();
   }
   Camera own = frame.camera;  // what it shows is in its own camera space
   own.rotation = glm::dmat3(1), own.origin = glm::dvec3(0);
-  Plane<Fate> fates(frame.surfel.width, frame.surfel.height, Fate::none);
+  Plane<Fate> fates(frame.surfaces.width, frame.surfaces.height, Fate::none);
   for (std::size_t i = 0; i < fates.size(); ++i)
-    if (frame.surfel[i].is_usable()) fates[i] = Fate::seen;
-  const int step = (frame.surfel.width + kFrameColumns - 1) / kFrameColumns;
+    if (frame.surfaces[i].is_usable()) fates[i] = Fate::seen;
+  const int step = (frame.surfaces.width + kFrameColumns - 1) / kFrameColumns;
 
-  Mesher({frame.surfel, albedo, own, frame.window, false, step, nullptr}, fates, out).run();
+  Mesher({frame.surfaces, albedo, own, frame.window, false, step, nullptr}, fates, out).run();
   for (auto& [text, taken] : out.receives) taken.resize(out.vertices.size(), 0);
   return out;
 }

@@ -94,7 +94,7 @@ void mark_links(OtherPicture& picture, const std::vector<Selection>& selections,
 void mark_links(OtherPicture& picture, const LampLinks& links, const SelectionFiles& in) {
   mark_links(picture, links.cast, picture.casts, "blocks no light", in,
              [&](const Plane<float>& coverage) {
-               return covered_pixels(picture.surfel, picture.camera, coverage);
+               return covered_pixels(picture.surfaces, picture.camera, coverage);
              });
   mark_links(picture, links.receive, picture.receives, "takes no light", in,
              [](Plane<float> coverage) { return coverage; });
@@ -127,11 +127,11 @@ OtherPictures::Picture picture_of(View view, const std::string& file, const std:
   out.window = view.geometry.window;
   out.closed = out.camera.panorama && out.window.width() == view.geometry.display.width();
   mark_backdrop(out, view.geometry, objects.options.backdrop);
-  out.surfel = std::move(view.geometry.surfel);
-  out.depth = Plane<float>(out.surfel.width, out.surfel.height, kNothing);
-  for_each_row(out.surfel.height, [&](int y) {
-    for (int x = 0; x < out.surfel.width; ++x) {
-      const Surfel& s = out.surfel(x, y);
+  out.surfaces = std::move(view.geometry.surfaces);
+  out.depth = Plane<float>(out.surfaces.width, out.surfaces.height, kNothing);
+  for_each_row(out.surfaces.height, [&](int y) {
+    for (int x = 0; x < out.surfaces.width; ++x) {
+      const Surfel& s = out.surfaces(x, y);
       if (s.is_surface()) out.depth(x, y) = float(out.camera.depth_of(glm::dvec3(s.position)));
     }
   });

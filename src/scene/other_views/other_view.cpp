@@ -20,15 +20,16 @@ OtherView place(OtherView::Picture picture, const Geometry& frame) {
   return {std::move(picture), camera};
 }
 
-Plane<Surfel> OtherView::surfels_in_frame() const {
-  Plane<Surfel> placed = picture->surfel;
+Surfaces OtherView::surfels_in_frame() const {
+  Surfaces placed = picture->surfaces;
   const glm::dmat3 to_frame = glm::transpose(camera.rotation);
   for_each_row(placed.height, [&](int y) {
     for (int x = 0; x < placed.width; ++x) {
-      Surfel& s = placed(x, y);
+      Surfel s = placed(x, y);
       if (!s.is_surface()) continue;
       s.position = glm::vec3(to_frame * glm::dvec3(s.position) + camera.origin);
       s.normal = glm::vec3(to_frame * glm::dvec3(s.normal));
+      placed.set(x, y, s);
     }
   });
   return placed;

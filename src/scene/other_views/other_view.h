@@ -12,7 +12,7 @@
 #include "math/plane.h"
 #include "scene/camera/camera.h"
 #include "scene/geometry.h"
-#include "scene/surfel.h"
+#include "scene/surfaces.h"
 
 namespace ssdo {
 
@@ -27,7 +27,7 @@ struct OtherPicture {
   Camera camera;            ///< from world space to its own
   Window window;            ///< of the planes, in the pixels of its display window
   bool closed = false;      ///< a panorama whose last column lies beside its first
-  Plane<Surfel> surfel;     ///< normals are on the side of its own camera
+  Surfaces surfaces;        ///< normals are on the side of its own camera
   Plane<float> depth;       ///< Camera::depth_of; infinite where there is no surface
   Plane<HalfColor> albedo;  ///< empty where the file has none
   /// The bits above, by pixel; empty: none anywhere.
@@ -51,7 +51,7 @@ struct OtherView {
   bool is_other_eye = false;  ///< of the frame's stereo pair
 
   /// Its surfels in the camera space of the frame.
-  Plane<Surfel> surfels_in_frame() const;
+  Surfaces surfels_in_frame() const;
 
   /// Width of what a pixel at this depth shows, in scene units.
   float footprint(float at_depth) const {

@@ -61,9 +61,9 @@ constexpr std::array<double, 17> kUnits = {1,          0.01,   100,        0.1, 
 
 /// Surfaces as a camera sees them.
 struct Shown {
-  const Camera& camera;  ///< from the space of points to its own, in the unit of `surfel` * unit
+  const Camera& camera;  ///< from the space of points to its own, in the unit of `surfaces` * unit
   double unit;
-  const Plane<Surfel>& surfel;  ///< in its own camera space
+  const Surfaces& surfaces;  ///< in its own camera space
   Window window;
   bool closed;
 
@@ -83,15 +83,15 @@ struct Shown {
     if (!(glm::dot(normal, to_viewer) > double(kLeastFacing))) return Sees::nothing;
     const glm::dvec2 at = camera.project(own);
     const double px = std::floor(at.x - window.x0), py = std::floor(at.y - window.y0);
-    if (!(px >= 0 && py >= 0 && px < surfel.width && py < surfel.height)) return Sees::nothing;
+    if (!(px >= 0 && py >= 0 && px < surfaces.width && py < surfaces.height)) return Sees::nothing;
     if (double(footprint(depth)) > kCoarsest * width) return Sees::nothing;
     const double tolerance = double(kSurfaceTolerance * footprint(depth)) + rounding;
     bool past = true;
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         int x = int(px) + dx;
-        if (closed) x = (x + surfel.width) % surfel.width;
-        const Surfel* s = surface_at(surfel, x, int(py) + dy);
+        if (closed) x = (x + surfaces.width) % surfaces.width;
+        const auto s = surface_at(surfaces, x, int(py) + dy);
         if (!s) continue;
         const glm::dvec3 place = unit * glm::dvec3(s->position), facing(s->normal);
         const double most = tolerance + unit * double(s->rounding);
@@ -105,12 +105,12 @@ struct Shown {
 };
 
 /// Surfaces of a picture, evenly spread, in their own camera space.
-std::vector<Surfel> samples_of(const Plane<Surfel>& surfel) {
-  const int apart = std::max(1, int(std::sqrt(double(surfel.size()) / kSamples)));
+std::vector<Surfel> samples_of(const Surfaces& surfaces) {
+  const int apart = std::max(1, int(std::sqrt(double(surfaces.size()) / kSamples)));
   std::vector<Surfel> samples;
-  for (int y = apart / 2; y < surfel.height; y += apart) {
-    for (int x = apart / 2; x < surfel.width; x += apart)
-      if (surfel(x, y).is_surface()) samples.push_back(surfel(x, y));
+  for (int y = apart / 2; y < surfaces.height; y += apart) {
+    for (int x = apart / 2; x < surfaces.width; x += apart)
+      if (surfaces(x, y).is_surface()) samples.push_back(surfaces(x, y));
   }
   return samples;
 }
@@ -121,8 +121,8 @@ class Comparison {
   Comparison(const OtherPicture& picture, const Geometry& frame)
       : picture_(picture),
         frame_(frame),
-        of_view_(samples_of(picture.surfel)),
-        of_frame_(samples_of(frame.surfel)),
+        of_view_(samples_of(picture.surfaces)),
+        of_frame_(samples_of(frame.surfaces)),
         own_(frame.camera) {
     own_.rotation = glm::dmat3(1), own_.origin = glm::dvec3(0);
   }
@@ -138,8 +138,8 @@ class Comparison {
       side.shared += sees == Shown::Sees::it;
       side.contradictory += sees == Shown::Sees::past_it;
     };
-    const Shown view{camera, unit, picture_.surfel, picture_.window, picture_.closed},
-        frame{own_, 1, frame_.surfel, frame_.window, false};
+    const Shown view{camera, unit, picture_.surfaces, picture_.window, picture_.closed},
+        frame{own_, 1, frame_.surfaces, frame_.window, false};
     for (const Surfel& s : of_frame_) {
       const glm::dvec3 p(s.position), n(s.normal);
       count(view.look_at(p, n, double(s.rounding), frame.footprint(own_.depth_of(p))), n);
@@ -186,7 +186,10 @@ OtherView::Picture in_world(const OtherPicture& picture, const OtherWorld& world
   OtherPicture out = picture;
   out.camera = in_world(picture.camera, world);
   const auto unit = float(world.unit);
-  for (Surfel& s : out.surfel.pixels) s.position *= unit, s.rounding *= unit;
+  out.surfaces.change_each([unit](Surfel& s) {
+    s.position *= unit;
+    if (s.is_surface()) s.rounding *= unit;
+  });
   for (float& depth : out.depth.pixels) depth *= unit;
   return std::make_shared<const OtherPicture>(std::move(out));
 }

@@ -83,10 +83,11 @@ class Hole {
        const Geometry* overview)
       : shown_(geometry),
         overview_(geometry.part_of ? overview : nullptr),
-        casting_{geometry, Plane<int>(geometry.surfel.width, geometry.surfel.height, kNone), {}},
-        is_open_(covered_pixels(geometry.surfel, geometry.camera, coverage)) {
+        casting_{
+            geometry, Plane<int>(geometry.surfaces.width, geometry.surfaces.height, kNone), {}},
+        is_open_(covered_pixels(geometry.surfaces, geometry.camera, coverage)) {
     for (std::size_t i = 0; i < backdrop.size(); ++i)
-      if (backdrop[i] > 0) casting_.geometry.surfel[i] = Surfel();
+      if (backdrop[i] > 0) casting_.geometry.surfaces.set(i, Surfel());
   }
 
   Casting fill(const std::vector<OtherView>& views) {
@@ -98,7 +99,7 @@ class Hole {
       for (int x = 0; x < is_open_.width; ++x) {
         const std::size_t i = is_open_.index(x, y);
         if (is_open_[i] == kUnknown) guess(x, y, at(ends, i));
-        if (is_open_[i] && casting_.geometry.surfel[i].is_surface())
+        if (is_open_[i] && casting_.geometry.surfaces[i].is_surface())
           casting_.sender[i] = sender(x, y, casting_.sender[i], at(of_frame, i));
       }
     });
@@ -144,15 +145,15 @@ class Hole {
 
   /// Whether something at this depth would have been hidden by the object.
   bool is_behind(int x, int y, float depth) const {
-    const Surfel& s = shown_.surfel(x, y);
+    const Surfel& s = shown_.surfaces(x, y);
     return !s.is_surface() || depth >= -s.position.z;
   }
 
   /// Fills pixels with what another view shows behind the object; the nearest of several points.
   void add(const OtherView& view) {
-    const Plane<Surfel> seen = view.surfels_in_frame();
+    const Surfaces seen = view.surfels_in_frame();
     const bool ortho = shown_.camera.orthographic;
-    for (const Surfel& s : seen.pixels) {
+    for (const Surfel& s : seen.each()) {
       if (!s.is_usable() || glm::dot(s.normal, direction_to_viewer(s.position, ortho)) <= 0)
         continue;
       const glm::dvec2 at = shown_.camera.project(glm::dvec3(s.position));
@@ -162,9 +163,9 @@ class Hole {
       const std::size_t i = is_open_.index(int(px), int(py));
       const bool is_filled = is_open_[i] == kMeasured;
       if (!is_open_[i] || !is_behind(int(px), int(py), -s.position.z)) continue;
-      Surfel& put = casting_.geometry.surfel[i];
-      if (is_filled && put.position.z >= s.position.z) continue;
-      put = s;
+      Surfaces& casting = casting_.geometry.surfaces;
+      if (is_filled && casting.position[2][i] >= s.position.z) continue;
+      casting.set(i, s);
       is_open_[i] = kMeasured;
     }
   }
@@ -207,7 +208,7 @@ class Hole {
       const int nx = x + k * way.dx, ny = y + k * way.dy;
       // The border or the hole hides where the surface ends.
       if (nx < 0 || ny < 0 || nx >= w || ny >= is_open_.height || is_open_(nx, ny)) return away;
-      const Surfel& q = shown_.surfel(nx, ny);
+      const Surfel& q = shown_.surfaces(nx, ny);
       if (!q.is_surface() || glm::dot(q.normal, s.normal) < kOneNormal) return on;
       const glm::vec3 to = q.position - s.position;
       if (std::abs(glm::dot(to, s.normal)) > kOnePlane * glm::length(to)) return on;
@@ -215,7 +216,7 @@ class Hole {
     return away;
   }
 
-  const Surfel& known(int end) const { return casting_.geometry.surfel[std::size_t(end)]; }
+  Surfel known(int end) const { return casting_.geometry.surfaces[std::size_t(end)]; }
 
   /// The guess from one end alone: its tangent plane on the view ray of a pixel. `way` points away
   /// from the hole.
@@ -237,10 +238,10 @@ class Hole {
       return std::clamp(floor_divide(pixel - first, kOverviewStride) - first_small, 0, size - 1);
     };
     const int column = block(shown_.window.x0 + x, shown_.display.x0, small.window.x0,
-                             small.surfel.width),
+                             small.surfaces.width),
               row = block(shown_.window.y0 + y, shown_.display.y0, small.window.y0,
-                          small.surfel.height);
-    return on_plane_of(small.surfel(column, row), x, y, away);
+                          small.surfaces.height);
+    return on_plane_of(small.surfaces(column, row), x, y, away);
   }
 
   /// The distance, in pixels, at which a line leaves these rows for others of the frame; 0 if it
@@ -343,7 +344,7 @@ class Hole {
   }
 
   void put(int x, int y, std::span<const Guess> guesses) {
-    Surfel& out = casting_.geometry.surfel(x, y);
+    Surfel out;
     const Guess* best = nullptr;
     float most = 0;
     for (const Guess& one : guesses) {
@@ -351,8 +352,8 @@ class Hole {
       if (weight > most) most = weight, best = &one;
     }
     if (!best || best->is_background) {
-      out = Surfel();
       if (!best) out.rounding = Surfel::kBroken;  // nothing tells what is there
+      casting_.geometry.surfaces.set(x, y, out);
       return;
     }
     best = nearer_of_corner(*best, most, guesses);
@@ -367,8 +368,8 @@ class Hole {
     }
     out.position = place(x, y, float(nearness / weights));
     out.normal = glm::normalize(normal);
-    out.valid = 1;
     out.rounding = nearest->end == kNone ? 0 : known(nearest->end).rounding;
+    casting_.geometry.surfaces.set(x, y, out);
     casting_.sender(x, y) = nearest->end;
   }
 

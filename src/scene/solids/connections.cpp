@@ -11,7 +11,7 @@
 #define HWY_TARGET_INCLUDE "scene/solids/connections.cpp"
 #include <hwy/foreach_target.h>
 
-#include "scene/surfel-inl.h"
+#include "scene/surfaces-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -30,7 +30,7 @@ HWY_INLINE M are_connected(const Surfels& a, const Surfels& b, const PixelFootpr
 }
 
 void connect_row(const Geometry& geometry, int y, Plane<unsigned char>& out) {
-  const Plane<Surfel>& surfels = geometry.surfel;
+  const Surfaces& surfels = geometry.surfaces;
   const PixelFootprint footprint(geometry.camera);
   for (int x = 0; x < surfels.width; x += kLanes) {
     const Surfels p = surfels_at(surfels, x, y);
@@ -56,7 +56,7 @@ namespace ssdo {
 HWY_EXPORT(connect_row);
 
 Plane<unsigned char> find_connections(const Geometry& geometry) {
-  Plane<unsigned char> out(geometry.surfel.width, geometry.surfel.height);
+  Plane<unsigned char> out(geometry.surfaces.width, geometry.surfaces.height);
   for_each_row(out.height, [&](int y) { HWY_DYNAMIC_DISPATCH(connect_row)(geometry, y, out); });
   return out;
 }

@@ -62,8 +62,8 @@ constexpr int kSamples = 64, kNextToEnd = 4;
 /// An end of a run: half a pixel beyond its last pixel, where the silhouette is in the mean.
 struct End {
   glm::vec3 position;
-  float px;              ///< width of a pixel there
-  const Surfel& beyond;  ///< the next pixel
+  float px;       ///< width of a pixel there
+  Surfel beyond;  ///< the next pixel
   const glm::vec3& edge;
 };
 
@@ -92,7 +92,7 @@ class Section {
   }
 
  private:
-  const Surfel& at(int i) const { return geometry_.surfel[pixel(i)]; }
+  Surfel at(int i) const { return geometry_.surfaces[pixel(i)]; }
   std::size_t pixel(int i) const {
     return std::size_t(std::ptrdiff_t(run_.first) + i * run_.stride);
   }
@@ -170,7 +170,7 @@ float shown_depth(const Geometry& geometry, const WholeRun& run) {
 }
 
 float least_depth(const Geometry& geometry, std::size_t pixel) {
-  const Surfel& s = geometry.surfel[pixel];
+  const Surfel& s = geometry.surfaces[pixel];
   const float cosine =
       glm::dot(s.normal, direction_to_viewer(s.position, geometry.camera.orthographic));
   // At silhouettes the slope has no limit: a pixel would stand for a wall.

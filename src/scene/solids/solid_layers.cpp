@@ -44,21 +44,21 @@ void Solids::separate_thicknesses() {
 }
 
 glm::vec3 point_behind(const Geometry& geometry, std::size_t pixel, float distance) {
-  const glm::vec3 p(geometry.surfel[pixel].position);
+  const glm::vec3 p(geometry.surfaces[pixel].position);
   return p - distance * direction_to_viewer(p, geometry.camera.orthographic);
 }
 
 glm::vec3 normal_of_solid(const Geometry& geometry, const Solids& solids, int layer,
                           std::size_t pixel) {
   const int sender = solids.at(layer, pixel).sender;
-  if (sender >= 0) return geometry.surfel[std::size_t(sender)].normal;
+  if (sender >= 0) return geometry.surfaces[std::size_t(sender)].normal;
   const Plane<glm::vec3>& normal = solids.behind[std::size_t(layer - 1)].normal;
   if (!normal.empty()) return normal[pixel];
-  return direction_to_viewer(geometry.surfel[pixel].position, geometry.camera.orthographic);
+  return direction_to_viewer(geometry.surfaces[pixel].position, geometry.camera.orthographic);
 }
 
 Solids constant_thickness(const Geometry& geometry, float thickness) {
-  const int w = geometry.surfel.width, h = geometry.surfel.height;
+  const int w = geometry.surfaces.width, h = geometry.surfaces.height;
   return {Plane<float>(w, h, thickness), Plane<Provenance>(w, h, Provenance::given), {}, {}};
 }
 

@@ -142,7 +142,7 @@ class GuessAlongLines {
 
   template <class Visit>
   void for_each_line(const Visit& visit, bool back) const {
-    const int w = geometry_.surfel.width, h = geometry_.surfel.height;
+    const int w = geometry_.surfaces.width, h = geometry_.surfaces.height;
     if (direction_.dy == 0) {
       return for_each_row(h, [&](int y) {
         Run run;
@@ -215,8 +215,8 @@ class GuessAlongLines {
       }
       const auto last =
           std::size_t(farthest + (widths_[std::size_t(farthest)].pixels - 1) * stride());
-      run.first_edge += float(side) * geometry_.surfel[std::size_t(farthest)].position;
-      run.last_edge += float(side) * geometry_.surfel[last].position;
+      run.first_edge += float(side) * geometry_.surfaces[std::size_t(farthest)].position;
+      run.last_edge += float(side) * geometry_.surfaces[last].position;
     };
     add_edges(-1), add_edges(1);
     own.depth = std::min(own.depth, shown_depth(geometry_, run));
@@ -262,10 +262,10 @@ class GuessAlongLines {
   /// How the surface of a pixel meets a neighbour, which is on another surface or on none. At equal
   /// depths, the earlier pixel of the line goes behind the later one.
   Meets meet(std::size_t pixel, int x, int y, bool is_after) const {
-    const Plane<Surfel>& surfel = geometry_.surfel;
-    if (x < 0 || x >= surfel.width) return Meets::border;
-    if (y < 0 || y >= surfel.height) return frame_goes_on(y) ? Meets::cut : Meets::border;
-    const Surfel &here = surfel[pixel], &other = surfel(x, y);
+    const Surfaces& surfaces = geometry_.surfaces;
+    if (x < 0 || x >= surfaces.width) return Meets::border;
+    if (y < 0 || y >= surfaces.height) return frame_goes_on(y) ? Meets::cut : Meets::border;
+    const Surfel &here = surfaces[pixel], &other = surfaces(x, y);
     if (!other.is_surface()) return Meets::ends;
     const bool before_other =
         is_after ? here.position.z > other.position.z : here.position.z >= other.position.z;
@@ -286,9 +286,9 @@ class GuessAlongLines {
       return std::clamp(floor_divide(pixel - first, kOverviewStride) - first_small, 0, size - 1);
     };
     const Window &window = geometry_.window, &display = geometry_.display;
-    const int column = block(window.x0 + x, display.x0, small.window.x0, small.surfel.width),
-              row = block(window.y0 + y, display.y0, small.window.y0, small.surfel.height);
-    const Surfel &here = geometry_.surfel(x, y), &there = small.surfel(column, row);
+    const int column = block(window.x0 + x, display.x0, small.window.x0, small.surfaces.width),
+              row = block(window.y0 + y, display.y0, small.window.y0, small.surfaces.height);
+    const Surfel &here = geometry_.surfaces(x, y), &there = small.surfaces(column, row);
     const bool same = there.is_surface() && std::abs(here.position.z - there.position.z) <=
                                                 kSameDepth * std::abs(here.position.z);
     return same ? overview_->thickness(column, row) : kInfinity;
@@ -297,13 +297,13 @@ class GuessAlongLines {
   /// Whether the normal of a pixel was rebuilt from P across the step to another surface. Where a
   /// surface is seen through a slit one pixel wide, its tangent plane is not known.
   bool leans_on_an_edge(int x, int y) const {
-    const Surfel& here = geometry_.surfel(x, y);
+    const Surfel& here = geometry_.surfaces(x, y);
     for (const std::size_t axis : {0, 1}) {
       bool joined = false, leans = false;
       for (const int side : {-1, 1}) {
         Pixel at{x, y};
         joined = joined || steps_along(at, axis, side);
-        const Surfel* beside = surface_at(geometry_.surfel, at.x, at.y);
+        const auto beside = surface_at(geometry_.surfaces, at.x, at.y);
         leans =
             leans || (beside && std::abs(glm::dot(beside->position - here.position, here.normal)) <=
                                     kOnPlane * footprint_.at(-here.position.z));
@@ -318,10 +318,10 @@ class GuessAlongLines {
     const Meets meets = meet(pixel, x, y, is_after);
     run.away = 0;
     run.sender = -1;
-    if (meets != Meets::ends || !geometry_.surfel(x, y).is_surface()) return meets;
+    if (meets != Meets::ends || !geometry_.surfaces(x, y).is_surface()) return meets;
     if (leans_on_an_edge(x, y)) return meets;
-    const Surfel& beyond = geometry_.surfel(x, y);
-    run.sender = int(geometry_.surfel.index(x, y));
+    const Surfel& beyond = geometry_.surfaces(x, y);
+    run.sender = int(geometry_.surfaces.index(x, y));
     run.point = beyond.position, run.normal = beyond.normal;
     return meets;
   }
@@ -335,7 +335,7 @@ class GuessAlongLines {
     const int unknown_ends = (run.meets_before != Meets::ends) + (after != Meets::ends);
     out.is_whole = unknown_ends == 0;
     if (unknown_ends == 2) return out;
-    const Surfel &first = geometry_.surfel[run.first], &last = geometry_.surfel[last_pixel];
+    const Surfel &first = geometry_.surfaces[run.first], &last = geometry_.surfaces[last_pixel];
     const float between = glm::distance(first.position, last.position);
     const float ends =
         0.5f * step_px_ * (footprint_.at(-first.position.z) + footprint_.at(-last.position.z));
@@ -349,7 +349,7 @@ class GuessAlongLines {
     if (run.sender < 0) return;
     const float away_px = float(++run.away) * step_px_;
     if (away_px >= out_.distance_px[pixel]) return;
-    const glm::vec3 front = geometry_.surfel[pixel].position;
+    const glm::vec3 front = geometry_.surfaces[pixel].position;
     const glm::vec3 along = -direction_to_viewer(front, geometry_.camera.orthographic);
     const float distance = glm::dot(run.normal, run.point - front) / glm::dot(run.normal, along);
     if (!(distance > 0 && distance < kInfinity)) return;
@@ -373,7 +373,7 @@ class GuessAlongLines {
 }  // namespace
 
 Solids guess_solids(const Geometry& geometry, const std::optional<SolidsOfOverview>& overview) {
-  const int w = geometry.surfel.width, h = geometry.surfel.height;
+  const int w = geometry.surfaces.width, h = geometry.surfaces.height;
   Guess guess{filled(w, h, kInfinity), filled(w, h, kInfinity),
               SolidLayer(w, h, Provenance::guessed)};
   guess.second.thickness = {};  // a surface is as thick behind something as where it is seen

@@ -65,7 +65,7 @@ double on_floor(const View& view, const Environment& environment, double y0, dou
   double sum = 0, pixels = 0;
   for (int y = 0; y < view.window.height(); ++y) {
     for (int x = 0; x < view.window.width(); ++x) {
-      if (!g.is_surface(g.surfel.index(x, y))) continue;
+      if (!g.is_surface(g.surfaces.index(x, y))) continue;
       const Point p = point_at(view.scene, view.camera, view.window, x, y);
       if (p.position.z > 1e-6 || std::abs(p.position.x) > 1) continue;
       if (p.position.y < y0 || p.position.y > y1) continue;
@@ -177,7 +177,7 @@ TEST(BitmaskBeyond, AHillHidesNothingFromItself) {
   double least_sun = 1, least_reflection = 1;
   for (std::size_t i = 0; i < out.ao.size(); ++i) {
     if (!g.is_surface(i)) continue;
-    const float all = light.unoccluded({}, g.surfel[i].normal).x;
+    const float all = light.unoccluded({}, g.surfaces[i].normal).x;
     least_sun = std::min(least_sun, double(out.direct[i].x / all));
     least_reflection = std::min(least_reflection, double(out.reflection[i]));
   }
@@ -196,7 +196,7 @@ TEST(BitmaskBeyond, ExtentsAreThoseThatTheFrameShows) {
   int found = 0;
   double nearest = 6;  // of the wall in the frame; the camera looks down, so lower rows show more
   for (int y = view.window.height() - 1; y >= 0; --y) {
-    if (!g.is_surface(g.surfel.index(0, y))) continue;
+    if (!g.is_surface(g.surfaces.index(0, y))) continue;
     const Point p = point_at(view.scene, view.camera, view.window, 0, y);
     if (p.position.x > -3.5 || p.normal.z > 0.5) continue;
     const BorderExtent& e = cut.extents[std::size_t(scene.border.in_column(false, y))];
@@ -232,7 +232,7 @@ std::vector<BorderExtent> extents_at_left(const Geometry& g, float radius = kNoL
   const MarchScene scene = make_march_scene(g, guess_solids(g));
   const CutSurfaces cut = find_cut_surfaces(scene, g.world_to_camera * glm::vec3(0, 0, 1), radius);
   std::vector<BorderExtent> extents;
-  for (int y = 0; y < g.surfel.height; ++y)
+  for (int y = 0; y < g.surfaces.height; ++y)
     extents.push_back(cut.extents[std::size_t(scene.border.in_column(false, y))]);
   return extents;
 }
@@ -324,8 +324,9 @@ TEST(BitmaskBeyond, BrokenPixelsTellNothing) {
   const Surface scene = front(8, [](double x, double z) { return x < 2 && z < 1; });
   Geometry g = geometry_of(scene, level_ortho(8), kWide);
   const std::vector<BorderExtent> known = extents_at_left(g);
-  for (Surfel& s : g.surfel.pixels)
+  g.surfaces.change_each([](Surfel& s) {
     if (!s.is_surface()) s.rounding = Surfel::kBroken;
+  });
   const std::vector<BorderExtent> extents = extents_at_left(g);
   EXPECT_NEAR(extents[40].seen[2], known[40].seen[2], 1e-3);
   EXPECT_GT(extents[40].most[2], 10 * known[40].most[2]);

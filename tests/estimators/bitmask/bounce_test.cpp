@@ -84,13 +84,13 @@ TEST(BitmaskBounce, ALayerOfRadianceHoldsForBothSides) {
   const glm::vec3 up = glm::vec3(g.camera.rotation * glm::dvec3(0, 0, 1)),
                   out_of_wall = glm::vec3(g.camera.rotation * glm::dvec3(0, -1, 0)),
                   leaning = glm::vec3(g.camera.rotation * glm::normalize(glm::dvec3(0, 0.3, 1)));
-  for (Surfel& s : g.surfel.pixels) {
+  g.surfaces.change_each([&](Surfel& s) {
     const glm::vec3 n(s.normal);
     if (glm::dot(n, out_of_wall) > 0.9f)
       s.normal = leaning;
     else
       EXPECT_GT(glm::dot(n, up), 0.9f);
-  }
+  });
   const Products out =
       run(g, {.slices = 4, .steps = 64, .bounces = 1, .radiance = constant(glm::vec3(1))});
   double hidden = 0, bounce = 0;

@@ -61,7 +61,7 @@ class LitFrame {
   void for_each_pixel(const Visit& visit) const {
     for (int y = 0; y < kWindow.height(); ++y) {
       for (int x = 0; x < kWindow.width(); ++x) {
-        if (geometry_.is_surface(geometry_.surfel.index(x, y)))
+        if (geometry_.is_surface(geometry_.surfaces.index(x, y)))
           visit(x, y, point_at(scene_, camera_, kWindow, x, y));
       }
     }

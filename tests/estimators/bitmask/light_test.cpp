@@ -179,7 +179,7 @@ TEST(BitmaskLight, TheBentNormalOfAnOpenSurfaceIsItsNormal) {
             run(g, {.products = {.ao = true, .bent = true}, .slices = slices, .steps = 12});
         double error = 0;
         for (std::size_t i = 0; i < out.bent.size(); ++i)
-          error = std::max(error, double(glm::length(out.bent[i] - g.surfel[i].normal)));
+          error = std::max(error, double(glm::length(out.bent[i] - g.surfaces[i].normal)));
         fmt::print("bent normal, open, {}, tilt {:<2}, {:>2} slices: off by {:.1e}\n",
                    projection.orthographic ? "ortho" : "persp", tilt, slices, error);
         EXPECT_LT(error, 1e-3) << tilt << ", " << slices;

@@ -65,10 +65,10 @@ TEST(BitmaskProperties, AnyNumberOfThreadsGivesTheSameBits) {
 Geometry crop(const Geometry& g, const Window& to) {
   Geometry out = g;
   out.window = to;
-  out.surfel = Plane<Surfel>(to.width(), to.height());
+  out.surfaces = Surfaces(to.width(), to.height());
   for (int y = 0; y < to.height(); ++y) {
     for (int x = 0; x < to.width(); ++x)
-      out.surfel(x, y) = g.surfel(x + to.x0 - g.window.x0, y + to.y0 - g.window.y0);
+      out.surfaces.set(x, y, g.surfaces(x + to.x0 - g.window.x0, y + to.y0 - g.window.y0));
   }
   return out;
 }
@@ -100,8 +100,8 @@ TEST(BitmaskProperties, ACropChangesNothingFartherThanTheRadiusFromItsEdge) {
     const Products cut = run(part, request);
     for (int y = 0; y < window.height(); ++y) {
       for (int x = 0; x < window.width(); ++x) {
-        if (!part.is_surface(part.surfel.index(x, y))) continue;
-        const glm::dvec3 p(part.surfel(x, y).position);
+        if (!part.is_surface(part.surfaces.index(x, y))) continue;
+        const glm::dvec3 p(part.surfaces(x, y).position);
         if (distance_to_sides(part, p) <= radius * 1.001) continue;
         const int fx = x + window.x0, fy = y + window.y0;
         const bool equal = same_bits(cut.ao(x, y), full.ao(fx, fy)) &&
@@ -118,10 +118,10 @@ TEST(BitmaskProperties, ACropChangesNothingFartherThanTheRadiusFromItsEdge) {
 
 /// `g` in units 1 / `scale` as long.
 Geometry scaled(Geometry g, float scale) {
-  for (Surfel& s : g.surfel.pixels) {
+  g.surfaces.change_each([scale](Surfel& s) {
     s.position *= scale;
-    s.rounding *= scale;
-  }
+    if (s.is_surface()) s.rounding *= scale;
+  });
   if (g.camera.orthographic) g.camera.fx /= scale, g.camera.fy /= scale;
   return g;
 }
@@ -227,8 +227,10 @@ TEST(BitmaskProperties, NothingThatComesInMakesANaN) {
       request.extend = extend;
       for (const glm::vec3& position : positions) {
         Geometry broken = g;
-        for (const int x : {0, 40, 41, 90, 130})
-          broken.surfel(x, x % 77).position = position, broken.surfel(x, x % 77).valid = 1;
+        for (const int x : {0, 40, 41, 90, 130}) {
+          const Surfel s = broken.surfaces(x, x % 77);
+          broken.surfaces.set(x, x % 77, {position, s.normal, std::max(s.rounding, 0.0f)});
+        }
         SCOPED_TRACE(fmt::format("position {} {} {}, radius {}", position.x, position.y, position.z,
                                  radius));
         expect_sane(run(broken, request));
@@ -236,7 +238,7 @@ TEST(BitmaskProperties, NothingThatComesInMakesANaN) {
       for (const glm::vec3& normal : normals) {
         Geometry broken = g;
         for (const int x : {0, 40, 41, 90, 130})
-          broken.surfel(x, x % 77).normal = normal, broken.surfel(x, x % 77).rounding = 1e-7f;
+          broken.surfaces.set(x, x % 77, {broken.surfaces(x, x % 77).position, normal, 1e-7f});
         SCOPED_TRACE(
             fmt::format("normal {} {} {}, radius {}", normal.x, normal.y, normal.z, radius));
         expect_sane(run(broken, request));
@@ -247,7 +249,7 @@ TEST(BitmaskProperties, NothingThatComesInMakesANaN) {
 
 TEST(BitmaskProperties, BackgroundIsOpenAndDark) {
   Geometry g = geometry_of(still_life(), camera(), kWindow);
-  for (Surfel& s : g.surfel.pixels) s = {};
+  g.surfaces = Surfaces(kWindow.width(), kWindow.height());
   const Products out = run(g, all_products());
   for (std::size_t i = 0; i < out.ao.size(); ++i) {
     ASSERT_EQ(out.ao[i], 1);

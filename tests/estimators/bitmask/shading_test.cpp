@@ -27,7 +27,8 @@ Geometry bumpy_plane() {
       const float u = 0.37f * float(x), v = 0.53f * float(y);
       const glm::vec3 slope(std::sin(u) + std::sin(0.7f * v + 1), std::sin(v) + std::sin(0.6f * u),
                             0);
-      g.surfel(x, y).normal = to_camera * glm::normalize(glm::vec3(0, 0, 1) + 0.26f * slope);
+      g.surfaces.set_normal(g.surfaces.index(x, y),
+                            to_camera * glm::normalize(glm::vec3(0, 0, 1) + 0.26f * slope));
     }
   }
   return g;
@@ -46,7 +47,7 @@ TEST(BitmaskShading, ABumpyPlaneIsHiddenByThePlaneAlone) {
   double mean = 0, exact = 0, squares = 0, away = 0, away_count = 0, count = 0;
   for (int y = 2; y < kWindow.height() - 2; ++y) {
     for (int x = 2; x < kWindow.width() - 2; ++x) {
-      const Surfel& s = g.surfel(x, y);
+      const Surfel& s = g.surfaces(x, y);
       const double expected = open_above(s.normal, up);
       const double off = out.ao(x, y) - expected;
       mean += out.ao(x, y), exact += expected, squares += off * off, count += 1;
@@ -81,7 +82,7 @@ TEST(BitmaskShading, ItsSunIsSeenWhereverThePlaneSeesIt) {
   for (int y = 2; y < kWindow.height() - 2; ++y) {
     for (int x = 2; x < kWindow.width() - 2; ++x) {
       const double expected =
-          std::max(0.0f, glm::dot(g.surfel(x, y).normal, sun_of(light).direction)) *
+          std::max(0.0f, glm::dot(g.surfaces(x, y).normal, sun_of(light).direction)) *
           sun_of(light).irradiance.x;
       EXPECT_NEAR(out.direct(x, y).x, expected, 1e-3 * sun_of(light).irradiance.x) << x << " " << y;
     }

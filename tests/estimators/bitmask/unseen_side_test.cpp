@@ -129,10 +129,11 @@ struct WallBehindScreen {
     for (int x = 0; x < kWindow.width(); ++x) {
       int shown = -1;
       for (int y = 0; y < kWindow.height(); ++y) {
-        const std::size_t i = geometry.surfel.index(x, y);
+        const std::size_t i = geometry.surfaces.index(x, y);
         const Point p = point_at(wall, camera, kWindow, x, y);
         if (p.position.z < 0.01 || std::abs(p.position.y) > 0.01) continue;
-        const float behind = glm::distance(geometry.surfel[i].position, hidden.surfel[i].position);
+        const float behind =
+            glm::distance(geometry.surfaces[i].position, hidden.surfaces[i].position);
         if (behind < 0.01f)
           shown = int(i);
         else

@@ -37,7 +37,7 @@ double share_cut(const Window& view_window) {
   int posts = 0, cut = 0;
   for (std::size_t i = 0; i < guessed.size(); ++i) {
     const glm::dvec3 p =
-        glm::transpose(frame.camera.rotation) * glm::dvec3(frame.surfel[i].position) +
+        glm::transpose(frame.camera.rotation) * glm::dvec3(frame.surfaces[i].position) +
         frame.camera.origin;
     if (p.z < 0.1) continue;
     ++posts;

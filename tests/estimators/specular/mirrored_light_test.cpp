@@ -117,7 +117,7 @@ TEST(MirroredLight, AnOpenPlaneMirrorsAnEvenLightByItsReflectance) {
         for (const char* method : {"bitmask", "trace"}) {
           const Plane<glm::vec3> found = specular_of(method, scene, roughness, ior);
           for (std::size_t i = 0; i < found.size(); i += 37) {
-            const Surfel& s = scene.geometry.surfel[i];
+            const Surfel& s = scene.geometry.surfaces[i];
             const float cosine = -glm::dot(glm::normalize(s.position), s.normal);
             const glm::vec2 sums = reflectances(cosine, float(roughness));
             ASSERT_NEAR(found[i].y, f0 * sums.x + sums.y, 2e-4) << method << " " << tilt;
@@ -162,7 +162,7 @@ TEST(MirroredLight, SkyIsTheSumOverTheSky) {
       const Plane<glm::vec3> found = unoccluded(scene, roughness);
       const glm::dmat3 to_world = glm::transpose(glm::dmat3(scene.geometry.world_to_camera));
       const auto truth = [&](int x, int y) {
-        const Surfel& s = scene.geometry.surfel(x, y);
+        const Surfel& s = scene.geometry.surfaces(x, y);
         const glm::dvec3 n(s.normal), v = -glm::normalize(glm::dvec3(s.position));
         const glm::dvec3 t = glm::normalize(glm::cross(n, glm::dvec3(0.1, 0.9, 0.2))),
                          b = glm::cross(n, t);
@@ -198,7 +198,7 @@ TEST(MirroredLight, HighlightsOfSourcesAreTheSumOverTheirPoints) {
         Case{50, 1.5, 0.6, 0.04}}) {
     Scene scene = scene_of(floor_seen_at(c.degrees), Environment::constant(glm::vec3(0)));
     // Where a mirror in the middle of the floor shows it.
-    const Surfel& s = scene.geometry.surfel(kWindow.width() / 2, kWindow.height() / 2);
+    const Surfel& s = scene.geometry.surfaces(kWindow.width() / 2, kWindow.height() / 2);
     const glm::vec3 to = glm::reflect(glm::normalize(s.position), s.normal);
     scene.light.sources = {
         std::make_shared<const Disc>(s.position + 4.0f * to, -to, float(c.radius))};
@@ -206,7 +206,8 @@ TEST(MirroredLight, HighlightsOfSourcesAreTheSumOverTheirPoints) {
     const Off error = off(
         unoccluded(scene, c.roughness, 1.5),
         [&](int x, int y) {
-          return mirrored_by_sum(*scene.light.sources[0], scene.geometry.surfel(x, y), alpha, 0.04);
+          return mirrored_by_sum(*scene.light.sources[0], scene.geometry.surfaces(x, y), alpha,
+                                 0.04);
         },
         7);
     fmt::print("disc of {}, seen at {} degrees, roughness {}: RMSE {:.4f}, largest {:.3f}\n",
@@ -225,7 +226,7 @@ TEST(MirroredLight, HighlightsOfWideLampsAtGrazingViewsAreTheSumOverTheirPoints)
        {Case{"rect", 0.2, 0.07}, Case{"rect", 0.35, 0.04}, Case{"rect", 0.5, 0.02},
         Case{"sphere", 0.2, 0.13}, Case{"sphere", 0.35, 0.05}, Case{"sphere", 0.5, 0.03}}) {
     Scene scene = scene_of(floor_seen_at(80), Environment::constant(glm::vec3(0)));
-    const Surfel& s = scene.geometry.surfel(kWindow.width() / 2, kWindow.height() / 2);
+    const Surfel& s = scene.geometry.surfaces(kWindow.width() / 2, kWindow.height() / 2);
     const glm::vec3 to = glm::reflect(glm::normalize(s.position), s.normal);
     Lamp lamp;
     const bool is_rect = std::string(c.shape) == "rect";
@@ -242,7 +243,8 @@ TEST(MirroredLight, HighlightsOfWideLampsAtGrazingViewsAreTheSumOverTheirPoints)
     const Off error = off(
         unoccluded(scene, c.roughness, 1.5),
         [&](int x, int y) {
-          return mirrored_by_sum(*scene.light.sources[0], scene.geometry.surfel(x, y), alpha, 0.04);
+          return mirrored_by_sum(*scene.light.sources[0], scene.geometry.surfaces(x, y), alpha,
+                                 0.04);
         },
         7);
     fmt::print(

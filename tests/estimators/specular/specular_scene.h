@@ -43,8 +43,8 @@ inline Plane<glm::vec3> unoccluded(const Scene& scene, double roughness, double 
   Products all;
   all.shares.mirror = std::make_shared<const MirrorModel>(
       scene, request_of(find_method("bitmask"), roughness, ior));
-  const Plane<Surfel>& surfel = scene.geometry.surfel;
-  all.specular = Plane<glm::vec3>(surfel.width, surfel.height);
+  const Surfaces& surfaces = scene.geometry.surfaces;
+  all.specular = Plane<glm::vec3>(surfaces.width, surfaces.height);
   all.shares.mirrored_sky = all.specular;
   std::fill(all.shares.mirrored_sky.pixels.begin(), all.shares.mirrored_sky.pixels.end(),
             glm::vec3(1));

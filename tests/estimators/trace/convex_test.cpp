@@ -55,7 +55,7 @@ TEST(TraceConvex, FacetsUnderSmoothNormalsAreOpen) {
   double sum = 0, count = 0;
   float least = 1;
   for (std::size_t i = 0; i < out.ao.size(); ++i) {
-    if (!g.surfel[i].is_surface()) continue;
+    if (!g.surfaces[i].is_surface()) continue;
     sum += double(out.ao[i]), count += 1, least = std::min(least, out.ao[i]);
   }
   fmt::print("facets: mean ao {:.4f}, least {:.3f} of {}\n", sum / count, least, count);
@@ -72,13 +72,14 @@ TEST(TraceConvex, APlaneHidesWhatShadingNormalsSeeBelowIt) {
   for (int y = 0; y < kWindow.height(); ++y) {
     for (int x = 0; x < kWindow.width(); ++x) {
       const glm::vec3 bump(std::sin(0.4f * float(x)), std::sin(0.5f * float(y)), 0);
-      g.surfel(x, y).normal = g.world_to_camera * glm::normalize(glm::vec3(0, 0, 1) + 0.4f * bump);
+      g.surfaces.set_normal(g.surfaces.index(x, y),
+                            g.world_to_camera * glm::normalize(glm::vec3(0, 0, 1) + 0.4f * bump));
     }
   }
   const Products out = run_trace(g, {.radius = kNoLimit, .samples = 256});
   double squares = 0, bias = 0;
   for (std::size_t i = 0; i < out.ao.size(); ++i) {
-    const double expected = 0.5 * (1 + double(glm::dot(g.surfel[i].normal, up)));
+    const double expected = 0.5 * (1 + double(glm::dot(g.surfaces[i].normal, up)));
     const double off = double(out.ao[i]) - expected;
     bias += off / double(out.ao.size()), squares += off * off / double(out.ao.size());
   }

@@ -43,7 +43,7 @@ TEST(HeightField, OfAnEndlessPlaneIsOneSheetOfFronts) {
     EXPECT_EQ(field.sheets.triangles.size(), 2 * kCells);
     EXPECT_EQ(field.sheets.corners.size(), kPixels) << "no backs";
     for (std::size_t i = 0; i < kPixels; ++i) {
-      const glm::vec3 p(g.surfel[i].position);
+      const glm::vec3 p(g.surfaces[i].position);
       EXPECT_LT(glm::distance(field.space.position(field.sheets.corners[i]), p), 1e-5f);
       EXPECT_EQ(field.sheets.owners[i].sender, int(i));
       EXPECT_EQ(field.sheets.owners[i].layer, 0);
@@ -71,12 +71,12 @@ TEST(HeightField, GoesOnBehindWhatIsSeenWithoutACut) {
     int behind = 0;
     for (std::size_t i = 0; i < kPixels; ++i) {
       // From halfway between card and wall, straight to the wall.
-      const glm::dvec3 p(g.surfel[i].position);
+      const glm::dvec3 p(g.surfaces[i].position);
       if (p.z < -5.5) continue;
       const Owner hit = rays.first_hit(p - glm::dvec3(0, 0, 0.9), {0, 0, -1}, 0.2).owner;
       ASSERT_GE(hit.sender, 0) << "the second layer has no holes";
       EXPECT_EQ(hit.layer, 1);
-      EXPECT_LT(g.surfel[std::size_t(hit.sender)].position.z, -5.5f) << "the wall sends";
+      EXPECT_LT(g.surfaces[std::size_t(hit.sender)].position.z, -5.5f) << "the wall sends";
       ++behind;
     }
     EXPECT_GT(behind, 100);
@@ -91,7 +91,7 @@ TEST(HeightField, JoinsTheSecondLayerToWhatIsSeenBeside) {
     for (const auto& triangle : field.sheets.triangles) {
       of_wall += std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t corner) {
         const auto sender = std::size_t(field.sheets.owners[corner].sender);
-        return g.surfel[sender].position.z < -5.5f;
+        return g.surfaces[sender].position.z < -5.5f;
       });
     }
     EXPECT_EQ(of_wall, 2 * kCells) << "one sheet without a cut, behind the card's edges too";
@@ -119,16 +119,16 @@ TEST(HeightField, HoldsAsManyLayersAsAPixelHas) {
   for (const float distance : {0.3f, 0.6f}) {
     SolidLayer layer(64, 48, Provenance::measured);
     for (std::size_t i = 0; i < kPixels; ++i) {
-      if (g.surfel[i].position.z <= -5.5) continue;
+      if (g.surfaces[i].position.z <= -5.5) continue;
       layer.distance[i] = distance, layer.thickness[i] = 0.1f, layer.sender[i] = int(i);
     }
     solids.behind.push_back(std::move(layer));
   }
   const RayScene rays(build_height_field(g, solids));
-  const std::size_t middle = g.surfel.index(32, 24);
-  const glm::dvec3 along = glm::normalize(glm::dvec3(g.surfel[middle].position));
+  const std::size_t middle = g.surfaces.index(32, 24);
+  const glm::dvec3 along = glm::normalize(glm::dvec3(g.surfaces[middle].position));
   for (const auto& [from, layer] : {std::pair{-0.05, 0}, {0.2, 1}, {0.5, 2}}) {
-    const glm::dvec3 origin = glm::dvec3(g.surfel[middle].position) + from * along;
+    const glm::dvec3 origin = glm::dvec3(g.surfaces[middle].position) + from * along;
     EXPECT_EQ(rays.first_hit(origin, along, 0.15).owner.layer, layer) << from;
     EXPECT_EQ(rays.first_hit(origin, along, 0.15).owner.sender, int(middle)) << from;
     EXPECT_FALSE(rays.is_blocked(origin, along, 0.04)) << from;
@@ -146,8 +146,8 @@ TEST(HeightField, OfAPartDiffersInTheExponentsOfItsHeightsOnly) {
   EXPECT_NE(exponent, 1) << "the part has another mean depth";
   for (int y = 0; y < 28; ++y) {
     for (int x = 0; x < 57; ++x) {
-      const glm::vec3 &one = all.sheets.corners[whole.surfel.index(x + 3, y + 20)],
-                      &other = some.sheets.corners[part.surfel.index(x, y)];
+      const glm::vec3 &one = all.sheets.corners[whole.surfaces.index(x + 3, y + 20)],
+                      &other = some.sheets.corners[part.surfaces.index(x, y)];
       ASSERT_EQ(other, one * glm::vec3(1, 1, ratio)) << x << " " << y;
     }
   }

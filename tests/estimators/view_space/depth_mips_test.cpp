@@ -16,13 +16,11 @@ Geometry noise(const Window& window, const Window& display) {
   std::mt19937 random(7);
   Geometry g;
   g.window = window, g.display = display;
-  g.surfel = Plane<Surfel>(window.width(), window.height());
-  for (Surfel& s : g.surfel.pixels) {
-    if (random() % 8 == 0) continue;
-    s.position = glm::vec3(0, 0, -1 - 1e-6f * float(random() % 1000000));
-    s.valid = 1;
-    s.normal = glm::vec3(0, 0, 1);
-  }
+  g.surfaces = Surfaces(window.width(), window.height());
+  g.surfaces.change_each([&](Surfel& s) {
+    if (random() % 8 == 0) return;
+    s = {{0, 0, -1 - 1e-6f * float(random() % 1000000)}, {0, 0, 1}, 0};
+  });
   return g;
 }
 
@@ -70,7 +68,7 @@ TEST(DepthMips, ACropHasTheSameLevelsWhereItHasTheirPixels) {
   Geometry cropped = noise(part, all);
   for (int y = 0; y < part.height(); ++y) {
     for (int x = 0; x < part.width(); ++x)
-      cropped.surfel(x, y) = whole.surfel(x + part.x0, y + part.y0);
+      cropped.surfaces.set(x, y, whole.surfaces(x + part.x0, y + part.y0));
   }
   const DepthMips of_whole(make_view_planes(whole)), of_part(make_view_planes(cropped));
   const int margin = 1 << DepthMips::kCoarsest;

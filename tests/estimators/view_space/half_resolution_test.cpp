@@ -16,12 +16,12 @@ Geometry step(const Window& window, double near_depth) {
   Geometry g;
   g.window = g.display = window;
   g.camera = camera;
-  g.surfel = Plane<Surfel>(window.width(), window.height());
+  g.surfaces = Surfaces(window.width(), window.height());
   for (int y = 0; y < window.height(); ++y) {
     for (int x = 0; x < window.width(); ++x) {
       const double depth = x < window.width() / 2 ? 100 : near_depth;
       const glm::vec3 position(camera.unproject({x + 0.5, y + 0.5}, depth));
-      g.surfel(x, y) = {position, 1, {0, 0, 1}, 0};
+      g.surfaces.set(x, y, {position, {0, 0, 1}, 0});
     }
   }
   return g;
@@ -29,7 +29,7 @@ Geometry step(const Window& window, double near_depth) {
 
 TEST(HalfResolution, TakesTheLowerRightOfEveryFourPixelsOfTheDisplayWindow) {
   Geometry g = step({0, 0, 21, 13}, 50);
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) g.surfel[i].rounding = float(i);
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) g.surfaces.rounding[i] = float(i);
   for (const int first : {0, 1, -3}) {
     g.display = {-first, -first, 30, 30};
     const ViewPlanes planes = make_view_planes(g);
@@ -87,8 +87,8 @@ TEST(HalfResolution, OnOnePlaneBothAreBilinear) {
 TEST(HalfResolution, APixelAloneOnItsSurfaceHasTheValueNearestInDepth) {
   Geometry g = step({0, 0, 8, 8}, 50);
   // One that no evaluated pixel shares: far behind the left plane's neighbours, nearer to it.
-  g.surfel(6, 6).position.z = -90;
-  g.surfel(7, 7).position.z = -91;
+  g.surfaces.position[2](6, 6) = -90;
+  g.surfaces.position[2](7, 7) = -91;
   const ViewPlanes planes = make_view_planes(g);
   const HalfResolution half(planes);
   Plane<float> values(4, 4, 0.2f);

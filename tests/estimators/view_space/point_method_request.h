@@ -49,8 +49,8 @@ inline bool depth_at(const Geometry& g, const glm::dvec3& point, double& z) {
   if (point.z >= 0) return false;
   const glm::dvec2 place = g.camera.project(point);
   const double x = std::floor(place.x) - g.window.x0, y = std::floor(place.y) - g.window.y0;
-  if (!(x >= 0 && y >= 0 && x < g.surfel.width && y < g.surfel.height)) return false;
-  const Surfel& s = g.surfel(int(x), int(y));
+  if (!(x >= 0 && y >= 0 && x < g.surfaces.width && y < g.surfaces.height)) return false;
+  const Surfel& s = g.surfaces(int(x), int(y));
   z = s.position.z;
   return s.is_surface();
 }

@@ -78,8 +78,8 @@ TEST_P(PointMethods, BrokenPixelsNeitherComeOutNorSpread) {
               infinity = std::numeric_limits<float>::infinity();
   Geometry g = room();
   const float odd[] = {nan, infinity, -infinity, 0, 1e-40f, 1e38f, -1e38f, -1e-30f};
-  for (std::size_t i = 0; i < g.surfel.size(); i += 7) {
-    Surfel& s = g.surfel[i];
+  for (std::size_t i = 0; i < g.surfaces.size(); i += 7) {
+    Surfel s = g.surfaces[i];
     const float value = odd[(i / 7) % 8];
     switch ((i / 56) % 8) {
       case 0:
@@ -95,24 +95,25 @@ TEST_P(PointMethods, BrokenPixelsNeitherComeOutNorSpread) {
         s.normal = glm::vec3(0), s.rounding = 0;
         break;
       case 4:
-        s.position = glm::vec3(value), s.valid = 1;
+        s.position = glm::vec3(value), s.rounding = 0;
         break;
       case 5:
         s.rounding = value;
         break;
       case 6:
-        s.valid = 0;
+        s.rounding = Surfel::kBackground;
         break;
       default:
         s.normal = glm::vec3(0, 0, -1), s.rounding = 0;
         break;
     }
+    g.surfaces.set(i, s);
   }
   const Products out = estimate(g, 0.7f, true);
   for (std::size_t i = 0; i < out.ao.size(); ++i) {
     EXPECT_TRUE(out.ao[i] >= 0 && out.ao[i] <= 1) << i << ": " << out.ao[i];
     EXPECT_TRUE(std::isfinite(out.direct[i].x));
-    if (!g.surfel[i].is_surface()) {
+    if (!g.surfaces[i].is_surface()) {
       EXPECT_EQ(out.ao[i], 1);
       EXPECT_EQ(out.direct[i], glm::vec3(0));
     }

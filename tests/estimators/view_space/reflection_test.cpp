@@ -58,12 +58,12 @@ Plane<float> reflect_cones(const std::vector<Cones>& pixels, double strength) {
   Geometry g;
   g.window = g.display = {0, 0, width, 1};
   g.camera = camera_from_ortho_width(width, g.display, 1);
-  g.surfel = Plane<Surfel>(width, 1);
+  g.surfaces = Surfaces(width, 1);
   Plane<glm::vec3> bent(width, 1);
   Plane<float> roughness(width, 1);
   for (int x = 0; x < width; ++x) {
     const Cones& of = pixels[std::size_t(x)];
-    g.surfel(x, 0) = {{float(x), 0, -1}, 1, at_angle(of.between / 2), 0};
+    g.surfaces.set(x, 0, {{float(x), 0, -1}, at_angle(of.between / 2), 0});
     bent(x, 0) = glm::vec3(0, 0, float(of.length));
     roughness(x, 0) = float(of.roughness);
   }
@@ -126,7 +126,7 @@ TEST(Reflection, VectorsGiveWhatOneLaneGives) {
   Plane<glm::vec3> bent(48, 36);
   Plane<float> layer(48, 36);
   for (std::size_t i = 0; i < bent.size(); ++i) {
-    bent[i] = share(random) * g.surfel[i].normal;
+    bent[i] = share(random) * g.surfaces[i].normal;
     layer[i] = share(random);
   }
   expect_the_same_from_every_isa([&] { return reflect(g, bent, 0, &layer); });
@@ -141,7 +141,7 @@ TEST(Reflection, EveryPixelMirrorsItsOwnRay) {
     const Plane<float> found = reflect(g, Plane<glm::vec3>(48, 36, up), 0.3);
     double least = 1, most = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
-      const glm::dvec3 p(g.surfel[i].position), n(g.surfel[i].normal);
+      const glm::dvec3 p(g.surfaces[i].position), n(g.surfaces[i].normal);
       const glm::dvec3 from_viewer =
           g.camera.orthographic ? glm::dvec3(0, 0, -1) : p / std::sqrt(glm::dot(p, p));
       const glm::dvec3 r = from_viewer - 2 * glm::dot(from_viewer, n) * n, b(up);
@@ -173,8 +173,8 @@ TEST(Reflection, ALayerOfRoughnessStandsInPlaceOfTheParameter) {
 TEST(Reflection, BackgroundAndWhatIsBrokenIsOpen) {
   Geometry g =
       geometry_of(sphere({0, 0, 0}, 1), tilted(camera_from_fov(60, kWindow, 1), 40), kWindow);
-  g.surfel(24, 18).normal.x = NAN;
-  g.surfel(25, 18).position.z = NAN;
+  g.surfaces.normal[0](24, 18) = NAN;
+  g.surfaces.position[2](25, 18) = NAN;
   const Plane<float> found = reflect(g, Plane<glm::vec3>(48, 36), 0.5);
   EXPECT_EQ(found(0, 0), 1);
   EXPECT_EQ(found(24, 18), 1);

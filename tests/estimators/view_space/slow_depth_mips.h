@@ -17,7 +17,7 @@ inline float slow_mip(const Geometry& g, int level, int x, int y) {
   };
   x = within(x, x0, g.window.width()), y = within(y, y0, g.window.height());
   if (level == 0) {
-    const Surfel& s = g.surfel(x - x0, y - y0);
+    const Surfel& s = g.surfaces(x - x0, y - y0);
     return s.is_surface() ? s.position.z : -INFINITY;
   }
   const auto odd = [](int i) { return i % 2 != 0 ? 1 : 0; };

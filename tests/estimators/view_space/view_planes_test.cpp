@@ -28,7 +28,7 @@ TEST(ViewPlanes, DepthTimesRayIsThePosition) {
     int surfaces = 0;
     for (int y = 0; y < 23; ++y) {
       for (int x = 0; x < 37; ++x) {
-        const Surfel& s = g.surfel(x, y);
+        const Surfel& s = g.surfaces(x, y);
         const float z = planes.z.row(y)[x];
         if (!s.is_surface()) {
           EXPECT_EQ(z, kBackgroundDepth);
@@ -50,9 +50,9 @@ TEST(ViewPlanes, ACropHasTheRaysOfTheWhole) {
   const ViewPlanes whole = make_view_planes(g);
   Geometry part = g;
   part.window = {5, 3, 37, 23};
-  part.surfel = Plane<Surfel>(32, 20);
+  part.surfaces = Surfaces(32, 20);
   for (int y = 0; y < 20; ++y) {
-    for (int x = 0; x < 32; ++x) part.surfel(x, y) = g.surfel(x + 5, y + 3);
+    for (int x = 0; x < 32; ++x) part.surfaces.set(x, y, g.surfaces(x + 5, y + 3));
   }
   const ViewPlanes cropped = make_view_planes(part);
   EXPECT_EQ(cropped.first_column, 5);
@@ -64,9 +64,9 @@ TEST(ViewPlanes, ACropHasTheRaysOfTheWhole) {
 
 TEST(ViewPlanes, PaddingAndWhatIsBrokenAreBackground) {
   Geometry g = sphere_over_nothing(camera_from_fov(40, kWindow, 1));
-  g.surfel(18, 11).position.x = NAN;
-  g.surfel(19, 11).normal.y = INFINITY;
-  g.surfel(20, 11).position.z = 1;
+  g.surfaces.position[0](18, 11) = NAN;
+  g.surfaces.normal[1](19, 11) = INFINITY;
+  g.surfaces.position[2](20, 11) = 1;
   const ViewPlanes planes = make_view_planes(g);
   for (const int x : {-PaddedLayout::kPad, -1, 18, 19, 20, 37, 37 + PaddedLayout::kPad - 1})
     EXPECT_EQ(planes.z.row(11)[x], kBackgroundDepth) << x;
@@ -95,7 +95,7 @@ TEST(AmbientLight, IsAoTimesTheIrradianceOnTheNormalOrTheBentNormal) {
       EXPECT_EQ(direct[i], glm::vec3(0));
       continue;
     }
-    const float expected = 0.5f * (1 + g.surfel[i].normal.y) / 2;
+    const float expected = 0.5f * (1 + g.surfaces[i].normal.y) / 2;
     EXPECT_NEAR(direct[i].x, 2 * expected, 0.02);
     EXPECT_NEAR(direct[i].z, 6 * expected, 0.06);
     EXPECT_NEAR(lit_from_above[i].y, 4 * 0.5f, 0.04);

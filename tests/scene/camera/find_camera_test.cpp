@@ -39,12 +39,12 @@ void write_camera(const std::filesystem::path& path, const Camera& camera) {
 
 /// Holds the geometry to what the picture shows in camera space.
 void expect_placed(const Geometry& geometry, const Picture& picture) {
-  for (std::size_t i = 0; i < geometry.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < geometry.surfaces.size(); ++i) {
     if (!geometry.is_surface(i)) continue;
     const glm::dvec3 p = picture.camera.to_camera(glm::dvec3(picture.position[i])),
                      n = picture.camera.rotation * glm::dvec3(picture.normal[i]);
-    EXPECT_LT(glm::length(glm::dvec3(geometry.surfel[i].position) - p), 1e-5);
-    EXPECT_LT(glm::length(glm::dvec3(geometry.surfel[i].normal) - n), 1e-4);
+    EXPECT_LT(glm::length(glm::dvec3(geometry.surfaces[i].position) - p), 1e-5);
+    EXPECT_LT(glm::length(glm::dvec3(geometry.surfaces[i].normal) - n), 1e-4);
   }
 }
 

@@ -105,11 +105,11 @@ void expect_of(const Picture& picture, const Built& built) {
   }
   EXPECT_LT(glm::distance(g.camera.origin, picture.camera.origin), 2e-4);
   double worst = 0;
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
     EXPECT_EQ(g.is_surface(i), picture.valid[i] != 0);
     if (!g.is_surface(i)) continue;
     const glm::dvec3 expected = picture.camera.to_camera(glm::dvec3(picture.position[i]));
-    const double off = glm::distance(glm::dvec3(g.surfel[i].position), expected);
+    const double off = glm::distance(glm::dvec3(g.surfaces[i].position), expected);
     worst = std::max(worst, off / glm::length(expected));
   }
   EXPECT_LT(worst, 2e-5) << "of the distance";

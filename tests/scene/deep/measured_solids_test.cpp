@@ -28,13 +28,13 @@ Surface wall() { return plane({0, 0, -1.5}, {std::sin(0.3), 0, std::cos(0.3)}); 
 Surface scene() { return all_of({wall(), kNear.surface(), kHidden.surface()}); }
 
 bool shows(const Geometry& g, std::size_t i, const Box& box) {
-  return std::abs(g.surfel[i].position.z + 6 - box.high.z) < 1e-4;
+  return std::abs(g.surfaces[i].position.z + 6 - box.high.z) < 1e-4;
 }
 
 /// Distance between two points of a pixel's ray by their heights z in the world.
 double between(const Geometry& g, std::size_t i, double from_z, double to_z) {
   if (g.camera.orthographic) return from_z - to_z;
-  const glm::vec3 p(g.surfel[i].position);
+  const glm::vec3 p(g.surfaces[i].position);
   return (from_z - to_z) * glm::length(p) / -p.z;
 }
 
@@ -62,7 +62,7 @@ TEST(MeasuredSolids, LieWhereTheElementsLie) {
     const Geometry &g = found.geometry, wall_alone = geometry_of(wall(), camera, kWindow);
     EXPECT_TRUE(found.warnings.empty());
     int boxes = 0, walls = 0;
-    for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+    for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
       const Solid second = found.solids.at(1, i), third = found.solids.at(2, i);
       if (!shows(g, i, kNear)) continue;
       const Ray ray = ray_through(camera, double(i % 120) + 0.5, double(i / 120) + 0.5);
@@ -72,15 +72,17 @@ TEST(MeasuredSolids, LieWhereTheElementsLie) {
       if (enter < leave && std::abs(ray.origin.z + enter * ray.direction.z - 0.2) < 1e-6) {
         EXPECT_NEAR(second.distance, between(g, i, 1.5, 0.2), 1e-4);
         ASSERT_TRUE(third.exists());
-        EXPECT_LT(glm::distance(point_behind(g, i, third.distance), wall_alone.surfel[i].position),
-                  1e-3);
+        EXPECT_LT(
+            glm::distance(point_behind(g, i, third.distance), wall_alone.surfaces[i].position),
+            1e-3);
         EXPECT_EQ(found.solids.provenance(2, i), Provenance::measured);
         EXPECT_LE(second.thickness, third.distance - second.distance + 1e-4)
             << "ends before the next";
         ++boxes;
       } else if (enter > leave) {
-        EXPECT_LT(glm::distance(point_behind(g, i, second.distance), wall_alone.surfel[i].position),
-                  1e-3);
+        EXPECT_LT(
+            glm::distance(point_behind(g, i, second.distance), wall_alone.surfaces[i].position),
+            1e-3);
         ++walls;
       }
       EXPECT_LE(found.solids.at(0, i).thickness, second.distance);
@@ -97,7 +99,7 @@ TEST(MeasuredSolids, BelongToTheSurfacesThatReachBehind) {
                            {merged({wall(), kNear.surface(), kHidden.surface()}, camera, kWindow)});
   const Geometry& g = found.geometry;
   int hidden = 0, sending = 0;
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
     const Solid second = found.solids.at(1, i);
     if (!shows(g, i, kNear) || std::abs(second.distance - 1.3) > 1e-4) continue;
     ++hidden;
@@ -118,7 +120,7 @@ TEST(MeasuredSolids, HaveMeasuredThicknesses) {
       const Found found = find(scene(), camera, {deep}, {std::nullopt, kFar}, given);
       const Geometry& g = found.geometry;
       int pixels = 0;
-      for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+      for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
         if (!shows(g, i, kNear)) continue;
         const Ray ray = ray_through(camera, double(i % 120) + 0.5, double(i / 120) + 0.5);
         const auto [enter, leave] = kNear.cross(ray);
@@ -182,7 +184,7 @@ TEST(MeasuredSolids, TakeTheKindOfDepthThatFitsTheFrame) {
   EXPECT_TRUE(given.warnings.empty());
   ASSERT_EQ(chosen.warnings.size(), 1u);
   EXPECT_NE(chosen.warnings[0].find("distances along the rays"), std::string::npos);
-  for (std::size_t i = 0; i < expected.geometry.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < expected.geometry.surfaces.size(); ++i) {
     ASSERT_EQ(chosen.solids.at(1, i).distance, given.solids.at(1, i).distance);
     ASSERT_EQ(expected.solids.at(1, i).exists(), given.solids.at(1, i).exists());
     if (!given.solids.at(1, i).exists()) continue;

@@ -41,9 +41,9 @@ double mean_angle(const GBuffer& g, const GBuffer& right, GeometryReport& report
   const Geometry found = build_geometry(g, {}, "test", report),
                  expected = build_geometry(right, {}, "test", ignored);
   double sum = 0, count = 0;
-  for (std::size_t i = 0; i < found.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < found.surfaces.size(); ++i) {
     if (!found.is_surface(i)) continue;
-    const float cosine = glm::dot(found.surfel[i].normal, expected.surfel[i].normal);
+    const float cosine = glm::dot(found.surfaces[i].normal, expected.surfaces[i].normal);
     sum += glm::degrees(std::acos(std::clamp(double(cosine), -1.0, 1.0)));
     count += 1;
   }
@@ -209,10 +209,10 @@ TEST(NormalSpace, OfAFrameOfDepthAloneIsFoundInTheWorldToo) {
   GeometryReport report;
   const Geometry found = build_geometry(g, {"", 40, {}}, "test", report);
   double worst = 0;
-  for (std::size_t i = 0; i < found.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < found.surfaces.size(); ++i) {
     if (!found.is_surface(i)) continue;
     const glm::vec3 expected = glm::mat3(picture.camera.rotation) * picture.normal[i];
-    worst = std::max(worst, double(glm::length(found.surfel[i].normal - expected)));
+    worst = std::max(worst, double(glm::length(found.surfaces[i].normal - expected)));
   }
   EXPECT_LT(worst, 5e-3);
   EXPECT_FALSE(found.world_known);
@@ -233,8 +233,8 @@ TEST(NormalSpace, OfADepthAloneIsFittedBesideAFloor) {
     const Geometry found = build_geometry(g, {"", 40, {}}, "test", report),
                    expected = build_geometry(right, {"", 40, {}}, "test", ignored);
     float worst = 0;
-    for (std::size_t i = 0; i < found.surfel.size(); ++i)
-      worst = std::max(worst, glm::length(found.surfel[i].normal - expected.surfel[i].normal));
+    for (std::size_t i = 0; i < found.surfaces.size(); ++i)
+      worst = std::max(worst, glm::length(found.surfaces[i].normal - expected.surfaces[i].normal));
     EXPECT_LT(worst, 5e-3f) << degrees << report.normal_space;
     EXPECT_TRUE(report.warnings.empty());
   }

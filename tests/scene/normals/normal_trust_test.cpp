@@ -81,14 +81,14 @@ GBuffer with_normals(const Picture& picture, const NormalOf& stored) {
 double largest_change(const GBuffer& g, const Geometry& found,
                       const std::function<bool(const glm::vec3&)>& where) {
   double largest = 0;
-  for (std::size_t i = 0; i < found.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < found.surfaces.size(); ++i) {
     if (!found.is_surface(i) || !where(g.position[i])) continue;
     const glm::vec3 stored = found.normals_to_camera * g.normal[i];
-    if (glm::dot(stored, found.surfel[i].position) > 0) continue;
+    if (glm::dot(stored, found.surfaces[i].position) > 0) continue;
     largest = std::max(
-        largest,
-        double(glm::degrees(
-            2 * std::asin(std::min(1.0f, 0.5f * glm::distance(stored, found.surfel[i].normal))))));
+        largest, double(glm::degrees(
+                     2 * std::asin(std::min(
+                             1.0f, 0.5f * glm::distance(stored, found.surfaces[i].normal))))));
   }
   return largest;
 }
@@ -169,10 +169,10 @@ TEST(NormalTrust, NormalsBelowTheSurfaceAreBroughtToTheViewersSide) {
                  expected = build_geometry(right, {}, "test", ignored);
   EXPECT_GT(report.normals_turned, 100u);
   int against = 0;  // the surface; on the rim of a leaf
-  for (std::size_t i = 0; i < found.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < found.surfaces.size(); ++i) {
     if (!found.is_surface(i)) continue;
-    const glm::vec3 &n = found.surfel[i].normal, &p = found.surfel[i].position;
-    against += glm::dot(n, p) > 0 && glm::dot(n, expected.surfel[i].normal) < -0.05f;
+    const glm::vec3 &n = found.surfaces[i].normal, &p = found.surfaces[i].position;
+    against += glm::dot(n, p) > 0 && glm::dot(n, expected.surfaces[i].normal) < -0.05f;
   }
   EXPECT_LE(against, 1);
 }
@@ -208,9 +208,9 @@ TEST(NormalTrust, AConstantNIsUsedOnlyWhereItAgrees) {
                    right = build_geometry(gbuffer_of(picture), {}, "test", ignored);
     EXPECT_GT(report.normals_rebuilt, 500u);
     double sum = 0, count = 0;
-    for (std::size_t i = 0; i < found.surfel.size(); ++i) {
+    for (std::size_t i = 0; i < found.surfaces.size(); ++i) {
       if (!found.is_surface(i)) continue;
-      sum += std::abs(glm::dot(found.surfel[i].normal, right.surfel[i].normal)), count += 1;
+      sum += std::abs(glm::dot(found.surfaces[i].normal, right.surfaces[i].normal)), count += 1;
     }
     EXPECT_GT(sum / count, 0.9) << constant.x << constant.y << constant.z;
   }

@@ -38,7 +38,7 @@ Geometry from_depth(const Surface& scene, const Camera& camera, const CameraOpti
   return geometry;
 }
 
-glm::dvec3 normal_at(const Geometry& g, std::size_t i) { return glm::dvec3(g.surfel[i].normal); }
+glm::dvec3 normal_at(const Geometry& g, std::size_t i) { return glm::dvec3(g.surfaces[i].normal); }
 
 TEST(NormalsFromDepth, OfAPlaneAreItsNormalUpToTheBorder) {
   for (const double tilt : {0.0, 30.0, 60.0, 80.0}) {
@@ -48,12 +48,12 @@ TEST(NormalsFromDepth, OfAPlaneAreItsNormalUpToTheBorder) {
     for (const DepthKind kind : {DepthKind::planar, DepthKind::ray}) {
       const Camera camera = look_at(camera_from_fov(20, kWindow, 1), eye, {}, up);
       const Geometry g = from_depth(floor, camera, {"", 20, {}}, kind);
-      for (std::size_t i = 0; i < g.surfel.size(); ++i)
+      for (std::size_t i = 0; i < g.surfaces.size(); ++i)
         EXPECT_LT(glm::length(normal_at(g, i) - camera.rotation * glm::dvec3(0, 0, 1)), 1e-3);
     }
     const Camera camera = look_at(camera_from_ortho_width(2, kWindow, 1), eye, {}, up);
     const Geometry g = from_depth(floor, camera, {"", {}, 2});
-    for (std::size_t i = 0; i < g.surfel.size(); ++i)
+    for (std::size_t i = 0; i < g.surfaces.size(); ++i)
       EXPECT_LT(glm::length(normal_at(g, i) - camera.rotation * glm::dvec3(0, 0, 1)), 1e-3);
   }
 }
@@ -71,9 +71,9 @@ TEST(NormalsFromDepth, AreUnitVectorsAtAnyDistance) {
       const Geometry geometry = build_geometry(g, {"", 40, {}}, "test", report);
       std::vector<glm::vec3> smooth(5);
       for (int y = 0; y < 4; ++y) {
-        find_geometric_normals(geometry.surfel, y, false, smooth);
+        find_geometric_normals(geometry.surfaces, y, false, smooth);
         for (int x = 0; x < 5; ++x) {
-          EXPECT_NEAR(glm::length(geometry.surfel(x, y).normal), 1, 1e-5) << near << " " << far;
+          EXPECT_NEAR(glm::length(geometry.surfaces(x, y).normal), 1, 1e-5) << near << " " << far;
           EXPECT_NEAR(glm::length(smooth[std::size_t(x)]), 1, 1e-5) << near << " " << far;
         }
       }
@@ -95,7 +95,7 @@ TEST(NormalsFromDepth, StayOnTheirOwnSideOfASilhouette) {
   std::size_t at_edges = 0;
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 64; ++x) {
-      const std::size_t i = g.surfel.index(x, y);
+      const std::size_t i = g.surfaces.index(x, y);
       const glm::dvec3 expected = camera.rotation * glm::dvec3(picture.normal[i]);
       EXPECT_LT(glm::length(normal_at(g, i) - expected), 1e-3) << x << " " << y;
       at_edges += x > 0 && picture.normal[i] != picture.normal[i - 1];
@@ -111,7 +111,7 @@ TEST(NormalsFromDepth, DoNotLeanOnTheBackground) {
       from_depth(cut(plane({}, n), [](const glm::dvec3& p) { return glm::length(p) < 1; }), camera,
                  {"", 40, {}});
   std::size_t surfaces = 0, without_a_plane = 0;
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
     if (!g.is_surface(i)) continue;
     ++surfaces;
     without_a_plane += glm::length(normal_at(g, i) - camera.rotation * n) > 1e-3;
@@ -125,8 +125,8 @@ TEST(NormalsFromDepth, FaceTheViewerWhereThereIsNoPlaneToSee) {
     const Camera camera = look_at(camera_from_fov(4, window, 1), {0, -3, 3}, {}, {0, 0, 1});
     const Geometry g =
         from_depth(plane({}, {0, 0, 1}), camera, {"", 4, {}}, DepthKind::planar, window);
-    for (std::size_t i = 0; i < g.surfel.size(); ++i) {
-      const glm::dvec3 view = -glm::normalize(glm::dvec3(g.surfel[i].position));
+    for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
+      const glm::dvec3 view = -glm::normalize(glm::dvec3(g.surfaces[i].position));
       EXPECT_LT(glm::length(normal_at(g, i) - view), 1e-6);
     }
   }
@@ -137,8 +137,8 @@ struct NormalPair {
   glm::vec3 geometric, shading;
 };
 NormalPair normals_at(const Geometry& g, int x, int y) {
-  const Surfel& s = g.surfel(x, y);
-  return {geometric_normal(g.surfel, x, y, -glm::normalize(s.position)), s.normal};
+  const Surfel& s = g.surfaces(x, y);
+  return {geometric_normal(g.surfaces, x, y, -glm::normalize(s.position)), s.normal};
 }
 
 TEST(GeometricNormals, AreThoseOfTheSurfaceUnderANormalMap) {
@@ -148,7 +148,7 @@ TEST(GeometricNormals, AreThoseOfTheSurfaceUnderANormalMap) {
     Geometry g = geometry_of(plane({}, {0, 0, 1}), camera, kWindow);
     const double a = glm::radians(lean);
     const glm::vec3 shading(camera.rotation * glm::dvec3(std::sin(a), 0, std::cos(a)));
-    for (Surfel& s : g.surfel.pixels) s.normal = shading;
+    g.surfaces.change_each([&](Surfel& s) { s.normal = shading; });
     const NormalPair inside = normals_at(g, 30, 20);
     // Within two degrees both are one.
     EXPECT_LT(glm::distance(inside.geometric, lean < 2 ? shading : up), 1e-4) << lean;
@@ -164,18 +164,18 @@ TEST(GeometricNormals, OfARowAreThoseOfItsPixels) {
     const Camera projection =
         orthographic ? camera_from_ortho_width(3, kWindow, 1) : camera_from_fov(40, kWindow, 1);
     Geometry g = geometry_of(ball, look_at(projection, {0, -3, 2}, {}, {0, 0, 1}), kWindow);
-    for (std::size_t i = 0; i < g.surfel.size(); i += 3)
-      g.surfel[i].normal = glm::normalize(g.surfel[i].normal + glm::vec3(0.2f, 0, 0));
+    for (std::size_t i = 0; i < g.surfaces.size(); i += 3)
+      g.surfaces.set_normal(i, glm::normalize(g.surfaces[i].normal + glm::vec3(0.2f, 0, 0)));
     std::vector<glm::vec3> row(std::size_t(kWindow.width()));
     int surfaces = 0;
     for (int y = 0; y < kWindow.height(); ++y) {
-      find_geometric_normals(g.surfel, y, orthographic, row);
+      find_geometric_normals(g.surfaces, y, orthographic, row);
       for (int x = 0; x < kWindow.width(); ++x) {
-        const Surfel& s = g.surfel(x, y);
+        const Surfel& s = g.surfaces(x, y);
         if (!s.is_usable()) continue;
         ++surfaces;
         const glm::vec3 alone =
-            geometric_normal(g.surfel, x, y, direction_to_viewer(s.position, orthographic));
+            geometric_normal(g.surfaces, x, y, direction_to_viewer(s.position, orthographic));
         EXPECT_LT(glm::distance(row[std::size_t(x)], alone), 1e-5f) << x << " " << y;
       }
     }
@@ -194,7 +194,7 @@ TEST(GeometricNormals, AreThoseOfThePixelWherePositionsTellNone) {
     const Geometry g = geometry_of(scene, camera, kWindow);
     for (int y = 0; y < kWindow.height(); ++y) {
       for (int x = 0; x < kWindow.width(); ++x) {
-        if (!g.surfel(x, y).is_usable()) continue;
+        if (!g.surfaces(x, y).is_usable()) continue;
         const NormalPair n = normals_at(g, x, y);
         EXPECT_GT(glm::dot(n.geometric, n.shading), 0.96f) << x << " " << y;
       }
@@ -202,9 +202,10 @@ TEST(GeometricNormals, AreThoseOfThePixelWherePositionsTellNone) {
   }
   // Positions in half floats leave no slope.
   Geometry g = geometry_of(plane({}, {0, 0, 1}), camera, kWindow);
-  for (Surfel& s : g.surfel.pixels)
+  g.surfaces.change_each([](Surfel& s) {
     s.normal = glm::normalize(s.normal + glm::vec3(0.5f, 0, 0)), s.rounding = 0.02f;
-  EXPECT_EQ(normals_at(g, 30, 20).geometric, g.surfel(30, 20).normal);
+  });
+  EXPECT_EQ(normals_at(g, 30, 20).geometric, g.surfaces(30, 20).normal);
 }
 
 }  // namespace

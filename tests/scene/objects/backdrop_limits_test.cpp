@@ -21,9 +21,7 @@ namespace {
 constexpr Window kWindow{0, 0, 160, 90};
 
 Surfel surfel_at(const glm::dvec3& position, const glm::dvec3& normal) {
-  Surfel s;
-  s.position = glm::vec3(position), s.normal = glm::vec3(glm::normalize(normal)), s.valid = 1;
-  return s;
+  return {glm::vec3(position), glm::vec3(glm::normalize(normal)), 0};
 }
 
 /// 0..1, the same in every run.
@@ -49,7 +47,7 @@ Geometry painted(const Paint& paint, double fov = 55) {
   for (int y = 0; y < kWindow.height(); ++y)
     for (int x = 0; x < kWindow.width(); ++x)
       if (const auto s = paint(x, y, glm::normalize(g.camera.ray({x + 0.5, y + 0.5}).direction)))
-        g.surfel(x, y) = *s;
+        g.surfaces.set(x, y, *s);
   return g;
 }
 
@@ -138,32 +136,21 @@ TEST(BackdropLimits, SkyAbove) {
   EXPECT_FALSE(is_far(open(24)));
 }
 
-/// Samples that live as long as this.
-struct Samples {
-  std::vector<Surfel> all;
-
-  SurfelSamples get() const {
-    SurfelSamples samples;
-    for (const Surfel& s : all) samples.push_back(&s);
-    return samples;
-  }
-};
-
 /// One of 64 samples is tried for a plane, and five planes are a box.
 TEST(BackdropLimits, Planes) {
-  Samples few;
+  SurfelSamples few;
   for (int i = 0; i < 1600; ++i) {
     const glm::dvec3 at(noise(i, 1) - 0.5, noise(i, 2) - 0.5, -10 - 0.01 * i);
-    few.all.push_back(i >= 52 && i < 82 ? surfel_at({at.x, at.y, -5}, {0, 0, 1})
-                                        : surfel_at(at, rough(i, 3, {0, 0, 1})));
+    few.push_back(i >= 52 && i < 82 ? surfel_at({at.x, at.y, -5}, {0, 0, 1})
+                                    : surfel_at(at, rough(i, 3, {0, 0, 1})));
   }
-  const auto flat = flat_of(few.get());
+  const auto flat = flat_of(few);
   ASSERT_TRUE(flat);
   EXPECT_NEAR(flat->distance, 5, 0.1);
-  Samples six;
+  SurfelSamples six;
   for (int i = 0; i < 180; ++i)
-    six.all.push_back(surfel_at({0.01 * i, 0, -10 * std::pow(1.3, i / 30)}, {0, 0, 1}));
-  SurfelSamples left = six.get();
+    six.push_back(surfel_at({0.01 * i, 0, -10 * std::pow(1.3, i / 30)}, {0, 0, 1}));
+  SurfelSamples left = six;
   EXPECT_EQ(take_flats(left, 0.99, [](const Flat&) { return true; }).size(), 5u);
   EXPECT_EQ(left.size(), 30u);
 }
@@ -171,7 +158,7 @@ TEST(BackdropLimits, Planes) {
 /// A frame is looked at in 96 columns and rows.
 TEST(BackdropLimits, SamplesOfAFrame) {
   Geometry g = painted(card(10));
-  g.surfel = Plane<Surfel>(288, 192, surfel_at({0, 0, -1}, {0, 0, 1}));
+  g.surfaces = Surfaces(288, 192, surfel_at({0, 0, -1}, {0, 0, 1}));
   EXPECT_EQ(samples_of(g).size(), 96u * 96u);
 }
 
@@ -179,13 +166,13 @@ TEST(BackdropLimits, SamplesOfAFrame) {
 TEST(BackdropLimits, Cylinders) {
   for (const double away : {0.4, 0.6}) {
     const RoundShape round{{0, 1, 0}, {0, 0, 1 - away}, 1};
-    Samples wall;
+    SurfelSamples wall;
     for (int i = 0; i < 100; ++i) {
       const double a = 0.1 * (noise(i, 1) - 0.5);
       const glm::dvec3 on(std::sin(a), 0, -std::cos(a));
-      wall.all.push_back(surfel_at(round.middle + on + glm::dvec3(0, noise(i, 2), 0), -on));
+      wall.push_back(surfel_at(round.middle + on + glm::dvec3(0, noise(i, 2), 0), -on));
     }
-    EXPECT_EQ(is_cylinder_around(round, wall.get(), 0.8), away > 0.5);
+    EXPECT_EQ(is_cylinder_around(round, wall, 0.8), away > 0.5);
   }
 }
 
@@ -199,20 +186,20 @@ struct Stage {
 };
 
 std::optional<BackdropShape> found_on(const Stage& stage) {
-  Samples out;
+  SurfelSamples out;
   for (int i = 0; i < stage.ground; ++i)
-    out.all.push_back(
+    out.push_back(
         surfel_at({noise(i, 1) - 0.5, -1, -2 - 90 * (i + 0.5) / stage.ground}, {0, 1, 0}));
   for (int i = 0; i < stage.card; ++i) {
     const double y = stage.height((i + 0.5) / stage.card) - 1;
-    out.all.push_back(
+    out.push_back(
         surfel_at({300 * noise(i, 2) - 150, y, -200 - stage.tilt * y}, {0, stage.tilt, 1}));
   }
   for (int i = 0; i < stage.things; ++i)
-    out.all.push_back(surfel_at(
+    out.push_back(surfel_at(
         {10 * noise(i, 3), stage.things_height - 1, -stage.things_away * (1 + 0.1 * noise(i, 4))},
         rough(i, 5, {0, 0, 1})));
-  return find_standing_backdrop(out.get());
+  return find_standing_backdrop(out);
 }
 
 bool is_far(const Stage& stage) {
@@ -264,19 +251,19 @@ TEST(BackdropLimits, CardsAndTheirGround) {
 /// The arc of a sweep has one radius, within a tenth.
 TEST(BackdropLimits, Sweeps) {
   const auto is_sweep = [](double off) {
-    Samples out;
+    SurfelSamples out;
     for (int i = 0; i < 500; ++i)
-      out.all.push_back(surfel_at({noise(i, 1) - 0.5, -1, -2 - 90 * (i + 0.5) / 500}, {0, 1, 0}));
+      out.push_back(surfel_at({noise(i, 1) - 0.5, -1, -2 - 90 * (i + 0.5) / 500}, {0, 1, 0}));
     for (int i = 0; i < 600; ++i) {
       const double a = (i + 0.5) / 600 * 1.5707963, up = std::cos(a), front = std::sin(a),
                    radius = 80 * (1 + (i % 3 - 1) * off);
-      out.all.push_back(
+      out.push_back(
           surfel_at({40 * noise(i, 2) - 20, radius * (1 - up) - 1, radius * (1 - front) - 200},
                     {0, up, front}));
     }
     for (int i = 0; i < 400; ++i)
-      out.all.push_back(surfel_at({40 * noise(i, 3) - 20, 80 + 70 * noise(i, 4), -200}, {0, 0, 1}));
-    const auto found = find_standing_backdrop(out.get());
+      out.push_back(surfel_at({40 * noise(i, 3) - 20, 80 + 70 * noise(i, 4), -200}, {0, 0, 1}));
+    const auto found = find_standing_backdrop(out);
     return found && found->what.starts_with("a sweep");
   };
   EXPECT_TRUE(is_sweep(0));

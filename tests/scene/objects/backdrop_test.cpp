@@ -145,10 +145,10 @@ TEST(Backdrop, WhatStandsOnTheGroundIsFoundByItsScale) {
             "a card that stands on the ground, 200 times as far away as the camera is "
             "high");
   const Geometry shown = frame({kFloor, kBall, wall(434)});
-  for (std::size_t i = 0; i < shown.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < shown.surfaces.size(); ++i) {
     const glm::vec3 n =
-        glm::vec3(glm::transpose(shown.camera.rotation) * glm::dvec3(shown.surfel[i].normal));
-    ASSERT_EQ(card->coverage[i] > 0, n.y < -0.9f && shown.surfel[i].position.z < -100) << i;
+        glm::vec3(glm::transpose(shown.camera.rotation) * glm::dvec3(shown.surfaces[i].normal));
+    ASSERT_EQ(card->coverage[i] > 0, n.y < -0.9f && shown.surfaces[i].position.z < -100) << i;
   }
   const Camera level = camera({0.3, 2, 3.2});
   for (const double times : {75.0, 140.0, 160.0, 400.0}) {
@@ -201,11 +201,11 @@ TEST(Backdrop, ASweepRisesFromTheGround) {
     EXPECT_EQ(found->is_far(), is_far) << found->clearance;
     // What stands upright of it; the ball does not.
     const Geometry ball = frame({kBall}, by);
-    for (std::size_t i = 0; i < shown.surfel.size(); ++i) {
+    for (std::size_t i = 0; i < shown.surfaces.size(); ++i) {
       const double up =
-          (glm::transpose(shown.camera.rotation) * glm::dvec3(shown.surfel[i].normal)).z;
+          (glm::transpose(shown.camera.rotation) * glm::dvec3(shown.surfaces[i].normal)).z;
       const bool is_ball =
-          ball.is_surface(i) && ball.surfel[i].position == shown.surfel[i].position;
+          ball.is_surface(i) && ball.surfaces[i].position == shown.surfaces[i].position;
       if (std::abs(up - 0.7) < 0.05) continue;
       ASSERT_EQ(found->coverage[i] > 0, !is_ball && up < 0.7) << i << " " << up;
     }
@@ -248,13 +248,13 @@ TEST(Backdrop, ADomeHasLimits) {
   // Normals that point out of it.
   Geometry outward = frame({kStage, kBall, dome({0, 0, 0}, 500)});
   const Geometry open = frame({kStage, kBall});
-  for (std::size_t i = 0; i < outward.surfel.size(); ++i)
-    if (!open.is_surface(i)) outward.surfel[i].normal = -outward.surfel[i].normal;
+  for (std::size_t i = 0; i < outward.surfaces.size(); ++i)
+    if (!open.is_surface(i)) outward.surfaces.set_normal(i, -outward.surfaces[i].normal);
   EXPECT_FALSE(is_backdrop(outward));
   // A dome of few pixels.
   Geometry sliver = frame({kStage, kBall});
   const Geometry whole = frame({kStage, kBall, dome({0, 0, 0}, 500)});
-  for (int x = 0; x < 20; ++x) sliver.surfel(x, 0) = whole.surfel(x, 0);
+  for (int x = 0; x < 20; ++x) sliver.surfaces.set(x, 0, whole.surfaces(x, 0));
   EXPECT_FALSE(is_backdrop(sliver));
 }
 
@@ -267,7 +267,7 @@ TEST(Backdrop, ADomeIsThreeTimesAsLargeAsItsScene) {
   ASSERT_TRUE(found);
   std::vector<double> others;
   const Geometry stage = frame({kStage, kBall});
-  for (const Surfel& s : stage.surfel.pixels)
+  for (const Surfel& s : stage.surfaces.each())
     if (s.is_surface()) others.push_back(glm::length(glm::dvec3(s.position)));
   std::ranges::sort(others);
   const double most = others[others.size() * 9 / 10];
@@ -294,16 +294,12 @@ TEST(Backdrop, TheCameraIsInADome) {
 /// A plane with too few samples is none, and takes none from what is left to other shapes.
 TEST(Backdrop, PlanesWithFewSamplesTakeNothing) {
   for (const std::size_t on_plane : {23, 24}) {
-    std::vector<Surfel> surfels(on_plane + 1);
-    for (std::size_t i = 0; i < surfels.size(); ++i) {
-      surfels[i].position = {0.1f * float(i), 0, i < on_plane ? -10 : -20};
-      surfels[i].normal = {0, 0, 1};
-    }
     SurfelSamples left;
-    for (const Surfel& s : surfels) left.push_back(&s);
+    for (std::size_t i = 0; i <= on_plane; ++i)
+      left.push_back({{0.1f * float(i), 0, i < on_plane ? -10 : -20}, {0, 0, 1}, 0});
     const std::size_t flats = take_flats(left, 0.8, [](const Flat&) { return true; }).size();
     EXPECT_EQ(flats, std::size_t(on_plane == 24));
-    EXPECT_EQ(left.size(), flats == 0 ? surfels.size() : 1);
+    EXPECT_EQ(left.size(), flats == 0 ? on_plane + 1 : 1);
   }
 }
 

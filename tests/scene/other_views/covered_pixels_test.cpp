@@ -19,11 +19,11 @@ class CoveredPixels : public testing::Test {
     geometry_ = has_wall ? geometry_of(kWall, by, kWindow)
                          : geometry_of(sphere({0, -10, 0}, 1), by, kWindow);
     const Geometry near = geometry_of(plane({0, 3, 0}, {0, -1, 0}), by, kWindow);
-    for (int y = 0; y < 16; ++y) geometry_.surfel(12, y) = near.surfel(12, y);
+    for (int y = 0; y < 16; ++y) geometry_.surfaces.set(12, y, near.surfaces(12, y));
   }
 
   Plane<unsigned char> covered(const Plane<float>& coverage) const {
-    return covered_pixels(geometry_.surfel, geometry_.camera, coverage);
+    return covered_pixels(geometry_.surfaces, geometry_.camera, coverage);
   }
 
   Geometry geometry_;

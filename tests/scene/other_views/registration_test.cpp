@@ -67,7 +67,8 @@ class Registers : public testing::Test {
   double off(const OtherView& view) const {
     double most = 0;
     const glm::dmat3 to_world = glm::transpose(frame_.camera.rotation);
-    for (const Surfel& s : view.surfels_in_frame().pixels) {
+    const Surfaces seen = view.surfels_in_frame();
+    for (const Surfel& s : seen.each()) {
       if (!s.is_surface()) continue;
       const glm::dvec3 p = to_world * glm::dvec3(s.position) + frame_.camera.origin;
       const glm::dvec3 way = p - kEye;

@@ -37,7 +37,7 @@ Frame frame_of(const std::vector<Surface>& around, const Camera& by = camera(),
             Plane<float>(window.width(), window.height(), 0.0f)};
   for (std::size_t i = 0; i < out.coverage.size(); ++i) {
     const bool shows =
-        alone.is_surface(i) && alone.surfel[i].position == out.geometry.surfel[i].position;
+        alone.is_surface(i) && alone.surfaces[i].position == out.geometry.surfaces[i].position;
     out.coverage[i] = shows ? 1.0f : 0.0f;
   }
   return out;
@@ -53,9 +53,9 @@ Filled filled(const Frame& frame, const std::vector<Surface>& around, const Cast
   const Geometry truth = geometry_of(all_of(around), by, window);
   Filled out;
   for (std::size_t i = 0; i < frame.coverage.size(); ++i) {
-    const Surfel &a = casting.geometry.surfel[i], &b = truth.surfel[i];
+    const Surfel &a = casting.geometry.surfaces[i], &b = truth.surfaces[i];
     if (frame.coverage[i] == 0) {
-      EXPECT_EQ(a.position, frame.geometry.surfel[i].position) << "beside the hole";
+      EXPECT_EQ(a.position, frame.geometry.surfaces[i].position) << "beside the hole";
       EXPECT_EQ(casting.sender[i], -1);
       continue;
     }
@@ -67,7 +67,7 @@ Filled filled(const Frame& frame, const std::vector<Surface>& around, const Cast
     const int sender = casting.sender[i];
     EXPECT_GE(sender, 0);
     EXPECT_EQ(frame.coverage[std::size_t(sender)], 0) << "the ball sends";
-    EXPECT_LE(a.position.z, frame.geometry.surfel[i].position.z + 1e-4f) << "before the ball";
+    EXPECT_LE(a.position.z, frame.geometry.surfaces[i].position.z + 1e-4f) << "before the ball";
   }
   return out;
 }
@@ -88,8 +88,9 @@ TEST(TakeOut, APlaneBetweenTwoSidesIsThatOfTheirPositions) {
       look_at(camera_from_fov(50, kWindow, 1), {0.3, -2.5, 4}, {0.1, 0.6, 0.2}, {0, 0, 1});
   Frame frame = frame_of(around, down);
   for (std::size_t i = 0; i < frame.coverage.size(); ++i) {
-    glm::vec3& n = frame.geometry.surfel[i].normal;
-    if (frame.coverage[i] == 0) n = glm::normalize(n + glm::vec3(0.035f, 0, 0));
+    const glm::vec3 n = frame.geometry.surfaces[i].normal;
+    if (frame.coverage[i] == 0)
+      frame.geometry.surfaces.set_normal(i, glm::normalize(n + glm::vec3(0.035f, 0, 0)));
   }
   const Filled found =
       filled(frame, around, take_out(frame.geometry, frame.coverage, {}, {}), down);
@@ -132,7 +133,7 @@ TEST(TakeOut, WhatRestsOnAThingDoesNotHangBelowIt) {
   const glm::dvec3 at = level.to_camera({0, 0.3, 0}), out = level.to_camera({0, -0.7, 0}) - at;
   int hanging = 0, pixels = 0;
   for (std::size_t i = 0; i < frame.coverage.size(); ++i) {
-    const Surfel& s = casting.geometry.surfel[i];
+    const Surfel& s = casting.geometry.surfaces[i];
     if (frame.coverage[i] == 0 || !s.is_surface()) continue;
     ++pixels, hanging += std::abs(glm::dot(glm::dvec3(s.position) - at, out)) < 0.02;
   }
@@ -155,7 +156,7 @@ TEST(TakeOut, WhatIsSeenAtLengthGoesOn) {
 TEST(TakeOut, BackgroundStaysBackground) {
   const Frame frame = frame_of({});
   const Casting casting = take_out(frame.geometry, frame.coverage, {}, {});
-  for (const Surfel& s : casting.geometry.surfel.pixels) {
+  for (const Surfel& s : casting.geometry.surfaces.each()) {
     EXPECT_FALSE(s.is_surface());
     EXPECT_FALSE(s.is_broken());
   }
@@ -182,8 +183,8 @@ TEST(TakeOut, RowsThatEndInTheHoleAskTheOverview) {
   for (std::size_t i = 0; i < rows.coverage.size(); ++i) {
     if (rows.coverage[i] == 0) continue;
     const auto differs = [&](const Casting& casting) {
-      const Surfel &a = casting.geometry.surfel[i],
-                   &b = in_whole.geometry.surfel[i + std::size_t(kRows.y0 * kRows.width())];
+      const Surfel &a = casting.geometry.surfaces[i],
+                   &b = in_whole.geometry.surfaces[i + std::size_t(kRows.y0 * kRows.width())];
       return a.is_surface() != b.is_surface() ||
              (a.is_surface() && glm::distance(a.position, b.position) > 0.03f * -b.position.z);
     };
@@ -210,7 +211,7 @@ TEST(TakeOut, WhatNothingTellsIsBroken) {
   const Frame frame = frame_of({kFloor});
   const Casting casting =
       take_out(frame.geometry, Plane<float>(kWindow.width(), kWindow.height(), 1.0f), {}, {});
-  for (const Surfel& s : casting.geometry.surfel.pixels) EXPECT_TRUE(s.is_broken());
+  for (const Surfel& s : casting.geometry.surfaces.each()) EXPECT_TRUE(s.is_broken());
 }
 
 /// A pixel that is covered in part shows one of both.
@@ -234,7 +235,8 @@ TEST(TakeOut, ARimGoesWithTheThing) {
   for (std::size_t i = 0; i < matte.size(); ++i) {
     rim += matte[i] == 0.2f, ground += matte[i] == 0.8f;
     if (matte[i] == 0) continue;
-    EXPECT_LT(glm::distance(casting.geometry.surfel[i].position, truth.surfel[i].position), 1e-3f)
+    EXPECT_LT(glm::distance(casting.geometry.surfaces[i].position, truth.surfaces[i].position),
+              1e-3f)
         << "a rim is left";
     if (matte[i] == 0.8f) {
       EXPECT_EQ(casting.sender[i], -1) << "the ground was taken out";

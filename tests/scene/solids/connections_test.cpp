@@ -26,15 +26,15 @@ TEST(Connections, AreThoseOfTheRule) {
     int connected = 0, apart = 0;
     for (int y = 0; y < kWindow.height(); ++y) {
       for (int x = 0; x < kWindow.width(); ++x) {
-        EXPECT_EQ(bool(connections(x, y) & kShowsSurface), g.surfel(x, y).is_surface());
+        EXPECT_EQ(bool(connections(x, y) & kShowsSurface), g.surfaces(x, y).is_surface());
         for (std::size_t k = 0; k < kDirections.size(); ++k) {
           const int other_x = x + kDirections[k].dx, other_y = y + kDirections[k].dy;
           const bool has_other = other_x >= 0 && other_x < kWindow.width() &&
-                                 other_y < kWindow.height() && g.surfel(x, y).is_surface() &&
-                                 g.surfel(other_x, other_y).is_surface();
+                                 other_y < kWindow.height() && g.surfaces(x, y).is_surface() &&
+                                 g.surfaces(other_x, other_y).is_surface();
           bool expected = false;
           if (has_other) {
-            const Surfel &a = g.surfel(x, y), &b = g.surfel(other_x, other_y);
+            const Surfel &a = g.surfaces(x, y), &b = g.surfaces(other_x, other_y);
             expected = on_one_surface({a.position, a.normal}, {b.position, b.normal}, footprint);
             (expected ? connected : apart) += 1;
           }
@@ -58,9 +58,9 @@ TEST(Connections, ARidgeJoinsASideThatIsSeenEdgeOn) {
   int ridges = 0;
   for (int y = 0; y < kWindow.height(); ++y) {
     for (int x = 0; x + 1 < kWindow.width(); ++x) {
-      if (!g.surfel(x + 1, y).is_surface()) continue;
+      if (!g.surfaces(x + 1, y).is_surface()) continue;
       EXPECT_TRUE(connections(x, y) & 1) << x << " " << y;
-      ridges += g.surfel(x, y).normal != g.surfel(x + 1, y).normal;
+      ridges += g.surfaces(x, y).normal != g.surfaces(x + 1, y).normal;
     }
   }
   EXPECT_EQ(ridges, kWindow.height());

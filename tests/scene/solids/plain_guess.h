@@ -37,22 +37,22 @@ class PlainGuess {
   PlainGuess(const Geometry& g, const Plane<unsigned char>& connections)
       : g_(g), connections_(connections), footprint_(g.camera) {
     for (std::size_t k = 0; k < kDirections.size(); ++k) {
-      runs_[k] = Plane<PlainRun>(g.surfel.width, g.surfel.height);
-      for (int y = 0; y < g.surfel.height; ++y)
-        for (int x = 0; x < g.surfel.width; ++x)
+      runs_[k] = Plane<PlainRun>(g.surfaces.width, g.surfaces.height);
+      for (int y = 0; y < g.surfaces.height; ++y)
+        for (int x = 0; x < g.surfaces.width; ++x)
           if (at({x, y})) runs_[k](x, y) = find_run({x, y}, k);
     }
     const auto as_wide = runs_;
     for (std::size_t k = 0; k < kDirections.size(); ++k)
-      for (int y = 0; y < g.surfel.height; ++y)
-        for (int x = 0; x < g.surfel.width; ++x)
+      for (int y = 0; y < g.surfaces.height; ++y)
+        for (int x = 0; x < g.surfaces.width; ++x)
           if (at({x, y}) && as_wide[k](x, y).unknown_ends == 0)
             runs_[k](x, y).depth = std::min(runs_[k](x, y).depth, shown_depth({x, y}, k));
   }
 
   static glm::ivec2 step(std::size_t k) { return {kDirections[k].dx, kDirections[k].dy}; }
 
-  const Surfel* at(const glm::ivec2& p) const { return surface_at(g_.surfel, p.x, p.y); }
+  std::optional<Surfel> at(const glm::ivec2& p) const { return surface_at(g_.surfaces, p.x, p.y); }
 
   bool joined(const glm::ivec2& from, std::size_t k) const {
     return at(from) && connections_(from.x, from.y) >> k & 1;
@@ -64,7 +64,7 @@ class PlainGuess {
     PlainRun run{p, p};
     while (joined(run.first - step(k), k)) run.first -= step(k);
     while (joined(run.last, k)) run.last += step(k);
-    const Surfel &a = *at(run.first), &b = *at(run.last);
+    const Surfel a = *at(run.first), b = *at(run.last);
     run.unknown_ends = goes_on(run.first - step(k), a) + goes_on(run.last + step(k), b);
     if (run.unknown_ends == 2) return run;
     const float width =
@@ -88,7 +88,7 @@ class PlainGuess {
   /// Whether the surface of an end of a run may go on to a pixel that is not of it.
   bool goes_on(const glm::ivec2& to, const Surfel& end) const {
     const bool outside =
-        to.x < 0 || to.y < 0 || to.x >= g_.surfel.width || to.y >= g_.surfel.height;
+        to.x < 0 || to.y < 0 || to.x >= g_.surfaces.width || to.y >= g_.surfaces.height;
     return outside || (at(to) && at(to)->position.z > end.position.z);
   }
 
@@ -208,21 +208,21 @@ struct Behind {
 inline Behind plain_behind(const Geometry& g, const PlainGuess& guess, const glm::ivec2& p) {
   Behind found;
   float nearest_px = INFINITY;
-  const glm::vec3& front = guess.at(p)->position;
+  const glm::vec3 front = guess.at(p)->position;
   const glm::vec3 along = -direction_to_viewer(front, g.camera.orthographic);
   for (std::size_t k = 0; k < kDirections.size(); ++k) {
     const PlainRun& run = guess.run(p, k);
     for (const bool after : {false, true}) {
       const glm::ivec2 end = after ? run.last : run.first,
                        to = end + (after ? 1 : -1) * PlainGuess::step(k), way = glm::abs(to - p);
-      const Surfel* other = guess.at(to);
+      const auto other = guess.at(to);
       if (!other || other->position.z > guess.at(end)->position.z) continue;
       const float away_px = float(std::max(way.x, way.y)) * PlainGuess::step_px(k);
       const float distance =
           glm::dot(other->normal, other->position - front) / glm::dot(other->normal, along);
       if (!(distance > 0 && distance < INFINITY) || away_px >= nearest_px) continue;
       nearest_px = away_px;
-      found = {distance, int(g.surfel.index(to.x, to.y))};
+      found = {distance, int(g.surfaces.index(to.x, to.y))};
     }
   }
   return found;

@@ -41,9 +41,9 @@ Surface wall(double z) { return plane({0, 0, z}, {0, 0, 1}); }
 float thickness_of(const Geometry& g, double reach) {
   const Solids solids = guess_solids(g);
   std::vector<float> found;
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
     const glm::dvec3 p =
-        glm::transpose(g.camera.rotation) * glm::dvec3(g.surfel[i].position) + g.camera.origin;
+        glm::transpose(g.camera.rotation) * glm::dvec3(g.surfaces[i].position) + g.camera.origin;
     if (g.is_surface(i) && p.z > -1 && std::abs(p.y) < reach) found.push_back(solids.thickness[i]);
   }
   if (found.empty()) return 0;
@@ -94,7 +94,7 @@ TEST(ShownDepth, OfABoxThatShowsASideIsThatOfItsSection) {
 TEST(ShownDepth, IsNotKnownOfWhatIsSeenFaceOnOrRound) {
   const auto in_the_middle = [](const Surface& thing, const Camera& camera) {
     const Geometry g = geometry_of(all_of({wall(-3), thing}), camera, kWindow);
-    return guess_solids(g).thickness[g.surfel.index(80, 60)];
+    return guess_solids(g).thickness[g.surfaces.index(80, 60)];
   };
   EXPECT_NEAR(in_the_middle(post(0.4, 0.3).surface(), view(0, 0)), kDepthOfWidth * 0.8, 0.03);
   EXPECT_NEAR(in_the_middle(sphere({}, 0.4), view(35, 20)), kDepthOfWidth * 0.8, 0.04);
@@ -108,9 +108,9 @@ TEST(ShownDepth, IsNotToldByLinesAcrossACorner) {
       geometry_of(all_of({plane({0, -0.8, 0}, {0, 1, 0}), cube.surface()}), view(20, 40), kWindow);
   const Solids solids = guess_solids(g);
   int top = 0, thin = 0;
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
     const glm::dvec3 p =
-        glm::transpose(g.camera.rotation) * glm::dvec3(g.surfel[i].position) + g.camera.origin;
+        glm::transpose(g.camera.rotation) * glm::dvec3(g.surfaces[i].position) + g.camera.origin;
     if (!g.is_surface(i) || std::abs(p.y) > 1e-4 || std::abs(p.x) > 0.25 || std::abs(p.z) > 0.25)
       continue;
     ++top, thin += solids.thickness[i] < 0.3;
@@ -132,7 +132,7 @@ TEST(ShownDepth, IsNotToldWhereASideWouldBeHidden) {
   const Geometry g = geometry_of(all_of({wall(-5 * pixel_of(camera)), post(0.4, 0.002).surface()}),
                                  camera, kWindow);
   const Solids solids = guess_solids(g);
-  EXPECT_GT(solids.thickness[g.surfel.index(80, 60)], 0.4);
+  EXPECT_GT(solids.thickness[g.surfaces.index(80, 60)], 0.4);
 }
 
 /// A slope of which only one or two pixels are seen: rays that go through between them do not miss
@@ -148,7 +148,7 @@ TEST(ShownDepth, ClosesASurfaceBetweenPixels) {
   const Geometry g = geometry_of(all_of({wall(-3), leaf}), camera, kWindow);
   const Solids solids = guess_solids(g);
   int pixels = 0;
-  for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
     if (std::isinf(solids.thickness[i])) continue;
     ++pixels;
     EXPECT_GE(solids.thickness[i], 0.999 * std::tan(t) * pixel);

@@ -48,11 +48,12 @@ Surface leaning_wall() {
 }
 
 glm::dvec3 world(const Geometry& g, int x, int y) {
-  return glm::transpose(g.camera.rotation) * glm::dvec3(g.surfel(x, y).position) + g.camera.origin;
+  return glm::transpose(g.camera.rotation) * glm::dvec3(g.surfaces(x, y).position) +
+         g.camera.origin;
 }
 
 bool shows_card(const Geometry& g, std::size_t i) {
-  return std::abs(g.surfel[i].position.z + 5) < 1e-4;
+  return std::abs(g.surfaces[i].position.z + 5) < 1e-4;
 }
 
 TEST(Solids, AreRefusedWithMoreLayersThanThereIsRoomFor) {
@@ -67,7 +68,7 @@ TEST(Solids, OfAPlaneAreEndlessAndOfOneLayer) {
   for (const bool orthographic : {false, true}) {
     const Geometry g = geometry_of(leaning_wall(), view(orthographic), kWindow);
     const Solids solids = guess_solids(g);
-    for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+    for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
       ASSERT_TRUE(std::isinf(solids.thickness[i]));
       for (int k = 1; k < solids.layers(); ++k) ASSERT_FALSE(solids.at(k, i).exists());
     }
@@ -81,13 +82,13 @@ TEST(Solids, AreAsThickAsTheirLeastWidthSuggests) {
     const Solids solids = guess_solids(g);
     const double pixel = (orthographic ? 1.0 : 5.0) / g.camera.fx;
     int pixels = 0;
-    for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+    for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
       if (!shows_card(g, i)) {
         EXPECT_TRUE(std::isinf(solids.thickness[i])) << "the wall has no end in this frame";
         continue;
       }
       // Diagonal runs cut corners off.
-      const bool corner = std::abs(g.surfel[i].position.y) > 0.9 - 0.8;
+      const bool corner = std::abs(g.surfaces[i].position.y) > 0.9 - 0.8;
       if (!corner) {
         EXPECT_NEAR(solids.thickness[i], kDepthOfWidth * 0.8, 1.01 * pixel);
       }
@@ -108,8 +109,8 @@ TEST(Solids, CountThreeTimesWhatIsSeenOfThemBesideSomethingNearer) {
   const Geometry g = geometry_of(all_of({leaning_wall(), near_post, post}), view(true), kWindow);
   const Solids solids = guess_solids(g);
   const double pixel = 1 / g.camera.fx;
-  const std::size_t of_post = g.surfel.index(int(g.camera.cx + 0.55 / pixel), 45),
-                    of_near_post = g.surfel.index(int(g.camera.cx), 45);
+  const std::size_t of_post = g.surfaces.index(int(g.camera.cx + 0.55 / pixel), 45),
+                    of_near_post = g.surfaces.index(int(g.camera.cx), 45);
   EXPECT_NEAR(solids.thickness[of_post], kDepthOfWidth * 3 * seen, 3.01 * pixel);
   EXPECT_NEAR(solids.thickness[of_near_post], kDepthOfWidth * 0.6, 1.01 * pixel);
 }
@@ -123,7 +124,7 @@ TEST(Solids, BehindACardAreTheTangentPlaneThatReachesIt) {
     ASSERT_EQ(solids.layers(), 2);
     EXPECT_EQ(solids.provenance(0, 0), Provenance::seen);
     EXPECT_EQ(solids.provenance(1, 0), Provenance::guessed);
-    for (std::size_t i = 0; i < g.surfel.size(); ++i) {
+    for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
       const Solid second = solids.at(1, i);
       ASSERT_EQ(second.exists(), shows_card(g, i));
       if (!second.exists()) continue;
@@ -131,7 +132,7 @@ TEST(Solids, BehindACardAreTheTangentPlaneThatReachesIt) {
       EXPECT_FALSE(shows_card(g, std::size_t(second.sender)));
       EXPECT_TRUE(std::isinf(second.thickness)) << "as thick as where it is seen";
       const glm::vec3 found = point_behind(g, i, second.distance);
-      EXPECT_LT(glm::distance(found, wall.surfel[i].position), 1e-4);
+      EXPECT_LT(glm::distance(found, wall.surfaces[i].position), 1e-4);
     }
   }
 }
@@ -143,17 +144,17 @@ TEST(Solids, AreThoseOfTheRunsThroughEachPixel) {
                                 sphere({0.2, 0.3, 1.5}, 0.5), sphere({1.2, -0.6, 2}, 0.3)});
   for (const bool orthographic : {false, true}) {
     Geometry g = geometry_of(scene, view(orthographic), window);
-    for (int i = 0; i < 40; ++i) g.surfel(20 + i, 70 + i % 7) = {};  // nothing
+    for (int i = 0; i < 40; ++i) g.surfaces.set(20 + i, 70 + i % 7, {});  // nothing
     const Solids solids = guess_solids(g);
     const Plane<unsigned char> connections = find_connections(g);
     const PlainGuess plain(g, connections);
     int behind = 0, thin = 0;
     for (int y = 0; y < window.height(); ++y) {
       for (int x = 0; x < window.width(); ++x) {
-        if (!g.surfel(x, y).is_surface()) continue;
+        if (!g.surfaces(x, y).is_surface()) continue;
         const Behind expected = plain_behind(g, plain, {x, y});
         const float thickness = plain.thickness({x, y});
-        const std::size_t i = g.surfel.index(x, y);
+        const std::size_t i = g.surfaces.index(x, y);
         if (thickness < INFINITY)
           ASSERT_NEAR(solids.thickness[i], thickness, 1e-3f * thickness) << x << ", " << y;
         else
@@ -190,7 +191,7 @@ TEST(Solids, OfAStraightLegAreOfOneThicknessAlongIt) {
     while (last < window.width() && std::abs(world(g, last, y).y - 0.5) < 1e-4) ++last;
     if (x == 0 || last - x < 10) continue;
     (world(g, x - 1, y).z < 1e-4 ? beside_ground : beside_leg) += 1;
-    const float thickness = solids.thickness[g.surfel.index((x + last) / 2, y)];
+    const float thickness = solids.thickness[g.surfaces.index((x + last) / 2, y)];
     least = std::min(least, thickness), most = std::max(most, thickness);
     if (before > 0) step = std::max({step, thickness / before, before / thickness});
     before = thickness;
@@ -219,7 +220,8 @@ TEST(Solids, OfSomeRowsOfAFrameAreThoseOfTheFrame) {
   band.display = frame, band.part_of = frame;
   const Solids of_small = guess_solids(small), of_whole = guess_solids(whole),
                of_band = guess_solids(band, SolidsOfOverview{small, of_small.thickness});
-  const std::size_t on_cut = band.surfel.index(480, 345), on_other = band.surfel.index(480, 130);
+  const std::size_t on_cut = band.surfaces.index(480, 345),
+                    on_other = band.surfaces.index(480, 130);
   EXPECT_NEAR(of_whole.thickness[on_cut], kDepthOfWidth * 0.8, 0.02);
   EXPECT_NEAR(of_band.thickness[on_cut], of_whole.thickness[on_cut], 0.1);
   EXPECT_GT(guess_solids(band).thickness[on_cut], 1.1 * of_whole.thickness[on_cut]);
@@ -245,7 +247,7 @@ TEST(Solids, AreOfOneLayerBeforeTheBackground) {
   // Nothing is farther than the card: where it ends is background.
   const Geometry g = geometry_of(card(0, 0.4, 0.9), view(false), kWindow);
   const Solids solids = guess_solids(g);
-  const std::size_t middle = g.surfel.index(60, 45);
+  const std::size_t middle = g.surfaces.index(60, 45);
   EXPECT_NEAR(solids.thickness[middle], kDepthOfWidth * 0.8, 1.01 * 5 / g.camera.fx);
   EXPECT_FALSE(solids.at(1, middle).exists());
 }
